@@ -1,0 +1,115 @@
+# How the project's own targets are declared. A folder is a target: engine/wind is yuragi_engine_wind.
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+# Flags that every target of ours is compiled with.
+#  -ffp-contract=off     the same sums on every machine: poses are compared bit for bit
+#  -fno-math-errno, -fno-trapping-math   allow the plain loops of the kernels to be vectorised
+add_library(yuragi_flags INTERFACE)
+target_include_directories(yuragi_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+target_compile_options(yuragi_flags INTERFACE
+  -ffp-contract=off -fno-math-errno -fno-trapping-math
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor
+  -Woverloaded-virtual -Wimplicit-fallthrough -Wdouble-promotion
+  $<$<BOOL:${YURAGI_WERROR}>:-Werror>)
+if(YURAGI_SANITIZE)
+  target_compile_options(yuragi_flags INTERFACE -fsanitize=${YURAGI_SANITIZE} -fno-omit-frame-pointer -g)
+  target_link_options(yuragi_flags INTERFACE -fsanitize=${YURAGI_SANITIZE})
+  if(YURAGI_SANITIZE MATCHES undefined)
+    target_compile_options(yuragi_flags INTERFACE -fno-sanitize-recover=undefined)
+  endif()
+  if(YURAGI_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(yuragi_flags INTERFACE -Wno-tsan) # atomic_thread_fence inside Asio
+  endif()
+endif()
+
+# yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
+# A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room.
+function(yuragi_room folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  string(REPLACE "/" "_" name "yuragi_${folder}")
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC yuragi_flags ${ARG_LINK})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE yuragi_flags ${ARG_LINK})
+  endif()
+endfunction()
+
+# yuragi_kernel(yuragi_engine_pose strand_kernels.cpp)
+# Compiles a kernel file once for each SIMD row, with YURAGI_SIMD_ROW set to the row's name; engine/base/simd_row.hpp
+# chooses among them at start. Sanitizer builds have the base row alone.
+function(yuragi_kernel target source)
+  set(rows x86_64)
+  if(NOT YURAGI_SANITIZE)
+    list(APPEND rows x86_64_v3 x86_64_v4)
+  endif()
+  set(flags_x86_64 -march=x86-64)
+  set(flags_x86_64_v3 -march=x86-64-v3)
+  set(flags_x86_64_v4 -march=x86-64-v4 -mprefer-vector-width=512)
+  get_filename_component(stem ${source} NAME_WE)
+  foreach(row IN LISTS rows)
+    set(object ${target}_${stem}_${row})
+    add_library(${object} OBJECT ${source})
+    target_link_libraries(${object} PRIVATE yuragi_flags)
+    target_compile_definitions(${object} PRIVATE YURAGI_SIMD_ROW=${row})
+    target_compile_options(${object} PRIVATE -O3 ${flags_${row}})
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
+  endforeach()
+endfunction()
+
+# yuragi_table(yuragi_drivers HEADER drivers/driver.hpp TYPE DriverDescription TABLE driver_table ENTRIES modbus_driver ...)
+# Writes the function `std::span<const TYPE* const> TABLE()` over constants `extern const TYPE k<Entry>` of namespace
+# yuragi, one an entry. Static registration would be dropped by the linker; this cannot be.
+function(yuragi_table target)
+  cmake_parse_arguments(ARG "" "HEADER;TYPE;TABLE" "ENTRIES" ${ARGN})
+  set(declarations "")
+  set(pointers "")
+  foreach(entry IN LISTS ARG_ENTRIES)
+    string(APPEND declarations "extern const ${ARG_TYPE} ${entry};\n")
+    string(APPEND pointers "  static_cast<const ${ARG_TYPE}*>(&${entry}),\n")
+  endforeach()
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/${ARG_TABLE}.cpp)
+  file(CONFIGURE OUTPUT ${file} @ONLY CONTENT
+"// Generated from ${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt: add an entry there.
+#include <array>
+#include \"@ARG_HEADER@\"
+namespace yuragi {
+@declarations@
+std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
+  static const std::array entries{
+@pointers@  };
+  return entries;
+}
+}  // namespace yuragi
+")
+  target_sources(${target} PRIVATE ${file})
+endfunction()
+
+# yuragi_test(NAME SOURCES ... LINK ...): one GoogleTest program, each of its cases a CTest test.
+function(yuragi_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} GTest::gtest_main GTest::gmock)
+  target_compile_definitions(${name} PRIVATE
+    YURAGI_SOURCE_DIR="${PROJECT_SOURCE_DIR}" YURAGI_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 120)
+endfunction()
+
+# yuragi_fuzz(NAME SOURCES ... LINK ...): one libFuzzer program; CTest runs it for a few seconds.
+function(yuragi_fuzz name)
+  if(NOT YURAGI_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK})
+  target_compile_options(${name} PRIVATE -fsanitize=fuzzer)
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  add_test(NAME ${name} COMMAND ${name} -max_total_time=10 -timeout=10 -rss_limit_mb=2048)
+endfunction()

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Installs what Yuragi needs to build, run and be tested on Debian 12. Safe to run again: what is there stays.
+#
+#   config/setup.sh          build and run
+#   config/setup.sh --test   and what the tests and the sanitizer builds need besides
+#
+# Says what it installs, and stops before apt would remove anything.
+set -euo pipefail
+
+build_packages=(
+  build-essential cmake ninja-build ccache pkg-config
+  libboost1.81-dev          # Asio; Debian's default 1.74 does not fit C++20, and the two exclude each other
+  libfftw3-dev libmodbus-dev libsqlite3-dev libfccp-dev libhowardhinnant-date-dev
+  libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev
+  libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
+  libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
+  libgl1-mesa-dri xvfb xauth # the viewer's picture where there is no display
+)
+test_packages=(
+  libgtest-dev libbenchmark-dev
+  clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev
+  python3 python3-numpy python3-flatbuffers
+  mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
+)
+
+packages=("${build_packages[@]}")
+case "${1:-}" in
+  "") ;;
+  --test) packages+=("${test_packages[@]}") ;;
+  *) echo "usage: config/setup.sh [--test]" >&2; exit 64 ;;
+esac
+
+# What is missing? Nothing is asked of apt when everything is there.
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "setup: all ${#packages[@]} packages are installed."
+  exit 0
+fi
+
+if [ "$(id -u)" -eq 0 ]; then as_root=(env); else as_root=(sudo); fi
+echo "setup: installing ${#missing[@]} of ${#packages[@]} packages: ${missing[*]}"
+"${as_root[@]}" apt-get update -q >/dev/null
+plan=$(LC_ALL=C apt-get install -s -y --no-install-recommends "${missing[@]}")
+if removed=$(grep '^Remv' <<<"$plan"); then
+  echo "setup: apt would remove packages of yours, so nothing was done:" >&2
+  echo "$removed" >&2
+  echo "setup: install by hand what is listed above, or remove these first (libboost1.74-dev gives way to libboost1.81-dev)." >&2
+  exit 1
+fi
+DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
+echo "setup: done."

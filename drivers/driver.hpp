@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "drivers/sensor.hpp"
+#include "engine/base/parameter.hpp"
+
+namespace yuragi {
+
+/// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
+struct DriverDescription {
+  std::string_view name;
+  std::string_view summary;
+  std::span<const Parameter> parameters;
+  /// Makes a sensor of resolved values, without touching the device: poll() does that. Throws std::runtime_error, saying
+  /// what to do, where the values cannot work together or name a file that is not there.
+  std::unique_ptr<Sensor> (*open)(const ParameterValues& values);
+};
+
+/// Every driver (generated).
+std::span<const DriverDescription* const> driver_table();
+
+}  // namespace yuragi

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "drivers/clock.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+/// Does the device answer?
+enum class LinkState : std::uint8_t {
+  kConnecting,    ///< looking for it; also between attempts
+  kConnected,     ///< open, and the last exchange was answered
+  kFinished,      ///< a recording that came to its end; nothing more will come
+};
+
+/// Why something that arrived, or did not, was not published. Each is counted for each sensor.
+enum class Refusal : std::uint8_t {
+  kTimeout,      ///< no answer in time
+  kTooShort,     ///< an answer that ends too early
+  kNotMine,      ///< an answer of another device, or to another question
+  kBadChecksum,
+  kException,    ///< the device said no
+  kMalformed,    ///< not the protocol
+  kInvalid,      ///< the device's own mark for "no value"
+  kImplausible,  ///< decoded, but no wind blows like that
+};
+inline constexpr std::size_t kRefusalCount = 8;
+
+std::string_view name_of(Refusal refusal);
+std::string_view name_of(LinkState state);
+
+/// Where a sensor puts what it has. Called on the thread that polls; the strings need to live for the call only.
+class SensorSink {
+ public:
+  virtual ~SensorSink() = default;
+  virtual void reading(const WindReading& reading) = 0;
+  virtual void refused(Refusal why) = 0;
+  /// Told at each change, and with each failed attempt: what happened, and what to do about it.
+  virtual void link(LinkState state, std::string_view detail) = 0;
+};
+
+/// An open sensor, real or not. It holds its device for as long as it lives and finds it again for ever.
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+
+  /// Does the next piece of work: one exchange with the device, or one attempt to open it. Blocks no longer than the
+  /// device's own time-out. Returns when it wants to be called again (at once, if that has passed). Never throws for
+  /// anything that a device does.
+  virtual MonoTime poll(const Clock& clock, SensorSink& sink) = 0;
+
+  /// Ends a poll() that waits, from another thread, so that shutting down waits for nobody. No poll() follows.
+  virtual void interrupt() noexcept {}
+};
+
+}  // namespace yuragi

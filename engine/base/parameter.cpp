@@ -1,0 +1,118 @@
+#include "engine/base/parameter.hpp"
+
+#include <cmath>
+#include <sstream>
+
+namespace yuragi {
+namespace {
+
+std::string_view type_name(const ParameterValue& value) {
+  static constexpr std::string_view kNames[] = {"true or false", "whole number", "number", "text"};
+  return kNames[value.index()];
+}
+
+std::string to_text(const ParameterValue& value) {
+  std::ostringstream out;
+  std::visit(
+      [&out](const auto& held) {
+        using Held = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<Held, bool>) {
+          out << (held ? "true" : "false");
+        } else if constexpr (std::is_same_v<Held, std::string>) {
+          out << '"' << held << '"';
+        } else {
+          out << held;
+        }
+      },
+      value);
+  return out.str();
+}
+
+/// The value in the type that the parameter declares, or an error without a name.
+Result<ParameterValue, ParameterError> convert(const Parameter& parameter, const ParameterValue& given) {
+  const auto refuse = [&](const std::string& what) {
+    return ParameterError{std::string(parameter.name), what + "; allowed: " + describe_allowed(parameter)};
+  };
+
+  ParameterValue value = given;
+  if (std::holds_alternative<double>(parameter.default_value) && std::holds_alternative<std::int64_t>(given)) {
+    value = static_cast<double>(std::get<std::int64_t>(given));
+  }
+  if (value.index() != parameter.default_value.index()) {
+    return refuse("is a " + std::string(type_name(given)) + " (" + to_text(given) + ")");
+  }
+
+  const auto check_range = [&](double number) { return number >= parameter.min && number <= parameter.max; };
+  if (const auto* number = std::get_if<double>(&value); number && (!std::isfinite(*number) || !check_range(*number))) {
+    return refuse("is " + to_text(value));
+  }
+  if (const auto* whole = std::get_if<std::int64_t>(&value); whole && !check_range(static_cast<double>(*whole))) {
+    return refuse("is " + to_text(value));
+  }
+  if (const auto* text = std::get_if<std::string>(&value); text && !parameter.choices.empty()) {
+    bool known = false;
+    for (const std::string_view choice : parameter.choices) known = known || choice == *text;
+    if (!known) return refuse("is " + to_text(value));
+  }
+  return value;
+}
+
+template <class T>
+const T& held(const ParameterValues::Map& values, std::string_view name) {
+  const auto found = values.find(name);
+  if (found == values.end()) throw std::logic_error("no parameter named " + std::string(name));
+  return std::get<T>(found->second);
+}
+
+}  // namespace
+
+std::string describe_allowed(const Parameter& parameter) {
+  std::ostringstream out;
+  if (!parameter.choices.empty()) {
+    const char* separator = "one of ";
+    for (const std::string_view choice : parameter.choices) {
+      out << separator << '"' << choice << '"';
+      separator = ", ";
+    }
+  } else {
+    out << type_name(parameter.default_value);
+    if (std::isfinite(parameter.min) && std::isfinite(parameter.max)) {
+      out << " from " << parameter.min << " to " << parameter.max;
+    } else if (std::isfinite(parameter.min)) {
+      out << " of at least " << parameter.min;
+    } else if (std::isfinite(parameter.max)) {
+      out << " of at most " << parameter.max;
+    }
+    if (!parameter.unit.empty()) out << ' ' << parameter.unit;
+  }
+  out << ", default " << to_text(parameter.default_value);
+  return out.str();
+}
+
+Result<ParameterValues, ParameterError> ParameterValues::resolve(std::span<const Parameter> table, const Map& given) {
+  ParameterValues resolved;
+  for (const Parameter& parameter : table) resolved.values_.emplace(parameter.name, parameter.default_value);
+
+  for (const auto& [name, value] : given) {
+    const Parameter* parameter = nullptr;
+    for (const Parameter& candidate : table) {
+      if (candidate.name == name) parameter = &candidate;
+    }
+    if (parameter == nullptr) {
+      std::string known;
+      for (const Parameter& candidate : table) known.append(known.empty() ? "" : ", ").append(candidate.name);
+      return ParameterError{name, "is not a parameter here; known: " + known};
+    }
+    auto converted = convert(*parameter, value);
+    if (!converted) return converted.error();
+    resolved.values_.insert_or_assign(name, *converted);
+  }
+  return resolved;
+}
+
+bool ParameterValues::flag(std::string_view name) const { return held<bool>(values_, name); }
+std::int64_t ParameterValues::integer(std::string_view name) const { return held<std::int64_t>(values_, name); }
+double ParameterValues::number(std::string_view name) const { return held<double>(values_, name); }
+const std::string& ParameterValues::text(std::string_view name) const { return held<std::string>(values_, name); }
+
+}  // namespace yuragi

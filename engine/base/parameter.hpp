@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+/// What a parameter can be. Text that must be one of a few words has `choices`.
+using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
+
+/// A parameter that describes itself: config checking, --help, the viewer's sliders and the reference page all read this
+/// one description. Constants of this type stand beside what they set.
+struct Parameter {
+  std::string_view name;
+  std::string_view unit;  ///< "m/s", "Hz"; empty for a pure number or a text
+  ParameterValue default_value;
+  double min = -std::numeric_limits<double>::infinity();  ///< numbers only, inclusive
+  double max = std::numeric_limits<double>::infinity();
+  std::string_view help;
+  std::span<const std::string_view> choices = {};  ///< texts only; empty: any text
+};
+
+/// What is wrong with a given value; the file and line are the caller's to add.
+struct ParameterError {
+  std::string name;
+  std::string message;  ///< what is wrong, and what is allowed
+};
+
+/// The values of a table of parameters: each declared one is present, of its declared type and within its range.
+class ParameterValues {
+ public:
+  using Map = std::map<std::string, ParameterValue, std::less<>>;
+
+  /// Fills what `given` leaves out with defaults. Refuses unknown names, wrong types (an integer passes for a number),
+  /// numbers out of range or not finite, and texts that are not among the choices.
+  static Result<ParameterValues, ParameterError> resolve(std::span<const Parameter> table, const Map& given);
+
+  bool flag(std::string_view name) const;
+  std::int64_t integer(std::string_view name) const;
+  double number(std::string_view name) const;
+  const std::string& text(std::string_view name) const;
+
+  const Map& all() const { return values_; }
+
+ private:
+  Map values_;
+};
+
+/// One sentence on what a parameter takes: "number from 0 to 40 m/s, default 4".
+std::string describe_allowed(const Parameter& parameter);
+
+}  // namespace yuragi

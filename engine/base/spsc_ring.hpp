@@ -1,0 +1,30 @@
+#pragma once
+
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstddef>
+
+namespace yuragi {
+
+/// A bounded queue from one thread to one other, for streams in which every value matters: push() says false when it is
+/// full, and the caller counts what it could not hand over.
+///
+/// Thread-safe: for one producer and one consumer. Realtime-safe after construction: yes.
+template <class T>
+class SpscRing {
+ public:
+  explicit SpscRing(std::size_t capacity) : queue_(capacity) {}
+
+  bool push(const T& value) { return queue_.push(value); }
+  bool pop(T& value) { return queue_.pop(value); }
+
+  /// Hands each waiting value to `use`, oldest first; returns how many there were.
+  template <class Use>
+  std::size_t drain(Use&& use) {
+    return queue_.consume_all(use);
+  }
+
+ private:
+  boost::lockfree::spsc_queue<T> queue_;
+};
+
+}  // namespace yuragi

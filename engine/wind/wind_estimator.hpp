@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "engine/wind/wind_reading.hpp"
+#include "engine/wind/wind_state.hpp"
+
+namespace yuragi {
+
+/// How a source of readings does, seen from the estimator.
+enum class SourceHealth : std::uint8_t {
+  kSilent,  ///< has not spoken yet
+  kLive,
+  kStale,  ///< silent for longer than its own measured interval explains
+};
+
+struct SourceReport {
+  SourceHealth health = SourceHealth::kSilent;
+  double interval_s = 0.0;  ///< measured: the median of the last intervals; 0 before the second reading
+  double age_s = 0.0;       ///< of its last reading
+  std::optional<WindReading> last;
+};
+
+/// Makes of readings (slow, gappy, from several sources) the wind that moves things.
+///
+/// Contract of every implementation: the state is finite whatever comes in; it is continuous, with no jump at a new
+/// reading, a loss or a return; time is a parameter and may not go back (a call with an earlier time changes nothing).
+/// Thread-safe: no; one thread owns it. Realtime-safe after construction: yes.
+class WindEstimator {
+ public:
+  virtual ~WindEstimator() = default;
+
+  /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored and
+  /// answered with false.
+  virtual bool accept(std::size_t source, const WindReading& reading) noexcept = 0;
+
+  /// Goes on to `now` and says what the wind is.
+  virtual WindState advance(MonoTime now) noexcept = 0;
+
+  /// How `source` does, as of the last advance().
+  virtual SourceReport report(std::size_t source) const noexcept = 0;
+};
+
+}  // namespace yuragi

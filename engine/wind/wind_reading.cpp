@@ -1,0 +1,21 @@
+#include "engine/wind/wind_reading.hpp"
+
+#include <cmath>
+
+namespace yuragi {
+namespace {
+
+bool is_physical_speed(double speed_m_s) {
+  return std::isfinite(speed_m_s) && speed_m_s >= 0.0 && speed_m_s <= kMaxPlausibleSpeed_m_s;
+}
+
+}  // namespace
+
+bool is_plausible(const WindReading& reading) noexcept {
+  if (!is_physical_speed(reading.speed_m_s)) return false;
+  if (reading.gust_m_s && !is_physical_speed(*reading.gust_m_s)) return false;
+  if (!reading.direction_deg) return true;
+  return std::isfinite(*reading.direction_deg) && *reading.direction_deg >= 0.0 && *reading.direction_deg < 360.0;
+}
+
+}  // namespace yuragi

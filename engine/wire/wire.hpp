@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+#include "engine/pose/skeleton.hpp"
+#include "engine/wind/wind_state.hpp"
+
+// The stream's messages as plain values, and their FlatBuffers form (pose.fbs, which is the public description).
+//
+// Encoders write a finished, size-prefixed buffer. Decoders take the bytes behind the size prefix, run the FlatBuffers
+// verifier and then check what the verifier cannot (lengths that must agree, finite numbers); what they return is safe.
+
+namespace yuragi::wire {
+
+inline constexpr std::uint32_t kProtocol = 1;
+inline constexpr std::size_t kSizePrefixBytes = 4;
+inline constexpr std::size_t kMaxServerMessageBytes = 256u << 20;  ///< of what a client reads
+inline constexpr std::size_t kMaxClientMessageBytes = 4096;        ///< of what the server reads
+inline constexpr std::uint16_t kDefaultPort = 7410;
+
+using Bytes = std::vector<std::uint8_t>;
+
+struct Hello {
+  std::uint32_t protocol = kProtocol;
+  std::string software;
+  double tick_rate_hz = 0.0;
+};
+
+struct Subscribe {
+  std::uint32_t protocol = kProtocol;
+  bool poses = true;
+  bool sensors = false;
+  std::string client;
+};
+
+struct SceneModel {
+  std::string name;
+  std::string kind;
+  Skeleton skeleton;
+};
+
+struct Scenes {
+  std::vector<SceneModel> scenes;
+};
+
+struct FrameInfo {
+  std::uint64_t sequence = 0;
+  std::uint64_t tick = 0;
+  double time_s = 0.0;
+  std::int64_t utc_ns = 0;
+  WindState wind;  ///< its `time` does not travel
+};
+
+struct Frame {
+  FrameInfo info;
+  std::vector<Pose> poses;  ///< padded to whole blocks with zeros
+};
+
+struct SensorStatus {
+  std::string name;
+  std::string driver;
+  std::uint8_t link = 0;    ///< as drivers/sensor.hpp, LinkState
+  std::uint8_t health = 0;  ///< as wind/wind_estimator.hpp, SourceHealth
+  std::string detail;
+  std::optional<double> speed_m_s;
+  std::optional<double> direction_deg;
+  std::optional<double> gust_m_s;
+  bool simulated = false;
+  double age_s = 0.0;
+  double interval_s = 0.0;
+  std::uint64_t readings = 0;
+  std::vector<std::pair<std::string, std::uint64_t>> refused;
+};
+
+struct Sensors {
+  std::vector<SensorStatus> sensors;
+  WindState wind;
+  std::uint64_t late_ticks = 0;
+  std::uint32_t clients = 0;
+};
+
+using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors>;
+
+enum class WireError : std::uint8_t {
+  kTooLong,      ///< the size prefix is above the limit
+  kNotVerified,  ///< the FlatBuffers verifier refuses it
+  kUnknown,      ///< a body of a newer protocol: skip it
+  kInconsistent, ///< verified, but lengths disagree or numbers are not finite
+};
+std::string_view name_of(WireError error);
+
+Bytes encode(const Hello& hello);
+Bytes encode(const Subscribe& subscribe);
+Bytes encode(const Scenes& scenes);
+Bytes encode(const Sensors& sensors);
+
+/// Encodes frame after frame into one buffer that it owns and keeps. Realtime-safe after the first frame of a set of
+/// scenes: it quantises straight into the buffer, and nothing is allocated. Thread-safe: no.
+class FrameEncoder {
+ public:
+  FrameEncoder();
+  ~FrameEncoder();
+  FrameEncoder(FrameEncoder&&) noexcept;
+  FrameEncoder& operator=(FrameEncoder&&) noexcept;
+
+  /// `poses` pairs with `skeletons`, scene by scene. The bytes, size prefix included, are valid until the next call.
+  std::span<const std::uint8_t> encode(const FrameInfo& info, std::span<const Skeleton* const> skeletons,
+                                       std::span<const Pose* const> poses);
+
+ private:
+  struct Builder;
+  std::unique_ptr<Builder> builder_;
+};
+
+/// The byte count that a size prefix announces, or kTooLong where it is above `limit` or zero.
+Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix, std::size_t limit);
+
+/// The message in `bytes` (without the size prefix). Never reads outside them, whatever they hold.
+Result<Message, WireError> decode(std::span<const std::uint8_t> bytes);
+
+}  // namespace yuragi::wire
