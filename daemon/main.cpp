@@ -1,8 +1,10 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 
+#include <CLI/CLI.hpp>
+
 #include "daemon/commands/command.hpp"
+#include "daemon/config.hpp"
 #include "daemon/exit.hpp"
 
 int main(int argc, char** argv) {
@@ -20,6 +22,9 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
+  } catch (const ConfigError& error) {
+    std::fprintf(stderr, "%s\n", error.what());  // its lines begin with the place, as compilers' do
+    return kExitConfig;
   } catch (const ExitError& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());
     return error.code();

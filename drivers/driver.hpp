@@ -14,8 +14,8 @@ struct DriverDescription {
   std::string_view name;
   std::string_view summary;
   std::span<const Parameter> parameters;
-  /// Makes a sensor of resolved values, without touching the device: poll() does that. Throws std::runtime_error, saying
-  /// what to do, where the values cannot work together or name a file that is not there.
+  /// Makes a sensor of resolved values, without touching the device: poll() does that. Throws std::runtime_error,
+  /// saying what to do, where the values cannot work together or name a file that is not there.
   std::unique_ptr<Sensor> (*open)(const ParameterValues& values);
 };
 

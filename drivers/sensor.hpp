@@ -1,36 +1,21 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 #include "drivers/clock.hpp"
+#include "drivers/decode/refusal.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi {
 
 /// Does the device answer?
 enum class LinkState : std::uint8_t {
-  kConnecting,    ///< looking for it; also between attempts
-  kConnected,     ///< open, and the last exchange was answered
-  kFinished,      ///< a recording that came to its end; nothing more will come
+  kConnecting,  ///< looking for it; also between attempts
+  kConnected,   ///< open, and the last exchange was answered
+  kFinished,    ///< a recording that came to its end; nothing more will come
 };
 
-/// Why something that arrived, or did not, was not published. Each is counted for each sensor.
-enum class Refusal : std::uint8_t {
-  kTimeout,      ///< no answer in time
-  kTooShort,     ///< an answer that ends too early
-  kNotMine,      ///< an answer of another device, or to another question
-  kBadChecksum,
-  kException,    ///< the device said no
-  kMalformed,    ///< not the protocol
-  kInvalid,      ///< the device's own mark for "no value"
-  kImplausible,  ///< decoded, but no wind blows like that
-};
-inline constexpr std::size_t kRefusalCount = 8;
-
-std::string_view name_of(Refusal refusal);
 std::string_view name_of(LinkState state);
 
 /// Where a sensor puts what it has. Called on the thread that polls; the strings need to live for the call only.

@@ -48,6 +48,7 @@ function(yuragi_kernel target source)
   set(rows x86_64)
   if(NOT YURAGI_SANITIZE)
     list(APPEND rows x86_64_v3 x86_64_v4)
+    target_compile_definitions(${target} PRIVATE YURAGI_ALL_SIMD_ROWS=1)
   endif()
   set(flags_x86_64 -march=x86-64)
   set(flags_x86_64_v3 -march=x86-64-v3)
@@ -91,14 +92,18 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
   target_sources(${target} PRIVATE ${file})
 endfunction()
 
-# yuragi_test(NAME SOURCES ... LINK ...): one GoogleTest program, each of its cases a CTest test.
+# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, each of its cases a CTest test.
 function(yuragi_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} GTest::gtest_main GTest::gmock)
   target_compile_definitions(${name} PRIVATE
     YURAGI_SOURCE_DIR="${PROJECT_SOURCE_DIR}" YURAGI_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 120)
+  set(properties TIMEOUT 120)
+  if(ARG_LABELS)
+    list(APPEND properties LABELS ${ARG_LABELS})
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
 endfunction()
 
 # yuragi_fuzz(NAME SOURCES ... LINK ...): one libFuzzer program; CTest runs it for a few seconds.

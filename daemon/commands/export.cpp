@@ -1,5 +1,116 @@
+// `yuragi export`: a recording becomes a CSV file, or a copy of itself.
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include "daemon/commands/command.hpp"
+#include "daemon/csv_export.hpp"
+#include "daemon/exit.hpp"
+#include "daemon/output_file.hpp"
+#include "drivers/windlog/log_moment.hpp"
+
 namespace yuragi {
+
 extern const Command kExportCommand;
-const Command kExportCommand{[](CLI::App&) {}};
+
+namespace {
+
+constexpr const char* kFooter =
+    "The CSV has the columns utc, time_s (seconds since the first reading), sensor, speed_m_s, direction_deg (where "
+    "the\n"
+    "wind comes from), gust_m_s and quality; `yuragi import` makes the same readings of it again.\n"
+    "A .windlog as output is a consistent copy, also of a recording that is being written at this moment.\n"
+    "\n"
+    "Examples:\n"
+    "  yuragi export mast.windlog -o mast.csv\n"
+    "  yuragi export mast.windlog -o - --from 2018-07-20T14:05:00Z --to 2018-07-20T14:06:00Z | head\n"
+    "  yuragi export live.windlog -o backup.windlog";
+
+struct Options {
+  std::string input;
+  std::string output;
+  std::string from;
+  std::string to;
+  bool force = false;
+};
+
+/// The log time of --from or --to; nothing if it is after the end.
+std::optional<Nanoseconds> resolve(WindlogReader& reader, const std::string& option, const std::string& text) {
+  const auto moment = parse_log_moment(text);
+  if (!moment) throw ExitError(kExitUsage, option + ": " + moment.error().message);
+  const auto log_time = log_time_of(reader, *moment);
+  if (!log_time) throw ExitError(kExitDataError, log_time.error().message);
+  return *log_time;
+}
+
+void export_as_csv(WindlogReader& reader, const Options& options, std::FILE* out) {
+  CsvExportRange range;
+  if (!options.from.empty()) range.from = resolve(reader, "--from", options.from).value_or(Nanoseconds::max());
+  if (!options.to.empty()) range.to = resolve(reader, "--to", options.to).value_or(Nanoseconds::max());
+
+  const bool is_watched = isatty(STDERR_FILENO) != 0 && isatty(fileno(out)) == 0;
+  const auto began = std::chrono::steady_clock::now();
+  bool has_told = false;
+  const auto report = export_csv(reader, range, out, [&](std::size_t written) {
+    if (!is_watched || std::chrono::steady_clock::now() - began < std::chrono::seconds(1)) return;
+    fmt::print(stderr, "\r{} readings", written);
+    has_told = true;
+  });
+  if (has_told) fmt::print(stderr, "\n");
+  if (!report) throw ExitError(kExitDataError, report.error().message);
+  if (report->skipped > 0) fmt::print(stderr, "left out: {} rows that cannot be readings\n", report->skipped);
+  fmt::print(stderr, "{}: {} readings\n", options.output == "-" ? "standard output" : options.output, report->written);
+}
+
+void run(const Options& options) {
+  auto reader = WindlogReader::open(options.input);
+  if (!reader) {
+    const bool is_there = std::filesystem::exists(options.input);
+    throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
+  }
+  if (options.output == "-") return export_as_csv(*reader, options, stdout);
+
+  OutputFile output(options.output, options.force);
+  if (std::filesystem::path(options.output).extension() == ".windlog") {
+    if (!options.from.empty() || !options.to.empty()) {
+      throw ExitError(kExitUsage, "--from and --to go with a CSV; a copy is of the whole recording");
+    }
+    if (const auto copied = reader->copy_to(output.working_path()); !copied) {
+      throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
+    }
+    output.commit();
+    fmt::print(stderr, "{}: a copy of {}\n", options.output, options.input);
+    return;
+  }
+
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
+                                                             &std::fclose);
+  if (!file)
+    throw ExitError(kExitCannotCreate, options.output + ": cannot be created; may this user write to its folder?");
+  export_as_csv(*reader, options, file.get());
+  output.commit();
+}
+
+void add(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("export", "Make a CSV file, or a copy, of a recording");
+  command->footer(kFooter);
+  command->add_option("file", options->input, "the recording (.windlog)")->required();
+  command->add_option("-o,--output", options->output, "FILE.csv, COPY.windlog, or - for CSV on standard output")
+      ->required();
+  command->add_option("--from", options->from, "begin here: seconds, or a moment such as 2018-07-20T14:05:00Z");
+  command->add_option("--to", options->to, "end before this, written likewise");
+  command->add_flag("--force", options->force, "overwrite the output");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace
+
+const Command kExportCommand{add};
+
 }  // namespace yuragi

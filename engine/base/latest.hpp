@@ -23,7 +23,8 @@ class Latest {
 
   /// Writer: makes the slot the newest one and takes another to write to.
   void publish() noexcept {
-    const std::uint8_t previous = middle_.exchange(static_cast<std::uint8_t>(write_ | kFresh), std::memory_order_acq_rel);
+    const std::uint8_t previous =
+        middle_.exchange(static_cast<std::uint8_t>(write_ | kFresh), std::memory_order_acq_rel);
     write_ = previous & kIndex;
   }
 

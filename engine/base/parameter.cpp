@@ -110,9 +110,25 @@ Result<ParameterValues, ParameterError> ParameterValues::resolve(std::span<const
   return resolved;
 }
 
-bool ParameterValues::flag(std::string_view name) const { return held<bool>(values_, name); }
-std::int64_t ParameterValues::integer(std::string_view name) const { return held<std::int64_t>(values_, name); }
-double ParameterValues::number(std::string_view name) const { return held<double>(values_, name); }
-const std::string& ParameterValues::text(std::string_view name) const { return held<std::string>(values_, name); }
+bool ParameterValues::flag(std::string_view name) const {
+  return held<bool>(values_, name);
+}
+std::int64_t ParameterValues::integer(std::string_view name) const {
+  return held<std::int64_t>(values_, name);
+}
+double ParameterValues::number(std::string_view name) const {
+  return held<double>(values_, name);
+}
+const std::string& ParameterValues::text(std::string_view name) const {
+  return held<std::string>(values_, name);
+}
+
+void ParameterValues::set(std::string_view name, const ParameterValue& value) {
+  const auto found = values_.find(name);
+  if (found == values_.end() || found->second.index() != value.index()) {
+    throw std::logic_error("no parameter of that type named " + std::string(name));
+  }
+  found->second = value;
+}
 
 }  // namespace yuragi

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,8 +16,8 @@ namespace yuragi {
 /// What a parameter can be. Text that must be one of a few words has `choices`.
 using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 
-/// A parameter that describes itself: config checking, --help, the viewer's sliders and the reference page all read this
-/// one description. Constants of this type stand beside what they set.
+/// A parameter that describes itself: config checking, --help, the viewer's sliders and the reference page all read
+/// this one description. Constants of this type stand beside what they set.
 struct Parameter {
   std::string_view name;
   std::string_view unit;  ///< "m/s", "Hz"; empty for a pure number or a text
@@ -33,6 +34,10 @@ struct ParameterError {
   std::string message;  ///< what is wrong, and what is allowed
 };
 
+[[noreturn]] inline void throw_exception_from_error(const ParameterError& error, const boost::source_location&) {
+  throw std::runtime_error(error.name + ": " + error.message);
+}
+
 /// The values of a table of parameters: each declared one is present, of its declared type and within its range.
 class ParameterValues {
  public:
@@ -48,6 +53,9 @@ class ParameterValues {
   const std::string& text(std::string_view name) const;
 
   const Map& all() const { return values_; }
+
+  /// Replaces a value with one of the same type, which the caller vouches for (a command-line option, say).
+  void set(std::string_view name, const ParameterValue& value);
 
  private:
   Map values_;

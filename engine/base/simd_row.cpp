@@ -4,16 +4,20 @@ namespace yuragi {
 
 std::string_view name_of(SimdRow row) {
   switch (row) {
-    case SimdRow::kX86_64: return "x86-64";
-    case SimdRow::kX86_64_v3: return "x86-64-v3";
-    case SimdRow::kX86_64_v4: return "x86-64-v4";
+    case SimdRow::kX86_64:
+      return "x86-64";
+    case SimdRow::kX86_64_v3:
+      return "x86-64-v3";
+    case SimdRow::kX86_64_v4:
+      return "x86-64-v4";
   }
   return "?";
 }
 
 bool is_runnable(SimdRow row) {
   switch (row) {
-    case SimdRow::kX86_64: return true;
+    case SimdRow::kX86_64:
+      return true;
 #if YURAGI_ALL_SIMD_ROWS
     case SimdRow::kX86_64_v3:
       return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
@@ -23,7 +27,8 @@ bool is_runnable(SimdRow row) {
              __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #else
     case SimdRow::kX86_64_v3:
-    case SimdRow::kX86_64_v4: return false;
+    case SimdRow::kX86_64_v4:
+      return false;
 #endif
   }
   return false;

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <boost/lockfree/spsc_queue.hpp>
 #include <cstddef>
+
+#include <boost/lockfree/spsc_queue.hpp>
 
 namespace yuragi {
 

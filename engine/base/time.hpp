@@ -18,7 +18,9 @@ struct Instant {
   UtcTime utc{};
 };
 
-inline double seconds(Nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
+inline double seconds(Nanoseconds duration) {
+  return std::chrono::duration<double>(duration).count();
+}
 
 inline Nanoseconds from_seconds(double duration_s) {
   return std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(duration_s));

@@ -16,10 +16,11 @@ enum class ReadingQuality : std::uint8_t {
 
 /// What a sensor said once, decoded, in SI units, before calibration. Finite and physical by the time it is published.
 struct WindReading {
-  Instant time;                          ///< when the answer arrived
-  double speed_m_s = 0.0;                ///< at least 0
-  std::optional<double> direction_deg;   ///< where the wind comes *from*, clockwise from north, [0, 360); empty: not known
-  std::optional<double> gust_m_s;        ///< the strongest of the device's own recent past
+  Instant time;            ///< when the answer arrived
+  double speed_m_s = 0.0;  ///< at least 0
+  std::optional<double>
+      direction_deg;               ///< where the wind comes *from*, clockwise from north, [0, 360); empty: not known
+  std::optional<double> gust_m_s;  ///< the strongest of the device's own recent past
   ReadingQuality quality = ReadingQuality::kGood;
 };
 

@@ -19,8 +19,8 @@ struct WindState {
   MonoTime time{};
   WindVector wind;
   WindSource source = WindSource::kDefault;
-  double live_weight = 0.0;   ///< 0: all default wind; 1: all sensor
-  double reading_age_s = 0.0; ///< of the newest reading that took part; 0 where there was none
+  double live_weight = 0.0;    ///< 0: all default wind; 1: all sensor
+  double reading_age_s = 0.0;  ///< of the newest reading that took part; 0 where there was none
 };
 
 }  // namespace yuragi

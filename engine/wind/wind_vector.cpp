@@ -6,7 +6,9 @@
 
 namespace yuragi {
 
-double speed_of(WindVector wind) noexcept { return std::hypot(wind.u_m_s, wind.v_m_s); }
+double speed_of(WindVector wind) noexcept {
+  return std::hypot(wind.u_m_s, wind.v_m_s);
+}
 
 double direction_from_deg(WindVector wind) noexcept {
   if (wind.u_m_s == 0.0 && wind.v_m_s == 0.0) return 0.0;

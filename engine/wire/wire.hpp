@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,12 +30,21 @@ inline constexpr std::size_t kMaxServerMessageBytes = 256u << 20;  ///< of what 
 inline constexpr std::size_t kMaxClientMessageBytes = 4096;        ///< of what the server reads
 inline constexpr std::uint16_t kDefaultPort = 7410;
 
+// What decode() believes at most; pose.fbs tells others.
+inline constexpr std::size_t kMaxTextBytes = 1024;  ///< encoders cut longer texts
+inline constexpr std::size_t kMaxScenes = 64;
+inline constexpr std::size_t kMaxStrands = 1u << 22;  ///< of all scenes of a message together
+inline constexpr std::size_t kMaxLinksPerStrand = 256;
+inline constexpr std::size_t kMaxSensors = 256;
+inline constexpr std::size_t kMaxRefusalReasons = 64;
+
 using Bytes = std::vector<std::uint8_t>;
 
 struct Hello {
   std::uint32_t protocol = kProtocol;
   std::string software;
   double tick_rate_hz = 0.0;
+  std::optional<std::string> refused = std::nullopt;  ///< why the server closes the connection behind this message
 };
 
 struct Subscribe {
@@ -43,6 +54,7 @@ struct Subscribe {
   std::string client;
 };
 
+/// A skeleton of a kind that this build does not know is decoded as one of no strands, and so are its poses.
 struct SceneModel {
   std::string name;
   std::string kind;
@@ -92,13 +104,19 @@ struct Sensors {
 using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors>;
 
 enum class WireError : std::uint8_t {
-  kTooLong,      ///< the size prefix is above the limit
-  kNotVerified,  ///< the FlatBuffers verifier refuses it
-  kUnknown,      ///< a body of a newer protocol: skip it
-  kInconsistent, ///< verified, but lengths disagree or numbers are not finite
+  kTooLong,       ///< the size prefix is above the limit
+  kNotVerified,   ///< the FlatBuffers verifier refuses it
+  kUnknown,       ///< a body of a newer protocol: skip it
+  kInconsistent,  ///< verified, but lengths disagree or numbers are not finite
 };
 std::string_view name_of(WireError error);
 
+[[noreturn]] inline void throw_exception_from_error(WireError error, const boost::source_location&) {
+  throw std::runtime_error("stream message refused: " + std::string(name_of(error)));
+}
+
+/// A finished message, size prefix included. Vectors of a skeleton have the sizes that engine/pose/skeleton.hpp asks
+/// for.
 Bytes encode(const Hello& hello);
 Bytes encode(const Subscribe& subscribe);
 Bytes encode(const Scenes& scenes);
@@ -123,9 +141,15 @@ class FrameEncoder {
 };
 
 /// The byte count that a size prefix announces, or kTooLong where it is above `limit` or zero.
-Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix, std::size_t limit);
+Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix,
+                                                std::size_t limit);
 
-/// The message in `bytes` (without the size prefix). Never reads outside them, whatever they hold.
+/// The message in `bytes` (without the size prefix; any alignment). Never reads outside them, whatever they hold. Texts
+/// come out without control characters, so that they can go to a terminal or a log.
 Result<Message, WireError> decode(std::span<const std::uint8_t> bytes);
+
+/// Do the frame's poses pair with the skeletons? Ask before kinematics: they are two messages, and only each is
+/// consistent.
+bool fits(const Frame& frame, const Scenes& scenes);
 
 }  // namespace yuragi::wire

@@ -1,0 +1,71 @@
+// `yuragi check-config` and `yuragi describe`: what a configuration says, and what one may say.
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/config.hpp"
+
+namespace yuragi {
+namespace {
+
+void add_check_config(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("check-config", "tell whether a configuration is right, and what it comes to");
+  command->footer(
+      "Exit code 0: it is; 78: it is not, and each mistake is told as file:line:column: key: what is wrong.\n"
+      "No device is touched. With --full the whole configuration is printed, every default written out.");
+  auto file = std::make_shared<std::filesystem::path>();
+  auto full = std::make_shared<bool>(false);
+  command->add_option("file", *file, "the configuration")->required()->type_name("FILE.toml");
+  command->add_flag("--full", *full, "print every value, defaults included, as TOML");
+  command->callback([file, full] {
+    const Config config = load_config(*file);
+    for (const SensorConfig& sensor : config.sensors) open_sensor(sensor);
+    if (*full) {
+      fmt::print("{}", to_toml(config));
+      return;
+    }
+    fmt::print("{}: all right\n", file->string());
+    for (const SensorConfig& sensor : config.sensors)
+      fmt::print("  sensor {} ({})\n", sensor.name, sensor.driver->name);
+    for (const SceneConfig& scene : config.scenes) fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
+  });
+}
+
+void print_parameters(std::span<const Parameter> parameters) {
+  for (const Parameter& parameter : parameters) {
+    fmt::print("  {:<18} {}\n  {:<18} {}\n", parameter.name, parameter.help, "", describe_allowed(parameter));
+  }
+}
+
+void describe_everything() {
+  fmt::print("# A configuration is a TOML file. Everything has a default; an empty file is allowed.\n");
+  for (const ConfigTable& table : config_tables()) {
+    fmt::print("\n{}  # {}\n", table.name.empty() ? std::string() : fmt::format("[{}]", table.name), table.summary);
+    print_parameters(table.parameters);
+  }
+  for (const DriverDescription* driver : driver_table()) {
+    fmt::print("\n[[sensor]]  # driver = \"{}\": {}\n", driver->name, driver->summary);
+    print_parameters(driver->parameters);
+  }
+  for (const SceneDescription* scene : scene_table()) {
+    fmt::print("\n[[scene]]  # kind = \"{}\": {}\n", scene->name, scene->summary);
+    print_parameters(scene->parameters);
+  }
+}
+
+void add_describe(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("describe", "every key that a configuration may hold: unit, range, default, help");
+  command->callback(describe_everything);
+}
+
+}  // namespace
+
+extern const Command kCheckConfigCommand;
+const Command kCheckConfigCommand{add_check_config};
+
+extern const Command kDescribeCommand;
+const Command kDescribeCommand{add_describe};
+
+}  // namespace yuragi

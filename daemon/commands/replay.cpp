@@ -1,0 +1,115 @@
+// `yuragi replay`: the daemon with a recording for a sensor, at a pace, or in lock-step as fast as it goes.
+#include <cstdlib>
+#include <memory>
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/commands/run_options.hpp"
+#include "daemon/exit.hpp"
+#include "daemon/lockstep_replay.hpp"
+#include "daemon/service.hpp"
+
+namespace yuragi {
+namespace {
+
+struct ReplayOptions {
+  RunOptions run;
+  std::filesystem::path file;
+  std::string rate = "1";
+  PlaybackOptions playback;
+};
+
+constexpr double kMinRate = 0.01;
+constexpr double kMaxRate = 1000.0;
+
+double parse_rate(const std::string& text) {
+  char* end = nullptr;
+  const double rate = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0' || !(rate >= kMinRate && rate <= kMaxRate)) {
+    throw ExitError(kExitUsage, fmt::format("--rate: is \"{}\"; allowed: a number from {} to {}, or max", text,
+                                            kMinRate, kMaxRate));
+  }
+  return rate;
+}
+
+/// The one sensor of a replay: the windlog driver on this file.
+SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
+  for (const DriverDescription* driver : driver_table()) {
+    if (driver->name != "windlog") continue;
+    const ParameterValues::Map given{{"file", options.file.string()},
+                                     {"rate", rate},
+                                     {"loop", options.playback.loop},
+                                     {"start", options.playback.start},
+                                     {"sensor", options.playback.sensor}};
+    auto values = ParameterValues::resolve(driver->parameters, given);
+    if (!values) throw ExitError(kExitUsage, values.error().name + ": " + values.error().message);
+    return {options.file.stem().string(), driver, *values, {}};
+  }
+  throw std::logic_error("no windlog driver");
+}
+
+void replay_at_full_speed(const ReplayOptions& options) {
+  if (options.playback.loop && !options.run.duration_s) {
+    throw ExitError(kExitUsage, "--rate max with --loop would never end; add --duration SECONDS (of log time)");
+  }
+  const bool is_watched = isatty(STDERR_FILENO) != 0;
+  const auto progress = [is_watched](double log_time_s) {
+    if (is_watched) fmt::print(stderr, "\rreplayed {:.0f} s", log_time_s);
+  };
+  const LockstepResult result = replay_in_lockstep(options.run.config(), options.file, options.playback,
+                                                   options.run.duration_s.value_or(0.0), progress);
+  if (is_watched) fmt::print(stderr, "\r\x1b[K");
+  fmt::print(
+      "readings   {} in {:.1f} s of log time\n"
+      "recorded   mean {:.2f} m/s, max {:.2f} m/s\n"
+      "replayed   mean {:.2f} m/s, max {:.2f} m/s: the wind that moved the scenes\n"
+      "ticks      {}\n"
+      "pose hash  {:016x}\n",
+      result.readings, result.log_duration_s, result.reading_mean_m_s, result.reading_max_m_s, result.wind_mean_m_s,
+      result.wind_max_m_s, result.ticks, result.pose_hash);
+}
+
+void replay(const ReplayOptions& options) {
+  options.run.set_up_log();
+  if (!std::filesystem::exists(options.file)) {
+    throw ExitError(kExitNoInput, options.file.string() + ": there is no such recording");
+  }
+  if (options.rate == "max") return replay_at_full_speed(options);
+
+  Config config = options.run.config();
+  config.sensors = {replay_sensor(options, parse_rate(options.rate))};
+  Service(config, {.record = {}, .duration_s = options.run.duration_s, .end_with_recordings = true}).run();
+}
+
+void add_replay(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("replay", "the daemon with a recording in place of the sensors");
+  command->footer(
+      "Ends with the recording, unless it loops. At --rate max nothing is streamed: the recording runs through wind "
+      "and\n"
+      "scenes tick by tick, and a summary with a hash over all poses is printed; the same seed and recording give the\n"
+      "same hash.\n"
+      "  yuragi replay storm.windlog --rate 4 --start 90\n"
+      "  yuragi replay storm.windlog --rate max");
+  auto options = std::make_shared<ReplayOptions>();
+  command->add_option("file", options->file, "the recording")->required()->type_name("FILE.windlog");
+  command->add_option("--rate", options->rate, "how many times faster than it was recorded, or max (default 1)")
+      ->type_name("X|max");
+  command->add_flag("--loop", options->playback.loop, "begin again at its end");
+  command
+      ->add_option("--start", options->playback.start,
+                   "where to begin: seconds from its beginning, or a UTC time (ISO 8601)")
+      ->type_name("T");
+  command->add_option("--sensor", options->playback.sensor, "which sensor's readings; without it: the first that spoke")
+      ->type_name("NAME");
+  options->run.add_to(*command);
+  command->callback([options] { replay(*options); });
+}
+
+}  // namespace
+
+extern const Command kReplayCommand;
+const Command kReplayCommand{add_replay};
+
+}  // namespace yuragi

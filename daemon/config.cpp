@@ -1,0 +1,345 @@
+#include "daemon/config.hpp"
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+namespace yuragi {
+namespace {
+
+const std::array kGeneralParameters = {
+    Parameter{.name = "seed",
+              .unit = "",
+              .default_value = std::int64_t{1},
+              .min = 0,
+              .help = "everything random comes from it: the same seed and wind give the same motion"},
+};
+
+const std::array kStreamParameters = {
+    Parameter{.name = "listen",
+              .unit = "",
+              .default_value = std::string("127.0.0.1:7410"),
+              .help = "address and port that viewers connect to; 0.0.0.0:7410 lets other machines in"},
+    Parameter{.name = "max_clients",
+              .unit = "",
+              .default_value = std::int64_t{32},
+              .min = 1,
+              .max = 1000,
+              .help = "connections at once; more are turned away"},
+};
+
+const std::array kAnimationParameters = {
+    Parameter{.name = "rate", .unit = "Hz", .default_value = 60.0, .min = 1.0, .max = 240.0, .help = "poses a second"},
+};
+
+const std::array kWindParameters = {
+    Parameter{.name = "default_speed",
+              .unit = "m/s",
+              .default_value = 3.0,
+              .min = 0.0,
+              .max = 40.0,
+              .help = "mean speed of the wind that blows while no sensor speaks"},
+    Parameter{.name = "default_direction",
+              .unit = "deg",
+              .default_value = 240.0,
+              .min = 0.0,
+              .max = 360.0,
+              .help = "where that wind comes from, clockwise from north; also used for sensors without a vane"},
+    Parameter{.name = "default_turbulence",
+              .unit = "",
+              .default_value = 0.3,
+              .min = 0.0,
+              .max = 1.0,
+              .help = "its turbulence intensity: standard deviation over mean speed"},
+    Parameter{.name = "handover",
+              .unit = "s",
+              .default_value = 3.0,
+              .min = 0.2,
+              .max = 60.0,
+              .help = "how long the way from one source of wind to another takes"},
+    Parameter{.name = "stale_intervals",
+              .unit = "",
+              .default_value = 5.0,
+              .min = 2.0,
+              .max = 100.0,
+              .help = "a sensor that is silent for this many of its own intervals is stale"},
+};
+
+const std::array kConfigTables = {
+    ConfigTable{"", "at the top of the file", kGeneralParameters},
+    ConfigTable{"stream", "where viewers connect", kStreamParameters},
+    ConfigTable{"animation", "the pace", kAnimationParameters},
+    ConfigTable{"wind", "what blows while no sensor speaks, and the way from one wind to another", kWindParameters},
+};
+
+constexpr std::string_view kNameKey = "name";
+
+/// A TOML value as a parameter's; nothing for dates, arrays and tables, which no parameter takes.
+std::optional<ParameterValue> to_parameter_value(const toml::node& node) {
+  if (const auto* flag = node.as_boolean()) return ParameterValue(flag->get());
+  if (const auto* whole = node.as_integer()) return ParameterValue(whole->get());
+  if (const auto* number = node.as_floating_point()) return ParameterValue(number->get());
+  if (const auto* text = node.as_string()) return ParameterValue(text->get());
+  return std::nullopt;
+}
+
+/// Walks a parsed file and collects every mistake, each at its place.
+class ConfigReader {
+ public:
+  explicit ConfigReader(std::string source_name) : source_name_(std::move(source_name)) {}
+
+  Config read(const toml::table& root) {
+    Config config;
+    check_top_level(root);
+    const ParameterValues general = read_top_level(root);
+    config.seed = static_cast<std::uint64_t>(general.integer("seed"));
+    config.stream = read_table(root, "stream", kStreamParameters);
+    config.animation = read_table(root, "animation", kAnimationParameters);
+    config.wind = read_table(root, "wind", kWindParameters);
+
+    for_each_entry(root, "sensor", "driver", driver_table(),
+                   [&](const auto& name, auto* driver, const auto& values, const auto& origin) {
+                     config.sensors.push_back({name, driver, values, origin});
+                   });
+    for_each_entry(root, "scene", "kind", scene_table(),
+                   [&](const auto& name, auto* kind, const auto& values, const auto&) {
+                     config.scenes.push_back({name, kind, values});
+                   });
+
+    if (!mistakes_.empty()) throw ConfigError(mistakes_);
+    const Config defaults = default_config();
+    if (config.sensors.empty()) config.sensors = defaults.sensors;
+    if (config.scenes.empty()) config.scenes = defaults.scenes;
+    return config;
+  }
+
+ private:
+  void mistake(const toml::source_region& where, const std::string& key, const std::string& what) {
+    mistakes_.append(mistakes_.empty() ? "" : "\n")
+        .append(place(where))
+        .append(": ")
+        .append(key)
+        .append(": ")
+        .append(what);
+  }
+
+  std::string place(const toml::source_region& where) const {
+    return source_name_ + ':' + std::to_string(where.begin.line) + ':' + std::to_string(where.begin.column);
+  }
+
+  void check_top_level(const toml::table& root) {
+    for (const auto& [key, node] : root) {
+      const bool is_array = key == "sensor" || key == "scene";
+      bool known = is_array || key == "seed";
+      for (const ConfigTable& table : kConfigTables) known = known || table.name == key.str();
+      if (!known) {
+        mistake(key.source(), std::string(key.str()),
+                "is not known here; allowed: seed, [stream], [animation], [wind], [[sensor]], [[scene]]");
+      } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
+        mistake(key.source(), std::string(key.str()),
+                "is one table; write [[" + std::string(key.str()) + "]] above it");
+      } else if (!is_array && key != "seed" && !node.is_table()) {
+        mistake(key.source(), std::string(key.str()),
+                "is a value; write it as a table, [" + std::string(key.str()) + "]");
+      }
+    }
+  }
+
+  /// The values at the file's top level, among the tables; check_top_level has told of keys that are neither.
+  ParameterValues read_top_level(const toml::table& root) {
+    std::set<std::string_view> aside;
+    for (const auto& [key, node] : root) aside.insert(key.str());
+    for (const Parameter& parameter : kGeneralParameters) aside.erase(parameter.name);
+    return read_values(root, "", kGeneralParameters, aside);
+  }
+
+  /// A table that is there once, or not at all.
+  ParameterValues read_table(const toml::table& root, std::string_view name, std::span<const Parameter> parameters) {
+    static const toml::table kNothing;
+    const toml::node* node = root.get(name);
+    const toml::table* table = node != nullptr ? node->as_table() : nullptr;
+    // By pointer: a copy of a TOML table forgets its lines and columns.
+    return read_values(table != nullptr ? *table : kNothing, std::string(name) + ".", parameters, {});
+  }
+
+  /// The values of one table; keys in `aside` are read elsewhere.
+  ParameterValues read_values(const toml::table& table, const std::string& prefix,
+                              std::span<const Parameter> parameters, const std::set<std::string_view>& aside) {
+    // One key at a time, so that each mistake is told, at its own place.
+    ParameterValues::Map good;
+    for (const auto& [key, node] : table) {
+      if (aside.contains(key.str())) continue;
+      const std::optional<ParameterValue> value = to_parameter_value(node);
+      if (!value) {
+        mistake(node.source(), prefix + std::string(key.str()), "takes one value: true, a number or a text");
+        continue;
+      }
+      const ParameterValues::Map one{{std::string(key.str()), *value}};
+      if (auto checked = ParameterValues::resolve(parameters, one); !checked) {
+        mistake(node.source(), prefix + checked.error().name, checked.error().message);
+      } else {
+        good.insert(one.begin(), one.end());
+      }
+    }
+    return ParameterValues::resolve(parameters, good).value();
+  }
+
+  /// Every [[sensor]] or [[scene]]: finds its description by `kind_key`, its name, and its values.
+  template <class Description, class Use>
+  void for_each_entry(const toml::table& root, std::string_view list, std::string_view kind_key,
+                      std::span<const Description* const> descriptions, const Use& use) {
+    const toml::node* node = root.get(list);
+    const toml::array* entries = node != nullptr ? node->as_array() : nullptr;
+    if (entries == nullptr) return;
+    std::set<std::string> names;
+    for (const toml::node& element : *entries) {
+      const toml::table* entry = element.as_table();
+      if (entry == nullptr) continue;  // check_top_level has told
+      const Description* description = find_kind(*entry, list, kind_key, descriptions);
+      if (description == nullptr) continue;
+
+      const std::string prefix = std::string(list) + ".";
+      std::string name = read_name(*entry, prefix, std::string(description->name));
+      if (!names.insert(name).second) {
+        mistake(entry->source(), prefix + "name",
+                "\"" + name + "\" is there twice; give each " + std::string(list) + " a name");
+      }
+      const ParameterValues values = read_values(*entry, prefix, description->parameters, {kNameKey, kind_key});
+      use(name, description, values, place(entry->source()));
+    }
+  }
+
+  template <class Description>
+  const Description* find_kind(const toml::table& entry, std::string_view list, std::string_view kind_key,
+                               std::span<const Description* const> descriptions) {
+    std::string known;
+    const std::optional<std::string> kind = entry[kind_key].value<std::string>();
+    for (const Description* description : descriptions) {
+      if (kind == description->name) return description;
+      known.append(known.empty() ? "\"" : ", \"").append(description->name).append("\"");
+    }
+    const toml::node* node = entry.get(kind_key);
+    mistake(node != nullptr ? node->source() : entry.source(), std::string(list) + "." + std::string(kind_key),
+            (kind ? "is \"" + *kind + "\"" : std::string("is missing or not a text")) + "; allowed: one of " + known);
+    return nullptr;
+  }
+
+  std::string read_name(const toml::table& entry, const std::string& prefix, std::string otherwise) {
+    const toml::node* node = entry.get(kNameKey);
+    if (node == nullptr) return otherwise;
+    const auto name = node->value<std::string>();
+    if (name && !name->empty() && name->size() <= 64) return *name;
+    mistake(node->source(), prefix + "name", "takes a text of 1 to 64 characters");
+    return otherwise;
+  }
+
+  std::string source_name_;
+  std::string mistakes_;
+};
+
+template <class Description>
+const Description* find_by_name(std::span<const Description* const> table, std::string_view name) {
+  for (const Description* description : table) {
+    if (description->name == name) return description;
+  }
+  throw std::logic_error("no " + std::string(name) + " in its table");
+}
+
+ParameterValues defaults_of(std::span<const Parameter> parameters) {
+  return ParameterValues::resolve(parameters, {}).value();
+}
+
+toml::table to_table(const ParameterValues& values) {
+  toml::table table;
+  for (const auto& [name, value] : values.all()) {
+    std::visit([&table, &key = name](const auto& held) { table.insert(key, held); }, value);
+  }
+  return table;
+}
+
+}  // namespace
+
+std::span<const ConfigTable> config_tables() {
+  return kConfigTables;
+}
+
+Config default_config() {
+  Config config;
+  config.stream = defaults_of(kStreamParameters);
+  config.animation = defaults_of(kAnimationParameters);
+  config.wind = defaults_of(kWindParameters);
+  const auto* synthetic = find_by_name(driver_table(), "synthetic");
+  config.sensors.push_back({"synthetic", synthetic, defaults_of(synthetic->parameters), {}});
+  const auto* grass = find_by_name(scene_table(), "grass");
+  config.scenes.push_back({"grass", grass, defaults_of(grass->parameters)});
+  return config;
+}
+
+Config parse_config(std::string_view toml_text, const std::string& source_name) {
+  toml::table root;
+  try {
+    root = toml::parse(toml_text, source_name);
+  } catch (const toml::parse_error& error) {
+    std::ostringstream line;
+    line << source_name << ':' << error.source().begin.line << ':' << error.source().begin.column
+         << ": TOML: " << error.description();
+    throw ConfigError(line.str());
+  }
+  return ConfigReader(source_name).read(root);
+}
+
+Config load_config(const std::filesystem::path& file) {
+  std::ifstream input(file, std::ios::binary);
+  std::string text;
+  if (input.is_open() && !std::filesystem::is_directory(file)) {
+    text.assign(std::istreambuf_iterator<char>(input), {});
+  } else {
+    throw ConfigError(file.string() + ":1:1: file: cannot be read; check its path and permissions");
+  }
+  return parse_config(text, file.string());
+}
+
+std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor) {
+  try {
+    return sensor.driver->open(sensor.values);
+  } catch (const std::exception& error) {
+    throw ConfigError((sensor.origin.empty() ? sensor.name : sensor.origin) + ": sensor: " + error.what());
+  }
+}
+
+std::string to_toml(const Config& config) {
+  toml::table root;
+  root.insert("seed", static_cast<std::int64_t>(config.seed));
+  root.insert("stream", to_table(config.stream));
+  root.insert("animation", to_table(config.animation));
+  root.insert("wind", to_table(config.wind));
+
+  const auto append = [&root](const char* list, const char* kind_key, std::string_view kind, const std::string& name,
+                              const ParameterValues& values) {
+    toml::table entry = to_table(values);
+    entry.insert_or_assign(kNameKey, name);
+    entry.insert_or_assign(kind_key, kind);
+    if (!root.contains(list)) root.insert(list, toml::array{});
+    root[list].as_array()->push_back(std::move(entry));
+  };
+  for (const SensorConfig& sensor : config.sensors)
+    append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
+  for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
+
+  std::ostringstream out;
+  out << root << '\n';
+  return out.str();
+}
+
+std::string to_toml(const ParameterValues& values) {
+  std::ostringstream out;
+  out << to_table(values);
+  return out.str();
+}
+
+}  // namespace yuragi

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/driver.hpp"
+#include "engine/base/parameter.hpp"
+#include "engine/scenes/scene.hpp"
+
+namespace yuragi {
+
+/// A sensor or a scene of an installation: which kind, how it is called, and its own parameters.
+struct SensorConfig {
+  std::string name;
+  const DriverDescription* driver = nullptr;
+  ParameterValues values;
+  std::string origin;  ///< `file:line:column` of its entry; empty for the built-in default
+};
+
+struct SceneConfig {
+  std::string name;
+  const SceneDescription* kind = nullptr;
+  ParameterValues values;
+};
+
+/// An installation, read from TOML. Every value is there and within its range; what the file leaves out has its
+/// default.
+struct Config {
+  std::uint64_t seed = 1;
+  ParameterValues stream;             ///< kStreamParameters
+  ParameterValues animation;          ///< kAnimationParameters
+  ParameterValues wind;               ///< kWindParameters
+  std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
+  std::vector<SceneConfig> scenes;    ///< at least one
+};
+
+/// The tables of the file that are there once, with what each may hold.
+struct ConfigTable {
+  std::string_view name;
+  std::string_view summary;
+  std::span<const Parameter> parameters;
+};
+std::span<const ConfigTable> config_tables();
+
+/// What is wrong with a configuration, one line for each mistake: `file:line:column: key: what is wrong; what is
+/// allowed`.
+class ConfigError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What `yuragi run` does without a file: one synthetic sensor and one grass scene.
+Config default_config();
+
+/// Reads a configuration. `source_name` stands in messages. Throws ConfigError with every mistake that was found.
+Config parse_config(std::string_view toml_text, const std::string& source_name);
+
+/// The same of a file. A file that cannot be read is a ConfigError too.
+Config load_config(const std::filesystem::path& file);
+
+/// Makes the sensor, without touching its device. Throws ConfigError where its values cannot work together.
+std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor);
+
+/// The configuration as TOML with every value written out: what a recording keeps, and what `check-config` shows.
+std::string to_toml(const Config& config);
+std::string to_toml(const ParameterValues& values);
+
+}  // namespace yuragi

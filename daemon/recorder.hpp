@@ -1,0 +1,105 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "drivers/windlog/windlog_writer.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/spsc_ring.hpp"
+#include "engine/base/time.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+struct RecordedSensor {
+  std::string name;
+  std::string driver;
+  std::string options;  ///< TOML
+};
+
+/// What a recording says of the run that makes it.
+struct RecordingInfo {
+  Instant started;
+  std::string software;       ///< "yuragi 0.1.0"
+  std::string configuration;  ///< TOML, as read
+  std::vector<RecordedSensor> sensors;
+};
+
+struct RecorderStatus {
+  std::uint64_t written = 0;  ///< readings that are safe on the disk
+  std::uint64_t lost = 0;     ///< readings that are not, and never will be
+  std::string error;          ///< why it cannot write at present; empty while all is well
+};
+
+/// Writes readings to a recording (.windlog) on a thread of its own, so that no disk can hold up whoever has them.
+///
+/// Commits every half second: the death of the process or a power cut takes no more than that. Where the disk is full
+/// or gone it keeps what it can hold, tries again with growing pauses, and counts what it had to give up; when it can
+/// write again it does so in a new session of the same file, and opens the file anew for that.
+class Recorder {
+ public:
+  /// Told of each change for the worse or the better, in a sentence, on the recorder's thread.
+  using Report = std::function<void(std::string_view)>;
+
+  static constexpr Nanoseconds kCommitInterval = std::chrono::milliseconds(500);
+  /// What it holds while it cannot write; an hour and more of one sensor at 10 Hz.
+  static constexpr std::size_t kMaxPending = 65'536;
+
+  /// Opens or creates the recording and begins its session. Throws ExitError where it cannot.
+  Recorder(const std::filesystem::path& file, RecordingInfo info, Report report = {});
+  /// Writes what it has, leaves one file, and waits for that: well under a second on a disk that works.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Takes a reading of `info.sensors[sensor]`; false if it is lost (and counted) because it is none that can be
+  /// recorded, or because the disk has failed for long. One thread pushes. Realtime-safe: yes; wait-free.
+  bool push(std::size_t sensor, const WindReading& reading) noexcept;
+
+  /// Thread-safe: yes. Realtime-safe: no.
+  RecorderStatus status() const;
+
+ private:
+  struct Entry {
+    std::size_t sensor = 0;
+    WindReading reading;
+  };
+
+  void run(const std::stop_token& stop);
+  void flush();
+  Result<void, Failure> write_pending();
+  Result<void, Failure> open_session(Instant started);
+  void set_error(const std::string& error);
+
+  std::filesystem::path file_;
+  RecordingInfo info_;
+  Report report_;
+  SpscRing<Entry> ring_;
+  std::atomic<std::uint64_t> written_{0};
+  std::atomic<std::uint64_t> lost_{0};
+  mutable std::mutex error_mutex_;
+  std::string error_;
+
+  // The recorder's thread alone, once it runs.
+  std::vector<Entry> pending_;
+  std::optional<WindlogWriter> writer_;
+  std::vector<std::int64_t> sensor_ids_;
+  Nanoseconds back_off_{0};
+  std::chrono::steady_clock::time_point retry_at_{};
+
+  std::mutex wake_mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;  // the last member: it ends before what it uses
+};
+
+}  // namespace yuragi

@@ -1,0 +1,126 @@
+#include "daemon/sensor_hub.hpp"
+
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "engine/wind/following_estimator.hpp"
+
+namespace yuragi {
+namespace {
+
+std::string_view name_of(SourceHealth health) {
+  switch (health) {
+    case SourceHealth::kSilent:
+      return "silent";
+    case SourceHealth::kLive:
+      return "live";
+    case SourceHealth::kStale:
+      return "stale";
+  }
+  return "?";
+}
+
+}  // namespace
+
+std::unique_ptr<WindEstimator> make_estimator(const Config& config) {
+  const FollowingEstimatorSettings settings{
+      .default_wind = {.mean_speed_m_s = config.wind.number("default_speed"),
+                       .mean_direction_deg = config.wind.number("default_direction"),
+                       .turbulence_intensity = config.wind.number("default_turbulence"),
+                       .seed = config.seed},
+      .handover_s = config.wind.number("handover"),
+      .stale_intervals = config.wind.number("stale_intervals")};
+  return std::make_unique<FollowingEstimator>(config.sensors.size(), settings);
+}
+
+SensorHub::SensorHub(const Config& config, const Clock& clock, Listener listener)
+    : clock_(clock), listener_(std::move(listener)), estimator_(make_estimator(config)) {
+  // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
+  for (std::size_t index = 0; index < sensors.size(); ++index) {
+    Channel channel;
+    channel.config = config.sensors[index];
+    channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
+    channels_.push_back(std::move(channel));
+  }
+}
+
+const WindState& SensorHub::advance() {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    Channel& channel = channels_[index];
+    channel.runner->drain([&](const WindReading& reading) {
+      ++channel.readings;
+      if (listener_) listener_(index, reading);
+      estimator_->accept(index, reading);
+    });
+  }
+  wind_ = estimator_->advance(clock_.now().mono);
+  for (std::size_t index = 0; index < channels_.size(); ++index) log_changes(index);
+  return wind_;
+}
+
+void SensorHub::log_changes(std::size_t index) {
+  Channel& channel = channels_[index];
+
+  // The link: a change of its state is news; one more failed attempt is not.
+  if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.logged_link_reports) {
+    const LinkReport link = channel.runner->link();
+    if (link.state != channel.logged_link || channel.logged_link_reports == 0) {
+      spdlog::info("sensor {}: {}: {}", channel.config.name, name_of(link.state), link.detail);
+    } else {
+      spdlog::debug("sensor {}: {}: {}", channel.config.name, name_of(link.state), link.detail);
+    }
+    channel.logged_link_reports = reports;
+    channel.logged_link = link.state;
+  }
+
+  const SourceReport report = estimator_->report(index);
+  if (report.health != channel.logged_health) {
+    spdlog::info("sensor {}: {} (was {}); last reading {:.1f} s ago, interval {:.3g} s", channel.config.name,
+                 name_of(report.health), name_of(channel.logged_health), report.age_s, report.interval_s);
+    channel.logged_health = report.health;
+  }
+}
+
+std::vector<wire::SensorStatus> SensorHub::status() const {
+  std::vector<wire::SensorStatus> all;
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    const Channel& channel = channels_[index];
+    const LinkReport link = channel.runner->link();
+    const SourceReport report = estimator_->report(index);
+
+    wire::SensorStatus status;
+    status.name = channel.config.name;
+    status.driver = channel.config.driver->name;
+    status.link = static_cast<std::uint8_t>(link.state);
+    status.health = static_cast<std::uint8_t>(report.health);
+    status.detail = link.detail;
+    if (report.last) {
+      status.speed_m_s = report.last->speed_m_s;
+      status.direction_deg = report.last->direction_deg;
+      status.gust_m_s = report.last->gust_m_s;
+      status.simulated = report.last->quality == ReadingQuality::kSimulated;
+    }
+    status.age_s = report.age_s;
+    status.interval_s = report.interval_s;
+    status.readings = channel.readings;
+    for (std::size_t why = 0; why < kRefusalCount; ++why) {
+      const auto refusal = static_cast<Refusal>(why);
+      if (const std::uint64_t count = channel.runner->refused_count(refusal)) {
+        status.refused.emplace_back(name_of(refusal), count);
+      }
+    }
+    if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
+    all.push_back(std::move(status));
+  }
+  return all;
+}
+
+bool SensorHub::is_finished() const {
+  return std::ranges::all_of(
+      channels_, [](const Channel& channel) { return channel.runner->link().state == LinkState::kFinished; });
+}
+
+}  // namespace yuragi

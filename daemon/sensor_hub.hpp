@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "daemon/config.hpp"
+#include "daemon/sensor_runner.hpp"
+#include "engine/wind/wind_estimator.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+/// All sensors of an installation, and the estimator that makes one wind of what they say. Belongs to the I/O thread;
+/// each sensor runs on a thread of its own.
+class SensorHub {
+ public:
+  /// Sees each plausible reading, before calibration; the recorder listens here.
+  using Listener = std::function<void(std::size_t sensor, const WindReading&)>;
+
+  /// Opens and starts every sensor. Throws ConfigError where one cannot be made of its values.
+  SensorHub(const Config& config, const Clock& clock, Listener listener = {});
+
+  /// Takes in what has arrived and says what the wind is now. Logs each change of a sensor's state once.
+  const WindState& advance();
+
+  /// The wind as of the last advance().
+  const WindState& wind() const noexcept { return wind_; }
+
+  /// How each sensor does, for the stream and for `sensors watch`.
+  std::vector<wire::SensorStatus> status() const;
+
+  /// True when every sensor is a recording that has come to its end.
+  bool is_finished() const;
+
+ private:
+  struct Channel {
+    SensorConfig config;
+    std::unique_ptr<SensorRunner> runner;
+    std::uint64_t readings = 0;
+    SourceHealth logged_health = SourceHealth::kSilent;
+    std::uint64_t logged_link_reports = 0;
+    LinkState logged_link = LinkState::kConnecting;
+  };
+
+  void log_changes(std::size_t index);
+
+  const Clock& clock_;
+  Listener listener_;
+  std::unique_ptr<WindEstimator> estimator_;
+  std::vector<Channel> channels_;
+  WindState wind_;
+};
+
+/// The estimator that a configuration asks for, with one source for each of its sensors.
+std::unique_ptr<WindEstimator> make_estimator(const Config& config);
+
+}  // namespace yuragi

@@ -1,0 +1,58 @@
+#include "daemon/sensor_runner.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace yuragi {
+namespace {
+
+// A thread that waits looks at the clock at least this often, so that a clock that is set cannot put it to sleep for
+// long.
+constexpr auto kLongestSleep = std::chrono::seconds(1);
+
+}  // namespace
+
+SensorRunner::SensorRunner(std::unique_ptr<Sensor> sensor, const Clock& clock)
+    : sensor_(std::move(sensor)), clock_(clock), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+SensorRunner::~SensorRunner() {
+  thread_.request_stop();
+  sensor_->interrupt();
+  thread_.join();
+}
+
+void SensorRunner::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const MonoTime next = sensor_->poll(clock_, *this);
+    const Nanoseconds wait = std::min<Nanoseconds>(next - clock_.now().mono, kLongestSleep);
+    if (wait <= Nanoseconds::zero()) continue;
+    std::unique_lock lock(sleep_mutex_);
+    wake_.wait_for(lock, stop, wait, [] { return false; });
+  }
+}
+
+void SensorRunner::reading(const WindReading& reading) {
+  if (!is_plausible(reading)) {
+    refused(Refusal::kImplausible);
+  } else if (!readings_.push(reading)) {
+    lost_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+void SensorRunner::refused(Refusal why) {
+  refused_[static_cast<std::size_t>(why)].fetch_add(1, std::memory_order_relaxed);
+}
+
+void SensorRunner::link(LinkState state, std::string_view detail) {
+  const std::lock_guard lock(link_mutex_);
+  link_.state = state;
+  link_.detail = detail;
+  link_reports_.fetch_add(1, std::memory_order_release);
+}
+
+LinkReport SensorRunner::link() const {
+  const std::lock_guard lock(link_mutex_);
+  return link_;
+}
+
+}  // namespace yuragi

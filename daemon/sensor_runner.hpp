@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "drivers/sensor.hpp"
+#include "engine/base/spsc_ring.hpp"
+
+namespace yuragi {
+
+/// What a sensor's link did last, for a person to read.
+struct LinkReport {
+  LinkState state = LinkState::kConnecting;
+  std::string detail;
+};
+
+/// Runs one sensor on a thread of its own, since a device may block. Readings wait in a ring until the I/O thread takes
+/// them; nothing that the device does can hold that thread up.
+///
+/// Thread-safe: the public functions may be called from one other thread.
+class SensorRunner final : private SensorSink {
+ public:
+  SensorRunner(std::unique_ptr<Sensor> sensor, const Clock& clock);
+  ~SensorRunner() override;  ///< ends the thread, interrupting a poll that waits
+
+  SensorRunner(const SensorRunner&) = delete;
+  SensorRunner& operator=(const SensorRunner&) = delete;
+
+  /// Hands each reading that has arrived to `use`, oldest first.
+  template <class Use>
+  void drain(Use&& use) {
+    readings_.drain(use);
+  }
+
+  LinkReport link() const;
+  /// How often the link has been told of; looks cheaply whether there is news.
+  std::uint64_t link_reports() const noexcept { return link_reports_.load(std::memory_order_acquire); }
+  std::uint64_t refused_count(Refusal why) const noexcept {
+    return refused_[static_cast<std::size_t>(why)].load(std::memory_order_relaxed);
+  }
+  /// Readings that the ring had no room for, since nobody took them.
+  std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::size_t kRingCapacity = 1024;
+
+  void run(const std::stop_token& stop);
+  void reading(const WindReading& reading) override;
+  void refused(Refusal why) override;
+  void link(LinkState state, std::string_view detail) override;
+
+  std::unique_ptr<Sensor> sensor_;
+  const Clock& clock_;
+  SpscRing<WindReading> readings_{kRingCapacity};
+  std::array<std::atomic<std::uint64_t>, kRefusalCount> refused_{};
+  std::atomic<std::uint64_t> lost_{0};
+
+  mutable std::mutex link_mutex_;  // of the link's text: rare, and never on the animation's way
+  LinkReport link_;
+  std::atomic<std::uint64_t> link_reports_{0};
+
+  std::mutex sleep_mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace yuragi

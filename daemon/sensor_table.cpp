@@ -1,0 +1,84 @@
+#include "daemon/sensor_table.hpp"
+
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "drivers/sensor.hpp"
+#include "engine/wind/wind_estimator.hpp"
+
+namespace yuragi {
+namespace {
+
+std::string_view wind_source(const WindState& wind) {
+  switch (wind.source) {
+    case WindSource::kDefault:
+      return "default wind: no sensor speaks";
+    case WindSource::kHandover:
+      return "handing over";
+    case WindSource::kLive:
+      return "live";
+  }
+  return "?";
+}
+
+/// One word for link and health together: what a person wants to know first.
+std::string_view state_of(const wire::SensorStatus& sensor) {
+  switch (static_cast<SourceHealth>(sensor.health)) {
+    case SourceHealth::kLive:
+      return sensor.simulated ? "simulated" : "live";
+    case SourceHealth::kStale:
+      return "STALE";
+    case SourceHealth::kSilent:
+      break;
+  }
+  return name_of(static_cast<LinkState>(sensor.link));
+}
+
+std::string direction_text(double direction_deg) {
+  return fmt::format("{:3.0f} {}", direction_deg, compass_point(direction_deg));
+}
+
+std::string optional_text(const std::optional<double>& value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+}  // namespace
+
+std::string compass_point(double direction_deg) {
+  static constexpr std::array<const char*, 16> kPoints = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
+                                                          "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
+  const double turns = direction_deg / 360.0 - std::floor(direction_deg / 360.0);
+  return kPoints[static_cast<std::size_t>(std::lround(turns * 16.0)) % 16];
+}
+
+std::string sensor_table(const wire::Sensors& sensors) {
+  const WindVector wind = sensors.wind.wind;
+  std::string table = fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n\n", speed_of(wind),
+                                  direction_text(direction_from_deg(wind)), wind_source(sensors.wind), sensors.clients,
+                                  sensors.late_ticks);
+  const auto out = std::back_inserter(table);
+  fmt::format_to(out, "{:<16} {:<10} {:<10} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9}  {}\n", "sensor", "driver", "state",
+                 "speed m/s", "from deg", "gust m/s", "age s", "interval", "readings", "refused");
+  for (const wire::SensorStatus& sensor : sensors.sensors) {
+    std::string refused;
+    for (const auto& [why, count] : sensor.refused) {
+      refused += fmt::format("{}{} {}", refused.empty() ? "" : ", ", why, count);
+    }
+    const bool has_spoken = sensor.readings > 0;
+    fmt::format_to(out, "{:<16.16} {:<10.10} {:<10} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9}  {}\n", sensor.name,
+                   sensor.driver, state_of(sensor), optional_text(sensor.speed_m_s, "{:.2f}"),
+                   sensor.direction_deg ? direction_text(*sensor.direction_deg) : "-",
+                   optional_text(sensor.gust_m_s, "{:.2f}"), has_spoken ? fmt::format("{:.1f}", sensor.age_s) : "-",
+                   sensor.interval_s > 0.0 ? fmt::format("{:.2f} s", sensor.interval_s) : "-", sensor.readings,
+                   refused.empty() ? "-" : refused);
+    if (!sensor.detail.empty()) {
+      fmt::format_to(out, "  {}: {}\n", name_of(static_cast<LinkState>(sensor.link)), sensor.detail);
+    }
+  }
+  return table;
+}
+
+}  // namespace yuragi

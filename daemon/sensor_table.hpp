@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+/// The state of all sensors as a table for a terminal: the wind on top, then a line for each sensor, and under it what
+/// its link did last. Lines end in '\n'; nothing but text, no cursor movement.
+std::string sensor_table(const wire::Sensors& sensors);
+
+/// The name of the nearest of 16 compass points: "WSW".
+std::string compass_point(double direction_deg);
+
+}  // namespace yuragi

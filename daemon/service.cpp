@@ -1,0 +1,188 @@
+#include "daemon/service.hpp"
+
+#include <csignal>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "daemon/animation.hpp"
+#include "daemon/animation_loop.hpp"
+#include "daemon/recorder.hpp"
+#include "daemon/sensor_hub.hpp"
+#include "daemon/system_clock.hpp"
+#include "daemon/transports/tcp_stream.hpp"
+#include "engine/base/latest.hpp"
+
+namespace yuragi {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr const char* kSoftware = "yuragi " YURAGI_VERSION;
+constexpr auto kStatusInterval = std::chrono::milliseconds(500);
+
+}  // namespace
+
+class Service::Io {
+ public:
+  Io(const Config& config, const ServiceOptions& options)
+      : options_(options),
+        rate_hz_(config.animation.number("rate")),
+        animation_(options.with_scenes ? std::make_unique<Animation>(config) : nullptr),
+        stream_(io_, config.stream.text("listen"), stream_settings(config)),
+        recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
+        hub_(config, clock_, listener()) {
+    if (animation_) {
+      loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
+      frame_ready_.assign(dup(loop_->frame_ready_fd()));
+    }
+  }
+
+  void run() {
+    spdlog::info("listening on {}", stream_.local_endpoint());
+    if (animation_) spdlog::info("{} nodes at {} Hz", animation_->node_count(), rate_hz_);
+
+    signals_.async_wait([this](const boost::system::error_code& error, int signal) {
+      if (!error) end(signal == SIGINT ? "interrupted" : "terminated");
+    });
+    if (options_.duration_s) {
+      end_timer_.expires_after(from_seconds(*options_.duration_s));
+      end_timer_.async_wait([this](const boost::system::error_code& error) {
+        if (!error) end("the set duration is over");
+      });
+    }
+    next_wind_ = asio::steady_timer::clock_type::now();
+    step_wind();
+    send_status();
+    if (loop_) {
+      wait_for_frame();
+      loop_->start();
+    }
+
+    io_.run();
+    log_summary();
+  }
+
+ private:
+  TcpStreamSettings stream_settings(const Config& config) const {
+    TcpStreamSettings settings;
+    settings.hello.software = kSoftware;
+    settings.hello.tick_rate_hz = rate_hz_;
+    if (animation_) settings.scenes = animation_->describe();
+    settings.max_clients = static_cast<std::size_t>(config.stream.integer("max_clients"));
+    return settings;
+  }
+
+  std::unique_ptr<Recorder> make_recorder(const Config& config, const std::filesystem::path& file) const;
+
+  SensorHub::Listener listener() {
+    if (!recorder_) return {};
+    return [this](std::size_t sensor, const WindReading& reading) { recorder_->push(sensor, reading); };
+  }
+
+  /// Takes in readings and lets the wind go on, at the animation's pace.
+  void step_wind() {
+    wind_.publish(hub_.advance());
+    if (options_.end_with_recordings && hub_.is_finished()) return end("the recording is over");
+
+    // Steps keep to their own grid; those that a halted machine missed are left out.
+    const auto period = from_seconds(1.0 / rate_hz_);
+    next_wind_ = std::max(next_wind_ + period, asio::steady_timer::clock_type::now() - period);
+    wind_timer_.expires_at(next_wind_);
+    wind_timer_.async_wait([this](const boost::system::error_code& error) {
+      if (!error) step_wind();
+    });
+  }
+
+  void wait_for_frame() {
+    frame_ready_.async_read_some(asio::buffer(&frames_made_, sizeof frames_made_),
+                                 [this](const boost::system::error_code& error, std::size_t) {
+                                   if (error) return;
+                                   if (const wire::Bytes* frame = loop_->take_frame()) {
+                                     stream_.publish(std::make_shared<const wire::Bytes>(*frame));
+                                   }
+                                   wait_for_frame();
+                                 });
+  }
+
+  void send_status() {
+    wire::Sensors status;
+    status.sensors = hub_.status();
+    status.wind = hub_.wind();
+    status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
+    status.clients = static_cast<std::uint32_t>(stream_.client_count());
+    stream_.publish_sensors(std::make_shared<const wire::Bytes>(wire::encode(status)));
+
+    status_timer_.expires_after(kStatusInterval);
+    status_timer_.async_wait([this](const boost::system::error_code& error) {
+      if (!error) send_status();
+    });
+  }
+
+  void log_summary() const;
+
+  void end(const char* why) {
+    spdlog::info("ending: {}", why);
+    if (loop_) loop_->stop();
+    stream_.close();
+    signals_.cancel();
+    end_timer_.cancel();
+    wind_timer_.cancel();
+    status_timer_.cancel();
+    frame_ready_.close();
+    io_.stop();
+  }
+
+  ServiceOptions options_;
+  double rate_hz_;
+  SystemClock clock_;
+  asio::io_context io_{1};
+  asio::signal_set signals_{io_, SIGINT, SIGTERM};
+  asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_};
+  asio::steady_timer::time_point next_wind_;
+  asio::posix::stream_descriptor frame_ready_{io_};
+  std::uint64_t frames_made_ = 0;
+
+  // In this order: a second daemon stops at the address that is taken, before it touches the recording or a sensor.
+  std::unique_ptr<Animation> animation_;
+  TcpStream stream_;
+  std::unique_ptr<Recorder> recorder_;
+  SensorHub hub_;
+  Latest<WindState> wind_;
+  std::unique_ptr<AnimationLoop> loop_;
+};
+
+std::unique_ptr<Recorder> Service::Io::make_recorder(const Config& config, const std::filesystem::path& file) const {
+  RecordingInfo info{.started = clock_.now(), .software = kSoftware, .configuration = to_toml(config), .sensors = {}};
+  for (const SensorConfig& sensor : config.sensors) {
+    info.sensors.push_back({sensor.name, std::string(sensor.driver->name), to_toml(sensor.values)});
+  }
+  spdlog::info("recording into {}", file.string());
+  return std::make_unique<Recorder>(file, std::move(info),
+                                    [](std::string_view news) { spdlog::warn("recording: {}", news); });
+}
+
+void Service::Io::log_summary() const {
+  if (recorder_) {
+    const RecorderStatus status = recorder_->status();
+    spdlog::info("recorded {} readings, lost {}", status.written, status.lost);
+  }
+  if (!loop_) return;
+  const LoopCounters& counters = loop_->counters();
+  spdlog::info("{} ticks, {} skipped; lateness p50 {:.3f} ms, p99 {:.3f} ms; work p50 {:.3f} ms, p99 {:.3f} ms",
+               counters.ticks.load(), counters.skipped_ticks.load(), 1e3 * counters.lateness.percentile_s(0.5),
+               1e3 * counters.lateness.percentile_s(0.99), 1e3 * counters.work.percentile_s(0.5),
+               1e3 * counters.work.percentile_s(0.99));
+}
+
+Service::Service(const Config& config, const ServiceOptions& options) : io_(std::make_unique<Io>(config, options)) {}
+Service::~Service() = default;
+void Service::run() {
+  io_->run();
+}
+
+}  // namespace yuragi

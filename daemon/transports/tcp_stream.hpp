@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "daemon/transports/client_queue.hpp"
+#include "daemon/transports/transport.hpp"
+
+namespace boost::asio {
+class io_context;
+}
+
+namespace yuragi {
+
+struct TcpStreamSettings {
+  wire::Hello hello;             ///< what every client is greeted with
+  wire::Scenes scenes;           ///< what those who ask for poses get first
+  std::size_t max_clients = 32;  ///< more are told so, and let go
+  ClientLimits limits = {};
+  Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are looked at
+  std::function<MonoTime()> now = steady_now;                ///< what the limits are measured with
+
+  static MonoTime steady_now() { return std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()); }
+};
+
+/// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
+///
+/// Each client is greeted, says once what it wants, and gets the newest of it from then on (ClientQueue). One that
+/// sends anything else, never says what it wants, or stops reading is let go and logged. Send buffers are kept short,
+/// so that what a slow client sees is new.
+///
+/// Everything happens in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
+class TcpStream final : public Transport {
+ public:
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws ExitError where that is not possible.
+  TcpStream(boost::asio::io_context& io, std::string_view listen, TcpStreamSettings settings);
+  ~TcpStream() override;
+
+  /// Where it listens: "127.0.0.1:7410".
+  std::string local_endpoint() const;
+
+  std::string name() const override { return "tcp " + local_endpoint(); }
+  void publish(SharedBytes frame) override;
+  void publish_sensors(SharedBytes sensors) override;
+  std::size_t client_count() const override;
+  void close() override;
+
+  /// Clients let go because they stopped reading.
+  std::uint64_t stuck_clients() const;
+
+ private:
+  class Server;  // keeps Asio, which is slow to compile, in one file
+  std::shared_ptr<Server> server_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,209 @@
+// libmodbus 3.1.6 opens and closes, sets up serial ports, sends, and cuts what arrives into messages. What it does not
+// do is done here or in the decoder: over TCP it never checks the unit id, and its raw requests all carry one
+// transaction id; it reports a message of another slave without its length; and nothing can wake it.
+#include "drivers/bus/modbus_connection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+#include <modbus/modbus.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace yuragi {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+struct FreeModbus {
+  void operator()(modbus_t* context) const noexcept { modbus_free(context); }
+};
+using Context = std::unique_ptr<modbus_t, FreeModbus>;
+
+/// An eventfd: something to wait for beside the device.
+class WakeEvent {
+ public:
+  WakeEvent() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+  }
+  ~WakeEvent() { ::close(descriptor_); }
+  WakeEvent(const WakeEvent&) = delete;
+  WakeEvent& operator=(const WakeEvent&) = delete;
+
+  int descriptor() const noexcept { return descriptor_; }
+  void set() noexcept { eventfd_write(descriptor_, 1); }
+  bool is_set() const noexcept {
+    pollfd wait{descriptor_, POLLIN, 0};
+    return poll(&wait, 1, 0) == 1;
+  }
+
+ private:
+  int descriptor_;
+};
+
+timespec to_timespec(Nanoseconds duration) {
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(duration);
+  return {whole.count(), (duration - whole).count()};
+}
+
+/// The length of a message that libmodbus has read from a serial line and refused. It goes by the function code.
+std::size_t refused_length(std::span<const std::uint8_t> message) {
+  constexpr std::size_t kCrc = 2;
+  switch (message[1]) {
+    case MODBUS_FC_WRITE_SINGLE_COIL:
+    case MODBUS_FC_WRITE_SINGLE_REGISTER:
+    case MODBUS_FC_WRITE_MULTIPLE_COILS:
+    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
+      return 2 + 4 + kCrc;
+    case MODBUS_FC_MASK_WRITE_REGISTER:
+      return 2 + 6 + kCrc;
+    case MODBUS_FC_REPORT_SLAVE_ID:
+    case MODBUS_FC_WRITE_AND_READ_REGISTERS:
+      return 3U + message[2] + kCrc;
+    default:
+      return 3U + (message[1] <= MODBUS_FC_READ_INPUT_REGISTERS ? message[2] : 0U) + kCrc;
+  }
+}
+
+class LibmodbusConnection final : public ModbusConnection {
+ public:
+  explicit LibmodbusConnection(const ModbusLine& line) : line_(line) {}
+  ~LibmodbusConnection() override { LibmodbusConnection::close(); }
+  LibmodbusConnection(const LibmodbusConnection&) = delete;
+  LibmodbusConnection& operator=(const LibmodbusConnection&) = delete;
+
+  Result<void, Failure> open() override {
+    close();
+    if (wake_.is_set()) return Failure{"interrupted"};
+
+    Context context(is_tcp() ? modbus_new_tcp_pi(line_.host.c_str(), std::to_string(line_.port).c_str())
+                             : modbus_new_rtu(line_.device.c_str(), line_.baud, line_.parity, 8, line_.stop_bits));
+    if (!context) return Failure{explain(errno)};
+
+    // No byte time-out: a whole message has to be there within the response time-out, however it trickles.
+    set_response_timeout(context.get(), line_.response_timeout);
+    modbus_set_byte_timeout(context.get(), 0, 0);
+    if (modbus_connect(context.get()) != 0) return Failure{explain(errno)};
+    context_ = std::move(context);
+    return {};
+  }
+
+  bool is_open() const noexcept override { return context_ != nullptr; }
+
+  void close() noexcept override {
+    if (context_) modbus_close(context_.get());
+    context_.reset();
+  }
+
+  bool send(const ModbusRequest& request) override {
+    if (!context_) return false;
+    deadline_ = SteadyClock::now() + line_.response_timeout;
+    if (is_tcp()) {
+      const auto message = encode_tcp(request);
+      return ::send(modbus_get_socket(context_.get()), message.data(), message.size(), MSG_NOSIGNAL) ==
+             static_cast<ssize_t>(message.size());
+    }
+    const auto message = encode_rtu_without_crc(request);
+    modbus_flush(context_.get());
+    return modbus_set_slave(context_.get(), request.unit) == 0 &&
+           modbus_send_raw_request(context_.get(), message.data(), static_cast<int>(message.size())) >= 0;
+  }
+
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer) override {
+    // Wait for the first byte here, where interrupt() can end it and where silence differs from a message cut off.
+    if (!context_) return {BusStatus::kLost};
+    const Nanoseconds remaining = deadline_ - SteadyClock::now();
+    const bool has_bytes = remaining > Nanoseconds::zero() && wait_for_bytes(remaining);
+    if (wake_.is_set()) return {BusStatus::kInterrupted};
+    if (!has_bytes) return {BusStatus::kSilence};
+
+    // Then libmodbus cuts out one message.
+    std::ranges::fill(buffer, std::uint8_t{0});
+    set_response_timeout(context_.get(), deadline_ - SteadyClock::now());
+    const int size = modbus_receive_confirmation(context_.get(), buffer.data());
+    if (size > 0) return {BusStatus::kMessage, static_cast<std::size_t>(size)};
+    if (size == 0 || errno == EMBBADCRC) {
+      // A whole message of another slave stands for itself. One that is damaged, perhaps by a stray byte in front, is
+      // not cut where it should be: the decoder shall see all that the line brings.
+      const std::size_t framed = std::min(refused_length(buffer), buffer.size());
+      const bool is_whole = modbus_crc(buffer.first(framed)) == 0;
+      return {BusStatus::kMessage, framed + (is_whole ? 0 : read_until_quiet(buffer.subspan(framed)))};
+    }
+    if (errno == ETIMEDOUT) return {BusStatus::kCutOff};
+    if (errno == EMBBADDATA) return {BusStatus::kGarbled};
+    return {BusStatus::kLost};
+  }
+
+  void resynchronise() override {
+    if (is_tcp()) {
+      close();
+    } else if (context_) {
+      std::array<std::uint8_t, kModbusMaxMessage> discarded{};
+      read_until_quiet(discarded);
+    }
+  }
+
+  void interrupt() noexcept override { wake_.set(); }
+
+ private:
+  bool is_tcp() const { return line_.framing == ModbusFraming::kTcp; }
+
+  /// libmodbus takes no time-out of zero.
+  static void set_response_timeout(modbus_t* context, Nanoseconds timeout) {
+    const timespec time = to_timespec(std::max<Nanoseconds>(timeout, std::chrono::milliseconds(1)));
+    modbus_set_response_timeout(context, static_cast<std::uint32_t>(time.tv_sec),
+                                static_cast<std::uint32_t>(time.tv_nsec / 1000));
+  }
+
+  /// Is there something to read, or news of the line's end, within `timeout`? interrupt() ends the wait.
+  bool wait_for_bytes(Nanoseconds timeout) const {
+    std::array<pollfd, 2> waits = {pollfd{modbus_get_socket(context_.get()), POLLIN, 0},
+                                   pollfd{wake_.descriptor(), POLLIN, 0}};
+    const timespec time = to_timespec(timeout);
+    return ppoll(waits.data(), waits.size(), &time, nullptr) > 0 && waits[0].revents != 0;
+  }
+
+  /// Reads until nothing comes for the byte time-out or the buffer is full; returns how much that was.
+  std::size_t read_until_quiet(std::span<std::uint8_t> buffer) const {
+    std::size_t size = 0;
+    while (size < buffer.size() && wait_for_bytes(line_.byte_timeout) && !wake_.is_set()) {
+      const ssize_t got = ::read(modbus_get_socket(context_.get()), &buffer[size], buffer.size() - size);
+      if (got <= 0) break;
+      size += static_cast<std::size_t>(got);
+    }
+    return size;
+  }
+
+  std::string explain(int error) const {
+    const std::string reason = modbus_strerror(error);
+    if (is_tcp()) {
+      return "cannot connect to " + describe(line_) + " (" + reason +
+             "): check the host and port, the network, and that the device or gateway is switched on";
+    }
+    return "cannot open " + describe(line_) + " (" + reason +
+           "): check the name of the serial port, its cable, and that this user may open it (group dialout)";
+  }
+
+  ModbusLine line_;
+  WakeEvent wake_;
+  Context context_;
+  SteadyClock::time_point deadline_{};
+};
+
+}  // namespace
+
+std::string describe(const ModbusLine& line) {
+  if (line.framing == ModbusFraming::kRtu) return line.device;
+  const bool is_ipv6 = line.host.find(':') != std::string::npos;
+  return (is_ipv6 ? "[" + line.host + "]" : line.host) + ":" + std::to_string(line.port);
+}
+
+std::unique_ptr<ModbusConnection> make_modbus_connection(const ModbusLine& line) {
+  return std::make_unique<LibmodbusConnection>(line);
+}
+
+}  // namespace yuragi

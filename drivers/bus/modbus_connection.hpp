@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "drivers/decode/modbus.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// Where Modbus devices are reached, and how long they may take.
+struct ModbusLine {
+  ModbusFraming framing = ModbusFraming::kTcp;
+
+  std::string host;  ///< TCP: a name, an IPv4 or an IPv6 address
+  std::uint16_t port = 502;
+
+  std::string device;  ///< RTU: the serial port, best by its stable name under /dev/serial/by-id
+  int baud = 9600;
+  char parity = 'N';  ///< N, E or O
+  int stop_bits = 1;
+
+  Nanoseconds response_timeout =
+      std::chrono::milliseconds(500);                        ///< from request to the end of the answer; also to connect
+  Nanoseconds byte_timeout = std::chrono::milliseconds(50);  ///< RTU: a line quiet for so long has ended its message
+};
+
+/// "host:port", or the serial port: for people.
+std::string describe(const ModbusLine& line);
+
+/// What came of waiting for an answer.
+enum class BusStatus : std::uint8_t {
+  kMessage,      ///< a message; the decoder says what it is worth
+  kSilence,      ///< nothing until the response time-out
+  kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
+  kGarbled,      ///< bytes that are no message; the line is no longer in step
+  kInterrupted,  ///< interrupt() was called
+  kLost,         ///< the connection is gone
+};
+
+struct BusMessage {
+  BusStatus status = BusStatus::kSilence;
+  std::size_t size = 0;  ///< bytes, for kMessage
+};
+
+/// A connection to the devices on one line, which can be closed and opened again for as long as it lives. Carries bytes
+/// and judges nothing. A test may put another in its place.
+///
+/// Thread-safe: interrupt() alone; everything else belongs to one thread.
+class ModbusConnection {
+ public:
+  virtual ~ModbusConnection() = default;
+
+  /// Opens, or says why that failed and what to do. Blocks for the response time-out at most (and while the system
+  /// looks up a host name).
+  virtual Result<void, Failure> open() = 0;
+  virtual bool is_open() const noexcept = 0;
+  /// Whatever goes wrong while closing is of no interest: the descriptor is gone.
+  virtual void close() noexcept = 0;
+
+  /// Sends a request and starts its response time-out. On a serial line, what an earlier request left behind is
+  /// discarded first. False: the connection is gone.
+  virtual bool send(const ModbusRequest& request) = 0;
+
+  /// The next message since, waiting until the response time-out that send() began. Can be called again after a message
+  /// that turned out to be another one's.
+  virtual BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer) = 0;
+
+  /// Gets back into step after bytes that made no sense: reads a serial line until it is quiet, closes a TCP
+  /// connection.
+  virtual void resynchronise() = 0;
+
+  /// Ends a receive() that waits and makes all later work end at once.
+  virtual void interrupt() noexcept = 0;
+};
+
+/// The real one, by libmodbus. Throws std::system_error where the process has no descriptors left.
+std::unique_ptr<ModbusConnection> make_modbus_connection(const ModbusLine& line);
+
+}  // namespace yuragi

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+// Modbus messages as bytes, and nothing else: no connection, no time, no state.
+// Source: MODBUS Application Protocol Specification V1.1b3 (sections 4, 6.3, 6.4, 7); MODBUS Messaging on TCP/IP
+// Implementation Guide V1.0b (section 3.1.3); MODBUS over Serial Line V1.02 (section 2.5.1).
+
+/// The longest message on either transport (libmodbus: MODBUS_MAX_ADU_LENGTH).
+inline constexpr std::size_t kModbusMaxMessage = 260;
+/// The most registers that one request may ask for.
+inline constexpr std::size_t kModbusMaxRegisters = 125;
+
+/// How a message is wrapped on its way.
+enum class ModbusFraming : std::uint8_t {
+  kTcp,  ///< transaction id, protocol id, length, unit id in front
+  kRtu,  ///< slave id in front, CRC behind
+};
+
+/// A question for registers.
+struct ModbusRequest {
+  std::uint16_t transaction = 0;  ///< TCP only
+  std::uint8_t unit = 1;          ///< slave id
+  std::uint8_t function = 3;      ///< 3: holding registers; 4: input registers
+  std::uint16_t address = 0;      ///< of the first register, as it goes on the wire
+  std::uint16_t count = 1;        ///< registers, 1 to kModbusMaxRegisters
+};
+
+/// The request as it goes on a TCP connection.
+std::array<std::uint8_t, 12> encode_tcp(const ModbusRequest& request) noexcept;
+
+/// The request as it goes on a serial line, still without its CRC.
+std::array<std::uint8_t, 6> encode_rtu_without_crc(const ModbusRequest& request) noexcept;
+
+/// What an answer holds.
+struct ModbusRegisters {
+  std::array<std::uint16_t, kModbusMaxRegisters> values{};
+  std::size_t count = 0;
+
+  std::span<const std::uint16_t> span() const noexcept { return {values.data(), count}; }
+};
+
+struct ModbusRefusal {
+  Refusal why = Refusal::kMalformed;
+  std::uint8_t exception = 0;  ///< the device's exception code, where `why` is kException
+};
+
+/// The registers in one whole message that came after `request`, or the first thing that is wrong with it, in this
+/// order: kTooShort (no header, or it ends before its own length), kMalformed (not Modbus, or longer than it says),
+/// kNotMine (another transaction or unit), kException, kMalformed (another function or byte count). Reads any bytes
+/// whatsoever. Thread-safe and realtime-safe: yes.
+Result<ModbusRegisters, ModbusRefusal> decode_tcp(const ModbusRequest& request,
+                                                  std::span<const std::uint8_t> message) noexcept;
+
+/// The same for a serial line, with kBadChecksum before kNotMine. One stray byte 0x00 or 0xFF in front, as RS-485
+/// transceivers make when they turn around, is skipped if the rest is a message with a right CRC.
+Result<ModbusRegisters, ModbusRefusal> decode_rtu(const ModbusRequest& request,
+                                                  std::span<const std::uint8_t> message) noexcept;
+
+Result<ModbusRegisters, ModbusRefusal> decode_modbus(ModbusFraming framing, const ModbusRequest& request,
+                                                     std::span<const std::uint8_t> message) noexcept;
+
+/// CRC-16/MODBUS; its low byte goes first on the wire.
+std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) noexcept;
+
+/// "illegal data address" for 2; "unknown exception" for a code that the specification does not have.
+std::string_view modbus_exception_name(std::uint8_t code) noexcept;
+
+}  // namespace yuragi

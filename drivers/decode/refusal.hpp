@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace yuragi {
+
+/// Why something that arrived, or did not, was not published. Each is counted for each sensor.
+enum class Refusal : std::uint8_t {
+  kTimeout,   ///< no answer in time
+  kTooShort,  ///< an answer that ends too early
+  kNotMine,   ///< an answer of another device, or to another question
+  kBadChecksum,
+  kException,    ///< the device said no
+  kMalformed,    ///< not the protocol
+  kInvalid,      ///< the device's own mark for "no value"
+  kImplausible,  ///< decoded, but no wind blows like that
+};
+inline constexpr std::size_t kRefusalCount = 8;
+
+std::string_view name_of(Refusal refusal);
+
+}  // namespace yuragi

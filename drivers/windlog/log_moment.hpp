@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+class WindlogReader;
+
+/// A place in a recording: log time, or UTC.
+using LogMoment = std::variant<Nanoseconds, UtcTime>;
+
+/// Reads what a person writes for one: seconds from the recording's first reading ("90", "12.5"), or a moment in ISO
+/// 8601
+/// ("2018-07-20T14:05:00Z"; UTC where it names no zone; to the millisecond). Empty is the beginning. The failure says
+/// what is allowed.
+Result<LogMoment, Failure> parse_log_moment(std::string_view text);
+
+/// Its log time in one recording: for UTC that of the first reading at or after it, or nothing if there is none.
+Result<std::optional<Nanoseconds>, Failure> log_time_of(WindlogReader& reader, const LogMoment& moment);
+
+}  // namespace yuragi

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+/// Which part of a recording is played, and how often.
+struct PlaybackOptions {
+  /// Where to begin: empty, seconds from the recording's first reading ("90", "12.5"), or a moment in ISO 8601
+  /// ("2018-07-20T14:05:00Z"; UTC where it names no zone).
+  std::string start = {};
+  /// Begin again at `start` when the end is reached; log time runs on.
+  bool loop = false;
+  /// The name of the sensor to play; empty: the one that spoke first; "*": all of them.
+  std::string sensor = {};
+};
+
+/// A reading of a recording, and when it is played.
+struct PlayedReading {
+  double log_time_s = 0.0;  ///< since the start of the playback; never less than that of the reading before
+  WindReading reading;      ///< as recorded, its own time included
+  std::string_view sensor;  ///< its sensor's name; lives as long as the playback
+};
+
+/// Plays a recording (.windlog) in log time, with no clock: whoever asks decides when a reading is due. Log time
+/// follows the monotonic clock inside a session and the UTC gap between two sessions (never less than zero), so that
+/// setting the clock of the recording machine neither stretches nor shrinks a replay.
+///
+/// Reads in blocks, so that the length of a recording does not matter, and holds no lock between them: a recording that
+/// is still being written can be played up to its present end.
+/// Thread-safe: no. Realtime-safe: no; it reads a file.
+class WindlogPlayback {
+ public:
+  /// Throws std::runtime_error, naming the file and what to do, where it cannot be read, has no such sensor or no
+  /// reading, or where `start` cannot be understood or lies after the end.
+  explicit WindlogPlayback(const std::filesystem::path& file, const PlaybackOptions& options = {});
+  ~WindlogPlayback();
+  WindlogPlayback(WindlogPlayback&&) noexcept;
+  WindlogPlayback& operator=(WindlogPlayback&&) noexcept;
+
+  /// The next reading, in the order of log time; nothing at the end (never, if it loops). Throws std::runtime_error
+  /// where the file breaks off in the middle; the next call tries the same place again.
+  std::optional<PlayedReading> next();
+
+  /// Rows that were passed over because no reading can look like that.
+  std::size_t skipped() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Is this a `start` that PlaybackOptions takes? The failure says what it takes.
+Result<void, Failure> check_playback_start(std::string_view start);
+
+}  // namespace yuragi

@@ -1,0 +1,32 @@
+#include "engine/base/kernel.hpp"
+#include "engine/operators/operator_kernels.hpp"
+
+namespace yuragi {
+namespace {
+
+/// In half-bend speeds: so strong that the bend is at its largest, and so weak that its square is a number.
+constexpr float kLargest = 1e9F;
+
+void bend(const BendingKernelArguments& in) noexcept {
+  // Copies, so that no store to the outputs can be taken for a change of them.
+  const BendingKernelArguments arguments = in;
+  const float* const strength = arguments.strength;
+  const float* const flexibility = arguments.flexibility;
+  float* const __restrict east = arguments.out_east_rad;
+  float* const __restrict south = arguments.out_south_rad;
+  for (std::size_t i = 0; i < arguments.count; ++i) {
+    const float wind = arguments.wind_in_half_bends * strength[i] * flexibility[i];
+    const float blowing = wind > 0.0F ? wind : 0.0F;
+    const float s = blowing < kLargest ? blowing : kLargest;
+    // s^2 / (1 + s^2), written so that each rounding keeps the order: a stronger wind never bends less, not by a bit.
+    const float share = 1.0F - 1.0F / (1.0F + s * s);
+    east[i] = arguments.bend_east_rad * share;
+    south[i] = arguments.bend_south_rad * share;
+  }
+}
+
+}  // namespace
+
+const BendingKernels YURAGI_ROW_NAME(bending_kernels) = {bend};
+
+}  // namespace yuragi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/noise/torus.hpp"
+
+namespace yuragi {
+
+/// The shifting operator: the wind carries its turbulence along (Taylor's frozen turbulence), offset += wind dt.
+///
+/// An integral, never wind times time, so that a new reading bends the path and never jumps the field (Chiba, section
+/// 2-2 (1); method, decision 2); and the field itself is never turned, for turning a tile would sweep far places
+/// sideways (decision 3). The offset moves to where the wind blows: x east, z south. Metres, seconds. Owns nothing.
+/// Thread-safe: different offsets, yes. Realtime-safe: yes.
+struct ShiftJob {
+  double wind_east_m_s = 0.0;
+  double wind_south_m_s = 0.0;
+  double dt_s = 0.0;
+  double period_m = 0.0;  ///< of the tile that is shifted
+
+  TorusOffset* offset = nullptr;
+
+  enum class Problem : std::uint8_t {
+    kNone,
+    kNoOffset,
+    kWindNotFinite,
+    kStepNotPositive,    ///< dt_s is not a finite number above 0
+    kPeriodNotPositive,  ///< period_m is not a finite number above 0
+  };
+  [[nodiscard]] Problem validate() const noexcept;
+
+  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  Problem run() const noexcept;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+
+// Between StrandKinematicsJob and its kernel; nobody else needs this.
+
+namespace yuragi {
+
+/// The arrays of a StrandSkeleton and a StrandPose, in whole blocks, and where the joints go.
+struct StrandKernelArguments {
+  std::size_t blocks = 0;
+  std::size_t links = 0;
+  const float* root_x_m = nullptr;
+  const float* root_y_m = nullptr;
+  const float* root_z_m = nullptr;
+  const float* rest_x = nullptr;
+  const float* rest_y = nullptr;
+  const float* rest_z = nullptr;
+  const float* curl_x = nullptr;
+  const float* curl_y = nullptr;
+  const float* curl_z = nullptr;
+  const float* rest_curl_rad = nullptr;
+  const float* link_length_m = nullptr;
+  const float* bend_east_rad = nullptr;
+  const float* bend_south_rad = nullptr;
+  float* joints_m = nullptr;
+};
+
+struct StrandKernels {
+  void (*joint_positions)(const StrandKernelArguments&) noexcept;
+};
+
+extern const StrandKernels strand_kernels_x86_64;
+extern const StrandKernels strand_kernels_x86_64_v3;
+extern const StrandKernels strand_kernels_x86_64_v4;
+
+}  // namespace yuragi

@@ -1,0 +1,117 @@
+#include "engine/wire/schema.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::wire {
+namespace {
+
+using Builder = flatbuffers::FlatBufferBuilder;
+using Text = flatbuffers::Offset<flatbuffers::String>;
+
+/// `text`, cut to the longest that decode() takes, at the start of a UTF-8 character.
+Text add_text(Builder& builder, std::string_view text) {
+  std::size_t size = text.size();
+  if (size > kMaxTextBytes) {
+    size = kMaxTextBytes;
+    while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0u) == 0x80u) --size;
+  }
+  return builder.CreateString(text.data(), size);
+}
+
+/// The values of the strands, without the padding.
+flatbuffers::Offset<flatbuffers::Vector<float>> add_values(Builder& builder, const std::vector<float>& values,
+                                                           std::size_t strand_count) {
+  return builder.CreateVector(values.data(), strand_count);
+}
+
+flatbuffers::Offset<fb::StrandSkeleton> add_skeleton(Builder& builder, const StrandSkeleton& skeleton) {
+  const auto add = [&](const std::vector<float>& values) { return add_values(builder, values, skeleton.strand_count); };
+  const auto root_x = add(skeleton.root_x_m);
+  const auto root_y = add(skeleton.root_y_m);
+  const auto root_z = add(skeleton.root_z_m);
+  const auto rest_x = add(skeleton.rest_x);
+  const auto rest_y = add(skeleton.rest_y);
+  const auto rest_z = add(skeleton.rest_z);
+  const auto curl_x = add(skeleton.curl_x);
+  const auto curl_y = add(skeleton.curl_y);
+  const auto curl_z = add(skeleton.curl_z);
+  const auto rest_curl = add(skeleton.rest_curl_rad);
+  const auto link_length = add(skeleton.link_length_m);
+  return fb::CreateStrandSkeleton(builder, static_cast<std::uint32_t>(skeleton.links_per_strand), root_x, root_y,
+                                  root_z, rest_x, rest_y, rest_z, curl_x, curl_y, curl_z, rest_curl, link_length);
+}
+
+flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus& sensor) {
+  std::vector<flatbuffers::Offset<fb::Counter>> refused;
+  refused.reserve(sensor.refused.size());
+  for (const auto& [reason, count] : sensor.refused)
+    refused.push_back(fb::CreateCounter(builder, add_text(builder, reason), count));
+  const auto refused_vector = builder.CreateVector(refused);
+  const auto name = add_text(builder, sensor.name);
+  const auto driver = add_text(builder, sensor.driver);
+  const auto detail = add_text(builder, sensor.detail);
+
+  fb::SensorBuilder table(builder);
+  table.add_name(name);
+  table.add_driver(driver);
+  table.add_link(static_cast<fb::LinkState>(sensor.link));
+  table.add_health(static_cast<fb::SensorHealth>(sensor.health));
+  table.add_detail(detail);
+  if (sensor.speed_m_s) table.add_speed_m_s(*sensor.speed_m_s);
+  if (sensor.direction_deg) table.add_direction_deg(*sensor.direction_deg);
+  if (sensor.gust_m_s) table.add_gust_m_s(*sensor.gust_m_s);
+  table.add_simulated(sensor.simulated);
+  table.add_age_s(sensor.age_s);
+  table.add_interval_s(sensor.interval_s);
+  table.add_readings(sensor.readings);
+  table.add_refused(refused_vector);
+  return table.Finish();
+}
+
+template <class Table>
+Bytes finish(Builder& builder, fb::Body type, flatbuffers::Offset<Table> body) {
+  fb::FinishSizePrefixedMessageBuffer(builder, fb::CreateMessage(builder, type, body.Union()));
+  return Bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
+}
+
+}  // namespace
+
+Bytes encode(const Hello& hello) {
+  Builder builder;
+  const auto software = add_text(builder, hello.software);
+  const auto refused = hello.refused ? add_text(builder, *hello.refused) : Text();
+  return finish(builder, fb::Body_Hello,
+                fb::CreateHello(builder, hello.protocol, software, hello.tick_rate_hz, refused));
+}
+
+Bytes encode(const Subscribe& subscribe) {
+  Builder builder;
+  const auto client = add_text(builder, subscribe.client);
+  return finish(builder, fb::Body_Subscribe,
+                fb::CreateSubscribe(builder, subscribe.protocol, subscribe.poses, subscribe.sensors, client));
+}
+
+Bytes encode(const Scenes& scenes) {
+  Builder builder;
+  std::vector<flatbuffers::Offset<fb::Scene>> tables;
+  tables.reserve(scenes.scenes.size());
+  for (const SceneModel& scene : scenes.scenes) {
+    const auto name = add_text(builder, scene.name);
+    const auto kind = add_text(builder, scene.kind);
+    const auto skeleton = add_skeleton(builder, std::get<StrandSkeleton>(scene.skeleton));
+    tables.push_back(fb::CreateScene(builder, name, kind, fb::Skeleton_StrandSkeleton, skeleton.Union()));
+  }
+  return finish(builder, fb::Body_Scenes, fb::CreateScenes(builder, builder.CreateVector(tables)));
+}
+
+Bytes encode(const Sensors& sensors) {
+  Builder builder;
+  std::vector<flatbuffers::Offset<fb::Sensor>> tables;
+  tables.reserve(sensors.sensors.size());
+  for (const SensorStatus& sensor : sensors.sensors) tables.push_back(add_sensor(builder, sensor));
+  const auto vector = builder.CreateVector(tables);
+  const fb::Wind wind = to_schema(sensors.wind);
+  return finish(builder, fb::Body_Sensors,
+                fb::CreateSensors(builder, vector, &wind, sensors.late_ticks, sensors.clients));
+}
+
+}  // namespace yuragi::wire

@@ -1,0 +1,44 @@
+#include "engine/wire/wire.hpp"
+
+#include <algorithm>
+
+namespace yuragi::wire {
+
+std::string_view name_of(WireError error) {
+  switch (error) {
+    case WireError::kTooLong:
+      return "too long";
+    case WireError::kNotVerified:
+      return "not a Yuragi message";
+    case WireError::kUnknown:
+      return "of an unknown kind";
+    case WireError::kInconsistent:
+      return "contradicts itself";
+  }
+  return "?";
+}
+
+Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix,
+                                                std::size_t limit) {
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < kSizePrefixBytes; ++i) length |= std::size_t{prefix[i]} << (8 * i);
+  if (length == 0 || length > limit) return WireError::kTooLong;
+  return length;
+}
+
+namespace {
+
+bool fits(const StrandPose& pose, const StrandSkeleton& skeleton) {
+  return pose.bend_east_rad.size() == skeleton.padded_count() && pose.bend_south_rad.size() == skeleton.padded_count();
+}
+
+}  // namespace
+
+bool fits(const Frame& frame, const Scenes& scenes) {
+  return std::equal(frame.poses.begin(), frame.poses.end(), scenes.scenes.begin(), scenes.scenes.end(),
+                    [](const Pose& pose, const SceneModel& scene) {
+                      return std::visit([](const auto& p, const auto& s) { return fits(p, s); }, pose, scene.skeleton);
+                    });
+}
+
+}  // namespace yuragi::wire

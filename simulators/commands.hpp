@@ -1,0 +1,11 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace yuragi::sim {
+
+// Each adds one kind of simulator as a subcommand, in a file of its own. What a callback throws, main reports.
+
+void add_modbus_command(CLI::App& app);
+
+}  // namespace yuragi::sim

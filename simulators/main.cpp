@@ -1,0 +1,36 @@
+#include <cstdio>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+
+#include "simulators/commands.hpp"
+
+namespace {
+
+// sysexits.h, as the other programs have them.
+constexpr int kExitUsage = 64;
+constexpr int kExitUnavailable = 69;
+
+int run(int argc, char** argv) {
+  CLI::App app{"Simulated wind sensors, which speak the protocols of real ones and can be made to fail.", "yuragi-sim"};
+  app.set_version_flag("--version", "yuragi-sim " YURAGI_VERSION);
+  app.require_subcommand(1);
+  yuragi::sim::add_modbus_command(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "yuragi-sim: %s\n", error.what());
+    return kExitUnavailable;
+  }
+}

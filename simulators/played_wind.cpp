@@ -1,0 +1,54 @@
+#include "simulators/played_wind.hpp"
+
+#include <utility>
+
+#include "drivers/windlog/windlog_playback.hpp"
+
+namespace yuragi::sim {
+namespace {
+
+class SyntheticPlayedWind final : public PlayedWind {
+ public:
+  explicit SyntheticPlayedWind(const SyntheticWindSettings& settings) : wind_(settings) {}
+
+  PlayedMoment at(double time_s) override {
+    const WindVector wind = wind_.at(time_s);
+    return {speed_of(wind), direction_from_deg(wind)};
+  }
+
+ private:
+  SyntheticWind wind_;
+};
+
+class RecordedPlayedWind final : public PlayedWind {
+ public:
+  explicit RecordedPlayedWind(const std::string& file) : playback_(file, {.start = "", .loop = true, .sensor = ""}) {
+    next_ = playback_.next();
+  }
+
+  PlayedMoment at(double time_s) override {
+    while (next_ && next_->log_time_s <= time_s) {
+      const WindReading& reading = next_->reading;
+      moment_ = {reading.speed_m_s, reading.direction_deg.value_or(moment_.direction_deg)};
+      next_ = playback_.next();
+    }
+    return moment_;
+  }
+
+ private:
+  WindlogPlayback playback_;
+  std::optional<PlayedReading> next_;
+  PlayedMoment moment_;
+};
+
+}  // namespace
+
+std::unique_ptr<PlayedWind> play_synthetic_wind(const SyntheticWindSettings& settings) {
+  return std::make_unique<SyntheticPlayedWind>(settings);
+}
+
+std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file) {
+  return std::make_unique<RecordedPlayedWind>(file);
+}
+
+}  // namespace yuragi::sim

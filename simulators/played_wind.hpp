@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/wind/synthetic_wind.hpp"
+
+namespace yuragi::sim {
+
+/// The air in front of a simulated sensor, at one moment.
+struct PlayedMoment {
+  double speed_m_s = 0.0;
+  double direction_deg = 0.0;  ///< where it comes from, [0, 360); the last known one where a recording has none
+};
+
+/// A wind that runs on with time. Thread-safe: no.
+class PlayedWind {
+ public:
+  virtual ~PlayedWind() = default;
+  /// The wind `time_s` after the start; asked for times that never go back.
+  virtual PlayedMoment at(double time_s) = 0;
+};
+
+/// Synthetic wind, without end.
+std::unique_ptr<PlayedWind> play_synthetic_wind(const SyntheticWindSettings& settings);
+
+/// A recording (.windlog), at the pace at which it was recorded, again and again. Each reading holds until the next.
+/// Throws std::runtime_error where the file cannot be played.
+std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file);
+
+}  // namespace yuragi::sim

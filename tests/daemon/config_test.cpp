@@ -1,0 +1,118 @@
+#include "daemon/config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// What the reader says of a wrong text.
+std::string mistakes_of(std::string_view text) {
+  try {
+    parse_config(text, "wall.toml");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no mistake was found";
+}
+
+TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
+  const Config config = parse_config("", "empty.toml");
+  ASSERT_EQ(config.sensors.size(), 1U);
+  EXPECT_EQ(config.sensors[0].driver->name, "synthetic");
+  ASSERT_EQ(config.scenes.size(), 1U);
+  EXPECT_EQ(config.scenes[0].kind->name, "grass");
+  EXPECT_EQ(config.stream.text("listen"), "127.0.0.1:7410");
+  EXPECT_EQ(config.animation.number("rate"), 60.0);
+}
+
+TEST(Config, TakesWhatTheFileSaysAndDefaultsForTheRest) {
+  const Config config = parse_config(R"(
+seed = 12
+[wind]
+default_speed = 7
+[[sensor]]
+driver = "synthetic"
+name = "attic"
+speed = 9.5
+[[scene]]
+kind = "grass"
+name = "meadow"
+)",
+                                     "wall.toml");
+  EXPECT_EQ(config.seed, 12U);
+  EXPECT_EQ(config.wind.number("default_speed"), 7.0) << "a whole number passes for a number";
+  EXPECT_EQ(config.wind.number("default_direction"), 240.0);
+  EXPECT_EQ(config.sensors[0].name, "attic");
+  EXPECT_EQ(config.sensors[0].values.number("speed"), 9.5);
+  EXPECT_EQ(config.sensors[0].origin, "wall.toml:5:1");
+  EXPECT_EQ(config.scenes[0].name, "meadow");
+}
+
+TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
+  EXPECT_THAT(mistakes_of("[animation]\nrate = 1000\n"),
+              StartsWith("wall.toml:2:8: animation.rate: is 1000; allowed: number from 1 to 240 Hz"));
+  EXPECT_THAT(mistakes_of("seed = \"seven\"\n"),
+              StartsWith("wall.toml:1:8: seed: is a text (\"seven\"); allowed: whole number"));
+  EXPECT_THAT(mistakes_of("[wind]\ngusts = 3\n"),
+              StartsWith("wall.toml:2:9: wind.gusts: is not a parameter here; known: default_speed"));
+  EXPECT_THAT(mistakes_of("[win]\nx = 1\n"),
+              StartsWith("wall.toml:1:2: win: is not known here; allowed: seed, [stream]"));
+  EXPECT_THAT(mistakes_of("wind = 3\n"), StartsWith("wall.toml:1:1: wind: is a value; write it as a table"));
+  EXPECT_THAT(mistakes_of("[sensor]\ndriver = \"synthetic\"\n"),
+              StartsWith("wall.toml:1:2: sensor: is one table; write [[sensor]]"));
+  EXPECT_THAT(
+      mistakes_of("[[sensor]]\nspeed = 3\n"),
+      HasSubstr("sensor.driver: is missing or not a text; allowed: one of \"modbus\", \"synthetic\", \"windlog\""));
+  EXPECT_THAT(mistakes_of("[[sensor]]\ndriver = \"barometer\"\n"),
+              StartsWith("wall.toml:2:10: sensor.driver: is \"barometer\"; allowed: one of"));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nlinks = [1, 2]\n"),
+              StartsWith("wall.toml:3:9: scene.links: takes one value"));
+  EXPECT_THAT(mistakes_of("[wind]\ndefault_speed = nan\n"),
+              StartsWith("wall.toml:2:17: wind.default_speed: is nan; allowed: number from 0 to 40 m/s"));
+  EXPECT_THAT(mistakes_of("[[sensor]]\ndriver=\"synthetic\"\n[[sensor]]\ndriver=\"synthetic\"\n"),
+              HasSubstr("\"synthetic\" is there twice"));
+}
+
+TEST(Config, ABrokenFileIsToldWithLineAndColumn) {
+  EXPECT_THAT(mistakes_of("seed = \n"), StartsWith("wall.toml:1:8: TOML: "));
+  EXPECT_THAT(mistakes_of("seed = 1\nseed = 2\n"), StartsWith("wall.toml:2:"));
+}
+
+TEST(Config, AllMistakesOfAFileAreToldAtOnce) {
+  const std::string told = mistakes_of("seed = -1\n[animation]\nrate = 0\n[stream]\nlisten = 7410\n");
+  EXPECT_THAT(told, HasSubstr("wall.toml:1:8: seed"));
+  EXPECT_THAT(told, HasSubstr("wall.toml:3:8: animation.rate"));
+  EXPECT_THAT(told, HasSubstr("wall.toml:5:10: stream.listen"));
+}
+
+TEST(Config, AFileThatIsNotThereIsAMistakeOfTheConfiguration) {
+  EXPECT_THROW(load_config("/nowhere/wall.toml"), ConfigError);
+  EXPECT_THROW(load_config("/"), ConfigError);
+}
+
+TEST(Config, WrittenOutAndReadAgainItIsTheSame) {
+  const Config config = parse_config("seed = 5\n[[sensor]]\ndriver = \"synthetic\"\nspeed = 2.25\n", "wall.toml");
+  const std::string written = to_toml(config);
+  EXPECT_EQ(to_toml(parse_config(written, "again.toml")), written);
+  EXPECT_THAT(written, HasSubstr("speed = 2.25"));
+}
+
+TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
+  const auto check = [](std::string_view where, std::span<const Parameter> parameters) {
+    for (const Parameter& parameter : parameters) {
+      EXPECT_FALSE(parameter.help.empty()) << where << " " << parameter.name;
+      const ParameterValues::Map given{{std::string(parameter.name), parameter.default_value}};
+      EXPECT_TRUE(ParameterValues::resolve(parameters, given).has_value()) << where << " " << parameter.name;
+    }
+  };
+  for (const ConfigTable& table : config_tables()) check(table.name, table.parameters);
+  for (const DriverDescription* driver : driver_table()) check(driver->name, driver->parameters);
+  for (const SceneDescription* scene : scene_table()) check(scene->name, scene->parameters);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,169 @@
+#include "daemon/sensor_hub.hpp"
+
+#include <future>
+#include <limits>
+#include <mutex>
+
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+class HandClock final : public Clock {
+ public:
+  Instant now() const noexcept override {
+    return {.mono = MonoTime(std::chrono::nanoseconds(now_ns_.load())), .utc = {}};
+  }
+  void advance(double duration_s) { now_ns_ += from_seconds(duration_s).count(); }
+
+ private:
+  std::atomic<std::int64_t> now_ns_{1'000'000'000};
+};
+
+/// What the sensor under test does when it is polled; set before the hub is made.
+struct Script {
+  std::function<void(const Clock&, SensorSink&)> first_poll;
+  std::promise<void> polled, interrupted;
+  bool wait_for_interrupt = false;
+};
+Script* script = nullptr;
+
+class ScriptedSensor final : public Sensor {
+ public:
+  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+    if (!done_) {
+      done_ = true;
+      script->first_poll(clock, sink);
+      script->polled.set_value();
+      if (script->wait_for_interrupt) script->interrupted.get_future().wait();
+    }
+    return MonoTime::max();
+  }
+  void interrupt() noexcept override {
+    if (script->wait_for_interrupt) script->interrupted.set_value();
+  }
+
+ private:
+  bool done_ = false;
+};
+
+const DriverDescription kScriptedDriver{
+    .name = "scripted", .summary = "", .parameters = {}, .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> {
+      return std::make_unique<ScriptedSensor>();
+    }};
+
+class SensorHubTest : public ::testing::Test {
+ protected:
+  SensorHubTest() {
+    script = &script_;
+    config_ = default_config();
+    config_.sensors = {{"roof", &kScriptedDriver, {}, "wall.toml:3:1"}};
+  }
+
+  HandClock clock_;
+  Script script_;
+  Config config_;
+};
+
+WindReading reading_at(const Clock& clock, double speed_m_s) {
+  WindReading reading;
+  reading.time = clock.now();
+  reading.speed_m_s = speed_m_s;
+  reading.direction_deg = 90.0;
+  return reading;
+}
+
+TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+    sink.link(LinkState::kConnected, "here");
+    sink.reading(reading_at(clock, 6.0));
+  };
+  std::vector<double> heard;
+  SensorHub hub(config_, clock_, [&](std::size_t sensor, const WindReading& reading) {
+    EXPECT_EQ(sensor, 0U);
+    heard.push_back(reading.speed_m_s);
+  });
+  script_.polled.get_future().wait();
+
+  hub.advance();
+  clock_.advance(5.0);
+  const WindState state = hub.advance();
+  EXPECT_EQ(heard, std::vector{6.0});
+  EXPECT_EQ(state.source, WindSource::kLive);
+  EXPECT_NEAR(state.wind.u_m_s, -6.0, 0.2);
+
+  const std::vector<wire::SensorStatus> status = hub.status();
+  ASSERT_EQ(status.size(), 1U);
+  EXPECT_EQ(status[0].name, "roof");
+  EXPECT_EQ(status[0].readings, 1U);
+  EXPECT_EQ(status[0].speed_m_s, 6.0);
+  EXPECT_EQ(status[0].detail, "here");
+  EXPECT_NEAR(status[0].age_s, 5.0, 1e-6);
+}
+
+TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+    sink.refused(Refusal::kTimeout);
+    sink.refused(Refusal::kTimeout);
+    sink.reading(reading_at(clock, std::numeric_limits<double>::quiet_NaN()));
+    sink.reading(reading_at(clock, -3.0));
+  };
+  bool heard = false;
+  SensorHub hub(config_, clock_, [&](std::size_t, const WindReading&) { heard = true; });
+  script_.polled.get_future().wait();
+  hub.advance();
+
+  EXPECT_FALSE(heard);
+  const wire::SensorStatus status = hub.status().at(0);
+  EXPECT_EQ(status.readings, 0U);
+  EXPECT_FALSE(status.speed_m_s.has_value());
+  const std::vector<std::pair<std::string, std::uint64_t>> expected{{"timeout", 2}, {"implausible", 2}};
+  EXPECT_EQ(status.refused, expected);
+}
+
+TEST_F(SensorHubTest, ASensorThatWaitsForItsDeviceDoesNotHoldUpTheEnd) {
+  script_.wait_for_interrupt = true;
+  script_.first_poll = [](const Clock&, SensorSink&) {};
+  {
+    const SensorHub hub(config_, clock_);
+    script_.polled.get_future().wait();
+  }  // hangs here for ever if poll() is not interrupted
+  SUCCEED();
+}
+
+TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+    for (int count = 0; count < 2000; ++count) sink.reading(reading_at(clock, 1.0));
+  };
+  SensorHub hub(config_, clock_);
+  script_.polled.get_future().wait();
+  hub.advance();
+  const wire::SensorStatus status = hub.status().at(0);
+  ASSERT_EQ(status.refused.size(), 1U);
+  EXPECT_EQ(status.refused[0].first, "lost");
+  EXPECT_EQ(status.readings + status.refused[0].second, 2000U) << "every reading is accounted for";
+}
+
+TEST_F(SensorHubTest, IsFinishedWhenEveryRecordingIs) {
+  script_.first_poll = [](const Clock&, SensorSink& sink) { sink.link(LinkState::kFinished, "the end"); };
+  const SensorHub hub(config_, clock_);
+  script_.polled.get_future().wait();
+  EXPECT_TRUE(hub.is_finished());
+}
+
+TEST(SensorHub, ASensorThatCannotBeMadeIsAMistakeAtItsPlaceInTheFile) {
+  const DriverDescription refusing{
+      .name = "refusing",
+      .summary = "",
+      .parameters = {},
+      .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { throw std::runtime_error("no such profile"); }};
+  try {
+    open_sensor({"roof", &refusing, {}, "wall.toml:3:1"});
+    FAIL() << "it was made";
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(), "wall.toml:3:1: sensor: no such profile");
+  }
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,163 @@
+// The driver `windlog`.
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "drivers/driver.hpp"
+#include "tests/drivers/windlog/windlog_samples.hpp"
+#include "tests/support/manual_clock.hpp"
+#include "tests/support/recording_sink.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace yuragi {
+
+extern const DriverDescription kWindlogDriver;
+
+namespace {
+
+using namespace std::chrono_literals;
+using test::numbered_readings;
+using test::reading_at;
+using test::write_session;
+
+std::unique_ptr<Sensor> open_replay(ParameterValues::Map given) {
+  const auto values = ParameterValues::resolve(kWindlogDriver.parameters, given);
+  if (!values) throw std::runtime_error(values.error().message);
+  return kWindlogDriver.open(*values);
+}
+
+TEST(WindlogReplay, PublishesEachReadingWhenItIsDue) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(30));
+  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
+  ManualClock clock;
+  RecordingSink sink;
+  const Instant begin = clock.now();
+  for (int i = 0; i < 30; ++i) {
+    const MonoTime next = sensor->poll(clock, sink);
+    ASSERT_EQ(sink.readings.size(), static_cast<std::size_t>(i + 1));
+    EXPECT_EQ(sink.readings.back().time.mono, begin.mono + 100ms * i);
+    EXPECT_EQ(sink.readings.back().time.utc, begin.utc + 100ms * i);
+    EXPECT_DOUBLE_EQ(sink.readings.back().speed_m_s, 0.001 * i);
+    if (i < 29) {
+      EXPECT_EQ(next, begin.mono + 100ms * (i + 1));
+    }
+    clock.advance_to(begin.mono + 100ms * (i + 1));
+  }
+  ASSERT_EQ(sink.links.size(), 2U);
+  EXPECT_EQ(sink.links[0].state, LinkState::kConnected);
+  EXPECT_EQ(sink.links[1].state, LinkState::kFinished);
+  sensor->poll(clock, sink);
+  EXPECT_EQ(sink.links.size(), 2U) << "the end is told once";
+}
+
+TEST(WindlogReplay, IsPacedByItsRate) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(30));
+  for (const double rate : {0.01, 0.5, 4.0, 1000.0}) {
+    const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"rate", rate}});
+    ManualClock clock;
+    RecordingSink sink;
+    const MonoTime begin = clock.now().mono;
+    const MonoTime next = sensor->poll(clock, sink);
+    EXPECT_NEAR(seconds(next - begin), 0.1 / rate, 1e-9);
+  }
+}
+
+TEST(WindlogReplay, PolledLateGivesEachReadingTheMomentAtWhichItWasDue) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(30));
+  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
+  ManualClock clock;
+  RecordingSink sink;
+  const Instant begin = clock.now();
+  sensor->poll(clock, sink);
+  clock.advance(550ms);
+  sensor->poll(clock, sink);
+  ASSERT_EQ(sink.readings.size(), 6U);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(sink.readings[static_cast<std::size_t>(i)].time.mono, begin.mono + 100ms * i);
+    EXPECT_EQ(sink.readings[static_cast<std::size_t>(i)].time.utc, begin.utc + 100ms * i);
+  }
+}
+
+TEST(WindlogReplay, GoesOnFromWhereItWasAfterALongSuspension) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(30));
+  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
+  ManualClock clock;
+  RecordingSink sink;
+  sensor->poll(clock, sink);
+  clock.advance(8h);
+  const MonoTime next = sensor->poll(clock, sink);
+  EXPECT_EQ(sink.readings.size(), 2U);
+  EXPECT_EQ(next, clock.now().mono + 100ms);
+}
+
+TEST(WindlogReplay, LoopsForEver) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(10));
+  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"loop", true}});
+  ManualClock clock;
+  RecordingSink sink;
+  const MonoTime begin = clock.now().mono;
+  for (int i = 0; i < 100; ++i) clock.advance_to(sensor->poll(clock, sink));
+  ASSERT_EQ(sink.readings.size(), 100U);
+  for (std::size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(sink.readings[i].time.mono, begin + 100ms * static_cast<int>(i));
+    EXPECT_DOUBLE_EQ(sink.readings[i].speed_m_s, 0.001 * static_cast<double>(i % 10));
+  }
+  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+}
+
+TEST(WindlogReplay, TriesAnUnreadableFileAgainUntilItCanBeRead) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::ofstream(file) << "not yet a recording";
+  const auto sensor = open_replay({{"file", file.string()}});
+  ManualClock clock;
+  RecordingSink sink;
+  Nanoseconds last_pause{0};
+  for (int i = 0; i < 8; ++i) {
+    const MonoTime next = sensor->poll(clock, sink);
+    const Nanoseconds pause = next - clock.now().mono;
+    EXPECT_GE(pause, last_pause);
+    EXPECT_LE(pause, 30s);
+    last_pause = pause;
+    clock.advance_to(next);
+  }
+  EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
+  EXPECT_NE(sink.last_detail().find("a.windlog"), std::string::npos);
+  EXPECT_TRUE(sink.readings.empty());
+
+  std::filesystem::remove(file);
+  write_session(file, numbered_readings(5));
+  sensor->poll(clock, sink);
+  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.readings.size(), 1U);
+}
+
+TEST(WindlogReplay, RefusesToBeOpenedWithoutAFileOrWithABadStart) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(5));
+  EXPECT_THROW(open_replay({}), std::runtime_error);
+  EXPECT_THROW(open_replay({{"file", std::string("/nonexistent/a.windlog")}}), std::runtime_error);
+  EXPECT_THROW(open_replay({{"file", (folder / "a.windlog").string()}, {"start", std::string("soon")}}),
+               std::runtime_error);
+  EXPECT_THROW(open_replay({{"file", (folder / "a.windlog").string()}, {"rate", 0.0}}), std::runtime_error);
+}
+
+TEST(WindlogReplay, WaitsOutAGapOfManyYearsWithoutOverflow) {
+  const test::TemporaryFolder folder;
+  WindReading far = reading_at(1000, 2.0);
+  far.time.mono += std::chrono::hours(24 * 365 * 140);
+  write_session(folder / "a.windlog", {reading_at(1000, 1.0), far});
+  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"rate", 0.01}});
+  ManualClock clock;
+  RecordingSink sink;
+  EXPECT_GT(sensor->poll(clock, sink), clock.now().mono + std::chrono::hours(24 * 365 * 10));
+  EXPECT_EQ(sink.readings.size(), 1U);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,323 @@
+#!/usr/bin/env python3
+"""The daemon as its users meet it: real processes, real sockets, real signals.
+
+usage: daemon_test.py FOLDER_OF_PROGRAMS FOLDER_OF_SCHEMA_MODULES
+"""
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+
+import pose_client
+from programs import Program, resident_kib
+
+BIN, SCHEMA_MODULES = (os.path.abspath(word) for word in (sys.argv.pop(1), sys.argv.pop(1)))
+YURAGI = os.path.join(BIN, "yuragi")
+SIMULATOR = os.path.join(BIN, "yuragi-sim")
+RENKE = "renke-rs-fsjt-rs-fxjt-n01"
+
+LIVE, STALE = 1, 2  # enum SensorHealth
+
+
+class Stream:
+    """A subscribed client."""
+
+    def __init__(self, address, poses=True, sensors=True):
+        self.source = pose_client.SocketBytes(address, 10.0)
+        self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py"))
+        self.messages = pose_client.messages(self.source)
+        self.scenes = None
+
+    def next(self, wanted, timeout_s=10.0):
+        """The next message of a kind."""
+        deadline = time.monotonic() + timeout_s
+        while time.monotonic() < deadline:
+            message, _ = next(self.messages)
+            kind, table = pose_client.body_of(message)
+            if kind == "Scenes":
+                self.scenes = pose_client.read_scenes(table)
+            if kind == wanted:
+                return table
+        raise AssertionError(f"no {wanted} within {timeout_s} s")
+
+    def wait_for_sensor(self, condition, timeout_s):
+        deadline = time.monotonic() + timeout_s
+        while time.monotonic() < deadline:
+            sensor = self.next("Sensors").Sensors(0)
+            if condition(sensor):
+                return sensor
+        raise AssertionError(f"the sensor did not get there within {timeout_s} s")
+
+    def close(self):
+        self.source.socket.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+class FrameWatcher(threading.Thread):
+    """Reads every frame on a thread of its own, and keeps the largest step of the wind and of any blade's bend."""
+
+    def __init__(self, address):
+        super().__init__(daemon=True)
+        self.stream = Stream(address, sensors=False)
+        self.frames = 0
+        self.largest_wind_step_m_s = 0.0
+        self.largest_bend_step_rad = 0.0
+        self.all_finite = True
+        self.is_wanted = True
+        self.start()
+
+    def run(self):
+        last = None
+        while self.is_wanted:
+            frame = self.stream.next("Frame")
+            wind = numpy.array([frame.Wind().UMS(), frame.Wind().VMS()])
+            bend = numpy.array(pose_client.read_bends(frame.Scenes(0)))
+            self.frames += 1
+            self.all_finite = self.all_finite and bool(numpy.isfinite(wind).all() and numpy.isfinite(bend).all())
+            if last is not None and frame.Tick() == last[0] + 1:
+                self.largest_wind_step_m_s = max(self.largest_wind_step_m_s, float(numpy.hypot(*(wind - last[1]))))
+                self.largest_bend_step_rad = max(self.largest_bend_step_rad, float(numpy.hypot(*(bend - last[2])).max()))
+            last = (frame.Tick(), wind, bend)
+
+    def end(self):
+        self.is_wanted = False
+        self.join(10.0)
+        self.stream.close()
+
+
+def run(*arguments, timeout_s=60):
+    return subprocess.run([YURAGI, *map(str, arguments)], capture_output=True, text=True, timeout=timeout_s, check=False)
+
+
+class DaemonTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def file(self, name, text=None):
+        path = os.path.join(self.folder, name)
+        if text is not None:
+            with open(path, "w", encoding="utf-8") as out:
+                out.write(text)
+        return path
+
+    def start(self, *command):
+        program = Program(*command)
+        self.addCleanup(program.__exit__)
+        return program
+
+    def start_daemon(self, *arguments):
+        return self.start(YURAGI, "run", "--listen", "127.0.0.1:0", *arguments)
+
+    # ---- run ----
+
+    def test_it_needs_nothing_and_shows_a_late_joiner_a_picture_within_two_frames(self):
+        daemon = self.start_daemon()
+        address = daemon.address()
+        time.sleep(0.5)  # join late
+        begun = time.monotonic()
+        with Stream(address, sensors=False) as stream:
+            first = stream.next("Frame")
+            self.assertLess(time.monotonic() - begun, 0.5)
+            self.assertGreater(first.Sequence(), 10)
+            self.assertEqual(stream.scenes[0][2].count * stream.scenes[0][2].links, 100_000)
+
+    def test_it_ends_in_under_a_second_on_either_signal(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            daemon = self.start_daemon()
+            with Stream(daemon.address()) as stream:
+                stream.next("Frame")
+                code, duration_s = daemon.end(number)
+                self.assertEqual(code, 0, daemon.text())
+                self.assertLess(duration_s, 1.0)
+
+    def test_a_duration_ends_it(self):
+        done = run("run", "--listen", "127.0.0.1:0", "--duration", "0.5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("ticks", done.stderr)
+
+    def test_an_address_that_is_taken_is_told_and_ends_it_with_69(self):
+        daemon = self.start_daemon()
+        done = run("run", "--listen", daemon.address())
+        self.assertEqual(done.returncode, 69)
+        self.assertIn(daemon.address(), done.stderr)
+
+    def test_the_example_client_finds_nothing_wrong(self):
+        daemon = self.start_daemon()
+        done = subprocess.run([sys.executable, pose_client.__file__, "--connect", daemon.address(), "--schema", SCHEMA_MODULES,
+                               "--frames", "120", "--check"], capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    # ---- configuration ----
+
+    def test_a_wrong_configuration_is_told_with_its_place_and_ends_with_78(self):
+        path = self.file("wall.toml", "[animation]\nrate = 0\n")
+        for command in (["check-config", path], ["run", "--config", path]):
+            done = run(*command)
+            self.assertEqual(done.returncode, 78)
+            self.assertRegex(done.stderr, re.escape(path) + r":2:8: animation\.rate: is 0; allowed: number from 1 to 240 Hz")
+
+    def test_a_right_configuration_is_told_so_and_its_full_form_is_right_too(self):
+        path = self.file("wall.toml", '[[sensor]]\ndriver = "synthetic"\nspeed = 9\n')
+        self.assertEqual(run("check-config", path).returncode, 0)
+        full = self.file("full.toml", run("check-config", "--full", path).stdout)
+        self.assertEqual(run("check-config", full).returncode, 0)
+
+    def test_a_profile_that_is_not_there_is_a_mistake_of_the_configuration(self):
+        path = self.file("wall.toml", '[[sensor]]\ndriver = "modbus"\nprofile = "no-such-device"\n')
+        done = run("check-config", path)
+        self.assertEqual(done.returncode, 78)
+        self.assertIn("wall.toml:1:1: sensor:", done.stderr)
+        self.assertIn(RENKE, done.stderr)
+
+    # ---- a Modbus anemometer ----
+
+    def modbus_config(self, address):
+        host, port = address.rsplit(":", 1)
+        return self.file("roof.toml", f"""
+[wind]
+default_speed = 2.0
+default_turbulence = 0.0
+[[sensor]]
+name = "roof"
+driver = "modbus"
+profile = "{RENKE}"
+host = "{host}"
+port = {port}
+""")
+
+    def start_simulator(self, address="127.0.0.1:0"):
+        return self.start(SIMULATOR, "modbus", "--tcp", address, "--profile", RENKE, "--speed", "8", "--direction", "90")
+
+    def test_a_simulator_that_is_killed_and_restarted_moves_the_grass_without_a_jump_and_is_read_again(self):
+        simulator = self.start_simulator()
+        sensor_address = simulator.address()
+        daemon = self.start_daemon("--config", self.modbus_config(sensor_address))
+        with Stream(daemon.address(), poses=False) as status:
+            live = status.wait_for_sensor(lambda sensor: sensor.Health() == LIVE and sensor.Readings() > 20, 30.0)
+            self.assertEqual(live.DirectionDeg() % 1.0, 0.0, "the vane tells whole degrees")
+            self.assertAlmostEqual(live.DirectionDeg(), 90.0, delta=60.0)
+            watcher = FrameWatcher(daemon.address())
+
+            simulator.end(signal.SIGKILL)
+            lost = status.wait_for_sensor(lambda sensor: sensor.Health() == STALE, 20.0)
+            self.assertIsNotNone(lost.SpeedMS(), "the last value is kept, apart from the state")
+            for _ in range(8):  # four seconds: the hand-over to the default wind
+                status.next("Sensors")
+            self.start_simulator(sensor_address)
+            returned = status.wait_for_sensor(
+                lambda sensor: sensor.Health() == LIVE and sensor.Readings() > lost.Readings() + 3, 30.0)
+            self.assertLess(returned.AgeS(), 2.0)
+            watcher.end()
+
+        # A follower moves at most 0.37 w e a second: w at most 25 rad/s, and readings that differ by up to 8 m/s (turbulence,
+        # and a vane that turns) give 1.2 m/s a tick.
+        self.assertGreater(watcher.frames, 120)
+        self.assertTrue(watcher.all_finite)
+        self.assertLess(watcher.largest_wind_step_m_s, 1.2)
+        self.assertLess(watcher.largest_bend_step_rad, 0.35)
+
+    # ---- recording ----
+
+    def test_kill_9_loses_at_most_the_last_second_of_a_recording(self):
+        log = self.file("storm.windlog")
+        config = self.file("fast.toml", '[[sensor]]\ndriver = "synthetic"\nrate = 50\n')
+        daemon = self.start_daemon("--config", config, "--record", log)
+        with Stream(daemon.address(), poses=False) as stream:
+            sensor = stream.wait_for_sensor(lambda seen: seen.Readings() > 150, 20.0)
+        daemon.end(signal.SIGKILL)
+        csv = run("export", log, "-o", "-")
+        self.assertEqual(csv.returncode, 0, csv.stderr)
+        rows = len(csv.stdout.splitlines()) - 1
+        self.assertGreaterEqual(rows, sensor.Readings() - 50)
+
+    def test_a_clean_end_leaves_one_file_with_every_reading_and_the_configuration(self):
+        log = self.file("storm.windlog")
+        done = run("record", log, "--listen", "127.0.0.1:0", "--duration", "2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(os.listdir(self.folder), ["storm.windlog"])
+        self.assertIn("lost 0", done.stderr)
+        csv = run("export", log, "-o", "-").stdout.splitlines()
+        self.assertGreaterEqual(len(csv) - 1, 7)  # 4 Hz
+
+    def test_a_replay_gives_the_same_poses_bit_for_bit_on_every_run(self):
+        log = self.file("storm.windlog")
+        run("record", log, "--listen", "127.0.0.1:0", "--duration", "3")
+        runs = [run("replay", log, "--rate", "max") for _ in range(2)]
+        self.assertEqual(runs[0].returncode, 0, runs[0].stderr)
+        self.assertRegex(runs[0].stdout, r"pose hash  [0-9a-f]{16}")
+        self.assertEqual(runs[0].stdout, runs[1].stdout)
+
+    def test_a_replay_at_a_pace_ends_with_its_recording(self):
+        log = self.file("storm.windlog")
+        run("record", log, "--listen", "127.0.0.1:0", "--duration", "3")
+        begun = time.monotonic()
+        done = run("replay", log, "--rate", "4", "--listen", "127.0.0.1:0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(time.monotonic() - begun, 3.0)
+        self.assertIn("the recording is over", done.stderr)
+
+    def test_a_recording_that_is_not_there_ends_with_66(self):
+        self.assertEqual(run("replay", self.file("none.windlog")).returncode, 66)
+
+    # ---- sensors watch ----
+
+    def test_watch_asks_the_running_daemon(self):
+        daemon = self.start_daemon()
+        with Stream(daemon.address(), poses=False) as stream:
+            stream.wait_for_sensor(lambda sensor: sensor.Health() == LIVE, 10.0)
+        done = run("sensors", "watch", "--listen", daemon.address(), "--once")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("daemon at " + daemon.address(), done.stdout)
+        self.assertIn("simulated", done.stdout)
+
+    def test_watch_opens_the_devices_itself_where_no_daemon_runs(self):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            address = "127.0.0.1:%d" % free.getsockname()[1]
+        done = run("sensors", "watch", "--listen", address, "--once")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no daemon", done.stdout)
+        self.assertIn("simulated", done.stdout)
+
+    # ---- clients ----
+
+    def test_a_client_that_stands_still_holds_up_nobody_and_is_let_go(self):
+        daemon = self.start_daemon()
+        address = daemon.address()
+        with Program(sys.executable, pose_client.__file__, "--connect", address, "--schema", SCHEMA_MODULES) as stuck:
+            stuck.wait_for(r"\d+ frames, ", 20.0)
+            stuck.process.send_signal(signal.SIGSTOP)
+            try:
+                with Stream(address, sensors=False) as healthy:
+                    first = healthy.next("Frame")
+                    memory_kib = resident_kib(daemon)
+                    last = first
+                    received = 0
+                    while last.Sequence() < first.Sequence() + 60 * 12:
+                        last = healthy.next("Frame")
+                        received += 1
+                    self.assertGreater(received, 0.9 * 60 * 12, "the other client gets its frames")
+                    self.assertLess(resident_kib(daemon) - memory_kib, 8 * 1024)
+                daemon.wait_for(r"(?i)(dropped|let go|stuck|stopped reading)", 10.0)
+            finally:
+                stuck.process.send_signal(signal.SIGCONT)
+
+
+if __name__ == "__main__":
+    pose_client.load_schema(SCHEMA_MODULES)
+    unittest.main(verbosity=2)

@@ -1,0 +1,156 @@
+#include "engine/base/parameter.hpp"
+
+#include <array>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+using namespace std::string_literals;
+using ::testing::HasSubstr;
+
+constexpr std::array<std::string_view, 2> kModels{"fixed", "turbulent"};
+
+const std::array<Parameter, 6>& table() {
+  static const std::array<Parameter, 6> parameters{{
+      {.name = "speed", .unit = "m/s", .default_value = 4.0, .min = 0.0, .max = 40.0, .help = "Mean speed"},
+      {.name = "count", .unit = "", .default_value = std::int64_t{10}, .min = 1.0, .max = 1000.0, .help = "How many"},
+      {.name = "gusts", .unit = "", .default_value = true, .help = "Are there gusts?"},
+      {.name = "model", .unit = "", .default_value = "turbulent"s, .help = "Which model", .choices = kModels},
+      {.name = "label", .unit = "", .default_value = ""s, .help = "Any text"},
+      {.name = "gain", .unit = "", .default_value = 1.0, .help = "Any number"},
+  }};
+  return parameters;
+}
+
+ParameterValues accepted(const ParameterValues::Map& given) {
+  return ParameterValues::resolve(table(), given).value();
+}
+
+ParameterError refusal_of(std::string_view name, const ParameterValue& value) {
+  const auto resolved = ParameterValues::resolve(table(), {{std::string(name), value}});
+  EXPECT_TRUE(resolved.has_error()) << name;
+  return resolved.has_error() ? resolved.error() : ParameterError{};
+}
+
+TEST(ParameterValues, FillsWhatIsLeftOutWithDefaults) {
+  const auto values = accepted({});
+  EXPECT_EQ(values.number("speed"), 4.0);
+  EXPECT_EQ(values.integer("count"), 10);
+  EXPECT_TRUE(values.flag("gusts"));
+  EXPECT_EQ(values.text("model"), "turbulent");
+  EXPECT_EQ(values.text("label"), "");
+  EXPECT_EQ(values.all().size(), table().size());
+}
+
+TEST(ParameterValues, TakesWhatIsGiven) {
+  const auto values = accepted(
+      {{"speed", 7.5}, {"count", std::int64_t{20}}, {"gusts", false}, {"model", "fixed"s}, {"label", "roof, north"s}});
+  EXPECT_EQ(values.number("speed"), 7.5);
+  EXPECT_EQ(values.integer("count"), 20);
+  EXPECT_FALSE(values.flag("gusts"));
+  EXPECT_EQ(values.text("model"), "fixed");
+  EXPECT_EQ(values.text("label"), "roof, north");
+}
+
+TEST(ParameterValues, AWholeNumberPassesForANumber) {
+  EXPECT_EQ(accepted({{"speed", std::int64_t{8}}}).number("speed"), 8.0);
+}
+
+TEST(ParameterValues, ItsRangeIncludesBothEnds) {
+  for (const double end : {0.0, 40.0}) {
+    EXPECT_EQ(accepted({{"speed", end}}).number("speed"), end);
+  }
+  for (const std::int64_t end : {1, 1000}) {
+    EXPECT_EQ(accepted({{"count", end}}).integer("count"), end);
+  }
+}
+
+TEST(ParameterValues, RefusesANameThatIsNotInTheTableAndListsThoseThatAre) {
+  const ParameterError error = refusal_of("sped", 4.0);
+  EXPECT_EQ(error.name, "sped");
+  EXPECT_THAT(error.message, HasSubstr("speed, count, gusts, model, label, gain"));
+}
+
+TEST(ParameterValues, RefusesAValueOfAnotherType) {
+  for (const ParameterValue& value : {ParameterValue(true), ParameterValue("4"s)}) {
+    EXPECT_EQ(refusal_of("speed", value).name, "speed");
+    EXPECT_EQ(refusal_of("count", value).name, "count");
+  }
+  EXPECT_THAT(refusal_of("count", 3.0).message, HasSubstr("whole number from 1 to 1000"));
+  for (const ParameterValue& value : {ParameterValue(1.0), ParameterValue(std::int64_t{1}), ParameterValue("true"s)}) {
+    EXPECT_THAT(refusal_of("gusts", value).message, HasSubstr("true or false"));
+  }
+  for (const ParameterValue& value : {ParameterValue(1.0), ParameterValue(std::int64_t{1}), ParameterValue(true)}) {
+    EXPECT_EQ(refusal_of("label", value).name, "label");
+  }
+}
+
+TEST(ParameterValues, RefusesANumberOutOfRangeAndSaysWhatIsAllowed) {
+  for (const double value : {-0.001, 40.001, 1e300}) {
+    EXPECT_THAT(refusal_of("speed", value).message, HasSubstr("number from 0 to 40 m/s, default 4"));
+  }
+  for (const std::int64_t value : {std::int64_t{0}, std::int64_t{1001}, std::numeric_limits<std::int64_t>::min(),
+                                   std::numeric_limits<std::int64_t>::max()}) {
+    EXPECT_EQ(refusal_of("count", value).name, "count");
+  }
+  EXPECT_EQ(refusal_of("speed", std::int64_t{41}).name, "speed");
+}
+
+TEST(ParameterValues, RefusesANumberThatIsNotFiniteEvenWithoutARange) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity}) {
+    EXPECT_EQ(refusal_of("speed", value).name, "speed");
+    EXPECT_EQ(refusal_of("gain", value).name, "gain");
+  }
+}
+
+TEST(ParameterValues, RefusesATextThatIsNotAmongTheChoices) {
+  EXPECT_THAT(refusal_of("model", "calm"s).message, HasSubstr("one of \"fixed\", \"turbulent\""));
+  EXPECT_EQ(refusal_of("model", ""s).name, "model");
+}
+
+TEST(ParameterValues, AskingForANameOrTypeThatIsNotThereIsAProgrammingError) {
+  const auto values = accepted({});
+  EXPECT_THROW(static_cast<void>(values.number("nothing")), std::logic_error);
+  EXPECT_THROW(static_cast<void>(values.number("count")), std::bad_variant_access);
+}
+
+TEST(ParameterValues, SetReplacesAValueByOneOfTheSameTypeOnly) {
+  ParameterValues values = accepted({});
+  values.set("speed", 9.0);
+  EXPECT_EQ(values.number("speed"), 9.0);
+  EXPECT_THROW(values.set("speed", "9"s), std::logic_error);
+  EXPECT_THROW(values.set("nothing", 9.0), std::logic_error);
+  EXPECT_EQ(values.number("speed"), 9.0);
+}
+
+TEST(ParameterValues, AnUncheckedRefusalThrowsWithItsNameAndReason) {
+  try {
+    accepted({{"speed", -1.0}});
+    FAIL() << "should have thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("speed: is -1; allowed: number from 0 to 40 m/s"));
+  }
+}
+
+TEST(DescribeAllowed, SaysTypeRangeUnitAndDefaultInOneSentence) {
+  EXPECT_EQ(describe_allowed(table()[0]), "number from 0 to 40 m/s, default 4");
+  EXPECT_EQ(describe_allowed(table()[1]), "whole number from 1 to 1000, default 10");
+  EXPECT_EQ(describe_allowed(table()[2]), "true or false, default true");
+  EXPECT_EQ(describe_allowed(table()[3]), "one of \"fixed\", \"turbulent\", default \"turbulent\"");
+  EXPECT_EQ(describe_allowed(table()[4]), "text, default \"\"");
+  EXPECT_EQ(describe_allowed(table()[5]), "number, default 1");
+  EXPECT_EQ(describe_allowed({.name = "age", .unit = "s", .default_value = 1.0, .min = 0.0, .help = ""}),
+            "number of at least 0 s, default 1");
+  EXPECT_EQ(describe_allowed({.name = "gain", .unit = "dB", .default_value = 0.0, .max = 6.0, .help = ""}),
+            "number of at most 6 dB, default 0");
+}
+
+}  // namespace
+}  // namespace yuragi

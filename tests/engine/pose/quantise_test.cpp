@@ -1,0 +1,88 @@
+#include "engine/pose/quantise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/pose/strand_kinematics.hpp"
+#include "tests/support/random_strands.hpp"
+
+namespace yuragi {
+namespace {
+
+std::int16_t quantised(float angle_rad) {
+  std::int16_t unit = 0;
+  quantise({&angle_rad, 1}, {&unit, 1});
+  return unit;
+}
+
+TEST(QuantiseTest, HasPiAtTheEndOfItsRange) {
+  EXPECT_EQ(quantised(0.0F), 0);
+  EXPECT_EQ(quantised(std::numbers::pi_v<float>), 32767);
+  EXPECT_EQ(quantised(-std::numbers::pi_v<float>), -32767);
+  EXPECT_NEAR(kBendStep_rad, std::numbers::pi / 32767.0, 1e-11);
+}
+
+TEST(QuantiseTest, SaturatesAndTurnsNanIntoZero) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float far : {3.2F, 100.0F, 1e30F, infinity}) {
+    EXPECT_EQ(quantised(far), 32767);
+    EXPECT_EQ(quantised(-far), -32767);
+  }
+  EXPECT_EQ(quantised(std::numeric_limits<float>::quiet_NaN()), 0);
+}
+
+TEST(QuantiseTest, RoundsToTheNearest) {
+  for (int unit = -32766; unit <= 32766; ++unit) {
+    const float angle_rad = static_cast<float>(unit) * kBendStep_rad;
+    EXPECT_EQ(quantised(angle_rad), unit);
+    EXPECT_EQ(quantised(angle_rad + 0.49F * kBendStep_rad), unit);
+    EXPECT_EQ(quantised(angle_rad - 0.49F * kBendStep_rad), unit);
+  }
+}
+
+TEST(QuantiseTest, GoesThereAndBackWithinHalfAStep) {
+  std::vector<float> angles_rad;
+  for (int i = -31415; i <= 31415; i += 3) angles_rad.push_back(1e-4F * static_cast<float>(i));
+  std::vector<std::int16_t> units(angles_rad.size());
+  std::vector<float> back_rad(angles_rad.size());
+  quantise(angles_rad, units);
+  dequantise(units, back_rad);
+  for (std::size_t i = 0; i < units.size(); ++i) EXPECT_NEAR(back_rad[i], angles_rad[i], 0.51F * kBendStep_rad);
+}
+
+TEST(QuantiseTest, MovesTheTipOfA1mBladeByAtMostHalfAMillimetre) {
+  const std::size_t strands = 4096;
+  for (const std::size_t links : {1U, 10U, 64U}) {
+    const StrandSkeleton skeleton = random_strands(strands, links, 1.0 / static_cast<double>(links), links);
+    const StrandPose pose = random_bends(skeleton, std::numbers::pi, links);
+    StrandPose rounded = pose;
+    std::vector<std::int16_t> units(strands);
+    quantise(pose.bend_east_rad, units);
+    dequantise(units, rounded.bend_east_rad);
+    quantise(pose.bend_south_rad, units);
+    dequantise(units, rounded.bend_south_rad);
+
+    JointPositions exact(skeleton);
+    JointPositions received(skeleton);
+    EXPECT_EQ((StrandKinematicsJob{.skeleton = &skeleton, .pose = &pose, .joints = &exact}.run()),
+              StrandKinematicsJob::Problem::kNone);
+    EXPECT_EQ((StrandKinematicsJob{.skeleton = &skeleton, .pose = &rounded, .joints = &received}.run()),
+              StrandKinematicsJob::Problem::kNone);
+    float largest_m = 0.0F;
+    for (std::size_t i = 0; i < strands; ++i) {
+      const JointPosition a = exact.joint(i, links - 1);
+      const JointPosition b = received.joint(i, links - 1);
+      largest_m = std::max(largest_m, std::hypot(a.x_m - b.x_m, a.y_m - b.y_m, a.z_m - b.z_m));
+    }
+    EXPECT_LE(largest_m, 0.0005F);
+    EXPECT_GT(largest_m, 0.0F);
+  }
+}
+
+}  // namespace
+}  // namespace yuragi

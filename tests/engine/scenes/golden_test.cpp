@@ -1,0 +1,65 @@
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/pose/pose_hash.hpp"
+#include "engine/pose/strand_kinematics.hpp"
+#include "engine/scenes/grass.hpp"
+#include "tests/support/each_simd_row.hpp"
+#include "tests/support/scripted_wind.hpp"
+
+// One hash per scene of what it does in 600 ticks under the scripted wind, with default parameters and seed 1: every
+// pose, and the joint positions of every 20th. A change of the motion, however small, shows here; where it is meant,
+// the new hash goes to tests/golden/<scene>.txt, and the CHANGELOG says that poses have changed.
+
+namespace yuragi {
+namespace {
+
+std::string hash_of_600_ticks(Scene& scene, SimdRow row) {
+  const auto& skeleton = std::get<StrandSkeleton>(scene.skeleton());
+  JointPositions joints(skeleton);
+  std::uint64_t hash = kPoseHashSeed;
+  for (std::uint64_t tick = 0; tick < 600; ++tick) {
+    scene.tick(scripted_wind(tick), 1.0 / 60.0);
+    const auto& pose = std::get<StrandPose>(scene.pose());
+    hash = pose_hash(hash, pose);
+    if (tick % 20 != 0) continue;
+    const StrandKinematicsJob job{.skeleton = &skeleton, .pose = &pose, .row = row, .joints = &joints};
+    EXPECT_EQ(job.run(), StrandKinematicsJob::Problem::kNone);
+    hash = pose_hash(hash, joints.data());
+  }
+  std::ostringstream text;
+  text << std::hex << hash;
+  return text.str();
+}
+
+std::string golden_hash(std::string_view scene) {
+  std::ifstream file(YURAGI_SOURCE_DIR "/tests/golden/" + std::string(scene) + ".txt");
+  std::string hash;
+  file >> hash;
+  return hash;
+}
+
+ParameterValues defaults_of(const SceneDescription& scene) {
+  return ParameterValues::resolve(scene.parameters, {}).value();
+}
+
+TEST(GoldenTest, EverySceneMovesAsItDidWhenItsHashWasWritten) {
+  for (const SceneDescription* scene : scene_table()) {
+    const auto made = scene->make(defaults_of(*scene), 1);
+    EXPECT_EQ(hash_of_600_ticks(*made, best_simd_row()), golden_hash(scene->name)) << scene->name;
+  }
+}
+
+class GoldenOnEachRow : public EachSimdRow {};
+YURAGI_ON_EACH_ROW(GoldenOnEachRow);
+
+TEST_P(GoldenOnEachRow, GrassMovesAsItDidWhenItsHashWasWritten) {
+  const auto grass = make_grass(defaults_of(kGrassScene), 1, GetParam());
+  EXPECT_EQ(hash_of_600_ticks(*grass, GetParam()), golden_hash("grass"));
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,245 @@
+#include "engine/scenes/grass.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/units.hpp"
+#include "engine/pose/strand_kinematics.hpp"
+#include "tests/support/bits.hpp"
+#include "tests/support/scripted_wind.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kTick_s = 1.0 / 60.0;
+
+std::unique_ptr<Scene> grass(const ParameterValues::Map& given = {}, std::uint64_t seed = 1) {
+  return kGrassScene.make(ParameterValues::resolve(kGrassScene.parameters, given).value(), seed);
+}
+
+/// A meadow of 20 x 20 blades: enough for what each blade must do.
+ParameterValues::Map small(ParameterValues::Map also = {}) {
+  also["blades_across"] = std::int64_t{20};
+  also["blades_deep"] = std::int64_t{20};
+  return also;
+}
+
+const StrandSkeleton& skeleton_of(const Scene& scene) {
+  return std::get<StrandSkeleton>(scene.skeleton());
+}
+const StrandPose& pose_of(const Scene& scene) {
+  return std::get<StrandPose>(scene.pose());
+}
+
+double bend_rad(const StrandPose& pose, std::size_t i) {
+  return static_cast<double>(std::hypot(pose.bend_east_rad[i], pose.bend_south_rad[i]));
+}
+
+/// Where a blade leans to, clockwise from north.
+double lean_azimuth_rad(const StrandPose& pose, std::size_t i) {
+  return static_cast<double>(std::atan2(pose.bend_east_rad[i], -pose.bend_south_rad[i]));
+}
+
+/// The wind that blows toward an azimuth.
+WindVector toward(double azimuth_rad, double speed_m_s) {
+  return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
+}
+
+void run(Scene& scene, WindVector wind, int ticks) {
+  for (int i = 0; i < ticks; ++i) scene.tick(wind, kTick_s);
+}
+
+JointPositions joints_of(const Scene& scene) {
+  JointPositions joints(skeleton_of(scene));
+  const StrandKinematicsJob job{.skeleton = &skeleton_of(scene), .pose = &pose_of(scene), .joints = &joints};
+  EXPECT_EQ(job.run(), StrandKinematicsJob::Problem::kNone);
+  return joints;
+}
+
+TEST(GrassTest, IsInTheSceneTable) {
+  const auto table = scene_table();
+  EXPECT_EQ(std::count(table.begin(), table.end(), &kGrassScene), 1);
+}
+
+TEST(GrassTest, HasThePapers100000NodesByDefault) {
+  const auto scene = grass();
+  EXPECT_EQ(skeleton_of(*scene).strand_count * skeleton_of(*scene).links_per_strand, 100'000U);
+}
+
+TEST(GrassTest, StandsInItsRestPoseBeforeTheWindComesAndBitForBitAgainInCalmAir) {
+  const auto scene = grass(small());
+  const auto rest = bits_of(joints_of(*scene).data());
+  run(*scene, toward(1.0, 9.0), 100);
+  EXPECT_NE(bits_of(joints_of(*scene).data()), rest);
+  run(*scene, {0.0, 0.0}, 1);
+  EXPECT_EQ(bits_of(joints_of(*scene).data()), rest);
+}
+
+TEST(GrassTest, LinksKeepTheirLengthTo1e5) {
+  const auto scene = grass();
+  const StrandSkeleton& skeleton = skeleton_of(*scene);
+  for (int storm = 0; storm < 5; ++storm) {
+    run(*scene, toward(storm, 8.0 * storm), 30);
+    const JointPositions joints = joints_of(*scene);
+    for (std::size_t i = 0; i < skeleton.strand_count; ++i) {
+      JointPosition from{skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
+      for (std::size_t link = 0; link < skeleton.links_per_strand; ++link) {
+        const JointPosition to = joints.joint(i, link);
+        const double length_m = std::hypot(static_cast<double>(to.x_m) - static_cast<double>(from.x_m),
+                                           static_cast<double>(to.y_m) - static_cast<double>(from.y_m),
+                                           static_cast<double>(to.z_m) - static_cast<double>(from.z_m));
+        // To 1e-5 of the length, beyond what floats at a place 4 m off can say (a unit in the last place there is 5e-7
+        // m).
+        EXPECT_NEAR(length_m, skeleton.link_length_m[i], 1e-5 * static_cast<double>(skeleton.link_length_m[i]) + 5e-7);
+        from = to;
+      }
+    }
+  }
+}
+
+TEST(GrassTest, DoublingTheWindNeverBendsABladeLess) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    // Two meadows with the same past; then, for a moment too short to shift the field, one has twice the wind.
+    const auto once = grass(small(), seed);
+    const auto twice = grass(small(), seed);
+    for (int state = 0; state < 20; ++state) {
+      const WindVector past = scripted_wind(static_cast<std::uint64_t>(state) * 10 + seed);
+      run(*once, past, 10);
+      run(*twice, past, 10);
+      const WindVector wind = toward(0.3 * state, 1.0 + state);
+      once->tick(wind, 1e-12);
+      twice->tick(2.0 * wind, 1e-12);
+      for (std::size_t i = 0; i < skeleton_of(*once).strand_count; ++i) {
+        EXPECT_GE(bend_rad(pose_of(*twice), i), bend_rad(pose_of(*once), i) - 1e-6);
+      }
+    }
+  }
+}
+
+TEST(GrassTest, LeansToWhereTheWindBlows) {
+  for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 45) {
+    const double azimuth_rad = azimuth_deg * kRadPerDeg;
+    const auto scene = grass(small());
+    const JointPositions rest = joints_of(*scene);
+    run(*scene, toward(azimuth_rad, 8.0), 30);
+    const JointPositions joints = joints_of(*scene);
+
+    // On average the tips go downwind (x east, z south), and not sideways.
+    double downwind_m = 0.0;
+    double sideways_m = 0.0;
+    for (std::size_t i = 0; i < 400; ++i) {
+      const auto x_m = static_cast<double>(joints.joint(i, 9).x_m - rest.joint(i, 9).x_m);
+      const auto z_m = static_cast<double>(joints.joint(i, 9).z_m - rest.joint(i, 9).z_m);
+      downwind_m += (x_m * std::sin(azimuth_rad) - z_m * std::cos(azimuth_rad)) / 400.0;
+      sideways_m += (x_m * std::cos(azimuth_rad) + z_m * std::sin(azimuth_rad)) / 400.0;
+    }
+    EXPECT_GT(downwind_m, 0.1) << azimuth_deg;
+    EXPECT_LT(std::abs(sideways_m), 0.2 * downwind_m) << azimuth_deg;
+  }
+}
+
+TEST(GrassTest, TurningTheWindTurnsTheLeanByTheSameAngle) {
+  const auto scene = grass(small());
+  run(*scene, toward(0.4, 6.0), 50);
+  const StrandPose before = pose_of(*scene);
+  scene->tick(toward(1.1, 6.0), 1e-12);
+  for (std::size_t i = 0; i < 400; ++i) {
+    EXPECT_NEAR(lean_azimuth_rad(pose_of(*scene), i) - lean_azimuth_rad(before, i), 0.7, 1e-5);
+    EXPECT_NEAR(bend_rad(pose_of(*scene), i), bend_rad(before, i), 1e-6);
+  }
+}
+
+TEST(GrassTest, NoWindBendsBeyondTheLargestBend) {
+  const auto scene = grass(small({{"max_bend", 70.0}}));
+  for (const double speed_m_s : {30.0, 120.0, 1e6}) {
+    run(*scene, toward(2.0, speed_m_s), 20);
+    for (std::size_t i = 0; i < 400; ++i) EXPECT_LE(bend_rad(pose_of(*scene), i), 70.0 * kRadPerDeg + 1e-6);
+  }
+}
+
+/// The largest change of a blade's bend in one tick, in 20 s of a strong wind that turns by 40 degrees a second.
+float largest_step_rad(int ticks_per_s) {
+  const auto scene = grass(small());
+  const double dt_s = 1.0 / ticks_per_s;
+  scene->tick(toward(0.0, 12.0), dt_s);
+  float largest = 0.0F;
+  for (int tick = 0; tick < 20 * ticks_per_s; ++tick) {
+    const StrandPose before = pose_of(*scene);
+    scene->tick(toward(0.7 * tick * dt_s, 12.0), dt_s);
+    for (std::size_t i = 0; i < 400; ++i) {
+      largest = std::max(largest, std::abs(pose_of(*scene).bend_east_rad[i] - before.bend_east_rad[i]));
+      largest = std::max(largest, std::abs(pose_of(*scene).bend_south_rad[i] - before.bend_south_rad[i]));
+    }
+  }
+  return largest;
+}
+
+TEST(GrassTest, GoesOnWithoutAJumpWhileTheWindTurns) {
+  // What jumps moves as far in a short tick as in a long one. What goes on moves a tenth as far in a tenth of the time.
+  const float at_60_hz = largest_step_rad(60);
+  const float at_600_hz = largest_step_rad(600);
+  EXPECT_LT(at_60_hz, 0.2F);
+  EXPECT_LT(at_600_hz, 0.15F * at_60_hz);
+}
+
+TEST(GrassTest, BladesDifferAsTheWindOnTheGroundDoes) {
+  const auto still = grass(small({{"turbulence", 0.0}, {"gust_strength", 0.0}, {"blade_length_variation", 0.0}}));
+  const auto lively = grass(small());
+  run(*still, toward(1.0, 7.0), 10);
+  run(*lively, toward(1.0, 7.0), 10);
+  const auto spread = [](const Scene& scene) {
+    double least = 10.0;
+    double most = 0.0;
+    for (std::size_t i = 0; i < 400; ++i) {
+      least = std::min(least, bend_rad(pose_of(scene), i));
+      most = std::max(most, bend_rad(pose_of(scene), i));
+    }
+    return most - least;
+  };
+  EXPECT_GT(spread(*lively), spread(*still));
+}
+
+TEST(GrassTest, GustsComeAndGoInASteadyWind) {
+  const auto scene = grass(small({{"turbulence", 0.0}}));
+  double least = 10.0;
+  double most = 0.0;
+  for (int tick = 0; tick < 3000; ++tick) {
+    run(*scene, toward(1.0, 7.0), 1);
+    least = std::min(least, bend_rad(pose_of(*scene), 0));
+    most = std::max(most, bend_rad(pose_of(*scene), 0));
+  }
+  EXPECT_GT(most, 1.1 * least);
+}
+
+TEST(GrassTest, TheSameSeedAndWindGiveTheSameBitsAndAnotherSeedOthers) {
+  const auto scene = grass(small(), 1);
+  const auto same = grass(small(), 1);
+  const auto other = grass(small(), 2);
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    for (Scene* each : {scene.get(), same.get(), other.get()}) each->tick(scripted_wind(tick), kTick_s);
+  }
+  EXPECT_EQ(bits_of(joints_of(*scene).data()), bits_of(joints_of(*same).data()));
+  EXPECT_NE(bits_of(joints_of(*scene).data()), bits_of(joints_of(*other).data()));
+}
+
+TEST(GrassTest, TakesBothMeaningsOfBeta) {
+  const auto transect = grass(small({{"beta_meaning", std::string("transect")}}));
+  const auto radial = grass(small({{"beta_meaning", std::string("radial")}}));
+  run(*transect, toward(1.0, 7.0), 10);
+  run(*radial, toward(1.0, 7.0), 10);
+  EXPECT_NE(bits_of(pose_of(*transect).bend_east_rad), bits_of(pose_of(*radial).bend_east_rad));
+}
+
+TEST(GrassTest, AMillionNodesWork) {
+  const auto scene = grass({{"blades_across", std::int64_t{400}}, {"blades_deep", std::int64_t{250}}});
+  EXPECT_EQ(skeleton_of(*scene).strand_count * skeleton_of(*scene).links_per_strand, 1'000'000U);
+  run(*scene, toward(1.0, 10.0), 3);
+  const JointPositions joints = joints_of(*scene);
+  for (const float coordinate : joints.data()) ASSERT_TRUE(std::isfinite(coordinate));
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,63 @@
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include <gtest/gtest.h>
+
+#include "engine/pose/strand_kinematics.hpp"
+#include "engine/scenes/scene.hpp"
+#include "tests/support/scripted_wind.hpp"
+
+namespace {
+
+std::atomic<std::size_t> allocations = 0;
+
+void* counted(std::size_t bytes, std::size_t alignment) {
+  ++allocations;
+  const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+  if (void* memory = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  return counted(bytes, alignof(std::max_align_t));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return counted(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace yuragi {
+namespace {
+
+TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
+  for (const SceneDescription* description : scene_table()) {
+    const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(), 1);
+    const auto& skeleton = std::get<StrandSkeleton>(scene->skeleton());
+    JointPositions joints(skeleton);
+    EXPECT_GT(allocations, 0U) << "the counter does not count";
+
+    const std::size_t before = allocations;
+    for (std::uint64_t tick = 0; tick < 20; ++tick) {
+      scene->tick(scripted_wind(tick), 1.0 / 60.0);
+      StrandKinematicsJob{.skeleton = &skeleton, .pose = &std::get<StrandPose>(scene->pose()), .joints = &joints}.run();
+    }
+    EXPECT_EQ(allocations, before) << description->name;
+  }
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,295 @@
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "engine/wire/schema.hpp"
+#include "engine/wire/wire.hpp"
+#include "tests/engine/wire/samples.hpp"
+
+// What decode() does with bytes that no encoder of ours made. The sanitizer presets make these tests sharp.
+
+namespace yuragi::wire {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+bool all_finite(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+}
+
+/// Does a message that decode() let through keep what wire.hpp and skeleton.hpp promise?
+bool is_safe(const Message& message) {
+  if (const auto* scenes = std::get_if<Scenes>(&message)) {
+    for (const SceneModel& scene : scenes->scenes) {
+      const auto& s = std::get<StrandSkeleton>(scene.skeleton);
+      if (s.links_per_strand < 1 || s.links_per_strand > kMaxLinksPerStrand || s.strand_count > kMaxStrands)
+        return false;
+      for (const auto* values : {&s.root_x_m, &s.root_y_m, &s.root_z_m, &s.rest_x, &s.rest_y, &s.rest_z, &s.curl_x,
+                                 &s.curl_y, &s.curl_z, &s.rest_curl_rad, &s.link_length_m}) {
+        if (!all_finite(*values)) return false;
+        if (values->size() != s.padded_count() && s.strand_count > 0) return false;
+      }
+    }
+  }
+  if (const auto* frame = std::get_if<Frame>(&message)) {
+    if (!std::isfinite(frame->info.time_s) || !std::isfinite(frame->info.wind.wind.u_m_s)) return false;
+    for (const Pose& pose : frame->poses) {
+      const auto& bends = std::get<StrandPose>(pose);
+      if (!all_finite(bends.bend_east_rad) || !all_finite(bends.bend_south_rad)) return false;
+      if (bends.bend_east_rad.size() != bends.bend_south_rad.size()) return false;
+    }
+  }
+  return true;
+}
+
+TEST(HostileBytes, EveryTruncationIsRefused) {
+  for (const Bytes& message : samples::one_of_each()) {
+    const auto body = samples::body(message);
+    for (std::size_t length = 0; length < body.size(); ++length) {
+      // A buffer of its own, so that the address sanitizer sees any read behind the end.
+      const Bytes cut(body.begin(), body.begin() + static_cast<std::ptrdiff_t>(length));
+      const auto result = decode(cut);
+      if (result) {
+        EXPECT_TRUE(is_safe(*result)) << length;  // only padding was lost
+        EXPECT_LT(body.size() - length, 8u);
+      }
+    }
+  }
+}
+
+TEST(HostileBytes, RandomDamageIsRefusedOrHarmless) {
+  std::mt19937 random(3);
+  std::size_t refused = 0;
+  for (const Bytes& message : samples::one_of_each()) {
+    for (int i = 0; i < 4000; ++i) {
+      Bytes damaged(samples::body(message).begin(), samples::body(message).end());
+      const std::size_t places = 1 + random() % 4;
+      for (std::size_t k = 0; k < places; ++k) {
+        // Half of it where the structure is: the offsets at the front and the tables at the back.
+        const std::size_t near_edge = std::min<std::size_t>(96, damaged.size());
+        const std::size_t at = random() % 2 == 0 ? random() % near_edge : random() % damaged.size();
+        damaged[at] = static_cast<std::uint8_t>(random());
+      }
+      const auto result = decode(damaged);
+      if (result) {
+        ASSERT_TRUE(is_safe(*result));
+      } else {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 1000u);
+}
+
+TEST(HostileBytes, NoiseIsRefused) {
+  std::mt19937 random(4);
+  for (int i = 0; i < 2000; ++i) {
+    Bytes noise(random() % 200);
+    for (auto& byte : noise) byte = static_cast<std::uint8_t>(random());
+    EXPECT_FALSE(decode(noise).has_value());
+  }
+}
+
+TEST(HostileBytes, TheFileIdentifierIsAskedFor) {
+  Bytes hello = encode(samples::hello());
+  ASSERT_EQ(std::string(hello.begin() + 8, hello.begin() + 12), "YURA");
+  hello[8] = 'Z';
+  EXPECT_EQ(decode(samples::body(hello)).error(), WireError::kNotVerified);
+}
+
+TEST(HostileBytes, ASizePrefixOutOfBoundsIsRefused) {
+  const auto read = [](std::array<std::uint8_t, 4> prefix) { return read_size_prefix(prefix, 4096); };
+  EXPECT_EQ(read({0x00, 0x10, 0, 0}).value(), 4096u);
+  EXPECT_EQ(read({0x01, 0x10, 0, 0}).error(), WireError::kTooLong);
+  EXPECT_EQ(read({0, 0, 0, 0}).error(), WireError::kTooLong);
+  EXPECT_EQ(read({0xff, 0xff, 0xff, 0xff}).error(), WireError::kTooLong);
+}
+
+// ---- verified, but inconsistent ----
+
+/// decode()'s answer to samples::scenes() after a change of the first skeleton.
+Result<Message, WireError> scenes_with(const std::function<void(StrandSkeleton&)>& change) {
+  Scenes scenes = samples::scenes();
+  change(std::get<StrandSkeleton>(scenes.scenes[0].skeleton));
+  return decode(samples::body(encode(scenes)));
+}
+
+TEST(HostileBytes, SkeletonsOutOfBoundsAreRefused) {
+  ASSERT_TRUE(scenes_with([](StrandSkeleton&) {}).has_value());
+  const std::vector<std::function<void(StrandSkeleton&)>> changes{
+      [](auto& s) { s.links_per_strand = 0; },
+      [](auto& s) { s.links_per_strand = 257; },
+      [](auto& s) { s.root_x_m[5] = kNan; },
+      [](auto& s) { s.root_y_m[5] = kInfinity; },
+      [](auto& s) { s.root_z_m[5] = 1e30f; },
+      [](auto& s) { s.rest_x[5] = kNan; },
+      [](auto& s) { s.rest_x[5] *= 1.5f; },
+      [](auto& s) { s.curl_z[36] += 0.5f; },
+      [](auto& s) { s.rest_curl_rad[0] = -kInfinity; },
+      [](auto& s) { s.link_length_m[0] = -0.1f; },
+      [](auto& s) { s.link_length_m[0] = kNan; },
+      [](auto& s) {  // unit vectors, but not one across the other
+        s.curl_x = s.rest_x;
+        s.curl_y = s.rest_y;
+        s.curl_z = s.rest_z;
+      },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const auto result = scenes_with(changes[i]);
+    ASSERT_FALSE(result.has_value()) << i;
+    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+  }
+}
+
+TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
+  const std::vector<std::function<void(FrameInfo&)>> changes{
+      [](auto& f) { f.time_s = std::nan(""); },
+      [](auto& f) { f.time_s = -1.0; },
+      [](auto& f) { f.wind.wind.u_m_s = std::nan(""); },
+      [](auto& f) { f.wind.wind.v_m_s = 1e9; },
+      [](auto& f) { f.wind.live_weight = 1.5; },
+      [](auto& f) { f.wind.reading_age_s = -1.0; },
+      [](auto& f) { f.wind.source = static_cast<WindSource>(3); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    FrameInfo info = samples::frame_info();
+    changes[i](info);
+    const auto result = decode(samples::body(samples::frame_bytes(37, info)));
+    ASSERT_FALSE(result.has_value()) << i;
+    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+  }
+}
+
+TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
+  const std::vector<std::function<void(Sensors&)>> changes{
+      [](auto& s) { s.sensors[0].link = 3; },
+      [](auto& s) { s.sensors[0].health = 3; },
+      [](auto& s) { s.sensors[0].speed_m_s = std::nan(""); },
+      [](auto& s) { s.sensors[0].age_s = -1.0; },
+      [](auto& s) { s.sensors[0].interval_s = std::nan(""); },
+      [](auto& s) { s.sensors.resize(kMaxSensors + 1); },
+      [](auto& s) { s.sensors[0].refused.resize(kMaxRefusalReasons + 1); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    Sensors sensors = samples::sensors();
+    changes[i](sensors);
+    const auto result = decode(samples::body(encode(sensors)));
+    ASSERT_FALSE(result.has_value()) << i;
+    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+  }
+}
+
+// ---- built by hand, since our encoders cannot ----
+
+/// decode()'s answer to a message of this kind, whose body `build` adds.
+template <class Build>
+Result<Message, WireError> decode_built(fb::Body kind, Build build) {
+  flatbuffers::FlatBufferBuilder builder;
+  const flatbuffers::Offset<void> body = build(builder);
+  fb::FinishSizePrefixedMessageBuffer(builder, fb::CreateMessage(builder, kind, body));
+  return decode({builder.GetBufferPointer() + kSizePrefixBytes, builder.GetSize() - kSizePrefixBytes});
+}
+
+TEST(HostileBytes, PosesOfTwoLengthsAreRefused) {
+  const auto result = decode_built(fb::Body_Frame, [](auto& builder) {
+    const auto east = builder.CreateVector(std::vector<std::int16_t>(16));
+    const auto south = builder.CreateVector(std::vector<std::int16_t>(15));
+    const auto pose = fb::CreateStrandPose(builder, 1e-4f, east, south);
+    const auto scene = fb::CreateScenePose(builder, fb::Pose_StrandPose, pose.Union());
+    const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
+    return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(std::vector{scene})).Union();
+  });
+  EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+TEST(HostileBytes, AnAbsurdQuantisationStepIsRefused) {
+  for (const float step : {0.0f, -1e-4f, 1.0f, kNan}) {
+    const auto result = decode_built(fb::Body_Frame, [step](auto& builder) {
+      const auto pose = fb::CreateStrandPose(builder, step);
+      const auto scene = fb::CreateScenePose(builder, fb::Pose_StrandPose, pose.Union());
+      const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
+      return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(std::vector{scene})).Union();
+    });
+    EXPECT_EQ(result.error(), WireError::kInconsistent) << step;
+  }
+}
+
+TEST(HostileBytes, AFrameWithoutWindIsRefused) {
+  const auto result = decode_built(fb::Body_Frame, [](auto& builder) { return fb::CreateFrame(builder).Union(); });
+  EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+TEST(HostileBytes, ASkeletonOfUnequalArraysIsRefused) {
+  const auto result = decode_built(fb::Body_Scenes, [](auto& builder) {
+    const auto roots = builder.CreateVector(std::vector<float>(3));
+    const auto skeleton = fb::CreateStrandSkeleton(builder, 4, roots, roots, roots).Union();
+    const auto scene = fb::CreateScene(builder, 0, 0, fb::Skeleton_StrandSkeleton, skeleton);
+    return fb::CreateScenes(builder, builder.CreateVector(std::vector{scene})).Union();
+  });
+  EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+TEST(HostileBytes, ASceneWithoutSkeletonIsRefused) {
+  const auto result = decode_built(fb::Body_Scenes, [](auto& builder) {
+    const auto scene = fb::CreateScene(builder);
+    return fb::CreateScenes(builder, builder.CreateVector(std::vector{scene})).Union();
+  });
+  EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+TEST(HostileBytes, FewBytesCannotAskForMuchMemory) {
+  // One long array of bends, which many poses share.
+  const auto result = decode_built(fb::Body_Frame, [](auto& builder) {
+    const auto bends = builder.CreateVector(std::vector<std::int16_t>(kMaxStrands / 8));
+    std::vector<flatbuffers::Offset<fb::ScenePose>> scenes;
+    for (std::size_t i = 0; i < kMaxScenes; ++i) {
+      const auto pose = fb::CreateStrandPose(builder, 1e-4f, bends, bends);
+      scenes.push_back(fb::CreateScenePose(builder, fb::Pose_StrandPose, pose.Union()));
+    }
+    const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
+    return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(scenes)).Union();
+  });
+  EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+TEST(HostileBytes, AVeryLongTextIsRefused) {
+  const auto result = decode_built(fb::Body_Subscribe, [](auto& builder) {
+    return fb::CreateSubscribe(builder, 1, true, false, builder.CreateString(std::string(kMaxTextBytes + 1, 'x')))
+        .Union();
+  });
+  EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+// ---- of a newer server ----
+
+TEST(NewerServer, ABodyOfAnUnknownKindIsToldApartFromABadOne) {
+  const auto build = [](auto& builder) { return fb::CreateHello(builder).Union(); };
+  EXPECT_EQ(decode_built(static_cast<fb::Body>(fb::Body_MAX + 1), build).error(), WireError::kUnknown);
+  EXPECT_EQ(decode_built(fb::Body_NONE, build).error(), WireError::kUnknown);
+}
+
+TEST(NewerServer, ASceneOfAnUnknownKindHasNoStrandsAndFitsItsPoses) {
+  const auto scenes = decode_built(fb::Body_Scenes, [](auto& builder) {
+    const auto kind = builder.CreateString("cloud");
+    const auto unknown = fb::CreateHello(builder).Union();
+    const auto scene = fb::CreateScene(builder, 0, kind, static_cast<fb::Skeleton>(fb::Skeleton_MAX + 1), unknown);
+    return fb::CreateScenes(builder, builder.CreateVector(std::vector{scene})).Union();
+  });
+  const auto frame = decode_built(fb::Body_Frame, [](auto& builder) {
+    const auto unknown = fb::CreateHello(builder).Union();
+    const auto scene = fb::CreateScenePose(builder, static_cast<fb::Pose>(fb::Pose_MAX + 1), unknown);
+    const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
+    return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(std::vector{scene})).Union();
+  });
+  const auto& known = std::get<Scenes>(scenes.value());
+  EXPECT_EQ(known.scenes.at(0).kind, "cloud");
+  EXPECT_EQ(std::get<StrandSkeleton>(known.scenes[0].skeleton).strand_count, 0u);
+  EXPECT_TRUE(fits(std::get<Frame>(frame.value()), known));
+}
+
+}  // namespace
+}  // namespace yuragi::wire

@@ -1,0 +1,66 @@
+// Any bytes as an answer to any request, on both framings, read through any quantity; and any text as a profile.
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+#include <string_view>
+
+#include "drivers/decode/modbus.hpp"
+#include "drivers/modbus_profile.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace {
+
+using namespace yuragi;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+/// What the first bytes of an input choose; the rest is the message.
+constexpr std::size_t kChoices = 8;
+
+void decode_answer(std::span<const std::uint8_t> input) {
+  const ModbusRequest request = {.transaction = static_cast<std::uint16_t>((input[0] << 8U) | input[1]),
+                                 .unit = input[2],
+                                 .function = static_cast<std::uint8_t>(3U + (input[3] & 1U)),
+                                 .address = 0,
+                                 .count = input[4]};
+  ModbusQuantity quantity;
+  quantity.type = static_cast<RegisterType>(input[5] % 5);
+  quantity.order = static_cast<ByteOrder>(input[6] % 4);
+  quantity.unit = static_cast<QuantityUnit>(input[7] % 4);
+  quantity.map = static_cast<DirectionMap>((input[7] / 4) % 3);
+  quantity.scale = (input[3] & 2U) != 0 ? 0.1 : 1.0;
+
+  for (const auto framing : {ModbusFraming::kTcp, ModbusFraming::kRtu}) {
+    const auto registers = decode_modbus(framing, request, input.subspan(kChoices));
+    if (!registers) continue;
+    require(registers->count == request.count);
+    if (const auto speed_m_s = decode_speed_m_s(quantity, registers->span())) {
+      require(*speed_m_s >= 0.0 && *speed_m_s <= kMaxPlausibleSpeed_m_s);
+    }
+    if (const auto direction_deg = decode_direction_deg(quantity, registers->span())) {
+      require(*direction_deg >= 0.0 && *direction_deg < 360.0);
+    }
+  }
+}
+
+void read_profile(std::string_view text) {
+  try {
+    const ModbusProfile profile = parse_modbus_profile(text, "fuzz.toml");
+    require(profile.speed.slave >= 1 && profile.speed.slave <= 247);
+    require(profile.response_timeout > Nanoseconds::zero());
+  } catch (const std::runtime_error& error) {
+    require(std::string_view(error.what()).starts_with("fuzz.toml:"));
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {  // NOLINT(readability-identifier-naming)
+  const std::span input(data, size);
+  if (size > kChoices) decode_answer(input);
+  read_profile({reinterpret_cast<const char*>(data), size});
+  return 0;
+}

@@ -1,0 +1,72 @@
+// A recording of which any bytes were changed, and any part cut off: the reader gives plausible readings, or a failure.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <unistd.h>
+
+#include "drivers/windlog/windlog_reader.hpp"
+#include "drivers/windlog/windlog_writer.hpp"
+
+namespace {
+
+using namespace yuragi;
+
+const std::filesystem::path& scratch_file() {
+  static const std::filesystem::path kFile =
+      std::filesystem::temp_directory_path() / ("yuragi-fuzz-" + std::to_string(getpid()) + ".windlog");
+  return kFile;
+}
+
+std::string make_recording() {
+  std::filesystem::remove(scratch_file());
+  {
+    auto writer = WindlogWriter::open(scratch_file());
+    if (!writer) std::abort();
+    for (int session = 0; session < 2; ++session) {
+      if (!writer->begin_session({{}, "fuzz", ""})) std::abort();
+      const auto sensor = writer->add_sensor("mast", "fuzz", "");
+      for (int i = 0; i < 150; ++i) {
+        WindReading reading;
+        reading.time.mono += std::chrono::milliseconds(100 * i);
+        reading.direction_deg = i;
+        if (!writer->append(*sensor, reading)) std::abort();
+      }
+    }
+  }
+  std::ifstream in(scratch_file(), std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::string kWhole = make_recording();
+  std::string bytes = kWhole;
+
+  // Two bytes cut the file, if they are small enough; then each four are an offset and what to write there.
+  if (size >= 2) {
+    const std::size_t length = (static_cast<std::size_t>(data[0]) << 8 | data[1]) * 2;
+    if (length < bytes.size()) bytes.resize(length);
+  }
+  for (std::size_t i = 2; i + 4 <= size && !bytes.empty(); i += 4) {
+    const std::size_t offset =
+        static_cast<std::size_t>(data[i]) << 16 | static_cast<std::size_t>(data[i + 1]) << 8 | data[i + 2];
+    bytes[offset % bytes.size()] = static_cast<char>(data[i + 3]);
+  }
+  std::ofstream(scratch_file(), std::ios::binary | std::ios::trunc) << bytes;
+
+  auto reader = WindlogReader::open(scratch_file());
+  if (!reader) return 0;
+  reader->seek(std::chrono::seconds(size % 40));
+  static_cast<void>(reader->log_time_of(UtcTime{}));
+  for (;;) {
+    const auto logged = reader->next();
+    if (!logged || !*logged) return 0;
+    if (!is_plausible((*logged)->reading) || (*logged)->sensor >= reader->sensors().size()) std::abort();
+  }
+}

@@ -1,0 +1,75 @@
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+#include "engine/wire/message_reader.hpp"
+#include "engine/wire/wire.hpp"
+#include "tests/engine/wire/samples.hpp"
+
+// Hostile bytes for the stream's decoder and its reader. The first byte of the input chooses: raw bytes, or damage to a
+// good message, which gets behind the verifier without any corpus.
+
+namespace {
+
+using namespace yuragi;
+
+/// A good message with bytes replaced: each three bytes of `damage` are a place (little-endian) and a value.
+wire::Bytes damaged(wire::Bytes message, std::span<const std::uint8_t> damage) {
+  for (; damage.size() >= 3; damage = damage.subspan(3)) {
+    const std::size_t place = damage[0] + (std::size_t{damage[1]} << 8);
+    message[place % message.size()] = damage[2];
+  }
+  return message;
+}
+
+/// What decode() promises of everything that it lets through.
+void demand_consistency(const wire::Message& message) {
+  if (const auto* scenes = std::get_if<wire::Scenes>(&message)) {
+    for (const auto& scene : scenes->scenes) {
+      const auto& skeleton = std::get<StrandSkeleton>(scene.skeleton);
+      if (skeleton.links_per_strand < 1 || skeleton.links_per_strand > wire::kMaxLinksPerStrand) std::abort();
+      if (skeleton.root_x_m.size() != skeleton.link_length_m.size()) std::abort();
+      for (const float length_m : skeleton.link_length_m)
+        if (!(length_m >= 0.0f && length_m < 1e7f)) std::abort();
+    }
+  }
+  if (const auto* frame = std::get_if<wire::Frame>(&message)) {
+    for (const auto& pose : frame->poses) {
+      const auto& bends = std::get<StrandPose>(pose);
+      if (bends.bend_east_rad.size() != bends.bend_south_rad.size()) std::abort();
+      for (const float bend_rad : bends.bend_east_rad)
+        if (!(bend_rad > -100.0f && bend_rad < 100.0f)) std::abort();
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::vector<wire::Bytes> messages = samples::one_of_each();
+  if (size == 0) return 0;
+  const auto rest = std::span(data, size).subspan(1);
+  const std::size_t choice = data[0] % (messages.size() + 1);
+  const wire::Bytes stream =
+      choice == messages.size() ? wire::Bytes(rest.begin(), rest.end()) : damaged(messages[choice], rest);
+
+  // As one message.
+  if (stream.size() > wire::kSizePrefixBytes) {
+    const auto message = wire::decode(samples::body(stream));
+    if (message) demand_consistency(*message);
+  }
+
+  // As a stream, in two pieces.
+  wire::MessageReader reader(1 << 16);
+  const std::size_t split = stream.empty() ? 0 : (data[0] * std::size_t{7}) % stream.size();
+  for (const auto piece : {std::span(stream).first(split), std::span(stream).subspan(split)}) {
+    reader.feed(piece);
+    for (int i = 0; i < 100; ++i) {
+      const auto message = reader.next();
+      if (!message) break;
+      if (*message) demand_consistency(**message);
+    }
+  }
+  return 0;
+}

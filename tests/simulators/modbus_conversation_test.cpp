@@ -1,0 +1,238 @@
+// Real conversations between separate programs: our driver with yuragi-sim, our driver with a pymodbus server (TCP and
+// RTU), mbpoll with yuragi-sim.
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "drivers/driver.hpp"
+#include "tests/support/child_process.hpp"
+#include "tests/support/manual_clock.hpp"
+#include "tests/support/modbus_servers.hpp"
+#include "tests/support/recording_sink.hpp"
+
+namespace yuragi {
+namespace {
+
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
+  given.try_emplace("response_timeout", 0.15);
+  given.try_emplace("profile_dir", YURAGI_SOURCE_DIR "/drivers/profiles");
+  for (const DriverDescription* driver : driver_table()) {
+    if (driver->name == "modbus") return driver->open(*ParameterValues::resolve(driver->parameters, given));
+  }
+  throw std::logic_error("no driver named modbus");
+}
+
+/// yuragi-sim on a free port.
+class SimulatorProcess {
+ public:
+  explicit SimulatorProcess(const std::vector<std::string>& options = {}, const std::string& port = "0")
+      : process_([&] {
+          std::vector<std::string> command = {YURAGI_SIM_PROGRAM, "modbus", "--tcp", "127.0.0.1:" + port};
+          command.insert(command.end(), options.begin(), options.end());
+          return command;
+        }()) {
+    port_ = process_.line_after("listening on 127.0.0.1:");
+  }
+
+  const std::string& port() const { return port_; }
+  ChildProcess& process() { return process_; }
+
+ private:
+  ChildProcess process_;
+  std::string port_;
+};
+
+struct Bench {
+  ManualClock clock;
+  RecordingSink sink;
+  MonoTime due{};
+
+  void poll(Sensor& sensor) {
+    clock.advance_to(due);
+    due = sensor.poll(clock, sink);
+  }
+  /// Polls until `is_there`; false if that takes longer than anything should.
+  template <class Condition>
+  bool poll_until(Sensor& sensor, Condition&& is_there) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!is_there() && std::chrono::steady_clock::now() < deadline) poll(sensor);
+    return is_there();
+  }
+  bool poll_for_reading(Sensor& sensor) {
+    const auto before = sink.readings.size();
+    return poll_until(sensor, [&] { return sink.readings.size() > before; });
+  }
+};
+
+TEST(DriverAndSimulator, AgreeOnTheWind) {
+  SimulatorProcess simulator({"--speed", "7", "--direction", "123", "--turbulence", "0"});
+  const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
+  Bench bench;
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(bench.poll_for_reading(*sensor));
+  for (const WindReading& reading : bench.sink.readings) {
+    EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-9);
+    EXPECT_EQ(reading.direction_deg, 123.0);
+  }
+  EXPECT_TRUE(bench.sink.refusals.empty());
+}
+
+TEST(DriverAndSimulator, CountEveryFaultPublishNoneOfItAndComeBack) {
+  SimulatorProcess simulator({"--speed", "7", "--direction", "123", "--turbulence", "0"});
+  const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
+  Bench bench;
+  ASSERT_TRUE(bench.poll_for_reading(*sensor));
+
+  const auto refused = [&](auto... allowed) {
+    return !bench.sink.refusals.empty() && ((bench.sink.count(allowed) + ...) == std::ssize(bench.sink.refusals));
+  };
+  const std::vector<std::pair<std::string, std::function<bool()>>> faults = {
+      {"silence", [&] { return refused(Refusal::kTimeout); }},
+      {"exception", [&] { return refused(Refusal::kException); }},
+      {"wrong-id", [&] { return refused(Refusal::kNotMine); }},
+      {"wrong-transaction", [&] { return refused(Refusal::kNotMine); }},
+      {"short", [&] { return refused(Refusal::kTooShort); }},
+      {"garbage", [&] { return refused(Refusal::kMalformed, Refusal::kTooShort); }},
+      {"drop", [&] { return bench.sink.refusals.empty() && bench.sink.last_detail().find("cannot connect") == 0; }},
+  };
+  for (const auto& [fault, is_right] : faults) {
+    SCOPED_TRACE(fault);
+    simulator.process().type(fault + " 60");
+    simulator.process().line_after(fault + " for 60 s");
+
+    // The round that was under way may still have been whole.
+    bench.sink.readings.clear();
+    bench.sink.refusals.clear();
+    EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_state() == LinkState::kConnecting; }));
+    bench.sink.readings.clear();
+    bench.sink.refusals.clear();
+    for (int i = 0; i < 4; ++i) bench.poll(*sensor);
+    EXPECT_TRUE(is_right()) << bench.sink.last_detail();
+    EXPECT_TRUE(bench.sink.readings.empty());
+
+    simulator.process().type("clear");
+    simulator.process().line_after("no faults");
+    ASSERT_TRUE(bench.poll_for_reading(*sensor));
+    EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 7.0, 1e-9);
+    ASSERT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.readings.back().direction_deg == 123.0; }));
+  }
+}
+
+TEST(DriverAndSimulator, FindEachOtherAgainAfterTheSimulatorWasKilled) {
+  auto simulator = std::make_unique<SimulatorProcess>();
+  const std::string port = simulator->port();
+  const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(port)}}});
+  Bench bench;
+  ASSERT_TRUE(bench.poll_for_reading(*sensor));
+
+  simulator->process().end(SIGKILL);
+  EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_detail().find("cannot connect") == 0; }));
+  simulator = std::make_unique<SimulatorProcess>(std::vector<std::string>{}, port);
+  EXPECT_TRUE(bench.poll_for_reading(*sensor));
+  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+}
+
+TEST(SimulatorProgram, FailsOnScheduleAndEndsAfterItsDuration) {
+  SimulatorProcess simulator({"--fault", "exception@0+60", "--duration", "0.5"});
+  const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
+  Bench bench;
+  bench.poll(*sensor);
+  bench.poll(*sensor);
+  EXPECT_THAT(bench.sink.refusals, Contains(Refusal::kException));
+  EXPECT_EQ(simulator.process().wait(), 0);
+}
+
+TEST(SimulatorProgram, EndsCleanlyOnSignalsAndGoesOnWhenItsInputEnds) {
+  for (const int signal_number : {SIGINT, SIGTERM}) {
+    SimulatorProcess simulator;
+    simulator.process().close_input();
+    const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
+    Bench bench;
+    EXPECT_TRUE(bench.poll_for_reading(*sensor));
+    EXPECT_EQ(simulator.process().end(signal_number), 0);
+  }
+}
+
+TEST(SimulatorProgram, RefusesACommandLineThatItCannotUse) {
+  const auto run = [](std::vector<std::string> command) {
+    command.insert(command.begin(), {YURAGI_SIM_PROGRAM, "modbus"});
+    ChildProcess process(command);
+    const std::string text = process.rest();
+    return std::pair(process.wait(), text);
+  };
+  EXPECT_THAT(run({"--tcp", "nowhere"}), testing::Pair(64, HasSubstr("allowed: HOST:PORT")));
+  EXPECT_THAT(run({"--profile", "x"}), testing::Pair(64, HasSubstr("renke-rs-fsjt-rs-fxjt-n01")));
+  EXPECT_THAT(run({"--fault", "silence"}), testing::Pair(64, HasSubstr("KIND@START+DURATION")));
+  SimulatorProcess first;
+  EXPECT_THAT(run({"--tcp", "127.0.0.1:" + first.port()}), testing::Pair(69, HasSubstr("cannot listen on")));
+}
+
+TEST(MbpollAndSimulator, AgreeOnRegistersAndExceptions) {
+  if (!std::filesystem::exists("/usr/bin/mbpoll")) GTEST_SKIP() << "mbpoll is not installed";
+  SimulatorProcess simulator({"--speed", "7", "--direction", "123", "--turbulence", "0"});
+  const auto ask = [&](const std::string& slave, const std::string& from, const std::string& count) {
+    ChildProcess mbpoll({"/usr/bin/mbpoll", "-m", "tcp", "-p", simulator.port(), "-a", slave, "-r", from, "-c", count,
+                         "-t", "4", "-1", "-q", "127.0.0.1"});
+    return mbpoll.rest();
+  };
+  EXPECT_THAT(ask("1", "1", "1"), testing::ContainsRegex("\\[1\\]:[ \t]+70"));
+  EXPECT_THAT(ask("2", "1", "2"), testing::ContainsRegex("\\[2\\]:[ \t]+123"));
+  EXPECT_THAT(ask("1", "2", "1"), HasSubstr("Illegal data address"));
+}
+
+/// A pymodbus server, or why there is none.
+class PymodbusServer {
+ public:
+  explicit PymodbusServer(const std::vector<std::string>& arguments)
+      : process_([&] {
+          std::vector<std::string> command = {"/usr/bin/python3",
+                                              YURAGI_SOURCE_DIR "/tests/simulators/pymodbus_server.py"};
+          command.insert(command.end(), arguments.begin(), arguments.end());
+          return command;
+        }()) {
+    listening_on = process_.line_after("listening on ");
+  }
+  std::string listening_on;
+
+  static bool is_installed() {
+    ChildProcess python({"/usr/bin/python3", "-c", "import pymodbus.server.async_io"});
+    return python.wait() == 0;
+  }
+
+ private:
+  ChildProcess process_;
+};
+
+TEST(DriverAndPymodbus, AgreeOverTcp) {
+  if (!PymodbusServer::is_installed()) GTEST_SKIP() << "python3-pymodbus is not installed";
+  const PymodbusServer server({"tcp", "56", "225"});
+  const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(server.listening_on)}}, {"response_timeout", 5.0}});
+  Bench bench;
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(bench.poll_for_reading(*sensor));
+  EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 5.6, 1e-9);
+  EXPECT_EQ(bench.sink.readings.back().direction_deg, 225.0);
+  EXPECT_TRUE(bench.sink.refusals.empty());
+}
+
+TEST(DriverAndPymodbus, AgreeOverASerialLine) {
+  if (!PymodbusServer::is_installed()) GTEST_SKIP() << "python3-pymodbus is not installed";
+  const SerialBus bus({}, true);
+  const PymodbusServer server({bus.another_device(), "56", "225"});
+  const auto sensor =
+      open_sensor({{"transport", std::string("rtu")}, {"device", bus.device()}, {"response_timeout", 5.0}});
+  Bench bench;
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(bench.poll_for_reading(*sensor));
+  EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 5.6, 1e-9);
+  EXPECT_EQ(bench.sink.readings.back().direction_deg, 225.0);
+  EXPECT_TRUE(bench.sink.refusals.empty());
+}
+
+}  // namespace
+}  // namespace yuragi

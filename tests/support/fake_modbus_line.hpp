@@ -1,0 +1,82 @@
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "drivers/bus/modbus_connection.hpp"
+
+namespace yuragi {
+
+/// A line without a device: the test says what comes of each request.
+struct FakeLine {
+  bool can_open = true;
+  std::vector<ModbusRequest> requests;
+  int opened = 0;
+  int resynchronised = 0;
+  bool interrupted = false;
+  /// What a request brings, message after message; silence when they are used up.
+  std::function<std::deque<BusStatus>(const ModbusRequest&)> statuses;
+  std::function<std::vector<std::uint8_t>(const ModbusRequest&)> message;
+};
+
+/// A whole answer to `request`, on TCP.
+inline std::vector<std::uint8_t> answer_with(const ModbusRequest& request,
+                                             const std::vector<std::uint16_t>& registers) {
+  std::vector<std::uint8_t> bytes = {static_cast<std::uint8_t>(request.transaction >> 8U),
+                                     static_cast<std::uint8_t>(request.transaction & 0xFFU),
+                                     0,
+                                     0,
+                                     0,
+                                     static_cast<std::uint8_t>(3 + 2 * registers.size()),
+                                     request.unit,
+                                     request.function,
+                                     static_cast<std::uint8_t>(2 * registers.size())};
+  for (const std::uint16_t value : registers) {
+    bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
+    bytes.push_back(static_cast<std::uint8_t>(value & 0xFFU));
+  }
+  return bytes;
+}
+
+/// The connection to it.
+class FakeConnection final : public ModbusConnection {
+ public:
+  explicit FakeConnection(FakeLine& line) : line_(line) {}
+
+  Result<void, Failure> open() override {
+    ++line_.opened;
+    if (!line_.can_open) return Failure{"cannot open the fake"};
+    is_open_ = true;
+    return {};
+  }
+  bool is_open() const noexcept override { return is_open_; }
+  void close() noexcept override { is_open_ = false; }
+  bool send(const ModbusRequest& request) override {
+    line_.requests.push_back(request);
+    coming_ = line_.statuses(request);
+    return true;
+  }
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer) override {
+    if (coming_.empty()) return {BusStatus::kSilence};
+    const BusStatus status = coming_.front();
+    coming_.pop_front();
+    if (status != BusStatus::kMessage) return {status};
+    const auto bytes = line_.message(line_.requests.back());
+    std::ranges::copy(bytes, buffer.begin());
+    return {status, bytes.size()};
+  }
+  void resynchronise() override {
+    ++line_.resynchronised;
+    close();
+  }
+  void interrupt() noexcept override { line_.interrupted = true; }
+
+ private:
+  FakeLine& line_;
+  bool is_open_ = false;
+  std::deque<BusStatus> coming_;
+};
+
+}  // namespace yuragi

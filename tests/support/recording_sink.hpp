@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "drivers/sensor.hpp"
+
+namespace yuragi {
+
+/// Keeps whatever a sensor says.
+struct RecordingSink final : SensorSink {
+  struct Link {
+    LinkState state;
+    std::string detail;
+  };
+
+  std::vector<WindReading> readings;
+  std::vector<Refusal> refusals;
+  std::vector<Link> links;
+
+  void reading(const WindReading& reading) override { readings.push_back(reading); }
+  void refused(Refusal why) override { refusals.push_back(why); }
+  void link(LinkState state, std::string_view detail) override { links.push_back({state, std::string(detail)}); }
+
+  std::ptrdiff_t count(Refusal why) const { return std::ranges::count(refusals, why); }
+  LinkState last_state() const { return links.empty() ? LinkState::kConnecting : links.back().state; }
+  std::string last_detail() const { return links.empty() ? "" : links.back().detail; }
+};
+
+}  // namespace yuragi

@@ -1,0 +1,96 @@
+# Stages of a test run, shared by tests/run.sh and .ci/run, which source it from the project's root.
+# A stage is something that passes or fails tests; its figures add up, and finish() prints the sum as the last line.
+
+passed=0
+failed=0
+skipped=0
+stage_times=()
+
+# Nothing here asks a question: no test may wait for a keyboard.
+exec </dev/null
+
+# stage NAME COMMAND...: runs the command, says how long it took, and goes on whatever came of it.
+stage() {
+  local name=$1 started=$SECONDS
+  shift
+  echo "== $name"
+  "$@" || true
+  stage_times+=("$(printf '%-16s %5d s' "$name" $((SECONDS - started)))")
+}
+
+# add PASSED FAILED SKIPPED
+add() {
+  passed=$((passed + $1))
+  failed=$((failed + $2))
+  skipped=$((skipped + $3))
+}
+
+# check WHAT COMMAND...: a stage's step that counts as one failed test if it fails, and is otherwise not counted.
+check() {
+  local what=$1
+  shift
+  "$@" && return
+  echo "FAILED: $what" >&2
+  add 0 1 0
+  return 1
+}
+
+# count_results FILE: "PASSED FAILED SKIPPED" of CTest's JUnit file. CTest also calls skipped what could not be started
+# (a missing program, a failed fixture): that is a failure here.
+count_results() {
+  /usr/bin/python3 - "$1" <<'PYTHON'
+import sys
+import xml.etree.ElementTree
+
+counts = [0, 0, 0]
+for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
+    reason = case.find("skipped")
+    asked_to_skip = reason is not None and reason.get("message", "").startswith("SKIP_")
+    if case.get("status") == "run":
+        counts[0] += 1
+    elif case.get("status") == "disabled" or asked_to_skip:
+        counts[2] += 1
+    else:
+        counts[1] += 1
+print(*counts)
+PYTHON
+}
+
+# collect WHAT RESULTS STATUS: adds up CTest's results, given its exit code.
+collect() {
+  local what=$1 results=$2 status=$3 counts failed_before=$failed
+  if ! counts=$(count_results "$results"); then
+    check "$what left no results" false
+    return
+  fi
+  # shellcheck disable=SC2086  # three words
+  add $counts
+  # A complaint that stands in no test's result: no test matched, say.
+  if [ "$status" -ne 0 ] && [ "$failed" -eq "$failed_before" ]; then
+    check "$what ended with exit code $status" false
+  fi
+}
+
+# test_preset PRESET [CTEST ARGUMENT...]: configures, builds and tests a preset of CMakePresets.json.
+test_preset() {
+  local preset=$1 results=$PWD/build/$1/results.xml status=0
+  shift
+  rm -f "$results"
+  check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
+  check "building $preset" cmake --build --preset "$preset" || return
+  ctest --preset "$preset" --parallel "$(nproc)" --output-junit "$results" "$@" || status=$?
+  collect "ctest of $preset" "$results" "$status"
+}
+
+# finish: the times where there were several stages, and the closing line. Fails if anything failed or nothing ran.
+finish() {
+  local line="$passed passed, $failed failed"
+  [ "$skipped" -eq 0 ] || line+=", $skipped skipped"
+  if [ ${#stage_times[@]} -gt 1 ]; then
+    printf '%s\n' "${stage_times[@]}"
+    printf '%-16s %5d s\n' total "$SECONDS"
+  fi
+  [ "$((passed + failed))" -gt 0 ] || echo "no test ran" >&2
+  echo "$line"
+  [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+}

@@ -1,0 +1,233 @@
+// The real program, drawing under a virtual X server. What it writes is looked at as a person would: sky above, grass
+// below, and the grass leans.
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <numeric>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <stb_image.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/viewer/test_meadow.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr int kWidth_px = 480;
+constexpr int kHeight_px = 270;
+
+struct Rgb {
+  double r = 0.0;
+  double g = 0.0;
+  double b = 0.0;
+  double brightness() const { return (r + g + b) / 3.0; }
+};
+
+class Picture {
+ public:
+  explicit Picture(const std::filesystem::path& file)
+      : pixels_(stbi_load(file.c_str(), &width_, &height_, nullptr, 3), stbi_image_free) {}
+
+  bool is_there() const { return pixels_ != nullptr; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  Rgb mean(double from_top, double to_bottom) const {
+    Rgb sum;
+    const int first = static_cast<int>(from_top * height_);
+    const int last = static_cast<int>(to_bottom * height_);
+    for (int y = first; y < last; ++y) {
+      for (int x = 0; x < width_; ++x) {
+        const auto* at = pixels_.get() + 3 * (y * width_ + x);
+        sum.r += at[0];
+        sum.g += at[1];
+        sum.b += at[2];
+      }
+    }
+    const double count = static_cast<double>(last - first) * width_;
+    return {sum.r / count, sum.g / count, sum.b / count};
+  }
+
+  /// Mean absolute difference of two pictures' pixels, 0 to 255.
+  double difference(const Picture& other) const {
+    double sum = 0.0;
+    const int count = 3 * width_ * height_;
+    for (int i = 0; i < count; ++i) sum += std::abs(pixels_.get()[i] - other.pixels_.get()[i]);
+    return sum / count;
+  }
+
+  /// How many times as much the brightness changes from row to row as from column to column: upright blades make it
+  /// small.
+  double slant(double from_top, double to_bottom) const {
+    double across = 0.0;
+    double down = 0.0;
+    for (int y = static_cast<int>(from_top * height_); y < static_cast<int>(to_bottom * height_) - 1; ++y) {
+      for (int x = 0; x + 1 < width_; ++x) {
+        across += std::abs(green(x + 1, y) - green(x, y));
+        down += std::abs(green(x, y + 1) - green(x, y));
+      }
+    }
+    return down / across;
+  }
+
+ private:
+  int green(int x, int y) const { return pixels_.get()[3 * (y * width_ + x) + 1]; }
+
+  int width_ = 0;
+  int height_ = 0;
+  std::unique_ptr<stbi_uc, void (*)(void*)> pixels_;
+};
+
+struct Ended {
+  int code = -1;
+  std::string said;  // on standard error
+};
+
+/// Runs a program with these arguments to its end.
+Ended run(std::vector<std::string> words, const std::filesystem::path& folder,
+          std::vector<std::string> environment = {}) {
+  const std::filesystem::path said = folder / "said";
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::vector<char*> variables;
+  for (std::string& variable : environment) variables.push_back(variable.data());
+  variables.push_back(nullptr);
+
+  pid_t child = 0;
+  const int failed = posix_spawnp(&child, words[0].c_str(), &actions, nullptr, arguments.data(),
+                                  environment.empty() ? environ : variables.data());
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return {};
+  int status = 0;
+  waitpid(child, &status, 0);
+  std::ostringstream text;
+  text << std::ifstream(said).rdbuf();
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+}
+
+/// Streams one pose of a meadow to whoever comes, while the viewer takes a picture of it.
+class PictureTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("yuragi-picture-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::vector<std::string> viewer(std::uint16_t port, const std::string& file) const {
+    return {"xvfb-run",
+            "-a",
+            "-s",
+            "-screen 0 640x480x24",
+            YURAGI_VIEWER_PROGRAM,
+            "--connect",
+            "127.0.0.1:" + std::to_string(port),
+            "--size",
+            std::to_string(kWidth_px) + "x" + std::to_string(kHeight_px),
+            "--screenshot",
+            (folder_ / file).string()};
+  }
+
+  std::unique_ptr<Picture> take(const std::string& file, double lean_rad, std::vector<std::string> more = {}) const {
+    // From the greeting on the meadow stands still: the picture is of this pose, whenever it is taken.
+    const Skeleton meadow = test_meadow(60, 6.0);
+    wire::FrameEncoder encoder;
+    wire::Bytes greeting = greeting_for(meadow);
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      greeting = greeting + frame_of(meadow, test_pose(meadow, 0.0, lean_rad, 0.0, 140.0), i,
+                                     0.1 * static_cast<double>(i), 140.0, encoder);
+    }
+    const StreamServer server(greeting);
+    std::vector<std::string> words = viewer(server.port(), file);
+    for (std::string& word : more) words.push_back(std::move(word));
+    const Ended ended = run(words, folder_);
+    EXPECT_EQ(ended.code, 0) << ended.said;
+    EXPECT_THAT(ended.said, testing::Not(testing::HasSubstr("OpenGL")));
+    return std::make_unique<Picture>(folder_ / file);
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(PictureTest, ShowsSkyAboveAndGreenBelow) {
+  const auto picture = take("upright.png", 0.0, {"--frames", "3"});
+  ASSERT_TRUE(picture->is_there());
+  EXPECT_EQ(picture->width(), kWidth_px);
+  EXPECT_EQ(picture->height(), kHeight_px);
+
+  // Evening light is warm on both; the grass has hardly any blue, and shade between its blades.
+  const Rgb sky = picture->mean(0.0, 0.2);
+  EXPECT_GT(sky.brightness(), 100.0);
+  EXPECT_GT(sky.b, 0.8 * sky.g);
+  const Rgb grass = picture->mean(0.6, 1.0);
+  EXPECT_GT(grass.g, 40.0);
+  EXPECT_GT(grass.g, 0.9 * grass.r);
+  EXPECT_GT(grass.g, 2.0 * grass.b);
+  EXPECT_LT(grass.brightness(), 0.8 * sky.brightness());
+}
+
+TEST_F(PictureTest, ShowsThatTheGrassLeans) {
+  const auto upright = take("upright.png", 0.0, {"--frames", "2"});
+  const auto again = take("again.png", 0.0, {"--frames", "4"});
+  const auto leaning = take("leaning.png", 1.1, {"--frames", "2"});
+  ASSERT_TRUE(upright->is_there() && again->is_there() && leaning->is_there());
+  EXPECT_LT(upright->difference(*again), 0.1);
+  EXPECT_GT(upright->difference(*leaning), 10.0);
+  EXPECT_GT(leaning->slant(0.6, 1.0), 1.2 * upright->slant(0.6, 1.0));
+}
+
+TEST_F(PictureTest, DrawsTheOverlayWhenAsked) {
+  const auto without = take("without.png", 0.3, {"--frames", "2"});
+  const auto with = take("with.png", 0.3, {"--frames", "2", "--overlay", "--samples", "1", "--camera", "225,7,4"});
+  ASSERT_TRUE(without->is_there() && with->is_there());
+  EXPECT_GT(without->difference(*with), 1.0);
+}
+
+TEST_F(PictureTest, EndsWith69WhenNoDaemonAnswers) {
+  std::uint16_t port = 0;
+  { port = StreamServer({}).port(); }
+  std::vector<std::string> words = viewer(port, "none.png");
+  words.insert(words.end(), {"--wait", "0.3"});
+  const Ended ended = run(words, folder_);
+  EXPECT_EQ(ended.code, 69);
+  EXPECT_THAT(ended.said, testing::HasSubstr("yuragi run"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none.png"));
+}
+
+TEST_F(PictureTest, EndsWith73WhenThePictureCannotBeWritten) {
+  const Skeleton meadow = test_meadow(4, 1.0);
+  wire::FrameEncoder encoder;
+  const StreamServer server(greeting_for(meadow) +
+                            frame_of(meadow, test_pose(meadow, 0.0, 0.0, 0.0, 0.0), 1, 0.1, 0.0, encoder));
+  std::vector<std::string> words = viewer(server.port(), "no/such/folder/picture.png");
+  words.insert(words.end(), {"--frames", "1"});
+  EXPECT_EQ(run(words, folder_).code, 73);
+}
+
+TEST_F(PictureTest, EndsWith69AndSaysWhatToDoWhereThereIsNoDisplay) {
+  const Ended ended = run({YURAGI_VIEWER_PROGRAM}, folder_, {"PATH=/usr/bin:/bin"});
+  EXPECT_EQ(ended.code, 69);
+  EXPECT_THAT(ended.said, testing::HasSubstr("xvfb-run -a yuragi-viewer"));
+}
+
+TEST_F(PictureTest, EndsWith64ForAWrongCommandLine) {
+  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--size", "12"}, folder_).code, 64);
+  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--connect", "here:there"}, folder_).code, 64);
+  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--camera", "1,2"}, folder_).code, 64);
+  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--help"}, folder_).code, 0);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+/// A server on loopback that says what a test tells it to say. It reads each client's Subscribe and nothing more.
+/// Thread-safe: yes. Sending never waits; what a slow client does not read is kept.
+class StreamServer {
+ public:
+  /// `port` 0 takes any free one. `greeting` is what each client hears at once: bytes, whatever they are.
+  explicit StreamServer(wire::Bytes greeting, std::uint16_t port = 0);
+  ~StreamServer();
+  StreamServer(const StreamServer&) = delete;
+  StreamServer& operator=(const StreamServer&) = delete;
+
+  std::uint16_t port() const { return port_; }
+
+  /// To every client that has subscribed.
+  void send(wire::Bytes bytes);
+
+  /// Closes every connection; goes on listening.
+  void cut();
+
+  /// Waits (up to half a minute) until as many subscriptions as this have come in all.
+  bool wait_for_subscriptions(std::size_t count);
+
+ private:
+  struct Client;
+  void accept();
+  void read_subscription(const std::shared_ptr<Client>& client);
+  void write_next(const std::shared_ptr<Client>& client);
+
+  wire::Bytes greeting_;
+  boost::asio::io_context context_{1};
+  boost::asio::ip::tcp::acceptor acceptor_;
+  std::uint16_t port_ = 0;
+  std::list<std::shared_ptr<Client>> clients_;
+
+  std::mutex mutex_;
+  std::condition_variable subscribed_;
+  std::size_t subscriptions_ = 0;
+
+  std::thread thread_;
+};
+
+/// One message after another.
+wire::Bytes operator+(wire::Bytes a, const wire::Bytes& b);
+
+}  // namespace yuragi

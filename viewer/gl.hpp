@@ -1,0 +1,93 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+
+#include <epoxy/gl.h>
+
+namespace yuragi {
+
+// OpenGL objects that delete themselves. All of this needs a current context of at least 3.3 core, on its thread.
+
+/// Owns one OpenGL object of a kind; movable. Kind::make() and Kind::unmake(name) are the GL calls.
+template <class Kind>
+class GlObject {
+ public:
+  GlObject() : name_(Kind::make()) {}
+  ~GlObject() {
+    if (name_ != 0) Kind::unmake(name_);
+  }
+  GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  GlObject(const GlObject&) = delete;
+  GlObject& operator=(const GlObject&) = delete;
+
+  GLuint name() const { return name_; }
+
+ private:
+  GLuint name_;
+};
+
+struct GlBufferKind {
+  static GLuint make();
+  static void unmake(GLuint name);
+};
+struct GlTextureKind {
+  static GLuint make();
+  static void unmake(GLuint name);
+};
+struct GlVertexArrayKind {
+  static GLuint make();
+  static void unmake(GLuint name);
+};
+struct GlFramebufferKind {
+  static GLuint make();
+  static void unmake(GLuint name);
+};
+struct GlRenderbufferKind {
+  static GLuint make();
+  static void unmake(GLuint name);
+};
+struct GlProgramKind {
+  static GLuint make();
+  static void unmake(GLuint name);
+};
+
+using GlBuffer = GlObject<GlBufferKind>;
+using GlTexture = GlObject<GlTextureKind>;
+using GlVertexArray = GlObject<GlVertexArrayKind>;
+using GlFramebuffer = GlObject<GlFramebufferKind>;
+using GlRenderbuffer = GlObject<GlRenderbufferKind>;
+using GlProgram = GlObject<GlProgramKind>;
+
+/// Where a program finds the block of uniforms that all looks share (view.hpp).
+inline constexpr GLuint kViewBinding = 0;
+
+/// Compiles and links. Each stage begins with #version and shaders/common.glsl; `name` stands in front of the
+/// compiler's words when it throws std::runtime_error. The uniform block View is bound to kViewBinding.
+GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
+
+/// Sets a sampler of `program` to a texture unit. Unknown names are ignored, as the compiler may drop what is not used.
+void set_sampler(const GlProgram& program, const char* name, GLint unit);
+
+/// Puts new content into a buffer that is drawn from every frame; the old one may still be in use by the GPU.
+template <class T>
+void stream_to(GLenum target, const GlBuffer& buffer, std::span<const T> content) {
+  glBindBuffer(target, buffer.name());
+  glBufferData(target, static_cast<GLsizeiptr>(content.size_bytes()), content.data(), GL_STREAM_DRAW);
+}
+
+/// Is there no graphics hardware, but a driver that computes every pixel on the processor?
+bool is_software_renderer();
+
+/// From now on, what the driver complains of goes to standard error (KHR_debug; nothing where the driver has it not).
+void report_gl_errors();
+
+/// How many errors the driver has complained of since report_gl_errors(). For tests.
+int gl_error_count();
+
+}  // namespace yuragi

@@ -1,0 +1,42 @@
+#include "viewer/landscape.hpp"
+
+#include "viewer/noise_texture.hpp"
+#include "viewer/shaders.hpp"
+
+namespace yuragi {
+namespace {
+
+// As the shaders count.
+constexpr GLsizei kHillSteps = 2160;
+constexpr GLsizei kHillLines = 3;
+constexpr GLsizei kSkyColumns = 40;
+constexpr GLsizei kSkyRows = 24;
+
+}  // namespace
+
+Landscape::Landscape()
+    : noise_(make_noise_texture()),
+      ground_(link_program("ground", shaders::kGroundVert, shaders::kGroundFrag)),
+      hills_(link_program("hills", shaders::kHillsVert, shaders::kHillsFrag)),
+      sky_(link_program("sky", shaders::kSkyVert, shaders::kSkyFrag)) {
+  set_sampler(ground_, "noise_tile", 0);
+  set_sampler(sky_, "noise_tile", 0);
+}
+
+void Landscape::draw() {
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, noise_.name());
+  glBindVertexArray(no_attributes_.name());
+  glUseProgram(ground_.name());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+
+  // From near to far; the sky is at the far end of the depths.
+  glUseProgram(hills_.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kHillSteps + 1), kHillLines);
+  glDepthFunc(GL_LEQUAL);
+  glUseProgram(sky_.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kSkyColumns + 1), kSkyRows);
+  glDepthFunc(GL_LESS);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,43 @@
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "viewer/viewer.hpp"
+#include "viewer/viewer_exit.hpp"
+
+namespace {
+
+std::atomic<bool> is_stopping{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+int run(int argc, char** argv) {
+  using namespace yuragi;
+  CLI::App app{"Shows what a Yuragi daemon streams: grass (and whatever else there is) in the wind.", "yuragi-viewer"};
+  app.set_version_flag("--version", "yuragi-viewer " YURAGI_VERSION);
+  ViewerOptions options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : EX_USAGE;
+  }
+
+  std::signal(SIGINT, [](int) { is_stopping = true; });
+  std::signal(SIGTERM, [](int) { is_stopping = true; });
+  Viewer(options, is_stopping).run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const yuragi::ViewerExit& error) {
+    std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
+    return error.code();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
+    return EX_SOFTWARE;
+  }
+}

@@ -1,0 +1,81 @@
+#include "viewer/options.hpp"
+
+#include <charconv>
+
+namespace yuragi {
+namespace {
+
+constexpr int kMaxSide_px = 16384;
+
+/// "1280x720" taken apart; what is wrong with it, or an empty text.
+std::string read_size(const std::string& text, ViewerOptions& options) {
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, options.width_px);
+  if (width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x') {
+    const auto height = std::from_chars(width.ptr + 1, end, options.height_px);
+    if (height.ec == std::errc{} && height.ptr == end && options.width_px >= 16 && options.height_px >= 16 &&
+        options.width_px <= kMaxSide_px && options.height_px <= kMaxSide_px) {
+      return {};
+    }
+  }
+  return "'" + text + "' is not a size: give WIDTHxHEIGHT in pixels, such as 1920x1080";
+}
+
+}  // namespace
+
+void add_options(CLI::App& app, ViewerOptions& options) {
+  app.add_option("--connect", options.connect, "The daemon whose stream to show, HOST:PORT")->capture_default_str();
+  app.add_option("--size", options.size, "Size of the window or picture, WIDTHxHEIGHT in pixels")
+      ->capture_default_str()
+      ->check([&options](const std::string& text) { return read_size(text, options); });
+  app.add_option(
+         "--samples", options.samples,
+         "Samples a pixel against jagged edges: 4 where it is left out, or 1 in a window without graphics hardware")
+      ->check(CLI::Range(1, 16));
+  app.add_flag("--overlay,!--no-overlay", options.overlay,
+               "Wind, sensors and stream over the picture (in windows: yes)");
+  app.add_flag("--fullscreen", options.is_fullscreen, "Fill the screen");
+  app.add_option("--monitor", options.monitor, "Which screen to fill, counted from 0")->check(CLI::NonNegativeNumber);
+  app.add_flag("--turn", options.is_turning, "Let the camera go round slowly");
+  app.add_option(
+         "--camera", options.camera,
+         "HEADING,PITCH,DISTANCE: where the camera looks to (degrees, 0 north, 90 east), how far down (degrees), "
+         "and from how far (metres); chosen to suit the scene where it is left out")
+      ->delimiter(',')
+      ->expected(3);
+
+  const std::string picture = "Write a picture instead of opening a window";
+  auto* const screenshot =
+      app.add_option("--screenshot", options.screenshot, "Write what there is to see to FILE.png, and end")
+          ->group(picture);
+  app.add_option("--frames", options.frames, "Take the picture after this many were drawn with a pose from the stream")
+      ->needs(screenshot)
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000))
+      ->group(picture);
+  app.add_option("--at", options.at_s, "Take it this many seconds after the first pose came")
+      ->needs(screenshot)
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(picture);
+  app.add_option("--wait", options.wait_s, "Give up when no pose has come after so many seconds")
+      ->needs(screenshot)
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(picture);
+
+  app.footer(
+      "In the window: drag to turn (left button) or move (right), scroll to go nearer; R first view, T turn slowly,\n"
+      "H overlay, F11 full screen, Esc or Q quit. The stream may stop and come back: the picture goes on.\n"
+      "\n"
+      "Examples:\n"
+      "  yuragi run &                                    the daemon, with its own wind\n"
+      "  yuragi-viewer                                   watch it\n"
+      "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
+      "  xvfb-run -a yuragi-viewer --screenshot now.png  a picture, on a machine without a screen\n"
+      "\n"
+      "Ends with 0; 64 for a wrong command line; 69 where no daemon answers or there is no display; 73 where the "
+      "picture\n"
+      "cannot be written.");
+}
+
+}  // namespace yuragi

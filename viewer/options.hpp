@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace yuragi {
+
+/// What the command line says.
+struct ViewerOptions {
+  std::string connect = "127.0.0.1:7410";
+  std::string size = "1280x720";
+  int width_px = 1280;
+  int height_px = 720;
+  std::optional<int> samples;   ///< unset: as many as suit the graphics hardware
+  std::optional<bool> overlay;  ///< unset: in windows yes, in pictures no
+  bool is_fullscreen = false;
+  std::optional<int> monitor;
+  bool is_turning = false;
+  std::vector<double> camera;  ///< heading_deg, pitch_deg, distance_m; empty: chosen
+  std::string screenshot;      ///< a file; empty: a window
+  int frames = 30;
+  std::optional<double> at_s;
+  double wait_s = 10.0;
+};
+
+/// Declares the options; app.parse() fills `options`, which must outlive it.
+void add_options(CLI::App& app, ViewerOptions& options);
+
+}  // namespace yuragi

@@ -1,0 +1,198 @@
+#include "viewer/overlay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "engine/base/units.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr ImU32 kInk = IM_COL32(250, 248, 240, 255);
+constexpr ImU32 kFaint = IM_COL32(250, 248, 240, 110);
+constexpr ImU32 kArrow = IM_COL32(255, 214, 120, 255);
+const ImVec4 kQuiet(0.98F, 0.97F, 0.94F, 0.66F);
+const ImVec4 kGood(0.62F, 0.90F, 0.52F, 1.0F);
+const ImVec4 kWarn(1.0F, 0.78F, 0.36F, 1.0F);
+
+constexpr double kArrowFullSpeed_m_s = 12.0;  // as long as the compass is wide
+
+/// A font that most systems have; otherwise ImGui's own.
+void load_font(double scale) {
+  constexpr std::array kFonts = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                                 "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+                                 "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
+  for (const char* file : kFonts) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error)) {
+      ImGui::GetIO().Fonts->AddFontFromFileTTF(file, static_cast<float>(15.0 * scale));
+      return;
+    }
+  }
+  ImFontConfig config;
+  config.SizePixels = static_cast<float>(std::round(13.0 * scale));
+  ImGui::GetIO().Fonts->AddFontDefault(&config);
+}
+
+void write(const std::string& text) {
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+}
+void write(const ImVec4& color, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  write(text);
+  ImGui::PopStyleColor();
+}
+
+const char* point_of_compass(double direction_deg) {
+  constexpr std::array kPoints = {"N", "NE", "E", "SE", "S", "SW", "W", "NW"};
+  return kPoints[static_cast<std::size_t>(std::lround(direction_deg / 45.0)) % kPoints.size()];
+}
+
+/// A rose that turns with the camera, and an arrow the way the wind blows.
+void draw_compass(const WindState& wind, double heading_deg, float radius) {
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 center(corner.x + radius, corner.y + radius);
+  ImGui::Dummy(ImVec2(2.0F * radius, 2.0F * radius));
+  const auto at = [&](double bearing_deg, float reach) {
+    const auto angle = static_cast<float>((bearing_deg - heading_deg) * kRadPerDeg);
+    return ImVec2(center.x + reach * std::sin(angle), center.y - reach * std::cos(angle));
+  };
+
+  list->AddCircle(center, radius * 0.98F, kFaint, 48, 1.2F);
+  for (int mark = 0; mark < 16; ++mark) {
+    const double bearing_deg = 22.5 * mark;
+    list->AddLine(at(bearing_deg, radius * (mark % 4 == 0 ? 0.84F : 0.91F)), at(bearing_deg, radius * 0.98F), kFaint,
+                  1.2F);
+  }
+  for (const auto& [bearing_deg, letter] :
+       {std::pair{0.0, "N"}, std::pair{90.0, "E"}, std::pair{180.0, "S"}, std::pair{270.0, "W"}}) {
+    const ImVec2 size = ImGui::CalcTextSize(letter);
+    const ImVec2 middle = at(bearing_deg, radius * 0.68F);
+    list->AddText(ImVec2(middle.x - size.x / 2, middle.y - size.y / 2), bearing_deg == 0.0 ? kInk : kFaint, letter);
+  }
+
+  // The arrow's length is the speed.
+  const double speed_m_s = speed_of(wind.wind);
+  const double toward_deg = direction_from_deg(wind.wind) + 180.0;
+  const float reach = radius * static_cast<float>(0.16 + 0.68 * std::min(1.0, speed_m_s / kArrowFullSpeed_m_s));
+  if (speed_m_s < 0.05) {
+    list->AddCircleFilled(center, radius * 0.06F, kArrow);
+    return;
+  }
+  const ImVec2 tip = at(toward_deg, reach);
+  const auto beside = [&](double turn_deg, float back) {
+    const auto angle = static_cast<float>((toward_deg - heading_deg + turn_deg) * kRadPerDeg);
+    return ImVec2(tip.x - back * std::sin(angle), tip.y + back * std::cos(angle));
+  };
+  list->AddLine(at(toward_deg + 180.0, reach), beside(0.0, radius * 0.16F), kArrow, radius * 0.07F);
+  list->AddTriangleFilled(tip, beside(26.0, radius * 0.30F), beside(-26.0, radius * 0.30F), kArrow);
+}
+
+void write_wind(const OverlayFacts& facts, float scale) {
+  draw_compass(facts.wind, facts.heading_deg, 44.0F * scale);
+  ImGui::SameLine(0.0F, 14.0F * scale);
+  ImGui::BeginGroup();
+  const double direction_deg = direction_from_deg(facts.wind.wind);
+  ImGui::SetWindowFontScale(1.5F);
+  write(fmt::format("{:.1f} m/s", speed_of(facts.wind.wind)));
+  ImGui::SetWindowFontScale(1.0F);
+  write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, point_of_compass(direction_deg)));
+  switch (facts.wind.source) {
+    case WindSource::kLive:
+      write(kGood, "live sensor");
+      break;
+    case WindSource::kHandover:
+      write(kWarn, fmt::format("handing over, {:.0f} % live", 100.0 * facts.wind.live_weight));
+      break;
+    case WindSource::kDefault:
+      write(kQuiet, "default wind, no sensor");
+      break;
+  }
+  ImGui::EndGroup();
+}
+
+void write_sensor(const wire::SensorStatus& sensor) {
+  constexpr std::array kHealth = {"silent", "live", "stale"};  // as wire.hpp numbers them
+  const bool is_live = sensor.health == 1;
+  const char* const health = sensor.health < kHealth.size() ? kHealth[sensor.health] : "unknown";
+  std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, health);
+  if (sensor.speed_m_s) text += fmt::format(", {:.1f} m/s", *sensor.speed_m_s);
+  if (sensor.direction_deg) text += fmt::format(" from {:.0f}\u00b0", *sensor.direction_deg);
+  if (sensor.simulated) text += ", simulated";
+  write(is_live ? kGood : kWarn, text);
+}
+
+void write_stream(const OverlayFacts& facts) {
+  switch (facts.playback) {
+    case Playback::kReplaying:
+      write(kWarn, "stream lost: replaying its last seconds");
+      break;
+    case Playback::kReturning:
+      write(kGood, "stream is back");
+      break;
+    case Playback::kNothing:
+      write(kQuiet, "no picture yet");
+      break;
+    case Playback::kLive:
+      break;
+  }
+  write(facts.stream.state == StreamState::kConnected ? kQuiet : kWarn, facts.stream.text);
+  write(kQuiet, fmt::format("{} nodes, {:.0f} pictures/s", facts.nodes, facts.pictures_per_s));
+}
+
+}  // namespace
+
+Overlay::Overlay(GLFWwindow* window, double content_scale) {
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // nothing is kept on disk
+  load_font(content_scale);
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 8.0F;
+  style.WindowBorderSize = 0.0F;
+  style.WindowPadding = ImVec2(14.0F, 12.0F);
+  style.ItemSpacing = ImVec2(8.0F, 5.0F);
+  style.ScaleAllSizes(static_cast<float>(content_scale));
+  style.Colors[ImGuiCol_WindowBg] = ImVec4(0.06F, 0.07F, 0.06F, 0.62F);
+  style.Colors[ImGuiCol_Text] = ImVec4(0.98F, 0.97F, 0.94F, 1.0F);
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+Overlay::~Overlay() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void Overlay::draw(const OverlayFacts& facts) {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+
+  const float margin = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos(ImVec2(margin, margin));
+  ImGui::Begin("wind", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
+  write_wind(facts, ImGui::GetFontSize() / 15.0F);
+  ImGui::Spacing();
+  if (facts.sensors != nullptr) {
+    for (const wire::SensorStatus& sensor : facts.sensors->sensors) write_sensor(sensor);
+  }
+  write_stream(facts);
+  ImGui::End();
+
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+}  // namespace yuragi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+
+#include "viewer/pose_timeline.hpp"
+#include "viewer/stream_connection.hpp"
+
+struct GLFWwindow;
+
+namespace yuragi {
+
+/// What the overlay tells.
+struct OverlayFacts {
+  WindState wind;
+  Playback playback = Playback::kNothing;
+  StreamStatus stream;
+  const wire::Sensors* sensors = nullptr;  ///< null: not heard yet
+  double pictures_per_s = 0.0;
+  std::size_t nodes = 0;
+  double heading_deg = 0.0;  ///< of the camera: up on the compass
+};
+
+/// Small texts over the picture: wind, sensors, stream. Takes no clicks. One at a time; its window's context is
+/// current.
+class Overlay {
+ public:
+  Overlay(GLFWwindow* window, double content_scale);
+  ~Overlay();
+  Overlay(const Overlay&) = delete;
+  Overlay& operator=(const Overlay&) = delete;
+
+  /// Draws over the framebuffer that is bound, of the window's size.
+  void draw(const OverlayFacts& facts);
+};
+
+}  // namespace yuragi

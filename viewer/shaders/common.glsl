@@ -1,0 +1,37 @@
+// In front of every shader: what all looks share. World: x east, y up, z south; metres. Light is linear until finish().
+
+layout(std140) uniform View {
+  mat4 to_clip;
+  vec4 eye_m;    // w: size of a pixel at one metre's distance
+  vec4 right;    // w: tangent of half the field of view, across
+  vec4 up;       // w: upright
+  vec4 forward;
+  vec4 to_sun;
+  vec4 field;    // x, z of the low and the high corner
+};
+
+const vec3 kSunLight = vec3(3.9, 2.55, 1.30);
+const vec3 kSkyLight = vec3(0.46, 0.55, 0.74);
+
+// The air along a unit direction, without clouds and hills: warm at the horizon, blue above, a glow around the sun.
+vec3 air_light(vec3 direction) {
+  float height = max(direction.y, 0.0);
+  vec3 light = mix(vec3(0.66, 0.49, 0.36), vec3(0.10, 0.22, 0.47), 1.0 - exp(-6.0 * height));
+  float near_sun = max(dot(direction, to_sun.xyz), 0.0);
+  float near_2 = near_sun * near_sun;
+  float near_8 = near_2 * near_2 * near_2 * near_2;
+  float near_32 = near_8 * near_8 * near_8 * near_8;
+  float near_96 = near_32 * near_32 * near_32;
+  float near_400 = near_96 * near_96 * near_96 * near_96;
+  return light + vec3(0.44, 0.20, 0.04) * near_8 + vec3(0.55, 0.36, 0.15) * near_96 + vec3(1.1, 0.85, 0.5) * near_400;
+}
+
+// How much of what stands so far away the air hides; none of what is near.
+float haze(float distance_m) { return 1.0 - exp(-max(distance_m - 3.0, 0.0) * 0.0075); }
+
+// From light to what a screen shows: a filmic shoulder and toe (K. Narkowicz 2015, "ACES filmic tone mapping curve"), and a
+// screen's curve, as a square root.
+vec3 finish(vec3 light) {
+  vec3 x = light * 0.62;
+  return sqrt(clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0));
+}

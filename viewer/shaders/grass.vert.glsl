@@ -1,0 +1,67 @@
+// A blade: a ribbon along a strand's joints, two vertices a joint, with its light. The joints come straight from the forward
+// kinematics, in blocks of 16 strands.
+uniform samplerBuffer joints;  // ((strand / 16 * links + link) * 3 + axis) * 16 + strand % 16
+uniform int links;
+uniform int rings;             // of vertices above the root: at most links; fewer where the blade is far away
+
+layout(location = 0) in vec4 root_width;    // metres
+layout(location = 1) in vec4 tint_facing;   // the tip's colour; the bearing of the blade's flat side, radians
+layout(location = 2) in uint strand;
+
+out vec3 shade;  // as the screen shows it: so small are blades that a vertex's is exact enough
+
+vec3 joint(int link) {
+  int at = ((int(strand) >> 4) * links + link) * 48 + (int(strand) & 15);
+  return vec3(texelFetch(joints, at).r, texelFetch(joints, at + 16).r, texelFetch(joints, at + 32).r);
+}
+
+void main() {
+  // This ring's joint, and the one below (for the root, the one above).
+  int ring = gl_VertexID >> 1;
+  float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+  int link = ring * links / rings;
+  int link_below = (ring - 1) * links / rings;
+  vec3 place = ring > 0 ? joint(link - 1) : root_width.xyz;
+  vec3 along = ring > 1 ? place - joint(link_below - 1) : (ring > 0 ? place : joint(links / rings - 1)) - root_width.xyz;
+  along = normalize(along);
+  float t = float(ring) / float(rings);
+
+  // The flat side faces where it grew to, half turned to the eye, so that no blade is seen edge-on.
+  vec3 to_eye = eye_m.xyz - place;
+  float distance_m = length(to_eye);
+  to_eye /= distance_m;
+  vec3 across_eye = normalize(cross(along, to_eye));
+  vec3 grown = vec3(cos(tint_facing.w), 0.0, sin(tint_facing.w));
+  grown *= dot(grown, across_eye) < 0.0 ? -1.0 : 1.0;
+  vec3 across = normalize(mix(across_eye, grown, 0.45));
+
+  // Widest above the foot, pointed at the tip; never thinner than what a pixel can show, but for the tip.
+  float half_width = 0.5 * root_width.w * (0.72 + 0.85 * t) * sqrt(1.0 - t) * (1.0 - 0.35 * t * t);
+  half_width = max(half_width, 0.42 * eye_m.w * distance_m * min(1.0, 4.0 * (1.0 - t)));
+  place += across * (side * half_width);
+  gl_Position = to_clip * vec4(place, 1.0);
+
+  // A blade is a shallow gutter: its two edges face a little apart.
+  vec3 normal = normalize(cross(across, along));
+  normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
+  normal = normalize(normal + across * (side * 0.55));
+
+  // Light: the sun from this side or through the blade, the sky, and a sheen along it, which is what shows the wind's waves.
+  float facing = dot(normal, to_sun.xyz);
+  float against = max(-dot(to_eye, to_sun.xyz), 0.0);
+  float deep = smoothstep(0.0, 1.0, t);                  // into the light, out of the shade of its neighbours
+  vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint_facing.rgb, 0.12 + 0.88 * t);
+  vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
+  vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.75 + 0.25 * normal.y);
+  sum += kSunLight * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
+  float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));
+  float sheen = sqrt(max(1.0 - sheen_side * sheen_side, 0.0));
+  sheen *= sheen;
+  sheen *= sheen;
+  sheen *= sheen;
+  sheen *= sheen;
+  sum += kSunLight * vec3(0.075, 0.078, 0.060) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+
+  vec3 air = air_light(normalize(vec3(-to_eye.x, 0.02, -to_eye.z)));
+  shade = finish(mix(sum, air, haze(distance_m)));
+}

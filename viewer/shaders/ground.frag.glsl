@@ -1,0 +1,26 @@
+// Short turf to the horizon; under the meadow, earth and stems in its shade.
+uniform sampler2D noise_tile;
+in vec3 place_m;
+out vec4 color;
+
+void main() {
+  vec3 from_eye = place_m - eye_m.xyz;
+  float distance_m = length(from_eye);
+  float broad = texture(noise_tile, place_m.xz * 0.023).r;
+  float fine = texture(noise_tile, mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz * 0.13 + 0.73).r;
+
+  // How far inside the field, with a ragged edge.
+  vec2 inside = min(place_m.xz - field.xy, field.zw - place_m.xz);
+  float in_field = smoothstep(-0.5, 0.3, min(inside.x, inside.y) + 0.8 * (fine - 0.5));
+
+  vec3 turf = mix(vec3(0.090, 0.135, 0.030), vec3(0.190, 0.180, 0.055), smoothstep(0.25, 0.8, broad));
+  turf *= 0.55 + 0.85 * fine * fine;
+  vec3 under = mix(vec3(0.020, 0.030, 0.009), vec3(0.060, 0.070, 0.020), fine);
+
+  // Low sun over turf: its blades are lit through when one looks toward it.
+  vec3 direction = from_eye / distance_m;
+  float against = max(dot(direction, to_sun.xyz), 0.0);
+  vec3 light = mix(turf * (kSkyLight * 0.8 + kSunLight * (0.30 + 0.55 * against * against)),
+                   under * (kSkyLight * 0.8 + kSunLight * 0.10), in_field);
+  color = vec4(finish(mix(light, air_light(vec3(direction.x, 0.02, direction.z)), haze(distance_m))), 1.0);
+}

@@ -1,0 +1,37 @@
+#pragma once
+
+namespace yuragi {
+
+/// Which moment of the sender's time line to show now, learnt from when frames arrive.
+///
+/// The quickest arrivals tell how far the two clocks stand apart; how much later the others come tells how far behind
+/// them to stay, besides 1.5 frame intervals, so that there is mostly a frame on either side of the moment shown.
+/// Thread-safe: no. Never fails: times are finite.
+class StreamClock {
+ public:
+  static constexpr double kMaxDelay_s = 0.5;
+
+  /// A frame of the moment sender_s arrived at local_s.
+  void observe(double sender_s, double local_s);
+
+  /// The moment to show at local_s. Not before the first observe().
+  double target_s(double local_s) const { return local_s - offset_s_ - delay_s(); }
+
+  /// Between one frame and the next, on the sender's time line.
+  double interval_s() const { return interval_s_; }
+
+  /// How far behind the quickest arrival target_s() stays.
+  double delay_s() const;
+
+  double last_arrival_s() const { return last_local_s_; }
+
+ private:
+  bool has_observed_ = false;
+  double last_sender_s_ = 0.0;
+  double last_local_s_ = 0.0;
+  double offset_s_ = 0.0;  // local - sender of the quickest arrivals
+  double jitter_s_ = 0.0;  // how much later than those frames came of late
+  double interval_s_ = 1.0 / 60.0;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,197 @@
+#include "viewer/viewer.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "viewer/overlay.hpp"
+#include "viewer/picture_file.hpp"
+#include "viewer/pose_timeline.hpp"
+#include "viewer/stage.hpp"
+#include "viewer/stream_connection.hpp"
+#include "viewer/viewer_exit.hpp"
+#include "viewer/window.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
+constexpr int kSamples = 4;          // a pixel
+constexpr double kRateSmoothing = 0.05;
+
+double now_s() {
+  return seconds(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+StreamOptions address_of(const ViewerOptions& options) {
+  auto address = parse_address(options.connect);
+  if (!address) throw ViewerExit(EX_USAGE, "--connect: " + address.error().message);
+  return *std::move(address);
+}
+
+}  // namespace
+
+class Viewer::Show {
+ public:
+  Show(const ViewerOptions& options, const std::atomic<bool>& is_stopping)
+      : options_(options),
+        is_stopping_(is_stopping),
+        connection_(address_of(options)),
+        window_({.width_px = options.width_px,
+                 .height_px = options.height_px,
+                 .is_visible = options.screenshot.empty(),
+                 .is_fullscreen = options.is_fullscreen,
+                 .monitor = options.monitor}),
+        began_s_(now_s()),
+        last_s_(began_s_),
+        has_overlay_(options.overlay.value_or(options.screenshot.empty())) {
+#ifdef YURAGI_GL_DEBUG
+    report_gl_errors();
+#endif
+    const bool is_slow = is_software_renderer() && options.screenshot.empty();
+    samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
+    stage_.emplace();
+    overlay_.emplace(window_.handle(), window_.content_scale());
+    camera_.set_turning(options.is_turning);
+    frame_camera();
+  }
+
+  void run_window() {
+    while (!is_stopping_ && !window_.is_closing()) {
+      window_.poll();
+      use_input();
+      advance();
+      const PixelSize size = window_.framebuffer_size();
+      if (size.is_empty()) {
+        window_.wait(kIdleWait_s);
+        continue;
+      }
+      draw(size);
+      target_->show(size.width_px, size.height_px);
+      window_.swap();
+      keep_pace();
+    }
+  }
+
+  void run_screenshot() {
+    // Draw picture after picture, as news comes; where a moment is asked for, only then.
+    const PixelSize size{options_.width_px, options_.height_px};
+    double first_pose_s = 0.0;
+    int drawn = 0;
+    while (!is_stopping_) {
+      connection_.wait_for_news(from_seconds(kIdleWait_s));
+      advance();
+      if (timeline_.playback() == Playback::kNothing) {
+        if (last_s_ - began_s_ > options_.wait_s) throw_no_daemon();
+        continue;
+      }
+      if (first_pose_s == 0.0) first_pose_s = last_s_;
+      if (options_.at_s && last_s_ - first_pose_s < *options_.at_s) continue;
+      draw(size);
+      ++drawn;
+      if (options_.at_s || drawn >= options_.frames) {
+        write_png(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
+        return;
+      }
+    }
+  }
+
+ private:
+  [[noreturn]] void throw_no_daemon() const {
+    throw ViewerExit(EX_UNAVAILABLE, "no pose has come from " + options_.connect + " (" + connection_.status().text +
+                                         ").\nStart a daemon with `yuragi run`, or give its address with --connect "
+                                         "HOST:PORT, or wait longer with --wait SECONDS.");
+  }
+
+  void frame_camera() {
+    CameraPlace place = place_across(stage_->bounds());
+    if (options_.camera.size() == 3) {
+      place.heading_deg = options_.camera[0];
+      place.pitch_deg = options_.camera[1];
+      place.distance_m = options_.camera[2];
+    }
+    camera_.frame(place);
+  }
+
+  void use_input() {
+    const WindowInput input = window_.take_input();
+    camera_.orbit(input.orbit_right, input.orbit_down);
+    camera_.pan(input.pan_right, input.pan_down);
+    camera_.zoom(input.zoom_notches);
+    if (input.reset_camera) camera_.reset();
+    if (input.toggle_turning) camera_.set_turning(!camera_.is_turning());
+    if (input.toggle_overlay) has_overlay_ = !has_overlay_;
+  }
+
+  /// Takes what has come, and goes on to now.
+  void advance() {
+    Inbox inbox = connection_.take();
+    if (inbox.scenes) {
+      timeline_.set_scenes(inbox.scenes->scenes);
+      stage_->set_scenes(std::move(inbox.scenes->scenes));
+      if (!has_framed_) frame_camera();
+      has_framed_ = true;
+    }
+    for (TimedFrame& timed : inbox.frames) timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
+    if (inbox.sensors) sensors_ = std::move(inbox.sensors);
+
+    const double now = now_s();
+    const double passed_s = now - last_s_;
+    last_s_ = now;
+    camera_.advance(passed_s);
+    moment_ = &timeline_.advance(now);
+    picture_s_ += kRateSmoothing * (passed_s - picture_s_);
+  }
+
+  void draw(const PixelSize& size) {
+    if (!target_ || PixelSize{target_->width_px(), target_->height_px()} != size) {
+      target_.emplace(size.width_px, size.height_px, samples_);
+    }
+    stage_->draw(*moment_, camera_, *target_);
+    if (!has_overlay_) return;
+    overlay_->draw({.wind = moment_->wind,
+                    .playback = timeline_.playback(),
+                    .stream = connection_.status(),
+                    .sensors = sensors_ ? &*sensors_ : nullptr,
+                    .pictures_per_s = 1.0 / picture_s_,
+                    .nodes = stage_->node_count(),
+                    .heading_deg = camera_.place().heading_deg});
+  }
+
+  /// Where the driver does not wait for the screen, wait here: no more pictures than the screen can show.
+  void keep_pace() {
+    const double rest_s = 0.95 / window_.refresh_rate_hz() - (now_s() - last_s_);
+    if (rest_s > 0.0) window_.wait(rest_s);
+  }
+
+  const ViewerOptions options_;
+  const std::atomic<bool>& is_stopping_;
+  StreamConnection connection_;
+  Window window_;  // what follows is on its context
+  std::optional<Stage> stage_;
+  std::optional<Overlay> overlay_;
+  std::optional<RenderTarget> target_;
+
+  OrbitCamera camera_;
+  bool has_framed_ = false;
+  PoseTimeline timeline_;
+  const PoseMoment* moment_ = nullptr;
+  std::optional<wire::Sensors> sensors_;
+  double began_s_;
+  double last_s_;
+  double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
+  bool has_overlay_;
+  int samples_ = kSamples;
+};
+
+Viewer::Viewer(const ViewerOptions& options, const std::atomic<bool>& is_stopping)
+    : show_(std::make_unique<Show>(options, is_stopping)) {
+  is_picture_ = !options.screenshot.empty();
+}
+Viewer::~Viewer() = default;
+
+void Viewer::run() {
+  is_picture_ ? show_->run_screenshot() : show_->run_window();
+}
+
+}  // namespace yuragi

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include <sysexits.h>
+
+namespace yuragi {
+
+/// A failure that ends the program: its text tells a person what to do, its code (sysexits.h) tells the shell. Caught
+/// once, in main.
+class ViewerExit : public std::runtime_error {
+ public:
+  ViewerExit(int code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  int code() const noexcept { return code_; }
+
+ private:
+  int code_;
+};
+
+}  // namespace yuragi

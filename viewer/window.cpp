@@ -1,0 +1,184 @@
+#include "viewer/window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+
+#include "viewer/viewer_exit.hpp"
+
+namespace yuragi {
+namespace {
+
+std::string& last_glfw_error() {
+  static std::string text;
+  return text;
+}
+
+[[noreturn]] void throw_unavailable(const std::string& what) {
+  throw ViewerExit(EX_UNAVAILABLE, what + " (" + last_glfw_error() +
+                                       ").\nOn a machine without a screen, use a virtual one: "
+                                       "xvfb-run -a yuragi-viewer --screenshot picture.png");
+}
+
+}  // namespace
+
+struct Window::State {
+  explicit State(const WindowOptions& options) {
+    glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
+    if (glfwInit() != GLFW_TRUE) throw_unavailable("there is no display to open a window on");
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+#ifdef YURAGI_GL_DEBUG
+    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+#endif
+    glfwWindowHint(GLFW_VISIBLE, options.is_visible ? GLFW_TRUE : GLFW_FALSE);
+    window = glfwCreateWindow(options.width_px, options.height_px, "Yuragi", nullptr, nullptr);
+    if (window == nullptr) {
+      glfwTerminate();
+      throw_unavailable("this display has no OpenGL 3.3");
+    }
+    glfwMakeContextCurrent(window);
+    glfwSwapInterval(1);
+    monitor = options.monitor;
+    if (options.is_fullscreen) toggle_fullscreen();
+
+    glfwSetWindowUserPointer(window, this);
+    glfwSetKeyCallback(window, [](GLFWwindow* on, int key, int, int action, int) {
+      if (action == GLFW_PRESS) state_of(on).press(key);
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* on, double x, double y) { state_of(on).move(x, y); });
+    glfwSetScrollCallback(window,
+                          [](GLFWwindow* on, double, double notches) { state_of(on).input.zoom_notches += notches; });
+  }
+  ~State() {
+    glfwDestroyWindow(window);
+    glfwTerminate();
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  static State& state_of(GLFWwindow* on) {
+    return *static_cast<State*>(glfwGetWindowUserPointer(on));
+  }
+
+  void press(int key) {
+    switch (key) {
+      case GLFW_KEY_ESCAPE:
+      case GLFW_KEY_Q:
+        glfwSetWindowShouldClose(window, GLFW_TRUE);
+        break;
+      case GLFW_KEY_F11:
+        toggle_fullscreen();
+        break;
+      case GLFW_KEY_H:
+        input.toggle_overlay = !input.toggle_overlay;
+        break;
+      case GLFW_KEY_R:
+        input.reset_camera = true;
+        break;
+      case GLFW_KEY_T:
+        input.toggle_turning = !input.toggle_turning;
+        break;
+      default:
+        break;
+    }
+  }
+
+  void move(double x, double y) {
+    int width = 0;
+    int height = 1;
+    glfwGetWindowSize(window, &width, &height);
+    const double right = (x - cursor_x) / std::max(1, height);
+    const double down = (y - cursor_y) / std::max(1, height);
+    cursor_x = x;
+    cursor_y = y;
+    const auto is_down = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
+    if (is_down(GLFW_MOUSE_BUTTON_LEFT)) {
+      input.orbit_right += right;
+      input.orbit_down += down;
+    } else if (is_down(GLFW_MOUSE_BUTTON_RIGHT) || is_down(GLFW_MOUSE_BUTTON_MIDDLE)) {
+      input.pan_right += right;
+      input.pan_down += down;
+    }
+  }
+
+  GLFWmonitor* chosen_monitor() const {
+    int count = 0;
+    GLFWmonitor** const all = glfwGetMonitors(&count);
+    if (count == 0) return nullptr;
+    const auto monitors = std::span(all, static_cast<std::size_t>(count));
+    return monitors[static_cast<std::size_t>(std::clamp(monitor.value_or(0), 0, count - 1))];
+  }
+
+  void toggle_fullscreen() {
+    if (glfwGetWindowMonitor(window) != nullptr) {
+      glfwSetWindowMonitor(window, nullptr, windowed_x, windowed_y, windowed_width, windowed_height, GLFW_DONT_CARE);
+      return;
+    }
+    GLFWmonitor* const on = chosen_monitor();
+    const GLFWvidmode* const mode = on != nullptr ? glfwGetVideoMode(on) : nullptr;
+    if (mode == nullptr) return;
+    glfwGetWindowPos(window, &windowed_x, &windowed_y);
+    glfwGetWindowSize(window, &windowed_width, &windowed_height);
+    glfwSetWindowMonitor(window, on, 0, 0, mode->width, mode->height, mode->refreshRate);
+  }
+
+  GLFWwindow* window = nullptr;
+  std::optional<int> monitor;
+  WindowInput input;
+  double cursor_x = 0.0;
+  double cursor_y = 0.0;
+  int windowed_x = 0;
+  int windowed_y = 0;
+  int windowed_width = 1280;
+  int windowed_height = 720;
+};
+
+Window::Window(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
+Window::~Window() = default;
+
+GLFWwindow* Window::handle() const {
+  return state_->window;
+}
+bool Window::is_closing() const {
+  return glfwWindowShouldClose(state_->window) == GLFW_TRUE;
+}
+
+PixelSize Window::framebuffer_size() const {
+  PixelSize size;
+  glfwGetFramebufferSize(state_->window, &size.width_px, &size.height_px);
+  return glfwGetWindowAttrib(state_->window, GLFW_ICONIFIED) == GLFW_TRUE ? PixelSize{} : size;
+}
+
+double Window::content_scale() const {
+  float scale_x = 1.0F;
+  float scale_y = 1.0F;
+  glfwGetWindowContentScale(state_->window, &scale_x, &scale_y);
+  return static_cast<double>(std::max(scale_x, scale_y));
+}
+
+double Window::refresh_rate_hz() const {
+  GLFWmonitor* const on = state_->chosen_monitor();
+  const GLFWvidmode* const mode = on != nullptr ? glfwGetVideoMode(on) : nullptr;
+  return mode != nullptr && mode->refreshRate > 0 ? mode->refreshRate : 60.0;
+}
+
+void Window::poll() {
+  glfwPollEvents();
+}
+void Window::wait(double limit_s) {
+  glfwWaitEventsTimeout(limit_s);
+}
+WindowInput Window::take_input() {
+  return std::exchange(state_->input, {});
+}
+void Window::swap() {
+  glfwSwapBuffers(state_->window);
+}
+
+}  // namespace yuragi

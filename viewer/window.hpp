@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+struct GLFWwindow;
+
+namespace yuragi {
+
+struct WindowOptions {
+  int width_px = 1280;
+  int height_px = 720;
+  bool is_visible = true;
+  bool is_fullscreen = false;
+  std::optional<int> monitor;  ///< for full screen, counted from 0; empty: the primary one
+};
+
+/// What the hand did since the last look. Drags are shares of the window's height.
+struct WindowInput {
+  double orbit_right = 0.0;
+  double orbit_down = 0.0;
+  double pan_right = 0.0;
+  double pan_down = 0.0;
+  double zoom_notches = 0.0;
+  bool reset_camera = false;    ///< R
+  bool toggle_overlay = false;  ///< H
+  bool toggle_turning = false;  ///< T
+};
+
+struct PixelSize {
+  int width_px = 0;
+  int height_px = 0;
+  bool is_empty() const { return width_px <= 0 || height_px <= 0; }
+  friend bool operator==(const PixelSize&, const PixelSize&) = default;
+};
+
+/// A window with a current OpenGL 3.3 core context; F11 makes it fill the screen, Esc and Q close it.
+/// One at a time, on the main thread. Throws ViewerExit (EX_UNAVAILABLE) where there is no display or no OpenGL 3.3.
+class Window {
+ public:
+  explicit Window(const WindowOptions& options);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  GLFWwindow* handle() const;
+  bool is_closing() const;
+
+  /// Of what is drawn into, in pixels; empty while it is minimised.
+  PixelSize framebuffer_size() const;
+  /// How many pixels there are to a point on this screen: 2 on a fine one.
+  double content_scale() const;
+  /// Of the screen; 60 where it does not say.
+  double refresh_rate_hz() const;
+
+  /// Handles what has happened.
+  void poll();
+  /// Waits until something happens, for at most so long, and handles it.
+  void wait(double limit_s);
+  WindowInput take_input();
+
+  /// Shows what was drawn; waits for the screen where the driver can.
+  void swap();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace yuragi
