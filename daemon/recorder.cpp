@@ -24,7 +24,15 @@ Recorder::Recorder(const std::filesystem::path& file, RecordingInfo info, Report
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-Recorder::~Recorder() = default;
+Recorder::~Recorder() {
+  close();
+}
+
+void Recorder::close() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  thread_.join();
+}
 
 bool Recorder::push(std::size_t sensor, const WindReading& reading) noexcept {
   const bool taken = sensor < info_.sensors.size() && is_recordable(reading) && ring_.push({sensor, reading});

@@ -57,14 +57,17 @@ class Recorder {
 
   /// Opens or creates the recording and begins its session. Throws ExitError where it cannot.
   Recorder(const std::filesystem::path& file, RecordingInfo info, Report report = {});
-  /// Writes what it has, leaves one file, and waits for that: well under a second on a disk that works.
-  ~Recorder();
+  ~Recorder();  ///< closes
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
   /// Takes a reading of `info.sensors[sensor]`; false if it is lost (and counted) because it is none that can be
   /// recorded, or because the disk has failed for long. One thread pushes. Realtime-safe: yes; wait-free.
   bool push(std::size_t sensor, const WindReading& reading) noexcept;
+
+  /// Writes what it has, leaves one file, and waits for that: well under a second on a disk that works. Nothing may be
+  /// pushed after it; a second call does nothing.
+  void close();
 
   /// Thread-safe: yes. Realtime-safe: no.
   RecorderStatus status() const;

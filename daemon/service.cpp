@@ -64,6 +64,10 @@ class Service::Io {
     }
 
     io_.run();
+
+    // What the sensors said until now is recorded too.
+    hub_.advance();
+    if (recorder_) recorder_->close();
     log_summary();
   }
 

@@ -13,9 +13,9 @@ constexpr double kZoomStep = 0.88;    // of the distance, a notch
 constexpr double kGlide_s = 0.08;     // the time constant with which it follows the hand
 constexpr double kTurning_deg_s = 2.0;
 constexpr double kMaxTarget_m = 500.0;  // from the origin
-constexpr double kAcrossPitch_deg = 7.0;
-constexpr double kFieldHeights = 5.0;   // so many times as wide as high: something to look across
-constexpr double kAcrossHeights = 1.5;  // of the eye, in heights of what it looks across
+constexpr double kAcrossPitch_deg = 6.0;
+constexpr double kFieldHeights = 5.0;    // so many times as wide as high: something to look across
+constexpr double kAcrossHeights = 1.05;  // of the eye, in heights of what it looks across
 
 glm::dvec3 direction(const CameraPlace& place) {
   const double heading = glm::radians(place.heading_deg);

@@ -22,6 +22,9 @@ const ImVec4 kQuiet(0.98F, 0.97F, 0.94F, 0.66F);
 const ImVec4 kGood(0.62F, 0.90F, 0.52F, 1.0F);
 const ImVec4 kWarn(1.0F, 0.78F, 0.36F, 1.0F);
 
+constexpr std::array kHealth = {"silent", "live", "stale"};  // as wire.hpp numbers them
+constexpr std::uint8_t kHealthLive = 1;
+
 constexpr double kArrowFullSpeed_m_s = 12.0;  // as long as the compass is wide
 
 /// A font that most systems have; otherwise ImGui's own.
@@ -96,6 +99,15 @@ void draw_compass(const WindState& wind, double heading_deg, float radius) {
   list->AddTriangleFilled(tip, beside(26.0, radius * 0.30F), beside(-26.0, radius * 0.30F), kArrow);
 }
 
+/// Does every sensor that speaks only pretend?
+bool is_simulated(const wire::Sensors* sensors) {
+  if (sensors == nullptr) return false;
+  const auto is_live = [](const wire::SensorStatus& sensor) { return sensor.health == kHealthLive; };
+  const auto is_real = [&](const wire::SensorStatus& sensor) { return is_live(sensor) && !sensor.simulated; };
+  return std::any_of(sensors->sensors.begin(), sensors->sensors.end(), is_live) &&
+         std::none_of(sensors->sensors.begin(), sensors->sensors.end(), is_real);
+}
+
 void write_wind(const OverlayFacts& facts, float scale) {
   draw_compass(facts.wind, facts.heading_deg, 44.0F * scale);
   ImGui::SameLine(0.0F, 14.0F * scale);
@@ -107,7 +119,7 @@ void write_wind(const OverlayFacts& facts, float scale) {
   write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, point_of_compass(direction_deg)));
   switch (facts.wind.source) {
     case WindSource::kLive:
-      write(kGood, "live sensor");
+      write(kGood, is_simulated(facts.sensors) ? "live, simulated sensor" : "live sensor");
       break;
     case WindSource::kHandover:
       write(kWarn, fmt::format("handing over, {:.0f} % live", 100.0 * facts.wind.live_weight));
@@ -120,8 +132,7 @@ void write_wind(const OverlayFacts& facts, float scale) {
 }
 
 void write_sensor(const wire::SensorStatus& sensor) {
-  constexpr std::array kHealth = {"silent", "live", "stale"};  // as wire.hpp numbers them
-  const bool is_live = sensor.health == 1;
+  const bool is_live = sensor.health == kHealthLive;
   const char* const health = sensor.health < kHealth.size() ? kHealth[sensor.health] : "unknown";
   std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, health);
   if (sensor.speed_m_s) text += fmt::format(", {:.1f} m/s", *sensor.speed_m_s);

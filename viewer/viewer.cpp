@@ -16,6 +16,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
+constexpr int kOverlayPictures = 2;  // until the overlay knows its own size
 constexpr int kSamples = 4;          // a pixel
 constexpr double kRateSmoothing = 0.05;
 
@@ -89,7 +90,7 @@ class Viewer::Show {
       if (options_.at_s && last_s_ - first_pose_s < *options_.at_s) continue;
       draw(size);
       ++drawn;
-      if (options_.at_s || drawn >= options_.frames) {
+      if (drawn >= (options_.at_s ? kOverlayPictures : options_.frames)) {
         write_png(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
         return;
       }

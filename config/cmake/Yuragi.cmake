@@ -17,7 +17,7 @@ target_compile_options(yuragi_flags INTERFACE
   -Woverloaded-virtual -Wimplicit-fallthrough -Wdouble-promotion
   $<$<BOOL:${YURAGI_WERROR}>:-Werror>)
 if(YURAGI_SANITIZE)
-  target_compile_options(yuragi_flags INTERFACE -fsanitize=${YURAGI_SANITIZE} -fno-omit-frame-pointer -g)
+  target_compile_options(yuragi_flags INTERFACE -fsanitize=${YURAGI_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(yuragi_flags INTERFACE -fsanitize=${YURAGI_SANITIZE})
   if(YURAGI_SANITIZE MATCHES undefined)
     target_compile_options(yuragi_flags INTERFACE -fno-sanitize-recover=undefined)
@@ -106,6 +106,8 @@ function(yuragi_test name)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
 endfunction()
 
+add_custom_target(fuzz_targets)
+
 # yuragi_fuzz(NAME SOURCES ... LINK ...): one libFuzzer program; CTest runs it for a few seconds.
 function(yuragi_fuzz name)
   if(NOT YURAGI_FUZZ)
@@ -116,5 +118,6 @@ function(yuragi_fuzz name)
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK})
   target_compile_options(${name} PRIVATE -fsanitize=fuzzer)
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  add_dependencies(fuzz_targets ${name})
   add_test(NAME ${name} COMMAND ${name} -max_total_time=10 -timeout=10 -rss_limit_mb=2048)
 endfunction()

@@ -1,14 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <span>
+
+#include <CLI/CLI.hpp>
 
 namespace yuragi {
 
 /// One subcommand of `yuragi`: a constant `kXCommand` in its own file, listed in daemon/CMakeLists.txt.
 struct Command {
-  /// Adds the subcommand, its options and a callback that does the work. A callback that fails throws ExitError (exit.hpp)
-  /// or any other exception (exit code 70 with its text); main catches once.
+  /// Adds the subcommand, its options and a callback that does the work. A callback that fails throws ExitError
+  /// (exit.hpp) or any other exception (exit code 70 with its text); main catches once.
   void (*add)(CLI::App& app);
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <utility>
 #include <vector>
 
@@ -300,7 +299,11 @@ TcpStream::TcpStream(asio::io_context& io, std::string_view listen, TcpStreamSet
 }
 
 TcpStream::~TcpStream() {
-  server_->close();
+  try {
+    server_->close();
+  } catch (...) {
+    // Nobody to tell. The sockets close with the server, when the last handler lets go of it.
+  }
 }
 
 std::string TcpStream::local_endpoint() const {

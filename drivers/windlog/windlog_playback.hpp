@@ -51,7 +51,7 @@ class WindlogPlayback {
   /// where the file breaks off in the middle; the next call tries the same place again.
   std::optional<PlayedReading> next();
 
-  /// Rows that were passed over because no reading can look like that.
+  /// Rows that were passed over because no reading can look like that; in this round, if it loops.
   std::size_t skipped() const;
 
  private:

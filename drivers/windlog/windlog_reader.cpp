@@ -279,6 +279,7 @@ std::optional<LoggedReading> WindlogReader::reading_of_row(const LoggedSession& 
 }
 
 void WindlogReader::seek(Nanoseconds log_time) {
+  skipped_ = 0;
   if (sessions_.empty()) return;
   std::size_t index = 0;
   while (index + 1 < sessions_.size() && sessions_[index].log_end() < log_time) ++index;

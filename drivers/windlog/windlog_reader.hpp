@@ -77,7 +77,7 @@ class WindlogReader {
   /// Writes a copy of the whole recording as it is at one moment, as one file, which must not be there yet.
   Result<void, Failure> copy_to(const std::filesystem::path& copy);
 
-  /// Rows passed over so far.
+  /// Rows passed over since open() or the last seek().
   std::size_t skipped() const { return skipped_; }
 
  private:

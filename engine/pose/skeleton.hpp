@@ -35,9 +35,9 @@ struct StrandSkeleton {
 };
 
 /// One bend for each strand: the vector (east, south) toward which its tip link is turned, its length the angle in
-/// radians. Link i of n (from 1) is turned from its rest direction by i/n of that angle about the horizontal axis across
-/// the bend (up x bend), so that the chain makes an arc. (0, 0) is the rest pose.
-/// Both vectors have padded_count() elements.
+/// radians. Link i of n (from 1) is turned from its rest direction by i/n of that angle about the horizontal axis
+/// across the bend (up x bend), so that the chain makes an arc. (0, 0) is the rest pose. Both vectors have
+/// padded_count() elements.
 struct StrandPose {
   std::vector<float> bend_east_rad;
   std::vector<float> bend_south_rad;

@@ -17,7 +17,7 @@ import unittest
 import numpy
 
 import pose_client
-from programs import Program, resident_kib
+from programs import Program, resident_kib, shared_data
 
 BIN, SCHEMA_MODULES = (os.path.abspath(word) for word in (sys.argv.pop(1), sys.argv.pop(1)))
 YURAGI = os.path.join(BIN, "yuragi")
@@ -261,6 +261,19 @@ port = {port}
         self.assertEqual(runs[0].returncode, 0, runs[0].stderr)
         self.assertRegex(runs[0].stdout, r"pose hash  [0-9a-f]{16}")
         self.assertEqual(runs[0].stdout, runs[1].stdout)
+
+    def test_a_real_recorded_wind_is_replayed_as_it_blew(self):
+        csv = shared_data("sonic", "finse_csat3_10hz_20180720T140000.csv")
+        if csv is None:
+            self.skipTest("../shared/data is not there")
+        log = self.file("finse.windlog")
+        self.assertEqual(run("import", csv, "-o", log).returncode, 0)
+        table = run("replay", log, "--rate", "max", timeout_s=200).stdout
+        recorded = re.search(r"recorded   mean (\S+) m/s, max (\S+) m/s", table)
+        replayed = re.search(r"replayed   mean (\S+) m/s, max (\S+) m/s", table)
+        self.assertEqual(recorded.groups(), ("7.02", "11.27"))
+        self.assertAlmostEqual(float(replayed.group(1)), 7.02, delta=0.05)
+        self.assertAlmostEqual(float(replayed.group(2)), 11.27, delta=0.4)
 
     def test_a_replay_at_a_pace_ends_with_its_recording(self):
         log = self.file("storm.windlog")

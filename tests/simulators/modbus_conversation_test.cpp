@@ -17,12 +17,10 @@
 namespace yuragi {
 namespace {
 
-using testing::AnyOf;
-using testing::Contains;
 using testing::HasSubstr;
 
 std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
-  given.try_emplace("response_timeout", 0.15);
+  given.try_emplace("response_timeout", 5.0);  // even a machine under load answers within it
   given.try_emplace("profile_dir", YURAGI_SOURCE_DIR "/drivers/profiles");
   for (const DriverDescription* driver : driver_table()) {
     if (driver->name == "modbus") return driver->open(*ParameterValues::resolve(driver->parameters, given));
@@ -86,35 +84,31 @@ TEST(DriverAndSimulator, AgreeOnTheWind) {
 
 TEST(DriverAndSimulator, CountEveryFaultPublishNoneOfItAndComeBack) {
   SimulatorProcess simulator({"--speed", "7", "--direction", "123", "--turbulence", "0"});
-  const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
+  const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}, {"response_timeout", 0.2}});
   Bench bench;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
 
-  const auto refused = [&](auto... allowed) {
-    return !bench.sink.refusals.empty() && ((bench.sink.count(allowed) + ...) == std::ssize(bench.sink.refusals));
-  };
+  const auto counts = [&](Refusal why) { return [&bench, why] { return bench.sink.count(why) >= 2; }; };
   const std::vector<std::pair<std::string, std::function<bool()>>> faults = {
-      {"silence", [&] { return refused(Refusal::kTimeout); }},
-      {"exception", [&] { return refused(Refusal::kException); }},
-      {"wrong-id", [&] { return refused(Refusal::kNotMine); }},
-      {"wrong-transaction", [&] { return refused(Refusal::kNotMine); }},
-      {"short", [&] { return refused(Refusal::kTooShort); }},
-      {"garbage", [&] { return refused(Refusal::kMalformed, Refusal::kTooShort); }},
-      {"drop", [&] { return bench.sink.refusals.empty() && bench.sink.last_detail().find("cannot connect") == 0; }},
+      {"silence", counts(Refusal::kTimeout)},
+      {"exception", counts(Refusal::kException)},
+      {"wrong-id", counts(Refusal::kNotMine)},
+      {"wrong-transaction", counts(Refusal::kNotMine)},
+      {"short", counts(Refusal::kTooShort)},
+      // Random bytes look like this or that; none of it is an answer.
+      {"garbage", [&] { return bench.sink.count(Refusal::kMalformed) + bench.sink.count(Refusal::kTooShort) >= 2; }},
+      {"drop", [&] { return bench.sink.last_detail().starts_with("cannot connect"); }},
   };
-  for (const auto& [fault, is_right] : faults) {
+  for (const auto& [fault, is_counted] : faults) {
     SCOPED_TRACE(fault);
-    simulator.process().type(fault + " 60");
-    simulator.process().line_after(fault + " for 60 s");
+    simulator.process().type(fault + " 600");
+    simulator.process().line_after(fault + " for 600 s");
 
     // The round that was under way may still have been whole.
-    bench.sink.readings.clear();
-    bench.sink.refusals.clear();
     EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_state() == LinkState::kConnecting; }));
     bench.sink.readings.clear();
     bench.sink.refusals.clear();
-    for (int i = 0; i < 4; ++i) bench.poll(*sensor);
-    EXPECT_TRUE(is_right()) << bench.sink.last_detail();
+    EXPECT_TRUE(bench.poll_until(*sensor, is_counted)) << bench.sink.last_detail();
     EXPECT_TRUE(bench.sink.readings.empty());
 
     simulator.process().type("clear");
@@ -133,19 +127,22 @@ TEST(DriverAndSimulator, FindEachOtherAgainAfterTheSimulatorWasKilled) {
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
 
   simulator->process().end(SIGKILL);
-  EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_detail().find("cannot connect") == 0; }));
+  EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_detail().starts_with("cannot connect"); }));
   simulator = std::make_unique<SimulatorProcess>(std::vector<std::string>{}, port);
   EXPECT_TRUE(bench.poll_for_reading(*sensor));
   EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
 }
 
-TEST(SimulatorProgram, FailsOnScheduleAndEndsAfterItsDuration) {
-  SimulatorProcess simulator({"--fault", "exception@0+60", "--duration", "0.5"});
+TEST(SimulatorProgram, FailsOnSchedule) {
+  SimulatorProcess simulator({"--fault", "exception@0+600"});
   const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
   Bench bench;
-  bench.poll(*sensor);
-  bench.poll(*sensor);
-  EXPECT_THAT(bench.sink.refusals, Contains(Refusal::kException));
+  EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.count(Refusal::kException) >= 3; }));
+  EXPECT_TRUE(bench.sink.readings.empty());
+}
+
+TEST(SimulatorProgram, EndsAfterItsDuration) {
+  SimulatorProcess simulator({"--duration", "0.1"});
   EXPECT_EQ(simulator.process().wait(), 0);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -78,8 +79,17 @@ class SerialBus {
   const std::string& another_device() const { return another_port_.value().device(); }
 
  private:
+  /// At the end the parties hang up in no order; who still writes shall see an error, not a signal.
+  static void block_broken_pipe_signal() {
+    sigset_t signals{};
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  }
+
   /// The line itself.
   void carry() const {
+    block_broken_pipe_signal();
     std::vector<pollfd> ends = {{wake_.get(), POLLIN, 0}, {port_.far_end(), POLLIN, 0}};
     if (another_port_) ends.push_back({another_port_->far_end(), POLLIN, 0});
     for (const Descriptor& tap : taps_) ends.push_back({tap.get(), POLLIN, 0});
@@ -97,6 +107,7 @@ class SerialBus {
   }
 
   static void serve(const Device& device, Descriptor line) {
+    block_broken_pipe_signal();
     const std::unique_ptr<modbus_t, void (*)(modbus_t*)> context(modbus_new_rtu("unused", 9600, 'N', 8, 1),
                                                                  modbus_free);
     const std::unique_ptr<modbus_mapping_t, void (*)(modbus_mapping_t*)> mapping(

@@ -13,8 +13,8 @@ void main() {
   vec2 inside = min(place_m.xz - field.xy, field.zw - place_m.xz);
   float in_field = smoothstep(-0.5, 0.3, min(inside.x, inside.y) + 0.8 * (fine - 0.5));
 
-  vec3 turf = mix(vec3(0.090, 0.135, 0.030), vec3(0.190, 0.180, 0.055), smoothstep(0.25, 0.8, broad));
-  turf *= 0.55 + 0.85 * fine * fine;
+  vec3 turf = mix(vec3(0.070, 0.122, 0.028), vec3(0.138, 0.158, 0.042), smoothstep(0.25, 0.8, broad));
+  turf *= 0.62 + 0.65 * fine;
   vec3 under = mix(vec3(0.020, 0.030, 0.009), vec3(0.060, 0.070, 0.020), fine);
 
   // Low sun over turf: its blades are lit through when one looks toward it.
