@@ -9,6 +9,8 @@
 
 #include <toml++/toml.h>
 
+#include "daemon/transports/address.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -99,6 +101,7 @@ class ConfigReader {
     const ParameterValues general = read_top_level(root);
     config.seed = static_cast<std::uint64_t>(general.integer("seed"));
     config.stream = read_table(root, "stream", kStreamParameters);
+    check_listen(root, config.stream);
     config.animation = read_table(root, "animation", kAnimationParameters);
     config.wind = read_table(root, "wind", kWindParameters);
 
@@ -165,6 +168,12 @@ class ConfigReader {
     const toml::table* table = node != nullptr ? node->as_table() : nullptr;
     // By pointer: a copy of a TOML table forgets its lines and columns.
     return read_values(table != nullptr ? *table : kNothing, std::string(name) + ".", parameters, {});
+  }
+
+  void check_listen(const toml::table& root, const ParameterValues& stream) {
+    if (const auto address = parse_address(stream.text("listen")); !address) {
+      mistake(root["stream"]["listen"].node()->source(), "stream.listen", address.error().message);
+    }
   }
 
   /// The values of one table; keys in `aside` are read elsewhere.

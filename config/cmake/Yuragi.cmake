@@ -27,6 +27,10 @@ if(YURAGI_SANITIZE)
   endif()
 endif()
 
+if(YURAGI_FUZZ)
+  target_compile_options(yuragi_flags INTERFACE -fsanitize=fuzzer-no-link) # what is fuzzed tells where it has been
+endif()
+
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
 # A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room.
 function(yuragi_room folder)

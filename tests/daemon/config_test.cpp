@@ -77,6 +77,11 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
               HasSubstr("\"synthetic\" is there twice"));
 }
 
+TEST(Config, AnAddressThatIsNoneIsAMistakeAtItsPlace) {
+  EXPECT_THAT(mistakes_of("[stream]\nlisten = \"here\"\n"), StartsWith("wall.toml:2:10: stream.listen: "));
+  EXPECT_THAT(mistakes_of("[stream]\nlisten = \"127.0.0.1:99999\"\n"), StartsWith("wall.toml:2:10: stream.listen: "));
+}
+
 TEST(Config, ABrokenFileIsToldWithLineAndColumn) {
   EXPECT_THAT(mistakes_of("seed = \n"), StartsWith("wall.toml:1:8: TOML: "));
   EXPECT_THAT(mistakes_of("seed = 1\nseed = 2\n"), StartsWith("wall.toml:2:"));
