@@ -24,7 +24,7 @@ wire::Scenes Animation::describe() const {
   return all;
 }
 
-std::size_t Animation::node_count() const noexcept {
+std::size_t Animation::node_count() const {
   std::size_t nodes = 0;
   for (const Skeleton* skeleton : skeletons_) {
     std::visit([&nodes](const auto& kind) { nodes += kind.strand_count * kind.links_per_strand; }, *skeleton);

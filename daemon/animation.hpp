@@ -32,7 +32,7 @@ class Animation {
 
   std::span<const Skeleton* const> skeletons() const noexcept { return skeletons_; }
   std::span<const Pose* const> poses() const noexcept { return poses_; }
-  std::size_t node_count() const noexcept;
+  std::size_t node_count() const;
 
  private:
   std::vector<std::string> names_, kinds_;
