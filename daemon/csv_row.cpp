@@ -11,7 +11,7 @@
 namespace yuragi {
 namespace {
 
-constexpr int kNanoDecimals = 9;
+constexpr int kElapsedDecimals = 9;
 constexpr double kDegPerPoint16 = 22.5;
 constexpr std::array<std::string_view, 16> kPoints16 = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
                                                         "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
@@ -104,7 +104,7 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
   // Monotonic time: what our own export says, or else UTC since the first row.
   Instant time{MonoTime(*utc - first_utc_.value_or(*utc)), *utc};
   if (const char* elapsed = fields[static_cast<std::size_t>(CsvRole::kElapsed)]; elapsed != nullptr) {
-    const auto ns = parse_decimal(elapsed, kNanoDecimals);
+    const auto ns = parse_decimal(elapsed, kElapsedDecimals);
     if (!ns) return refusal("no seconds:", elapsed);
     time.mono = MonoTime(Nanoseconds(*ns));
   }

@@ -19,9 +19,9 @@ namespace yuragi {
 namespace {
 
 constexpr std::array<std::string_view, 2> kTransports = {"tcp", "rtu"};
-constexpr std::array<std::string_view, 4> kParities = {"profile", "none", "even", "odd"};
+constexpr std::array<std::string_view, 4> kParityChoices = {"profile", "none", "even", "odd"};
 
-const std::array kParameters = {
+const std::array kModbusParameters = {
     Parameter{.name = "profile",
               .unit = "",
               .default_value = std::string("renke-rs-fsjt-rs-fxjt-n01"),
@@ -52,7 +52,7 @@ const std::array kParameters = {
               .unit = "",
               .default_value = std::string("profile"),
               .help = "rtu: \"profile\" takes the profile's",
-              .choices = kParities},
+              .choices = kParityChoices},
     Parameter{.name = "stop_bits",
               .unit = "",
               .default_value = std::int64_t{0},
@@ -159,7 +159,7 @@ std::unique_ptr<Sensor> open_modbus(const ParameterValues& values) {
 extern const DriverDescription kModbusDriver;
 const DriverDescription kModbusDriver{.name = "modbus",
                                       .summary = "anemometers and vanes on Modbus TCP or RTU, by device profiles",
-                                      .parameters = kParameters,
+                                      .parameters = kModbusParameters,
                                       .open = open_modbus};
 
 }  // namespace yuragi

@@ -7,7 +7,7 @@
 namespace yuragi {
 namespace {
 
-const std::array kParameters = {
+const std::array kSyntheticParameters = {
     Parameter{.name = "speed", .unit = "m/s", .default_value = 5.0, .min = 0.0, .max = 60.0, .help = "mean wind speed"},
     Parameter{.name = "direction",
               .unit = "deg",
@@ -72,7 +72,7 @@ class SyntheticSensor final : public Sensor {
 extern const DriverDescription kSyntheticDriver;
 const DriverDescription kSyntheticDriver{.name = "synthetic",
                                          .summary = "seeded synthetic wind; no hardware",
-                                         .parameters = kParameters,
+                                         .parameters = kSyntheticParameters,
                                          .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
                                            return std::make_unique<SyntheticSensor>(values);
                                          }};

@@ -25,7 +25,7 @@ constexpr double kMaxWait_s = 1e9;
 // Nothing comes after the end; a clock can add this to any time.
 constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
 
-const std::array<Parameter, 5> kParameters = {
+const std::array<Parameter, 5> kWindlogParameters = {
     Parameter{.name = "file",
               .unit = "",
               .default_value = std::string{},
@@ -137,7 +137,9 @@ std::unique_ptr<Sensor> open_windlog(const ParameterValues& values) {
 }  // namespace
 
 extern const DriverDescription kWindlogDriver;
-const DriverDescription kWindlogDriver{
-    .name = "windlog", .summary = "a recorded wind, played again", .parameters = kParameters, .open = open_windlog};
+const DriverDescription kWindlogDriver{.name = "windlog",
+                                       .summary = "a recorded wind, played again",
+                                       .parameters = kWindlogParameters,
+                                       .open = open_windlog};
 
 }  // namespace yuragi

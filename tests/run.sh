@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds the dev preset and runs every test. The last line says how many passed and failed.
+# Installs what is missing, builds the test preset (CMakePresets.json) and runs every test. The last line says how many passed and failed.
 #
 #   tests/run.sh                 everything
 #   tests/run.sh -R noise -V     arguments go to ctest
@@ -10,5 +10,5 @@ source tests/support/stages.sh
 config/setup.sh --test
 [ -d ../shared/data ] || echo "note: ../shared/data is not there: the tests that need its recordings will skip."
 
-stage dev test_preset dev "$@"
+stage test test_preset test "$@"
 finish

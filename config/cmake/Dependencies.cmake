@@ -14,6 +14,16 @@ pkg_check_modules(LIBMODBUS REQUIRED IMPORTED_TARGET libmodbus)
 find_program(FLATC_PROGRAM flatc REQUIRED)
 find_path(FCCP_INCLUDE_DIR libfccp/csv.h REQUIRED)
 
+# Asio compiled once, as its documentation's "separate compilation" has it, and not in each file that includes it.
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/asio.cpp CONTENT "#include <boost/asio/impl/src.hpp>\n")
+add_library(yuragi_asio STATIC ${CMAKE_CURRENT_BINARY_DIR}/asio.cpp)
+target_compile_definitions(yuragi_asio PUBLIC BOOST_ASIO_SEPARATE_COMPILATION)
+target_link_libraries(yuragi_asio PUBLIC Boost::headers Threads::Threads)
+if(YURAGI_SANITIZE)
+  target_compile_options(yuragi_asio PRIVATE -fsanitize=${YURAGI_SANITIZE} -fno-omit-frame-pointer
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
+endif()
+
 if(YURAGI_VIEWER)
   find_package(glfw3 REQUIRED)
   find_package(glm REQUIRED)

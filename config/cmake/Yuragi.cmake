@@ -1,9 +1,11 @@
 # How the project's own targets are declared. A folder is a target: engine/wind is yuragi_engine_wind.
 
+# What one clone has compiled, another finds: nothing in a command line or in debug information says where a clone stands.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
-  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+                                  ${CCACHE_PROGRAM})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
 # Flags that every target of ours is compiled with.
@@ -16,6 +18,9 @@ target_compile_options(yuragi_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor
   -Woverloaded-virtual -Wimplicit-fallthrough -Wdouble-promotion
   $<$<BOOL:${YURAGI_WERROR}>:-Werror>)
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(yuragi_flags INTERFACE -Wno-subobject-linkage) # each of our files seems a header there
+endif()
 if(YURAGI_SANITIZE)
   target_compile_options(yuragi_flags INTERFACE -fsanitize=${YURAGI_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(yuragi_flags INTERFACE -fsanitize=${YURAGI_SANITIZE})
@@ -100,9 +105,7 @@ endfunction()
 function(yuragi_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} GTest::gtest_main GTest::gmock)
-  target_compile_definitions(${name} PRIVATE
-    YURAGI_SOURCE_DIR="${PROJECT_SOURCE_DIR}" YURAGI_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} yuragi_test_places GTest::gtest_main GTest::gmock)
   set(properties TIMEOUT 120)
   if(ARG_LABELS)
     list(APPEND properties LABELS ${ARG_LABELS})

@@ -20,7 +20,7 @@ extern const Command kExportCommand;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kExportFooter =
     "The CSV has the columns utc, time_s (seconds since the first reading), sensor, speed_m_s, direction_deg (where "
     "the\n"
     "wind comes from), gust_m_s and quality; `yuragi import` makes the same readings of it again.\n"
@@ -31,7 +31,7 @@ constexpr const char* kFooter =
     "  yuragi export mast.windlog -o - --from 2018-07-20T14:05:00Z --to 2018-07-20T14:06:00Z | head\n"
     "  yuragi export live.windlog -o backup.windlog";
 
-struct Options {
+struct ExportOptions {
   std::string input;
   std::string output;
   std::string from;
@@ -48,7 +48,7 @@ std::optional<Nanoseconds> resolve(WindlogReader& reader, const std::string& opt
   return *log_time;
 }
 
-void export_as_csv(WindlogReader& reader, const Options& options, std::FILE* out) {
+void export_as_csv(WindlogReader& reader, const ExportOptions& options, std::FILE* out) {
   CsvExportRange range;
   if (!options.from.empty()) range.from = resolve(reader, "--from", options.from).value_or(Nanoseconds::max());
   if (!options.to.empty()) range.to = resolve(reader, "--to", options.to).value_or(Nanoseconds::max());
@@ -67,7 +67,7 @@ void export_as_csv(WindlogReader& reader, const Options& options, std::FILE* out
   fmt::print(stderr, "{}: {} readings\n", options.output == "-" ? "standard output" : options.output, report->written);
 }
 
-void run(const Options& options) {
+void run_export(const ExportOptions& options) {
   auto reader = WindlogReader::open(options.input);
   if (!reader) {
     const bool is_there = std::filesystem::exists(options.input);
@@ -96,21 +96,21 @@ void run(const Options& options) {
   output.commit();
 }
 
-void add(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+void add_export(CLI::App& app) {
+  const auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand("export", "Make a CSV file, or a copy, of a recording");
-  command->footer(kFooter);
+  command->footer(kExportFooter);
   command->add_option("file", options->input, "the recording (.windlog)")->required();
   command->add_option("-o,--output", options->output, "FILE.csv, COPY.windlog, or - for CSV on standard output")
       ->required();
   command->add_option("--from", options->from, "begin here: seconds, or a moment such as 2018-07-20T14:05:00Z");
   command->add_option("--to", options->to, "end before this, written likewise");
   command->add_flag("--force", options->force, "overwrite the output");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_export(*options); });
 }
 
 }  // namespace
 
-const Command kExportCommand{add};
+const Command kExportCommand{add_export};
 
 }  // namespace yuragi

@@ -22,7 +22,7 @@ extern const Command kImportCommand;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kImportFooter =
     "The columns are found by their names: time or timestamp, wind_speed, direction, gust, or u and v; a unit in a "
     "name\n"
     "(u_ms, speed_kmh, \"Gust (mph)\") is understood. What was taken as what is printed. Rows that are no readings, or "
@@ -36,7 +36,7 @@ constexpr const char* kFooter =
     "  yuragi import sonic.csv -o sonic.windlog --u Ux --v Uy --uv-from\n"
     "Then: yuragi replay mast.windlog";
 
-struct Options {
+struct ImportOptions {
   std::string input;
   std::string output;
   CsvImportOptions csv;
@@ -46,16 +46,16 @@ struct Options {
   bool force = false;
 };
 
-char delimiter_of(const std::string& text) {
+char delimiter_named(const std::string& text) {
   if (text.empty()) return 0;
   if (text == "tab" || text == "\\t" || text == "\t") return '\t';
   if (text == "," || text == ";") return text[0];
   throw ExitError(kExitUsage, "--delimiter: is \"" + text + "\"; allowed: , or ; or tab");
 }
 
-CsvImportOptions csv_options(const Options& options) {
+CsvImportOptions csv_options(const ImportOptions& options) {
   CsvImportOptions csv = options.csv;
-  csv.delimiter = delimiter_of(options.delimiter);
+  csv.delimiter = delimiter_named(options.delimiter);
   if (options.comment.size() > 1) throw ExitError(kExitUsage, "--comment: give one sign, or \"\" for none");
   csv.comment = options.comment.empty() ? '\0' : options.comment[0];
   if (!options.unit.empty()) csv.unit = find_speed_unit(options.unit);
@@ -113,7 +113,7 @@ class Target {
   std::map<std::string, std::int64_t, std::less<>> sensors_;
 };
 
-void tell(const Options& options, const CsvImportReport& report) {
+void tell(const ImportOptions& options, const CsvImportReport& report) {
   for (const std::string& line : report.columns) fmt::print("  {}\n", line);
   for (const std::string& line : report.first_refusals) fmt::print(stderr, "left out: {}\n", line);
   if (report.refused() > report.first_refusals.size()) {
@@ -122,7 +122,7 @@ void tell(const Options& options, const CsvImportReport& report) {
   fmt::print("{}: {} readings of {} rows, {} left out\n", options.output, report.taken, report.rows, report.refused());
 }
 
-void run(const Options& options) {
+void run_import(const ImportOptions& options) {
   const CsvImportOptions csv = csv_options(options);
   std::ifstream file;
   const bool is_standard_input = options.input == "-";
@@ -149,10 +149,10 @@ void run(const Options& options) {
   tell(options, *report);
 }
 
-void add(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+void add_import(CLI::App& app) {
+  const auto options = std::make_shared<ImportOptions>();
   CLI::App* command = app.add_subcommand("import", "Make a recording of a CSV file");
-  command->footer(kFooter);
+  command->footer(kImportFooter);
   command->add_option("file", options->input, "the CSV file; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the recording to write (.windlog)")->required();
   command->add_flag("--force", options->force, "overwrite it");
@@ -194,11 +194,11 @@ void add(CLI::App& app) {
   command->add_option("--comment", options->comment, "lines that begin with this sign are passed over (default #)");
   command->add_option("--sensor", options->csv.sensor, "what to call the sensor")->capture_default_str();
   command->add_flag("--strict", options->csv.strict, "stop at the first row that is no reading");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_import(*options); });
 }
 
 }  // namespace
 
-const Command kImportCommand{add};
+const Command kImportCommand{add_import};
 
 }  // namespace yuragi

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kSummary = "Write a tile of 1/f^beta noise as a float32 NumPy file";
 
-constexpr const char* kFooter =
+constexpr const char* kNoiseFooter =
     "The tile is the raw material of every scene. It is periodic (its edges meet without a seam), has mean 0 and\n"
     "variance 1, and is the same, bit for bit, for the same seed.\n"
     "\n"
@@ -41,7 +41,7 @@ constexpr const char* kFooter =
     "Example: yuragi noise --dims 2 --size 512 --seed 7 --out tile.npy\n"
     "         python3 -c 'import numpy; print(numpy.load(\"tile.npy\").std())'";
 
-struct Options {
+struct NoiseOptions {
   int dims = 2;
   NoiseSpec spec{.size = 512};
   std::string meaning = "transect";
@@ -58,7 +58,7 @@ std::string check_whole_number(const std::string& text) {
 }
 
 /// The tile's values, or ExitError that names the option to blame and what it takes.
-std::vector<float> make_values(const Options& options) {
+std::vector<float> make_values(const NoiseOptions& options) {
   const auto refuse = [&](NoiseError error) {
     const std::string blamed = error == NoiseError::kSizeNotAllowed ? fmt::format("--size {}", options.spec.size)
                                                                     : fmt::format("--beta {}", options.spec.beta);
@@ -74,7 +74,7 @@ std::vector<float> make_values(const Options& options) {
   return std::move(tile->values);
 }
 
-void run(Options options) {
+void run_noise(NoiseOptions options) {
   options.spec.meaning = options.meaning == "radial" ? BetaMeaning::kRadial : BetaMeaning::kTransect;
   const std::vector<float> values = make_values(options);
 
@@ -95,10 +95,10 @@ void run(Options options) {
              mean, variance, mode_exponent(options.dims, options.spec.beta, options.spec.meaning), options.spec.seed);
 }
 
-void add(CLI::App& app) {
+void add_noise(CLI::App& app) {
   CLI::App* command = app.add_subcommand("noise", kSummary);
-  command->footer(kFooter);
-  auto options = std::make_shared<Options>();
+  command->footer(kNoiseFooter);
+  auto options = std::make_shared<NoiseOptions>();
   command->add_option("--dims", options->dims, "Dimensions: 1 (a line) or 2 (a square)")
       ->check(CLI::IsMember({1, 2}))
       ->capture_default_str();
@@ -115,11 +115,11 @@ void add(CLI::App& app) {
       ->check(check_whole_number)
       ->capture_default_str();
   command->add_option("--out", options->out, "The .npy file to write; one of that name is replaced")->required();
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_noise(*options); });
 }
 
 }  // namespace
 
-const Command kNoiseCommand{add};
+const Command kNoiseCommand{add_noise};
 
 }  // namespace yuragi

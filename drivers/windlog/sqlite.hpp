@@ -20,6 +20,9 @@ enum class Access : std::uint8_t {
   kCalculator,  ///< no file at all
 };
 
+/// How long a statement waits for another writer of the same file: nobody but a second recorder, or a checkpoint.
+inline constexpr int kBusyTimeout_ms = 1000;
+
 /// A prepared statement. Texts that are bound must live until the statement is reset. Thread-safe: no.
 class Statement {
  public:

@@ -15,7 +15,6 @@ namespace {
 using sqlite::Statement;
 
 constexpr std::int64_t kBlockRows = 512;
-constexpr int kBusyTimeout_ms = 1000;
 // More than a recorder makes in years; what claims more is no recording.
 constexpr std::size_t kMaxSessions = 1'000'000;
 constexpr std::size_t kMaxSensors = 1'000'000;
@@ -80,7 +79,7 @@ Result<WindlogReader, Failure> WindlogReader::open_as(const std::filesystem::pat
   auto database = sqlite::Database::open(file, access);
   if (!database) return database.error();
   WindlogReader reader(std::move(*database));
-  reader.database_.set_busy_timeout(kBusyTimeout_ms);
+  reader.database_.set_busy_timeout(sqlite::kBusyTimeout_ms);
   if (const auto done = reader.check_format(); !done) return done.error();
   if (const auto done = reader.load_sessions(); !done) return done.error();
   if (const auto done = reader.load_sensors(); !done) return done.error();

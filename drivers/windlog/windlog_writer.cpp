@@ -8,8 +8,7 @@
 namespace yuragi {
 namespace {
 
-// Nobody but a second recorder of the same file makes a writer wait; at the end a reader can.
-constexpr int kBusyTimeout_ms = 1000;
+// At the end a reader can make a writer wait, not for long.
 constexpr int kCloseTimeout_ms = 200;
 
 std::int64_t nanoseconds(MonoTime time) {
@@ -61,19 +60,19 @@ Result<WindlogWriter, Failure> WindlogWriter::open(const std::filesystem::path& 
 }
 
 Result<void, Failure> WindlogWriter::prepare_file() {
-  database_.set_busy_timeout(kBusyTimeout_ms);
+  database_.set_busy_timeout(sqlite::kBusyTimeout_ms);
 
   // Nothing is written before the file is known to be ours.
   const auto fresh = is_new(database_);
   if (!fresh) return fresh.error();
-  if (const auto done = database_.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL"); !done) return done;
+  if (auto done = database_.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL"); !done) return done;
 
   // All of the schema or nothing of it, whenever the power goes.
   if (*fresh) {
     const std::string create = "BEGIN IMMEDIATE; PRAGMA application_id = " + std::to_string(windlog::kApplicationId) +
                                "; PRAGMA user_version = " + std::to_string(windlog::kFormatVersion) + ";" +
                                windlog::kSchema + "COMMIT";
-    if (const auto done = database_.run(create.c_str()); !done) return done;
+    if (auto done = database_.run(create.c_str()); !done) return done;
   }
 
   const auto prepare = [this](sqlite::Statement& statement, std::string_view sql) -> Result<void, Failure> {
@@ -82,9 +81,9 @@ Result<void, Failure> WindlogWriter::prepare_file() {
     statement = std::move(*prepared);
     return {};
   };
-  if (const auto done = prepare(insert_session_,
-                                "INSERT INTO session (started_utc_ns, started_mono_ns, software, configuration) "
-                                "VALUES (?1, ?2, ?3, ?4)");
+  if (auto done = prepare(insert_session_,
+                          "INSERT INTO session (started_utc_ns, started_mono_ns, software, configuration) "
+                          "VALUES (?1, ?2, ?3, ?4)");
       !done) {
     return done;
   }
@@ -107,7 +106,7 @@ Result<void, Failure> WindlogWriter::begin_session(const WindlogSession& session
   insert_session_.bind(2, nanoseconds(session.started.mono));
   insert_session_.bind(3, session.software);
   insert_session_.bind(4, session.configuration);
-  if (const auto done = write(insert_session_); !done) return done;
+  if (auto done = write(insert_session_); !done) return done;
   session_ = database_.last_id();
   return {};
 }

@@ -10,7 +10,7 @@
 namespace yuragi {
 namespace {
 
-constexpr KernelRows<BendingKernels> kRows = YURAGI_KERNEL_ROWS(bending_kernels);
+constexpr KernelRows<BendingKernels> kBendingRows = YURAGI_KERNEL_ROWS(bending_kernels);
 constexpr double kSmallestHalfBendSpeed_m_s = 0.01;
 constexpr double kStrongestWind = 1e9;  ///< in half-bend speeds: beyond it nothing bends any further
 
@@ -37,7 +37,7 @@ BendingJob::Problem BendingJob::run() const noexcept {
   // Speed and direction of the wind; calm has no direction, and needs none.
   const double speed_m_s = std::sqrt(wind_east_m_s * wind_east_m_s + wind_south_m_s * wind_south_m_s);
   const double per_speed = speed_m_s > 0.0 ? max_bend_rad / speed_m_s : 0.0;
-  kRows[row.value_or(best_simd_row())].bend(
+  kBendingRows[row.value_or(best_simd_row())].bend(
       {.count = strength.size(),
        .strength = strength.data(),
        .flexibility = flexibility.data(),

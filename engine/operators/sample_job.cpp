@@ -9,7 +9,7 @@
 namespace yuragi {
 namespace {
 
-constexpr KernelRows<SampleKernels> kRows = YURAGI_KERNEL_ROWS(sample_kernels);
+constexpr KernelRows<SampleKernels> kSampleRows = YURAGI_KERNEL_ROWS(sample_kernels);
 
 }  // namespace
 
@@ -24,18 +24,18 @@ SampleJob::Problem SampleJob::validate() const noexcept {
 SampleJob::Problem SampleJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
-  kRows[row.value_or(best_simd_row())].sample({.count = out.size(),
-                                               .tile = tile->values.data(),
-                                               .log2_size = static_cast<unsigned>(std::countr_zero(tile->size)),
-                                               .place_x = place_x.data(),
-                                               .place_z = place_z.data(),
-                                               .offset_x = offset.x,
-                                               .offset_z = offset.z,
-                                               .scale = scale,
-                                               .bias = bias,
-                                               .low = low,
-                                               .high = high,
-                                               .out = out.data()});
+  kSampleRows[row.value_or(best_simd_row())].sample({.count = out.size(),
+                                                     .tile = tile->values.data(),
+                                                     .log2_size = static_cast<unsigned>(std::countr_zero(tile->size)),
+                                                     .place_x = place_x.data(),
+                                                     .place_z = place_z.data(),
+                                                     .offset_x = offset.x,
+                                                     .offset_z = offset.z,
+                                                     .scale = scale,
+                                                     .bias = bias,
+                                                     .low = low,
+                                                     .high = high,
+                                                     .out = out.data()});
   return Problem::kNone;
 }
 

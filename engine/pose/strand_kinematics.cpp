@@ -6,7 +6,7 @@
 namespace yuragi {
 namespace {
 
-constexpr KernelRows<StrandKernels> kRows = YURAGI_KERNEL_ROWS(strand_kernels);
+constexpr KernelRows<StrandKernels> kStrandRows = YURAGI_KERNEL_ROWS(strand_kernels);
 
 bool has_its_sizes(const StrandSkeleton& skeleton) noexcept {
   const std::size_t count = skeleton.padded_count();
@@ -37,7 +37,7 @@ StrandKinematicsJob::Problem StrandKinematicsJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
 
-  const StrandKernels& kernels = kRows[row.value_or(best_simd_row())];
+  const StrandKernels& kernels = kStrandRows[row.value_or(best_simd_row())];
   kernels.joint_positions({.blocks = skeleton->padded_count() / kStrandsPerBlock,
                            .links = skeleton->links_per_strand,
                            .root_x_m = skeleton->root_x_m.data(),

@@ -40,7 +40,7 @@ constexpr std::array<std::string_view, 2> kMeanings = {"transect", "radial"};
 
 using namespace std::string_literals;
 
-const std::array kParameters = {
+const std::array kGrassParameters = {
     Parameter{"blades_across", "", std::int64_t{100}, 1, 2000, "blades from west to east"},
     Parameter{"blades_deep", "", std::int64_t{100}, 1, 2000, "blades from north to south"},
     Parameter{"links", "", std::int64_t{10}, 1, 64, "links of a blade"},
@@ -194,7 +194,7 @@ std::unique_ptr<Scene> make_grass(const ParameterValues& values, std::uint64_t s
 
 const SceneDescription kGrassScene = {.name = "grass",
                                       .summary = "a meadow in the wind: blades bend as gusts pass over them",
-                                      .parameters = kParameters,
+                                      .parameters = kGrassParameters,
                                       .make = [](const ParameterValues& values, std::uint64_t seed) {
                                         return make_grass(values, seed, best_simd_row());
                                       }};

@@ -19,7 +19,6 @@ extern const Command kExportCommand;
 namespace {
 
 using testing::HasSubstr;
-using testing::StartsWith;
 
 struct Outcome {
   int code = 0;

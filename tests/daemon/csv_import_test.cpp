@@ -1,5 +1,6 @@
 #include "daemon/csv_import.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/units.hpp"
+#include "tests/support/places.hpp"
 
 namespace yuragi {
 namespace {
@@ -128,9 +130,11 @@ TEST(CsvImport, UnderstandsDirectionsInAllConventions) {
 }
 
 TEST(CsvImport, ReadsSemicolonsTabsAndDecimalCommas) {
-  for (const std::string separator : {";", "\t"}) {
-    const auto imported = import_text("station" + separator + "time" + separator + "speed\r\nhill" + separator + "0,5" +
-                                      separator + "3,25\r\n");
+  for (const char separator : {';', '\t'}) {
+    std::string text = "station,time,speed\r\nhill,0.5,3.25\r\n";
+    std::replace(text.begin(), text.end(), ',', separator);
+    std::replace(text.begin(), text.end(), '.', ',');
+    const auto imported = import_text(text);
     ASSERT_EQ(imported.readings.size(), 1U);
     EXPECT_EQ(imported.readings[0].speed_m_s, 3.25);
     EXPECT_EQ(imported.readings[0].time.utc, UtcTime(500ms));
@@ -248,7 +252,7 @@ TEST(CsvImport, OfAnyBytesEndsWithReadingsOrAFailure) {
 }
 
 TEST(CsvImport, OfTheFinseSonicNeedsNoOptions) {
-  std::ifstream in(YURAGI_SOURCE_DIR "/../shared/data/sonic/finse_csat3_10hz_20180720T140000.csv");
+  std::ifstream in(test::source_path("../shared/data/sonic/finse_csat3_10hz_20180720T140000.csv"));
   if (!in) GTEST_SKIP() << "the real recordings do not stand beside the project";
   double sum = 0.0;
   double max = 0.0;

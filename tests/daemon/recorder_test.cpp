@@ -12,6 +12,7 @@
 #include "daemon/exit.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/file_size_limit.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -66,7 +67,7 @@ TEST(Recorder, AppendsASessionAtEachStart) {
   const test::TemporaryFolder folder;
   for (int run = 0; run < 3; ++run) {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
-    recorder.push(0, reading_at(1000 * run, 1.0));
+    recorder.push(0, reading_at(1000 * std::int64_t{run}, 1.0));
   }
   EXPECT_EQ(WindlogReader::open(folder / "a.windlog")->sessions().size(), 3U);
 }
@@ -161,11 +162,12 @@ TEST(Recorder, KilledAtAnyMomentLeavesARecordingOfAllThatWasCommitted) {
   const std::string file = folder / "a.windlog";
   std::array<int, 2> output{};
   ASSERT_EQ(pipe(output.data()), 0);
+  const std::string program = test::built_path("tests/daemon/recorder_child");
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
     dup2(output[1], STDOUT_FILENO);
-    execl(RECORDER_CHILD, RECORDER_CHILD, file.c_str(), nullptr);
+    execl(program.c_str(), program.c_str(), file.c_str(), nullptr);
     _exit(127);
   }
   close(output[1]);

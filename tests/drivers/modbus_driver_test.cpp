@@ -8,6 +8,7 @@
 #include "drivers/driver.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/modbus_servers.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/recording_sink.hpp"
 #include "tests/support/scripted_server.hpp"
 
@@ -32,7 +33,7 @@ constexpr double kImpatient_s = 0.2;
 
 std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
   given.try_emplace("response_timeout", kPatient_s);
-  given.try_emplace("profile_dir", YURAGI_SOURCE_DIR "/drivers/profiles");
+  given.try_emplace("profile_dir", test::source_path("drivers/profiles"));
   return modbus_driver().open(*ParameterValues::resolve(modbus_driver().parameters, given));
 }
 

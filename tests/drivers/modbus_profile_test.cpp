@@ -7,13 +7,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/places.hpp"
+
 namespace yuragi {
 namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr const char* kProfileDirectory = YURAGI_SOURCE_DIR "/drivers/profiles";
+const std::string kProfileDirectory = test::source_path("drivers/profiles");
 
 /// A profile that says no more than it must; `more` goes where top-level keys go, `tail` behind everything.
 std::string minimal(const std::string& more = "", const std::string& tail = "") {

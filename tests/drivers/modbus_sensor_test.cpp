@@ -230,8 +230,8 @@ TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhereTheDirectionIsInvalid) {
 TEST_F(ModbusSensorTest, TriesToOpenForEverWithWaitsThatGrowTo10Seconds) {
   make(pair_profile());
   line_.can_open = false;
-  std::vector<Nanoseconds> waits;
-  for (int attempt = 0; attempt < 100; ++attempt) waits.push_back(poll());
+  std::vector<Nanoseconds> waits(100);
+  for (Nanoseconds& wait : waits) wait = poll();
   EXPECT_EQ(line_.opened, 100);
   EXPECT_EQ(sink_.links.size(), 100U);
   EXPECT_EQ(sink_.last_detail(), "cannot open the fake");

@@ -12,6 +12,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/modbus_servers.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/recording_sink.hpp"
 
 namespace yuragi {
@@ -21,7 +22,7 @@ using testing::HasSubstr;
 
 std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
   given.try_emplace("response_timeout", 5.0);  // even a machine under load answers within it
-  given.try_emplace("profile_dir", YURAGI_SOURCE_DIR "/drivers/profiles");
+  given.try_emplace("profile_dir", test::source_path("drivers/profiles"));
   for (const DriverDescription* driver : driver_table()) {
     if (driver->name == "modbus") return driver->open(*ParameterValues::resolve(driver->parameters, given));
   }
@@ -33,7 +34,8 @@ class SimulatorProcess {
  public:
   explicit SimulatorProcess(const std::vector<std::string>& options = {}, const std::string& port = "0")
       : process_([&] {
-          std::vector<std::string> command = {YURAGI_SIM_PROGRAM, "modbus", "--tcp", "127.0.0.1:" + port};
+          std::vector<std::string> command = {test::built_path("bin/yuragi-sim"), "modbus", "--tcp",
+                                              "127.0.0.1:" + port};
           command.insert(command.end(), options.begin(), options.end());
           return command;
         }()) {
@@ -159,7 +161,7 @@ TEST(SimulatorProgram, EndsCleanlyOnSignalsAndGoesOnWhenItsInputEnds) {
 
 TEST(SimulatorProgram, RefusesACommandLineThatItCannotUse) {
   const auto run = [](std::vector<std::string> command) {
-    command.insert(command.begin(), {YURAGI_SIM_PROGRAM, "modbus"});
+    command.insert(command.begin(), {test::built_path("bin/yuragi-sim"), "modbus"});
     ChildProcess process(command);
     const std::string text = process.rest();
     return std::pair(process.wait(), text);
@@ -190,7 +192,7 @@ class PymodbusServer {
   explicit PymodbusServer(const std::vector<std::string>& arguments)
       : process_([&] {
           std::vector<std::string> command = {"/usr/bin/python3",
-                                              YURAGI_SOURCE_DIR "/tests/simulators/pymodbus_server.py"};
+                                              test::source_path("tests/simulators/pymodbus_server.py")};
           command.insert(command.end(), arguments.begin(), arguments.end());
           return command;
         }()) {

@@ -14,7 +14,8 @@ TEST(PlayedWind, ThatIsSyntheticIsTheEnginesWind) {
   const SyntheticWindSettings settings{.mean_speed_m_s = 6.0, .mean_direction_deg = 100.0, .seed = 5};
   const auto played = play_synthetic_wind(settings);
   const SyntheticWind wind(settings);
-  for (double time_s = 0.0; time_s < 60.0; time_s += 1.7) {
+  for (int step = 0; step < 35; ++step) {
+    const double time_s = 1.7 * step;
     const PlayedMoment moment = played->at(time_s);
     EXPECT_EQ(moment.speed_m_s, speed_of(wind.at(time_s)));
     EXPECT_EQ(moment.direction_deg, direction_from_deg(wind.at(time_s)));
@@ -54,8 +55,7 @@ TEST(PlayedWind, ThatIsRecordedKeepsItsPaceHoldsBetweenReadingsAndBeginsAgain) {
 
   // Whatever pause lies between two rounds, the beginning comes back.
   bool begins_again = false;
-  for (double time_s = 2.0; time_s < 10.0; time_s += 0.1)
-    begins_again = begins_again || played->at(time_s).speed_m_s == 1.0;
+  for (int tenth = 20; tenth < 100; ++tenth) begins_again = begins_again || played->at(0.1 * tenth).speed_m_s == 1.0;
   EXPECT_TRUE(begins_again);
 }
 

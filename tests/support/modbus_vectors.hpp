@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.hpp"
+
 namespace yuragi {
 
 /// One exchange of the shared collection of Modbus frames.
@@ -27,7 +29,7 @@ inline std::vector<std::uint8_t> bytes_of_hex(const std::string& text) {
 
 /// All exchanges of ../shared/data/vectors/modbus_vectors.json; none where that file is absent.
 inline std::vector<ModbusVector> load_modbus_vectors() {
-  std::ifstream in(YURAGI_SOURCE_DIR "/../shared/data/vectors/modbus_vectors.json");
+  std::ifstream in(test::source_path("../shared/data/vectors/modbus_vectors.json"));
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
 
   // The file is flat enough for a pattern: the three fields of an entry stand in this order.

@@ -2,12 +2,14 @@
 // below, and the grass leans.
 
 #include <array>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <numeric>
 #include <sstream>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -15,6 +17,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/places.hpp"
 #include "tests/viewer/test_meadow.hpp"
 
 namespace yuragi {
@@ -45,7 +48,7 @@ class Picture {
     const int last = static_cast<int>(to_bottom * height_);
     for (int y = first; y < last; ++y) {
       for (int x = 0; x < width_; ++x) {
-        const auto* at = pixels_.get() + 3 * (y * width_ + x);
+        const auto* at = pixels_.get() + std::ptrdiff_t{3} * (y * width_ + x);
         sum.r += at[0];
         sum.g += at[1];
         sum.b += at[2];
@@ -90,32 +93,88 @@ struct Ended {
   std::string said;  // on standard error
 };
 
-/// Runs a program with these arguments to its end.
-Ended run(std::vector<std::string> words, const std::filesystem::path& folder,
-          std::vector<std::string> environment = {}) {
+/// Starts a program; 0 if that was not possible. `environment` is all that it gets.
+pid_t start(std::vector<std::string> words, std::vector<std::string> environment, posix_spawn_file_actions_t* actions) {
+  const auto pointers = [](std::vector<std::string>& texts) {
+    std::vector<char*> made;
+    made.reserve(texts.size() + 1);
+    for (std::string& text : texts) made.push_back(text.data());
+    made.push_back(nullptr);
+    return made;
+  };
+  pid_t child = 0;
+  const int failed =
+      posix_spawnp(&child, words[0].c_str(), actions, nullptr, pointers(words).data(), pointers(environment).data());
+  return failed == 0 ? child : 0;
+}
+
+/// Our own environment, but for the screens.
+std::vector<std::string> environment_without_screen() {
+  std::vector<std::string> environment;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable;
+    if (!text.starts_with("DISPLAY=") && !text.starts_with("WAYLAND_DISPLAY=")) environment.push_back(text);
+  }
+  return environment;
+}
+
+/// Runs a program to its end.
+Ended run(std::vector<std::string> words, const std::filesystem::path& folder, std::vector<std::string> environment) {
   const std::filesystem::path said = folder / "said";
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  std::vector<char*> variables;
-  for (std::string& variable : environment) variables.push_back(variable.data());
-  variables.push_back(nullptr);
-
-  pid_t child = 0;
-  const int failed = posix_spawnp(&child, words[0].c_str(), &actions, nullptr, arguments.data(),
-                                  environment.empty() ? environ : variables.data());
+  const pid_t child = start(std::move(words), std::move(environment), &actions);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return {};
+  if (child == 0) return {};
   int status = 0;
   waitpid(child, &status, 0);
   std::ostringstream text;
   text << std::ifstream(said).rdbuf();
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
 }
+
+/// A virtual X server, on a display number that it finds free itself. (xvfb-run -a guesses one, and may lose it to
+/// another.) It ends with its first client, or with this.
+class VirtualScreen {
+ public:
+  VirtualScreen() {
+    constexpr int kNumberFd = 9;
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], kNumberFd);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    server_ = start({"Xvfb", "-displayfd", std::to_string(kNumberFd), "-terminate", "-nolisten", "tcp", "-screen", "0",
+                     "640x480x24"},
+                    environment_without_screen(), &actions);
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(ends[1]);
+
+    // It says its number when it is ready, and a line's end.
+    char letter = 0;
+    while (::read(ends[0], &letter, 1) == 1 && letter != '\n') number_ += letter;
+    ::close(ends[0]);
+  }
+  ~VirtualScreen() {
+    if (server_ == 0) return;
+    ::kill(server_, SIGTERM);
+    waitpid(server_, nullptr, 0);
+  }
+  VirtualScreen(const VirtualScreen&) = delete;
+  VirtualScreen& operator=(const VirtualScreen&) = delete;
+
+  std::vector<std::string> environment() const {
+    std::vector<std::string> environment = environment_without_screen();
+    environment.push_back("DISPLAY=:" + number_);
+    return environment;
+  }
+
+ private:
+  pid_t server_ = 0;
+  std::string number_;
+};
 
 /// Streams one pose of a meadow to whoever comes, while the viewer takes a picture of it.
 class PictureTest : public testing::Test {
@@ -126,21 +185,27 @@ class PictureTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::vector<std::string> viewer(std::uint16_t port, const std::string& file) const {
-    return {"xvfb-run",
-            "-a",
-            "-s",
-            "-screen 0 640x480x24",
-            YURAGI_VIEWER_PROGRAM,
-            "--connect",
-            "127.0.0.1:" + std::to_string(port),
-            "--size",
-            std::to_string(kWidth_px) + "x" + std::to_string(kHeight_px),
-            "--screenshot",
-            (folder_ / file).string()};
+  /// Runs the viewer on a screen of its own.
+  Ended take_picture(std::uint16_t port, const std::string& file, const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {test::built_path("bin/yuragi-viewer"),
+                                      "--connect",
+                                      "127.0.0.1:" + std::to_string(port),
+                                      "--size",
+                                      std::to_string(kWidth_px) + "x" + std::to_string(kHeight_px),
+                                      "--screenshot",
+                                      (folder_ / file).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    const VirtualScreen screen;
+    return run(words, folder_, screen.environment());
   }
 
-  std::unique_ptr<Picture> take(const std::string& file, double lean_rad, std::vector<std::string> more = {}) const {
+  Ended run_without_screen(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> words = {test::built_path("bin/yuragi-viewer")};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return run(words, folder_, environment_without_screen());
+  }
+
+  std::unique_ptr<Picture> take(const std::string& file, double lean_rad, const std::vector<std::string>& more) const {
     // From the greeting on the meadow stands still: the picture is of this pose, whenever it is taken.
     const Skeleton meadow = test_meadow(60, 6.0);
     wire::FrameEncoder encoder;
@@ -150,9 +215,7 @@ class PictureTest : public testing::Test {
                                      0.1 * static_cast<double>(i), 140.0, encoder);
     }
     const StreamServer server(greeting);
-    std::vector<std::string> words = viewer(server.port(), file);
-    for (std::string& word : more) words.push_back(std::move(word));
-    const Ended ended = run(words, folder_);
+    const Ended ended = take_picture(server.port(), file, more);
     EXPECT_EQ(ended.code, 0) << ended.said;
     EXPECT_THAT(ended.said, testing::Not(testing::HasSubstr("OpenGL")));
     return std::make_unique<Picture>(folder_ / file);
@@ -198,9 +261,7 @@ TEST_F(PictureTest, DrawsTheOverlayWhenAsked) {
 TEST_F(PictureTest, EndsWith69WhenNoDaemonAnswers) {
   std::uint16_t port = 0;
   { port = StreamServer({}).port(); }
-  std::vector<std::string> words = viewer(port, "none.png");
-  words.insert(words.end(), {"--wait", "0.3"});
-  const Ended ended = run(words, folder_);
+  const Ended ended = take_picture(port, "none.png", {"--wait", "0.3"});
   EXPECT_EQ(ended.code, 69);
   EXPECT_THAT(ended.said, testing::HasSubstr("yuragi run"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.png"));
@@ -211,22 +272,20 @@ TEST_F(PictureTest, EndsWith73WhenThePictureCannotBeWritten) {
   wire::FrameEncoder encoder;
   const StreamServer server(greeting_for(meadow) +
                             frame_of(meadow, test_pose(meadow, 0.0, 0.0, 0.0, 0.0), 1, 0.1, 0.0, encoder));
-  std::vector<std::string> words = viewer(server.port(), "no/such/folder/picture.png");
-  words.insert(words.end(), {"--frames", "1"});
-  EXPECT_EQ(run(words, folder_).code, 73);
+  EXPECT_EQ(take_picture(server.port(), "no/such/folder/picture.png", {"--frames", "1"}).code, 73);
 }
 
 TEST_F(PictureTest, EndsWith69AndSaysWhatToDoWhereThereIsNoDisplay) {
-  const Ended ended = run({YURAGI_VIEWER_PROGRAM}, folder_, {"PATH=/usr/bin:/bin"});
+  const Ended ended = run_without_screen({});
   EXPECT_EQ(ended.code, 69);
   EXPECT_THAT(ended.said, testing::HasSubstr("xvfb-run -a yuragi-viewer"));
 }
 
 TEST_F(PictureTest, EndsWith64ForAWrongCommandLine) {
-  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--size", "12"}, folder_).code, 64);
-  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--connect", "here:there"}, folder_).code, 64);
-  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--camera", "1,2"}, folder_).code, 64);
-  EXPECT_EQ(run({YURAGI_VIEWER_PROGRAM, "--help"}, folder_).code, 0);
+  EXPECT_EQ(run_without_screen({"--size", "12"}).code, 64);
+  EXPECT_EQ(run_without_screen({"--connect", "here:there"}).code, 64);
+  EXPECT_EQ(run_without_screen({"--camera", "1,2"}).code, 64);
+  EXPECT_EQ(run_without_screen({"--help"}).code, 0);
 }
 
 }  // namespace

@@ -18,9 +18,10 @@ Skeleton test_meadow(std::size_t side, double size_m) {
     const auto [jitter_x, jitter_z] = chance.uniform_pair(3 * i);
     const auto [tilt, bearing] = chance.uniform_pair(3 * i + 1);
     const auto [longer, curl] = chance.uniform_pair(3 * i + 2);
+    const std::size_t row = i / side;
     const double cell_m = size_m / static_cast<double>(side);
     const double x_m = (static_cast<double>(i % side) + jitter_x) * cell_m - size_m / 2;
-    const double z_m = (static_cast<double>(i / side) + jitter_z) * cell_m - size_m / 2;
+    const double z_m = (static_cast<double>(row) + jitter_z) * cell_m - size_m / 2;
     const double angle = 2 * kPi * bearing;
     const double lean = 0.25 * tilt;
     const double patch = std::sin(0.8 * x_m) * std::sin(0.6 * z_m + 1.0);

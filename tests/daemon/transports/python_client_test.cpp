@@ -10,6 +10,7 @@
 
 #include "daemon/transports/tcp_stream.hpp"
 #include "tests/engine/wire/samples.hpp"
+#include "tests/support/places.hpp"
 
 namespace yuragi {
 namespace {
@@ -26,9 +27,8 @@ TEST(PythonClient, ItFindsNothingWrongWithALiveStreamOfAHundredThousandNodes) {
   settings.scenes.scenes = {{"meadow", "grass", samples::meadow(kStrands)}};
   TcpStream stream(io, "127.0.0.1:0", settings);
 
-  const std::string command = "/usr/bin/python3 " YURAGI_SOURCE_DIR
-                              "/tests/e2e/pose_client.py --frames 60 --check --json --connect " +
-                              stream.local_endpoint() + " 2>&1";
+  const std::string command = "/usr/bin/python3 " + test::source_path("tests/e2e/pose_client.py") +
+                              " --frames 60 --check --json --connect " + stream.local_endpoint() + " 2>&1";
   std::FILE* pipe = popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);
 

@@ -20,7 +20,7 @@ using test::numbered_readings;
 using test::reading_at;
 using test::write_session;
 
-std::unique_ptr<Sensor> open_replay(ParameterValues::Map given) {
+std::unique_ptr<Sensor> open_replay(const ParameterValues::Map& given) {
   const auto values = ParameterValues::resolve(kWindlogDriver.parameters, given);
   if (!values) throw std::runtime_error(values.error().message);
   return kWindlogDriver.open(*values);

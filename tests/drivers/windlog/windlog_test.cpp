@@ -159,7 +159,7 @@ TEST(Windlog, SeeksByLogTimeAndByUtc) {
   EXPECT_FALSE(reader->next()->has_value());
 
   // The first reading is at 14:00:01.
-  const UtcTime begin(std::chrono::milliseconds(test::kSampleUtc_ms));
+  const UtcTime begin{std::chrono::milliseconds(test::kSampleUtc_ms)};
   EXPECT_EQ(reader->log_time_of(begin)->value(), 0s);
   EXPECT_EQ(reader->log_time_of(begin + 11s)->value(), 10s);
   EXPECT_FALSE(reader->log_time_of(begin + 1h)->has_value());

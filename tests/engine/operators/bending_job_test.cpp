@@ -14,7 +14,6 @@
 namespace yuragi {
 namespace {
 
-using Problem = BendingJob::Problem;
 constexpr double kHalfBendSpeed_m_s = 7.0;
 constexpr double kMaxBend_rad = 1.4;
 
@@ -52,11 +51,11 @@ TEST_P(BendingJobOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
     Strands expected(count);
     BendingJob base = expected.job(4.0, -3.0);
     base.row = SimdRow::kX86_64;
-    EXPECT_EQ(base.run(), Problem::kNone);
+    EXPECT_EQ(base.run(), BendingJob::Problem::kNone);
     Strands strands(count);
     BendingJob job = strands.job(4.0, -3.0);
     job.row = GetParam();
-    EXPECT_EQ(job.run(), Problem::kNone);
+    EXPECT_EQ(job.run(), BendingJob::Problem::kNone);
     EXPECT_EQ(bits_of(strands.east), bits_of(expected.east));
     EXPECT_EQ(bits_of(strands.south), bits_of(expected.south));
   }
@@ -180,25 +179,25 @@ TEST(BendingJobTest, ASmallChangeOfTheWindIsASmallChangeOfTheBend) {
 TEST(BendingJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Strands strands(10);
-  EXPECT_EQ(strands.job(1.0, 1.0).validate(), Problem::kNone);
-  EXPECT_EQ(strands.job(nan, 1.0).run(), Problem::kWindNotFinite);
-  EXPECT_EQ(strands.job(1.0, 1e200).run(), Problem::kWindNotFinite);
+  EXPECT_EQ(strands.job(1.0, 1.0).validate(), BendingJob::Problem::kNone);
+  EXPECT_EQ(strands.job(nan, 1.0).run(), BendingJob::Problem::kWindNotFinite);
+  EXPECT_EQ(strands.job(1.0, 1e200).run(), BendingJob::Problem::kWindNotFinite);
   BendingJob job = strands.job(1.0, 1.0);
   job.half_bend_speed_m_s = 0.0;
-  EXPECT_EQ(job.run(), Problem::kHalfBendSpeed);
+  EXPECT_EQ(job.run(), BendingJob::Problem::kHalfBendSpeed);
   job.half_bend_speed_m_s = nan;
-  EXPECT_EQ(job.run(), Problem::kHalfBendSpeed);
+  EXPECT_EQ(job.run(), BendingJob::Problem::kHalfBendSpeed);
   for (const double bend_rad : {-0.1, 3.2, nan}) {
     job = strands.job(1.0, 1.0);
     job.max_bend_rad = bend_rad;
-    EXPECT_EQ(job.run(), Problem::kMaxBend);
+    EXPECT_EQ(job.run(), BendingJob::Problem::kMaxBend);
   }
   job = strands.job(1.0, 1.0);
   job.strength = job.strength.first(9);
-  EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  EXPECT_EQ(job.run(), BendingJob::Problem::kSizesDiffer);
   job = strands.job(1.0, 1.0);
   job.bend_south_rad = job.bend_south_rad.first(9);
-  EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  EXPECT_EQ(job.run(), BendingJob::Problem::kSizesDiffer);
   for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(strands.bend_rad(i), 0.0F);
 }
 

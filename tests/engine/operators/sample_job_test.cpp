@@ -17,10 +17,9 @@
 namespace yuragi {
 namespace {
 
-constexpr double kPeriod_m = 64.0;
+constexpr double kFieldPeriod_m = 64.0;
 constexpr std::size_t kTileSize = 128;
-constexpr double kCell_m = kPeriod_m / static_cast<double>(kTileSize);
-using Problem = SampleJob::Problem;
+constexpr double kCell_m = kFieldPeriod_m / static_cast<double>(kTileSize);
 
 NoiseTile2 wind_tile() {
   return make_noise_2d({.size = kTileSize, .seed = 7}).value();
@@ -31,8 +30,8 @@ struct Places {
   std::vector<std::uint32_t> x, z;
 
   void add(double x_m, double z_m) {
-    x.push_back(torus_phase(x_m, kPeriod_m));
-    z.push_back(torus_phase(z_m, kPeriod_m));
+    x.push_back(torus_phase(x_m, kFieldPeriod_m));
+    z.push_back(torus_phase(z_m, kFieldPeriod_m));
   }
 };
 
@@ -48,7 +47,7 @@ Places grid(double x_m, double z_m) {
 std::vector<float> read(const NoiseTile2& tile, const Places& places, TorusPhase offset) {
   std::vector<float> values(places.x.size());
   const SampleJob job{.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = offset, .out = values};
-  EXPECT_EQ(job.run(), Problem::kNone);
+  EXPECT_EQ(job.run(), SampleJob::Problem::kNone);
   return values;
 }
 
@@ -82,7 +81,7 @@ TEST_P(SampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
     std::vector<float> out(count);
     EXPECT_EQ(
         (SampleJob{.tile = &tile, .place_x = x, .place_z = z, .offset = offset, .row = GetParam(), .out = out}.run()),
-        Problem::kNone);
+        SampleJob::Problem::kNone);
     EXPECT_EQ(bits_of(out), bits_of(expected));
   }
 }
@@ -103,7 +102,7 @@ TEST_P(SampleJobOnEachRow, ScalesAndKeepsWithinTheRange) {
                        .row = GetParam(),
                        .out = out}
                  .run()),
-            Problem::kNone);
+            SampleJob::Problem::kNone);
   std::vector<float> expected;
   expected.reserve(plain.size());
   for (const float noise : plain) expected.push_back(std::clamp(1.0F + 0.5F * noise, 0.75F, 1.25F));
@@ -125,7 +124,7 @@ TEST(SampleJobTest, AFieldThatHasMovedByXIsReadAtXBack) {
       ShiftJob{.wind_east_m_s = x_m / 2.0,
                .wind_south_m_s = z_m / 2.0,
                .dt_s = 1.0 / 60.0,
-               .period_m = kPeriod_m,
+               .period_m = kFieldPeriod_m,
                .offset = &offset}
           .run();
     }
@@ -145,8 +144,8 @@ TEST(SampleJobTest, TheCorrelationPeaksDownwind) {
       return std::pair{5.0 * std::sin(azimuth_rad), -5.0 * std::cos(azimuth_rad)};
     };
     TorusOffset offset;
-    offset.x.add(downwind(wind).first, kPeriod_m);
-    offset.z.add(downwind(wind).second, kPeriod_m);
+    offset.x.add(downwind(wind).first, kFieldPeriod_m);
+    offset.z.add(downwind(wind).second, kFieldPeriod_m);
 
     // Of no displacement and those of 5 m in eight directions, the wind's own fits best.
     const double best =
@@ -182,8 +181,11 @@ TEST(SampleJobTest, NoTurnOfTheWindMovesTheFieldFasterThanTheWindItself) {
     const double east_m_s = 9.0 * std::sin(azimuth_rad);
     const double south_m_s = -9.0 * std::cos(azimuth_rad);
     const double dt_s = 1.0 / 60.0;
-    ShiftJob{
-        .wind_east_m_s = east_m_s, .wind_south_m_s = south_m_s, .dt_s = dt_s, .period_m = kPeriod_m, .offset = &offset}
+    ShiftJob{.wind_east_m_s = east_m_s,
+             .wind_south_m_s = south_m_s,
+             .dt_s = dt_s,
+             .period_m = kFieldPeriod_m,
+             .offset = &offset}
         .run();
     const std::vector<float> now = read(tile, places, offset.phase());
     const double cells = (std::abs(east_m_s) + std::abs(south_m_s)) * dt_s / kCell_m;
@@ -198,27 +200,27 @@ TEST(SampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   const Places places = grid(0.0, 0.0);
   std::vector<float> out(places.x.size(), -7.0F);
   const SampleJob good{.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = {}, .out = out};
-  EXPECT_EQ(good.validate(), Problem::kNone);
+  EXPECT_EQ(good.validate(), SampleJob::Problem::kNone);
 
   SampleJob job = good;
   job.tile = nullptr;
-  EXPECT_EQ(job.validate(), Problem::kTileNotReadable);
+  EXPECT_EQ(job.validate(), SampleJob::Problem::kTileNotReadable);
   const NoiseTile2 odd{3, std::vector<float>(9)};
   job.tile = &odd;
-  EXPECT_EQ(job.run(), Problem::kTileNotReadable);
+  EXPECT_EQ(job.run(), SampleJob::Problem::kTileNotReadable);
   job = good;
   job.place_x = job.place_x.first(5);
-  EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  EXPECT_EQ(job.run(), SampleJob::Problem::kSizesDiffer);
   job = good;
   job.place_z = job.place_z.first(5);
-  EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  EXPECT_EQ(job.run(), SampleJob::Problem::kSizesDiffer);
   job = good;
   job.scale = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(job.run(), Problem::kRangeNotNumber);
+  EXPECT_EQ(job.run(), SampleJob::Problem::kRangeNotNumber);
   job = good;
   job.low = 2.0F;
   job.high = 1.0F;
-  EXPECT_EQ(job.run(), Problem::kRangeNotNumber);
+  EXPECT_EQ(job.run(), SampleJob::Problem::kRangeNotNumber);
   EXPECT_EQ(std::count(out.begin(), out.end(), -7.0F), static_cast<std::ptrdiff_t>(out.size()));
 }
 

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kPeriod_m = 256.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-using Problem = ShiftJob::Problem;
 
 /// A phase as metres, within half a period either way.
 double metres(std::uint32_t phase) {
@@ -25,7 +24,7 @@ ShiftJob shift(TorusOffset& offset, double east_m_s, double south_m_s, double dt
 
 TEST(ShiftJobTest, MovesTheFieldToWhereTheWindBlows) {
   TorusOffset offset;
-  EXPECT_EQ(shift(offset, 6.0, -2.0, 0.5).run(), Problem::kNone);
+  EXPECT_EQ(shift(offset, 6.0, -2.0, 0.5).run(), ShiftJob::Problem::kNone);
   EXPECT_NEAR(metres(offset.phase().x), 3.0, 1e-6);
   EXPECT_NEAR(metres(offset.phase().z), -1.0, 1e-6);
 }
@@ -63,17 +62,17 @@ TEST(ShiftJobTest, StepsOfAnyLengthEndAtTheSamePlace) {
 
 TEST(ShiftJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   TorusOffset offset;
-  EXPECT_EQ(ShiftJob{}.validate(), Problem::kNoOffset);
-  EXPECT_EQ(shift(offset, kNan, 0.0, 0.1).validate(), Problem::kWindNotFinite);
-  EXPECT_EQ(shift(offset, 0.0, kNan, 0.1).validate(), Problem::kWindNotFinite);
-  EXPECT_EQ(shift(offset, 1.0, 1.0, 0.0).validate(), Problem::kStepNotPositive);
-  EXPECT_EQ(shift(offset, 1.0, 1.0, kNan).validate(), Problem::kStepNotPositive);
+  EXPECT_EQ(ShiftJob{}.validate(), ShiftJob::Problem::kNoOffset);
+  EXPECT_EQ(shift(offset, kNan, 0.0, 0.1).validate(), ShiftJob::Problem::kWindNotFinite);
+  EXPECT_EQ(shift(offset, 0.0, kNan, 0.1).validate(), ShiftJob::Problem::kWindNotFinite);
+  EXPECT_EQ(shift(offset, 1.0, 1.0, 0.0).validate(), ShiftJob::Problem::kStepNotPositive);
+  EXPECT_EQ(shift(offset, 1.0, 1.0, kNan).validate(), ShiftJob::Problem::kStepNotPositive);
   ShiftJob no_period = shift(offset, 1.0, 1.0, 0.1);
   no_period.period_m = 0.0;
-  EXPECT_EQ(no_period.validate(), Problem::kPeriodNotPositive);
-  EXPECT_EQ(no_period.run(), Problem::kPeriodNotPositive);
+  EXPECT_EQ(no_period.validate(), ShiftJob::Problem::kPeriodNotPositive);
+  EXPECT_EQ(no_period.run(), ShiftJob::Problem::kPeriodNotPositive);
   EXPECT_EQ(offset.phase(), TorusPhase{});
-  EXPECT_EQ(shift(offset, 1.0, 1.0, 0.1).validate(), Problem::kNone);
+  EXPECT_EQ(shift(offset, 1.0, 1.0, 0.1).validate(), ShiftJob::Problem::kNone);
 }
 
 }  // namespace

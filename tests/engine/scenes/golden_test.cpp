@@ -8,6 +8,7 @@
 #include "engine/pose/strand_kinematics.hpp"
 #include "engine/scenes/grass.hpp"
 #include "tests/support/each_simd_row.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/scripted_wind.hpp"
 
 // One hash per scene of what it does in 600 ticks under the scripted wind, with default parameters and seed 1: every
@@ -36,7 +37,7 @@ std::string hash_of_600_ticks(Scene& scene, SimdRow row) {
 }
 
 std::string golden_hash(std::string_view scene) {
-  std::ifstream file(YURAGI_SOURCE_DIR "/tests/golden/" + std::string(scene) + ".txt");
+  std::ifstream file(test::source_path("tests/golden/" + std::string(scene) + ".txt"));
   std::string hash;
   file >> hash;
   return hash;
