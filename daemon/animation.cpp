@@ -1,12 +1,14 @@
 #include "daemon/animation.hpp"
 
+#include "engine/pose/pose_arrays.hpp"
+
 namespace yuragi {
 
 Animation::Animation(const Config& config) {
   for (const SceneConfig& scene : config.scenes) {
     names_.push_back(scene.name);
     kinds_.emplace_back(scene.kind->name);
-    scenes_.push_back(scene.kind->make(scene.values, config.seed + scenes_.size()));
+    scenes_.push_back(scene.kind->make(scene.values, {.seed = config.seed + scenes_.size()}));
     skeletons_.push_back(&scenes_.back()->skeleton());
     poses_.push_back(&scenes_.back()->pose());
   }
@@ -26,9 +28,7 @@ wire::Scenes Animation::describe() const {
 
 std::size_t Animation::node_count() const {
   std::size_t nodes = 0;
-  for (const Skeleton* skeleton : skeletons_) {
-    std::visit([&nodes](const auto& kind) { nodes += kind.strand_count * kind.links_per_strand; }, *skeleton);
-  }
+  for (const Skeleton* skeleton : skeletons_) nodes += yuragi::node_count(*skeleton);
   return nodes;
 }
 

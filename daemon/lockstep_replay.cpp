@@ -10,14 +10,7 @@ namespace yuragi {
 namespace {
 
 std::uint64_t hash_poses(std::uint64_t hash, std::span<const Pose* const> poses) {
-  for (const Pose* pose : poses) {
-    std::visit(
-        [&hash](const StrandPose& strands) {
-          hash = pose_hash(hash, strands.bend_east_rad);
-          hash = pose_hash(hash, strands.bend_south_rad);
-        },
-        *pose);
-  }
+  for (const Pose* pose : poses) hash = pose_hash(hash, *pose);
   return hash;
 }
 

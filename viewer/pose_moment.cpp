@@ -3,61 +3,43 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/pose/pose_arrays.hpp"
+
 namespace yuragi {
-namespace {
-
-Pose rest_pose(const StrandSkeleton& skeleton) {
-  return StrandPose{std::vector<float>(skeleton.padded_count()), std::vector<float>(skeleton.padded_count())};
-}
-
-bool has_same_size(const StrandPose& a, const StrandPose& b) {
-  return a.bend_east_rad.size() == b.bend_east_rad.size() && a.bend_south_rad.size() == b.bend_south_rad.size();
-}
-
-void blend_values(std::span<const float> a, std::span<const float> b, float weight, std::span<float> out) {
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = a[i] + weight * (b[i] - a[i]);
-}
-
-void blend_pose(const StrandPose& a, const StrandPose& b, float weight, StrandPose& out) {
-  blend_values(a.bend_east_rad, b.bend_east_rad, weight, out.bend_east_rad);
-  blend_values(a.bend_south_rad, b.bend_south_rad, weight, out.bend_south_rad);
-}
-
-}  // namespace
-
 PoseMoment rest_moment(std::span<const wire::SceneModel> scenes) {
   PoseMoment rest;
-  for (const wire::SceneModel& scene : scenes) {
-    rest.poses.push_back(std::visit([](const auto& skeleton) { return rest_pose(skeleton); }, scene.skeleton));
-  }
+  for (const wire::SceneModel& scene : scenes) rest.poses.push_back(rest_pose(scene.skeleton));
   return rest;
 }
 
 bool has_same_layout(std::span<const Pose> a, std::span<const Pose> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Pose& left, const Pose& right) {
-    if (left.index() != right.index()) return false;
-    return std::visit(
-        [&](const auto& pose) { return has_same_size(pose, std::get<std::decay_t<decltype(pose)>>(right)); }, left);
+    const PoseArrays<const float> lefts(left);
+    const PoseArrays<const float> rights(right);
+    return left.index() == right.index() && std::equal(lefts.begin(), lefts.end(), rights.begin(), rights.end(),
+                                                       [](auto one, auto other) { return one.size() == other.size(); });
   });
 }
 
 std::size_t value_bytes(std::span<const Pose> poses) {
   std::size_t bytes = 0;
   for (const Pose& pose : poses) {
-    const auto& strands = std::get<StrandPose>(pose);
-    bytes += (strands.bend_east_rad.size() + strands.bend_south_rad.size()) * sizeof(float);
+    for_each_array(pose, [&bytes](std::span<const float> values) { bytes += values.size_bytes(); });
   }
   return bytes;
 }
 
 void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& out) {
+  const auto share = static_cast<float>(weight);
   for (std::size_t scene = 0; scene < out.poses.size(); ++scene) {
-    std::visit(
-        [&](auto& pose) {
-          using Kind = std::decay_t<decltype(pose)>;
-          blend_pose(std::get<Kind>(a.poses[scene]), std::get<Kind>(b.poses[scene]), static_cast<float>(weight), pose);
-        },
-        out.poses[scene]);
+    const PoseArrays<const float> from(a.poses[scene]);
+    const PoseArrays<const float> to(b.poses[scene]);
+    const PoseArrays<float> mixed(out.poses[scene]);
+    for (std::size_t array = 0; array < mixed.size(); ++array) {
+      for (std::size_t i = 0; i < mixed[array].size(); ++i) {
+        mixed[array][i] = from[array][i] + share * (to[array][i] - from[array][i]);
+      }
+    }
   }
   out.time_s = std::lerp(a.time_s, b.time_s, weight);
   out.wind.wind = a.wind.wind + weight * (b.wind.wind - a.wind.wind);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/pose/skeleton.hpp"
+#include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi {
 
@@ -23,9 +23,12 @@ inline std::uint64_t pose_hash(std::uint64_t seed, std::span<const float> values
   return hash;
 }
 
-/// The same over a pose, its padding included.
-inline std::uint64_t pose_hash(std::uint64_t seed, const StrandPose& pose) noexcept {
-  return pose_hash(pose_hash(seed, pose.bend_east_rad), pose.bend_south_rad);
+/// The same over a pose of any kind, array after array, padding included.
+template <PoseLike AnyPose>
+std::uint64_t pose_hash(std::uint64_t seed, const AnyPose& pose) noexcept {
+  std::uint64_t hash = seed;
+  for_each_array(pose, [&hash](std::span<const float> values) { hash = pose_hash(hash, values); });
+  return hash;
 }
 
 }  // namespace yuragi

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <variant>
 #include <vector>
 
@@ -9,13 +10,14 @@ namespace yuragi {
 // World: right-handed, x east, y up, z south; metres and radians.
 //
 // A skeleton is what never changes of a thing that sways; a pose is what moves, in the skeleton's layout. Joint
-// positions come from the two by forward kinematics (strand_kinematics.hpp), and nowhere else.
+// positions come from the two by forward kinematics (kinematics.hpp), and nowhere else.
 
-/// Strands are computed in blocks of this many, side by side in SIMD lanes. Arrays are padded to whole blocks.
+/// Strands, and the columns of a grid, are computed in blocks of this many, side by side in SIMD lanes. Arrays are
+/// padded to whole blocks.
 inline constexpr std::size_t kStrandsPerBlock = 16;
 
-constexpr std::size_t padded_to_blocks(std::size_t strands) {
-  return (strands + kStrandsPerBlock - 1) / kStrandsPerBlock * kStrandsPerBlock;
+constexpr std::size_t padded_to_blocks(std::size_t count) {
+  return (count + kStrandsPerBlock - 1) / kStrandsPerBlock * kStrandsPerBlock;
 }
 
 /// Many chains of the same number of links: grass, fur.
@@ -43,8 +45,71 @@ struct StrandPose {
   std::vector<float> bend_south_rad;
 };
 
+/// Cloth: a grid of joints. Row 0 is the fixed edge (a curtain's top, a flag's hoist) and the last row the free one; a
+/// column is a thread from the one to the other. The joint of (column, row) stands at row * stride() + column; all
+/// vectors have rows * stride() elements, what is behind `columns` in a row is finite and is not shown.
+struct GridSkeleton {
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  bool is_first_column_fixed = false;  ///< a banner's pole, besides the cross-arm
+  std::vector<float> rest_x_m, rest_y_m, rest_z_m;
+
+  std::size_t stride() const { return padded_to_blocks(columns); }
+};
+
+/// How far each joint is from its place at rest, in the skeleton's layout. Zero is the rest pose; fixed joints stay 0.
+struct GridPose {
+  std::vector<float> offset_x_m, offset_y_m, offset_z_m;
+};
+
+/// One generation of a tree's strands: the trunk, the limbs, the twigs, the leaves.
+///
+/// `strands` tells where they are while nothing moves. Strand s of a level above the first grows from the joint behind
+/// link parent_link[s] (from 0) of strand parent[s] of level parent_level, and goes with it: its root stays at that
+/// joint, and its rest direction and curl are turned with that link. Where `is_turned_by_block` is set, the 16 strands
+/// of a block all take the turn of the first one's parent link (a spray of leaves on a twig), each its own root.
+struct TreeLevel {
+  StrandSkeleton strands;
+  std::size_t parent_level = 0;            ///< below this level's own number; of no meaning in the first
+  std::vector<std::uint32_t> parent;       ///< padded_count() elements, like the next; empty in the first level
+  std::vector<std::uint32_t> parent_link;  ///< below links_per_strand of the parent's level
+  bool is_turned_by_block = false;
+  bool is_leaves = false;            ///< blades to be drawn, not wood
+  std::vector<float> base_radius_m;  ///< wood: at the root; leaves: half the width. padded_count() elements
+  std::vector<float> tip_radius_m;   ///< wood: at the tip. padded_count() elements
+};
+
+/// Strands that grow on strands: level 0 stands on the ground. At most kMaxTreeLevels levels.
+struct TreeSkeleton {
+  std::vector<TreeLevel> levels;
+};
+inline constexpr std::size_t kMaxTreeLevels = 8;
+
+/// A bend for each strand of each level, in StrandPose's meaning and in the world's directions, on top of the turn that
+/// comes from the parent.
+struct TreePose {
+  std::vector<StrandPose> levels;
+};
+
+/// A surface whose points move along their normals, and which may glow: water, a flame. A grid of columns x rows
+/// points; point (column, row) stands at row * columns + column. All float vectors have columns * rows elements.
+struct SurfaceSkeleton {
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  bool is_closed = false;  ///< the last column is followed by the first, around a body
+  std::vector<float> rest_x_m, rest_y_m, rest_z_m;
+  std::vector<float> normal_x, normal_y, normal_z;  ///< unit vectors
+  std::vector<std::uint8_t> ramp_rgba;  ///< 256 colours of 4 bytes (sRGB, straight alpha) for `heat`; empty: no heat
+};
+
+/// How far each point is moved along its normal, and where its colour stands on the ramp.
+struct SurfacePose {
+  std::vector<float> displacement_m;  ///< columns * rows elements
+  std::vector<float> heat;            ///< 0 to 1; as many, or none where there is no ramp
+};
+
 /// The kinds of skeleton, and the pose that goes with each, in the same order.
-using Skeleton = std::variant<StrandSkeleton>;
-using Pose = std::variant<StrandPose>;
+using Skeleton = std::variant<StrandSkeleton, GridSkeleton, TreeSkeleton, SurfaceSkeleton>;
+using Pose = std::variant<StrandPose, GridPose, TreePose, SurfacePose>;
 
 }  // namespace yuragi

@@ -1,5 +1,3 @@
-#include "engine/scenes/grass.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "engine/operators/sample_job.hpp"
 #include "engine/operators/shift_job.hpp"
 #include "engine/scenes/meadow.hpp"
+#include "engine/scenes/scene.hpp"
 
 // Grass in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine for
 // fluctuation phenomena" (Iwate University), section 3.1 and figure 7:
@@ -106,11 +105,12 @@ std::vector<std::uint32_t> phases_of(const std::vector<float>& positions_m, doub
 
 class Grass final : public Scene {
  public:
-  Grass(const ParameterValues& values, std::uint64_t seed, SimdRow row)
-      : Grass(make_meadow(meadow_spec(values, seed)), values, seed, row) {}
+  Grass(const ParameterValues& values, const SceneSetup& setup)
+      : Grass(make_meadow(meadow_spec(values, setup.seed)), values, setup) {}
 
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
+  double largest_joint_step_m(double /*dt_s*/) const noexcept override { return 10.0; }
 
   void tick(WindVector wind, double dt_s) noexcept override {
     const double east_m_s = wind.u_m_s;
@@ -151,15 +151,15 @@ class Grass final : public Scene {
   }
 
  private:
-  Grass(Meadow meadow, const ParameterValues& values, std::uint64_t seed, SimdRow row)
-      : row_(row),
+  Grass(Meadow meadow, const ParameterValues& values, const SceneSetup& setup)
+      : row_(setup.row),
         period_m_(values.number("tile_period")),
         turbulence_(static_cast<float>(values.number("turbulence"))),
         gust_strength_(values.number("gust_strength")),
         half_bend_speed_m_s_(values.number("half_bend_speed")),
         max_bend_rad_(values.number("max_bend") * kRadPerDeg),
-        tile_(make_noise_2d(wind_noise(values, seed ^ stream_id("grass wind on the ground"))).value()),
-        along_(make_noise_1d(wind_noise(values, seed ^ stream_id("grass wind-speed"))).value()),
+        tile_(make_noise_2d(wind_noise(values, setup.seed ^ stream_id("grass wind on the ground"))).value()),
+        along_(make_noise_1d(wind_noise(values, setup.seed ^ stream_id("grass wind-speed"))).value()),
         place_x_(phases_of(meadow.skeleton.root_x_m, period_m_)),
         place_z_(phases_of(meadow.skeleton.root_z_m, period_m_)),
         flexibility_(std::move(meadow.flexibility)),
@@ -188,15 +188,12 @@ class Grass final : public Scene {
 
 }  // namespace
 
-std::unique_ptr<Scene> make_grass(const ParameterValues& values, std::uint64_t seed, SimdRow row) {
-  return std::make_unique<Grass>(values, seed, row);
-}
-
+extern const SceneDescription kGrassScene;
 const SceneDescription kGrassScene = {.name = "grass",
                                       .summary = "a meadow in the wind: blades bend as gusts pass over them",
                                       .parameters = kGrassParameters,
-                                      .make = [](const ParameterValues& values, std::uint64_t seed) {
-                                        return make_grass(values, seed, best_simd_row());
+                                      .make = [](const ParameterValues& values, const SceneSetup& setup) {
+                                        return std::unique_ptr<Scene>(std::make_unique<Grass>(values, setup));
                                       }};
 
 }  // namespace yuragi

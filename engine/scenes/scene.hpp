@@ -6,10 +6,15 @@
 #include <string_view>
 
 #include "engine/base/parameter.hpp"
+#include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi {
+
+/// The strongest wind that a scene is moved by; what is stronger is taken as this. (The strongest gust of a typhoon
+/// over a town is about 70 m/s, and everything here is long saturated.)
+inline constexpr double kStrongestSceneWind_m_s = 60.0;
 
 /// Something that the wind moves: a model and the operators that move it (shift, sample, project).
 ///
@@ -24,8 +29,27 @@ class Scene {
   /// Goes on by dt_s (above 0) under `wind` (finite).
   virtual void tick(WindVector wind, double dt_s) noexcept = 0;
 
+  /// No joint moves farther than this in one tick of dt_s, whatever the wind does: steps, gaps, turns. How the bound
+  /// comes about stands in the scene's file.
+  virtual double largest_joint_step_m(double dt_s) const noexcept = 0;
+
   /// The pose after the last tick; the rest pose before the first.
   virtual const Pose& pose() const noexcept = 0;
+};
+
+/// Where a scene stands in the world: its own origin, and what in it is north.
+struct ScenePlacement {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+  double heading_deg = 0.0;  ///< where the scene's north points to, clockwise from the world's
+};
+
+/// What a scene is made with, besides its parameters.
+struct SceneSetup {
+  std::uint64_t seed = 0;  ///< everything random in the model and its noises comes from it
+  ScenePlacement placement = {};
+  SimdRow row = best_simd_row();
 };
 
 /// A kind of scene: one constant `kXScene` in its own file, listed in engine/scenes/CMakeLists.txt.
@@ -33,8 +57,8 @@ struct SceneDescription {
   std::string_view name;
   std::string_view summary;
   std::span<const Parameter> parameters;
-  /// Lays the model out. Everything random in it comes from `seed`.
-  std::unique_ptr<Scene> (*make)(const ParameterValues& values, std::uint64_t seed);
+  /// Lays the model out where it stands.
+  std::unique_ptr<Scene> (*make)(const ParameterValues& values, const SceneSetup& setup);
 };
 
 /// Every kind of scene (generated).

@@ -167,6 +167,7 @@ bool read(const fb::Frame& from, Frame& to) {
   std::size_t strand_count = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (!read(*from.scenes()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.poses.emplace_back())) return false;
+    to.opacities.push_back(1.0f);
     strand_count += std::get<StrandPose>(to.poses.back()).bend_east_rad.size();
     if (strand_count > kMaxStrands + kMaxScenes * kStrandsPerBlock) return false;
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/pose/pose_arrays.hpp"
+
 namespace yuragi::wire {
 
 std::string_view name_of(WireError error) {
@@ -26,19 +28,9 @@ Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kS
   return length;
 }
 
-namespace {
-
-bool fits(const StrandPose& pose, const StrandSkeleton& skeleton) {
-  return pose.bend_east_rad.size() == skeleton.padded_count() && pose.bend_south_rad.size() == skeleton.padded_count();
-}
-
-}  // namespace
-
 bool fits(const Frame& frame, const Scenes& scenes) {
   return std::equal(frame.poses.begin(), frame.poses.end(), scenes.scenes.begin(), scenes.scenes.end(),
-                    [](const Pose& pose, const SceneModel& scene) {
-                      return std::visit([](const auto& p, const auto& s) { return fits(p, s); }, pose, scene.skeleton);
-                    });
+                    [](const Pose& pose, const SceneModel& scene) { return yuragi::fits(pose, scene.skeleton); });
 }
 
 }  // namespace yuragi::wire

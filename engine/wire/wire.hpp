@@ -75,7 +75,8 @@ struct FrameInfo {
 
 struct Frame {
   FrameInfo info;
-  std::vector<Pose> poses;  ///< padded to whole blocks with zeros
+  std::vector<Pose> poses;       ///< padded to whole blocks with zeros
+  std::vector<float> opacities;  ///< one a scene, 0 to 1: a scene that fades in or out
 };
 
 struct SensorStatus {

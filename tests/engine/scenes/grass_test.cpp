@@ -1,5 +1,3 @@
-#include "engine/scenes/grass.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,16 +6,20 @@
 
 #include "engine/base/units.hpp"
 #include "engine/pose/strand_kinematics.hpp"
+#include "engine/scenes/scene.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/scripted_wind.hpp"
 
 namespace yuragi {
+
+extern const SceneDescription kGrassScene;
+
 namespace {
 
 constexpr double kTick_s = 1.0 / 60.0;
 
 std::unique_ptr<Scene> grass(const ParameterValues::Map& given = {}, std::uint64_t seed = 1) {
-  return kGrassScene.make(ParameterValues::resolve(kGrassScene.parameters, given).value(), seed);
+  return kGrassScene.make(ParameterValues::resolve(kGrassScene.parameters, given).value(), {.seed = seed});
 }
 
 /// A meadow of 20 x 20 blades: enough for what each blade must do.

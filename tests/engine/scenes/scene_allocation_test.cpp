@@ -45,7 +45,7 @@ namespace {
 
 TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
   for (const SceneDescription* description : scene_table()) {
-    const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(), 1);
+    const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(), {.seed = 1});
     const auto& skeleton = std::get<StrandSkeleton>(scene->skeleton());
     JointPositions joints(skeleton);
     EXPECT_GT(allocations, 0U) << "the counter does not count";

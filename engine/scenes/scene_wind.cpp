@@ -1,0 +1,40 @@
+#include "engine/scenes/scene_wind.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/scenes/scene.hpp"
+
+namespace yuragi {
+namespace {
+
+/// What is left of a wind that has ceased: below it a wind moves nothing, and the filter would go on for ever in
+/// numbers that processors are slow with.
+constexpr double kCalm_m_s = 1e-12;
+
+void settle(CriticallyDamped& follower) noexcept {
+  if (std::abs(follower.value) < kCalm_m_s && std::abs(follower.rate_per_s) < kCalm_m_s) follower = {};
+}
+
+}  // namespace
+
+void SceneWind::step(WindVector wind, double dt_s) noexcept {
+  const double speed_m_s = std::sqrt(wind.u_m_s * wind.u_m_s + wind.v_m_s * wind.v_m_s);
+  const double cut = speed_m_s > kStrongestSceneWind_m_s ? kStrongestSceneWind_m_s / speed_m_s : 1.0;
+  east_.step(cut * wind.u_m_s, kOmega_rad_s, dt_s);
+  south_.step(-cut * wind.v_m_s, kOmega_rad_s, dt_s);
+  settle(east_);
+  settle(south_);
+}
+
+double SceneWind::speed_m_s() const noexcept {
+  return std::sqrt(east_.value * east_.value + south_.value * south_.value);
+}
+
+double SceneWind::largest_step_m_s(double dt_s) noexcept {
+  const double rate_m_s2 = 2.0 * kStrongestSceneWind_m_s * kOmega_rad_s / std::numbers::e;
+  return std::min(rate_m_s2 * dt_s, 2.0 * kStrongestSceneWind_m_s);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "engine/math/critically_damped.hpp"
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi {
+
+/// The wind as a scene feels it: what is too strong is cut to kStrongestSceneWind_m_s, and a step becomes a quick
+/// swell, so that no input whatever makes a scene jump. It lags by 2 / kOmega_rad_s = 0.1 s.
+///
+/// From one tick of dt to the next it changes by at most largest_step_m_s(dt), whatever comes in: its rate is the input
+/// convolved with the derivative of the impulse response w^2 t exp(-w t), whose magnitude integrates to 2 w / e, and
+/// the input is never longer than kStrongestSceneWind_m_s. It is never longer than that itself, since the impulse
+/// response is positive and integrates to 1. Thread-safe: no. Realtime-safe: yes.
+class SceneWind {
+ public:
+  static constexpr double kOmega_rad_s = 20.0;
+
+  /// Goes on by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
+  void step(WindVector wind, double dt_s) noexcept;
+
+  double east_m_s() const noexcept { return east_.value; }
+  double south_m_s() const noexcept { return south_.value; }
+  double speed_m_s() const noexcept;
+
+  static double largest_step_m_s(double dt_s) noexcept;
+
+ private:
+  CriticallyDamped east_, south_;
+};
+
+}  // namespace yuragi
