@@ -7,14 +7,20 @@
 
 namespace yuragi {
 
-struct SampleKernelArguments {
-  std::size_t count = 0;
+struct SampleKernelLayer {
   const float* tile = nullptr;
   unsigned log2_size = 0;
   const std::uint32_t* place_x = nullptr;
   const std::uint32_t* place_z = nullptr;
   std::uint32_t offset_x = 0;
   std::uint32_t offset_z = 0;
+  float weight = 1.0F;
+};
+
+struct SampleKernelArguments {
+  std::size_t count = 0;
+  std::size_t layer_count = 0;
+  SampleKernelLayer layers[4] = {};
   float scale = 0.0F;
   float bias = 0.0F;
   float low = 0.0F;
@@ -33,6 +39,18 @@ struct BendingKernelArguments {
   float* out_south_rad = nullptr;
 };
 
+struct OscillatorKernelArguments {
+  std::size_t count = 0;
+  float q_from_e = 0.0F;  ///< the exact step: q' = g + q_from_e e + q_from_v v, v' = v_from_e e + v_from_v v
+  float q_from_v = 0.0F;
+  float v_from_e = 0.0F;
+  float v_from_v = 0.0F;
+  float blend = 0.0F;
+  float* value = nullptr;
+  float* rate = nullptr;
+  float* driven = nullptr;  ///< in: the noise's angle; out: what blends the two
+};
+
 struct SampleKernels {
   void (*sample)(const SampleKernelArguments&) noexcept;
 };
@@ -46,5 +64,12 @@ struct BendingKernels {
 extern const BendingKernels bending_kernels_x86_64;
 extern const BendingKernels bending_kernels_x86_64_v3;
 extern const BendingKernels bending_kernels_x86_64_v4;
+
+struct OscillatorKernels {
+  void (*step)(const OscillatorKernelArguments&) noexcept;
+};
+extern const OscillatorKernels oscillator_kernels_x86_64;
+extern const OscillatorKernels oscillator_kernels_x86_64_v3;
+extern const OscillatorKernels oscillator_kernels_x86_64_v4;
 
 }  // namespace yuragi

@@ -14,8 +14,12 @@ constexpr KernelRows<SampleKernels> kSampleRows = YURAGI_KERNEL_ROWS(sample_kern
 }  // namespace
 
 SampleJob::Problem SampleJob::validate() const noexcept {
-  if (tile == nullptr || !is_readable(*tile)) return Problem::kTileNotReadable;
-  if (place_x.size() != out.size() || place_z.size() != out.size()) return Problem::kSizesDiffer;
+  if (layers.empty() || layers.size() > kMaxLayers) return Problem::kLayerCount;
+  for (const NoiseLayer& layer : layers) {
+    if (layer.tile == nullptr || !is_readable(*layer.tile)) return Problem::kTileNotReadable;
+    if (layer.place_x.size() != out.size() || layer.place_z.size() != out.size()) return Problem::kSizesDiffer;
+    if (!std::isfinite(layer.weight)) return Problem::kRangeNotNumber;
+  }
   if (!std::isfinite(scale) || !std::isfinite(bias) || !(low <= high)) return Problem::kRangeNotNumber;
   if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
   return Problem::kNone;
@@ -24,18 +28,19 @@ SampleJob::Problem SampleJob::validate() const noexcept {
 SampleJob::Problem SampleJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
-  kSampleRows[row.value_or(best_simd_row())].sample({.count = out.size(),
-                                                     .tile = tile->values.data(),
-                                                     .log2_size = static_cast<unsigned>(std::countr_zero(tile->size)),
-                                                     .place_x = place_x.data(),
-                                                     .place_z = place_z.data(),
-                                                     .offset_x = offset.x,
-                                                     .offset_z = offset.z,
-                                                     .scale = scale,
-                                                     .bias = bias,
-                                                     .low = low,
-                                                     .high = high,
-                                                     .out = out.data()});
+
+  SampleKernelArguments arguments{
+      .count = out.size(), .scale = scale, .bias = bias, .low = low, .high = high, .out = out.data()};
+  for (const NoiseLayer& layer : layers) {
+    arguments.layers[arguments.layer_count++] = {.tile = layer.tile->values.data(),
+                                                 .log2_size = static_cast<unsigned>(std::countr_zero(layer.tile->size)),
+                                                 .place_x = layer.place_x.data(),
+                                                 .place_z = layer.place_z.data(),
+                                                 .offset_x = layer.offset.x,
+                                                 .offset_z = layer.offset.z,
+                                                 .weight = layer.weight};
+  }
+  kSampleRows[row.value_or(best_simd_row())].sample(arguments);
   return Problem::kNone;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -10,18 +11,27 @@
 
 namespace yuragi {
 
-/// The sampling operator: reads a shifted noise at many places and brings it into the range that the projection wants,
-/// out = clamp(bias + scale * noise(place - offset), low, high) (Chiba, section 2-2 (2)).
-///
-/// Places are phases on the tile's torus, one value out for each (one a strand: what bends as a whole is read once).
-/// The field that has moved by `offset` is read at place - offset, so that gusts travel downwind. Owns nothing; `out`
-/// overlaps no input. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same
-/// bits. Cost: about 2 ns a place.
-struct SampleJob {
+/// A shifted noise, and the places at which it is read: phases on the tile's torus. A field that has moved by `offset`
+/// is read at place - offset, so that gusts travel downwind.
+struct NoiseLayer {
   const NoiseTile2* tile = nullptr;
   std::span<const std::uint32_t> place_x;
   std::span<const std::uint32_t> place_z;
   TorusPhase offset = {};
+  float weight = 1.0F;
+};
+
+/// The sampling operator: reads shifted noise at many places and brings it into the range that the projection wants,
+/// out = clamp(bias + scale * sum of weight * noise(place - offset), low, high) (Chiba, section 2-2 (2)).
+///
+/// One layer is the paper's; two tiles of different size and direction keep a repeat from being seen (method, decision
+/// 7). One value out for each place (one a strand: what bends as a whole is read once). Owns nothing; `out` overlaps no
+/// input. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits, and
+/// layers are added in their order. Cost: about 2 ns a place and layer.
+struct SampleJob {
+  static constexpr std::size_t kMaxLayers = 4;
+
+  std::span<const NoiseLayer> layers;
   float scale = 1.0F;
   float bias = 0.0F;
   float low = -std::numeric_limits<float>::infinity();
@@ -32,9 +42,10 @@ struct SampleJob {
 
   enum class Problem : std::uint8_t {
     kNone,
+    kLayerCount,       ///< none, or more than kMaxLayers
     kTileNotReadable,  ///< none, or is_readable() says no
     kSizesDiffer,      ///< place_x, place_z and out
-    kRangeNotNumber,   ///< scale or bias is not finite, or low and high are not in order
+    kRangeNotNumber,   ///< a weight, scale or bias is not finite, or low and high are not in order
     kRowNotRunnable,
   };
   [[nodiscard]] Problem validate() const noexcept;

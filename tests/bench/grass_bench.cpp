@@ -50,16 +50,8 @@ struct Bench {
   }
 
   void sample(SimdRow row) {
-    SampleJob{.tile = &tile,
-              .place_x = place_x,
-              .place_z = place_z,
-              .offset = offset.phase(),
-              .scale = 0.4F,
-              .bias = 1.0F,
-              .low = 0.0F,
-              .row = row,
-              .out = strength}
-        .run();
+    const NoiseLayer layer{.tile = &tile, .place_x = place_x, .place_z = place_z, .offset = offset.phase()};
+    SampleJob{.layers = {&layer, 1}, .scale = 0.4F, .bias = 1.0F, .low = 0.0F, .row = row, .out = strength}.run();
   }
 
   void bend(SimdRow row) {

@@ -46,7 +46,8 @@ Places grid(double x_m, double z_m) {
 
 std::vector<float> read(const NoiseTile2& tile, const Places& places, TorusPhase offset) {
   std::vector<float> values(places.x.size());
-  const SampleJob job{.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = offset, .out = values};
+  const NoiseLayer layer{.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = offset};
+  const SampleJob job{.layers = {&layer, 1}, .out = values};
   EXPECT_EQ(job.run(), SampleJob::Problem::kNone);
   return values;
 }
@@ -79,9 +80,8 @@ TEST_P(SampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
       expected.push_back(read_noise(tile, TorusPhase{x.back(), z.back()} - offset));
     }
     std::vector<float> out(count);
-    EXPECT_EQ(
-        (SampleJob{.tile = &tile, .place_x = x, .place_z = z, .offset = offset, .row = GetParam(), .out = out}.run()),
-        SampleJob::Problem::kNone);
+    const NoiseLayer layer{.tile = &tile, .place_x = x, .place_z = z, .offset = offset};
+    EXPECT_EQ((SampleJob{.layers = {&layer, 1}, .row = GetParam(), .out = out}.run()), SampleJob::Problem::kNone);
     EXPECT_EQ(bits_of(out), bits_of(expected));
   }
 }
@@ -91,10 +91,8 @@ TEST_P(SampleJobOnEachRow, ScalesAndKeepsWithinTheRange) {
   const Places places = grid(0.0, 0.0);
   const std::vector<float> plain = read(tile, places, {});
   std::vector<float> out(plain.size());
-  EXPECT_EQ((SampleJob{.tile = &tile,
-                       .place_x = places.x,
-                       .place_z = places.z,
-                       .offset = {},
+  const NoiseLayer layer{.tile = &tile, .place_x = places.x, .place_z = places.z};
+  EXPECT_EQ((SampleJob{.layers = {&layer, 1},
                        .scale = 0.5F,
                        .bias = 1.0F,
                        .low = 0.75F,
@@ -195,25 +193,54 @@ TEST(SampleJobTest, NoTurnOfTheWindMovesTheFieldFasterThanTheWindItself) {
   }
 }
 
+TEST_P(SampleJobOnEachRow, AddsItsLayersInTheirOrder) {
+  const NoiseTile2 tile = wind_tile();
+  const NoiseTile2 other = make_noise_2d({.size = 64, .seed = 8}).value();
+  const Places places = grid(0.0, 0.0);
+  const Places elsewhere = grid(5.0, -3.0);
+  const std::vector<NoiseLayer> layers = {
+      {.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = {1U << 30U, 5U}, .weight = 0.75F},
+      {.tile = &other, .place_x = elsewhere.x, .place_z = elsewhere.z, .offset = {7U, 1U << 29U}, .weight = -0.5F}};
+  std::vector<float> out(places.x.size());
+  EXPECT_EQ((SampleJob{.layers = layers, .row = GetParam(), .out = out}.run()), SampleJob::Problem::kNone);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const float first = 0.75F * read_noise(tile, TorusPhase{places.x[i], places.z[i]} - layers[0].offset);
+    const float second = -0.5F * read_noise(other, TorusPhase{elsewhere.x[i], elsewhere.z[i]} - layers[1].offset);
+    EXPECT_EQ(out[i], first + second) << i;
+  }
+}
+
 TEST(SampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   const NoiseTile2 tile = wind_tile();
   const Places places = grid(0.0, 0.0);
   std::vector<float> out(places.x.size(), -7.0F);
-  const SampleJob good{.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = {}, .out = out};
+  const NoiseLayer good_layer{.tile = &tile, .place_x = places.x, .place_z = places.z};
+  const SampleJob good{.layers = {&good_layer, 1}, .out = out};
   EXPECT_EQ(good.validate(), SampleJob::Problem::kNone);
 
   SampleJob job = good;
-  job.tile = nullptr;
-  EXPECT_EQ(job.validate(), SampleJob::Problem::kTileNotReadable);
-  const NoiseTile2 odd{3, std::vector<float>(9)};
-  job.tile = &odd;
+  job.layers = {};
+  EXPECT_EQ(job.run(), SampleJob::Problem::kLayerCount);
+  const std::vector<NoiseLayer> many(SampleJob::kMaxLayers + 1, good_layer);
+  job.layers = many;
+  EXPECT_EQ(job.run(), SampleJob::Problem::kLayerCount);
+
+  NoiseLayer layer = good_layer;
+  job.layers = {&layer, 1};
+  layer.tile = nullptr;
   EXPECT_EQ(job.run(), SampleJob::Problem::kTileNotReadable);
-  job = good;
-  job.place_x = job.place_x.first(5);
+  const NoiseTile2 odd{3, std::vector<float>(9)};
+  layer.tile = &odd;
+  EXPECT_EQ(job.run(), SampleJob::Problem::kTileNotReadable);
+  layer = good_layer;
+  layer.place_x = layer.place_x.first(5);
   EXPECT_EQ(job.run(), SampleJob::Problem::kSizesDiffer);
-  job = good;
-  job.place_z = job.place_z.first(5);
+  layer = good_layer;
+  layer.place_z = layer.place_z.first(5);
   EXPECT_EQ(job.run(), SampleJob::Problem::kSizesDiffer);
+  layer = good_layer;
+  layer.weight = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(job.run(), SampleJob::Problem::kRangeNotNumber);
   job = good;
   job.scale = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(job.run(), SampleJob::Problem::kRangeNotNumber);

@@ -1,0 +1,69 @@
+#include "engine/operators/oscillator_job.hpp"
+
+#include <cmath>
+
+#include "engine/base/kernel.hpp"
+#include "engine/base/units.hpp"
+#include "engine/operators/operator_kernels.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr KernelRows<OscillatorKernels> kOscillatorRows = YURAGI_KERNEL_ROWS(oscillator_kernels);
+
+}  // namespace
+
+OscillatorStep OscillatorStep::exact(double natural_hz, double damping_ratio, double dt_s) noexcept {
+  const double w = 2.0 * kPi * natural_hz;
+  const double damped_w = w * std::sqrt(1.0 - damping_ratio * damping_ratio);
+  const double decay = std::exp(-damping_ratio * w * dt_s);
+  const double c = std::cos(damped_w * dt_s);
+  const double s = std::sin(damped_w * dt_s);
+  const double lag = damping_ratio * w / damped_w * s;
+  return {.q_from_e = decay * (c + lag),
+          .q_from_v = decay * s / damped_w,
+          .v_from_e = -decay * w * w / damped_w * s,
+          .v_from_v = decay * (c - lag)};
+}
+
+double OscillatorStep::largest_gain(double damping_ratio) noexcept {
+  return 1.0 / std::tanh(kPi * damping_ratio / (2.0 * std::sqrt(1.0 - damping_ratio * damping_ratio)));
+}
+
+OscillatorJob::Problem OscillatorJob::validate() const noexcept {
+  if (oscillators == nullptr) return Problem::kNoOscillators;
+  if (!std::isfinite(step.q_from_e + step.q_from_v + step.v_from_e + step.v_from_v)) return Problem::kStepNotFinite;
+  if (!(blend >= 0.0 && blend <= 1.0)) return Problem::kBlend;
+  const std::size_t count = east.size();
+  if (south.size() != count) return Problem::kSizesDiffer;
+  for (const auto* array :
+       {&oscillators->value_east, &oscillators->rate_east, &oscillators->value_south, &oscillators->rate_south}) {
+    if (array->size() != count) return Problem::kSizesDiffer;
+  }
+  if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
+  return Problem::kNone;
+}
+
+OscillatorJob::Problem OscillatorJob::run() const noexcept {
+  const Problem problem = validate();
+  if (problem != Problem::kNone || blend == 0.0) return problem;
+
+  OscillatorKernelArguments arguments{.count = east.size(),
+                                      .q_from_e = static_cast<float>(step.q_from_e),
+                                      .q_from_v = static_cast<float>(step.q_from_v),
+                                      .v_from_e = static_cast<float>(step.v_from_e),
+                                      .v_from_v = static_cast<float>(step.v_from_v),
+                                      .blend = static_cast<float>(blend),
+                                      .value = oscillators->value_east.data(),
+                                      .rate = oscillators->rate_east.data(),
+                                      .driven = east.data()};
+  const OscillatorKernels& kernels = kOscillatorRows[row.value_or(best_simd_row())];
+  kernels.step(arguments);
+  arguments.value = oscillators->value_south.data();
+  arguments.rate = oscillators->rate_south.data();
+  arguments.driven = south.data();
+  kernels.step(arguments);
+  return Problem::kNone;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,153 @@
+#include "engine/scenes/strand_sway.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "engine/base/units.hpp"
+#include "engine/math/philox.hpp"
+#include "engine/operators/bending_job.hpp"
+#include "engine/scenes/scene.hpp"
+
+namespace yuragi {
+namespace {
+
+/// The period of the 1-D noise over that of the tile: the golden ratio squared, so that it comes round with neither of
+/// the two tiles.
+constexpr double kAlongPeriodRatio = std::numbers::phi * std::numbers::phi;
+
+constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
+
+double largest_of(std::span<const float> values) {
+  return values.empty() ? 0.0 : static_cast<double>(*std::max_element(values.begin(), values.end()));
+}
+
+}  // namespace
+
+StrandSway::StrandSway(const StrandSkeleton& skeleton, std::span<const float> place_x_m,
+                       std::span<const float> place_z_m, std::vector<float> flexibility, const StrandSwaySpec& spec,
+                       SimdRow row)
+    : row_(row),
+      spec_(spec),
+      noise_(spec.noise),
+      along_(make_noise_1d({.size = spec.noise.samples,
+                            .beta = spec.noise.beta,
+                            .meaning = spec.noise.meaning,
+                            .seed = spec.noise.seed ^ stream_id("along the wind")})
+                 .value()),
+      places_(noise_.places(place_x_m, place_z_m)),
+      flexibility_(std::move(flexibility)),
+      strength_(flexibility_.size(), 0.0F),
+      oscillators_(flexibility_.size()),
+      largest_flexibility_(largest_of(flexibility_)),
+      lever_m_(largest_of(skeleton.link_length_m) * (static_cast<double>(skeleton.links_per_strand) + 1.0) / 2.0) {
+  const double cell_m = spec.noise.period_m * kAlongPeriodRatio / static_cast<double>(along_.size());
+  for (std::size_t i = 0; i < along_.size(); ++i) {
+    const float step = along_.values[(i + 1) % along_.size()] - along_.values[i];
+    steepest_along_per_m_ = std::max(steepest_along_per_m_, static_cast<double>(std::abs(step)) / cell_m);
+  }
+  largest_along_ = largest_of(along_.values);
+}
+
+void StrandSway::tick(WindVector wind, double dt_s, StrandPose& pose) noexcept {
+  wind_.step(wind, dt_s);
+  const double east_m_s = wind_.east_m_s();
+  const double south_m_s = wind_.south_m_s();
+
+  // Shift: the wind on the ground goes with the wind, and with the way that it has come its strength along it.
+  noise_.shift(east_m_s, south_m_s, dt_s);
+  way_.add(wind_.speed_m_s() * dt_s, spec_.noise.period_m * kAlongPeriodRatio);
+
+  // Sample: how strong the wind is at each strand, as a factor.
+  noise_.sample(places_, row_, strength_, static_cast<float>(spec_.turbulence), 1.0F, 0.0F);
+
+  // Project: Wind-speed times theta bends the strand toward where the wind blows.
+  const double along = static_cast<double>(read_noise(along_, 0U - way_.phase()));
+  const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
+  BendingJob{.wind_east_m_s = wind_speed * east_m_s,
+             .wind_south_m_s = wind_speed * south_m_s,
+             .strength = strength_,
+             .flexibility = flexibility_,
+             .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
+             .max_bend_rad = spec_.max_bend_rad,
+             .row = row_,
+             .bend_east_rad = pose.bend_east_rad,
+             .bend_south_rad = pose.bend_south_rad}
+      .run();
+
+  // And the strand, a damped oscillator, follows, overshoots, and sways on.
+  OscillatorJob{.step = OscillatorStep::exact(spec_.natural_hz, spec_.damping_ratio, dt_s),
+                .blend = spec_.hybrid,
+                .row = row_,
+                .oscillators = &oscillators_,
+                .east = pose.bend_east_rad,
+                .south = pose.bend_south_rad}
+      .run();
+}
+
+double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
+  const double steepest = 3.0 * std::numbers::sqrt3 / 8.0;
+  const double largest_strength = 1.0 + spec_.turbulence * std::max(noise_.highest(), 0.0);
+  const double largest_gust = 1.0 + spec_.gust_strength * largest_along_;
+  const double way_m = kStrongestSceneWind_m_s * dt_s;
+
+  // The largest change in a tick of s = wind * gust * strength * flexibility / half-bend speed.
+  const double per_m_s = largest_flexibility_ / spec_.half_bend_speed_m_s;
+  const double from_wind = SceneWind::largest_step_m_s(dt_s) * largest_gust * largest_strength;
+  const double from_strength = kStrongestSceneWind_m_s * largest_gust * spec_.turbulence * noise_.largest_change(way_m);
+  const double from_gust =
+      kStrongestSceneWind_m_s * largest_strength * spec_.gust_strength * steepest_along_per_m_ * way_m;
+  const double s = per_m_s * (from_wind + from_strength + from_gust);
+
+  const double bend_rad = std::min(spec_.max_bend_rad * steepest * s, 2.0 * spec_.max_bend_rad);
+  const double gain = 1.0 - spec_.hybrid + spec_.hybrid * OscillatorStep::largest_gain(spec_.damping_ratio);
+  return lever_m_ * gain * bend_rad;
+}
+
+std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
+  using namespace std::string_literals;
+  return {
+      {"max_bend", "deg", defaults.max_bend_rad / kRadPerDeg, 0, 170, "how far the strongest wind bends a tip"},
+      {"half_bend_speed", "m/s", defaults.half_bend_speed_m_s, 0.1, 60, "the wind that bends a tip half as far"},
+      {"turbulence", "", defaults.turbulence, 0, 2,
+       "how much the wind differs from place to place: its standard deviation, as a part of it"},
+      {"gust_strength", "", defaults.gust_strength, 0, 2,
+       "how much it swells and dies away along its path, in the same measure"},
+      {"hybrid", "", defaults.hybrid, 0, 1,
+       "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
+      {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20, "how fast a strand sways by itself"},
+      {"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+      {"tile_period", "m", defaults.noise.period_m, 0.5, 4096,
+       "after how many metres the wind on the ground repeats; 512 samples"},
+      {"tiles", "", std::int64_t{defaults.noise.has_two_tiles ? 2 : 1}, 1, 2,
+       "2: a second tile is added, so that no repeat is seen; 1: the paper's letter"},
+      {"beta", "", defaults.noise.beta, 0, 4, "exponent of the wind's spectrum, 1/f^beta; 5/3 is Simiu's wind"},
+      {"beta_meaning",
+       "",
+       std::string(name_of(defaults.noise.meaning)),
+       {},
+       {},
+       "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
+       kBetaMeanings},
+  };
+}
+
+StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t seed) {
+  const bool is_radial = values.text("beta_meaning") == "radial";
+  return {.max_bend_rad = values.number("max_bend") * kRadPerDeg,
+          .half_bend_speed_m_s = values.number("half_bend_speed"),
+          .turbulence = values.number("turbulence"),
+          .gust_strength = values.number("gust_strength"),
+          .hybrid = values.number("hybrid"),
+          .natural_hz = values.number("natural_frequency"),
+          .damping_ratio = values.number("damping"),
+          .noise = {.period_m = values.number("tile_period"),
+                    .beta = values.number("beta"),
+                    .meaning = is_radial ? BetaMeaning::kRadial : BetaMeaning::kTransect,
+                    .has_two_tiles = values.integer("tiles") == 2,
+                    .seed = seed}};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/parameter.hpp"
+#include "engine/noise/noise_tile.hpp"
+#include "engine/noise/torus.hpp"
+#include "engine/operators/oscillator_job.hpp"
+#include "engine/pose/skeleton.hpp"
+#include "engine/scenes/carried_noise.hpp"
+#include "engine/scenes/scene_wind.hpp"
+
+namespace yuragi {
+
+/// How strands answer the wind.
+struct StrandSwaySpec {
+  double max_bend_rad = 1.4;
+  double half_bend_speed_m_s = 7.0;
+  double turbulence = 0.4;      ///< how much the wind differs from place to place, as a part of it
+  double gust_strength = 0.2;   ///< how much it swells along its way, in the same measure
+  double hybrid = 0.6;          ///< 0: the noise alone; 1: each strand a damped oscillator
+  double natural_hz = 2.0;      ///< of the oscillators
+  double damping_ratio = 0.2;   ///< above 0, below 1
+  CarriedNoiseSpec noise = {};  ///< the wind on the ground
+};
+
+/// Strands in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine
+/// for fluctuation phenomena" (Iwate University), section 3.1 and figure 7: what grass and fur have in common.
+///
+///   shift    the wind carries a 2-D noise, "the wind on the ground", over the strands          CarriedNoise
+///   sample   each strand reads it where it stands, scaled to a strength of the wind            CarriedNoise
+///   project  a 1-D noise gives Wind-speed, the strength along the wind; both together bend     BendingJob
+///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
+///
+/// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: tick().
+class StrandSway {
+ public:
+  /// `place_x_m` and `place_z_m`: where each strand reads the noise; `flexibility`: of each. All have
+  /// skeleton.padded_count() elements.
+  StrandSway(const StrandSkeleton& skeleton, std::span<const float> place_x_m, std::span<const float> place_z_m,
+             std::vector<float> flexibility, const StrandSwaySpec& spec, SimdRow row);
+
+  void tick(WindVector wind, double dt_s, StrandPose& pose) noexcept;
+
+  /// As Scene::largest_joint_step_m. With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
+  /// toward the wind: its slope over s is at most 3 sqrt(3)/8 max, so in a tick it changes by at most that times the
+  /// largest changes of wind, strength and noise at their largest other factors, and never by more than from one
+  /// extreme to the other. An oscillator adds its largest gain. A joint moves by at most half the strand's length (and
+  /// a link) times that, since link i of n turns by i/n of the bend.
+  double largest_joint_step_m(double dt_s) const noexcept;
+
+ private:
+  SimdRow row_;
+  StrandSwaySpec spec_;
+  SceneWind wind_;
+  CarriedNoise noise_;
+  NoiseTile1 along_;  ///< Wind-speed: the strength along the wind's way
+  TorusTravel way_;
+  double largest_along_ = 0.0, steepest_along_per_m_ = 0.0;
+
+  CarriedPlaces places_;
+  std::vector<float> flexibility_;
+  std::vector<float> strength_;
+  Oscillators oscillators_;
+  double largest_flexibility_ = 0.0, lever_m_ = 0.0;
+};
+
+/// The parameters that go with it (max_bend, half_bend_speed, turbulence ... beta_meaning): for a scene's own table,
+/// with these as its defaults.
+std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults);
+
+/// Reads them back. `seed` is the noise's.
+StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t seed);
+
+}  // namespace yuragi
