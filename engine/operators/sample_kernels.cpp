@@ -50,22 +50,36 @@ struct Corners {
   return above > in.high ? in.high : above;
 }
 
-void sample(const SampleKernelArguments& arguments) noexcept {
-  const SampleKernelArguments in = arguments;  // a copy, which no store to `out` can be taken for a change of
+/// `known_layers`: how many there are, where the loop over them is to be unrolled; 0: as many as `in` says.
+template <std::size_t known_layers>
+[[gnu::always_inline]] inline void sample_all(const SampleKernelArguments& in) noexcept {
+  const std::size_t layers = known_layers > 0 ? known_layers : in.layer_count;
   std::size_t i = 0;
   for (; i + kAtOnce <= in.count; i += kAtOnce) {
     alignas(64) float sum[kAtOnce] = {};
-    for (std::size_t layer = 0; layer < in.layer_count; ++layer) add_layer(in.layers[layer], i, sum);
+    for (std::size_t layer = 0; layer < layers; ++layer) add_layer(in.layers[layer], i, sum);
     for (std::size_t lane = 0; lane < kAtOnce; ++lane) in.out[i + lane] = scaled(in, sum[lane]);
   }
   for (; i < in.count; ++i) {
     float sum = 0.0F;
-    for (std::size_t index = 0; index < in.layer_count; ++index) {
+    for (std::size_t index = 0; index < layers; ++index) {
       const SampleKernelLayer& layer = in.layers[index];
       sum += layer.weight * read_bilinear(layer.tile, layer.log2_size, layer.place_x[i] - layer.offset_x,
                                           layer.place_z[i] - layer.offset_z);
     }
     in.out[i] = scaled(in, sum);
+  }
+}
+
+void sample(const SampleKernelArguments& arguments) noexcept {
+  const SampleKernelArguments in = arguments;  // a copy, which no store to `out` can be taken for a change of
+  switch (in.layer_count) {
+    case 1:
+      return sample_all<1>(in);
+    case 2:
+      return sample_all<2>(in);
+    default:
+      return sample_all<0>(in);
   }
 }
 

@@ -19,7 +19,8 @@ struct StrandKernelArguments {
   const float* curl_x = nullptr;
   const float* curl_y = nullptr;
   const float* curl_z = nullptr;
-  const float* rest_curl_rad = nullptr;
+  const float* curl_sin = nullptr;
+  const float* curl_versine = nullptr;
   const float* link_length_m = nullptr;
   const float* bend_east_rad = nullptr;
   const float* bend_south_rad = nullptr;

@@ -1,5 +1,8 @@
 #include "engine/pose/strand_kinematics.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/base/kernel.hpp"
 #include "engine/pose/strand_kernels.hpp"
 
@@ -18,7 +21,21 @@ bool has_its_sizes(const StrandSkeleton& skeleton) noexcept {
   return skeleton.links_per_strand > 0;
 }
 
+/// Larger curls are taken as this.
+constexpr float kLargestCurl_rad = 32.0F;
+
 }  // namespace
+
+JointPositions::JointPositions(const StrandSkeleton& skeleton)
+    : links_(skeleton.links_per_strand), data_(skeleton.padded_count() * links_ * 3) {
+  // In double, so that the versine of a small curl is as exact as a float can be.
+  for (const float curl_rad : skeleton.rest_curl_rad) {
+    const auto curl = static_cast<double>(std::clamp(curl_rad, -kLargestCurl_rad, kLargestCurl_rad));
+    const double half_sin = std::sin(0.5 * curl);
+    curl_sin_.push_back(static_cast<float>(std::sin(curl)));
+    curl_versine_.push_back(static_cast<float>(2.0 * half_sin * half_sin));
+  }
+}
 
 StrandKinematicsJob::Problem StrandKinematicsJob::validate() const noexcept {
   if (skeleton == nullptr || pose == nullptr || joints == nullptr) return Problem::kMissingPart;
@@ -27,7 +44,10 @@ StrandKinematicsJob::Problem StrandKinematicsJob::validate() const noexcept {
   const std::size_t count = skeleton->padded_count();
   if (pose->bend_east_rad.size() != count || pose->bend_south_rad.size() != count) return Problem::kPoseSize;
   const std::size_t links = skeleton->links_per_strand;
-  if (joints->links_per_strand() != links || joints->data().size() != count * links * 3) return Problem::kJointsSize;
+  if (joints->links_per_strand() != links || joints->data().size() != count * links * 3 ||
+      joints->curl_sin_.size() != count) {
+    return Problem::kJointsSize;
+  }
 
   if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
   return Problem::kNone;
@@ -49,7 +69,8 @@ StrandKinematicsJob::Problem StrandKinematicsJob::run() const noexcept {
                            .curl_x = skeleton->curl_x.data(),
                            .curl_y = skeleton->curl_y.data(),
                            .curl_z = skeleton->curl_z.data(),
-                           .rest_curl_rad = skeleton->rest_curl_rad.data(),
+                           .curl_sin = joints->curl_sin_.data(),
+                           .curl_versine = joints->curl_versine_.data(),
                            .link_length_m = skeleton->link_length_m.data(),
                            .bend_east_rad = pose->bend_east_rad.data(),
                            .bend_south_rad = pose->bend_south_rad.data(),

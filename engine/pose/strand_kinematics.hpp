@@ -20,12 +20,11 @@ struct JointPosition {
 /// The joints of many strands, in the world: the end of each link. (The roots are the skeleton's.)
 ///
 /// Owns one array, in blocks of 16 strands: coordinate `axis` (0 x, 1 y, 2 z) of the joint behind link `link` is
-/// data()[((block * links + link) * 3 + axis) * 16 + lane], where strand = block * 16 + lane. Allocates when it is
-/// made, never afterwards. Thread-safe: no.
+/// data()[((block * links + link) * 3 + axis) * 16 + lane], where strand = block * 16 + lane. Also keeps the sine and
+/// cosine of each strand's rest curl, which never change. Allocates when it is made, never afterwards. Thread-safe: no.
 class JointPositions {
  public:
-  explicit JointPositions(const StrandSkeleton& skeleton)
-      : links_(skeleton.links_per_strand), data_(skeleton.padded_count() * links_ * 3) {}
+  explicit JointPositions(const StrandSkeleton& skeleton);
 
   std::size_t links_per_strand() const noexcept { return links_; }
   std::span<float> data() noexcept { return data_; }
@@ -40,8 +39,11 @@ class JointPositions {
   }
 
  private:
+  friend struct StrandKinematicsJob;
+
   std::size_t links_;
   std::vector<float> data_;
+  std::vector<float> curl_sin_, curl_versine_;  ///< of each strand's curl between links; the versine is 1 - cosine
 };
 
 /// The one forward kinematics: where the joints are of a skeleton in a pose (what the two mean: skeleton.hpp).
@@ -51,10 +53,10 @@ class JointPositions {
 /// -sin theta cos phi): the paper's tip formula (Chiba, section 3.1) read as a direction, since a link keeps its length
 /// whatever the wind (method, decision 1); the paper's z is north, ours south. Links keep their length to 1e-5 of it,
 /// as far as a float at the joint's place can say so. The bend (0, 0) gives the rest pose; every other finite one has
-/// finite joints too (a component, and a curl, beyond 32 rad is taken as 32 rad).
+/// finite joints too: one of more than pi is taken as pi, and a curl beyond 32 rad as 32 rad.
 ///
 /// World metres. Owns nothing; skeleton, pose and joints must outlive run(). Different jobs may run at the same time.
-/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.8 ns a joint of strands of ten links
+/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.6 ns a joint of strands of ten links
 /// (x86-64-v3).
 struct StrandKinematicsJob {
   const StrandSkeleton* skeleton = nullptr;
