@@ -29,14 +29,18 @@ constexpr const char* kNoiseFooter =
     "beta says how rough the noise is: its power falls as 1/frequency^beta. 0 is white noise, 5/3 (the default) is\n"
     "turbulent wind, 2 and more are rolling hills.\n"
     "\n"
-    "In two dimensions beta can mean two things:\n"
+    "In two and three dimensions beta can mean two things:\n"
     "  transect  a straight line cut through the tile has the spectrum 1/f^beta. This is what an anemometer sees when\n"
     "            the wind carries the tile past it, so it is the default. Each Fourier mode then has the power\n"
-    "            1/|k|^(beta + 1).\n"
+    "            1/|k|^(beta + 1) in two dimensions, 1/|k|^(beta + 2) in three.\n"
     "  radial    each Fourier mode has the power 1/|k|^beta, as Chiba's paper is written. A line cut is rougher: "
     "about\n"
-    "            1/f^0.7 for beta 5/3.\n"
+    "            1/f^0.7 for beta 5/3 in two dimensions.\n"
     "In one dimension the two are the same.\n"
+    "\n"
+    "--integral-scale says how far gusts reach, as a part of the edge: 0.1 on a tile of 256 m is 25.6 m. Longer waves\n"
+    "have no more power than those (von Karman's spectrum). 0 is no such limit: the waves as long as the tile are the\n"
+    "strongest.\n"
     "\n"
     "Example: yuragi noise --dims 2 --size 512 --seed 7 --out tile.npy\n"
     "         python3 -c 'import numpy; print(numpy.load(\"tile.npy\").std())'";
@@ -57,28 +61,39 @@ std::string check_whole_number(const std::string& text) {
   return text + " is not a whole number from 0 to 18446744073709551615";
 }
 
+/// The option that an error is about, as it was given.
+std::string blamed_option(const NoiseSpec& spec, NoiseError error) {
+  switch (error) {
+    case NoiseError::kSizeNotAllowed:
+      return fmt::format("--size {}", spec.size);
+    case NoiseError::kBetaOutOfRange:
+      return fmt::format("--beta {}", spec.beta);
+    case NoiseError::kIntegralScaleOutOfRange:
+      return fmt::format("--integral-scale {}", spec.integral_scale);
+  }
+  return "?";
+}
+
 /// The tile's values, or ExitError that names the option to blame and what it takes.
 std::vector<float> make_values(const NoiseOptions& options) {
   const auto refuse = [&](NoiseError error) {
-    const std::string blamed = error == NoiseError::kSizeNotAllowed ? fmt::format("--size {}", options.spec.size)
-                                                                    : fmt::format("--beta {}", options.spec.beta);
-    return ExitError(kExitUsage, fmt::format("{}: {}", blamed, explain(error)));
+    return ExitError(kExitUsage, fmt::format("{}: {}", blamed_option(options.spec, error), explain(error)));
   };
-  if (options.dims == 1) {
-    auto tile = make_noise_1d(options.spec);
+  const auto values_of = [&](auto tile) {
     if (!tile) throw refuse(tile.error());
     return std::move(tile->values);
-  }
-  auto tile = make_noise_2d(options.spec);
-  if (!tile) throw refuse(tile.error());
-  return std::move(tile->values);
+  };
+  if (options.dims == 1) return values_of(make_noise_1d(options.spec));
+  if (options.dims == 2) return values_of(make_noise_2d(options.spec));
+  return values_of(make_noise_3d(options.spec));
 }
 
 void run_noise(NoiseOptions options) {
   options.spec.meaning = options.meaning == "radial" ? BetaMeaning::kRadial : BetaMeaning::kTransect;
   const std::vector<float> values = make_values(options);
 
-  const std::array<std::size_t, 2> shape{options.spec.size, options.spec.size};
+  std::array<std::size_t, 3> shape{};
+  shape.fill(options.spec.size);
   write_npy(options.out, std::span(shape).first(static_cast<std::size_t>(options.dims)), values);
 
   double sum = 0.0;
@@ -90,7 +105,8 @@ void run_noise(NoiseOptions options) {
   const double mean = sum / static_cast<double>(values.size());
   const double variance = squares / static_cast<double>(values.size()) - mean * mean;
   const std::size_t size = options.spec.size;
-  const std::string extent = options.dims == 1 ? fmt::format("{}", size) : fmt::format("{0} x {0}", size);
+  std::string extent = fmt::format("{}", size);
+  for (int axis = 1; axis < options.dims; ++axis) extent += fmt::format(" x {}", size);
   fmt::print("{}: {} float32, mean {:.1e}, variance {:.6f}; mode power ~ |k|^-{:.4g}, seed {}\n", options.out, extent,
              mean, variance, mode_exponent(options.dims, options.spec.beta, options.spec.meaning), options.spec.seed);
 }
@@ -99,17 +115,22 @@ void add_noise(CLI::App& app) {
   CLI::App* command = app.add_subcommand("noise", kSummary);
   command->footer(kNoiseFooter);
   auto options = std::make_shared<NoiseOptions>();
-  command->add_option("--dims", options->dims, "Dimensions: 1 (a line) or 2 (a square)")
-      ->check(CLI::IsMember({1, 2}))
+  command->add_option("--dims", options->dims, "Dimensions: 1 (a line), 2 (a square) or 3 (a cube)")
+      ->check(CLI::IsMember({1, 2, 3}))
       ->capture_default_str();
   command
-      ->add_option("--size", options->spec.size,
-                   "Samples an edge: a power of two, 8 to 4194304 for a line, 8 to 4096 for a square")
+      ->add_option(
+          "--size", options->spec.size,
+          "Samples an edge: a power of two, 8 to 4194304 for a line, 8 to 4096 for a square, 8 to 256 for a cube")
       ->check(check_whole_number)
       ->capture_default_str();
   command->add_option("--beta", options->spec.beta, "Exponent of the power spectrum, 0 to 8")->capture_default_str();
   command->add_option("--meaning", options->meaning, "What beta is the exponent of (see below)")
       ->check(CLI::IsMember({"radial", "transect"}))
+      ->capture_default_str();
+  command
+      ->add_option("--integral-scale", options->spec.integral_scale,
+                   "How far gusts reach, as a part of the edge; 0 is no limit (see below)")
       ->capture_default_str();
   command->add_option("--seed", options->spec.seed, "Any whole number from 0")
       ->check(check_whole_number)

@@ -22,4 +22,12 @@ struct NoiseTile2 {
   float at(std::size_t x, std::size_t z) const { return values[z * size + x]; }
 };
 
+/// A periodic noise in a cube: `size` level squares, each laid out as a NoiseTile2, one above the other (along y).
+struct NoiseTile3 {
+  std::size_t size = 0;
+  std::vector<float> values;
+
+  float at(std::size_t x, std::size_t y, std::size_t z) const { return values[(y * size + z) * size + x]; }
+};
+
 }  // namespace yuragi

@@ -19,19 +19,24 @@ enum class BetaMeaning : std::uint8_t {
 
 /// Which noise is wanted. Everything but the size has a default; later members will have one as well.
 struct NoiseSpec {
-  std::size_t size = 0;     ///< samples an edge: a power of two, 8 to kMaxNoiseSize1 or kMaxNoiseSize2
+  std::size_t size = 0;     ///< samples an edge: a power of two, 8 to kMaxNoiseSize1, 2 or 3 (for the dimensions)
   double beta = 5.0 / 3.0;  ///< 0 (white) to 8; 5/3 is turbulent wind (Kolmogorov 1941; Simiu)
   BetaMeaning meaning = BetaMeaning::kTransect;
   std::uint64_t seed = 0;
+  /// How far gusts reach, L, as a part of the edge: L = 0.1 on a tile of period 256 m is 25.6 m. Waves much longer than
+  /// L have no more power than those of about L. 0 (or infinity): no such limit, a pure 1/f^beta.
+  double integral_scale = 0.0;
 };
 
 inline constexpr std::size_t kMinNoiseSize = 8;
 inline constexpr std::size_t kMaxNoiseSize1 = std::size_t{1} << 22U;
 inline constexpr std::size_t kMaxNoiseSize2 = 4096;
+inline constexpr std::size_t kMaxNoiseSize3 = 256;
 inline constexpr double kMaxNoiseBeta = 8.0;
+inline constexpr double kMinNoiseIntegralScale = 1e-6;  ///< besides 0
 
 /// Why there is no noise.
-enum class NoiseError : std::uint8_t { kSizeNotAllowed, kBetaOutOfRange };
+enum class NoiseError : std::uint8_t { kSizeNotAllowed, kBetaOutOfRange, kIntegralScaleOutOfRange };
 
 std::string_view name_of(NoiseError error) noexcept;
 std::string_view name_of(BetaMeaning meaning) noexcept;
@@ -54,14 +59,17 @@ double mode_exponent(int dims, double beta, BetaMeaning meaning) noexcept;
 /// Modes: F(k) = |k|^(-b/2) (n1 + j n2), n1 and n2 independent standard normals. The paper's W Nrand / k^(beta/2) at a
 /// uniform phase has the same mean power and twice the scatter of a periodogram. A mode that is its own mirror image
 /// (every component 0 or size / 2) must be real: sqrt(2) n1, the same mean power. F(0) = 0. |k| counts in cycles an
-/// edge.
+/// edge. With an integral scale L, (1 / (2 pi 1.339 L)^2 + |k|^2)^(1/2) stands for |k|: von Karman's shape, with the
+/// same slope at small scales. L is then the integral scale of a line cut (for beta 5/3, kTransect).
 ///
 /// Deterministic: a mode's numbers come from the seed and its wave vector alone, so the same spec gives the same bits,
 /// and a larger tile of the same seed repeats the large waves of a smaller one (scaled to variance 1). Cost: set-up
-/// work, about 0.1 us a sample; allocates. Thread-safe: yes. Realtime-safe: no. Fails with kSizeNotAllowed or
-/// kBetaOutOfRange, and throws std::bad_alloc. Source: Chiba, "Development of core technology for a noise-based
-/// real-time animation engine for fluctuation phenomena", section 2-1.
+/// work, about 0.1 us a sample; allocates. Thread-safe: yes. Realtime-safe: no. Fails with a NoiseError, and
+/// throws std::bad_alloc. Source: Chiba, "Development of core technology for a noise-based
+/// real-time animation engine for fluctuation phenomena", section 2-1; von
+/// Karman 1948, "Progress in the statistical theory of turbulence".
 Result<NoiseTile1, NoiseError> make_noise_1d(const NoiseSpec& spec);
 Result<NoiseTile2, NoiseError> make_noise_2d(const NoiseSpec& spec);
+Result<NoiseTile3, NoiseError> make_noise_3d(const NoiseSpec& spec);
 
 }  // namespace yuragi

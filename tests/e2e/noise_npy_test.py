@@ -65,6 +65,40 @@ class Noise(unittest.TestCase):
             power = (abs(numpy.fft.fft(tile, axis=axis)) ** 2).mean(axis=1 - axis)
             self.assertAlmostEqual(slope(power, 4, 32), 5 / 3, delta=0.25)
 
+    def test_a_transect_cube_has_its_slope_along_each_axis(self):
+        tile = self.load("--dims", "3", "--size", "128", "--seed", "5")
+        self.assertEqual(tile.shape, (128, 128, 128))
+        for axis in (0, 1, 2):
+            others = tuple({0, 1, 2} - {axis})
+            power = (abs(numpy.fft.fft(tile, axis=axis)) ** 2).mean(axis=others)
+            self.assertAlmostEqual(slope(power, 4, 16), 5 / 3, delta=0.25)
+
+    def test_an_integral_scale_takes_the_power_out_of_long_waves(self):
+        endless = self.load("--dims", "1", "--size", "4096", "--seed", "5")
+        gusts = self.load("--dims", "1", "--size", "4096", "--seed", "5", "--integral-scale", "0.01")
+        share = [(abs(numpy.fft.rfft(tile)[1:5]) ** 2).sum() / (abs(numpy.fft.rfft(tile)) ** 2).sum()
+                 for tile in (endless, gusts)]
+        self.assertGreater(share[0], 0.5)
+        self.assertLess(share[1], 0.3)
+
+    def test_the_help_says_what_the_integral_scale_is(self):
+        done = self.run_noise("--help")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("--integral-scale", done.stdout)
+        self.assertIn("part of the edge", done.stdout)
+
+    def test_an_integral_scale_that_is_not_allowed_says_what_is(self):
+        for scale in ("-1", "nan", "1e-9"):
+            done = self.run_noise("--size", "64", "--integral-scale=" + scale)
+            self.assertEqual(done.returncode, 64)
+            self.assertIn("integral scale must be 0", done.stderr)
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_a_cube_has_a_smaller_largest_size(self):
+        done = self.run_noise("--dims", "3", "--size", "512")
+        self.assertEqual(done.returncode, 64)
+        self.assertIn("8 to 256 in three", done.stderr)
+
     def test_the_seed_decides_every_bit(self):
         first = self.load("--size", "64", "--seed", "1")
         again = self.load("--size", "64", "--seed", "1")

@@ -2,6 +2,9 @@
 // log-log. In one dimension a seed scatters by 0.06 (N = 4096: pi / sqrt(6) over the root of 509 values of ln k of
 // standard deviation 1), in two by 0.05 (256^2) or 0.025 (512^2).
 
+#include <cmath>
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "engine/noise/spectral_noise.hpp"
@@ -61,6 +64,95 @@ TEST(NoiseSlope, TransectSquareFallsAsBetaAlongItsRows) {
     }
     EXPECT_NEAR(test::falling_exponent(mean, 4, kSize / 16), beta, 0.1) << "beta " << beta;
   }
+}
+
+TEST(NoiseSlope, TransectSquareOfOneSeedFallsAsBetaAlongItsRows) {
+  constexpr std::size_t kSize = 1024;
+  for (const double beta : {1.0, 5.0 / 3.0, 2.0}) {
+    const auto tile = make_noise_2d({.size = kSize, .beta = beta, .seed = 7}).value();
+    EXPECT_NEAR(test::falling_exponent(test::row_power(tile), 4, kSize / 16), beta, 0.1) << "beta " << beta;
+  }
+}
+
+TEST(NoiseSlope, RadialCubeFallsAsBetaAroundTheOrigin) {
+  constexpr std::size_t kSize = 64;
+  constexpr int kSeeds = 16;
+  for (const double beta : {0.0, 5.0 / 3.0, 11.0 / 3.0}) {
+    double sum = 0.0;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      const auto tile =
+          make_noise_3d({.size = kSize, .beta = beta, .meaning = BetaMeaning::kRadial, .seed = seed}).value();
+      const double measured = test::falling_exponent(test::shell_power(tile), 4, kSize / 2);
+      EXPECT_NEAR(measured, beta, 0.10) << "seed " << seed;
+      sum += measured;
+    }
+    EXPECT_NEAR(sum / kSeeds, beta, 0.03) << "beta " << beta;
+  }
+}
+
+TEST(NoiseSlope, TransectCubeFallsAsBetaAlongItsRows) {
+  constexpr std::size_t kSize = 128;
+  constexpr int kSeeds = 4;
+  for (const double beta : {1.0, 5.0 / 3.0, 2.0}) {
+    std::vector<double> mean(kSize / 2 + 1, 0.0);
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      const auto tile = make_noise_3d({.size = kSize, .beta = beta, .seed = seed}).value();
+      const std::vector<double> power = test::row_power(tile);
+      for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += power[k];
+    }
+    EXPECT_NEAR(test::falling_exponent(mean, 4, kSize / 16), beta, 0.1) << "beta " << beta;
+  }
+}
+
+/// The integral of the correlation along rows over five times the scale that is expected, as a part of the edge.
+double integral_scale_of(const std::vector<double>& row_power, double expected) {
+  const std::size_t size = 2 * (row_power.size() - 1);
+  RealFft fft(1, size);
+  for (std::size_t k = 0; k < row_power.size(); ++k) fft.spectrum()[k] = row_power[k];
+  fft.inverse();
+  const double variance = fft.samples()[0];
+  double sum = 0.5 * variance;
+  const auto lags = static_cast<std::size_t>(5.0 * expected * static_cast<double>(size));
+  for (std::size_t lag = 1; lag <= lags; ++lag) sum += fft.samples()[lag];
+  return sum / variance / static_cast<double>(size);
+}
+
+TEST(NoiseSlope, TheIntegralScaleIsThatOfALineAndOfALineCut) {
+  // A line 512 L long scatters by about 14 %, so sixteen by 4 %; there are 128 samples in L.
+  constexpr double kLineScale = 1.0 / 512.0;
+  constexpr int kSeeds = 16;
+  double line = 0.0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const auto tile = make_noise_1d({.size = 65536, .seed = seed, .integral_scale = kLineScale}).value();
+    line += integral_scale_of(test::line_power(tile), kLineScale) / kSeeds;
+  }
+  EXPECT_NEAR(line / kLineScale, 1.0, 0.1);
+
+  // 32 samples in L: what is finer than a sample, and missing, would make 3 % of the variance.
+  constexpr double kSquareScale = 1.0 / 64.0;
+  const auto square = make_noise_2d({.size = 2048, .seed = 1, .integral_scale = kSquareScale}).value();
+  EXPECT_NEAR(integral_scale_of(test::row_power(square), kSquareScale) / kSquareScale, 1.0, 0.08);
+}
+
+TEST(NoiseSlope, ALineCutOfACubeHasVonKarmansSpectrum) {
+  constexpr std::size_t kSize = 128;
+  constexpr double kScale = 1.0 / 16.0;
+  std::vector<double> against(kSize / 2 + 1, 0.0);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const auto tile = make_noise_3d({.size = kSize, .seed = seed, .integral_scale = kScale}).value();
+    const std::vector<double> power = test::row_power(tile);
+    const double corner = 1.0 / (2.0 * std::numbers::pi * 1.339 * kScale);
+    for (std::size_t k = 0; k < power.size(); ++k) {
+      against[k] += power[k] * std::pow(corner * corner + static_cast<double>(k * k), 5.0 / 6.0);
+    }
+  }
+  EXPECT_NEAR(test::falling_exponent(against, 1, kSize / 8), 0.0, 0.1);
+}
+
+TEST(NoiseSlope, WavesShorterThanTheIntegralScaleKeepTheirSlope) {
+  constexpr std::size_t kSize = 1024;
+  const auto tile = make_noise_2d({.size = kSize, .seed = 7, .integral_scale = 0.25}).value();
+  EXPECT_NEAR(test::falling_exponent(test::row_power(tile), 4, kSize / 16), 5.0 / 3.0, 0.1);
 }
 
 TEST(NoiseSlope, RadialSquareOfFiveThirdsIsFarRougherAlongItsRowsThanWind) {

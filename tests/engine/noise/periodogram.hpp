@@ -62,6 +62,43 @@ inline std::vector<double> row_power(const NoiseTile2& tile) {
   return mean;
 }
 
+/// The mean of |F|^2 of a cube in the integer shells round(|k|) = 0 .. size / 2, each mode of the full spectrum once.
+inline std::vector<double> shell_power(const NoiseTile3& tile) {
+  RealFft fft(3, tile.size);
+  for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
+  fft.forward();
+  const std::size_t half = tile.size / 2;
+  std::vector<double> sums(half + 1, 0.0);
+  std::vector<double> counts(half + 1, 0.0);
+  const auto wave = [&](std::size_t index) { return static_cast<double>(index > half ? tile.size - index : index); };
+  for (std::size_t i = 0; i < fft.spectrum().size(); ++i) {
+    const std::size_t x = i % (half + 1);
+    const std::size_t row = i / (half + 1);
+    const auto shell = static_cast<std::size_t>(
+        std::lround(std::hypot(static_cast<double>(x), wave(row % tile.size), wave(row / tile.size))));
+    if (shell > half) continue;
+    const double weight = x == 0 || x == half ? 1.0 : 2.0;
+    sums[shell] += weight * std::norm(fft.spectrum()[i]);
+    counts[shell] += weight;
+  }
+  for (std::size_t shell = 0; shell <= half; ++shell) sums[shell] /= counts[shell];
+  return sums;
+}
+
+/// The mean periodogram of a cube's rows (along x).
+inline std::vector<double> row_power(const NoiseTile3& tile) {
+  std::vector<double> mean(tile.size / 2 + 1, 0.0);
+  RealFft fft(1, tile.size);
+  for (std::size_t row = 0; row < tile.size * tile.size; ++row) {
+    for (std::size_t x = 0; x < tile.size; ++x)
+      fft.samples()[x] = static_cast<double>(tile.values[row * tile.size + x]);
+    fft.forward();
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += std::norm(fft.spectrum()[k]);
+  }
+  for (double& power : mean) power /= static_cast<double>(tile.size * tile.size);
+  return mean;
+}
+
 /// The exponent b of a power law power[k] ~ k^-b: least squares in log-log over k = first .. last.
 inline double falling_exponent(const std::vector<double>& power, std::size_t first, std::size_t last) {
   const auto count = static_cast<double>(last - first + 1);

@@ -57,6 +57,9 @@ TEST(SpectralNoise, TransectAddsOneToTheExponentForEachDimensionBeyondTheFirst) 
 
 TEST(SpectralNoise, HasMeanZeroAndVarianceOne) {
   for (const double beta : {0.0, 5.0 / 3.0, 8.0}) {
+    const Moments cube = moments_of(make_noise_3d({.size = 32, .beta = beta, .seed = 3}).value().values);
+    EXPECT_NEAR(cube.mean, 0.0, 0x1p-20);
+    EXPECT_NEAR(cube.variance, 1.0, 0x1p-18);
     for (const std::size_t size : {std::size_t{8}, std::size_t{64}, std::size_t{256}}) {
       const Moments line = moments_of(make_noise_1d({.size = size, .beta = beta, .seed = 3}).value().values);
       const Moments square = moments_of(make_noise_2d({.size = size, .beta = beta, .seed = 3}).value().values);
@@ -93,6 +96,7 @@ TEST(SpectralNoise, SameSpecGivesTheSameBitsAndEachPartOfItMatters) {
 
 TEST(SpectralNoise, SmallTilesHaveTheirGoldenBits) {
   EXPECT_EQ(hash_of(make_noise_1d({.size = 64, .seed = 1}).value().values), 5157284792099184044U);
+  EXPECT_EQ(hash_of(make_noise_3d({.size = 8, .seed = 1}).value().values), 1302879074528231250U);
   EXPECT_EQ(hash_of(make_noise_2d({.size = 16, .seed = 1}).value().values), 12415000308388288477U);
 }
 
@@ -125,6 +129,49 @@ TEST(SpectralNoise, ALineHasNoSeam) {
     for (std::size_t i = 0; i + 1 < values.size(); ++i) inside += squared_difference(values[i], values[i + 1]) / 255.0;
   }
   EXPECT_NEAR(seam / inside, 1.0, 4.0 * 0.18);
+}
+
+TEST(SpectralNoise, ACubeHasNoSeamInAnyDirection) {
+  constexpr std::size_t kSize = 32;
+  double seam[3] = {};
+  double inside = 0.0;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const auto tile = make_noise_3d({.size = kSize, .seed = seed}).value();
+    for (std::size_t i = 0; i < kSize; ++i) {
+      for (std::size_t j = 0; j < kSize; ++j) {
+        seam[0] += squared_difference(tile.at(kSize - 1, i, j), tile.at(0, i, j));
+        seam[1] += squared_difference(tile.at(i, kSize - 1, j), tile.at(i, 0, j));
+        seam[2] += squared_difference(tile.at(i, j, kSize - 1), tile.at(i, j, 0));
+        for (std::size_t x = 0; x + 1 < kSize; ++x) {
+          inside += squared_difference(tile.at(x, i, j), tile.at(x + 1, i, j)) / static_cast<double>(kSize - 1);
+        }
+      }
+    }
+  }
+  for (const double each : seam) EXPECT_NEAR(each / inside, 1.0, 0.25);
+}
+
+TEST(SpectralNoise, NoModeOfACubeLosesPowerToASpectrumThatIsNotHermitian) {
+  // As for the square below: white noise, of which the planes kx = 0 and size / 2 hold both of each pair.
+  constexpr std::size_t kSize = 8;
+  constexpr std::size_t kHalf = kSize / 2;
+  constexpr int kSeeds = 64;
+  double plane = 0.0;
+  double inner = 0.0;
+  RealFft fft(3, kSize);
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const auto tile =
+        make_noise_3d({.size = kSize, .beta = 0.0, .meaning = BetaMeaning::kRadial, .seed = seed}).value();
+    for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
+    fft.forward();
+    for (std::size_t row = 1; row < kSize * kSize; ++row) {
+      plane += std::norm(fft.spectrum()[row * (kHalf + 1)]) / 2.0;
+      plane += std::norm(fft.spectrum()[row * (kHalf + 1) + kHalf]) / 2.0;
+      for (std::size_t x = 1; x < kHalf; ++x) inner += std::norm(fft.spectrum()[row * (kHalf + 1) + x]) / (kHalf - 1);
+    }
+  }
+  // A mean of 64 x 63 exponential values: 1.6 %.
+  EXPECT_NEAR(plane / inner, 1.0, 4.0 * 0.02);
 }
 
 TEST(SpectralNoise, ASquareHasNoSeamInEitherDirection) {
@@ -198,8 +245,10 @@ TEST(SpectralNoise, RefusesASizeThatIsNotAllowed) {
                                  kMaxNoiseSize1 * 2, std::numeric_limits<std::size_t>::max()}) {
     EXPECT_EQ(make_noise_1d({.size = size}).error(), NoiseError::kSizeNotAllowed) << size;
     EXPECT_EQ(make_noise_2d({.size = size}).error(), NoiseError::kSizeNotAllowed) << size;
+    EXPECT_EQ(make_noise_3d({.size = size}).error(), NoiseError::kSizeNotAllowed) << size;
   }
   EXPECT_EQ(make_noise_2d({.size = kMaxNoiseSize2 * 2}).error(), NoiseError::kSizeNotAllowed);
+  EXPECT_EQ(make_noise_3d({.size = kMaxNoiseSize3 * 2}).error(), NoiseError::kSizeNotAllowed);
 }
 
 TEST(SpectralNoise, RefusesABetaOutOfRange) {
@@ -210,9 +259,31 @@ TEST(SpectralNoise, RefusesABetaOutOfRange) {
   }
 }
 
+TEST(SpectralNoise, RefusesAnIntegralScaleThatIsNone) {
+  for (const double scale : {-1.0, 0.9e-6, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(make_noise_1d({.size = 64, .integral_scale = scale}).error(), NoiseError::kIntegralScaleOutOfRange);
+    EXPECT_EQ(make_noise_3d({.size = 8, .integral_scale = scale}).error(), NoiseError::kIntegralScaleOutOfRange);
+  }
+}
+
+TEST(SpectralNoise, WithoutAnIntegralScaleOrWithAnEndlessOneIsThePurePowerLaw) {
+  const auto pure = make_noise_2d({.size = 32, .seed = 8}).value().values;
+  for (const double scale : {std::numeric_limits<double>::infinity(), 1e200}) {
+    EXPECT_EQ(make_noise_2d({.size = 32, .seed = 8, .integral_scale = scale}).value().values, pure);
+  }
+  EXPECT_NE(make_noise_2d({.size = 32, .seed = 8, .integral_scale = 0.5}).value().values, pure);
+}
+
+TEST(SpectralNoise, TheSmallestIntegralScaleIsWhiteNoise) {
+  const NoiseTile2 tile = make_noise_2d({.size = 64, .beta = 8.0, .integral_scale = kMinNoiseIntegralScale}).value();
+  EXPECT_NEAR(moments_of(tile.values).variance, 1.0, 0x1p-18);
+  EXPECT_NEAR(test::falling_exponent(test::ring_power(tile), 4, 32), 0.0, 0.15);
+}
+
 TEST(SpectralNoise, EveryErrorHasANameAndAnExplanationThatAnUncheckedCallerGets) {
   EXPECT_EQ(name_of(NoiseError::kSizeNotAllowed), "size-not-allowed");
   EXPECT_EQ(name_of(NoiseError::kBetaOutOfRange), "beta-out-of-range");
+  EXPECT_EQ(name_of(NoiseError::kIntegralScaleOutOfRange), "integral-scale-out-of-range");
   try {
     static_cast<void>(make_noise_1d({.size = 7}).value());
     FAIL() << "should have thrown";

@@ -1,0 +1,76 @@
+#include "engine/noise/evolving_noise.hpp"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+
+#include "engine/base/kernel.hpp"
+#include "engine/noise/noise_kernels.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr KernelRows<NoiseKernels> kNoiseRows = YURAGI_KERNEL_ROWS(noise_kernels);
+
+}  // namespace
+
+Result<EvolvingNoise, NoiseError> EvolvingNoise::make(const NoiseSpec& spec, double turn_rad_s, SimdRow row) {
+  if (!(turn_rad_s >= 0.0 && turn_rad_s <= kMaxTurn_rad_s)) {
+    throw std::invalid_argument("an evolving noise turns by 0 to 100 rad/s");
+  }
+  if (const auto error = check_noise(2, spec)) return *error;
+  return EvolvingNoise(spec, turn_rad_s, row);
+}
+
+EvolvingNoise::EvolvingNoise(const NoiseSpec& spec, double turn_rad_s, SimdRow row) : row_(row), fft_(2, spec.size) {
+  tile_.size = spec.size;
+  tile_.values.resize(spec.size * spec.size);
+  fill_spectrum(fft_, spec);
+
+  const RandomStream signs(spec.seed, stream_id("evolving noise signs"));
+  const std::size_t columns = fft_.row_modes();
+  const std::size_t half = spec.size / 2;
+  for (std::size_t i = 0; i < fft_.spectrum().size(); ++i) {
+    first_re_.push_back(fft_.spectrum()[i].real());
+    first_im_.push_back(fft_.spectrum()[i].imag());
+
+    // In the first and the middle column a mode and its mirror image, which is its conjugate, turn opposite ways; one
+    // that is its own mirror image stands still.
+    const std::size_t x = i % columns;
+    const SpectrumRow line = spectrum_row(i / columns, spec.size, 2);
+    const bool mirrored_here = x == 0 || x == half;
+    if (mirrored_here && line.mirror <= line.index) {
+      turns_per_s_.push_back(line.mirror == line.index ? 0.0 : -turns_per_s_[line.mirror * columns + x]);
+      continue;
+    }
+    const double sign = signs.uniform(i) < 0.5 ? -1.0 : 1.0;
+    const double k = std::hypot(static_cast<double>(x), static_cast<double>(line.wave_z));
+    turns_per_s_.push_back(sign * turn_rad_s * std::cbrt(k * k) / (2.0 * std::numbers::pi));
+  }
+  phase_.assign(fft_.spectrum().size(), 0);
+
+  fft_.inverse();
+  standard_ = standard_of(fft_.samples());
+  for (std::size_t i = 0; i < tile_.values.size(); ++i) tile_.values[i] = on_grid(fft_.samples()[i], standard_);
+}
+
+void EvolvingNoise::advance(double dt_s) noexcept {
+  // C++ guarantees that a complex<double> is laid out as two doubles.
+  const NoiseKernels& kernels = kNoiseRows[row_];
+  kernels.turn_modes({.count = phase_.size(),
+                      .first_re = first_re_.data(),
+                      .first_im = first_im_.data(),
+                      .turns_per_s = turns_per_s_.data(),
+                      .dt_s = dt_s,
+                      .phase = phase_.data(),
+                      .out_modes = reinterpret_cast<double*>(fft_.spectrum().data())});
+  fft_.inverse();
+  kernels.standardise({.count = tile_.values.size(),
+                       .samples = fft_.samples().data(),
+                       .mean = standard_.mean,
+                       .scale = standard_.scale,
+                       .out = tile_.values.data()});
+}
+
+}  // namespace yuragi

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "engine/noise/torus.hpp"
+
+namespace yuragi {
+
+/// A way over a torus along a line of golden slope, and so a 1-D noise that never visibly repeats: read a 2-D tile
+/// where the line has got to (Chiba, section 2-2 (2), figure 4a).
+///
+/// The line goes 0.851 east and 0.526 south a metre. Between coming round in x for the n-th time and where it was, it
+/// misses itself in z by at least 0.38 / n of the period, for no number is farther from all fractions than the golden
+/// one: on a tile of 512 samples it first comes within a sample of itself after 233 times around, 274 periods of way.
+/// Fixed point: a step is rounded to 2^-32 of the period and its rest kept, as TorusTravel does. Thread-safe: no.
+/// Realtime-safe: yes.
+class LineCut {
+ public:
+  /// The line's direction: cos and sin of the angle whose tangent is 1 / phi.
+  static constexpr double kEast = 0.85065080835203993;
+  static constexpr double kSouth = 0.52573111211913361;
+
+  /// Goes on by `distance_m` (finite) along the line over a tile of period `period_m` (above 0).
+  void add(double distance_m, double period_m) noexcept {
+    x_.add(distance_m * kEast, period_m);
+    z_.add(distance_m * kSouth, period_m);
+  }
+
+  /// Where the line has got to: read_noise(tile, cut.phase()).
+  TorusPhase phase() const noexcept { return {x_.phase(), z_.phase()}; }
+
+  /// How far apart on the torus two places of the line are that are `distance_m` of way apart. What was read
+  /// `distance_m` ago is at phase() - apart(distance_m, period_m). Not for the long way itself: each call rounds once.
+  static TorusPhase apart(double distance_m, double period_m) noexcept {
+    return {torus_phase(distance_m * kEast, period_m), torus_phase(distance_m * kSouth, period_m)};
+  }
+
+ private:
+  TorusTravel x_, z_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Between EvolvingNoise and its kernels; nobody else needs this.
+
+namespace yuragi {
+
+struct TurnModesArguments {
+  std::size_t count = 0;
+  const double* first_re = nullptr;
+  const double* first_im = nullptr;
+  const double* turns_per_s = nullptr;
+  double dt_s = 0.0;
+  std::uint32_t* phase = nullptr;
+  double* out_modes = nullptr;  ///< count times real part, imaginary part
+};
+
+struct StandardiseArguments {
+  std::size_t count = 0;
+  const double* samples = nullptr;
+  double mean = 0.0;
+  double scale = 1.0;
+  float* out = nullptr;
+};
+
+struct NoiseKernels {
+  void (*turn_modes)(const TurnModesArguments&) noexcept;
+  void (*standardise)(const StandardiseArguments&) noexcept;
+};
+extern const NoiseKernels noise_kernels_x86_64;
+extern const NoiseKernels noise_kernels_x86_64_v3;
+extern const NoiseKernels noise_kernels_x86_64_v4;
+
+}  // namespace yuragi

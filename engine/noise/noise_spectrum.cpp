@@ -1,0 +1,106 @@
+#include "engine/noise/noise_spectrum.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace yuragi {
+namespace {
+
+using Mode = std::complex<double>;
+
+/// 1 / (2 pi 1.339), in cycles: with it the integral scale of a line cut is that of the spec (wind.md 1).
+constexpr double kCornerPerScale = 1.0 / (2.0 * std::numbers::pi * 1.339);
+
+/// A mode's own place in the random stream: its signed wave numbers side by side, 24, 24 and 16 bits.
+std::uint64_t address_of(std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) noexcept {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << 24U) - 1;
+  return (static_cast<std::uint64_t>(wave_x) & kMask) | ((static_cast<std::uint64_t>(wave_z) & kMask) << 24U) |
+         (static_cast<std::uint64_t>(wave_y) << 48U);
+}
+
+std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept {
+  return static_cast<std::int64_t>(index) - static_cast<std::int64_t>(index > size / 2 ? size : 0);
+}
+
+}  // namespace
+
+RandomStream noise_stream(int dims, std::uint64_t seed) noexcept {
+  constexpr std::array kStreams = {stream_id("spectral noise 1-D"), stream_id("spectral noise 2-D"),
+                                   stream_id("spectral noise 3-D")};
+  return {seed, kStreams[static_cast<std::size_t>(dims - 1)]};
+}
+
+std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept {
+  constexpr std::array kMaxSizes = {kMaxNoiseSize1, kMaxNoiseSize2, kMaxNoiseSize3};
+  const std::size_t max_size = kMaxSizes[static_cast<std::size_t>(dims - 1)];
+  if (spec.size < kMinNoiseSize || spec.size > max_size || !std::has_single_bit(spec.size)) {
+    return NoiseError::kSizeNotAllowed;
+  }
+  if (!(spec.beta >= 0.0 && spec.beta <= kMaxNoiseBeta)) return NoiseError::kBetaOutOfRange;
+  if (spec.integral_scale != 0.0 && !(spec.integral_scale >= kMinNoiseIntegralScale)) {
+    return NoiseError::kIntegralScaleOutOfRange;
+  }
+  return std::nullopt;
+}
+
+SpectrumRow spectrum_row(std::size_t index, std::size_t size, int dims) noexcept {
+  const std::size_t rows_z = dims > 1 ? size : 1;
+  const std::size_t rows_y = dims > 2 ? size : 1;
+  const std::size_t z = index % rows_z;
+  const std::size_t y = index / rows_z;
+  return {.index = index,
+          .mirror = (rows_y - y) % rows_y * rows_z + (rows_z - z) % rows_z,
+          .wave_z = signed_wave(z, size),
+          .wave_y = signed_wave(y, size)};
+}
+
+void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
+  const RandomStream random = noise_stream(fft.dims(), spec.seed);
+  const double exponent = mode_exponent(fft.dims(), spec.beta, spec.meaning);
+  const double corner = spec.integral_scale > 0.0 ? kCornerPerScale / spec.integral_scale : 0.0;
+  const std::span<Mode> spectrum = fft.spectrum();
+  const std::size_t half = fft.size() / 2;
+  const std::size_t columns = fft.row_modes();
+
+  for (std::size_t index = 0; index < spectrum.size() / columns; ++index) {
+    const SpectrumRow row = spectrum_row(index, fft.size(), fft.dims());
+    for (std::size_t x = 0; x < columns; ++x) {
+      const auto wave_x = static_cast<std::int64_t>(x);
+      Mode& mode = spectrum[index * columns + x];
+
+      // The constant mode is the mean: 0.
+      const auto k_squared = static_cast<double>(wave_x * wave_x + row.wave_z * row.wave_z + row.wave_y * row.wave_y);
+      if (k_squared == 0.0) {
+        mode = 0.0;
+        continue;
+      }
+
+      // In the first and the middle column a mode's mirror image stands in the same column: the second of the two
+      // is the conjugate of the first, which this loop has already set.
+      const bool mirrored_here = x == 0 || x == half;
+      if (mirrored_here && row.mirror < index) {
+        mode = std::conj(spectrum[row.mirror * columns + x]);
+        continue;
+      }
+
+      const auto [re, im] = random.normal_pair(address_of(wave_x, row.wave_z, row.wave_y));
+      const double amplitude = std::pow(corner * corner + k_squared, -0.25 * exponent);
+      const bool self_mirrored = mirrored_here && row.mirror == index;
+      mode = self_mirrored ? Mode(amplitude * std::numbers::sqrt2 * re, 0.0) : Mode(amplitude * re, amplitude * im);
+    }
+  }
+}
+
+Standard standard_of(std::span<const double> samples) noexcept {
+  const auto count = static_cast<double>(samples.size());
+  double sum = 0.0;
+  for (const double sample : samples) sum += sample;
+  const double mean = sum / count;
+  double sum_squares = 0.0;
+  for (const double sample : samples) sum_squares += (sample - mean) * (sample - mean);
+  return {mean, 1.0 / std::sqrt(sum_squares / count)};
+}
+
+}  // namespace yuragi

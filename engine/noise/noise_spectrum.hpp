@@ -1,0 +1,50 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/fft/real_fft.hpp"
+#include "engine/math/philox.hpp"
+#include "engine/noise/spectral_noise.hpp"
+
+// How a noise's modes are drawn and its samples standardised: what make_noise_1d, 2d, 3d and EvolvingNoise share.
+// Between the sources of this folder; nobody else needs this.
+
+namespace yuragi {
+
+/// The random numbers of a noise of so many dimensions.
+RandomStream noise_stream(int dims, std::uint64_t seed) noexcept;
+
+/// What is wrong with a spec of so many dimensions.
+std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept;
+
+/// Fills the half spectrum of a transform of 1 to 3 dimensions with the random modes of a checked spec, Hermitian.
+void fill_spectrum(RealFft& fft, const NoiseSpec& spec);
+
+/// What brings samples to mean 0 and variance 1.
+struct Standard {
+  double mean = 0.0;
+  double scale = 1.0;
+};
+Standard standard_of(std::span<const double> samples) noexcept;
+
+/// A standardised sample on the grid of 2^-20. None is as large as 16, so that a float holds each exactly.
+inline float on_grid(double sample, Standard standard) noexcept {
+  constexpr double kRound = 0x1.8p32;  // where doubles stand 2^-20 apart
+  return static_cast<float>(((sample - standard.mean) * standard.scale + kRound) - kRound);
+}
+
+/// Walks over the rows of a half spectrum (all axes but the first), each with the row where its mirror images stand.
+struct SpectrumRow {
+  std::size_t index;
+  std::size_t mirror;
+  std::int64_t wave_z;  ///< second axis, signed
+  std::int64_t wave_y;  ///< third axis, signed
+};
+SpectrumRow spectrum_row(std::size_t index, std::size_t size, int dims) noexcept;
+
+}  // namespace yuragi
