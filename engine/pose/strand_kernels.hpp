@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// Between StrandKinematicsJob and its kernel; nobody else needs this.
+// Between StrandKinematicsJob, TreeKinematicsJob and their kernel; nobody else needs this.
 
 namespace yuragi {
 

@@ -25,12 +25,20 @@ class TreeJoints {
  private:
   friend struct TreeKinematicsJob;
 
+  /// How the strands of a level above the first stand now. Of the first, only its turn has elements: it has none.
+  struct Stand {
+    std::vector<float> root_x_m, root_y_m, root_z_m;
+    std::vector<float> rest_x, rest_y, rest_z;
+    std::vector<float> curl_x, curl_y, curl_z;
+    std::vector<float> turn_w, turn_x, turn_y, turn_z;  ///< a quaternion for each strand or block, in whole blocks
+  };
+
   std::vector<JointPositions> levels_;
-  std::vector<StrandSkeleton> turned_;  ///< each level's strands as they stand now: root, rest and curl
+  std::vector<Stand> stands_;
 };
 
-/// The one forward kinematics of a tree: each level is strands (StrandKinematicsJob) whose roots, rest directions and
-/// curls have gone with the links that they grow from (what that means: TreeLevel in skeleton.hpp).
+/// The one forward kinematics of a tree: each level is strands (as StrandKinematicsJob) whose roots, rest directions
+/// and curls have gone with the links that they grow from (what that means: TreeLevel in skeleton.hpp).
 ///
 /// The turn of a link is that of its strand's root, followed by the link's share of the strand's bend about up x bend.
 /// World metres. Owns nothing; skeleton, pose and joints must outlive run(). Different jobs may run at the same time.

@@ -1,0 +1,155 @@
+#include "engine/pose/tree_kernels.hpp"
+
+#include "engine/base/kernel.hpp"
+#include "engine/math/lanes.hpp"
+#include "engine/math/trig.hpp"
+
+// A turn is a unit quaternion. With a = up x b the axis across the unit vector b toward which the parent bends, its
+// link i of n (from 1) is turned by exp(a angle i / n) after the turn of its strand's root, and what grows there with
+// it.
+
+namespace yuragi {
+namespace {
+
+constexpr std::size_t kTurnsAtOnce = 16;
+constexpr std::size_t kBlock = 16;  // kStrandsPerBlock of skeleton.hpp, whose vectors may not come in here
+
+// As in strand_kernels.cpp: larger bends are taken as this, and smaller ones are none.
+constexpr float kLargestBend_rad = 32.0F;
+constexpr float kSmallestBendSquare_rad2 = 1e-30F;
+
+[[gnu::always_inline]] inline float within(float value, float limit) noexcept {
+  const float above = value < -limit ? -limit : value;
+  return above > limit ? limit : above;
+}
+
+/// The bends and turns of some parents, side by side.
+struct Parents {
+  alignas(64) float east_rad[kTurnsAtOnce], south_rad[kTurnsAtOnce], half_share[kTurnsAtOnce];
+  alignas(64) float w[kTurnsAtOnce], x[kTurnsAtOnce], y[kTurnsAtOnce], z[kTurnsAtOnce];
+};
+
+/// Those of the turns from `begin` on; what is behind the last turn repeats it.
+[[gnu::always_inline]] inline void load_parents(const TreeKernelArguments& in, std::size_t begin,
+                                                Parents& out) noexcept {
+  const float half_share_of_a_link = 0.5F / static_cast<float>(in.parent_links);
+  for (std::size_t i = 0; i < kTurnsAtOnce; ++i) {
+    const std::size_t turn = begin + i < in.turns ? begin + i : in.turns - 1;
+    const std::size_t strand = turn * in.turn.strands_per_turn;
+    const std::uint32_t parent = in.parent[strand];
+    const std::size_t parent_turn = parent / in.parent_turn.strands_per_turn;
+    out.east_rad[i] = in.parent_bend_east_rad[parent];
+    out.south_rad[i] = in.parent_bend_south_rad[parent];
+    out.half_share[i] = half_share_of_a_link * static_cast<float>(in.parent_link[strand] + 1);
+    out.w[i] = in.parent_turn.w[parent_turn];
+    out.x[i] = in.parent_turn.x[parent_turn];
+    out.y[i] = in.parent_turn.y[parent_turn];
+    out.z[i] = in.parent_turn.z[parent_turn];
+  }
+}
+
+void turn(const TreeKernelArguments& arguments) noexcept {
+  const TreeKernelArguments in = arguments;
+  Parents parents;
+  for (std::size_t begin = 0; begin < in.turns; begin += kTurnsAtOnce) {
+    load_parents(in, begin, parents);
+    float* const __restrict w = in.turn.w + begin;
+    float* const __restrict x = in.turn.x + begin;
+    float* const __restrict y = in.turn.y + begin;
+    float* const __restrict z = in.turn.z + begin;
+    for (std::size_t i = 0; i < kTurnsAtOnce; ++i) {
+      // The link's share of the bend: (bw, bx, 0, bz). No bend is exactly (1, 0, 0, 0).
+      const float east = within(parents.east_rad[i], kLargestBend_rad);
+      const float south = within(parents.south_rad[i], kLargestBend_rad);
+      const float square = east * east + south * south;
+      const bool bent = square > kSmallestBendSquare_rad2;
+      const float angle = __builtin_sqrtf(bent ? square : 0.0F);
+      const float inverse = 1.0F / (bent ? angle : 1.0F);
+      const SinCos<float> half = sin_cos(angle * parents.half_share[i]);
+      const float bw = half.cos;
+      const float bx = half.sin * (south * inverse);
+      const float bz = -half.sin * (east * inverse);
+
+      // Their product, its length put right to first order.
+      const float pw = parents.w[i];
+      const float px = parents.x[i];
+      const float py = parents.y[i];
+      const float pz = parents.z[i];
+      const float qw = bw * pw - bx * px - bz * pz;
+      const float qx = bw * px + bx * pw - bz * py;
+      const float qy = bw * py + bz * px - bx * pz;
+      const float qz = bw * pz + bz * pw + bx * py;
+      const float length = 1.5F - 0.5F * (qw * qw + qx * qx + qy * qy + qz * qz);
+      w[i] = qw * length;
+      x[i] = qx * length;
+      y[i] = qy * length;
+      z[i] = qz * length;
+    }
+  }
+}
+
+/// The rotation matrix of a turn, less the identity, so that no turn leaves every bit of a vector as it is.
+struct Rotation {
+  Lanes xx, xy, xz, yx, yy, yz, zx, zy, zz;
+};
+
+[[gnu::always_inline]] inline Rotation rotation(Lanes w, Lanes x, Lanes y, Lanes z) noexcept {
+  const Lanes two_x = x + x;
+  const Lanes two_y = y + y;
+  const Lanes two_z = z + z;
+  return {.xx = -two_y * y - two_z * z,
+          .xy = two_x * y - w * two_z,
+          .xz = two_x * z + w * two_y,
+          .yx = two_x * y + w * two_z,
+          .yy = -two_x * x - two_z * z,
+          .yz = two_y * z - w * two_x,
+          .zx = two_x * z - w * two_y,
+          .zy = two_y * z + w * two_x,
+          .zz = -two_x * x - two_y * y};
+}
+
+[[gnu::always_inline]] inline void rotate(const Rotation& r, const float* const (&from)[3], float* const (&to)[3],
+                                          std::size_t strand) noexcept {
+  const Lanes x = load_lanes(from[0] + strand);
+  const Lanes y = load_lanes(from[1] + strand);
+  const Lanes z = load_lanes(from[2] + strand);
+  store_lanes(to[0] + strand, x + (r.xx * x + r.xy * y + r.xz * z));
+  store_lanes(to[1] + strand, y + (r.yx * x + r.yy * y + r.yz * z));
+  store_lanes(to[2] + strand, z + (r.zx * x + r.zy * y + r.zz * z));
+}
+
+/// One number of the turns of kLaneCount strands.
+[[gnu::always_inline]] inline Lanes turn_part(const float* part, std::size_t strands_per_turn,
+                                              std::size_t strand) noexcept {
+  return strands_per_turn == 1 ? load_lanes(part + strand) : same_lanes(part[strand / kBlock]);
+}
+
+void carry(const TreeKernelArguments& arguments) noexcept {
+  const TreeKernelArguments in = arguments;
+  for (std::size_t begin = 0; begin < in.blocks * kBlock; begin += kBlock) {
+    // The roots go to the joints that they grow from (their order: JointPositions).
+    for (std::size_t strand = begin; strand < begin + kBlock; ++strand) {
+      const std::size_t parent = in.parent[strand];
+      const std::size_t parent_block = parent / kBlock;
+      const float* const joint =
+          in.parent_joints_m + parent % kBlock + (parent_block * in.parent_links + in.parent_link[strand]) * 3 * kBlock;
+      in.turned_root_m[0][strand] = joint[0];
+      in.turned_root_m[1][strand] = joint[kBlock];
+      in.turned_root_m[2][strand] = joint[2 * kBlock];
+    }
+
+    const std::size_t each = in.turn.strands_per_turn;
+    for (std::size_t strand = begin; strand < begin + kBlock; strand += kLaneCount) {
+      const Rotation r = rotation(turn_part(in.turn.w, each, strand), turn_part(in.turn.x, each, strand),
+                                  turn_part(in.turn.y, each, strand), turn_part(in.turn.z, each, strand));
+      rotate(r, in.rest, in.turned_rest, strand);
+      rotate(r, in.curl, in.turned_curl, strand);
+    }
+  }
+}
+
+}  // namespace
+
+const TreeKernels YURAGI_ROW_NAME(tree_kernels) = {turn, carry};
+
+}  // namespace yuragi

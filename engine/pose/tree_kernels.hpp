@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Between TreeKinematicsJob and its kernels; nobody else needs this.
+
+namespace yuragi {
+
+/// Unit quaternions as four arrays. Strand s has turn s / strands_per_turn.
+struct TurnArrays {
+  float* w = nullptr;
+  float* x = nullptr;
+  float* y = nullptr;
+  float* z = nullptr;
+  std::size_t strands_per_turn = 1;  ///< 1, or 16: a turn for each block
+};
+
+/// The strands of one level as they stand at rest and as they stand now, and the level that they grow from.
+struct TreeKernelArguments {
+  std::size_t blocks = 0;
+  std::size_t turns = 0;
+  const std::uint32_t* parent = nullptr;
+  const std::uint32_t* parent_link = nullptr;
+  const float* rest[3] = {};
+  const float* curl[3] = {};
+
+  std::size_t parent_links = 0;
+  TurnArrays parent_turn;
+  const float* parent_bend_east_rad = nullptr;
+  const float* parent_bend_south_rad = nullptr;
+  const float* parent_joints_m = nullptr;
+
+  TurnArrays turn;  ///< room for `turns` in whole blocks
+  float* turned_root_m[3] = {};
+  float* turned_rest[3] = {};
+  float* turned_curl[3] = {};
+};
+
+struct TreeKernels {
+  /// Parent's turn and bend -> `turn`.
+  void (*turn)(const TreeKernelArguments&) noexcept;
+  /// `turn`, rest, curl and the parent's joints -> what is `turned_`.
+  void (*carry)(const TreeKernelArguments&) noexcept;
+};
+
+extern const TreeKernels tree_kernels_x86_64;
+extern const TreeKernels tree_kernels_x86_64_v3;
+extern const TreeKernels tree_kernels_x86_64_v4;
+
+}  // namespace yuragi
