@@ -30,6 +30,14 @@ double OscillatorStep::largest_gain(double damping_ratio) noexcept {
   return 1.0 / std::tanh(kPi * damping_ratio / (2.0 * std::sqrt(1.0 - damping_ratio * damping_ratio)));
 }
 
+double OscillatorStep::largest_rate_per_s(double natural_hz, double damping_ratio) noexcept {
+  const double w = 2.0 * kPi * natural_hz;
+  const double root = std::sqrt(1.0 - damping_ratio * damping_ratio);
+  const double first_peak_s = std::atan2(root, damping_ratio) / (w * root);
+  const double first_peak = w * std::exp(-damping_ratio * w * first_peak_s);
+  return 2.0 * first_peak / (1.0 - std::exp(-kPi * damping_ratio / root));
+}
+
 OscillatorJob::Problem OscillatorJob::validate() const noexcept {
   if (oscillators == nullptr) return Problem::kNoOscillators;
   if (!std::isfinite(step.q_from_e + step.q_from_v + step.v_from_e + step.v_from_v)) return Problem::kStepNotFinite;

@@ -24,6 +24,10 @@ struct OscillatorStep {
   /// If g changes by at most d a tick, q changes by at most this times d: the integral of the impulse response's
   /// magnitude, coth(pi zeta / (2 sqrt(1 - zeta^2))). zeta above 0.
   static double largest_gain(double damping_ratio) noexcept;
+
+  /// If |g| is at most 1, q moves at most this far a second: the total variation of the impulse response, twice its
+  /// first peak over 1 - exp(-pi zeta / sqrt(1 - zeta^2)), since each peak is that much lower than the one before.
+  static double largest_rate_per_s(double natural_hz, double damping_ratio) noexcept;
 };
 
 /// Where many oscillators are, two axes each, and how fast they go; all at rest at first.
@@ -48,8 +52,8 @@ struct OscillatorJob {
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   Oscillators* oscillators = nullptr;
-  std::span<float> east;
-  std::span<float> south;
+  std::span<float> east = {};
+  std::span<float> south = {};
 
   enum class Problem : std::uint8_t {
     kNone,

@@ -40,6 +40,7 @@ class JointPositions {
 
  private:
   friend struct StrandKinematicsJob;
+  friend struct TreeKinematicsJob;
 
   std::size_t links_;
   std::vector<float> data_;

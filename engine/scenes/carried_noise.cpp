@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/math/philox.hpp"
 #include "engine/operators/sample_job.hpp"
@@ -13,28 +14,15 @@ namespace yuragi {
 namespace {
 
 // The second tile against the first: turned by one radian (its cosine and sine, written out so that no library's
-// rounding decides about bits), and smaller by the golden ratio.
+// rounding decides about bits), and larger by the golden ratio.
 constexpr double kTurnCos = 0x1.14a280fb5068cp-1;
 constexpr double kTurnSin = 0x1.aed548f090ceep-1;
-constexpr double kPeriodRatio = 1.0 / std::numbers::phi;
+constexpr double kPeriodRatio = std::numbers::phi;
 
-NoiseTile2 make_tile(const CarriedNoiseSpec& spec, std::uint64_t which) {
-  return make_noise_2d({.size = spec.samples, .beta = spec.beta, .meaning = spec.meaning, .seed = spec.seed ^ which})
-      .value();
-}
-
-/// The steepest slope of a tile read bilinearly, in any direction, a metre.
-double steepest_slope(const NoiseTile2& tile, double period_m) {
-  float along_x = 0.0F;
-  float along_z = 0.0F;
-  for (std::size_t z = 0; z < tile.size; ++z) {
-    for (std::size_t x = 0; x < tile.size; ++x) {
-      along_x = std::max(along_x, std::abs(tile.at((x + 1) % tile.size, z) - tile.at(x, z)));
-      along_z = std::max(along_z, std::abs(tile.at(x, (z + 1) % tile.size) - tile.at(x, z)));
-    }
-  }
-  const double cells_per_m = static_cast<double>(tile.size) / period_m;
-  return std::hypot(static_cast<double>(along_x), static_cast<double>(along_z)) * cells_per_m;
+double largest_difference(const NoiseTile2& a, const NoiseTile2& b) {
+  float largest = 0.0F;
+  for (std::size_t i = 0; i < a.values.size(); ++i) largest = std::max(largest, std::abs(a.values[i] - b.values[i]));
+  return static_cast<double>(largest);
 }
 
 void add_phases(std::span<const float> x_m, std::span<const float> z_m, double cos, double sin, double period_m,
@@ -49,60 +37,98 @@ void add_phases(std::span<const float> x_m, std::span<const float> z_m, double c
 
 }  // namespace
 
-CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
-    : has_two_tiles_(spec.has_two_tiles),
-      weight_(spec.has_two_tiles ? 0x1.6a09e6p-1F : 1.0F),  // 1 / sqrt(2): variances add up to 1
-      first_{make_tile(spec, stream_id("first tile")), spec.period_m, {}} {
-  if (has_two_tiles_) second_ = {make_tile(spec, stream_id("second tile")), spec.period_m * kPeriodRatio, {}};
+double steepest_slope(const NoiseTile2& tile, double period_m) noexcept {
+  float along_x = 0.0F;
+  float along_z = 0.0F;
+  for (std::size_t z = 0; z < tile.size; ++z) {
+    for (std::size_t x = 0; x < tile.size; ++x) {
+      along_x = std::max(along_x, std::abs(tile.at((x + 1) % tile.size, z) - tile.at(x, z)));
+      along_z = std::max(along_z, std::abs(tile.at(x, (z + 1) % tile.size) - tile.at(x, z)));
+    }
+  }
+  const double cells_per_m = static_cast<double>(tile.size) / period_m;
+  return std::hypot(static_cast<double>(along_x), static_cast<double>(along_z)) * cells_per_m;
+}
 
-  for (std::size_t i = 0; i < tile_count(); ++i) {
-    const Tile& tile = i == 0 ? first_ : second_;
-    const auto weight = static_cast<double>(weight_);
-    const auto [low, high] = std::minmax_element(tile.noise.values.begin(), tile.noise.values.end());
-    lowest_ += weight * static_cast<double>(*low);
-    highest_ += weight * static_cast<double>(*high);
-    steepest_per_m_ += weight * steepest_slope(tile.noise, tile.period_m);
+CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::uint64_t which, double period_m) {
+  NoiseTile2 noise =
+      make_noise_2d({.size = spec.samples, .beta = spec.beta, .meaning = spec.meaning, .seed = spec.seed ^ which})
+          .value();
+  Tile tile{.noise = BandLimitedTile2(std::move(noise)), .period_m = period_m};
+  for (std::size_t level = 0; level < tile.noise.level_count(); ++level) {
+    tile.steepest_per_m.push_back(steepest_slope(tile.noise.level(level), period_m));
+    if (level == 0) continue;
+    tile.largest_octave =
+        std::max(tile.largest_octave, largest_difference(tile.noise.level(level - 1), tile.noise.level(level)));
+  }
+  return tile;
+}
+
+CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
+    : weight_(spec.has_two_tiles ? 0x1.6a09e6p-1F : 1.0F) {  // 1 / sqrt(2): variances add up to 1
+  tiles_.push_back(make_tile(spec, stream_id("first tile"), spec.period_m));
+  if (spec.has_two_tiles) tiles_.push_back(make_tile(spec, stream_id("second tile"), spec.period_m * kPeriodRatio));
+
+  const auto weight = static_cast<double>(weight_);
+  for (const Tile& tile : tiles_) {
+    double lowest = 0.0;
+    double highest = 0.0;
+    for (std::size_t level = 0; level < tile.noise.level_count(); ++level) {
+      const auto& values = tile.noise.level(level).values;
+      const auto [low, high] = std::minmax_element(values.begin(), values.end());
+      lowest = std::min(lowest, static_cast<double>(*low));
+      highest = std::max(highest, static_cast<double>(*high));
+    }
+    lowest_ += weight * lowest;
+    highest_ += weight * highest;
   }
 }
 
 CarriedPlaces CarriedNoise::places(std::span<const float> x_m, std::span<const float> z_m) const {
   CarriedPlaces places;
-  add_phases(x_m, z_m, 1.0, 0.0, first_.period_m, places.first_x, places.first_z);
-  if (has_two_tiles_) {
-    add_phases(x_m, z_m, kTurnCos, kTurnSin, second_.period_m, places.second_x, places.second_z);
+  add_phases(x_m, z_m, 1.0, 0.0, tiles_.front().period_m, places.first_x, places.first_z);
+  if (tiles_.size() > 1) {
+    add_phases(x_m, z_m, kTurnCos, kTurnSin, tiles_.back().period_m, places.second_x, places.second_z);
   }
   return places;
 }
 
 void CarriedNoise::shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept {
-  ShiftJob{.wind_east_m_s = toward_x_m_s,
-           .wind_south_m_s = toward_z_m_s,
-           .dt_s = dt_s,
-           .period_m = first_.period_m,
-           .offset = &first_.offset}
-      .run();
-  if (!has_two_tiles_) return;
-  ShiftJob{.wind_east_m_s = kTurnCos * toward_x_m_s - kTurnSin * toward_z_m_s,
-           .wind_south_m_s = kTurnSin * toward_x_m_s + kTurnCos * toward_z_m_s,
-           .dt_s = dt_s,
-           .period_m = second_.period_m,
-           .offset = &second_.offset}
-      .run();
+  const double speed_m_s = std::sqrt(toward_x_m_s * toward_x_m_s + toward_z_m_s * toward_z_m_s);
+  double east_m_s = toward_x_m_s;
+  double south_m_s = toward_z_m_s;
+  for (Tile& tile : tiles_) {
+    ShiftJob{.wind_east_m_s = east_m_s,
+             .wind_south_m_s = south_m_s,
+             .dt_s = dt_s,
+             .period_m = tile.period_m,
+             .offset = &tile.offset}
+        .run();
+    tile.band = tile.noise.pick(speed_m_s, 1.0 / dt_s, tile.period_m);
+    east_m_s = kTurnCos * toward_x_m_s - kTurnSin * toward_z_m_s;
+    south_m_s = kTurnSin * toward_x_m_s + kTurnCos * toward_z_m_s;
+  }
 }
 
 void CarriedNoise::sample(const CarriedPlaces& places, SimdRow row, std::span<float> out, float scale, float bias,
                           float low, float high) const noexcept {
-  const std::array<NoiseLayer, 2> layers = {{{.tile = &first_.noise,
-                                              .place_x = places.first_x,
-                                              .place_z = places.first_z,
-                                              .offset = first_.offset.phase(),
-                                              .weight = weight_},
-                                             {.tile = &second_.noise,
-                                              .place_x = places.second_x,
-                                              .place_z = places.second_z,
-                                              .offset = second_.offset.phase(),
-                                              .weight = weight_}}};
-  SampleJob{.layers = std::span(layers).first(tile_count()),
+  // A tile is one layer, and two while the wind is so strong that its finest waves fade out.
+  std::array<NoiseLayer, SampleJob::kMaxLayers> layers;
+  std::size_t count = 0;
+  for (const Tile& tile : tiles_) {
+    const bool is_first = &tile == tiles_.data();
+    NoiseLayer layer{.tile = &tile.noise.level(tile.band.level),
+                     .place_x = is_first ? places.first_x : places.second_x,
+                     .place_z = is_first ? places.first_z : places.second_z,
+                     .offset = tile.offset.phase(),
+                     .weight = weight_ * (1.0F - tile.band.weight)};
+    layers[count++] = layer;
+    if (tile.band.weight == 0.0F) continue;
+    layer.tile = &tile.noise.level(tile.band.next);
+    layer.weight = weight_ * tile.band.weight;
+    layers[count++] = layer;
+  }
+  SampleJob{.layers = std::span(layers).first(count),
             .scale = scale,
             .bias = bias,
             .low = low,
@@ -112,8 +138,25 @@ void CarriedNoise::sample(const CarriedPlaces& places, SimdRow row, std::span<fl
       .run();
 }
 
-double CarriedNoise::largest_change(double distance_m) const noexcept {
-  return std::min(steepest_per_m_ * distance_m, highest_ - lowest_);
+double CarriedNoise::largest_change(double speed_m_s, double step_m_s, double dt_s) const noexcept {
+  double change = 0.0;
+  for (const Tile& tile : tiles_) {
+    // At each speed up to speed_m_s, the level that is read then is shifted by that speed.
+    double of_tile = 0.0;
+    constexpr int kSpeeds = 64;
+    for (int i = 1; i <= kSpeeds; ++i) {
+      const double speed = speed_m_s * i / kSpeeds;
+      const std::size_t level = tile.noise.pick(speed * (kSpeeds - 1) / kSpeeds, 1.0 / dt_s, tile.period_m).level;
+      of_tile = std::max(of_tile, tile.steepest_per_m[level] * speed * dt_s);
+    }
+    // The pick goes on by a level while the speed doubles, and begins where the waves of level 0 are too fine.
+    const double begins_m_s = tile.period_m / (4.0 * dt_s * tile.noise.end_cycles(0));
+    const double levels =
+        std::min(std::log2(1.0 + step_m_s / begins_m_s), static_cast<double>(tile.noise.level_count() - 1));
+    of_tile += levels * tile.largest_octave;
+    change += static_cast<double>(weight_) * of_tile;
+  }
+  return std::min(change, highest_ - lowest_);
 }
 
 }  // namespace yuragi

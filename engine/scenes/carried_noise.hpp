@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
-#include "engine/noise/noise_tile.hpp"
+#include "engine/noise/band_limited_tile.hpp"
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus.hpp"
 
@@ -23,6 +23,9 @@ struct CarriedNoiseSpec {
   std::uint64_t seed = 0;
 };
 
+/// The steepest slope of a tile of `period_m` read bilinearly, in any direction, a metre.
+double steepest_slope(const NoiseTile2& tile, double period_m) noexcept;
+
 /// Where many things stand, on each tile of a CarriedNoise: phases, one element a thing.
 struct CarriedPlaces {
   std::vector<std::uint32_t> first_x, first_z;
@@ -34,10 +37,11 @@ struct CarriedPlaces {
 /// A 2-D noise that the wind carries along: the shifting and sampling operators (ShiftJob, SampleJob) as most scenes
 /// use them. Mean 0, variance 1.
 ///
-/// Two tiles are added: the second is turned by one radian and its period is that of the first over the golden ratio,
+/// Two tiles are added: the second is turned by one radian and its period is that of the first times the golden ratio,
 /// so that the sum has no period and no repeat is seen (method, decision 7). Both have the same spectrum in rad/m, and
-/// both are carried by the same wind. Allocates when it is made and in places(), never afterwards. May throw
-/// std::bad_alloc, and what make_noise_2d says.
+/// both are carried by the same wind. Both are band-limited by the tick rate (BandLimitedTile2): in a storm what is too
+/// fine to be shown fades out, and nothing jitters from tick to tick. Allocates when it is made and in places(), never
+/// afterwards. May throw std::bad_alloc, and what make_noise_2d says.
 /// Thread-safe: sample() among themselves, yes. Realtime-safe: shift() and sample().
 class CarriedNoise {
  public:
@@ -46,7 +50,7 @@ class CarriedNoise {
   /// Where things stand whose coordinates on the ground (or on a cloth, along and across it) are these, metres.
   CarriedPlaces places(std::span<const float> x_m, std::span<const float> z_m) const;
 
-  /// The wind (toward +x and +z, m/s) carries the noise on for dt_s (above 0).
+  /// The wind (toward +x and +z, m/s) carries the noise on for dt_s (above 0); a tick later it is sampled again.
   void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept;
 
   /// out = clamp(bias + scale * noise, low, high) at each place; `places` are of this noise and as many as `out`.
@@ -54,9 +58,10 @@ class CarriedNoise {
               float low = -std::numeric_limits<float>::infinity(),
               float high = std::numeric_limits<float>::infinity()) const noexcept;
 
-  /// No more than this does the noise change at a place while it is carried on by distance_m: from the tiles' own
-  /// steepest slope, and never more than from their lowest value to their highest.
-  double largest_change(double distance_m) const noexcept;
+  /// No more than this does the noise change at a place from one tick of dt_s to the next while the wind is at most
+  /// speed_m_s and changes by at most step_m_s: what the tiles' steepest slopes give for the way, and for a change of
+  /// the band limit the most by which two levels differ; and never more than from the lowest value to the highest.
+  double largest_change(double speed_m_s, double step_m_s, double dt_s) const noexcept;
 
   /// Between these its values are.
   double lowest() const noexcept { return lowest_; }
@@ -64,17 +69,18 @@ class CarriedNoise {
 
  private:
   struct Tile {
-    NoiseTile2 noise;
+    BandLimitedTile2 noise;
     double period_m = 1.0;
-    TorusOffset offset;
+    TorusOffset offset = {};
+    BandPick band = {};
+    std::vector<double> steepest_per_m = {};  ///< of each level
+    double largest_octave = 0.0;              ///< the most by which two neighbouring levels differ
   };
 
-  std::size_t tile_count() const noexcept { return has_two_tiles_ ? 2 : 1; }
+  static Tile make_tile(const CarriedNoiseSpec& spec, std::uint64_t which, double period_m);
 
-  bool has_two_tiles_;
+  std::vector<Tile> tiles_;  ///< one or two
   float weight_;
-  Tile first_, second_;
-  double steepest_per_m_ = 0.0;
   double lowest_ = 0.0, highest_ = 0.0;
 };
 

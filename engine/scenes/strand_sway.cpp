@@ -14,10 +14,6 @@
 namespace yuragi {
 namespace {
 
-/// The period of the 1-D noise over that of the tile: the golden ratio squared, so that it comes round with neither of
-/// the two tiles.
-constexpr double kAlongPeriodRatio = std::numbers::phi * std::numbers::phi;
-
 constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
 
 double largest_of(std::span<const float> values) {
@@ -32,7 +28,7 @@ StrandSway::StrandSway(const StrandSkeleton& skeleton, std::span<const float> pl
     : row_(row),
       spec_(spec),
       noise_(spec.noise),
-      along_(make_noise_1d({.size = spec.noise.samples,
+      along_(make_noise_2d({.size = spec.noise.samples,
                             .beta = spec.noise.beta,
                             .meaning = spec.noise.meaning,
                             .seed = spec.noise.seed ^ stream_id("along the wind")})
@@ -43,11 +39,7 @@ StrandSway::StrandSway(const StrandSkeleton& skeleton, std::span<const float> pl
       oscillators_(flexibility_.size()),
       largest_flexibility_(largest_of(flexibility_)),
       lever_m_(largest_of(skeleton.link_length_m) * (static_cast<double>(skeleton.links_per_strand) + 1.0) / 2.0) {
-  const double cell_m = spec.noise.period_m * kAlongPeriodRatio / static_cast<double>(along_.size());
-  for (std::size_t i = 0; i < along_.size(); ++i) {
-    const float step = along_.values[(i + 1) % along_.size()] - along_.values[i];
-    steepest_along_per_m_ = std::max(steepest_along_per_m_, static_cast<double>(std::abs(step)) / cell_m);
-  }
+  steepest_along_per_m_ = steepest_slope(along_, spec_.noise.period_m);
   largest_along_ = largest_of(along_.values);
 }
 
@@ -57,14 +49,14 @@ void StrandSway::tick(WindVector wind, double dt_s, StrandPose& pose) noexcept {
   const double south_m_s = wind_.south_m_s();
 
   // Shift: the wind on the ground goes with the wind, and with the way that it has come its strength along it.
-  noise_.shift(east_m_s, south_m_s, dt_s);
-  way_.add(wind_.speed_m_s() * dt_s, spec_.noise.period_m * kAlongPeriodRatio);
+  noise_.shift(spec_.carry * east_m_s, spec_.carry * south_m_s, dt_s);
+  way_.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
 
   // Sample: how strong the wind is at each strand, as a factor.
   noise_.sample(places_, row_, strength_, static_cast<float>(spec_.turbulence), 1.0F, 0.0F);
 
   // Project: Wind-speed times theta bends the strand toward where the wind blows.
-  const double along = static_cast<double>(read_noise(along_, 0U - way_.phase()));
+  const double along = static_cast<double>(read_noise(along_, way_.phase()));
   const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
   BendingJob{.wind_east_m_s = wind_speed * east_m_s,
              .wind_south_m_s = wind_speed * south_m_s,
@@ -91,19 +83,23 @@ double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
   const double steepest = 3.0 * std::numbers::sqrt3 / 8.0;
   const double largest_strength = 1.0 + spec_.turbulence * std::max(noise_.highest(), 0.0);
   const double largest_gust = 1.0 + spec_.gust_strength * largest_along_;
-  const double way_m = kStrongestSceneWind_m_s * dt_s;
+  const double carried_m_s = spec_.carry * kStrongestSceneWind_m_s;
+  const double carried_step_m_s = spec_.carry * SceneWind::largest_step_m_s(dt_s);
 
   // The largest change in a tick of s = wind * gust * strength * flexibility / half-bend speed.
   const double per_m_s = largest_flexibility_ / spec_.half_bend_speed_m_s;
   const double from_wind = SceneWind::largest_step_m_s(dt_s) * largest_gust * largest_strength;
-  const double from_strength = kStrongestSceneWind_m_s * largest_gust * spec_.turbulence * noise_.largest_change(way_m);
+  const double from_strength = kStrongestSceneWind_m_s * largest_gust * spec_.turbulence *
+                               noise_.largest_change(carried_m_s, carried_step_m_s, dt_s);
   const double from_gust =
-      kStrongestSceneWind_m_s * largest_strength * spec_.gust_strength * steepest_along_per_m_ * way_m;
+      kStrongestSceneWind_m_s * largest_strength * spec_.gust_strength * steepest_along_per_m_ * carried_m_s * dt_s;
   const double s = per_m_s * (from_wind + from_strength + from_gust);
 
   const double bend_rad = std::min(spec_.max_bend_rad * steepest * s, 2.0 * spec_.max_bend_rad);
-  const double gain = 1.0 - spec_.hybrid + spec_.hybrid * OscillatorStep::largest_gain(spec_.damping_ratio);
-  return lever_m_ * gain * bend_rad;
+  const double swaying_rad =
+      std::min(OscillatorStep::largest_gain(spec_.damping_ratio) * bend_rad,
+               OscillatorStep::largest_rate_per_s(spec_.natural_hz, spec_.damping_ratio) * dt_s * spec_.max_bend_rad);
+  return lever_m_ * ((1.0 - spec_.hybrid) * bend_rad + spec_.hybrid * swaying_rad);
 }
 
 std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
@@ -119,6 +115,7 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
        "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
       {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20, "how fast a strand sways by itself"},
       {"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+      {"carry", "", defaults.carry, 0, 1, "the noise travels with this part of the wind's speed"},
       {"tile_period", "m", defaults.noise.period_m, 0.5, 4096,
        "after how many metres the wind on the ground repeats; 512 samples"},
       {"tiles", "", std::int64_t{defaults.noise.has_two_tiles ? 2 : 1}, 1, 2,
@@ -143,6 +140,7 @@ StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t see
           .hybrid = values.number("hybrid"),
           .natural_hz = values.number("natural_frequency"),
           .damping_ratio = values.number("damping"),
+          .carry = values.number("carry"),
           .noise = {.period_m = values.number("tile_period"),
                     .beta = values.number("beta"),
                     .meaning = is_radial ? BetaMeaning::kRadial : BetaMeaning::kTransect,

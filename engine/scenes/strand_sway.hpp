@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/base/parameter.hpp"
+#include "engine/noise/line_cut.hpp"
 #include "engine/noise/noise_tile.hpp"
-#include "engine/noise/torus.hpp"
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/scenes/carried_noise.hpp"
@@ -23,6 +23,7 @@ struct StrandSwaySpec {
   double hybrid = 0.6;          ///< 0: the noise alone; 1: each strand a damped oscillator
   double natural_hz = 2.0;      ///< of the oscillators
   double damping_ratio = 0.2;   ///< above 0, below 1
+  double carry = 1.0;           ///< the noise goes with this part of the wind's speed: in a coat the air is slower
   CarriedNoiseSpec noise = {};  ///< the wind on the ground
 };
 
@@ -31,7 +32,7 @@ struct StrandSwaySpec {
 ///
 ///   shift    the wind carries a 2-D noise, "the wind on the ground", over the strands          CarriedNoise
 ///   sample   each strand reads it where it stands, scaled to a strength of the wind            CarriedNoise
-///   project  a 1-D noise gives Wind-speed, the strength along the wind; both together bend     BendingJob
+///   project  a 1-D noise (LineCut) gives Wind-speed, the strength along the wind; both bend    BendingJob
 ///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: tick().
@@ -47,8 +48,9 @@ class StrandSway {
   /// As Scene::largest_joint_step_m. With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
   /// toward the wind: its slope over s is at most 3 sqrt(3)/8 max, so in a tick it changes by at most that times the
   /// largest changes of wind, strength and noise at their largest other factors, and never by more than from one
-  /// extreme to the other. An oscillator adds its largest gain. A joint moves by at most half the strand's length (and
-  /// a link) times that, since link i of n turns by i/n of the bend.
+  /// extreme to the other. An oscillator moves by at most its largest gain times that, and by at most what its largest
+  /// rate gives for a bend that never exceeds max. A joint moves by at most half the strand's length (and a link) times
+  /// that, since link i of n turns by i/n of the bend.
   double largest_joint_step_m(double dt_s) const noexcept;
 
  private:
@@ -56,8 +58,8 @@ class StrandSway {
   StrandSwaySpec spec_;
   SceneWind wind_;
   CarriedNoise noise_;
-  NoiseTile1 along_;  ///< Wind-speed: the strength along the wind's way
-  TorusTravel way_;
+  NoiseTile2 along_;  ///< Wind-speed, the strength along the wind's way: a line through a noise
+  LineCut way_;
   double largest_along_ = 0.0, steepest_along_per_m_ = 0.0;
 
   CarriedPlaces places_;

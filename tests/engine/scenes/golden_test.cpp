@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/pose/kinematics.hpp"
 #include "engine/pose/pose_hash.hpp"
-#include "engine/pose/strand_kinematics.hpp"
 #include "engine/scenes/scene.hpp"
 #include "tests/support/each_simd_row.hpp"
 #include "tests/support/places.hpp"
@@ -19,17 +19,14 @@ namespace yuragi {
 namespace {
 
 std::string hash_of_600_ticks(Scene& scene, SimdRow row) {
-  const auto& skeleton = std::get<StrandSkeleton>(scene.skeleton());
-  JointPositions joints(skeleton);
+  Kinematics kinematics(scene.skeleton(), row);
   std::uint64_t hash = kPoseHashSeed;
   for (std::uint64_t tick = 0; tick < 600; ++tick) {
     scene.tick(scripted_wind(tick), 1.0 / 60.0);
-    const auto& pose = std::get<StrandPose>(scene.pose());
-    hash = pose_hash(hash, pose);
+    hash = pose_hash(hash, scene.pose());
     if (tick % 20 != 0) continue;
-    const StrandKinematicsJob job{.skeleton = &skeleton, .pose = &pose, .row = row, .joints = &joints};
-    EXPECT_EQ(job.run(), StrandKinematicsJob::Problem::kNone);
-    hash = pose_hash(hash, joints.data());
+    EXPECT_TRUE(kinematics.run(scene.pose()));
+    hash = kinematics.hash(hash);
   }
   std::ostringstream text;
   text << std::hex << hash;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+
+#include "engine/base/simd_row.hpp"
+#include "engine/pose/point_kinematics.hpp"
+#include "engine/pose/skeleton.hpp"
+#include "engine/pose/strand_kinematics.hpp"
+#include "engine/pose/tree_kinematics.hpp"
+
+namespace yuragi {
+
+/// Where the joints of a skeleton are, whatever its kind: StrandKinematicsJob, GridKinematicsJob, TreeKinematicsJob or
+/// SurfaceKinematicsJob, and the positions that they write.
+///
+/// The skeleton must outlive this. Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: run()
+/// and what reads.
+class Kinematics {
+ public:
+  explicit Kinematics(const Skeleton& skeleton, std::optional<SimdRow> row = std::nullopt);
+
+  /// Computes all joints. False, and nothing done, where the pose does not fit the skeleton.
+  bool run(const Pose& pose) noexcept;
+
+  /// The joints, in arrays that depend on the kind: JointPositions, PointPositions, TreeJoints.
+  using Joints = std::variant<JointPositions, PointPositions, TreeJoints>;
+  const Joints& joints() const noexcept { return joints_; }
+
+  /// A joint by its number, below node_count(skeleton): strand by strand from root to tip, row by row of a grid or
+  /// surface, level by level of a tree.
+  JointPosition joint(std::size_t number) const noexcept;
+
+  /// Going on from `seed`, the hash of all joints (pose_hash.hpp), padding included.
+  std::uint64_t hash(std::uint64_t seed) const noexcept;
+
+ private:
+  const Skeleton* skeleton_;
+  std::optional<SimdRow> row_;
+  Joints joints_;
+};
+
+}  // namespace yuragi

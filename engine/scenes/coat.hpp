@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi {
+
+/// What a coat of fur is like, and the body that wears it: an ellipsoid that lies along x, resting on the ground.
+struct CoatSpec {
+  std::size_t hairs_along = 200;   ///< rows from one end of the body to the other
+  std::size_t hairs_around = 150;  ///< in each row
+  std::size_t links = 10;          ///< a hair
+  double body_length_m = 1.6;
+  double body_height_m = 0.8;
+  double body_width_m = 0.7;
+  double length_m = 0.09;         ///< of a hair, on average
+  double length_variation = 0.2;  ///< standard deviation, as a part of it
+  double lie_deg = 55.0;          ///< how far a hair's foot lies over, from the body's normal
+  double curl_deg = 30.0;         ///< how much farther it curls to its tip
+  double parting_deg = 20.0;      ///< standard deviation of where hairs lie to
+  std::uint64_t seed = 0;
+};
+
+/// Hairs on a body, where each reads the wind, and how easily each is bent.
+struct Coat {
+  StrandSkeleton skeleton;
+  std::vector<float> place_x_m, place_z_m;  ///< on the body, unrolled: along it, and around it from its ridge
+  std::vector<float> flexibility;           ///< 1 on average. padded_count() elements, like all here
+};
+
+/// Lays a coat out. Hairs are spread evenly, lie toward -x and down the flanks, and differ by 2-D noises of a large
+/// beta and a small scale, so that neighbours lie alike in locks (Chiba, section 3.1). Deterministic by seed.
+/// Allocates; may throw std::bad_alloc, and std::invalid_argument for more than 4096 hairs along or around.
+/// Thread-safe: yes.
+Coat make_coat(const CoatSpec& spec);
+
+}  // namespace yuragi

@@ -1,0 +1,112 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/units.hpp"
+#include "engine/pose/strand_kinematics.hpp"
+#include "engine/scenes/coat.hpp"
+#include "engine/scenes/scene.hpp"
+
+namespace yuragi {
+
+extern const SceneDescription kFurScene;
+
+namespace {
+
+std::unique_ptr<Scene> fur(const ParameterValues::Map& given = {}) {
+  return kFurScene.make(ParameterValues::resolve(kFurScene.parameters, given).value(), {.seed = 1});
+}
+
+TEST(FurTest, HasThePapers300000NodesByDefault) {
+  const auto scene = fur();
+  const auto& skeleton = std::get<StrandSkeleton>(scene->skeleton());
+  EXPECT_EQ(skeleton.strand_count * skeleton.links_per_strand, 300'000U);
+}
+
+TEST(FurTest, RootsAreOnTheBodyAndHairsLeaveItOutward) {
+  const Coat coat = make_coat({.seed = 4});
+  const StrandSkeleton& hairs = coat.skeleton;
+  for (std::size_t i = 0; i < hairs.strand_count; ++i) {
+    const double x = static_cast<double>(hairs.root_x_m[i]) / 0.8;
+    const double y = (static_cast<double>(hairs.root_y_m[i]) - 0.4) / 0.4;
+    const double z = static_cast<double>(hairs.root_z_m[i]) / 0.35;
+    EXPECT_NEAR(x * x + y * y + z * z, 1.0, 1e-5);
+
+    const double length = std::sqrt(x * x / 0.64 + y * y / 0.16 + z * z / 0.1225);
+    const double outward =
+        (static_cast<double>(hairs.rest_x[i]) * x / 0.8 + static_cast<double>(hairs.rest_y[i]) * y / 0.4 +
+         static_cast<double>(hairs.rest_z[i]) * z / 0.35) /
+        length;
+    EXPECT_GT(outward, 0.08);  // cos 85 deg
+    const double rest = std::hypot(hairs.rest_x[i], hairs.rest_y[i], hairs.rest_z[i]);
+    const double across = static_cast<double>(hairs.rest_x[i] * hairs.curl_x[i] + hairs.rest_y[i] * hairs.curl_y[i] +
+                                              hairs.rest_z[i] * hairs.curl_z[i]);
+    EXPECT_NEAR(rest, 1.0, 1e-5);
+    EXPECT_NEAR(across, 0.0, 1e-5);
+  }
+}
+
+TEST(FurTest, NeighboursLieAlike) {
+  const Coat coat = make_coat({.seed = 4});
+  const StrandSkeleton& hairs = coat.skeleton;
+  const auto alike = [&hairs](std::size_t i, std::size_t j) {
+    return static_cast<double>(hairs.rest_x[i] * hairs.rest_x[j] + hairs.rest_y[i] * hairs.rest_y[j] +
+                               hairs.rest_z[i] * hairs.rest_z[j]);
+  };
+  double neighbours = 0.0;
+  double strangers = 0.0;
+  for (std::size_t i = 0; i + 20'000 < hairs.strand_count; ++i) {
+    neighbours += alike(i, i + 1);
+    strangers += alike(i, i + 20'000);
+  }
+  const auto pairs = static_cast<double>(hairs.strand_count - 20'000);
+  EXPECT_GT(neighbours / pairs, 0.97);
+  EXPECT_LT(strangers / pairs, 0.8);
+}
+
+TEST(FurTest, LinksKeepTheirLengthTo1e5) {
+  const auto scene = fur();
+  const auto& skeleton = std::get<StrandSkeleton>(scene->skeleton());
+  JointPositions joints(skeleton);
+  for (const double speed_m_s : {0.0, 5.0, 40.0}) {
+    for (int tick = 0; tick < 30; ++tick) scene->tick({speed_m_s, -0.5 * speed_m_s}, 1.0 / 60.0);
+    ASSERT_EQ(
+        (StrandKinematicsJob{.skeleton = &skeleton, .pose = &std::get<StrandPose>(scene->pose()), .joints = &joints}
+             .run()),
+        StrandKinematicsJob::Problem::kNone);
+    for (std::size_t i = 0; i < skeleton.strand_count; i += 7) {
+      JointPosition from{skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
+      for (std::size_t link = 0; link < skeleton.links_per_strand; ++link) {
+        const JointPosition to = joints.joint(i, link);
+        const double length_m = std::hypot(static_cast<double>(to.x_m) - static_cast<double>(from.x_m),
+                                           static_cast<double>(to.y_m) - static_cast<double>(from.y_m),
+                                           static_cast<double>(to.z_m) - static_cast<double>(from.z_m));
+        // To 1e-5 of the length, beyond what floats a metre off can say.
+        ASSERT_NEAR(length_m, skeleton.link_length_m[i], 1e-5 * static_cast<double>(skeleton.link_length_m[i]) + 2e-7);
+        from = to;
+      }
+    }
+  }
+}
+
+TEST(FurTest, IsStrokedMoreByMoreWindUntilItLiesFlat) {
+  double before = 0.0;
+  for (const double speed_m_s : {1.0, 3.0, 6.0, 12.0, 24.0, 48.0}) {
+    const auto scene = fur({{"hairs_along", std::int64_t{40}}, {"hairs_around", std::int64_t{32}}});
+    double mean_rad = 0.0;
+    for (int tick = 0; tick < 900; ++tick) {
+      scene->tick({speed_m_s, 0.0}, 1.0 / 60.0);
+      const auto& pose = std::get<StrandPose>(scene->pose());
+      if (tick >= 300) {
+        for (std::size_t i = 0; i < 1280; ++i)
+          mean_rad += static_cast<double>(pose.bend_east_rad[i]) / (1280.0 * 600.0);
+      }
+    }
+    EXPECT_GT(mean_rad, before);
+    EXPECT_LT(mean_rad, 0.9);
+    before = mean_rad;
+  }
+}
+
+}  // namespace
+}  // namespace yuragi

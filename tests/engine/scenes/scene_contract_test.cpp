@@ -1,0 +1,163 @@
+// What every scene promises (engine/scenes/scene.hpp), on each scene of the table as it is shipped.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/math/philox.hpp"
+#include "engine/pose/kinematics.hpp"
+#include "engine/pose/pose_arrays.hpp"
+#include "engine/pose/pose_hash.hpp"
+#include "engine/scenes/scene.hpp"
+#include "tests/support/scripted_wind.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kContractTick_s = 1.0 / 60.0;
+
+std::unique_ptr<Scene> make(const SceneDescription& kind, const SceneSetup& setup = {.seed = 1}) {
+  return kind.make(ParameterValues::resolve(kind.parameters, {}).value(), setup);
+}
+
+/// A wind that no sensor and no estimator should give, and any may.
+WindVector nasty_wind(std::uint64_t tick) {
+  const RandomStream random(3, stream_id("nasty wind"));
+  const auto toward = [](double speed_m_s, double azimuth_deg) {
+    const double azimuth_rad = azimuth_deg * std::numbers::pi / 180.0;
+    return WindVector{speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
+  };
+  switch (tick / 60) {
+    case 0:  // out of nothing
+      return toward(60.0, 45.0);
+    case 1:  // and gone
+      return {};
+    case 2:  // through north, to and fro
+      return toward(20.0, tick / 10 % 2 == 0 ? 350.0 : 10.0);
+    case 3:  // reversed in each tick
+      return toward(tick % 2 == 0 ? 60.0 : -60.0, 120.0);
+    case 4:  // reversed slowly enough to be followed
+      return toward(tick / 8 % 2 == 0 ? 40.0 : -40.0, 200.0);
+    case 5:  // anything
+      return toward(200.0 * random.uniform(2 * tick), 360.0 * random.uniform(2 * tick + 1));
+    default:  // beyond all measure
+      return toward(1e200, static_cast<double>(tick));
+  }
+}
+constexpr std::uint64_t kNastyTicks = 420;
+
+std::vector<JointPosition> all_joints(const Kinematics& kinematics, std::size_t count) {
+  std::vector<JointPosition> joints;
+  joints.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) joints.push_back(kinematics.joint(i));
+  return joints;
+}
+
+/// How far the joint that moved farthest went. NaN where a joint is no place.
+double largest_step_m(const std::vector<JointPosition>& from, const std::vector<JointPosition>& to) {
+  double largest_square = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double x = static_cast<double>(to[i].x_m) - static_cast<double>(from[i].x_m);
+    const double y = static_cast<double>(to[i].y_m) - static_cast<double>(from[i].y_m);
+    const double z = static_cast<double>(to[i].z_m) - static_cast<double>(from[i].z_m);
+    const double square = x * x + y * y + z * z;
+    if (!std::isfinite(square)) return std::nan("");
+    largest_square = std::max(largest_square, square);
+  }
+  return std::sqrt(largest_square);
+}
+
+class SceneContract : public testing::TestWithParam<const SceneDescription*> {};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneContract, testing::ValuesIn(scene_table().begin(), scene_table().end()),
+                         [](const auto& scene) { return std::string(scene.param->name); });
+
+TEST_P(SceneContract, TellsWhatItIs) {
+  EXPECT_FALSE(GetParam()->summary.empty());
+  for (const Parameter& parameter : GetParam()->parameters) {
+    EXPECT_FALSE(parameter.help.empty()) << parameter.name;
+    EXPECT_FALSE(describe_allowed(parameter).empty()) << parameter.name;
+  }
+}
+
+TEST_P(SceneContract, ItsPoseFitsItsSkeletonAndBeginsAtRest) {
+  const auto scene = make(*GetParam());
+  EXPECT_GT(node_count(scene->skeleton()), 0U);
+  EXPECT_TRUE(fits(scene->pose(), scene->skeleton()));
+  scene->tick({3.0, 1.0}, kContractTick_s);
+  EXPECT_TRUE(fits(scene->pose(), scene->skeleton()));
+}
+
+TEST_P(SceneContract, CalmIsTheRestPose) {
+  const auto scene = make(*GetParam());
+  for (int tick = 0; tick < 120; ++tick) scene->tick({}, kContractTick_s);
+  const Pose rest = rest_pose(scene->skeleton());
+  Kinematics at_rest(scene->skeleton());
+  Kinematics in_calm(scene->skeleton());
+  ASSERT_TRUE(at_rest.run(rest));
+  ASSERT_TRUE(in_calm.run(scene->pose()));
+  EXPECT_EQ(in_calm.hash(0), at_rest.hash(0));
+}
+
+TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
+  for (const double dt_s : {kContractTick_s, 1.0 / 144.0}) {
+    const auto scene = make(*GetParam());
+    const double bound_m = scene->largest_joint_step_m(dt_s);
+    ASSERT_TRUE(std::isfinite(bound_m));
+    Kinematics kinematics(scene->skeleton());
+    const std::size_t count = node_count(scene->skeleton());
+    ASSERT_TRUE(kinematics.run(scene->pose()));
+    std::vector<JointPosition> before = all_joints(kinematics, count);
+    double largest_m = 0.0;
+    for (std::uint64_t tick = 0; tick < kNastyTicks; ++tick) {
+      scene->tick(nasty_wind(tick), dt_s);
+      ASSERT_TRUE(kinematics.run(scene->pose()));
+      std::vector<JointPosition> now = all_joints(kinematics, count);
+      const double step_m = largest_step_m(before, now);
+      ASSERT_LE(step_m, bound_m * (1.0 + 1e-5) + 1e-5) << "at tick " << tick;  // and with it: finite
+      largest_m = std::max(largest_m, step_m);
+      before = std::move(now);
+    }
+    EXPECT_GT(largest_m, 1e-3 * bound_m) << "the bound of " << bound_m << " m says nothing";
+    std::printf("%s at %.0f Hz: %.4f m a tick at most, bound %.4f m\n", std::string(GetParam()->name).c_str(),
+                1.0 / dt_s, largest_m, bound_m);
+  }
+}
+
+TEST_P(SceneContract, TheSameSeedAndWindGiveTheSameBitsAndAnotherSeedOthers) {
+  const auto run = [](Scene& scene) {
+    std::uint64_t hash = kPoseHashSeed;
+    for (std::uint64_t tick = 0; tick < 60; ++tick) {
+      scene.tick(scripted_wind(tick), kContractTick_s);
+      hash = pose_hash(hash, scene.pose());
+    }
+    return hash;
+  };
+  const std::uint64_t hash = run(*make(*GetParam()));
+  EXPECT_EQ(run(*make(*GetParam())), hash);
+  EXPECT_NE(run(*make(*GetParam(), {.seed = 2})), hash);
+}
+
+TEST_P(SceneContract, StandsWhereItIsPlaced) {
+  const auto here = make(*GetParam());
+  const auto there = make(*GetParam(), {.seed = 1, .placement = {100.0, 3.0, -50.0, 90.0}});
+  Kinematics here_joints(here->skeleton());
+  Kinematics there_joints(there->skeleton());
+  ASSERT_TRUE(here_joints.run(here->pose()));
+  ASSERT_TRUE(there_joints.run(there->pose()));
+  const std::size_t count = node_count(here->skeleton());
+  for (std::size_t i = 0; i < count; i += 97) {  // a quarter turn clockwise: north (-z) becomes east (+x)
+    const JointPosition a = here_joints.joint(i);
+    const JointPosition b = there_joints.joint(i);
+    ASSERT_NEAR(b.x_m, 100.0F - a.z_m, 1e-4F);
+    ASSERT_NEAR(b.y_m, 3.0F + a.y_m, 1e-4F);
+    ASSERT_NEAR(b.z_m, -50.0F + a.x_m, 1e-4F);
+  }
+}
+
+}  // namespace
+}  // namespace yuragi
