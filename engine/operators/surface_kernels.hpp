@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Between ThresholdRampJob, ColorMapJob, DisplacementJob and their kernels; nobody else needs this.
+
+namespace yuragi {
+
+struct ThresholdRampArguments {
+  std::size_t count = 0;
+  const float* noise = nullptr;
+  const float* along = nullptr;
+  float first_threshold = 0.0F;
+  float rise = 0.0F;  ///< from the first threshold to the last
+  float per_edge = 1.0F;
+  float* out = nullptr;
+};
+
+struct ColorMapArguments {
+  std::size_t count = 0;
+  const float* level = nullptr;
+  const std::uint8_t* ramp_rgba = nullptr;
+  std::uint8_t* out = nullptr;
+};
+
+struct DisplacementArguments {
+  std::size_t count = 0;
+  const float* noise = nullptr;
+  const float* share = nullptr;
+  float amplitude_m = 0.0F;
+  float* out = nullptr;
+};
+
+struct SurfaceKernels {
+  void (*threshold_ramp)(const ThresholdRampArguments&) noexcept;
+  void (*map_colors)(const ColorMapArguments&) noexcept;
+  void (*displace)(const DisplacementArguments&) noexcept;
+};
+extern const SurfaceKernels surface_kernels_x86_64;
+extern const SurfaceKernels surface_kernels_x86_64_v3;
+extern const SurfaceKernels surface_kernels_x86_64_v4;
+
+}  // namespace yuragi
