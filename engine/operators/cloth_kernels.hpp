@@ -17,19 +17,16 @@ struct PropagationKernelArguments {
   float* out = nullptr;
 };
 
-/// The links between one row of joints and the next.
+/// A band of links, from a row of joints whose offsets are there to those below it.
 struct ClothKernelArguments {
   std::size_t columns = 0;  ///< in whole blocks
+  std::size_t links = 0;
   const float* lean = nullptr;
-  const float* rest_lean = nullptr;
   const float* rest_direction = nullptr;
   float link_length_m = 0.0F;
-  const float* from_x_m = nullptr;
-  const float* from_y_m = nullptr;
-  const float* from_z_m = nullptr;
-  float* to_x_m = nullptr;
-  float* to_y_m = nullptr;
-  float* to_z_m = nullptr;
+  float* offset_x_m = nullptr;  ///< of the row that the band begins at
+  float* offset_y_m = nullptr;
+  float* offset_z_m = nullptr;
 };
 
 struct ClothKernels {

@@ -56,24 +56,15 @@ ClothProjectionJob::Problem ClothProjectionJob::run() const noexcept {
       std::fill_n(offset_m->begin(), stride, 0.0F);
     }
   }
-  const auto hang = kClothRows[row.value_or(best_simd_row())].hang;
-  for (std::size_t i = 0; i < lean.size() / (2 * stride); ++i) {
-    const std::size_t from = (first_link + i) * stride;
-    float* const x_m = pose->offset_x_m.data() + from;
-    float* const y_m = pose->offset_y_m.data() + from;
-    float* const z_m = pose->offset_z_m.data() + from;
-    hang({.columns = stride,
-          .lean = lean.data() + i * 2 * stride,
-          .rest_lean = threads->rest_lean.data(),
-          .rest_direction = threads->rest_direction.data(),
-          .link_length_m = threads->link_length_m,
-          .from_x_m = x_m,
-          .from_y_m = y_m,
-          .from_z_m = z_m,
-          .to_x_m = x_m + stride,
-          .to_y_m = y_m + stride,
-          .to_z_m = z_m + stride});
-  }
+  const std::size_t from = first_link * stride;
+  kClothRows[row.value_or(best_simd_row())].hang({.columns = stride,
+                                                  .links = lean.size() / (2 * stride),
+                                                  .lean = lean.data(),
+                                                  .rest_direction = threads->rest_direction.data(),
+                                                  .link_length_m = threads->link_length_m,
+                                                  .offset_x_m = pose->offset_x_m.data() + from,
+                                                  .offset_y_m = pose->offset_y_m.data() + from,
+                                                  .offset_z_m = pose->offset_z_m.data() + from});
   return Problem::kNone;
 }
 

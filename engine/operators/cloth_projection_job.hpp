@@ -24,9 +24,9 @@ struct ClothThreads {
 /// The threads that lean so (2 * stride values; stride a multiple of kStrandsPerBlock). Allocates.
 ClothThreads make_threads(std::size_t links, float link_length_m, std::span<const float> rest_lean);
 
-/// The projection of a cloth: turns each link by its lean beyond rest, and adds the links up from the fixed edge to the
+/// The projection of a cloth: points each link to where it leans, and adds the links up from the fixed edge to the
 /// joints' offsets, in GridPose's meaning. Links turn and do not stretch: threads keep their length to rounding (about
-/// 1e-6). No lean gives exactly no offset, and the fixed edge never moves.
+/// 1e-6). The leans of rest give exactly no offset, and the fixed edge never moves.
 ///
 /// A job does the links from first_link on, as many as `lean` has rows, and takes the joints where they begin from the
 /// pose: so a cloth is done in bands that stay in the nearest cache, from the fixed edge on. With first_link 0 it also
@@ -35,7 +35,7 @@ ClothThreads make_threads(std::size_t links, float link_length_m, std::span<cons
 struct ClothProjectionJob {
   const ClothThreads* threads = nullptr;
   std::size_t first_link = 0;
-  std::span<const float> lean;                ///< a row a link: east of all columns, then south; finite
+  std::span<const float> lean;                ///< a row a link: east of all columns, then south, rest included; finite
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   GridPose* pose = nullptr;  ///< (links + 1) * stride joints

@@ -22,7 +22,7 @@ void PropagationHistory::push(std::span<const float> values, double dt_s) noexce
   for (double number = first; number <= due; number += 1.0) {
     const auto part = static_cast<float>(std::clamp((number - phase_) / step, 0.0, 1.0));
     latest_ = (latest_ + count_ - 1) % count_;
-    float* const row = sample(0);
+    float* const row = samples_.data() + sample(0);
     for (std::size_t i = 0; i < width_; ++i) row[i] = present_[i] + part * (values[i] - present_[i]);
   }
   phase_ = phase_ + step - due;
@@ -31,11 +31,11 @@ void PropagationHistory::push(std::span<const float> values, double dt_s) noexce
 
 PropagationHistory::Between PropagationHistory::at(double delay_s) const noexcept {
   const double delay = std::max(delay_s, 0.0) / kInterval_s;
-  if (delay < phase_) return {present_.data(), sample(0), static_cast<float>(delay / phase_)};
+  const float* const samples = samples_.data();
+  if (delay < phase_) return {present_.data(), samples + sample(0), static_cast<float>(delay / phase_)};
   const double age = std::min(delay - phase_, static_cast<double>(count_ - 2));
-  const double whole = std::min(std::floor(age), static_cast<double>(count_ - 2));
-  const auto newer = static_cast<std::size_t>(whole);
-  return {sample(newer), sample(newer + 1), static_cast<float>(age - whole)};
+  const auto newer = std::min(static_cast<std::size_t>(age), count_ - 2);
+  return {samples + sample(newer), samples + sample(newer + 1), static_cast<float>(age - static_cast<double>(newer))};
 }
 
 }  // namespace yuragi

@@ -38,8 +38,11 @@ class PropagationHistory {
   Between at(double delay_s) const noexcept;
 
  private:
-  float* sample(std::size_t age) noexcept { return samples_.data() + (latest_ + age) % count_ * width_; }
-  const float* sample(std::size_t age) const noexcept { return samples_.data() + (latest_ + age) % count_ * width_; }
+  /// Where the sample stands that is `age` (below count_) older than the newest.
+  std::size_t sample(std::size_t age) const noexcept {
+    const std::size_t row = latest_ + age;
+    return (row < count_ ? row : row - count_) * width_;
+  }
 
   std::size_t width_;
   std::size_t count_;           ///< of samples

@@ -32,8 +32,9 @@ GridSkeleton cloth_skeleton(const ClothSpec& spec, const ClothEdge& edge, const 
   for (std::size_t row = 0; row < spec.rows; ++row) {
     const double way_m = static_cast<double>(threads.link_length_m) * static_cast<double>(row);
     for (std::size_t column = 0; column < stride; ++column) {
-      const auto along = [&](double from_m, std::size_t axis) {
-        return static_cast<float>(from_m + way_m * static_cast<double>(threads.rest_direction[axis * stride + column]));
+      const auto along = [&](float from_m, std::size_t axis) {
+        return static_cast<float>(static_cast<double>(from_m) +
+                                  way_m * static_cast<double>(threads.rest_direction[axis * stride + column]));
       };
       grid.rest_x_m[row * stride + column] = along(edge.x_m[column], 0);
       grid.rest_y_m[row * stride + column] = along(edge.y_m[column], 1);
@@ -78,6 +79,7 @@ Cloth::Cloth(const ClothSpec& spec, const ClothEdge& edge, SimdRow row)
       value_(target_.size(), 0.0F),
       rate_(target_.size(), 0.0F),
       history_(2 * threads_.stride, spec.travel_time_s),
+      base_(threads_.rest_lean),
       lean_(kBandLinks * 2 * threads_.stride, 0.0F),
       skeleton_(cloth_skeleton(spec, edge, threads_)) {
   pose_ = rest_pose(skeleton_);
@@ -89,11 +91,14 @@ void Cloth::project(double dt_s) noexcept {
       .run();
   history_.push(std::span(value_).last(width), dt_s);
 
+  // Rest and sway are the base of all links; rest alone is what the projection knows as rest, to the bit.
+  for (std::size_t i = 0; i < width; ++i) base_[i] = threads_.rest_lean[i] + value_[i];
+
   // From the fixed edge on, band by band.
   for (std::size_t link = 0; link < threads_.links; link += kBandLinks) {
     const std::span band = std::span(lean_).first(std::min(kBandLinks, threads_.links - link) * width);
     PropagationJob{.history = &history_,
-                   .base = std::span(value_).first(width),
+                   .base = base_,
                    .growth = growth_,
                    .travel_time_s = spec_.travel_time_s,
                    .first_link = link,

@@ -18,7 +18,7 @@ struct ClothEdge {
   explicit ClothEdge(std::size_t columns);
 
   std::size_t columns;  ///< of the cloth, without padding
-  std::vector<double> x_m, y_m, z_m;
+  std::vector<float> x_m, y_m, z_m;
   std::vector<float> lean_east, lean_south;  ///< lean.hpp
 
   std::size_t stride() const { return x_m.size(); }
@@ -71,6 +71,7 @@ class Cloth {
   std::vector<float> target_;        ///< sway, then wave
   std::vector<float> value_, rate_;  ///< what follows them
   PropagationHistory history_;
+  std::vector<float> base_;  ///< of the leans: rest and sway
   std::vector<float> lean_;  ///< of a band of links
   Pose pose_;
   Skeleton skeleton_;

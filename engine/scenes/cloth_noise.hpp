@@ -2,44 +2,36 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "engine/base/parameter.hpp"
 #include "engine/base/simd_row.hpp"
-#include "engine/noise/noise_tile.hpp"
-#include "engine/noise/torus.hpp"
+#include "engine/scenes/carried_noise.hpp"
 
 namespace yuragi {
 
-/// Where on the noise each column of a cloth is, as SampleJob wants it.
-struct NoisePlaces {
-  std::vector<std::uint32_t> x, z;
-};
-
-/// The noise that moves a cloth: a 2-D 1/f^beta tile which the wind carries over it (ShiftJob), read at places
-/// (SampleJob) as numbers from -1 to 1. `kSecondNoise` reads the same tile elsewhere: another noise, as good as
-/// independent. Allocates when it is made. Thread-safe: no. Realtime-safe: yes, but for places().
+/// The noise that moves a cloth: one that the wind carries over it (CarriedNoise), read by each column where it is, as
+/// numbers from -1 to 1. kSecond reads the same noise far away: another one, as good as independent. Allocates when it
+/// is made. Thread-safe: no. Realtime-safe: yes.
 class ClothNoise {
  public:
-  enum Channel : std::uint32_t { kFirstNoise, kSecondNoise };
+  enum Channel : std::uint8_t { kFirst, kSecond };
 
-  /// Reads `tile_period` and `beta` of the scene's parameters.
-  ClothNoise(const ParameterValues& values, std::uint64_t seed, SimdRow row);
+  /// Reads `tile_period` and `beta` of the scene's parameters; x and z: where the columns are on the noise.
+  ClothNoise(const ParameterValues& values, std::uint64_t seed, std::span<const float> x_m, std::span<const float> z_m,
+             SimdRow row);
 
-  /// Where these are. Metres; allocates.
-  NoisePlaces places(std::span<const double> x_m, std::span<const double> z_m) const;
+  /// The noise goes on as the wind goes in dt_s.
+  void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept {
+    noise_.shift(toward_x_m_s, toward_z_m_s, dt_s);
+  }
 
-  /// The noise goes by so far as the wind goes in dt_s.
-  void shift(double wind_east_m_s, double wind_south_m_s, double dt_s) noexcept;
-
-  /// As many values as there are places.
-  void sample(const NoisePlaces& places, Channel channel, std::span<float> out) const noexcept;
+  /// One value a column.
+  void sample(Channel channel, std::span<float> out) const noexcept;
 
  private:
-  double period_m_;
   SimdRow row_;
-  NoiseTile2 tile_;
-  TorusOffset offset_;
+  CarriedNoise noise_;
+  CarriedPlaces first_, second_;
 };
 
 }  // namespace yuragi

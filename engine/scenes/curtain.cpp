@@ -36,7 +36,7 @@ const std::array kCurtainParameters = {
     Parameter{"travel_time", "s", 0.9, 0, 10, "that the noise takes from the top to the hem"},
     Parameter{"growth", "", 0.8, 0, 4, "the noise grows as the way from the top to this power"},
     Parameter{"quickness", "rad/s", 9.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
-    Parameter{"tile_period", "m", 48.0, 4, 4096, "after how many metres the noise repeats; 256 samples"},
+    Parameter{"tile_period", "m", 14.0, 2, 4096, "the longest wave of the noise; 256 samples"},
     Parameter{"beta", "", 5.0 / 3.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
@@ -67,9 +67,9 @@ ClothEdge curtain_edge(const ParameterValues& values, const SceneSetup& setup) {
                         (1.0 + 0.25 * std::sin(2.0 * kPi * 2.9 * along + second_phase_rad));
     const Turned place =
         turned(setup.placement, pitch_m * static_cast<double>(column) - 0.5 * values.number("width"), depth_m * fold);
-    edge.x_m[column] = setup.placement.x_m + place.east;
-    edge.y_m[column] = setup.placement.y_m + height_m + values.number("clearance");
-    edge.z_m[column] = setup.placement.z_m + place.south;
+    edge.x_m[column] = static_cast<float>(setup.placement.x_m + place.east);
+    edge.y_m[column] = static_cast<float>(setup.placement.y_m + height_m + values.number("clearance"));
+    edge.z_m[column] = static_cast<float>(setup.placement.z_m + place.south);
 
     // The hem's folds are half as deep again.
     const Turned lean = turned(setup.placement, 0.0, std::tan(0.5 * std::atan(0.5 * depth_m * fold / height_m)));
@@ -93,8 +93,8 @@ class Curtain final : public Scene {
 
     // Shift and sample: the noise goes with the wind, and each column reads it where it hangs.
     noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
-    noise_.sample(places_, ClothNoise::kFirstNoise, flutter_);
-    noise_.sample(places_, ClothNoise::kSecondNoise, swell_);
+    noise_.sample(ClothNoise::kFirst, flutter_);
+    noise_.sample(ClothNoise::kSecond, swell_);
 
     // How much the wind blows: toward where, across the curtain and, less, along it. Like the drag of the air it grows
     // with the square of a weak wind, and it saturates: s^2 / (1 + s^2).
@@ -132,8 +132,7 @@ class Curtain final : public Scene {
         max_sway_(lean_of_deg(values.number("max_sway"))),
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         along_(turned(setup.placement, 1.0, 0.0)),
-        noise_(values, setup.seed ^ stream_id("curtain noise"), setup.row),
-        places_(noise_.places(edge.x_m, edge.z_m)),
+        noise_(values, setup.seed ^ stream_id("curtain noise"), edge.x_m, edge.z_m, setup.row),
         flutter_(edge.stride(), 0.0F),
         swell_(edge.stride(), 0.0F),
         cloth_(curtain_spec(values), edge, setup.row) {}
@@ -146,7 +145,6 @@ class Curtain final : public Scene {
 
   SceneWind wind_;
   ClothNoise noise_;
-  NoisePlaces places_;
   std::vector<float> flutter_, swell_;  ///< each column's noises
   Cloth cloth_;
 };
