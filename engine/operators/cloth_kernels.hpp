@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+
+// Between the cloth's jobs and their kernels; nobody else needs this.
+
+namespace yuragi {
+
+/// One row of values: out = base + newer_gain * newer + older_gain * older.
+struct PropagationKernelArguments {
+  std::size_t count = 0;
+  const float* base = nullptr;
+  const float* newer = nullptr;
+  const float* older = nullptr;
+  float newer_gain = 0.0F;
+  float older_gain = 0.0F;
+  float* out = nullptr;
+};
+
+/// A band of links, from a row of joints whose offsets are there to those below it.
+struct ClothKernelArguments {
+  std::size_t columns = 0;  ///< in whole blocks
+  std::size_t links = 0;
+  const float* lean = nullptr;
+  const float* rest_direction = nullptr;
+  float link_length_m = 0.0F;
+  float* offset_x_m = nullptr;  ///< of the row that the band begins at
+  float* offset_y_m = nullptr;
+  float* offset_z_m = nullptr;
+};
+
+struct ClothKernels {
+  void (*propagate)(const PropagationKernelArguments&) noexcept;
+  void (*hang)(const ClothKernelArguments&) noexcept;
+};
+extern const ClothKernels cloth_kernels_x86_64;
+extern const ClothKernels cloth_kernels_x86_64_v3;
+extern const ClothKernels cloth_kernels_x86_64_v4;
+
+}  // namespace yuragi

@@ -1,0 +1,71 @@
+#include "engine/operators/cloth_projection_job.hpp"
+
+#include <algorithm>
+
+#include "engine/base/kernel.hpp"
+#include "engine/operators/cloth_kernels.hpp"
+#include "engine/operators/lean.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr KernelRows<ClothKernels> kClothRows = YURAGI_KERNEL_ROWS(cloth_kernels);
+
+}  // namespace
+
+ClothThreads make_threads(std::size_t links, float link_length_m, std::span<const float> rest_lean) {
+  ClothThreads threads{.stride = rest_lean.size() / 2,
+                       .links = links,
+                       .link_length_m = link_length_m,
+                       .rest_lean = {rest_lean.begin(), rest_lean.end()},
+                       .rest_direction = {}};
+  const std::size_t stride = threads.stride;
+  threads.rest_direction.resize(3 * stride);
+  for (std::size_t i = 0; i < stride; ++i) {
+    const Direction<float> rest = hanging_direction(rest_lean[i], rest_lean[stride + i]);
+    threads.rest_direction[i] = rest.x;
+    threads.rest_direction[stride + i] = rest.y;
+    threads.rest_direction[2 * stride + i] = rest.z;
+  }
+  return threads;
+}
+
+ClothProjectionJob::Problem ClothProjectionJob::validate() const noexcept {
+  if (threads == nullptr || pose == nullptr) return Problem::kMissingPart;
+  const std::size_t stride = threads->stride;
+  if (stride == 0 || stride % kStrandsPerBlock != 0 || threads->rest_lean.size() != 2 * stride ||
+      threads->rest_direction.size() != 3 * stride) {
+    return Problem::kThreadsSize;
+  }
+  if (lean.size() % (2 * stride) != 0 || first_link + lean.size() / (2 * stride) > threads->links) {
+    return Problem::kLeanSize;
+  }
+  for (const auto* array : {&pose->offset_x_m, &pose->offset_y_m, &pose->offset_z_m}) {
+    if (array->size() != (threads->links + 1) * stride) return Problem::kPoseSize;
+  }
+  if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
+  return Problem::kNone;
+}
+
+ClothProjectionJob::Problem ClothProjectionJob::run() const noexcept {
+  const Problem problem = validate();
+  if (problem != Problem::kNone) return problem;
+  const std::size_t stride = threads->stride;
+  if (first_link == 0) {
+    for (auto* offset_m : {&pose->offset_x_m, &pose->offset_y_m, &pose->offset_z_m}) {
+      std::fill_n(offset_m->begin(), stride, 0.0F);
+    }
+  }
+  const std::size_t from = first_link * stride;
+  kClothRows[row.value_or(best_simd_row())].hang({.columns = stride,
+                                                  .links = lean.size() / (2 * stride),
+                                                  .lean = lean.data(),
+                                                  .rest_direction = threads->rest_direction.data(),
+                                                  .link_length_m = threads->link_length_m,
+                                                  .offset_x_m = pose->offset_x_m.data() + from,
+                                                  .offset_y_m = pose->offset_y_m.data() + from,
+                                                  .offset_z_m = pose->offset_z_m.data() + from});
+  return Problem::kNone;
+}
+
+}  // namespace yuragi
