@@ -32,21 +32,18 @@ glm::vec3 tint_at(float dryness) {
   return d < 0.6F ? glm::mix(lush, fresh, d / 0.6F) : glm::mix(fresh, straw, (d - 0.6F) / 0.4F);
 }
 
-}  // namespace
-
-Bounds bounds_of(const StrandSkeleton& skeleton) {
-  if (skeleton.strand_count == 0) return {};
-  Bounds bounds{glm::vec3(1e9F), glm::vec3(-1e9F)};
-  for (std::size_t i = 0; i < skeleton.strand_count; ++i) {
-    const glm::vec3 root(skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]);
-    const float length_m = skeleton.link_length_m[i] * static_cast<float>(skeleton.links_per_strand);
-    bounds.low_m = glm::min(bounds.low_m, root);
-    bounds.high_m = glm::max(bounds.high_m, root + glm::vec3(0.0F, length_m, 0.0F));
-  }
-  return bounds;
+/// A fox's coat, from dark russet to straw.
+glm::vec3 coat_at(float paleness) {
+  const glm::vec3 dark(0.110F, 0.042F, 0.016F);
+  const glm::vec3 russet(0.330F, 0.130F, 0.040F);
+  const glm::vec3 straw(0.480F, 0.300F, 0.140F);
+  const float p = std::clamp(paleness, 0.0F, 1.0F);
+  return p < 0.5F ? glm::mix(dark, russet, p / 0.5F) : glm::mix(russet, straw, (p - 0.5F) / 0.5F);
 }
 
-std::vector<Blade> blades_of(const StrandSkeleton& skeleton) {
+}  // namespace
+
+std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style) {
   const Bounds bounds = bounds_of(skeleton);
   const glm::vec3 size_m = bounds.high_m - bounds.low_m;
   const float spacing_m =
@@ -68,14 +65,17 @@ std::vector<Blade> blades_of(const StrandSkeleton& skeleton) {
         static_cast<float>(0.7 + 0.6 * second);
 
     const auto spread = static_cast<float>(third - 0.5);
-    const glm::vec3 tint = tint_at(0.47F + 0.22F * patch(blade.root_m[0], blade.root_m[2]) + 0.42F * spread) *
-                           static_cast<float>(0.8 + 0.4 * fourth);
+    const float light = static_cast<float>(0.8 + 0.4 * fourth);
+    const glm::vec3 tint =
+        light * (style == BladeStyle::kFur
+                     ? coat_at(0.5F + 0.16F * patch(9.0F * blade.root_m[0], 9.0F * blade.root_m[2]) + 0.3F * spread)
+                     : tint_at(0.47F + 0.22F * patch(blade.root_m[0], blade.root_m[2]) + 0.42F * spread));
     blade.tint = {tint.r, tint.g, tint.b};
   }
   return blades;
 }
 
-BladeSorter::BladeSorter(const StrandSkeleton& skeleton) : blades_(blades_of(skeleton)) {
+BladeSorter::BladeSorter(const StrandSkeleton& skeleton, BladeStyle style) : blades_(blades_of(skeleton, style)) {
   const std::size_t links = skeleton.links_per_strand;
   for (std::size_t i = 0; i < blades_.size(); ++i) {
     length_m_.push_back(skeleton.link_length_m[i] * static_cast<float>(links));

@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/pose/skeleton.hpp"
-#include "viewer/orbit_camera.hpp"
+#include "viewer/bounds.hpp"
 #include "viewer/view.hpp"
 
 namespace yuragi {
@@ -22,12 +22,12 @@ struct Blade {
   std::uint32_t strand = 0;
 };
 
-/// A blade for each strand: as wide as the strands' spacing asks for so that the ground is covered, tinted by patches
-/// and by chance. The same skeleton always makes the same blades.
-std::vector<Blade> blades_of(const StrandSkeleton& skeleton);
+/// What grows on the strands.
+enum class BladeStyle : std::uint8_t { kGrass, kFur };
 
-/// The box around all blades, however they bend.
-Bounds bounds_of(const StrandSkeleton& skeleton);
+/// A blade (or hair) for each strand: as wide as the strands' spacing asks for so that the ground is covered, tinted by
+/// patches and by chance. The same skeleton always makes the same blades.
+std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
 
 /// Blades that are drawn equally finely.
 struct DetailLevel {
@@ -42,7 +42,7 @@ class BladeSorter {
   static constexpr float kRingPx = 22.0F;      ///< a ring for each of so many pixels of a blade's height
   static constexpr std::size_t kMinRings = 3;  ///< where there are as many links
 
-  explicit BladeSorter(const StrandSkeleton& skeleton);
+  explicit BladeSorter(const StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
 
   void sort(const View& view);
 

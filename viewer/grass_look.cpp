@@ -1,60 +1,20 @@
 #include "viewer/grass_look.hpp"
 
-#include <cstddef>
-
 #include "viewer/shaders.hpp"
 
 namespace yuragi {
-namespace {
 
-void describe_blade(const GlVertexArray& array, const GlBuffer& buffer) {
-  // An offset in a buffer travels as a pointer: so OpenGL's interface is.
-  // NOLINTNEXTLINE(performance-no-int-to-ptr)
-  const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
-  glBindVertexArray(array.name());
-  glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
-  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(Blade), at(offsetof(Blade, root_m)));
-  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(Blade), at(offsetof(Blade, tint)));
-  glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, sizeof(Blade), at(offsetof(Blade, strand)));
-  for (GLuint attribute = 0; attribute < 3; ++attribute) {
-    glEnableVertexAttribArray(attribute);
-    glVertexAttribDivisor(attribute, 1);
-  }
-}
-
-}  // namespace
-
-GrassLook::GrassLook(const StrandSkeleton& skeleton)
-    : skeleton_(&skeleton),
-      sorter_(skeleton),
-      joints_(skeleton),
-      program_(link_program("grass", shaders::kGrassVert, shaders::kGrassFrag)) {
+GrassLook::GrassLook(const StrandSkeleton& strands)
+    : ribbons_(strands, BladeStyle::kGrass), program_(link_program("grass", shaders::kGrassVert, shaders::kShadeFrag)) {
   set_sampler(program_, "joints", 0);
-  glUniform1i(glGetUniformLocation(program_.name(), "links"), static_cast<GLint>(skeleton.links_per_strand));
-  rings_place_ = glGetUniformLocation(program_.name(), "rings");
-  describe_blade(blade_array_, blade_buffer_);
 }
 
-void GrassLook::draw(const StrandPose& pose, const View& view) {
-  // The one forward kinematics, and its joints as they are.
-  const StrandKinematicsJob job{.skeleton = skeleton_, .pose = &pose, .row = {}, .joints = &joints_};
-  if (job.run() != StrandKinematicsJob::Problem::kNone) return;
-  stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(joints_).data()));
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_BUFFER, joint_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, joint_buffer_.name());
+void GrassLook::move_to(const Pose& pose) {
+  if (const auto* const bends = std::get_if<StrandPose>(&pose)) ribbons_.move_to(*bends);
+}
 
-  // Near blades first: what is behind them need not be painted.
-  sorter_.sort(view);
-  glUseProgram(program_.name());
-  glBindVertexArray(blade_array_.name());
-  for (const DetailLevel& level : sorter_.levels()) {
-    if (level.blades.empty()) continue;
-    stream_to(GL_ARRAY_BUFFER, blade_buffer_, std::span(level.blades));
-    glUniform1i(rings_place_, static_cast<GLint>(level.rings));
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, static_cast<GLsizei>(2 * (level.rings + 1)),
-                          static_cast<GLsizei>(level.blades.size()));
-  }
+void GrassLook::draw(const View& view) {
+  ribbons_.draw(program_, view);
 }
 
 }  // namespace yuragi

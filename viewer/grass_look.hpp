@@ -1,31 +1,23 @@
 #pragma once
 
-#include "engine/pose/strand_kinematics.hpp"
-#include "viewer/blades.hpp"
-#include "viewer/gl.hpp"
-#include "viewer/view.hpp"
+#include "viewer/look.hpp"
+#include "viewer/strand_ribbons.hpp"
 
 namespace yuragi {
 
-/// Draws strands as a meadow of lit blades. Owns its GPU objects; needs a current context. Thread-safe: no.
-class GrassLook {
+/// Draws strands as a meadow of lit blades.
+class GrassLook : public Look {
  public:
-  /// `skeleton` must outlive this.
-  explicit GrassLook(const StrandSkeleton& skeleton);
+  /// `strands` must outlive this.
+  explicit GrassLook(const StrandSkeleton& strands);
 
-  /// The pose has the skeleton's layout; the View is bound (ViewBuffer::set).
-  void draw(const StrandPose& pose, const View& view);
+  void move_to(const Pose& pose) override;
+  void draw(const View& view) override;
+  bool is_field() const override { return true; }
 
  private:
-  const StrandSkeleton* skeleton_;
-  BladeSorter sorter_;
-  JointPositions joints_;
+  StrandRibbons ribbons_;
   GlProgram program_;
-  GLint rings_place_ = -1;
-  GlBuffer joint_buffer_;
-  GlTexture joint_texture_;
-  GlBuffer blade_buffer_;
-  GlVertexArray blade_array_;
 };
 
 }  // namespace yuragi

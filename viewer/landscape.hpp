@@ -10,12 +10,14 @@ class Landscape {
  public:
   Landscape();
 
-  /// The View is bound (ViewBuffer::set).
+  /// The View is bound (ViewBuffer::set). The ground has holes and shadows where the stencil has
+  /// kHole and kShadow.
   void draw();
 
  private:
   GlTexture noise_;
   GlProgram ground_;
+  GLint sunlight_place_ = -1;
   GlProgram hills_;
   GlProgram sky_;
   GlVertexArray no_attributes_;

@@ -37,6 +37,7 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_flag("--fullscreen", options.is_fullscreen, "Fill the screen");
   app.add_option("--monitor", options.monitor, "Which screen to fill, counted from 0")->check(CLI::NonNegativeNumber);
   app.add_flag("--turn", options.is_turning, "Let the camera go round slowly");
+  app.add_option("--scene", options.scene, "Show only the scene of this name");
   app.add_option(
          "--camera", options.camera,
          "HEADING,PITCH,DISTANCE: where the camera looks to (degrees, 0 north, 90 east), how far down (degrees), "
@@ -64,8 +65,9 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       ->group(picture);
 
   app.footer(
-      "In the window: drag to turn (left button) or move (right), scroll to go nearer; R first view, T turn slowly,\n"
-      "H overlay, F11 full screen, Esc or Q quit. The stream may stop and come back: the picture goes on.\n"
+      "In the window: drag to turn (left button) or move (right), scroll to go nearer; R first view, N next scene\n"
+      "alone (after the last, all), T turn slowly, H overlay, F11 full screen, Esc or Q quit. The stream may stop and\n"
+      "come back: the picture goes on.\n"
       "\n"
       "Examples:\n"
       "  yuragi run &                                    the daemon, with its own wind\n"

@@ -14,8 +14,12 @@ constexpr double kGlide_s = 0.08;     // the time constant with which it follows
 constexpr double kTurning_deg_s = 2.0;
 constexpr double kMaxTarget_m = 500.0;  // from the origin
 constexpr double kAcrossPitch_deg = 6.0;
-constexpr double kFieldHeights = 5.0;    // so many times as wide as high: something to look across
-constexpr double kAcrossHeights = 1.05;  // of the eye, in heights of what it looks across
+constexpr double kFieldHeights = 5.0;     // so many times as wide as high: something to look across
+constexpr double kAcrossHeights = 1.05;   // of the eye, in heights of what it looks across
+constexpr double kFromCorner_deg = 32.0;  // how far a broad side is looked at aslant
+constexpr double kAroundPitch_deg = 4.0;
+constexpr double kFlatPitch_deg = 9.0;
+constexpr double kFilled = 0.86;  // of the picture
 
 glm::dvec3 direction(const CameraPlace& place) {
   const double heading = glm::radians(place.heading_deg);
@@ -111,6 +115,35 @@ CameraPlace place_across(const Bounds& bounds) {
   place.distance_m = std::min(0.45 * diagonal_m, 0.75 * eye_height_m / std::sin(glm::radians(kAcrossPitch_deg)));
   const glm::dvec3 corner(high.x - 0.06 * width_m, low.y + eye_height_m, low.z + 0.06 * depth_m);
   place.target_m = corner + direction(place) * place.distance_m;
+  return limited(place);
+}
+
+CameraPlace place_around(const Bounds& bounds, double aspect) {
+  const glm::dvec3 low(bounds.low_m);
+  const glm::dvec3 high(bounds.high_m);
+  const glm::dvec3 size_m = high - low;
+
+  // At the broad side: to the south-south-west, or to the west-south-west.
+  CameraPlace place;
+  place.heading_deg = size_m.x >= size_m.z ? 180.0 + kFromCorner_deg : 270.0 - kFromCorner_deg;
+  const bool is_flat = size_m.y < 0.2 * std::hypot(size_m.x, size_m.z);
+  place.pitch_deg = is_flat ? kFlatPitch_deg : kAroundPitch_deg;
+  place.target_m = (low + high) / 2.0;
+
+  // As far away as the corner that needs it most.
+  const glm::dvec3 forward = direction(place);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double tan_up = kFilled * std::tan(glm::radians(OrbitCamera::kFieldOfView_deg) / 2.0);
+  double distance_m = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 sign((corner & 1) * 2 - 1, (corner & 2) - 1, (corner & 4) / 2 - 1);
+    const glm::dvec3 from_middle = sign * size_m / 2.0;
+    const double across = std::abs(glm::dot(from_middle, right)) / (tan_up * aspect);
+    const double upright = std::abs(glm::dot(from_middle, up)) / tan_up;
+    distance_m = std::max(distance_m, std::max(across, upright) - glm::dot(from_middle, forward));
+  }
+  place.distance_m = distance_m;
   return limited(place);
 }
 

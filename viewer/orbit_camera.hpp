@@ -3,13 +3,9 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-namespace yuragi {
+#include "viewer/bounds.hpp"
 
-/// A box around something, in metres.
-struct Bounds {
-  glm::vec3 low_m{0.0F};
-  glm::vec3 high_m{0.0F};
-};
+namespace yuragi {
 
 /// Where a camera looks from: it turns around a target and never rolls.
 struct CameraPlace {
@@ -63,5 +59,9 @@ class OrbitCamera {
 /// A low, inviting place from which to look at what stands in `bounds`, toward the evening sun's side: across a field
 /// from just inside its edge, and at something small from outside.
 CameraPlace place_across(const Bounds& bounds);
+
+/// A place outside of `bounds` from where all of it is in a picture of width / height `aspect`: at its broad side, a
+/// little from the corner, toward the evening sun's side.
+CameraPlace place_around(const Bounds& bounds, double aspect);
 
 }  // namespace yuragi

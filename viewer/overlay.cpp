@@ -19,6 +19,7 @@ constexpr ImU32 kInk = IM_COL32(250, 248, 240, 255);
 constexpr ImU32 kFaint = IM_COL32(250, 248, 240, 110);
 constexpr ImU32 kArrow = IM_COL32(255, 214, 120, 255);
 const ImVec4 kQuiet(0.98F, 0.97F, 0.94F, 0.66F);
+const ImVec4 kDim(0.98F, 0.97F, 0.94F, 0.36F);
 const ImVec4 kGood(0.62F, 0.90F, 0.52F, 1.0F);
 const ImVec4 kWarn(1.0F, 0.78F, 0.36F, 1.0F);
 
@@ -159,6 +160,21 @@ void write_stream(const OverlayFacts& facts) {
   write(kQuiet, fmt::format("{} nodes, {:.0f} pictures/s", facts.nodes, facts.pictures_per_s));
 }
 
+/// The scenes that are there, and how far the others have faded.
+void write_scenes(const OverlayFacts& facts) {
+  for (std::size_t i = 0; i < std::min(facts.scenes.size(), facts.opacities.size()); ++i) {
+    const float opacity = facts.opacities[i];
+    std::string text = facts.scenes[i].name;
+    if (facts.scenes[i].kind != text) text += " (" + facts.scenes[i].kind + ")";
+    if (opacity <= 0.0F) {
+      text += ", hidden";
+    } else if (opacity < 1.0F) {
+      text += fmt::format(", {:.0f} %", 100.0F * opacity);
+    }
+    write(opacity > 0.0F ? kQuiet : kDim, text);
+  }
+}
+
 }  // namespace
 
 Overlay::Overlay(GLFWwindow* window, double content_scale) {
@@ -199,6 +215,7 @@ void Overlay::draw(const OverlayFacts& facts) {
   if (facts.sensors != nullptr) {
     for (const wire::SensorStatus& sensor : facts.sensors->sensors) write_sensor(sensor);
   }
+  write_scenes(facts);
   write_stream(facts);
   ImGui::End();
 

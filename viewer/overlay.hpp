@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "viewer/pose_timeline.hpp"
 #include "viewer/stream_connection.hpp"
@@ -17,7 +18,9 @@ struct OverlayFacts {
   const wire::Sensors* sensors = nullptr;  ///< null: not heard yet
   double pictures_per_s = 0.0;
   std::size_t nodes = 0;
-  double heading_deg = 0.0;  ///< of the camera: up on the compass
+  std::span<const wire::SceneModel> scenes;
+  std::span<const float> opacities;  ///< one a scene
+  double heading_deg = 0.0;          ///< of the camera: up on the compass
 };
 
 /// Small texts over the picture: wind, sensors, stream. Takes no clicks. One at a time; its window's context is

@@ -21,6 +21,7 @@ void PoseHistory::push(PoseMoment& moment) {
   place.time_s = moment.time_s;
   place.wind = moment.wind;
   std::swap(place.poses, moment.poses);
+  std::swap(place.opacities, moment.opacities);
 }
 
 void PoseHistory::sample(double time_s, PoseMoment& out) const {

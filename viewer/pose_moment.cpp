@@ -9,6 +9,7 @@ namespace yuragi {
 PoseMoment rest_moment(std::span<const wire::SceneModel> scenes) {
   PoseMoment rest;
   for (const wire::SceneModel& scene : scenes) rest.poses.push_back(rest_pose(scene.skeleton));
+  rest.opacities.assign(scenes.size(), 1.0F);
   return rest;
 }
 
@@ -40,6 +41,9 @@ void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& 
         mixed[array][i] = from[array][i] + share * (to[array][i] - from[array][i]);
       }
     }
+  }
+  for (std::size_t scene = 0; scene < out.opacities.size(); ++scene) {
+    out.opacities[scene] = a.opacities[scene] + share * (b.opacities[scene] - a.opacities[scene]);
   }
   out.time_s = std::lerp(a.time_s, b.time_s, weight);
   out.wind.wind = a.wind.wind + weight * (b.wind.wind - a.wind.wind);

@@ -12,9 +12,10 @@ struct PoseMoment {
   double time_s = 0.0;  ///< on the sender's time line
   WindState wind;       ///< its `time` is not used
   std::vector<Pose> poses;
+  std::vector<float> opacities;  ///< one a scene, 0 (not there) to 1
 };
 
-/// The rest pose of each skeleton, in still air.
+/// The rest pose of each skeleton, in still air; all are there.
 PoseMoment rest_moment(std::span<const wire::SceneModel> scenes);
 
 /// Have both the same scenes, of the same kinds and sizes?
@@ -23,9 +24,9 @@ bool has_same_layout(std::span<const Pose> a, std::span<const Pose> b);
 /// How many bytes of values the poses hold.
 std::size_t value_bytes(std::span<const Pose> poses);
 
-/// Makes `out` the moment at `weight` (0: a, 1: b) of the way from `a` to `b`. Bends and wind are blended as vectors,
-/// so that a direction passes through north on its way from 350 to 10 degrees, and never through south. All three have
-/// the same layout; `out` may be one of the others. Does not allocate.
+/// Makes `out` the moment at `weight` (0: a, 1: b) of the way from `a` to `b`. Poses, opacities and wind are blended as
+/// vectors, so that a direction passes through north on its way from 350 to 10 degrees, and never through south. All
+/// three have the same layout; `out` may be one of the others. Does not allocate.
 void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& out);
 
 }  // namespace yuragi

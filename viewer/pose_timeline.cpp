@@ -16,7 +16,9 @@ void PoseTimeline::set_scenes(std::span<const wire::SceneModel> scenes) {
 }
 
 bool PoseTimeline::accept(wire::Frame& frame, double local_s) {
-  if (shown_.poses.empty() || !has_same_layout(frame.poses, shown_.poses)) return false;
+  if (shown_.poses.empty() || frame.opacities.size() != frame.poses.size()) return false;
+  stand_in_for_hidden(frame);
+  if (!has_same_layout(frame.poses, shown_.poses)) return false;
   if (!std::isfinite(frame.info.time_s)) return false;
 
   // A stream that comes back, or starts anew, gets a track of its own, and the picture passes over to it. While it is
@@ -31,9 +33,18 @@ bool PoseTimeline::accept(wire::Frame& frame, double local_s) {
   incoming_.time_s = frame.info.time_s;
   incoming_.wind = frame.info.wind;
   std::swap(incoming_.poses, frame.poses);
+  std::swap(incoming_.opacities, frame.opacities);
   current().push(incoming_, local_s);
   std::swap(incoming_.poses, frame.poses);
+  std::swap(incoming_.opacities, frame.opacities);
   return true;
+}
+
+void PoseTimeline::stand_in_for_hidden(wire::Frame& frame) const {
+  for (std::size_t scene = 0; scene < std::min(frame.poses.size(), shown_.poses.size()); ++scene) {
+    const bool is_left_out = frame.opacities[scene] <= 0.0F && value_bytes({&frame.poses[scene], 1}) == 0;
+    if (is_left_out) frame.poses[scene] = shown_.poses[scene];
+  }
 }
 
 const PoseMoment& PoseTimeline::advance(double local_s) {

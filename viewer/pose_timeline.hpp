@@ -19,7 +19,8 @@ enum class Playback : std::uint8_t {
 ///
 /// Pure: time is a parameter, in seconds of any steady clock, and may not go back. Between two calls of advance() that
 /// are dt apart the shown moment moves by at most PoseTrack::kMaxPlayRate dt along a run of the stream; passing over
-/// from one run to another takes kFade_s. Thread-safe: no. After it has filled once nothing is allocated.
+/// from one run to another takes kFade_s. Thread-safe: no. After it has filled once nothing is allocated,
+/// but for what a frame leaves out.
 class PoseTimeline {
  public:
   static constexpr double kFade_s = 1.0;
@@ -29,7 +30,8 @@ class PoseTimeline {
   /// the picture goes on; otherwise it starts anew from the rest pose.
   void set_scenes(std::span<const wire::SceneModel> scenes);
 
-  /// Takes a frame that arrived at local_s; changes its buffers for old ones. False where it is not of these scenes.
+  /// Takes a frame that arrived at local_s; changes its buffers for old ones. False where it is not of these scenes. A
+  /// scene of opacity 0 may come without its pose: the one last shown stands in for it.
   bool accept(wire::Frame& frame, double local_s);
 
   /// Goes on to local_s. The moment to show is valid until the next call.
@@ -40,6 +42,7 @@ class PoseTimeline {
   double delay_s() const { return current().delay_s(); }
 
  private:
+  void stand_in_for_hidden(wire::Frame& frame) const;
   PoseTrack& current() { return tracks_[current_]; }
   const PoseTrack& current() const { return tracks_[current_]; }
   bool is_fading() const { return fade_ < 1.0; }

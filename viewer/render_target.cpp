@@ -31,7 +31,7 @@ RenderTarget::RenderTarget(int width_px, int height_px, int samples)
     : width_px_(width_px), height_px_(height_px), samples_(supported_samples(samples)) {
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
   attach(GL_COLOR_ATTACHMENT0, sampled_color_, GL_RGBA8, samples_, width_px, height_px);
-  attach(GL_DEPTH_ATTACHMENT, sampled_depth_, GL_DEPTH_COMPONENT24, samples_, width_px, height_px);
+  attach(GL_DEPTH_STENCIL_ATTACHMENT, sampled_depth_, GL_DEPTH24_STENCIL8, samples_, width_px, height_px);
   require_complete();
   glBindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
   attach(GL_COLOR_ATTACHMENT0, resolved_color_, GL_RGBA8, 1, width_px, height_px);

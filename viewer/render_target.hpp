@@ -7,7 +7,8 @@
 
 namespace yuragi {
 
-/// A picture to draw into that needs no visible window: several samples a pixel, resolved into one.
+/// A picture to draw into that needs no visible window: several samples a pixel, resolved into one;
+/// with depth and stencil.
 /// Needs a current context. Throws std::runtime_error where the driver cannot make it.
 class RenderTarget {
  public:

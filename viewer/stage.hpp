@@ -1,12 +1,14 @@
 #pragma once
 
-#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "viewer/grass_look.hpp"
 #include "viewer/landscape.hpp"
+#include "viewer/look.hpp"
 #include "viewer/pose_moment.hpp"
 #include "viewer/render_target.hpp"
+#include "viewer/screen_door.hpp"
 #include "viewer/view.hpp"
 
 namespace yuragi {
@@ -17,9 +19,16 @@ class Stage {
  public:
   /// Takes the scenes; draws nothing of those before.
   void set_scenes(std::vector<wire::SceneModel> scenes);
+  const std::vector<wire::SceneModel>& scenes() const { return scenes_; }
 
-  /// Around all scenes.
-  const Bounds& bounds() const { return bounds_; }
+  /// Draws only the scene of this name; all where there is no name.
+  void show_only(std::optional<std::string> name) { only_ = std::move(name); }
+  /// Draws only the first scene, then only the next, and after the last all again.
+  void show_next();
+
+  /// Around all scenes that are drawn, and from where to look at them in a picture of width / height `aspect`.
+  Bounds bounds() const;
+  CameraPlace home(double aspect) const;
   /// How many joints move.
   std::size_t node_count() const;
 
@@ -27,10 +36,15 @@ class Stage {
   void draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarget& target);
 
  private:
+  bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene].name == *only_; }
+  Bounds field(const PoseMoment& moment) const;
+
   std::vector<wire::SceneModel> scenes_;
-  std::vector<std::unique_ptr<GrassLook>> looks_;  // one a scene
-  Bounds bounds_;
+  std::vector<std::unique_ptr<Look>> looks_;  // one a scene
+  std::vector<Bounds> bounds_;                // one a scene
+  std::optional<std::string> only_;
   Landscape landscape_;
+  ScreenDoor door_;
   ViewBuffer view_buffer_;
 };
 

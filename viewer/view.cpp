@@ -36,6 +36,15 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bound
   return view;
 }
 
+View laid_flat(const View& view) {
+  // Each place goes down along the ray until its height is 0.
+  glm::mat4 flatten(1.0F);
+  flatten[1] = {-view.to_sun.x / view.to_sun.y, 0.0F, -view.to_sun.z / view.to_sun.y, 0.0F};
+  View flat = view;
+  flat.to_clip = view.to_clip * flatten;
+  return flat;
+}
+
 void ViewBuffer::set(const View& view) {
   stream_to(GL_UNIFORM_BUFFER, buffer_, std::span(&view, 1));
   glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, buffer_.name());

@@ -23,6 +23,9 @@ struct View {
 /// For a picture of so many pixels. The sun stands in the evening's south-west.
 View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field);
 
+/// The same view of everything laid along the sun's rays onto the ground: of shadows.
+View laid_flat(const View& view);
+
 /// The View on the GPU.
 class ViewBuffer {
  public:

@@ -52,6 +52,7 @@ class Viewer::Show {
     const bool is_slow = is_software_renderer() && options.screenshot.empty();
     samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
     stage_.emplace();
+    if (!options.scene.empty()) stage_->show_only(options.scene);
     overlay_.emplace(window_.handle(), window_.content_scale());
     camera_.set_turning(options.is_turning);
     frame_camera();
@@ -104,8 +105,19 @@ class Viewer::Show {
                                          "HOST:PORT, or wait longer with --wait SECONDS.");
   }
 
+  void require_scene() const {
+    if (options_.scene.empty()) return;
+    std::string names;
+    for (const wire::SceneModel& scene : stage_->scenes()) {
+      if (scene.name == options_.scene) return;
+      names += names.empty() ? scene.name : ", " + scene.name;
+    }
+    throw ViewerExit(EX_USAGE,
+                     "--scene: " + options_.connect + " has no scene '" + options_.scene + "'; it has: " + names);
+  }
+
   void frame_camera() {
-    CameraPlace place = place_across(stage_->bounds());
+    CameraPlace place = stage_->home(static_cast<double>(options_.width_px) / options_.height_px);
     if (options_.camera.size() == 3) {
       place.heading_deg = options_.camera[0];
       place.pitch_deg = options_.camera[1];
@@ -120,6 +132,10 @@ class Viewer::Show {
     camera_.pan(input.pan_right, input.pan_down);
     camera_.zoom(input.zoom_notches);
     if (input.reset_camera) camera_.reset();
+    if (input.next_scene) {
+      stage_->show_next();
+      frame_camera();
+    }
     if (input.toggle_turning) camera_.set_turning(!camera_.is_turning());
     if (input.toggle_overlay) has_overlay_ = !has_overlay_;
   }
@@ -130,7 +146,10 @@ class Viewer::Show {
     if (inbox.scenes) {
       timeline_.set_scenes(inbox.scenes->scenes);
       stage_->set_scenes(std::move(inbox.scenes->scenes));
-      if (!has_framed_) frame_camera();
+      if (!has_framed_) {
+        require_scene();
+        frame_camera();
+      }
       has_framed_ = true;
     }
     for (TimedFrame& timed : inbox.frames) timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
@@ -156,6 +175,8 @@ class Viewer::Show {
                     .sensors = sensors_ ? &*sensors_ : nullptr,
                     .pictures_per_s = 1.0 / picture_s_,
                     .nodes = stage_->node_count(),
+                    .scenes = stage_->scenes(),
+                    .opacities = moment_->opacities,
                     .heading_deg = camera_.place().heading_deg});
   }
 

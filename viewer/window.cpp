@@ -78,6 +78,9 @@ struct Window::State {
       case GLFW_KEY_H:
         input.toggle_overlay = !input.toggle_overlay;
         break;
+      case GLFW_KEY_N:
+        input.next_scene = true;
+        break;
       case GLFW_KEY_R:
         input.reset_camera = true;
         break;

@@ -26,6 +26,7 @@ struct WindowInput {
   bool reset_camera = false;    ///< R
   bool toggle_overlay = false;  ///< H
   bool toggle_turning = false;  ///< T
+  bool next_scene = false;      ///< N
 };
 
 struct PixelSize {

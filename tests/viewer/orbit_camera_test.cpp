@@ -1,5 +1,6 @@
 #include "viewer/orbit_camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -132,6 +133,33 @@ TEST(PlaceAcross, HasTheWholeOfThingsOfAnySizeInFrontOfItFromALowPlace) {
     EXPECT_LT(std::abs(middle.x), middle.w);
     EXPECT_LT(std::abs(middle.y), middle.w);
     EXPECT_LT(middle.z, middle.w);
+  }
+}
+
+TEST(PlaceAround, HasEveryCornerInThePictureAndLooksAtTheBroadSide) {
+  const auto looks_across = [](const OrbitCamera& camera, double along_deg) {
+    return std::abs(std::sin((camera.place().heading_deg - along_deg) * M_PI / 180.0));
+  };
+  for (const glm::vec3 size_m : {glm::vec3(2.4F, 2.3F, 0.1F), glm::vec3(0.1F, 4.0F, 2.0F), glm::vec3(5.0F, 0.1F, 5.0F),
+                                 glm::vec3(9.0F, 12.0F, 9.0F), glm::vec3(30.0F, 5.0F, 12.0F)}) {
+    const glm::vec3 low(3.0F, 0.0F, -7.0F);
+    const Bounds bounds{low, low + size_m};
+    for (const double aspect : {16.0 / 9.0, 1.0, 9.0 / 16.0}) {
+      const OrbitCamera camera = camera_at(place_around(bounds, aspect));
+      EXPECT_GT(camera.eye_m().y, 0.0);
+      EXPECT_GT(looks_across(camera, size_m.x >= size_m.z ? 90.0 : 0.0), 0.7);
+      const glm::mat4 clip = camera.projection(aspect) * camera.view();
+      double widest = 0.0;
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 share(corner & 1, (corner >> 1) & 1, corner >> 2);
+        const glm::vec4 seen = clip * glm::vec4(low + share * size_m, 1.0F);
+        ASSERT_GT(seen.w, 0.0F);
+        const float reach = std::max(std::abs(seen.x), std::abs(seen.y)) / seen.w;
+        EXPECT_LT(reach, 1.0F);
+        widest = std::max(widest, static_cast<double>(reach));
+      }
+      EXPECT_GT(widest, 0.75);  // and not lost in it
+    }
   }
 }
 

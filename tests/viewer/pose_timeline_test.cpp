@@ -41,6 +41,7 @@ class Theatre {
     const auto bend = static_cast<float>(bend_at_(sender_s));
     const std::vector<float> bends(padded_to_blocks(strands_), bend);
     frame.poses.emplace_back(StrandPose{bends, bends});
+    frame.opacities.push_back(1.0F);
     return frame;
   }
 
@@ -292,7 +293,11 @@ TEST(PoseTimeline, RefusesFramesOfOtherScenes) {
   EXPECT_FALSE(theatre.timeline.accept(wrong_size, 100.0));
   wire::Frame wrong_count = theatre.frame(1.0);
   wrong_count.poses.push_back(wrong_count.poses.front());
+  wrong_count.opacities.push_back(1.0F);
   EXPECT_FALSE(theatre.timeline.accept(wrong_count, 100.0));
+  wire::Frame no_opacity = theatre.frame(1.0);
+  no_opacity.opacities.clear();
+  EXPECT_FALSE(theatre.timeline.accept(no_opacity, 100.0));
   wire::Frame no_time = theatre.frame(std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(theatre.timeline.accept(no_time, 100.0));
   PoseTimeline without_scenes;

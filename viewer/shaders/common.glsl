@@ -35,3 +35,24 @@ vec3 finish(vec3 light) {
   vec3 x = light * 0.62;
   return sqrt(clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0));
 }
+
+// What stands at a place and gives off such light, as it is seen: through the air, on a screen.
+vec3 seen(vec3 light, vec3 place_m) {
+  vec3 ray = place_m - eye_m.xyz;
+  float distance_m = length(ray);
+  return finish(mix(light, air_light(normalize(vec3(ray.x, 0.02 * distance_m, ray.z))), haze(distance_m)));
+}
+
+// The light of the sky, and what turf throws back of it, on something that faces so.
+vec3 soft_light(vec3 normal) {
+  return kSkyLight * (0.60 + 0.40 * normal.y) + vec3(0.16, 0.15, 0.05) * (0.5 - 0.5 * normal.y);
+}
+
+// Joints of strands, straight from the forward kinematics, in blocks of 16 strands.
+uniform samplerBuffer joints;  // first + ((strand / 16 * links + link) * 3 + axis) * 16 + strand % 16
+uniform int links;
+
+vec3 joint_at(int at) { return vec3(texelFetch(joints, at).r, texelFetch(joints, at + 16).r, texelFetch(joints, at + 32).r); }
+vec3 joint(int first, uint strand, int link) {
+  return joint_at(first + ((int(strand) >> 4) * links + link) * 48 + (int(strand) & 15));
+}

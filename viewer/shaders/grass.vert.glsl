@@ -1,7 +1,4 @@
-// A blade: a ribbon along a strand's joints, two vertices a joint, with its light. The joints come straight from the forward
-// kinematics, in blocks of 16 strands.
-uniform samplerBuffer joints;  // ((strand / 16 * links + link) * 3 + axis) * 16 + strand % 16
-uniform int links;
+// A blade: a ribbon along a strand's joints, two vertices a joint, with its light.
 uniform int rings;             // of vertices above the root: at most links; fewer where the blade is far away
 
 layout(location = 0) in vec4 root_width;    // metres
@@ -10,19 +7,14 @@ layout(location = 2) in uint strand;
 
 out vec3 shade;  // as the screen shows it: so small are blades that a vertex's is exact enough
 
-vec3 joint(int link) {
-  int at = ((int(strand) >> 4) * links + link) * 48 + (int(strand) & 15);
-  return vec3(texelFetch(joints, at).r, texelFetch(joints, at + 16).r, texelFetch(joints, at + 32).r);
-}
-
 void main() {
   // This ring's joint, and the one below (for the root, the one above).
   int ring = gl_VertexID >> 1;
   float side = float(gl_VertexID & 1) * 2.0 - 1.0;
   int link = ring * links / rings;
   int link_below = (ring - 1) * links / rings;
-  vec3 place = ring > 0 ? joint(link - 1) : root_width.xyz;
-  vec3 along = ring > 1 ? place - joint(link_below - 1) : (ring > 0 ? place : joint(links / rings - 1)) - root_width.xyz;
+  vec3 place = ring > 0 ? joint(0, strand, link - 1) : root_width.xyz;
+  vec3 along = ring > 1 ? place - joint(0, strand, link_below - 1) : (ring > 0 ? place : joint(0, strand, links / rings - 1)) - root_width.xyz;
   along = normalize(along);
   float t = float(ring) / float(rings);
 
@@ -62,6 +54,5 @@ void main() {
   sheen *= sheen;
   sum += kSunLight * vec3(0.075, 0.078, 0.060) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
 
-  vec3 air = air_light(normalize(vec3(-to_eye.x, 0.02, -to_eye.z)));
-  shade = finish(mix(sum, air, haze(distance_m)));
+  shade = seen(sum, place);
 }

@@ -1,0 +1,240 @@
+#include "tests/viewer/test_models.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "engine/base/units.hpp"
+#include "engine/math/philox.hpp"
+#include "engine/pose/pose_arrays.hpp"
+#include "tests/viewer/test_meadow.hpp"
+
+namespace yuragi {
+namespace {
+
+using Point = std::array<double, 3>;
+
+GridSkeleton cloth_of(std::size_t columns, std::size_t rows, bool is_pole_fixed, TestPlace place,
+                      const std::function<Point(double, double)>& at) {
+  GridSkeleton cloth;
+  cloth.columns = columns;
+  cloth.rows = rows;
+  cloth.is_first_column_fixed = is_pole_fixed;
+  const std::size_t size = rows * cloth.stride();
+  cloth.rest_x_m.resize(size);
+  cloth.rest_y_m.resize(size);
+  cloth.rest_z_m.resize(size);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Point p = at(static_cast<double>(column) / static_cast<double>(columns - 1),
+                         static_cast<double>(row) / static_cast<double>(rows - 1));
+      const std::size_t i = row * cloth.stride() + column;
+      cloth.rest_x_m[i] = static_cast<float>(p[0] + place.east_m);
+      cloth.rest_y_m[i] = static_cast<float>(p[1]);
+      cloth.rest_z_m[i] = static_cast<float>(p[2] + place.south_m);
+    }
+  }
+  return cloth;
+}
+
+/// Gathered folds, as deep at the hem as they are many at the rod.
+GridSkeleton curtain(TestPlace place) {
+  return cloth_of(120, 90, false, place, [](double across, double down) {
+    return Point{
+        2.4 * (across - 0.5), 2.5 - 2.3 * down,
+        0.055 * std::sin(2 * kPi * 14 * across) * (0.45 + 0.55 * down) + 0.02 * std::sin(2 * kPi * 5 * across + 1.0)};
+  });
+}
+GridSkeleton flag(TestPlace place) {
+  return cloth_of(70, 110, false, place, [](double down, double out) {
+    return Point{1.8 * out, 4.0 - 1.2 * down, 0.0};
+  });
+}
+GridSkeleton banner(TestPlace place) {
+  return cloth_of(40, 150, true, place, [](double across, double down) {
+    return Point{0.7 * across, 4.6 - 3.6 * down, 0.0};
+  });
+}
+
+SurfaceSkeleton surface_of(std::size_t columns, std::size_t rows, TestPlace place,
+                           const std::function<std::array<Point, 2>(double, double)>& at) {
+  SurfaceSkeleton surface;
+  surface.columns = columns;
+  surface.rows = rows;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const auto [p, n] = at(static_cast<double>(column), static_cast<double>(row) / static_cast<double>(rows - 1));
+      surface.rest_x_m.push_back(static_cast<float>(p[0] + place.east_m));
+      surface.rest_y_m.push_back(static_cast<float>(p[1]));
+      surface.rest_z_m.push_back(static_cast<float>(p[2] + place.south_m));
+      surface.normal_x.push_back(static_cast<float>(n[0]));
+      surface.normal_y.push_back(static_cast<float>(n[1]));
+      surface.normal_z.push_back(static_cast<float>(n[2]));
+    }
+  }
+  return surface;
+}
+
+SurfaceSkeleton water(TestPlace place) {
+  constexpr std::size_t kColumns = 120;
+  return surface_of(kColumns, 120, place, [](double column, double down) {
+    return std::array{Point{5.0 * (column / (kColumns - 1) - 0.5), 0.0, 5.0 * (down - 0.5)}, Point{0.0, 1.0, 0.0}};
+  });
+}
+
+/// Black and clear, red, orange, yellow, white.
+std::vector<std::uint8_t> fire_ramp() {
+  std::vector<std::uint8_t> ramp;
+  for (int i = 0; i < 256; ++i) {
+    const double heat = i / 255.0;
+    for (const double value : {heat / 0.35, (heat - 0.25) / 0.5, (heat - 0.7) / 0.3, (heat - 0.05) / 0.3}) {
+      ramp.push_back(static_cast<std::uint8_t>(255.0 * std::clamp(value, 0.0, 1.0)));
+    }
+  }
+  return ramp;
+}
+
+SurfaceSkeleton flame_body(TestPlace place) {
+  constexpr std::size_t kColumns = 48;
+  SurfaceSkeleton flame = surface_of(kColumns, 64, place, [](double column, double up) {
+    const double angle = 2 * kPi * column / kColumns;
+    const double radius_m = 0.22 * std::sqrt(std::max(0.0, 1.0 - up)) * (0.75 + 0.9 * up);
+    return std::array{Point{radius_m * std::cos(angle), 0.5 + 1.2 * up, radius_m * std::sin(angle)},
+                      Point{std::cos(angle), 0.0, std::sin(angle)}};
+  });
+  flame.is_closed = true;
+  flame.ramp_rgba = fire_ramp();
+  return flame;
+}
+SurfaceSkeleton flame_panel(TestPlace place) {
+  constexpr std::size_t kColumns = 64;
+  SurfaceSkeleton flame = surface_of(kColumns, 96, place, [](double column, double up) {
+    return std::array{Point{0.9 * (column / (kColumns - 1) - 0.5), 0.5 + 1.35 * up, 0.0}, Point{0.0, 0.0, 1.0}};
+  });
+  flame.ramp_rgba = fire_ramp();
+  return flame;
+}
+
+/// Hairs on a lying egg, combed to the east and down.
+StrandSkeleton fur(TestPlace place) {
+  constexpr std::size_t kHairs = 12'000;
+  constexpr std::size_t kLinks = 8;
+  StrandSkeleton coat;
+  coat.strand_count = kHairs;
+  coat.links_per_strand = kLinks;
+  const RandomStream chance(2, stream_id("test fur"));
+  const Point radius_m{0.62, 0.40, 0.40};
+  for (std::size_t i = 0; i < coat.padded_count(); ++i) {
+    const auto [jitter, longer] = chance.uniform_pair(i);
+    const double height = 1.0 - 1.75 * (static_cast<double>(i) + 0.5) / kHairs;
+    const double around = static_cast<double>(i) * 2.399963 + 0.02 * jitter;
+    const double ring = std::sqrt(std::max(0.0, 1.0 - height * height));
+    const Point unit{ring * std::cos(around), height, ring * std::sin(around)};
+    Point out{unit[0] / radius_m[0], unit[1] / radius_m[1], unit[2] / radius_m[2]};
+    const double out_length = std::hypot(out[0], out[1], out[2]);
+    Point rest{out[0] / out_length + 1.0, out[1] / out_length - 0.25, out[2] / out_length};
+    const double rest_length = std::hypot(rest[0], rest[1], rest[2]);
+    for (double& axis : rest) axis /= rest_length;
+    const double level = std::hypot(rest[0], rest[2]);
+    coat.root_x_m.push_back(static_cast<float>(radius_m[0] * unit[0] + place.east_m));
+    coat.root_y_m.push_back(static_cast<float>(0.36 + radius_m[1] * unit[1]));
+    coat.root_z_m.push_back(static_cast<float>(radius_m[2] * unit[2] + place.south_m));
+    coat.rest_x.push_back(static_cast<float>(rest[0]));
+    coat.rest_y.push_back(static_cast<float>(rest[1]));
+    coat.rest_z.push_back(static_cast<float>(rest[2]));
+    coat.curl_x.push_back(static_cast<float>(rest[0] * rest[1] / level));
+    coat.curl_y.push_back(static_cast<float>(-level));
+    coat.curl_z.push_back(static_cast<float>(rest[2] * rest[1] / level));
+    coat.rest_curl_rad.push_back(0.06F);
+    coat.link_length_m.push_back(static_cast<float>((0.055 + 0.045 * longer) / kLinks));
+  }
+  return coat;
+}
+
+Skeleton skeleton_of(std::string_view kind, TestPlace place) {
+  if (kind == "grass") {
+    Skeleton meadow = test_meadow(60, 6.0);
+    auto& strands = std::get<StrandSkeleton>(meadow);
+    for (float& x_m : strands.root_x_m) x_m += static_cast<float>(place.east_m);
+    for (float& z_m : strands.root_z_m) z_m += static_cast<float>(place.south_m);
+    return meadow;
+  }
+  if (kind == "fur") return fur(place);
+  if (kind == "curtain") return curtain(place);
+  if (kind == "flag") return flag(place);
+  if (kind == "banner") return banner(place);
+  if (kind == "ripple") return water(place);
+  return kind == "flame" ? flame_body(place) : flame_panel(place);
+}
+
+/// A wave runs from the fixed edge to the free one, and grows; the joints go with their links.
+GridPose wave(const GridSkeleton& cloth, double time_s, double strength) {
+  GridPose pose = std::get<GridPose>(rest_pose(cloth));
+  const bool is_flag = cloth.rest_y_m[cloth.columns - 1] < cloth.rest_y_m[0];
+  for (std::size_t row = 1; row < cloth.rows; ++row) {
+    const double share = static_cast<double>(row) / static_cast<double>(cloth.rows - 1);
+    for (std::size_t column = cloth.is_first_column_fixed ? 1 : 0; column < cloth.columns; ++column) {
+      const double across = static_cast<double>(column) / static_cast<double>(cloth.columns - 1);
+      const double pinned = cloth.is_first_column_fixed ? across : 1.0;
+      const double phase = (is_flag ? 13.0 : 5.0) * share - 7.0 * time_s + 1.8 * across;
+      const double swing = (is_flag ? 0.22 : 0.34) * strength * share * std::sin(phase) * pinned;
+      const double lean = (is_flag || cloth.is_first_column_fixed ? 0.0 : 0.75) * strength * share * share;
+      const std::size_t i = row * cloth.stride() + column;
+      pose.offset_z_m[i] = static_cast<float>(swing + lean);
+      pose.offset_y_m[i] = static_cast<float>(0.3 * lean * lean * 1.6 - (is_flag ? 0.12 * strength * share : 0.0));
+      pose.offset_x_m[i] = static_cast<float>(is_flag ? -0.16 * strength * share : 0.12 * swing);
+    }
+  }
+  return pose;
+}
+
+SurfacePose waves(const SurfaceSkeleton& surface, double time_s, double strength) {
+  SurfacePose pose = std::get<SurfacePose>(rest_pose(surface));
+  for (std::size_t i = 0; i < pose.displacement_m.size(); ++i) {
+    const auto x_m = static_cast<double>(surface.rest_x_m[i]);
+    const auto y_m = static_cast<double>(surface.rest_y_m[i]);
+    const auto z_m = static_cast<double>(surface.rest_z_m[i]);
+    if (surface.ramp_rgba.empty()) {
+      const double sea = std::sin(5.1 * x_m + 1.7 * z_m - 4.0 * time_s) +
+                         0.7 * std::sin(7.3 * x_m - 3.9 * z_m - 5.0 * time_s + 1.0) +
+                         0.4 * std::sin(13.7 * x_m + 6.1 * z_m - 7.0 * time_s) +
+                         0.3 * std::sin(17.3 * x_m - 11.1 * z_m - 8.0 * time_s);
+      pose.displacement_m[i] = static_cast<float>(0.028 * strength * sea);
+      continue;
+    }
+    const double up = (y_m - 0.5) / 1.35;
+    const double lick = std::sin(9.0 * x_m + 7.0 * z_m + 3.0 * std::sin(3.0 * y_m - 3.0 * time_s)) +
+                        0.8 * std::sin(17.0 * x_m - 9.0 * z_m + 5.0 * y_m - 9.0 * time_s) +
+                        0.5 * std::sin(11.0 * y_m - 12.0 * time_s + 4.0 * x_m);
+    const double aside = surface.is_closed ? 0.0 : std::pow(std::abs(x_m) / 0.45, 2.0);
+    pose.heat[i] = static_cast<float>(std::clamp(0.95 - 0.85 * up - 0.8 * aside + 0.16 * lick, 0.0, 1.0));
+    if (surface.is_closed) pose.displacement_m[i] = static_cast<float>(0.035 * lick * (0.3 + up));
+  }
+  return pose;
+}
+
+}  // namespace
+
+wire::SceneModel test_model(std::string_view kind, TestPlace place) {
+  return {std::string(kind), kind == "flame panel" ? "flame" : std::string(kind), skeleton_of(kind, place)};
+}
+
+Pose test_pose(const wire::SceneModel& model, double time_s, double strength) {
+  if (std::holds_alternative<StrandSkeleton>(model.skeleton)) {
+    return test_pose(model.skeleton, time_s, 0.5 * strength, 0.7 * strength, 90.0);
+  }
+  if (const auto* const cloth = std::get_if<GridSkeleton>(&model.skeleton)) return wave(*cloth, time_s, strength);
+  if (const auto* const surface = std::get_if<SurfaceSkeleton>(&model.skeleton)) {
+    return waves(*surface, time_s, strength);
+  }
+  return rest_pose(model.skeleton);
+}
+
+std::vector<wire::SceneModel> test_garden() {
+  return {test_model("grass", {-7.0, 1.0}), test_model("fur", {-2.4, 3.0}),   test_model("curtain", {0.5, 0.0}),
+          test_model("flag", {4.2, -1.0}),  test_model("banner", {7.4, 0.5}), test_model("ripple", {3.5, 4.5}),
+          test_model("flame", {-2.2, -0.5})};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,95 @@
+#include "viewer/bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace yuragi {
+namespace {
+
+constexpr float kSwingPerLength = 0.45F;  // how far a hanging cloth swings out
+constexpr float kFlyPerLength = 0.9F;     // how far a flag reaches, in whatever direction it flies
+constexpr float kWaveRoom_m = 0.05F;      // above and below a surface
+
+glm::vec3 joint_at_rest(const GridSkeleton& cloth, std::size_t column, std::size_t row) {
+  const std::size_t i = row * cloth.stride() + column;
+  return {cloth.rest_x_m[i], cloth.rest_y_m[i], cloth.rest_z_m[i]};
+}
+
+Bounds widened(const Bounds& bounds, const glm::vec3& by_m) {
+  return {bounds.low_m - by_m, bounds.high_m + by_m};
+}
+
+}  // namespace
+
+Bounds united(const Bounds& a, const Bounds& b) {
+  return {glm::min(a.low_m, b.low_m), glm::max(a.high_m, b.high_m)};
+}
+
+Bounds bounds_of(const StrandSkeleton& strands) {
+  if (strands.strand_count == 0) return {};
+  Bounds bounds{glm::vec3(1e9F), glm::vec3(-1e9F)};
+  for (std::size_t i = 0; i < strands.strand_count; ++i) {
+    const glm::vec3 root(strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]);
+    const float length_m = strands.link_length_m[i] * static_cast<float>(strands.links_per_strand);
+    bounds = united(bounds, {root, root + glm::vec3(0.0F, length_m, 0.0F)});
+  }
+  return bounds;
+}
+
+Bounds bounds_of(const GridSkeleton& cloth) {
+  if (cloth.columns == 0 || cloth.rows == 0) return {};
+  Bounds fixed{joint_at_rest(cloth, 0, 0), joint_at_rest(cloth, 0, 0)};
+  Bounds whole = fixed;
+  float length_m = 0.0F;
+  for (std::size_t row = 0; row < cloth.rows; ++row) {
+    for (std::size_t column = 0; column < cloth.columns; ++column) {
+      const glm::vec3 joint = joint_at_rest(cloth, column, row);
+      whole = united(whole, {joint, joint});
+      if (row == 0) fixed = united(fixed, {joint, joint});
+    }
+    if (row > 0) length_m += glm::distance(joint_at_rest(cloth, 0, row), joint_at_rest(cloth, 0, row - 1));
+  }
+
+  // A hoist stands upright, and its flag flies to any side; what hangs from above swings out.
+  const glm::vec3 edge_m = fixed.high_m - fixed.low_m;
+  const bool is_hoisted = edge_m.y > std::max(edge_m.x, edge_m.z);
+  const float reach_m = (is_hoisted ? kFlyPerLength : kSwingPerLength) * length_m;
+  if (is_hoisted) return united(whole, widened(fixed, {reach_m, 0.0F, reach_m}));
+  const float room_m = cloth.is_first_column_fixed ? 0.5F * reach_m : reach_m;
+  return widened(whole, {0.3F * room_m, 0.0F, 0.3F * room_m});
+}
+
+Bounds bounds_of(const TreeSkeleton& tree) {
+  Bounds bounds{glm::vec3(1e9F), glm::vec3(-1e9F)};
+  bool is_empty = true;
+  for (const TreeLevel& level : tree.levels) {
+    for (std::size_t i = 0; i < level.strands.strand_count; ++i) {
+      const StrandSkeleton& s = level.strands;
+      const glm::vec3 root(s.root_x_m[i], s.root_y_m[i], s.root_z_m[i]);
+      const glm::vec3 rest(s.rest_x[i], s.rest_y[i], s.rest_z[i]);
+      const glm::vec3 tip = root + rest * (s.link_length_m[i] * static_cast<float>(s.links_per_strand));
+      bounds = united(bounds, {glm::min(root, tip), glm::max(root, tip)});
+      is_empty = false;
+    }
+  }
+  return is_empty ? Bounds{} : bounds;
+}
+
+Bounds bounds_of(const SurfaceSkeleton& surface) {
+  if (surface.rest_x_m.empty()) return {};
+  const auto range = [](std::span<const float> values) { return std::minmax_element(values.begin(), values.end()); };
+  const auto [low_x, high_x] = range(surface.rest_x_m);
+  const auto [low_y, high_y] = range(surface.rest_y_m);
+  const auto [low_z, high_z] = range(surface.rest_z_m);
+  return widened({{*low_x, *low_y, *low_z}, {*high_x, *high_y, *high_z}}, glm::vec3(kWaveRoom_m));
+}
+
+Bounds bounds_of(const Skeleton& skeleton) {
+  return std::visit([](const auto& kind) { return bounds_of(kind); }, skeleton);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi {
+
+/// A box around something, in metres.
+struct Bounds {
+  glm::vec3 low_m{0.0F};
+  glm::vec3 high_m{0.0F};
+};
+
+/// The box that what grows on a skeleton fills as it sways. No promise: in a storm a cloth may reach out of it.
+Bounds bounds_of(const Skeleton& skeleton);
+Bounds bounds_of(const StrandSkeleton& strands);
+Bounds bounds_of(const GridSkeleton& cloth);
+Bounds bounds_of(const TreeSkeleton& tree);
+Bounds bounds_of(const SurfaceSkeleton& surface);
+
+/// The box around both.
+Bounds united(const Bounds& a, const Bounds& b);
+
+}  // namespace yuragi

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string_view>
+
+#include "engine/pose/point_kinematics.hpp"
+#include "viewer/cloth_measure.hpp"
+#include "viewer/grid_sheet.hpp"
+#include "viewer/look.hpp"
+#include "viewer/solids.hpp"
+
+namespace yuragi {
+
+/// Draws a cloth and what it hangs from: a curtain of linen that light shines through, a flag, a nobori banner.
+class ClothLook : public Look {
+ public:
+  /// `cloth` must outlive this.
+  ClothLook(const GridSkeleton& cloth, std::string_view kind);
+
+  void move_to(const Pose& pose) override;
+  void draw(const View& view) override;
+  bool casts_shadow() const override { return true; }
+
+ private:
+  const GridSkeleton* cloth_;
+  PointPositions points_;
+  GridSheet sheet_;
+  Solids holder_;
+  GlProgram program_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,132 @@
+#include "viewer/flame_look.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+#include "viewer/bounds.hpp"
+#include "viewer/shaders.hpp"
+
+namespace yuragi {
+namespace {
+
+const glm::vec3 kIron(0.030F, 0.027F, 0.025F);
+constexpr std::size_t kRampColors = 256;
+constexpr float kGlowPerHeight = 1.15F;  // the glow's radius
+
+}  // namespace
+
+SolidMesh flame_bowl(const SurfaceSkeleton& surface) {
+  SolidMesh bowl;
+  if (surface.rest_x_m.empty()) return bowl;
+  const Bounds bounds = bounds_of(surface);
+  const glm::vec3 size_m = bounds.high_m - bounds.low_m;
+  const float foot_m = *std::min_element(surface.rest_y_m.begin(), surface.rest_y_m.end());
+
+  // As wide as the lowest tenth.
+  Bounds foot{glm::vec3(1e9F), glm::vec3(-1e9F)};
+  for (std::size_t i = 0; i < surface.rest_x_m.size(); ++i) {
+    const glm::vec3 point(surface.rest_x_m[i], surface.rest_y_m[i], surface.rest_z_m[i]);
+    if (point.y < foot_m + 0.1F * size_m.y) foot = united(foot, {point, point});
+  }
+  const glm::vec3 middle = (foot.low_m + foot.high_m) / 2.0F;
+  if (!surface.is_closed) {
+    // A sheet of flames stands in a trough.
+    const glm::vec3 first(surface.rest_x_m[0], 0.0F, surface.rest_z_m[0]);
+    const std::size_t last = surface.columns - 1;
+    const glm::vec3 end(surface.rest_x_m[last], 0.0F, surface.rest_z_m[last]);
+    const float width_m = glm::distance(first, end);
+    bowl.add_beam(first, end, 0.06F * width_m, foot_m - 0.10F * width_m, foot_m + 0.015F * width_m, kIron);
+    bowl.add_beam(first + 0.2F * (end - first), first + 0.8F * (end - first), 0.045F * width_m, 0.0F,
+                  foot_m - 0.10F * width_m, 1.5F * kIron);
+    return bowl;
+  }
+  const float radius_m = 0.55F * std::max(foot.high_m.x - foot.low_m.x, foot.high_m.z - foot.low_m.z) + 0.03F;
+  const auto at = [&](float y_m) { return glm::vec3(middle.x, y_m, middle.z); };
+  const float rim_m = foot_m + 0.25F * radius_m;
+  const float depth_m = 0.45F * radius_m;
+  bowl.add_tube(at(rim_m - depth_m), at(rim_m - 0.4F * depth_m), 0.45F * radius_m, 0.85F * radius_m, kIron);
+  bowl.add_tube(at(rim_m - 0.4F * depth_m), at(rim_m), 0.85F * radius_m, radius_m, kIron);
+  bowl.add_tube(at(rim_m - 0.1F * depth_m), at(rim_m - depth_m), radius_m * 0.97F, 0.0F, 0.5F * kIron);
+  if (rim_m - depth_m > 0.0F) {
+    bowl.add_tube(at(0.0F), at(rim_m - 0.9F * depth_m), 0.14F * radius_m, 0.12F * radius_m, kIron);
+    bowl.add_tube(at(0.0F), at(0.08F * radius_m), 0.6F * radius_m, 0.14F * radius_m, kIron);
+  }
+  return bowl;
+}
+
+FlameLook::FlameLook(const SurfaceSkeleton& surface)
+    : surface_(&surface),
+      points_(surface),
+      sheet_(layout_of(surface)),
+      bowl_(flame_bowl(surface)),
+      program_(link_program("flame", shaders::kFlameVert, shaders::kFlameFrag)),
+      glow_program_(link_program("glow", shaders::kGlowVert, shaders::kGlowFrag)) {
+  glBindTexture(GL_TEXTURE_2D, ramp_.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kRampColors, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               surface.ramp_rgba.size() == 4 * kRampColors ? surface.ramp_rgba.data() : nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  set_sampler(program_, "ramp", 0);
+  glUniform1i(glGetUniformLocation(program_.name(), "is_closed"), surface.is_closed ? 1 : 0);
+
+  const Bounds bounds = bounds_of(surface);
+  const glm::vec3 middle = (bounds.low_m + bounds.high_m) / 2.0F;
+  const float height_m = bounds.high_m.y - bounds.low_m.y;
+  glUniform2f(glGetUniformLocation(program_.name(), "range_m"), bounds.low_m.y, height_m);
+  glUseProgram(glow_program_.name());
+  glUniform4f(glGetUniformLocation(glow_program_.name(), "ball_m"), middle.x, bounds.low_m.y + 0.35F * height_m,
+              middle.z, kGlowPerHeight * height_m);
+  glow_strength_place_ = glGetUniformLocation(glow_program_.name(), "strength");
+}
+
+void FlameLook::move_to(const Pose& pose) {
+  const auto* const burning = std::get_if<SurfacePose>(&pose);
+  const SurfaceKinematicsJob job{.skeleton = surface_, .pose = burning, .points = &points_};
+  if (job.run() != SurfaceKinematicsJob::Problem::kNone || burning->heat.size() != points_.size()) return;
+  sheet_.move_to(std::as_const(points_).data());
+  sheet_.set_level(burning->heat);
+  strength_ = std::accumulate(burning->heat.begin(), burning->heat.end(), 0.0F) /
+              static_cast<float>(std::max<std::size_t>(1, burning->heat.size()));
+}
+
+void FlameLook::draw(const View&) {
+  bowl_.draw();
+}
+
+void FlameLook::draw_light() {
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+
+  // A glow adds to what is behind it.
+  glBlendFunc(GL_ONE, GL_ONE);
+  glUseProgram(glow_program_.name());
+  glUniform1f(glow_strength_place_, strength_);
+  glBindVertexArray(no_attributes_.name());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+
+  // The far side of a body before the near one.
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glUseProgram(program_.name());
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, ramp_.name());
+  if (surface_->is_closed) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_FRONT);
+    sheet_.draw();
+    glCullFace(GL_BACK);
+    sheet_.draw();
+    glDisable(GL_CULL_FACE);
+  } else {
+    sheet_.draw();
+  }
+
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "engine/pose/point_kinematics.hpp"
+#include "viewer/grid_sheet.hpp"
+#include "viewer/look.hpp"
+#include "viewer/solids.hpp"
+
+namespace yuragi {
+
+/// Draws a surface that burns: each point's heat through the skeleton's ramp, blended over everything else, in a glow,
+/// over an iron bowl.
+class FlameLook : public Look {
+ public:
+  /// `surface` must outlive this.
+  explicit FlameLook(const SurfaceSkeleton& surface);
+
+  void move_to(const Pose& pose) override;
+  void draw(const View& view) override;
+  void draw_light() override;
+
+ private:
+  const SurfaceSkeleton* surface_;
+  PointPositions points_;
+  GridSheet sheet_;
+  Solids bowl_;
+  GlTexture ramp_;
+  GlProgram program_;
+  GlProgram glow_program_;
+  GLint glow_strength_place_ = -1;
+  GlVertexArray no_attributes_;
+  float strength_ = 0.0F;  // of the glow: the mean heat
+};
+
+/// A bowl under the foot of a body of flame, a trough under that of a sheet. Pure.
+SolidMesh flame_bowl(const SurfaceSkeleton& surface);
+
+}  // namespace yuragi

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi {
+
+/// How the points of a cloth or a surface lie in their arrays: point (column, row) at row * stride + column.
+struct GridLayout {
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  std::size_t stride = 0;
+  bool is_closed = false;  ///< the last column is followed by the first
+
+  std::size_t size() const { return rows * stride; }
+};
+GridLayout layout_of(const GridSkeleton& cloth);
+GridLayout layout_of(const SurfaceSkeleton& surface);
+
+/// Two triangles for each cell, three indices of points each, all the same way round.
+std::vector<std::uint32_t> grid_triangles(const GridLayout& layout);
+
+/// A unit normal for each point, smooth over the grid: across what leads from the point's neighbour before to the one
+/// behind, along the row and along the column (at an edge from the point itself). Zero where these do not span a plane.
+///
+/// `points` and `normals` hold all x, then all y, then all z, layout.size() each. What is behind `columns` in a row is
+/// not written. Pure; allocates nothing.
+void grid_normals(const GridLayout& layout, std::span<const float> points, std::span<float> normals);
+
+}  // namespace yuragi

@@ -1,0 +1,37 @@
+#include "viewer/cloth_look.hpp"
+#include "viewer/flame_look.hpp"
+#include "viewer/fur_look.hpp"
+#include "viewer/grass_look.hpp"
+#include "viewer/look.hpp"
+#include "viewer/water_look.hpp"
+
+namespace yuragi {
+namespace {
+
+class NoLook : public Look {
+  void move_to(const Pose&) override {}
+  void draw(const View&) override {}
+};
+
+std::unique_ptr<Look> look_of(const StrandSkeleton& strands, const wire::SceneModel& scene) {
+  if (scene.kind == "fur") return std::make_unique<FurLook>(strands);
+  return std::make_unique<GrassLook>(strands);
+}
+std::unique_ptr<Look> look_of(const GridSkeleton& cloth, const wire::SceneModel& scene) {
+  return std::make_unique<ClothLook>(cloth, scene.kind);
+}
+std::unique_ptr<Look> look_of(const TreeSkeleton&, const wire::SceneModel&) {
+  return std::make_unique<NoLook>();
+}
+std::unique_ptr<Look> look_of(const SurfaceSkeleton& surface, const wire::SceneModel&) {
+  if (surface.ramp_rgba.empty()) return std::make_unique<WaterLook>(surface);
+  return std::make_unique<FlameLook>(surface);
+}
+
+}  // namespace
+
+std::unique_ptr<Look> make_look(const wire::SceneModel& scene) {
+  return std::visit([&](const auto& kind) { return look_of(kind, scene); }, scene.skeleton);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,29 @@
+// Water: the sky and the far hills in it, the more the flatter one looks (Schlick 1994); its own green where one looks in.
+in vec3 place_m;
+in vec3 normal;
+out vec4 color;
+
+void main() {
+  vec3 from_eye = normalize(place_m - eye_m.xyz);
+  vec3 up_facing = normalize(normal);
+  up_facing *= up_facing.y < 0.0 ? -1.0 : 1.0;
+  float cosine = clamp(-dot(up_facing, from_eye), 0.0, 1.0);
+  float missing = 1.0 - cosine;
+  float missing_2 = missing * missing;
+  float mirrored = 0.02 + 0.98 * missing_2 * missing_2 * missing;
+
+  vec3 up_ray = reflect(from_eye, up_facing);
+  up_ray.y = abs(up_ray.y);
+  vec3 sky = air_light(up_ray);
+  vec3 hills = mix(air_light(normalize(vec3(up_ray.x, 0.02, up_ray.z))), vec3(0.040, 0.062, 0.055), 0.70);
+  sky = mix(hills, sky, smoothstep(0.0, 0.11, up_ray.y));
+  float glint = max(dot(up_ray, to_sun.xyz), 0.0);
+  glint = pow(glint, 200.0);
+
+  // Light from within: more where a wave's slope lets the sun in.
+  float sun = max(dot(up_facing, to_sun.xyz), 0.0);
+  float against = max(dot(from_eye, to_sun.xyz), 0.0);
+  vec3 within = vec3(0.006, 0.026, 0.027) + vec3(0.012, 0.050, 0.034) * (sun + 0.7 * against * missing);
+  vec3 light = mix(within, sky, mirrored) + kSunLight * 1.3 * glint;
+  color = vec4(seen(light, place_m), 1.0);
+}
