@@ -88,14 +88,17 @@ class Curtain final : public Scene {
   const Pose& pose() const noexcept override { return cloth_.pose(); }
   double largest_joint_step_m(double dt_s) const noexcept override { return cloth_.largest_joint_step_m(dt_s); }
 
-  void tick(WindVector wind, double dt_s) noexcept override {
+  void shift(WindVector wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
-
-    // Shift and sample: the noise goes with the wind, and each column reads it where it hangs.
     noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
+  }
+
+  void sample() noexcept override {
     noise_.sample(ClothNoise::kFirst, flutter_);
     noise_.sample(ClothNoise::kSecond, swell_);
+  }
 
+  void project(double dt_s) noexcept override {
     // How much the wind blows: toward where, across the curtain and, less, along it. Like the drag of the air it grows
     // with the square of a weak wind, and it saturates: s^2 / (1 + s^2).
     const double speed_m_s = wind_.speed_m_s();
@@ -111,7 +114,7 @@ class Curtain final : public Scene {
     const auto wave_east = static_cast<float>(-max_wave_ * strength * along_.south);
     const auto wave_south = static_cast<float>(max_wave_ * strength * along_.east);
 
-    // Project: all of it sways, a little more here and less there, and the noise runs down it.
+    // All of it sways, a little more here and less there, and the noise runs down it.
     const std::span<float> sway = cloth_.sway();
     const std::span<float> wave = cloth_.wave();
     const std::size_t stride = flutter_.size();

@@ -16,18 +16,28 @@ namespace yuragi {
 /// over a town is about 70 m/s, and everything here is long saturated.)
 inline constexpr double kStrongestSceneWind_m_s = 60.0;
 
-/// Something that the wind moves: a model and the operators that move it (shift, sample, project).
+/// Something that the wind moves: a model, and the three kinds of operator that move it, in the paper's order (Chiba,
+/// section 2-2): shift the noise, sample it, project it onto the skeleton.
 ///
-/// Thread-safe: no. tick() is realtime-safe: it neither allocates nor locks nor throws.
+/// Thread-safe: no. Realtime-safe: a tick neither allocates nor locks nor throws.
 class Scene {
  public:
   virtual ~Scene() = default;
 
+  /// Goes on by dt_s (above 0) under `wind` (finite).
+  void tick(WindVector wind, double dt_s) noexcept {
+    shift(wind, dt_s);
+    sample();
+    project(dt_s);
+  }
+
+  // The three parts of a tick, in this order; by themselves only for who measures them.
+  virtual void shift(WindVector wind, double dt_s) noexcept = 0;  ///< the wind carries the noise on
+  virtual void sample() noexcept = 0;                             ///< each element reads it
+  virtual void project(double dt_s) noexcept = 0;                 ///< and is moved: the pose
+
   /// What never changes. Valid for the scene's life.
   virtual const Skeleton& skeleton() const noexcept = 0;
-
-  /// Goes on by dt_s (above 0) under `wind` (finite).
-  virtual void tick(WindVector wind, double dt_s) noexcept = 0;
 
   /// No joint moves farther than this in one tick of dt_s, whatever the wind does: steps, gaps, turns. How the bound
   /// comes about stands in the scene's file.

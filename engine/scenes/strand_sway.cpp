@@ -43,23 +43,24 @@ StrandSway::StrandSway(const StrandSkeleton& skeleton, std::span<const float> pl
   largest_along_ = largest_of(along_.values);
 }
 
-void StrandSway::tick(WindVector wind, double dt_s, StrandPose& pose) noexcept {
+void StrandSway::shift(WindVector wind, double dt_s) noexcept {
+  // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
   wind_.step(wind, dt_s);
-  const double east_m_s = wind_.east_m_s();
-  const double south_m_s = wind_.south_m_s();
-
-  // Shift: the wind on the ground goes with the wind, and with the way that it has come its strength along it.
-  noise_.shift(spec_.carry * east_m_s, spec_.carry * south_m_s, dt_s);
+  noise_.shift(spec_.carry * wind_.east_m_s(), spec_.carry * wind_.south_m_s(), dt_s);
   way_.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
+}
 
-  // Sample: how strong the wind is at each strand, as a factor.
+void StrandSway::sample() noexcept {
+  // How strong the wind is at each strand, as a factor.
   noise_.sample(places_, row_, strength_, static_cast<float>(spec_.turbulence), 1.0F, 0.0F);
+}
 
-  // Project: Wind-speed times theta bends the strand toward where the wind blows.
+void StrandSway::project(double dt_s, StrandPose& pose) noexcept {
+  // Wind-speed times theta bends the strand toward where the wind blows.
   const double along = static_cast<double>(read_noise(along_, way_.phase()));
   const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
-  BendingJob{.wind_east_m_s = wind_speed * east_m_s,
-             .wind_south_m_s = wind_speed * south_m_s,
+  BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
+             .wind_south_m_s = wind_speed * wind_.south_m_s(),
              .strength = strength_,
              .flexibility = flexibility_,
              .half_bend_speed_m_s = spec_.half_bend_speed_m_s,

@@ -35,7 +35,7 @@ struct StrandSwaySpec {
 ///   project  a 1-D noise (LineCut) gives Wind-speed, the strength along the wind; both bend    BendingJob
 ///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
 ///
-/// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: tick().
+/// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: a tick.
 class StrandSway {
  public:
   /// `place_x_m` and `place_z_m`: where each strand reads the noise; `flexibility`: of each. All have
@@ -43,7 +43,10 @@ class StrandSway {
   StrandSway(const StrandSkeleton& skeleton, std::span<const float> place_x_m, std::span<const float> place_z_m,
              std::vector<float> flexibility, const StrandSwaySpec& spec, SimdRow row);
 
-  void tick(WindVector wind, double dt_s, StrandPose& pose) noexcept;
+  // The parts of a scene's tick (Scene).
+  void shift(WindVector wind, double dt_s) noexcept;
+  void sample() noexcept;
+  void project(double dt_s, StrandPose& pose) noexcept;
 
   /// As Scene::largest_joint_step_m. With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
   /// toward the wind: its slope over s is at most 3 sqrt(3)/8 max, so in a tick it changes by at most that times the

@@ -113,7 +113,7 @@ TEST_F(NoiseCommand, RefusesWhatItCannotMakeAsAUsageErrorAndLeavesNoFile) {
 
 TEST_F(NoiseCommand, RefusesWordsThatItDoesNotKnow) {
   const std::string out = path("x.npy");
-  EXPECT_THROW(run({"--dims", "3", "--out", out}), CLI::ValidationError);
+  EXPECT_THROW(run({"--dims", "4", "--out", out}), CLI::ValidationError);
   EXPECT_THROW(run({"--meaning", "both", "--out", out}), CLI::ValidationError);
   EXPECT_THROW(run({"--seed", "-1", "--out", out}), CLI::ValidationError);
   EXPECT_THROW(run({"--seed", "18446744073709551616", "--out", out}), CLI::ValidationError);
@@ -128,7 +128,8 @@ TEST_F(NoiseCommand, SaysWhatASizeMayBe) {
     FAIL() << "should have thrown";
   } catch (const ExitError& error) {
     EXPECT_STREQ(error.what(),
-                 "--size 100: the size must be a power of two: 8 to 4194304 in one dimension, 8 to 4096 in two");
+                 "--size 100: the size must be a power of two: 8 to 4194304 in one dimension, 8 to 4096 in two, 8 to "
+                 "256 in three");
   }
 }
 
