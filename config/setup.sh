@@ -17,7 +17,7 @@ build_packages=(
   libgl1-mesa-dri xvfb xauth # the viewer's picture where there is no display
 )
 test_packages=(
-  libgtest-dev libbenchmark-dev
+  libgtest-dev libbenchmark-dev nlohmann-json3-dev
   clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev
   python3 python3-numpy python3-flatbuffers
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers

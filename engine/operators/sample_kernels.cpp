@@ -1,3 +1,5 @@
+#include <cstdint>
+
 #include "engine/base/kernel.hpp"
 #include "engine/noise/torus_read.hpp"
 #include "engine/operators/operator_kernels.hpp"
@@ -9,37 +11,61 @@ namespace {
 /// only the loads between go one by one (a gather instruction is slower).
 constexpr std::size_t kAtOnce = 16;
 
-/// The samples around some places.
-struct Corners {
-  alignas(64) std::uint32_t north_west[kAtOnce], north_east[kAtOnce], south_west[kAtOnce], south_east[kAtOnce];
+/// Where some places are on a tile.
+struct Cells {
+  alignas(64) std::uint32_t north[kAtOnce], south[kAtOnce];  ///< of the western sample, in the tile
   alignas(64) float x_fraction[kAtOnce], z_fraction[kAtOnce];
 };
 
-/// Adds weight * noise at kAtOnce places to `sum`.
+/// The samples around them: from west to east, the first in the low half.
+struct Pairs {
+  alignas(64) std::uint64_t north[kAtOnce], south[kAtOnce];
+};
+
+[[gnu::always_inline]] inline std::uint64_t load_pair(const float* west) noexcept {
+  std::uint64_t pair;
+  __builtin_memcpy(&pair, west, sizeof pair);
+  return pair;
+}
+
+[[gnu::always_inline]] inline float western(std::uint64_t pair) noexcept {
+  return __builtin_bit_cast(float, static_cast<std::uint32_t>(pair));
+}
+[[gnu::always_inline]] inline float eastern(std::uint64_t pair) noexcept {
+  return __builtin_bit_cast(float, static_cast<std::uint32_t>(pair >> 32U));
+}
+
+/// Adds weight * noise at kAtOnce places to `sum`. A cell's two samples stand side by side in the tile, but for the
+/// last column's, whose east is the first: where one of the places is there, they are read one by one.
 [[gnu::always_inline]] inline void add_layer(const SampleKernelLayer& layer, std::size_t begin, float* sum) noexcept {
-  Corners at;
+  const std::uint32_t last = (1U << layer.log2_size) - 1U;
+  Cells at;
+  std::uint32_t wraps = 0;
   for (std::size_t i = 0; i < kAtOnce; ++i) {
     const TorusCell x = torus_cell(layer.place_x[begin + i] - layer.offset_x, layer.log2_size);
     const TorusCell z = torus_cell(layer.place_z[begin + i] - layer.offset_z, layer.log2_size);
-    at.north_west[i] = (z.first << layer.log2_size) + x.first;
-    at.north_east[i] = (z.first << layer.log2_size) + x.second;
-    at.south_west[i] = (z.second << layer.log2_size) + x.first;
-    at.south_east[i] = (z.second << layer.log2_size) + x.second;
+    at.north[i] = (z.first << layer.log2_size) + x.first;
+    at.south[i] = (z.second << layer.log2_size) + x.first;
     at.x_fraction[i] = x.fraction;
     at.z_fraction[i] = z.fraction;
+    wraps |= x.first == last ? 1U : 0U;
+  }
+  if (wraps != 0) {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      sum[i] += layer.weight * read_bilinear(layer.tile, layer.log2_size, layer.place_x[begin + i] - layer.offset_x,
+                                             layer.place_z[begin + i] - layer.offset_z);
+    }
+    return;
   }
 
-  alignas(64) float north_west[kAtOnce], north_east[kAtOnce], south_west[kAtOnce], south_east[kAtOnce];
+  Pairs pairs;
   for (std::size_t i = 0; i < kAtOnce; ++i) {
-    north_west[i] = layer.tile[at.north_west[i]];
-    north_east[i] = layer.tile[at.north_east[i]];
-    south_west[i] = layer.tile[at.south_west[i]];
-    south_east[i] = layer.tile[at.south_east[i]];
+    pairs.north[i] = load_pair(layer.tile + at.north[i]);
+    pairs.south[i] = load_pair(layer.tile + at.south[i]);
   }
-
   for (std::size_t i = 0; i < kAtOnce; ++i) {
-    const float north = between(north_west[i], north_east[i], at.x_fraction[i]);
-    const float south = between(south_west[i], south_east[i], at.x_fraction[i]);
+    const float north = between(western(pairs.north[i]), eastern(pairs.north[i]), at.x_fraction[i]);
+    const float south = between(western(pairs.south[i]), eastern(pairs.south[i]), at.x_fraction[i]);
     sum[i] += layer.weight * between(north, south, at.z_fraction[i]);
   }
 }

@@ -28,6 +28,7 @@ class Kinematics {
   /// The joints, in arrays that depend on the kind: JointPositions, PointPositions, TreeJoints.
   using Joints = std::variant<JointPositions, PointPositions, TreeJoints>;
   const Joints& joints() const noexcept { return joints_; }
+  Joints& joints() noexcept { return joints_; }
 
   /// A joint by its number, below node_count(skeleton): strand by strand from root to tip, row by row of a grid or
   /// surface, level by level of a tree.

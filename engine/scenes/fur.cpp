@@ -15,7 +15,7 @@
 namespace yuragi {
 namespace {
 
-/// 4 m in 512 samples are cells of 8 mm, about a hair's distance.
+/// 16 m in 512 samples are cells of 3 cm: a lock of the coat.
 constexpr StrandSwaySpec kFurSway = {.max_bend_rad = 0.9,
                                      .half_bend_speed_m_s = 8.0,
                                      .turbulence = 0.6,
@@ -23,8 +23,8 @@ constexpr StrandSwaySpec kFurSway = {.max_bend_rad = 0.9,
                                      .hybrid = 0.4,
                                      .natural_hz = 4.0,
                                      .damping_ratio = 0.35,
-                                     .carry = 0.12,
-                                     .noise = {.period_m = 4.0, .beta = 2.5}};
+                                     .carry = 0.06,
+                                     .noise = {.period_m = 16.0, .beta = 2.5}};
 
 std::vector<Parameter> fur_parameters() {
   std::vector<Parameter> parameters = {

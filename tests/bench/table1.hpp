@@ -1,0 +1,43 @@
+#pragma once
+
+#include <iosfwd>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace yuragi::bench {
+
+/// A row of the paper's table 1, read as milliseconds (Chiba, section 4).
+struct PaperRow {
+  double shifting_ms, sampling_ms, projection_ms, total_ms;
+};
+
+/// A row of ours. Times are named ROW/PART in the results; parts are shifting, sampling, projection, total, floor,
+/// plain.
+struct TableRow {
+  std::string name;
+  std::size_t nodes = 0;
+  std::optional<PaperRow> paper = std::nullopt;
+};
+
+/// A ratio that we set ourselves, and what it came to.
+struct Target {
+  std::string what;
+  double value = 0.0;
+  double limit = 0.0;
+  bool is_at_least = false;  ///< else: at most
+  bool is_met() const { return is_at_least ? value >= limit : value <= limit; }
+};
+
+/// The fastest time of each measurement, seconds, by name.
+using Times = std::map<std::string, double>;
+
+void print_table(std::ostream& out, const std::vector<TableRow>& rows, const Times& times);
+void print_targets(std::ostream& out, const std::vector<Target>& targets);
+
+/// All of it as one JSON object.
+void print_json(std::ostream& out, const std::vector<TableRow>& rows, const Times& times,
+                const std::vector<Target>& targets);
+
+}  // namespace yuragi::bench

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "engine/pose/kinematics.hpp"
+#include "engine/scenes/scene.hpp"
+
+namespace yuragi::bench {
+
+inline constexpr double kBenchTick_s = 1.0 / 60.0;
+
+/// A scene of the table, with its joints, in a steady breeze.
+class Workload {
+ public:
+  static constexpr WindVector kBreeze = {6.0, 3.0};
+
+  /// `kind` is in scene_table(); `given` are parameters that differ from the defaults.
+  Workload(std::string_view kind, const ParameterValues::Map& given, SimdRow row);
+
+  std::size_t nodes() const { return nodes_; }
+  Scene& scene() { return *scene_; }
+  Kinematics& kinematics() { return *kinematics_; }
+
+  // One frame's parts. Projection goes as far as joint positions.
+  void shift() { scene_->shift(kBreeze, kBenchTick_s); }
+  void sample() { scene_->sample(); }
+  void project() {
+    scene_->project(kBenchTick_s);
+    kinematics_->run(scene_->pose());
+  }
+  void frame() {
+    shift();
+    sample();
+    project();
+  }
+
+  /// Stores 12 bytes a node into the same joints, and computes nothing.
+  void store_only();
+
+ private:
+  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<Kinematics> kinematics_;
+  std::size_t nodes_ = 0;
+  float value_ = 0.0F;
+};
+
+}  // namespace yuragi::bench

@@ -1,0 +1,213 @@
+// yuragi-bench: the paper's table 1, measured here. `yuragi-bench` prints the table and how it stands against what we
+// ask of it; `--json` prints the same as JSON; `--row x86-64` leaves AVX out; everything else goes to Google Benchmark
+// (--benchmark_filter, --benchmark_repetitions ...). Times are the fastest of all repetitions, which are shuffled, so
+// that what disturbs the machine for a while disturbs all rows alike.
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "engine/noise/spectral_noise.hpp"
+#include "engine/scenes/meadow.hpp"
+#include "tests/bench/plain_strands.hpp"
+#include "tests/bench/table1.hpp"
+#include "tests/bench/workload.hpp"
+
+namespace yuragi::bench {
+namespace {
+
+constexpr PaperRow kPaperGrass = {0.1, 0.05, 0.2, 0.35};
+constexpr PaperRow kPaperFur = {0.3, 0.15, 0.57, 1.02};
+constexpr PaperRow kPaperTree = {0.1, 0.05, 0.13, 0.23};
+constexpr PaperRow kPaperCurtain = {0.03, 0.015, 0.09, 0.135};
+constexpr PaperRow kPaperFlag = {0.03, 0.015, 0.105, 0.15};
+
+struct Case {
+  std::string name;
+  std::string kind;
+  ParameterValues::Map given;
+  std::optional<PaperRow> paper = std::nullopt;
+  bool has_plain = false;
+};
+
+ParameterValues::Map meadow(std::int64_t across, std::int64_t deep) {
+  return {{"blades_across", across}, {"blades_deep", deep}};
+}
+
+/// Rows whose scene this build does not know are left out.
+std::vector<Case> all_cases() {
+  const auto is_known = [](const Case& one) {
+    for (const SceneDescription* scene : scene_table()) {
+      if (scene->name == one.kind) return ParameterValues::resolve(scene->parameters, one.given).has_value();
+    }
+    return false;
+  };
+  std::vector<Case> cases = {
+      {"grass, one tile", "grass", {{"tiles", std::int64_t{1}}, {"hybrid", 0.0}}, kPaperGrass},
+      {"grass", "grass", {}, kPaperGrass, true},
+      {"fur", "fur", {}, kPaperFur, true},
+      {"tree", "tree", {}, kPaperTree},
+      {"curtain", "curtain", {{"hybrid", 0.0}}, kPaperCurtain},
+      {"flag", "flag", {{"hybrid", 0.0}}, kPaperFlag},
+      {"curtain, hybrid", "curtain", {{"hybrid", 1.0}}, kPaperCurtain},
+      {"flag, hybrid", "flag", {{"hybrid", 1.0}}, kPaperFlag},
+      {"banner", "banner", {}},
+      {"ripple", "ripple", {}},
+      {"flame", "flame", {}},
+      {"grass 10,000", "grass", meadow(50, 20)},
+      {"grass 1,000,000", "grass", meadow(400, 250)},
+  };
+  std::erase_if(cases, [&](const Case& one) { return !is_known(one); });
+  return cases;
+}
+
+/// The plain implementation of the same strands.
+std::unique_ptr<PlainStrands> make_plain(const Workload& workload, const Skeleton& skeleton) {
+  static_cast<void>(workload);
+  const auto& strands = std::get<StrandSkeleton>(skeleton);
+  return std::make_unique<PlainStrands>(strands, std::vector<float>(strands.padded_count(), 1.0F),
+                                        make_noise_2d({.size = 512, .seed = 1}).value(),
+                                        make_noise_2d({.size = 512, .seed = 2}).value(), 256.0, 414.0);
+}
+
+/// Collects the fastest time of each benchmark, and says on standard error how far it is.
+class FastestReporter final : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) {
+      if (run.run_type != Run::RT_Iteration || run.iterations == 0) continue;
+      const double time_s = run.real_accumulated_time / static_cast<double>(run.iterations);
+      const std::string name = run.run_name.function_name;
+      const auto [entry, is_new] = times.try_emplace(name, time_s);
+      if (!is_new) entry->second = std::min(entry->second, time_s);
+      std::cerr << '.' << std::flush;
+    }
+  }
+  void Finalize() override { std::cerr << '\n'; }
+
+  Times times;
+};
+
+void add(const std::string& name, std::function<void()> part) {
+  benchmark::RegisterBenchmark(name.c_str(), [part = std::move(part)](benchmark::State& state) {
+    for (auto iteration : state) {
+      static_cast<void>(iteration);
+      part();
+      benchmark::ClobberMemory();
+    }
+  })->UseRealTime();
+}
+
+std::vector<Target> targets_of(const Times& times) {
+  std::vector<Target> targets;
+  const auto at = [&times](const std::string& name) {
+    const auto found = times.find(name);
+    return found == times.end() ? std::nan("") : found->second;
+  };
+  const auto add_target = [&targets](const std::string& what, double value, double limit, bool is_at_least = false) {
+    if (!std::isnan(value)) targets.push_back({what, value, limit, is_at_least});
+  };
+  add_target("grass, one tile: total in floors", at("grass, one tile/total") / at("grass, one tile/floor"), 4.0);
+  for (const std::string name : {"grass", "fur"}) {
+    add_target(name + " as shipped: total in floors", at(name + "/total") / at(name + "/floor"), 8.0);
+    add_target(name + " as shipped: times faster than the plain one", at(name + "/plain") / at(name + "/total"), 6.0,
+               true);
+  }
+  add_target("curtain, noise alone: part of the paper's total", at("curtain/total") * 1e3 / kPaperCurtain.total_ms,
+             0.25);
+  add_target("flag, noise alone: part of the paper's total", at("flag/total") * 1e3 / kPaperFlag.total_ms, 0.25);
+  add_target("curtain, hybrid: part of the paper's total", at("curtain, hybrid/total") * 1e3 / kPaperCurtain.total_ms,
+             1.0);
+  add_target("flag, hybrid: part of the paper's total", at("flag, hybrid/total") * 1e3 / kPaperFlag.total_ms, 1.0);
+  add_target("tree: total, ms", at("tree/total") * 1e3, 0.153);
+  const double small = at("grass 10,000/total") / 1e4;
+  const double middle = at("grass/total") / 1e5;
+  const double large = at("grass 1,000,000/total") / 1e6;
+  add_target("grass: most ns a node over least, 10,000 to 1,000,000 nodes",
+             std::max({small, middle, large}) / std::min({small, middle, large}), 1.2);
+  for (const auto& [name, paper] :
+       {std::pair("grass", kPaperGrass), std::pair("fur", kPaperFur), std::pair("tree", kPaperTree),
+        std::pair("curtain", kPaperCurtain), std::pair("flag", kPaperFlag)}) {
+    add_target(std::string(name) + ": part of the paper's total",
+               at(std::string(name) + "/total") * 1e3 / paper.total_ms, 1.0);
+  }
+  return targets;
+}
+
+int run(int argc, char** argv) {
+  bool is_json = false;
+  SimdRow row = best_simd_row();
+  std::vector<std::string> words = {argv[0], "--benchmark_enable_random_interleaving=true", "--benchmark_repetitions=7",
+                                    "--benchmark_min_time=0.05"};
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--json") {
+      is_json = true;
+    } else if (word == "--row" && i + 1 < argc) {
+      const std::string_view wanted = argv[++i];
+      const auto found = std::find_if(std::begin(kSimdRows), std::end(kSimdRows),
+                                      [wanted](SimdRow one) { return name_of(one) == wanted && is_runnable(one); });
+      if (found == std::end(kSimdRows)) {
+        std::cerr << "yuragi-bench: no row " << wanted << " on this machine; rows: x86-64, x86-64-v3, x86-64-v4\n";
+        return 64;
+      }
+      row = *found;
+    } else {
+      words.emplace_back(word);
+    }
+  }
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 64;
+
+  std::vector<std::unique_ptr<Workload>> workloads;
+  std::vector<std::unique_ptr<PlainStrands>> plains;
+  std::vector<TableRow> rows;
+  for (const Case& one : all_cases()) {
+    ParameterValues::Map given = one.given;
+    Workload& workload = *workloads.emplace_back(std::make_unique<Workload>(one.kind, given, row));
+    rows.push_back({one.name, workload.nodes(), one.paper});
+    add(one.name + "/floor", [&workload] { workload.store_only(); });
+    add(one.name + "/shifting", [&workload] { workload.shift(); });
+    add(one.name + "/sampling", [&workload] { workload.sample(); });
+    add(one.name + "/projection", [&workload] { workload.project(); });
+    add(one.name + "/total", [&workload] { workload.frame(); });
+    if (!one.has_plain) continue;
+    PlainStrands& plain = *plains.emplace_back(make_plain(workload, workload.scene().skeleton()));
+    add(one.name + "/plain",
+        [&plain] { plain.frame(Workload::kBreeze.u_m_s, -Workload::kBreeze.v_m_s, kBenchTick_s, 0.6); });
+  }
+
+  FastestReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  benchmark::Shutdown();
+  if (reporter.times.empty()) return 64;
+  const std::vector<Target> targets = targets_of(reporter.times);
+  if (is_json) {
+    print_json(std::cout, rows, reporter.times, targets);
+    return 0;
+  }
+  std::cout << "SIMD row " << name_of(row) << ", one thread; the fastest of all repetitions\n\n";
+  print_table(std::cout, rows, reporter.times);
+  std::cout << '\n';
+  print_targets(std::cout, targets);
+  return 0;
+}
+
+}  // namespace
+}  // namespace yuragi::bench
+
+int main(int argc, char** argv) {
+  return yuragi::bench::run(argc, argv);
+}
