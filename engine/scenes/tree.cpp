@@ -20,6 +20,7 @@
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 #include "engine/scenes/tree_model.hpp"
+#include "engine/scenes/tree_species.hpp"
 
 // A tree in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine for
 // fluctuation phenomena" (Iwate University), section 3.3 and figures 12 and 13:
@@ -35,74 +36,19 @@
 namespace yuragi {
 namespace {
 
-/// What trees of a species have in common, besides how they grow.
-struct Species {
-  std::string_view name;
-  double petiole;          ///< how far its leaves give way, against the softest
-  double alpha_vertical;   ///< of the paper's theta
-  double beta_horizontal;  ///< of the paper's phi
-  double thinness_power;   ///< p: the thinner wood sways the more, by (root thickness / thickness)^p
-  TreeHabit habit;
-};
-
-const std::array kSpecies = {
-    // Spreading and domed.
-    Species{.name = "cherry",
-            .petiole = 0.22,
-            .alpha_vertical = 0.35,
-            .beta_horizontal = 0.1,
-            .thinness_power = 0.7,
-            .habit = {.height_m = 8.0,
-                      .trunk_share = 0.5,
-                      .limb = {.first_at = 0.4, .angle_deg = {75, 25}, .length_share = {0.55, 0.42}, .lift_deg = 25},
-                      .twig = {.first_at = 0.2, .angle_deg = {60, 35}, .length_share = {0.2, 0.12}, .lift_deg = -35},
-                      .leaf_angle_deg = 60,
-                      .leaf_length_m = 0.15,
-                      .leaf_width_share = 0.5,
-                      .leaf_droop_deg = 50}},
-    // A vase: a fan of steep limbs from a short trunk, which arch outward at their tips.
-    Species{.name = "zelkova",
-            .petiole = 0.28,
-            .alpha_vertical = 0.45,
-            .beta_horizontal = 0.15,
-            .thinness_power = 0.8,
-            .habit = {.height_m = 11.0,
-                      .trunk_share = 0.36,
-                      .limb = {.first_at = 0.55, .angle_deg = {42, 10}, .length_share = {0.62, 0.66}, .lift_deg = -25},
-                      .twig = {.first_at = 0.35, .angle_deg = {45, 30}, .length_share = {0.17, 0.11}, .lift_deg = -20},
-                      .leaf_angle_deg = 55,
-                      .leaf_length_m = 0.14,
-                      .leaf_width_share = 0.4,
-                      .leaf_droop_deg = 30}},
-    // A narrow column.
-    Species{.name = "poplar",
-            .petiole = 1.0,
-            .alpha_vertical = 0.5,
-            .beta_horizontal = 0.1,
-            .thinness_power = 0.6,
-            .habit = {.height_m = 15.0,
-                      .trunk_share = 0.92,
-                      .limb = {.first_at = 0.12, .angle_deg = {34, 18}, .length_share = {0.24, 0.1}, .lift_deg = 22},
-                      .twig = {.first_at = 0.15, .angle_deg = {40, 25}, .length_share = {0.1, 0.07}, .lift_deg = 25},
-                      .leaf_angle_deg = 60,
-                      .leaf_length_m = 0.14,
-                      .leaf_width_share = 0.75,
-                      .leaf_droop_deg = 45}},
-};
-constexpr std::array<std::string_view, 3> kSpeciesNames = {"cherry", "zelkova", "poplar"};
 constexpr std::array<std::string_view, 2> kTreeBetaMeanings = {"transect", "radial"};
 
 using namespace std::string_literals;
 
 const std::array kTreeParameters = {
-    Parameter{"species", "", "cherry"s, {}, {}, "how it grows, and how stiff wood and petioles are", kSpeciesNames},
+    Parameter{"species", "", "cherry"s, {}, {}, "how it grows, and how stiff wood and petioles are", kTreeSpeciesNames},
     Parameter{"size", "", 1.0, 0.1, 10, "all lengths, against the species' own (8, 11 and 15 m high)"},
     Parameter{"limbs", "", std::int64_t{15}, 1, 500, "branches on the trunk"},
     Parameter{"twigs", "", std::int64_t{240}, 1, 20000, "branches on the limbs"},
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
     Parameter{"branch_links", "", std::int64_t{256}, 1, 1024, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
-    Parameter{"max_tilt", "deg", 32.0, 0, 120, "how far the strongest wind bends the thinnest twig"},
+    Parameter{"max_tilt", "deg", 45.0, 0, 120, "how far the strongest wind bends the thinnest twig"},
     Parameter{"max_swing", "deg", 50.0, 0, 120, "how far off the wind's direction a branch may swing"},
     Parameter{"half_tilt_speed", "m/s", 10.0, 0.1, 60, "the wind that wood answers half to"},
     Parameter{"turbulence", "", 0.5, 0, 2, "how much the wind differs from branch to branch: its standard deviation"},
@@ -140,20 +86,19 @@ constexpr double kSplitWidth = 1.0;
 /// Beyond it the noise is cut, in standard deviations.
 constexpr double kLargestNoise = 3.0;
 
-// The noise that leaves read. It goes with the wind, but never faster than 5 m/s, at which its finest waves, of 25 cm,
-// pass a leaf 20 times a second: still below half the tick rate. Its period is that of a crown, and it is small: read
-// ten thousand times a tick, it stays in the fastest cache.
+// The noise that leaves read. It goes with the wind, but never as fast as 2.6 m/s, up to which 60 ticks a second show
+// its finest waves, of 18 cm (14 a second), and one layer of it is read. Its period is that of a crown, and it is
+// small: read ten thousand times a tick, it stays in the fastest cache.
 constexpr CarriedNoiseSpec kLeafNoise = {.period_m = 8.0, .samples = 64, .beta = 1.0, .has_two_tiles = false};
-constexpr double kLargestLeafNoiseSpeed_m_s = 5.0;
+constexpr double kLargestLeafNoiseSpeed_m_s = 2.6;
 
 /// How much further along x and z leaves read for each metre that they are up: those one above the other differ too.
 constexpr std::array<double, 2> kHeightSkew = {0.5, 0.7};
 
 constexpr double kLargestTwist_rad = 40.0 * kRadPerDeg;
 
-const Species& species_of(const ParameterValues& values) {
-  const std::string& name = values.text("species");
-  return *std::find_if(kSpecies.begin(), kSpecies.end() - 1, [&](const Species& each) { return each.name == name; });
+const TreeSpecies& species_of(const ParameterValues& values) {
+  return tree_species(values.text("species"));
 }
 
 TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& setup) {
@@ -277,7 +222,7 @@ class Tree final : public Scene {
   double largest_leaf_step_rad(double dt_s) const noexcept;
 
   SimdRow row_;
-  const Species& species_;
+  const TreeSpecies& species_;
   double max_tilt_rad_, max_swing_rad_, half_tilt_speed_m_s_;
   double turbulence_;
   double hybrid_, natural_hz_, damping_ratio_;
@@ -438,13 +383,13 @@ void Tree::project(Wood& wood, double dt_s, StrandPose& pose) noexcept {
 //             ds / 2 in all, times the rise of the threshold and the slope of 1 / dist; a place is within 1 of the
 //             middle
 //   phi       the same three, on the length that theta gives the bend
-// and by no more than from one extreme G to the other, 2 G. The oscillator at most multiplies that by its gain g; and
-// since its impulse response h first swings to at most w and each swing is exp(-pi zeta / sqrt(1 - zeta^2)) of the one
-// before, |h'| integrates to at most w (1 + g), so that it moves by at most w (1 + g) G dt.
+// and by no more than from one extreme G to the other, 2 G. An oscillator moves by at most its largest gain times that,
+// and by at most what its largest rate gives for a bend that never exceeds G.
 double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept {
   const double ds = SceneWind::largest_step_m_s(dt_s) / half_tilt_speed_m_s_;
   const double largest_noise = kLargestNoise * turbulence_;
-  const double dn = turbulence_ * noise_.largest_change(kStrongestSceneWind_m_s * dt_s);
+  const double dn =
+      turbulence_ * noise_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
   const double dd = 0.5 * ds;  // with W in it
 
   // What noise and distance do to each part of the split over the distance, and the largest of these over the distance.
@@ -458,8 +403,9 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
 
   const double largest_rad = max_tilt_rad_ * k / std::sqrt(1.0 + k * k);
   const double step_rad = std::min(max_tilt_rad_ * theta + largest_rad * max_swing_rad_ * phi, 2.0 * largest_rad);
-  const double gain = OscillatorStep::largest_gain(damping_ratio_);
-  const double swayed_rad = std::min(gain * step_rad, 2.0 * kPi * wood.natural_hz * (1.0 + gain) * largest_rad * dt_s);
+  const double swayed_rad =
+      std::min(OscillatorStep::largest_gain(damping_ratio_) * step_rad,
+               OscillatorStep::largest_rate_per_s(wood.natural_hz, damping_ratio_) * dt_s * largest_rad);
   return (1.0 - hybrid_) * step_rad + hybrid_ * swayed_rad;
 }
 
@@ -467,7 +413,8 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
 double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   const double ds = SceneWind::largest_step_m_s(dt_s) / half_flutter_speed_m_s_;
   const double largest = leaf_lean_rad_ + kLargestNoise * leaf_flutter_rad_;
-  const double dn = leaf_noise_.largest_change(kLargestLeafNoiseSpeed_m_s * dt_s);
+  const double carried_step_m_s = std::min(SceneWind::largest_step_m_s(dt_s), 2.0 * kLargestLeafNoiseSpeed_m_s);
+  const double dn = leaf_noise_.largest_change(kLargestLeafNoiseSpeed_m_s, carried_step_m_s, dt_s);
   const double step = std::min(largest * WindResponse::kSteepest * ds + leaf_flutter_rad_ * dn, 2.0 * largest);
   return leaves_.largest_compliance * step;
 }
