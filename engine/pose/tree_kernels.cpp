@@ -12,10 +12,11 @@ namespace yuragi {
 namespace {
 
 constexpr std::size_t kTurnsAtOnce = 16;
-constexpr std::size_t kBlock = 16;  // kStrandsPerBlock of skeleton.hpp, whose vectors may not come in here
+constexpr std::uint32_t kBlock = 16;  // kStrandsPerBlock of skeleton.hpp, whose vectors may not come in here
 
-// As in strand_kernels.cpp: larger bends are taken as this, and smaller ones are none.
-constexpr float kLargestBend_rad = 32.0F;
+// As in strand_kernels.cpp: longer bends are cut to this, and shorter ones are none.
+constexpr float kLargestComponent_rad = 32.0F;
+constexpr float kLargestBend_rad = 0x1.921fb6p1F;
 constexpr float kSmallestBendSquare_rad2 = 1e-30F;
 
 [[gnu::always_inline]] inline float within(float value, float limit) noexcept {
@@ -59,12 +60,13 @@ void turn(const TreeKernelArguments& arguments) noexcept {
     float* const __restrict z = in.turn.z + begin;
     for (std::size_t i = 0; i < kTurnsAtOnce; ++i) {
       // The link's share of the bend: (bw, bx, 0, bz). No bend is exactly (1, 0, 0, 0).
-      const float east = within(parents.east_rad[i], kLargestBend_rad);
-      const float south = within(parents.south_rad[i], kLargestBend_rad);
+      const float east = within(parents.east_rad[i], kLargestComponent_rad);
+      const float south = within(parents.south_rad[i], kLargestComponent_rad);
       const float square = east * east + south * south;
       const bool bent = square > kSmallestBendSquare_rad2;
-      const float angle = __builtin_sqrtf(bent ? square : 0.0F);
-      const float inverse = 1.0F / (bent ? angle : 1.0F);
+      const float length = __builtin_sqrtf(bent ? square : 0.0F);
+      const float inverse = 1.0F / (bent ? length : 1.0F);
+      const float angle = length > kLargestBend_rad ? kLargestBend_rad : length;
       const SinCos<float> half = sin_cos(angle * parents.half_share[i]);
       const float bw = half.cos;
       const float bx = half.sin * (south * inverse);
@@ -79,11 +81,11 @@ void turn(const TreeKernelArguments& arguments) noexcept {
       const float qx = bw * px + bx * pw - bz * py;
       const float qy = bw * py + bz * px - bx * pz;
       const float qz = bw * pz + bz * pw + bx * py;
-      const float length = 1.5F - 0.5F * (qw * qw + qx * qx + qy * qy + qz * qz);
-      w[i] = qw * length;
-      x[i] = qx * length;
-      y[i] = qy * length;
-      z[i] = qz * length;
+      const float right = 1.5F - 0.5F * (qw * qw + qx * qx + qy * qy + qz * qz);
+      w[i] = qw * right;
+      x[i] = qx * right;
+      y[i] = qy * right;
+      z[i] = qz * right;
     }
   }
 }
@@ -108,14 +110,14 @@ struct Rotation {
           .zz = -two_x * x - two_y * y};
 }
 
-[[gnu::always_inline]] inline void rotate(const Rotation& r, const float* const (&from)[3], float* const (&to)[3],
-                                          std::size_t strand) noexcept {
-  const Lanes x = load_lanes(from[0] + strand);
-  const Lanes y = load_lanes(from[1] + strand);
-  const Lanes z = load_lanes(from[2] + strand);
-  store_lanes(to[0] + strand, x + (r.xx * x + r.xy * y + r.xz * z));
-  store_lanes(to[1] + strand, y + (r.yx * x + r.yy * y + r.yz * z));
-  store_lanes(to[2] + strand, z + (r.zx * x + r.zy * y + r.zz * z));
+[[gnu::always_inline]] inline void rotate(const Rotation& r, const float* const (&from)[3], std::size_t from_strand,
+                                          float* const (&to)[3], std::size_t to_strand) noexcept {
+  const Lanes x = load_lanes(from[0] + from_strand);
+  const Lanes y = load_lanes(from[1] + from_strand);
+  const Lanes z = load_lanes(from[2] + from_strand);
+  store_lanes(to[0] + to_strand, x + (r.xx * x + r.xy * y + r.xz * z));
+  store_lanes(to[1] + to_strand, y + (r.yx * x + r.yy * y + r.yz * z));
+  store_lanes(to[2] + to_strand, z + (r.zx * x + r.zy * y + r.zz * z));
 }
 
 /// One number of the turns of kLaneCount strands.
@@ -126,30 +128,46 @@ struct Rotation {
 
 void carry(const TreeKernelArguments& arguments) noexcept {
   const TreeKernelArguments in = arguments;
+  const std::size_t first_strand = in.first_block * kBlock;
+  const auto parent_links = static_cast<std::uint32_t>(in.parent_links);
+  float* const __restrict root_x_m = in.carried_root_m[0];
+  float* const __restrict root_y_m = in.carried_root_m[1];
+  float* const __restrict root_z_m = in.carried_root_m[2];
   for (std::size_t begin = 0; begin < in.blocks * kBlock; begin += kBlock) {
-    // The roots go to the joints that they grow from (their order: JointPositions).
-    for (std::size_t strand = begin; strand < begin + kBlock; ++strand) {
-      const std::size_t parent = in.parent[strand];
-      const std::size_t parent_block = parent / kBlock;
-      const float* const joint =
-          in.parent_joints_m + parent % kBlock + (parent_block * in.parent_links + in.parent_link[strand]) * 3 * kBlock;
-      in.turned_root_m[0][strand] = joint[0];
-      in.turned_root_m[1][strand] = joint[kBlock];
-      in.turned_root_m[2][strand] = joint[2 * kBlock];
+    // The roots go to the joints that they grow from (their order: JointPositions). Where those are is computed in SIMD
+    // lanes, and only the loads go one by one.
+    alignas(64) std::uint32_t at[kBlock];
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const std::uint32_t parent = in.parent[first_strand + begin + i];
+      const std::uint32_t link = in.parent_link[first_strand + begin + i];
+      at[i] = (parent / kBlock * parent_links + link) * (3 * kBlock) + parent % kBlock;
+    }
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const float* const joint = in.parent_joints_m + at[i];
+      root_x_m[begin + i] = joint[0];
+      root_y_m[begin + i] = joint[kBlock];
+      root_z_m[begin + i] = joint[2 * kBlock];
     }
 
     const std::size_t each = in.turn.strands_per_turn;
-    for (std::size_t strand = begin; strand < begin + kBlock; strand += kLaneCount) {
+    for (std::size_t i = begin; i < begin + kBlock; i += kLaneCount) {
+      const std::size_t strand = first_strand + i;
       const Rotation r = rotation(turn_part(in.turn.w, each, strand), turn_part(in.turn.x, each, strand),
                                   turn_part(in.turn.y, each, strand), turn_part(in.turn.z, each, strand));
-      rotate(r, in.rest, in.turned_rest, strand);
-      rotate(r, in.curl, in.turned_curl, strand);
+      rotate(r, in.rest, strand, in.carried_rest, i);
+      rotate(r, in.curl, strand, in.carried_curl, i);
     }
   }
 }
 
+std::uint32_t largest(const std::uint32_t* numbers, std::size_t count) noexcept {
+  std::uint32_t largest_yet = 0;
+  for (std::size_t i = 0; i < count; ++i) largest_yet = numbers[i] > largest_yet ? numbers[i] : largest_yet;
+  return largest_yet;
+}
+
 }  // namespace
 
-const TreeKernels YURAGI_ROW_NAME(tree_kernels) = {turn, carry};
+const TreeKernels YURAGI_ROW_NAME(tree_kernels) = {largest, turn, carry};
 
 }  // namespace yuragi

@@ -16,9 +16,8 @@ struct TurnArrays {
   std::size_t strands_per_turn = 1;  ///< 1, or 16: a turn for each block
 };
 
-/// The strands of one level as they stand at rest and as they stand now, and the level that they grow from.
+/// The strands of one level at rest, the level that they grow from, and how some of them stand now.
 struct TreeKernelArguments {
-  std::size_t blocks = 0;
   std::size_t turns = 0;
   const std::uint32_t* parent = nullptr;
   const std::uint32_t* parent_link = nullptr;
@@ -32,15 +31,20 @@ struct TreeKernelArguments {
   const float* parent_joints_m = nullptr;
 
   TurnArrays turn;  ///< room for `turns` in whole blocks
-  float* turned_root_m[3] = {};
-  float* turned_rest[3] = {};
-  float* turned_curl[3] = {};
+
+  std::size_t first_block = 0;  ///< of those that are carried
+  std::size_t blocks = 0;
+  float* carried_root_m[3] = {};  ///< from the first strand of that block on
+  float* carried_rest[3] = {};
+  float* carried_curl[3] = {};
 };
 
 struct TreeKernels {
-  /// Parent's turn and bend -> `turn`.
+  /// The largest of many numbers; 0 of none.
+  std::uint32_t (*largest)(const std::uint32_t* numbers, std::size_t count) noexcept;
+  /// Parent's turn and bend -> `turn`, for all strands.
   void (*turn)(const TreeKernelArguments&) noexcept;
-  /// `turn`, rest, curl and the parent's joints -> what is `turned_`.
+  /// `turn`, rest, curl and the parent's joints -> what is `carried_`, for some blocks.
   void (*carry)(const TreeKernelArguments&) noexcept;
 };
 

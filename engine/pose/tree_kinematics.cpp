@@ -1,6 +1,7 @@
 #include "engine/pose/tree_kinematics.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/base/kernel.hpp"
 #include "engine/pose/strand_kernels.hpp"
@@ -12,6 +13,13 @@ namespace {
 constexpr KernelRows<StrandKernels> kTreeStrandRows = YURAGI_KERNEL_ROWS(strand_kernels);
 constexpr KernelRows<TreeKernels> kTreeRows = YURAGI_KERNEL_ROWS(tree_kernels);
 
+/// So many blocks are carried at a time, and stay in the fastest cache until their joints are computed.
+constexpr std::size_t kBlocksAtOnce = 8;
+/// The places of a level's numbers are computed in 32 bits.
+constexpr std::size_t kMostNumbers = std::numeric_limits<std::uint32_t>::max();
+
+constexpr std::size_t kStrandsAtOnce = kBlocksAtOnce * kStrandsPerBlock;
+
 std::size_t strands_per_turn(const TreeLevel& level) noexcept {
   return level.is_turned_by_block ? kStrandsPerBlock : 1;
 }
@@ -21,21 +29,15 @@ std::size_t turn_count(const TreeLevel& level) noexcept {
 }
 
 /// Does every strand of level `index` grow from a link that is there?
-bool has_its_parents(const TreeSkeleton& tree, std::size_t index) noexcept {
+bool has_its_parents(const TreeSkeleton& tree, std::size_t index, const TreeKernels& kernels) noexcept {
   const TreeLevel& level = tree.levels[index];
   if (index == 0) return level.parent.empty() && level.parent_link.empty();
   const std::size_t count = level.strands.padded_count();
   if (level.parent_level >= index || level.parent.size() != count || level.parent_link.size() != count) return false;
-
-  // The largest of all, rather than a way out at the first that is too large: so this is vectorised.
   const StrandSkeleton& parents = tree.levels[level.parent_level].strands;
-  std::uint32_t parent = 0;
-  std::uint32_t link = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    parent = std::max(parent, level.parent[i]);
-    link = std::max(link, level.parent_link[i]);
-  }
-  return count == 0 || (parent < parents.padded_count() && link < parents.links_per_strand);
+  if (parents.padded_count() > kMostNumbers / 3 / parents.links_per_strand) return false;
+  return count == 0 || (kernels.largest(level.parent.data(), count) < parents.padded_count() &&
+                        kernels.largest(level.parent_link.data(), count) < parents.links_per_strand);
 }
 
 /// The same problem in the tree's terms.
@@ -61,20 +63,13 @@ TreeKinematicsJob::Problem of_tree(StrandKinematicsJob::Problem problem) noexcep
 
 }  // namespace
 
-TreeJoints::TreeJoints(const TreeSkeleton& tree) {
+TreeJoints::TreeJoints(const TreeSkeleton& tree) : standing_(9 * kStrandsAtOnce) {
   levels_.reserve(tree.levels.size());
-  stands_.reserve(tree.levels.size());
   for (const TreeLevel& level : tree.levels) {
     levels_.emplace_back(level.strands);
-    Stand& stand = stands_.emplace_back();
     const std::size_t turns = padded_to_blocks(turn_count(level));
-    stand.turn_w.assign(turns, 1.0F);
-    for (auto* zeros : {&stand.turn_x, &stand.turn_y, &stand.turn_z}) zeros->assign(turns, 0.0F);
-    if (stands_.size() == 1) continue;
-    for (auto* array : {&stand.root_x_m, &stand.root_y_m, &stand.root_z_m, &stand.rest_x, &stand.rest_y, &stand.rest_z,
-                        &stand.curl_x, &stand.curl_y, &stand.curl_z}) {
-      array->resize(level.strands.padded_count());
-    }
+    const std::vector<float> zeros(turns, 0.0F);
+    turns_.push_back({std::vector<float>(turns, 1.0F), zeros, zeros, zeros});
   }
 }
 
@@ -91,8 +86,8 @@ TreeKinematicsJob::Problem TreeKinematicsJob::validate() const noexcept {
         .skeleton = &level.strands, .pose = &pose->levels[i], .row = row, .joints = &joints->levels_[i]};
     const Problem problem = of_tree(strands.validate());
     if (problem != Problem::kNone) return problem;
-    if (!has_its_parents(*skeleton, i)) return Problem::kSkeletonSize;
-    if (joints->stands_[i].turn_w.size() != padded_to_blocks(turn_count(level))) return Problem::kJointsSize;
+    if (!has_its_parents(*skeleton, i, kTreeRows[row.value_or(best_simd_row())])) return Problem::kSkeletonSize;
+    if (joints->turns_[i].w.size() != padded_to_blocks(turn_count(level))) return Problem::kJointsSize;
   }
   return Problem::kNone;
 }
@@ -100,73 +95,95 @@ TreeKinematicsJob::Problem TreeKinematicsJob::validate() const noexcept {
 TreeKinematicsJob::Problem TreeKinematicsJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
-  const SimdRow used_row = row.value_or(best_simd_row());
-
-  const auto turns_of = [this](std::size_t level) -> TurnArrays {
-    TreeJoints::Stand& stand = joints->stands_[level];
-    return {.w = stand.turn_w.data(),
-            .x = stand.turn_x.data(),
-            .y = stand.turn_y.data(),
-            .z = stand.turn_z.data(),
-            .strands_per_turn = strands_per_turn(skeleton->levels[level])};
-  };
+  const TreeKernels& tree_kernels = kTreeRows[row.value_or(best_simd_row())];
+  const StrandKernels& strand_kernels = kTreeStrandRows[row.value_or(best_simd_row())];
 
   for (std::size_t i = 0; i < skeleton->levels.size(); ++i) {
-    const TreeLevel& level = skeleton->levels[i];
-    const StrandSkeleton& strands = level.strands;
-    StrandKernelArguments standing{.blocks = strands.padded_count() / kStrandsPerBlock,
-                                   .links = strands.links_per_strand,
-                                   .root_x_m = strands.root_x_m.data(),
-                                   .root_y_m = strands.root_y_m.data(),
-                                   .root_z_m = strands.root_z_m.data(),
-                                   .rest_x = strands.rest_x.data(),
-                                   .rest_y = strands.rest_y.data(),
-                                   .rest_z = strands.rest_z.data(),
-                                   .curl_x = strands.curl_x.data(),
-                                   .curl_y = strands.curl_y.data(),
-                                   .curl_z = strands.curl_z.data(),
-                                   .curl_sin = joints->levels_[i].curl_sin_.data(),
-                                   .curl_versine = joints->levels_[i].curl_versine_.data(),
-                                   .link_length_m = strands.link_length_m.data(),
-                                   .bend_east_rad = pose->levels[i].bend_east_rad.data(),
-                                   .bend_south_rad = pose->levels[i].bend_south_rad.data(),
-                                   .joints_m = joints->levels_[i].data().data()};
+    StrandKernelArguments strands = strands_of(i);
+    if (i == 0) {
+      strand_kernels.joint_positions(strands);
+      continue;
+    }
 
-    // Above the ground, the strands first go with the links that they grow from.
-    if (i > 0) {
-      const StrandPose& parent_pose = pose->levels[level.parent_level];
-      TreeJoints::Stand& stand = joints->stands_[i];
-      const TreeKernelArguments carried{
-          .blocks = standing.blocks,
-          .turns = turn_count(level),
+    // Above the ground, strands first go with the links that they grow from.
+    TreeKernelArguments carried = carried_from_parents(i);
+    tree_kernels.turn(carried);
+    strands.root_x_m = carried.carried_root_m[0];
+    strands.root_y_m = carried.carried_root_m[1];
+    strands.root_z_m = carried.carried_root_m[2];
+    strands.rest_x = carried.carried_rest[0];
+    strands.rest_y = carried.carried_rest[1];
+    strands.rest_z = carried.carried_rest[2];
+    strands.curl_x = carried.carried_curl[0];
+    strands.curl_y = carried.carried_curl[1];
+    strands.curl_z = carried.carried_curl[2];
+    const std::size_t all_blocks = strands.blocks;
+    for (std::size_t block = 0; block < all_blocks; block += kBlocksAtOnce) {
+      carried.first_block = block;
+      carried.blocks = strands.blocks = std::min(kBlocksAtOnce, all_blocks - block);
+      tree_kernels.carry(carried);
+      strand_kernels.joint_positions(strands);
+      strands.curl_sin += kStrandsAtOnce;
+      strands.curl_versine += kStrandsAtOnce;
+      strands.link_length_m += kStrandsAtOnce;
+      strands.bend_east_rad += kStrandsAtOnce;
+      strands.bend_south_rad += kStrandsAtOnce;
+      strands.joints_m += kStrandsAtOnce * strands.links * 3;
+    }
+  }
+  return Problem::kNone;
+}
+
+StrandKernelArguments TreeKinematicsJob::strands_of(std::size_t level) const noexcept {
+  const StrandSkeleton& strands = skeleton->levels[level].strands;
+  return {.blocks = strands.padded_count() / kStrandsPerBlock,
+          .links = strands.links_per_strand,
+          .root_x_m = strands.root_x_m.data(),
+          .root_y_m = strands.root_y_m.data(),
+          .root_z_m = strands.root_z_m.data(),
+          .rest_x = strands.rest_x.data(),
+          .rest_y = strands.rest_y.data(),
+          .rest_z = strands.rest_z.data(),
+          .curl_x = strands.curl_x.data(),
+          .curl_y = strands.curl_y.data(),
+          .curl_z = strands.curl_z.data(),
+          .curl_sin = joints->levels_[level].curl_sin_.data(),
+          .curl_versine = joints->levels_[level].curl_versine_.data(),
+          .link_length_m = strands.link_length_m.data(),
+          .bend_east_rad = pose->levels[level].bend_east_rad.data(),
+          .bend_south_rad = pose->levels[level].bend_south_rad.data(),
+          .joints_m = joints->levels_[level].data().data()};
+}
+
+TurnArrays TreeKinematicsJob::turns_of(std::size_t level) const noexcept {
+  TreeJoints::Turns& turns = joints->turns_[level];
+  return {.w = turns.w.data(),
+          .x = turns.x.data(),
+          .y = turns.y.data(),
+          .z = turns.z.data(),
+          .strands_per_turn = strands_per_turn(skeleton->levels[level])};
+}
+
+TreeKernelArguments TreeKinematicsJob::carried_from_parents(std::size_t index) const noexcept {
+  const TreeLevel& level = skeleton->levels[index];
+  const StrandSkeleton& strands = level.strands;
+  const StrandPose& parent_pose = pose->levels[level.parent_level];
+  float* const standing = joints->standing_.data();
+  const auto array = [standing](std::size_t which) { return standing + which * kStrandsAtOnce; };
+  return {.turns = turn_count(level),
           .parent = level.parent.data(),
           .parent_link = level.parent_link.data(),
-          .rest = {standing.rest_x, standing.rest_y, standing.rest_z},
-          .curl = {standing.curl_x, standing.curl_y, standing.curl_z},
+          .rest = {strands.rest_x.data(), strands.rest_y.data(), strands.rest_z.data()},
+          .curl = {strands.curl_x.data(), strands.curl_y.data(), strands.curl_z.data()},
           .parent_links = skeleton->levels[level.parent_level].strands.links_per_strand,
           .parent_turn = turns_of(level.parent_level),
           .parent_bend_east_rad = parent_pose.bend_east_rad.data(),
           .parent_bend_south_rad = parent_pose.bend_south_rad.data(),
           .parent_joints_m = joints->levels_[level.parent_level].data().data(),
-          .turn = turns_of(i),
-          .turned_root_m = {stand.root_x_m.data(), stand.root_y_m.data(), stand.root_z_m.data()},
-          .turned_rest = {stand.rest_x.data(), stand.rest_y.data(), stand.rest_z.data()},
-          .turned_curl = {stand.curl_x.data(), stand.curl_y.data(), stand.curl_z.data()}};
-      kTreeRows[used_row].turn(carried);
-      kTreeRows[used_row].carry(carried);
-      standing.root_x_m = stand.root_x_m.data();
-      standing.root_y_m = stand.root_y_m.data();
-      standing.root_z_m = stand.root_z_m.data();
-      standing.rest_x = stand.rest_x.data();
-      standing.rest_y = stand.rest_y.data();
-      standing.rest_z = stand.rest_z.data();
-      standing.curl_x = stand.curl_x.data();
-      standing.curl_y = stand.curl_y.data();
-      standing.curl_z = stand.curl_z.data();
-    }
-    kTreeStrandRows[used_row].joint_positions(standing);
-  }
-  return Problem::kNone;
+          .turn = turns_of(index),
+          .carried_root_m = {array(0), array(1), array(2)},
+          .carried_rest = {array(3), array(4), array(5)},
+          .carried_curl = {array(6), array(7), array(8)}};
 }
 
 }  // namespace yuragi

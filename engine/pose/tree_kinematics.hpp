@@ -11,6 +11,10 @@
 
 namespace yuragi {
 
+struct StrandKernelArguments;
+struct TreeKernelArguments;
+struct TurnArrays;
+
 /// The joints of a tree, in the world, level by level, and what the kinematics needs on the way there.
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no.
@@ -25,16 +29,14 @@ class TreeJoints {
  private:
   friend struct TreeKinematicsJob;
 
-  /// How the strands of a level above the first stand now. Of the first, only its turn has elements: it has none.
-  struct Stand {
-    std::vector<float> root_x_m, root_y_m, root_z_m;
-    std::vector<float> rest_x, rest_y, rest_z;
-    std::vector<float> curl_x, curl_y, curl_z;
-    std::vector<float> turn_w, turn_x, turn_y, turn_z;  ///< a quaternion for each strand or block, in whole blocks
+  /// The turns of a level's roots: a quaternion for each strand or block, in whole blocks.
+  struct Turns {
+    std::vector<float> w, x, y, z;
   };
 
   std::vector<JointPositions> levels_;
-  std::vector<Stand> stands_;
+  std::vector<Turns> turns_;
+  std::vector<float> standing_;  ///< how the strands of some blocks stand now: nine arrays
 };
 
 /// The one forward kinematics of a tree: each level is strands (as StrandKinematicsJob) whose roots, rest directions
@@ -62,6 +64,12 @@ struct TreeKinematicsJob {
 
   /// Does the work, if validate() has nothing against it; returns what validate() says.
   Problem run() const noexcept;
+
+ private:
+  // What the kernels of a level are given.
+  StrandKernelArguments strands_of(std::size_t level) const noexcept;
+  TurnArrays turns_of(std::size_t level) const noexcept;
+  TreeKernelArguments carried_from_parents(std::size_t level) const noexcept;
 };
 
 }  // namespace yuragi

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi {
+
+/// How a generation of branches grows out of the one before. What has two numbers goes evenly from the first, at the
+/// foot of the parent, to the second, at its tip.
+struct BranchHabit {
+  double first_at = 0.0;                    ///< the lowest stands at this part of the parent's length
+  std::array<double, 2> angle_deg = {};     ///< away from the parent's own direction
+  std::array<double, 2> length_share = {};  ///< of the tree's height
+  double lift_deg = 0.0;                    ///< how far it curls up to the light from foot to tip; below 0: it droops
+};
+
+/// What trees of a species have in common.
+struct TreeHabit {
+  double height_m = 8.0;     ///< about that of the crown's top
+  double trunk_share = 0.5;  ///< the trunk's length, as a part of the height
+  BranchHabit limb;          ///< on the trunk
+  BranchHabit twig;          ///< on the limbs
+  double leaf_angle_deg = 55.0;
+  double leaf_length_m = 0.1;
+  double leaf_width_share = 0.5;  ///< of the leaf's length
+  double leaf_droop_deg = 40.0;   ///< from petiole to tip
+};
+
+/// What a tree is like. At least one of each.
+struct TreeSpec {
+  TreeHabit habit;
+  std::size_t limbs = 15;
+  std::size_t twigs = 240;
+  std::size_t leaves = 10000;
+  std::size_t branch_links = 256;  ///< of trunk, limbs and twigs
+  std::size_t leaf_links = 4;
+  double size = 1.0;  ///< all lengths are this times the species' own
+  std::uint64_t seed = 0;
+};
+
+/// The levels of the skeleton that make_tree() grows, in this order.
+enum TreePart : std::size_t { kTrunk, kLimbs, kTwigs, kLeaves, kTreePartCount };
+
+/// Grows a tree by rule and seed, its foot at the world's origin: a trunk, limbs on it, twigs on the limbs, and leaves
+/// on the twigs in sprays of 16 that are turned as one (`is_turned_by_block`). Each stands a golden angle around its
+/// parent from the one below (phyllotaxis: Vogel 1979, "A better way to construct the sunflower head"), leaves it at
+/// the habit's angle, and curls to the light or droops; lengths and angles differ at random. Where a branch begins, its
+/// section is the sum of those that it carries (the pipe model: Shinozaki and others 1964, "A quantitative analysis of
+/// plant form"). Deterministic by seed. Allocates; may throw std::bad_alloc. Thread-safe: yes. Realtime-safe: no.
+TreeSkeleton make_tree(const TreeSpec& spec);
+
+/// How far a joint may be moved by the bends of each level: if no bend of level l changes by more than d[l] (as a
+/// vector, rad), no joint moves farther than the sum of lever[l] d[l], metres.
+///
+/// For a turn by a vector of angles changes by no more than that vector (the derivative of the exponential map
+/// shortens), and each link of a joint's path from the ground is turned by i/n of the bend of each strand on that path
+/// that is at or before it. Levels that are not there have 0. The tree has valid parents (TreeKinematicsJob).
+/// Thread-safe: yes.
+std::array<double, kMaxTreeLevels> tree_levers_m(const TreeSkeleton& tree);
+
+}  // namespace yuragi
