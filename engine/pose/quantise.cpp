@@ -1,31 +1,84 @@
 #include "engine/pose/quantise.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 
 namespace yuragi {
+namespace {
 
-void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units) noexcept {
-  assert(angle_rad.size() == units.size());
-  constexpr float kUnitsPerRad = 32767.0F / 0x1.921fb6p1F;
-  constexpr float kLargest = 32767.0F;
+/// values * units_per_one, from `smallest` to `largest`, rounded to the nearest; NaN becomes 0.
+template <class Unit>
+void quantise_within(std::span<const float> values, float units_per_one, float smallest, float largest,
+                     std::span<Unit> units) noexcept {
+  assert(values.size() == units.size());
   constexpr float kRound = 0x1.8p23F;  // adding it leaves the nearest integer in the low bits
 
   const std::size_t count = units.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const float scaled = angle_rad[i] * kUnitsPerRad;
+    const float scaled = values[i] * units_per_one;
     const float number = scaled == scaled ? scaled : 0.0F;
-    const float above = number < -kLargest ? -kLargest : number;
-    const float within = above > kLargest ? kLargest : above;
-    units[i] = static_cast<std::int16_t>(std::bit_cast<std::int32_t>(within + kRound));
+    const float above = number < smallest ? smallest : number;
+    const float within = above > largest ? largest : above;
+    units[i] = static_cast<Unit>(std::bit_cast<std::int32_t>(within + kRound));
   }
+}
+
+constexpr float kLargestUnit = 32767.0F;
+
+constexpr std::size_t kExtentSamples = 16;  // along each side of a grid
+constexpr float kFinestStep_m = 1e-6F;
+constexpr float kCoarsestStep_m = 1.0F;
+
+/// Of a grid of columns x rows points whose rows are `stride` apart.
+template <class Points>
+float way_step_of(const Points& points, std::size_t columns, std::size_t rows, std::size_t stride) noexcept {
+  if (columns == 0 || rows == 0) return kFinestStep_m;
+  float square_m2 = 0.0F;
+  for (const auto* axis : {&points.rest_x_m, &points.rest_y_m, &points.rest_z_m}) {
+    float least_m = axis->front();
+    float most_m = least_m;
+    for (std::size_t i = 0; i < kExtentSamples; ++i) {
+      const std::size_t row = i * (rows - 1) / (kExtentSamples - 1);
+      for (std::size_t k = 0; k < kExtentSamples; ++k) {
+        const float at_m = (*axis)[row * stride + k * (columns - 1) / (kExtentSamples - 1)];
+        least_m = std::min(least_m, at_m);
+        most_m = std::max(most_m, at_m);
+      }
+    }
+    square_m2 += (most_m - least_m) * (most_m - least_m);
+  }
+  return std::clamp(2.0F * std::sqrt(square_m2) / kLargestUnit, kFinestStep_m, kCoarsestStep_m);
+}
+
+}  // namespace
+
+void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units) noexcept {
+  quantise_within(angle_rad, kLargestUnit / 0x1.921fb6p1F, -kLargestUnit, kLargestUnit, units);
 }
 
 void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad) noexcept {
   assert(angle_rad.size() == units.size());
   const std::size_t count = units.size();
   for (std::size_t i = 0; i < count; ++i) angle_rad[i] = static_cast<float>(units[i]) * kBendStep_rad;
+}
+
+void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::int16_t> units) noexcept {
+  quantise_within(way_m, 1.0F / step_m, -kLargestUnit, kLargestUnit, units);
+}
+
+void quantise_heat(std::span<const float> heat, std::span<std::uint8_t> units) noexcept {
+  quantise_within(heat, 255.0F, 0.0F, 255.0F, units);
+}
+
+float way_step_m(const GridSkeleton& grid) noexcept {
+  return way_step_of(grid, grid.columns, grid.rows, grid.stride());
+}
+
+float way_step_m(const SurfaceSkeleton& surface) noexcept {
+  return way_step_of(surface, surface.columns, surface.rows, surface.columns);
 }
 
 }  // namespace yuragi

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/pose/skeleton.hpp"
+
 namespace yuragi {
 
 /// What one unit of a quantised bend is worth: the range is +-pi in +-32767 units, so that rounding moves the tip of a
@@ -15,5 +17,18 @@ void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units) n
 
 /// And back. Both spans have the same size. Thread-safe and realtime-safe: yes.
 void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad) noexcept;
+
+/// Ways (metres) to units of step_m (above 0), in the same manner. Thread-safe and realtime-safe: yes.
+void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::int16_t> units) noexcept;
+
+/// Heat, 0 to 1, to 0 to 255, the number of a colour on the ramp, in the same manner. Thread-safe and realtime-safe:
+/// yes.
+void quantise_heat(std::span<const float> heat, std::span<std::uint8_t> units) noexcept;
+
+/// What one unit of a way is worth, for a skeleton: ways up to twice its extent at rest fit in, so that a cloth of 2 m
+/// by 2 m is within 0.09 mm. The extent is the diagonal of a box around some of its points, the corners among them; it
+/// takes as long for every size. Thread-safe and realtime-safe: yes.
+float way_step_m(const GridSkeleton& grid) noexcept;
+float way_step_m(const SurfaceSkeleton& surface) noexcept;
 
 }  // namespace yuragi

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/wire/schema.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -17,10 +19,11 @@ Text add_text(Builder& builder, std::string_view text) {
   return builder.CreateString(text.data(), size);
 }
 
-/// The values of the strands, without the padding.
-flatbuffers::Offset<flatbuffers::Vector<float>> add_values(Builder& builder, const std::vector<float>& values,
-                                                           std::size_t strand_count) {
-  return builder.CreateVector(values.data(), strand_count);
+/// The first `count` values: without the padding.
+template <class T>
+flatbuffers::Offset<flatbuffers::Vector<T>> add_values(Builder& builder, const std::vector<T>& values,
+                                                       std::size_t count) {
+  return builder.CreateVector(values.data(), count);
 }
 
 flatbuffers::Offset<fb::StrandSkeleton> add_skeleton(Builder& builder, const StrandSkeleton& skeleton) {
@@ -39,6 +42,63 @@ flatbuffers::Offset<fb::StrandSkeleton> add_skeleton(Builder& builder, const Str
   return fb::CreateStrandSkeleton(builder, static_cast<std::uint32_t>(skeleton.links_per_strand), root_x, root_y,
                                   root_z, rest_x, rest_y, rest_z, curl_x, curl_y, curl_z, rest_curl, link_length);
 }
+
+flatbuffers::Offset<fb::GridSkeleton> add_skeleton(Builder& builder, const GridSkeleton& skeleton) {
+  const auto add = [&](const std::vector<float>& padded) {
+    float* values = nullptr;
+    const auto vector = builder.CreateUninitializedVector(skeleton.columns * skeleton.rows, &values);
+    for (std::size_t row = 0; row < skeleton.rows; ++row) {
+      std::copy_n(padded.begin() + static_cast<std::ptrdiff_t>(row * skeleton.stride()), skeleton.columns,
+                  values + row * skeleton.columns);
+    }
+    return flatbuffers::Offset<flatbuffers::Vector<float>>(vector);
+  };
+  const auto rest_x = add(skeleton.rest_x_m);
+  const auto rest_y = add(skeleton.rest_y_m);
+  const auto rest_z = add(skeleton.rest_z_m);
+  return fb::CreateGridSkeleton(builder, static_cast<std::uint32_t>(skeleton.columns),
+                                static_cast<std::uint32_t>(skeleton.rows), skeleton.is_first_column_fixed, rest_x,
+                                rest_y, rest_z);
+}
+
+flatbuffers::Offset<fb::TreeSkeleton> add_skeleton(Builder& builder, const TreeSkeleton& skeleton) {
+  std::vector<flatbuffers::Offset<fb::TreeLevel>> levels;
+  for (const TreeLevel& level : skeleton.levels) {
+    const std::size_t count = level.strands.strand_count;
+    const std::size_t children = levels.empty() ? 0 : count;
+    const auto strands = add_skeleton(builder, level.strands);
+    const auto parent = add_values(builder, level.parent, children);
+    const auto parent_link = add_values(builder, level.parent_link, children);
+    const auto base_radius = add_values(builder, level.base_radius_m, count);
+    const auto tip_radius = add_values(builder, level.tip_radius_m, count);
+    levels.push_back(fb::CreateTreeLevel(builder, strands, static_cast<std::uint32_t>(level.parent_level), parent,
+                                         parent_link, level.is_turned_by_block, level.is_leaves, base_radius,
+                                         tip_radius));
+  }
+  return fb::CreateTreeSkeleton(builder, builder.CreateVector(levels));
+}
+
+flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const SurfaceSkeleton& skeleton) {
+  const auto add = [&](const std::vector<float>& values) {
+    return add_values(builder, values, skeleton.columns * skeleton.rows);
+  };
+  const auto rest_x = add(skeleton.rest_x_m);
+  const auto rest_y = add(skeleton.rest_y_m);
+  const auto rest_z = add(skeleton.rest_z_m);
+  const auto normal_x = add(skeleton.normal_x);
+  const auto normal_y = add(skeleton.normal_y);
+  const auto normal_z = add(skeleton.normal_z);
+  const auto ramp = add_values(builder, skeleton.ramp_rgba, skeleton.ramp_rgba.size());
+  return fb::CreateSurfaceSkeleton(builder, static_cast<std::uint32_t>(skeleton.columns),
+                                   static_cast<std::uint32_t>(skeleton.rows), skeleton.is_closed, rest_x, rest_y,
+                                   rest_z, normal_x, normal_y, normal_z, ramp);
+}
+
+/// The schema's kinds are those of skeleton.hpp, in the same order.
+fb::Skeleton kind_of(const Skeleton& skeleton) {
+  return static_cast<fb::Skeleton>(skeleton.index() + fb::Skeleton_MIN + 1);
+}
+static_assert(fb::Skeleton_MAX == std::variant_size_v<Skeleton>);
 
 flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus& sensor) {
   std::vector<flatbuffers::Offset<fb::Counter>> refused;
@@ -97,8 +157,9 @@ Bytes encode(const Scenes& scenes) {
   for (const SceneModel& scene : scenes.scenes) {
     const auto name = add_text(builder, scene.name);
     const auto kind = add_text(builder, scene.kind);
-    const auto skeleton = add_skeleton(builder, std::get<StrandSkeleton>(scene.skeleton));
-    tables.push_back(fb::CreateScene(builder, name, kind, fb::Skeleton_StrandSkeleton, skeleton.Union()));
+    const auto skeleton =
+        std::visit([&](const auto& model) { return add_skeleton(builder, model).Union(); }, scene.skeleton);
+    tables.push_back(fb::CreateScene(builder, name, kind, kind_of(scene.skeleton), skeleton));
   }
   return finish(builder, fb::Body_Scenes, fb::CreateScenes(builder, builder.CreateVector(tables)));
 }
@@ -112,6 +173,27 @@ Bytes encode(const Sensors& sensors) {
   const fb::Wind wind = to_schema(sensors.wind);
   return finish(builder, fb::Body_Sensors,
                 fb::CreateSensors(builder, vector, &wind, sensors.late_ticks, sensors.clients));
+}
+
+Bytes encode(const Control& control) {
+  Builder builder;
+  const auto scene = add_text(builder, control.scene);
+  return finish(
+      builder, fb::Body_Control,
+      fb::CreateControl(builder, scene, control.shown, control.hide_others, static_cast<float>(control.over_s)));
+}
+
+Bytes encode(const ControlReply& reply) {
+  Builder builder;
+  std::vector<flatbuffers::Offset<fb::SceneState>> scenes;
+  for (const SceneState& scene : reply.scenes) {
+    const auto name = add_text(builder, scene.name);
+    const auto kind = add_text(builder, scene.kind);
+    scenes.push_back(fb::CreateSceneState(builder, name, kind, scene.shown));
+  }
+  const auto message = add_text(builder, reply.message);
+  return finish(builder, fb::Body_ControlReply,
+                fb::CreateControlReply(builder, reply.done, message, builder.CreateVector(scenes)));
 }
 
 }  // namespace yuragi::wire

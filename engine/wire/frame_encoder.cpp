@@ -1,7 +1,10 @@
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstdint>
 
+#include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/quantise.hpp"
 #include "engine/wire/schema.hpp"
 #include "engine/wire/wire.hpp"
@@ -15,21 +18,87 @@ struct FrameEncoder::Builder {
   flatbuffers::FlatBufferBuilder buffer;  // keeps its memory from frame to frame
   std::vector<flatbuffers::Offset<fb::ScenePose>> scenes;
 
-  flatbuffers::Offset<flatbuffers::Vector<std::int16_t>> add_quantised(std::span<const float> bend_rad) {
+  using Units = flatbuffers::Offset<flatbuffers::Vector<std::int16_t>>;
+
+  Units add_bends(std::span<const float> bend_rad) {
     std::int16_t* values = nullptr;
     const auto vector = buffer.CreateUninitializedVector(bend_rad.size(), &values);
     quantise(bend_rad, {values, bend_rad.size()});
     return vector;
   }
 
-  flatbuffers::Offset<fb::ScenePose> add_pose(const StrandPose& pose, const StrandSkeleton& skeleton) {
-    assert(pose.bend_east_rad.size() >= skeleton.strand_count && pose.bend_south_rad.size() >= skeleton.strand_count);
-    const auto east = add_quantised({pose.bend_east_rad.data(), skeleton.strand_count});
-    const auto south = add_quantised({pose.bend_south_rad.data(), skeleton.strand_count});
-    const auto strands = fb::CreateStrandPose(buffer, kBendStep_rad, east, south);
-    return fb::CreateScenePose(buffer, fb::Pose_StrandPose, strands.Union());
+  /// `rows` runs of `columns` values, which stand `stride` apart.
+  Units add_ways(std::span<const float> way_m, float step_m, std::size_t columns, std::size_t rows,
+                 std::size_t stride) {
+    std::int16_t* values = nullptr;
+    const auto vector = buffer.CreateUninitializedVector(columns * rows, &values);
+    for (std::size_t row = 0; row < rows; ++row)
+      quantise_ways(way_m.subspan(row * stride, columns), step_m, {values + row * columns, columns});
+    return vector;
+  }
+
+  flatbuffers::Offset<fb::StrandPose> add(const StrandPose& pose, const StrandSkeleton& skeleton) {
+    const auto east = add_bends({pose.bend_east_rad.data(), skeleton.strand_count});
+    const auto south = add_bends({pose.bend_south_rad.data(), skeleton.strand_count});
+    return fb::CreateStrandPose(buffer, kBendStep_rad, east, south);
+  }
+
+  flatbuffers::Offset<fb::GridPose> add(const GridPose& pose, const GridSkeleton& grid) {
+    const float step_m = way_step_m(grid);
+    const auto add_axis = [&](const std::vector<float>& offset_m) {
+      return add_ways(offset_m, step_m, grid.columns, grid.rows, grid.stride());
+    };
+    const auto x = add_axis(pose.offset_x_m);
+    const auto y = add_axis(pose.offset_y_m);
+    const auto z = add_axis(pose.offset_z_m);
+    return fb::CreateGridPose(buffer, static_cast<std::uint32_t>(grid.columns), step_m, x, y, z);
+  }
+
+  flatbuffers::Offset<fb::TreePose> add(const TreePose& pose, const TreeSkeleton& tree) {
+    std::array<flatbuffers::Offset<fb::StrandPose>, kMaxTreeLevels> levels;
+    const std::size_t count = std::min(tree.levels.size(), levels.size());
+    for (std::size_t i = 0; i < count; ++i) levels[i] = add(pose.levels[i], tree.levels[i].strands);
+    return fb::CreateTreePose(buffer, buffer.CreateVector(levels.data(), count));
+  }
+
+  flatbuffers::Offset<fb::SurfacePose> add(const SurfacePose& pose, const SurfaceSkeleton& surface) {
+    const float step_m = way_step_m(surface);
+    const std::size_t count = surface.columns * surface.rows;
+    const auto displacement = add_ways(pose.displacement_m, step_m, count, 1, count);
+    std::uint8_t* heat = nullptr;
+    const auto colours = buffer.CreateUninitializedVector(pose.heat.size(), &heat);
+    quantise_heat(pose.heat, {heat, pose.heat.size()});
+    return fb::CreateSurfacePose(buffer, step_m, displacement, colours);
+  }
+
+  flatbuffers::Offset<fb::ScenePose> add_scene(const Pose& pose, const Skeleton& skeleton, float opacity) {
+    if (!(opacity > 0.0F)) return fb::CreateScenePose(buffer, fb::Pose_NONE, 0, 0.0F);
+    assert(fits(pose, skeleton));
+    const auto kind = static_cast<fb::Pose>(pose.index() + fb::Pose_MIN + 1);
+    const auto add_kind = [&](const auto* model, const auto* moved) {
+      return model == nullptr ? flatbuffers::Offset<void>() : add(*moved, *model).Union();
+    };
+    flatbuffers::Offset<void> body;
+    switch (kind) {
+      case fb::Pose_StrandPose:
+        body = add_kind(std::get_if<StrandSkeleton>(&skeleton), std::get_if<StrandPose>(&pose));
+        break;
+      case fb::Pose_GridPose:
+        body = add_kind(std::get_if<GridSkeleton>(&skeleton), std::get_if<GridPose>(&pose));
+        break;
+      case fb::Pose_TreePose:
+        body = add_kind(std::get_if<TreeSkeleton>(&skeleton), std::get_if<TreePose>(&pose));
+        break;
+      case fb::Pose_SurfacePose:
+        body = add_kind(std::get_if<SurfaceSkeleton>(&skeleton), std::get_if<SurfacePose>(&pose));
+        break;
+      case fb::Pose_NONE:
+        break;
+    }
+    return fb::CreateScenePose(buffer, kind, body, std::min(opacity, 1.0F));
   }
 };
+static_assert(fb::Pose_MAX == std::variant_size_v<Pose>, "the kinds of skeleton.hpp, in the same order");
 
 FrameEncoder::FrameEncoder() : builder_(std::make_unique<Builder>()) {
   // A zero takes as much room as any other number, so that no later frame is longer than the first.
@@ -41,16 +110,16 @@ FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
 FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
 
 std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info, std::span<const Skeleton* const> skeletons,
-                                                   std::span<const Pose* const> poses) {
-  assert(skeletons.size() == poses.size());
+                                                   std::span<const Pose* const> poses,
+                                                   std::span<const float> opacities) {
+  assert(skeletons.size() == poses.size() && (opacities.empty() || opacities.size() == poses.size()));
   auto& buffer = builder_->buffer;
   buffer.Clear();
 
-  // Scene by scene; the poses of a strand skeleton are the only kind yet.
   auto& scenes = builder_->scenes;
   scenes.clear();
   for (std::size_t i = 0; i < skeletons.size(); ++i)
-    scenes.push_back(builder_->add_pose(std::get<StrandPose>(*poses[i]), std::get<StrandSkeleton>(*skeletons[i])));
+    scenes.push_back(builder_->add_scene(*poses[i], *skeletons[i], opacities.empty() ? 1.0F : opacities[i]));
   const auto scene_vector = buffer.CreateVector(scenes);
 
   const fb::Wind wind = to_schema(info.wind);

@@ -1,7 +1,5 @@
 #include "engine/wire/wire.hpp"
 
-#include <algorithm>
-
 #include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi::wire {
@@ -29,8 +27,14 @@ Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kS
 }
 
 bool fits(const Frame& frame, const Scenes& scenes) {
-  return std::equal(frame.poses.begin(), frame.poses.end(), scenes.scenes.begin(), scenes.scenes.end(),
-                    [](const Pose& pose, const SceneModel& scene) { return yuragi::fits(pose, scene.skeleton); });
+  const std::size_t count = scenes.scenes.size();
+  if (frame.poses.size() != count || frame.opacities.size() != count) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto* strands = std::get_if<StrandPose>(&frame.poses[i]);
+    const bool is_left_out = frame.opacities[i] <= 0.0F && strands != nullptr && strands->bend_east_rad.empty();
+    if (!is_left_out && !yuragi::fits(frame.poses[i], scenes.scenes[i].skeleton)) return false;
+  }
+  return true;
 }
 
 }  // namespace yuragi::wire

@@ -33,10 +33,12 @@ inline constexpr std::uint16_t kDefaultPort = 7410;
 // What decode() believes at most; pose.fbs tells others.
 inline constexpr std::size_t kMaxTextBytes = 1024;  ///< encoders cut longer texts
 inline constexpr std::size_t kMaxScenes = 64;
-inline constexpr std::size_t kMaxStrands = 1u << 22;  ///< of all scenes of a message together
+/// Strands, joints of cloth and points of surfaces, of all scenes of a message together.
+inline constexpr std::size_t kMaxStrands = 1u << 22;
 inline constexpr std::size_t kMaxLinksPerStrand = 256;
 inline constexpr std::size_t kMaxSensors = 256;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
+inline constexpr double kMaxFade_s = 3600.0;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -75,8 +77,8 @@ struct FrameInfo {
 
 struct Frame {
   FrameInfo info;
-  std::vector<Pose> poses;       ///< padded to whole blocks with zeros
-  std::vector<float> opacities;  ///< one a scene, 0 to 1: a scene that fades in or out
+  std::vector<Pose> poses;       ///< padded to whole blocks with zeros; a hidden scene's is a StrandPose of no strands
+  std::vector<float> opacities;  ///< one a scene, 0 (hidden) to 1; in between while it fades in or out
 };
 
 struct SensorStatus {
@@ -102,7 +104,27 @@ struct Sensors {
   std::uint32_t clients = 0;
 };
 
-using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors>;
+/// A wish to show or hide scenes.
+struct Control {
+  std::string scene;  ///< its name; empty: change nothing, only tell how things are
+  bool shown = true;
+  bool hide_others = false;  ///< and hide every other scene, in the same time
+  double over_s = 2.0;       ///< 0 to kMaxFade_s
+};
+
+struct SceneState {
+  std::string name;
+  std::string kind;
+  bool shown = true;  ///< what it is, or what it is fading to
+};
+
+struct ControlReply {
+  bool done = false;
+  std::string message;  ///< what was done, or why not
+  std::vector<SceneState> scenes;
+};
+
+using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors, Control, ControlReply>;
 
 enum class WireError : std::uint8_t {
   kTooLong,       ///< the size prefix is above the limit
@@ -122,9 +144,11 @@ Bytes encode(const Hello& hello);
 Bytes encode(const Subscribe& subscribe);
 Bytes encode(const Scenes& scenes);
 Bytes encode(const Sensors& sensors);
+Bytes encode(const Control& control);
+Bytes encode(const ControlReply& reply);
 
-/// Encodes frame after frame into one buffer that it owns and keeps. Realtime-safe after the first frame of a set of
-/// scenes: it quantises straight into the buffer, and nothing is allocated. Thread-safe: no.
+/// Encodes frame after frame into one buffer that it owns and keeps. Realtime-safe after the first frame that shows
+/// every scene of a set: it quantises straight into the buffer, and nothing is allocated. Thread-safe: no.
 class FrameEncoder {
  public:
   FrameEncoder();
@@ -132,9 +156,10 @@ class FrameEncoder {
   FrameEncoder(FrameEncoder&&) noexcept;
   FrameEncoder& operator=(FrameEncoder&&) noexcept;
 
-  /// `poses` pairs with `skeletons`, scene by scene. The bytes, size prefix included, are valid until the next call.
+  /// `poses` pairs with `skeletons` and `opacities`, scene by scene; no opacities at all: every scene is shown. A scene
+  /// of opacity 0 is hidden, and sends no pose. The bytes, size prefix included, are valid until the next call.
   std::span<const std::uint8_t> encode(const FrameInfo& info, std::span<const Skeleton* const> skeletons,
-                                       std::span<const Pose* const> poses);
+                                       std::span<const Pose* const> poses, std::span<const float> opacities = {});
 
  private:
   struct Builder;
@@ -150,7 +175,7 @@ Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kS
 Result<Message, WireError> decode(std::span<const std::uint8_t> bytes);
 
 /// Do the frame's poses pair with the skeletons? Ask before kinematics: they are two messages, and only each is
-/// consistent.
+/// consistent. A hidden scene that came without its pose pairs with any skeleton.
 bool fits(const Frame& frame, const Scenes& scenes);
 
 }  // namespace yuragi::wire

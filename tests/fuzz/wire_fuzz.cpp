@@ -6,6 +6,7 @@
 #include "engine/wire/message_reader.hpp"
 #include "engine/wire/wire.hpp"
 #include "tests/engine/wire/samples.hpp"
+#include "tests/engine/wire/soundness.hpp"
 
 // Hostile bytes for the stream's decoder and its reader. The first byte of the input chooses: raw bytes, or damage to a
 // good message, which gets behind the verifier without any corpus.
@@ -26,21 +27,15 @@ wire::Bytes damaged(wire::Bytes message, std::span<const std::uint8_t> damage) {
 /// What decode() promises of everything that it lets through.
 void demand_consistency(const wire::Message& message) {
   if (const auto* scenes = std::get_if<wire::Scenes>(&message)) {
-    for (const auto& scene : scenes->scenes) {
-      const auto& skeleton = std::get<StrandSkeleton>(scene.skeleton);
-      if (skeleton.links_per_strand < 1 || skeleton.links_per_strand > wire::kMaxLinksPerStrand) std::abort();
-      if (skeleton.root_x_m.size() != skeleton.link_length_m.size()) std::abort();
-      for (const float length_m : skeleton.link_length_m)
-        if (!(length_m >= 0.0f && length_m < 1e7f)) std::abort();
-    }
+    for (const auto& scene : scenes->scenes)
+      if (!samples::is_sound(scene.skeleton)) std::abort();
   }
   if (const auto* frame = std::get_if<wire::Frame>(&message)) {
-    for (const auto& pose : frame->poses) {
-      const auto& bends = std::get<StrandPose>(pose);
-      if (bends.bend_east_rad.size() != bends.bend_south_rad.size()) std::abort();
-      for (const float bend_rad : bends.bend_east_rad)
-        if (!(bend_rad > -100.0f && bend_rad < 100.0f)) std::abort();
-    }
+    if (frame->opacities.size() != frame->poses.size()) std::abort();
+    for (const auto& pose : frame->poses)
+      if (!samples::is_sound(pose)) std::abort();
+    for (const float opacity : frame->opacities)
+      if (!(opacity >= 0.0f && opacity <= 1.0f)) std::abort();
   }
 }
 

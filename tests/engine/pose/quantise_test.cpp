@@ -84,5 +84,45 @@ TEST(QuantiseTest, MovesTheTipOfA1mBladeByAtMostHalfAMillimetre) {
   }
 }
 
+TEST(QuantiseTest, WaysSaturateRoundAndTurnNanIntoZero) {
+  const float step_m = 0.001F;
+  const float ways_m[] = {0.0F,
+                          0.0014F,
+                          0.0016F,
+                          -0.0016F,
+                          1e9F,
+                          -std::numeric_limits<float>::infinity(),
+                          std::numeric_limits<float>::quiet_NaN()};
+  std::int16_t units[7] = {};
+  quantise_ways(ways_m, step_m, units);
+  EXPECT_EQ(std::vector<int>(std::begin(units), std::end(units)), (std::vector{0, 1, 2, -2, 32767, -32767, 0}));
+}
+
+TEST(QuantiseTest, HeatIsTheNumberOfAColour) {
+  const float heat[] = {0.0F, 1.0F, 0.5F, -3.0F, 7.0F, std::numeric_limits<float>::quiet_NaN()};
+  std::uint8_t units[6] = {};
+  quantise_heat(heat, units);
+  EXPECT_EQ(std::vector<int>(std::begin(units), std::end(units)), (std::vector{0, 255, 128, 0, 255, 0}));
+}
+
+TEST(QuantiseTest, AClothOfTwoMetresIsWithinATenthOfAMillimetre) {
+  GridSkeleton cloth;
+  cloth.columns = 200;
+  cloth.rows = 150;
+  for (auto* values : {&cloth.rest_x_m, &cloth.rest_y_m, &cloth.rest_z_m}) values->assign(150 * cloth.stride(), 7.0F);
+  for (std::size_t i = 0; i < cloth.rest_x_m.size(); ++i) {
+    cloth.rest_x_m[i] = 100.0F + 2.0F * static_cast<float>(i % cloth.stride()) / 199.0F;
+    cloth.rest_y_m[i] = 2.0F * static_cast<float>(i / cloth.stride()) / 149.0F;
+  }
+  const float step_m = way_step_m(cloth);
+  EXPECT_LE(step_m / 2.0F, 0.0001F);
+  EXPECT_GE(step_m * 32767.0F, 2.0F * std::sqrt(8.0F) * 0.9999F) << "twice its diagonal fits in, and so every fold";
+  EXPECT_GT(way_step_m(GridSkeleton{}), 0.0F);
+  SurfaceSkeleton point;
+  point.columns = point.rows = 1;
+  point.rest_x_m = point.rest_y_m = point.rest_z_m = {1.0F};
+  EXPECT_GT(way_step_m(point), 0.0F);
+}
+
 }  // namespace
 }  // namespace yuragi

@@ -10,16 +10,16 @@ namespace {
 std::size_t allocations = 0;
 }
 
-// Counted here, for the whole of this program.
-void* operator new(std::size_t size) {
+// Counted here, for the whole of this program. Not inlined: GCC would take free() for a mistake.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
@@ -67,6 +67,26 @@ TEST_F(FrameEncoderTest, NothingIsAllocatedAfterTheFirstFrame) {
 TEST_F(FrameEncoderTest, AllFramesOfASetOfScenesHaveOneSize) {
   const std::size_t first = encode(FrameInfo{}).size();
   EXPECT_EQ(encode(samples::frame_info()).size(), first);
+}
+
+TEST(FrameEncoderOfAllKinds, AllocatesNothingWhateverIsShownAndHiddenAfterAFrameThatShowsAll) {
+  const Scenes scenes = samples::all_kinds();
+  const std::vector<Pose> moved = samples::all_moved();
+  std::vector<const Skeleton*> skeletons;
+  std::vector<const Pose*> poses;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    skeletons.push_back(&scenes.scenes[i].skeleton);
+    poses.push_back(&moved[i]);
+  }
+  std::vector<float> opacities(moved.size(), 1.0f);
+  FrameEncoder encoder;
+  const std::size_t largest = encoder.encode(FrameInfo{}, skeletons, poses, opacities).size();
+  const std::size_t before = allocations;
+  for (unsigned round = 0; round < 64; ++round) {
+    for (unsigned i = 0; i < opacities.size(); ++i) opacities[i] = (round >> i) % 2 == 0 ? 0.0f : 0.5f;
+    ASSERT_LE(encoder.encode(samples::frame_info(), skeletons, poses, opacities).size(), largest);
+  }
+  EXPECT_EQ(allocations, before);
 }
 
 TEST_F(FrameEncoderTest, LaterFramesCarryLaterPoses) {

@@ -8,6 +8,7 @@
 #include "engine/wire/schema.hpp"
 #include "engine/wire/wire.hpp"
 #include "tests/engine/wire/samples.hpp"
+#include "tests/engine/wire/soundness.hpp"
 
 // What decode() does with bytes that no encoder of ours made. The sanitizer presets make these tests sharp.
 
@@ -17,31 +18,17 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-bool all_finite(const std::vector<float>& values) {
-  return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
-}
-
 /// Does a message that decode() let through keep what wire.hpp and skeleton.hpp promise?
 bool is_safe(const Message& message) {
   if (const auto* scenes = std::get_if<Scenes>(&message)) {
-    for (const SceneModel& scene : scenes->scenes) {
-      const auto& s = std::get<StrandSkeleton>(scene.skeleton);
-      if (s.links_per_strand < 1 || s.links_per_strand > kMaxLinksPerStrand || s.strand_count > kMaxStrands)
-        return false;
-      for (const auto* values : {&s.root_x_m, &s.root_y_m, &s.root_z_m, &s.rest_x, &s.rest_y, &s.rest_z, &s.curl_x,
-                                 &s.curl_y, &s.curl_z, &s.rest_curl_rad, &s.link_length_m}) {
-        if (!all_finite(*values)) return false;
-        if (values->size() != s.padded_count() && s.strand_count > 0) return false;
-      }
-    }
+    return std::all_of(scenes->scenes.begin(), scenes->scenes.end(),
+                       [](const SceneModel& scene) { return samples::is_sound(scene.skeleton); });
   }
   if (const auto* frame = std::get_if<Frame>(&message)) {
     if (!std::isfinite(frame->info.time_s) || !std::isfinite(frame->info.wind.wind.u_m_s)) return false;
-    for (const Pose& pose : frame->poses) {
-      const auto& bends = std::get<StrandPose>(pose);
-      if (!all_finite(bends.bend_east_rad) || !all_finite(bends.bend_south_rad)) return false;
-      if (bends.bend_east_rad.size() != bends.bend_south_rad.size()) return false;
-    }
+    if (frame->opacities.size() != frame->poses.size()) return false;
+    return std::all_of(frame->poses.begin(), frame->poses.end(),
+                       [](const Pose& pose) { return samples::is_sound(pose); });
   }
   return true;
 }
@@ -145,6 +132,69 @@ TEST(HostileBytes, SkeletonsOutOfBoundsAreRefused) {
   }
 }
 
+/// decode()'s answer to samples::all_kinds() after a change of scene `index`, which is of this kind.
+template <class Kind>
+Result<Message, WireError> kinds_with(std::size_t index, const std::function<void(Kind&)>& change) {
+  Scenes scenes = samples::all_kinds();
+  change(std::get<Kind>(scenes.scenes[index].skeleton));
+  return decode(samples::body(encode(scenes)));
+}
+
+TEST(HostileBytes, ClothsOutOfBoundsAreRefused) {
+  ASSERT_TRUE(kinds_with<GridSkeleton>(1, [](auto&) {}).has_value());
+  const std::vector<std::function<void(GridSkeleton&)>> changes{
+      [](auto& s) { s.rest_x_m[5] = kNan; },
+      [](auto& s) { s.rest_y_m[40] = kInfinity; },
+      [](auto& s) { s.rest_z_m[0] = 1e30f; },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    EXPECT_EQ(kinds_with<GridSkeleton>(1, changes[i]).error(), WireError::kInconsistent) << i;
+}
+
+TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
+  ASSERT_TRUE(kinds_with<TreeSkeleton>(2, [](auto&) {}).has_value());
+  const std::vector<std::function<void(TreeSkeleton&)>> changes{
+      [](auto& s) { s.levels.clear(); },
+      [](auto& s) { s.levels.resize(kMaxTreeLevels + 1, s.levels[1]); },
+      [](auto& s) { s.levels[1].parent[4] = 1; },  // the trunk is alone
+      [](auto& s) { s.levels[2].parent[0] = 5; },  // of five limbs, counted from 0
+      [](auto& s) { s.levels[2].parent[0] = ~0u; },
+      [](auto& s) { s.levels[2].parent_link[0] = 6; },  // of six links
+      [](auto& s) { s.levels[1].parent_level = 1; },    // itself
+      [](auto& s) { s.levels[1].parent_level = 2; },    // what grows on it
+      [](auto& s) { s.levels[0].strands.rest_x[0] = kNan; },
+      [](auto& s) { s.levels[1].strands.links_per_strand = 0; },
+      [](auto& s) { s.levels[1].base_radius_m[0] = -1.0f; },
+      [](auto& s) { s.levels[2].tip_radius_m[0] = kInfinity; },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const auto result = kinds_with<TreeSkeleton>(2, changes[i]);
+    ASSERT_FALSE(result.has_value()) << i;
+    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+  }
+}
+
+TEST(HostileBytes, SurfacesOutOfBoundsAreRefused) {
+  ASSERT_TRUE(kinds_with<SurfaceSkeleton>(4, [](auto&) {}).has_value());
+  const std::vector<std::function<void(SurfaceSkeleton&)>> changes{
+      [](auto& s) { s.rest_y_m[5] = kNan; },     [](auto& s) { s.normal_x[5] += 0.5f; },
+      [](auto& s) { s.normal_z[5] = kNan; },     [](auto& s) { s.ramp_rgba.pop_back(); },
+      [](auto& s) { s.ramp_rgba.resize(2048); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    EXPECT_EQ(kinds_with<SurfaceSkeleton>(4, changes[i]).error(), WireError::kInconsistent) << i;
+}
+
+TEST(HostileBytes, ControlsOutOfBoundsAreRefused) {
+  for (const double over_s : {-1.0, kMaxFade_s + 1.0, std::nan("")}) {
+    EXPECT_EQ(decode(samples::body(encode(Control{.scene = "elm", .over_s = over_s}))).error(),
+              WireError::kInconsistent);
+  }
+  ControlReply reply;
+  reply.scenes.resize(kMaxScenes + 1);
+  EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent);
+}
+
 TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
   const std::vector<std::function<void(FrameInfo&)>> changes{
       [](auto& f) { f.time_s = std::nan(""); },
@@ -218,6 +268,66 @@ TEST(HostileBytes, AnAbsurdQuantisationStepIsRefused) {
   }
 }
 
+/// decode()'s answer to a frame of one scene, whose pose `build` adds.
+template <class Build>
+Result<Message, WireError> decode_pose(fb::Pose kind, float opacity, Build build) {
+  return decode_built(fb::Body_Frame, [&](auto& builder) {
+    const flatbuffers::Offset<void> pose = build(builder);
+    const auto scene = fb::CreateScenePose(builder, kind, pose, opacity);
+    const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
+    return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(std::vector{scene})).Union();
+  });
+}
+
+TEST(HostileBytes, WaysOfAnAbsurdStepOrOfUnequalLengthsAreRefused) {
+  const auto grid = [](std::uint32_t columns, float step_m, std::size_t last) {
+    return decode_pose(fb::Pose_GridPose, 1.0f, [&](auto& builder) {
+      const auto ways = builder.CreateVector(std::vector<std::int16_t>(12));
+      const auto others = builder.CreateVector(std::vector<std::int16_t>(last));
+      return fb::CreateGridPose(builder, columns, step_m, ways, ways, others).Union();
+    });
+  };
+  ASSERT_TRUE(grid(4, 1e-4f, 12).has_value());
+  for (const float step_m : {0.0f, -1e-4f, 2.0f, kNan}) EXPECT_FALSE(grid(4, step_m, 12).has_value()) << step_m;
+  for (const std::uint32_t columns : {0u, 5u, 13u, ~0u}) EXPECT_FALSE(grid(columns, 1e-4f, 12).has_value()) << columns;
+  EXPECT_FALSE(grid(4, 1e-4f, 11).has_value());
+
+  const auto surface = [](float step_m, std::size_t heats) {
+    return decode_pose(fb::Pose_SurfacePose, 1.0f, [&](auto& builder) {
+      const auto ways = builder.CreateVector(std::vector<std::int16_t>(12));
+      const auto heat = builder.CreateVector(std::vector<std::uint8_t>(heats));
+      return fb::CreateSurfacePose(builder, step_m, ways, heat).Union();
+    });
+  };
+  ASSERT_TRUE(surface(1e-4f, 12).has_value());
+  ASSERT_TRUE(surface(1e-4f, 0).has_value());
+  EXPECT_FALSE(surface(kNan, 12).has_value());
+  EXPECT_FALSE(surface(1e-4f, 11).has_value());
+}
+
+TEST(HostileBytes, AnOpacityOutOfBoundsIsRefusedAndSoIsAPoseThatIsMissedWhereItIsSeen) {
+  const auto pose = [](auto& builder) { return fb::CreateStrandPose(builder, 1e-4f).Union(); };
+  ASSERT_TRUE(decode_pose(fb::Pose_StrandPose, 0.5f, pose).has_value());
+  for (const float opacity : {-0.1f, 1.1f, kNan, kInfinity})
+    EXPECT_FALSE(decode_pose(fb::Pose_StrandPose, opacity, pose).has_value()) << opacity;
+
+  const auto nothing = [](auto&) { return flatbuffers::Offset<void>(); };
+  EXPECT_TRUE(decode_pose(fb::Pose_NONE, 0.0f, nothing).has_value());
+  EXPECT_FALSE(decode_pose(fb::Pose_NONE, 0.5f, nothing).has_value());
+}
+
+TEST(HostileBytes, AGridOfMorePointsThanThereAreIsRefused) {
+  for (const auto& [columns, rows] : {std::pair{1u, 1u << 20}, {~0u, ~0u}, {1u << 16, 1u << 16}, {2u, 6u}, {4u, 4u}}) {
+    const auto cloth = decode_built(fb::Body_Scenes, [&](auto& builder) {
+      const auto values = builder.CreateVector(std::vector<float>(12));
+      const auto grid = fb::CreateGridSkeleton(builder, columns, rows, false, values, values, values).Union();
+      const auto scene = fb::CreateScene(builder, 0, 0, fb::Skeleton_GridSkeleton, grid);
+      return fb::CreateScenes(builder, builder.CreateVector(std::vector{scene})).Union();
+    });
+    EXPECT_EQ(cloth.has_value(), columns * rows == 12) << columns << ' ' << rows;
+  }
+}
+
 TEST(HostileBytes, AFrameWithoutWindIsRefused) {
   const auto result = decode_built(fb::Body_Frame, [](auto& builder) { return fb::CreateFrame(builder).Union(); });
   EXPECT_EQ(result.error(), WireError::kInconsistent);
@@ -252,6 +362,16 @@ TEST(HostileBytes, FewBytesCannotAskForMuchMemory) {
     }
     const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
     return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(scenes)).Union();
+  });
+  EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+TEST(HostileBytes, ATreesLevelsCannotAskForMuchMemoryEither) {
+  const auto result = decode_pose(fb::Pose_TreePose, 1.0f, [](auto& builder) {
+    const auto bends = builder.CreateVector(std::vector<std::int16_t>(kMaxStrands / 4));
+    std::vector<flatbuffers::Offset<fb::StrandPose>> levels(kMaxTreeLevels);
+    for (auto& level : levels) level = fb::CreateStrandPose(builder, 1e-4f, bends, bends);
+    return fb::CreateTreePose(builder, builder.CreateVector(levels)).Union();
   });
   EXPECT_EQ(result.error(), WireError::kInconsistent);
 }

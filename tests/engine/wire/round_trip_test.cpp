@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/pose/pose_arrays.hpp"
 #include "engine/wire/wire.hpp"
 #include "tests/engine/wire/samples.hpp"
 
@@ -84,6 +85,104 @@ TEST(WireRoundTrip, AFrameComesBackWithinHalfAQuantisationStep) {
   }
 }
 
+TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
+  const Scenes sent = samples::all_kinds();
+  const Scenes got = decoded<Scenes>(encode(sent));
+  ASSERT_EQ(got.scenes.size(), sent.scenes.size());
+
+  const auto& cloth = std::get<GridSkeleton>(got.scenes[1].skeleton);
+  const GridSkeleton sent_cloth = samples::cloth();
+  EXPECT_EQ(cloth.columns, 21u);
+  EXPECT_EQ(cloth.rows, 9u);
+  EXPECT_TRUE(cloth.is_first_column_fixed);
+  EXPECT_EQ(cloth.rest_x_m, sent_cloth.rest_x_m);
+  EXPECT_EQ(cloth.rest_y_m, sent_cloth.rest_y_m);
+  EXPECT_EQ(cloth.rest_z_m, sent_cloth.rest_z_m);
+
+  const auto& tree = std::get<TreeSkeleton>(got.scenes[2].skeleton);
+  const TreeSkeleton sent_tree = samples::tree();
+  ASSERT_EQ(tree.levels.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const TreeLevel& a = sent_tree.levels[i];
+    const TreeLevel& b = tree.levels[i];
+    EXPECT_EQ(b.strands.strand_count, a.strands.strand_count);
+    EXPECT_EQ(b.strands.links_per_strand, a.strands.links_per_strand);
+    EXPECT_EQ(b.strands.rest_y, a.strands.rest_y);
+    EXPECT_EQ(b.strands.link_length_m, a.strands.link_length_m);
+    EXPECT_EQ(b.parent_level, a.parent_level);
+    EXPECT_EQ(b.parent, a.parent);
+    EXPECT_EQ(b.parent_link, a.parent_link);
+    EXPECT_EQ(b.is_leaves, a.is_leaves);
+    EXPECT_EQ(b.is_turned_by_block, a.is_turned_by_block);
+    EXPECT_EQ(b.base_radius_m, a.base_radius_m);
+    EXPECT_EQ(b.tip_radius_m, a.tip_radius_m);
+  }
+
+  for (const std::size_t i : {3u, 4u}) {
+    const auto& a = std::get<SurfaceSkeleton>(sent.scenes[i].skeleton);
+    const auto& b = std::get<SurfaceSkeleton>(got.scenes[i].skeleton);
+    EXPECT_EQ(b.columns, a.columns);
+    EXPECT_EQ(b.rows, a.rows);
+    EXPECT_EQ(b.is_closed, a.is_closed);
+    EXPECT_EQ(b.rest_x_m, a.rest_x_m);
+    EXPECT_EQ(b.rest_z_m, a.rest_z_m);
+    EXPECT_EQ(b.normal_y, a.normal_y);
+    EXPECT_EQ(b.ramp_rgba, a.ramp_rgba);
+  }
+}
+
+TEST(WireRoundTrip, PosesOfAllKindsComeBackAsFineAsTheyArePromised) {
+  const Frame frame = decoded<Frame>(samples::frame_of_all_kinds());
+  const std::vector<Pose> sent = samples::all_moved();
+  EXPECT_EQ(frame.opacities, (std::vector{1.0f, 0.5f, 1.0f, 0.25f, 1.0f}));
+  EXPECT_TRUE(fits(frame, samples::all_kinds()));
+  constexpr double kClose[][2] = {{5e-5, 5e-5}, {0.1e-3, 0.1e-3}, {5e-5, 5e-5}, {0.2e-3, 0.0}, {0.2e-3, 2e-3}};
+  for (std::size_t scene = 0; scene < sent.size(); ++scene) {
+    const PoseArrays<const float> a(sent[scene]);
+    const PoseArrays<const float> b(frame.poses[scene]);
+    ASSERT_EQ(a.size(), b.size()) << scene;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      ASSERT_EQ(a[k].size(), b[k].size()) << scene;
+      for (std::size_t i = 0; i < a[k].size(); ++i)
+        ASSERT_NEAR(static_cast<double>(a[k][i]), static_cast<double>(b[k][i]), kClose[scene][k > 0 ? 1 : 0])
+            << scene << ' ' << k << ' ' << i;
+    }
+  }
+}
+
+TEST(WireRoundTrip, AHiddenSceneSendsNoPoseAndFitsAllTheSame) {
+  const Bytes shown = samples::frame_of_all_kinds();
+  const Bytes hidden = samples::frame_of_all_kinds({1.0f, 0.0f, 0.0f, 0.0f, 0.0f});
+  EXPECT_LT(hidden.size(), samples::frame_bytes().size() + 100);
+  EXPECT_GT(shown.size(), hidden.size() + 1000);
+  const Frame frame = decoded<Frame>(hidden);
+  EXPECT_EQ(frame.opacities, (std::vector{1.0f, 0.0f, 0.0f, 0.0f, 0.0f}));
+  EXPECT_TRUE(std::get<StrandPose>(frame.poses[1]).bend_east_rad.empty());
+  EXPECT_TRUE(fits(frame, samples::all_kinds()));
+
+  Frame seen = frame;
+  seen.opacities[1] = 0.5f;
+  EXPECT_FALSE(fits(seen, samples::all_kinds())) << "what is seen has a pose";
+}
+
+TEST(WireRoundTrip, ControlAndItsReplyComeBackAsTheyWere) {
+  const Control control = decoded<Control>(encode(samples::control()));
+  EXPECT_EQ(control.scene, "elm");
+  EXPECT_TRUE(control.shown);
+  EXPECT_TRUE(control.hide_others);
+  EXPECT_EQ(control.over_s, 4.5);
+  EXPECT_FALSE(decoded<Control>(encode(Control{.scene = "", .shown = false})).shown);
+
+  const ControlReply reply = decoded<ControlReply>(encode(samples::control_reply()));
+  EXPECT_TRUE(reply.done);
+  EXPECT_EQ(reply.message, "elm is shown");
+  ASSERT_EQ(reply.scenes.size(), 2u);
+  EXPECT_EQ(reply.scenes[0].name, "elm");
+  EXPECT_EQ(reply.scenes[1].kind, "ripple");
+  EXPECT_TRUE(reply.scenes[0].shown);
+  EXPECT_FALSE(reply.scenes[1].shown);
+}
+
 TEST(WireRoundTrip, AFrameFitsItsScenesAndNoOthers) {
   const Frame frame = decoded<Frame>(samples::frame_bytes());
   EXPECT_TRUE(fits(frame, samples::scenes()));
@@ -147,8 +246,9 @@ TEST(WireRoundTrip, TheSizePrefixIsTheBodysSize) {
   }
 }
 
-TEST(WireRoundTrip, ASubscriptionIsWithinWhatTheServerReads) {
+TEST(WireRoundTrip, WhatAClientSendsIsWithinWhatTheServerReads) {
   EXPECT_LE(encode(Subscribe{.client = std::string(99999, 'x')}).size(), kSizePrefixBytes + kMaxClientMessageBytes);
+  EXPECT_LE(encode(Control{.scene = std::string(99999, 'x')}).size(), kSizePrefixBytes + kMaxClientMessageBytes);
 }
 
 }  // namespace

@@ -52,6 +52,105 @@ inline StrandPose bent(std::size_t strand_count, float largest_rad = 1.5f) {
   return pose;
 }
 
+/// A wavy cloth of 2 m by 2 m; 16 columns would need no padding.
+inline GridSkeleton cloth(std::size_t columns = 21, std::size_t rows = 9) {
+  GridSkeleton grid;
+  grid.columns = columns;
+  grid.rows = rows;
+  grid.is_first_column_fixed = true;
+  for (auto* values : {&grid.rest_x_m, &grid.rest_y_m, &grid.rest_z_m}) values->assign(rows * grid.stride(), 0.0f);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const std::size_t at = row * grid.stride() + column;
+      grid.rest_x_m[at] = 2.0f * static_cast<float>(column) / static_cast<float>(columns - 1);
+      grid.rest_y_m[at] = 3.0f - 2.0f * static_cast<float>(row) / static_cast<float>(rows - 1);
+      grid.rest_z_m[at] = 0.1f * std::sin(10.0f * grid.rest_x_m[at]);
+    }
+  }
+  return grid;
+}
+
+/// `count` values from -largest to largest.
+inline std::vector<float> scattered(std::size_t count, float largest, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> values(count);
+  for (float& value : values) value = largest * (static_cast<float>(random() % 20001u) / 10000.0f - 1.0f);
+  return values;
+}
+
+inline GridPose blown(const GridSkeleton& grid) {
+  const std::size_t count = grid.rows * grid.stride();
+  GridPose pose{scattered(count, 1.5f, 3), scattered(count, 1.5f, 4), scattered(count, 1.5f, 5)};
+  for (auto* values : {&pose.offset_x_m, &pose.offset_y_m, &pose.offset_z_m}) {
+    for (std::size_t i = 0; i < count; ++i)
+      if (i % grid.stride() >= grid.columns) (*values)[i] = 0.0f;
+  }
+  return pose;
+}
+
+/// A trunk, limbs on it, and leaves on the limbs, a spray on each, which are turned by blocks.
+inline TreeSkeleton tree() {
+  TreeSkeleton tree;
+  const std::size_t counts[] = {1, 5, 5 * kStrandsPerBlock - 3};
+  for (std::size_t level = 0; level < 3; ++level) {
+    TreeLevel here;
+    here.strands = meadow(counts[level], level == 2 ? 4 : 6);
+    const std::size_t padded = here.strands.padded_count();
+    here.base_radius_m.assign(padded, 0.0f);
+    here.tip_radius_m.assign(padded, 0.0f);
+    if (level > 0) {
+      here.parent_level = level - 1;
+      here.parent.assign(padded, 0);
+      here.parent_link.assign(padded, 0);
+    }
+    for (std::size_t i = 0; i < counts[level]; ++i) {
+      here.base_radius_m[i] = 0.1f / static_cast<float>(level + 1);
+      here.tip_radius_m[i] = 0.02f / static_cast<float>(level + 1);
+      if (level == 0) continue;
+      here.parent[i] = static_cast<std::uint32_t>(level == 1 ? 0 : i / kStrandsPerBlock);
+      here.parent_link[i] = static_cast<std::uint32_t>((i + 1) % 6);
+    }
+    here.is_leaves = here.is_turned_by_block = level == 2;
+    tree.levels.push_back(std::move(here));
+  }
+  return tree;
+}
+
+inline TreePose swayed(const TreeSkeleton& tree, float largest_rad = 0.8f) {
+  TreePose pose;
+  for (const TreeLevel& level : tree.levels) pose.levels.push_back(bent(level.strands.strand_count, largest_rad));
+  return pose;
+}
+
+/// A bowl that may glow.
+inline SurfaceSkeleton bowl(bool glows, std::size_t columns = 13, std::size_t rows = 7) {
+  SurfaceSkeleton surface;
+  surface.columns = columns;
+  surface.rows = rows;
+  surface.is_closed = glows;
+  for (std::size_t i = 0; i < columns * rows; ++i) {
+    const float around = 6.28f * static_cast<float>(i % columns) / static_cast<float>(columns);
+    const float up = 1.5f * static_cast<float>(i / columns) / static_cast<float>(rows);
+    surface.normal_x.push_back(std::cos(up) * std::cos(around));
+    surface.normal_y.push_back(std::sin(up));
+    surface.normal_z.push_back(std::cos(up) * std::sin(around));
+    surface.rest_x_m.push_back(5.0f + 2.0f * surface.normal_x.back());
+    surface.rest_y_m.push_back(2.0f * surface.normal_y.back());
+    surface.rest_z_m.push_back(2.0f * surface.normal_z.back());
+  }
+  for (unsigned i = 0; glows && i < 4 * 256; ++i) surface.ramp_rgba.push_back(static_cast<std::uint8_t>(i * 7));
+  return surface;
+}
+
+inline SurfacePose risen(const SurfaceSkeleton& surface) {
+  const std::size_t count = surface.columns * surface.rows;
+  SurfacePose pose{.displacement_m = scattered(count, 0.5f, 6), .heat = {}};
+  if (surface.ramp_rgba.empty()) return pose;
+  pose.heat = scattered(count, 0.5f, 7);
+  for (float& heat : pose.heat) heat += 0.5f;
+  return pose;
+}
+
 inline WindState wind() {
   return {.wind = {3.25, -4.5}, .source = WindSource::kHandover, .live_weight = 0.75, .reading_age_s = 1.5};
 }
@@ -68,6 +167,20 @@ inline wire::Scenes scenes(std::size_t strand_count = 37) {
   return {{{"meadow", "grass", meadow(strand_count)}, {"bank", "grass", meadow(3, 1)}}};
 }
 
+/// One scene of each kind of skeleton, and a surface with and without a glow.
+inline wire::Scenes all_kinds() {
+  return {{{"meadow", "grass", meadow(37)},
+           {"window", "curtain", cloth()},
+           {"elm", "tree", tree()},
+           {"pond", "ripple", bowl(false)},
+           {"fire", "flame", bowl(true)}}};
+}
+
+/// The poses of all_kinds().
+inline std::vector<Pose> all_moved() {
+  return {bent(37), blown(cloth()), swayed(tree()), risen(bowl(false)), risen(bowl(true))};
+}
+
 inline wire::FrameInfo frame_info() {
   return {.sequence = 7, .tick = 11, .time_s = 0.18, .utc_ns = 1'700'000'000'000'000'000, .wind = wind()};
 }
@@ -82,6 +195,29 @@ inline wire::Bytes frame_bytes(std::size_t strand_count = 37, const wire::FrameI
   wire::FrameEncoder encoder;
   const auto bytes = encoder.encode(info, skeletons, poses);
   return {bytes.begin(), bytes.end()};
+}
+
+/// A frame of all_kinds(). Of opacity 0: hidden.
+inline wire::Bytes frame_of_all_kinds(const std::vector<float>& opacities = {1.0f, 0.5f, 1.0f, 0.25f, 1.0f}) {
+  const wire::Scenes set = all_kinds();
+  const std::vector<Pose> moved = all_moved();
+  std::vector<const Skeleton*> skeletons;
+  std::vector<const Pose*> poses;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    skeletons.push_back(&set.scenes[i].skeleton);
+    poses.push_back(&moved[i]);
+  }
+  wire::FrameEncoder encoder;
+  const auto bytes = encoder.encode(frame_info(), skeletons, poses, opacities);
+  return {bytes.begin(), bytes.end()};
+}
+
+inline wire::Control control() {
+  return {.scene = "elm", .shown = true, .hide_others = true, .over_s = 4.5};
+}
+
+inline wire::ControlReply control_reply() {
+  return {.done = true, .message = "elm is shown", .scenes = {{"elm", "tree", true}, {"pond", "ripple", false}}};
 }
 
 inline wire::Sensors sensors() {
@@ -101,10 +237,11 @@ inline wire::Sensors sensors() {
   return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2};
 }
 
-/// One of each, with its size prefix.
+/// One of each, in the order of wire::Message, and scenes and a frame of all kinds; with their size prefixes.
 inline std::vector<wire::Bytes> one_of_each() {
-  return {wire::encode(hello()), wire::encode(subscribe()), wire::encode(scenes()), frame_bytes(),
-          wire::encode(sensors())};
+  return {wire::encode(hello()),   wire::encode(subscribe()), wire::encode(scenes()),        frame_bytes(),
+          wire::encode(sensors()), wire::encode(control()),   wire::encode(control_reply()), wire::encode(all_kinds()),
+          frame_of_all_kinds()};
 }
 
 /// What decode() takes: the bytes behind the size prefix.

@@ -1,0 +1,289 @@
+#include "engine/wire/decode_models.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+// Skeletons and poses. Their arrays come without padding, and are padded here.
+
+namespace yuragi::wire {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+// Far beyond every real model, and small enough that sums and products of them stay finite.
+constexpr float kMaxExtent_m = 1e6f;
+constexpr float kMaxAngle_rad = 2.0f * std::numbers::pi_v<float>;
+constexpr float kMaxBendStep_rad = 1e-3f;
+constexpr float kMaxWayStep_m = 1.0f;
+constexpr float kUnitTolerance = 1e-2f;
+constexpr float kMaxUnitComponent = 2.0f;  // before is_unit() looks at all three
+constexpr std::size_t kRampBytes = 4 * 256;
+
+template <class T>
+std::size_t size_of(const flatbuffers::Vector<T>* vector) {
+  return vector == nullptr ? 0 : vector->size();
+}
+
+/// How the values of an array stand before and after decoding: `rows` runs of `columns`, each padded to `stride`.
+struct Layout {
+  std::size_t columns;
+  std::size_t rows = 1;
+  std::size_t stride = columns;
+};
+
+Layout strands_of(std::size_t count) {
+  return {.columns = count, .stride = padded_to_blocks(count)};
+}
+
+/// The values, `convert`ed, and the padding filled with zeros.
+template <class From, class To, class Convert>
+bool read_array(const flatbuffers::Vector<From>* from, const Layout& layout, std::vector<To>& to, Convert convert) {
+  if (size_of(from) != layout.columns * layout.rows) return false;
+  to.assign(layout.stride * layout.rows, To());
+  if (from == nullptr) return true;
+  for (std::size_t row = 0; row < layout.rows; ++row) {
+    const From* values = from->data() + row * layout.columns;
+    std::transform(values, values + layout.columns, to.begin() + static_cast<std::ptrdiff_t>(row * layout.stride),
+                   convert);
+  }
+  return true;
+}
+
+/// Numbers within +-limit.
+bool read_numbers(const flatbuffers::Vector<float>* from, const Layout& layout, float limit, std::vector<float>& to) {
+  return read_array(from, layout, to, [](float value) { return value; }) &&
+         std::all_of(to.begin(), to.end(), [limit](float value) { return std::abs(value) <= limit; });
+}
+
+/// Lengths: numbers from 0 on.
+bool read_lengths(const flatbuffers::Vector<float>* from, const Layout& layout, std::vector<float>& to) {
+  return read_numbers(from, layout, kMaxExtent_m, to) &&
+         std::all_of(to.begin(), to.end(), [](float value) { return value >= 0.0f; });
+}
+
+/// Indices below `limit`; the padding's is 0, which has to be there too.
+bool read_indices(const flatbuffers::Vector<std::uint32_t>* from, const Layout& layout, std::size_t limit,
+                  std::vector<std::uint32_t>& to) {
+  return read_array(from, layout, to, [](std::uint32_t value) { return value; }) &&
+         std::all_of(to.begin(), to.end(), [limit](std::uint32_t value) { return value < limit; });
+}
+
+bool read_units(const flatbuffers::Vector<std::int16_t>* from, const Layout& layout, float step,
+                std::vector<float>& to) {
+  return read_array(from, layout, to, [step](std::int16_t value) { return step * static_cast<float>(value); });
+}
+
+bool is_unit(float x, float y, float z) {
+  return std::abs(x * x + y * y + z * z - 1.0f) <= kUnitTolerance;
+}
+
+/// Of `rest` and `curl` of every strand: are they unit vectors, one across the other?
+bool is_frame(const StrandSkeleton& s) {
+  for (std::size_t i = 0; i < s.strand_count; ++i) {
+    const float across = s.rest_x[i] * s.curl_x[i] + s.rest_y[i] * s.curl_y[i] + s.rest_z[i] * s.curl_z[i];
+    if (!is_unit(s.rest_x[i], s.rest_y[i], s.rest_z[i]) || !is_unit(s.curl_x[i], s.curl_y[i], s.curl_z[i]) ||
+        std::abs(across) > kUnitTolerance)
+      return false;
+  }
+  return true;
+}
+
+bool read(const fb::StrandSkeleton& from, StrandSkeleton& to) {
+  const std::size_t count = size_of(from.root_x_m());
+  if (count > kMaxStrands || from.links_per_strand() < 1 || from.links_per_strand() > kMaxLinksPerStrand) return false;
+  to.strand_count = count;
+  to.links_per_strand = from.links_per_strand();
+  const Layout all = strands_of(count);
+  return read_numbers(from.root_x_m(), all, kMaxExtent_m, to.root_x_m) &&
+         read_numbers(from.root_y_m(), all, kMaxExtent_m, to.root_y_m) &&
+         read_numbers(from.root_z_m(), all, kMaxExtent_m, to.root_z_m) &&
+         read_numbers(from.rest_x(), all, kMaxUnitComponent, to.rest_x) &&
+         read_numbers(from.rest_y(), all, kMaxUnitComponent, to.rest_y) &&
+         read_numbers(from.rest_z(), all, kMaxUnitComponent, to.rest_z) &&
+         read_numbers(from.curl_x(), all, kMaxUnitComponent, to.curl_x) &&
+         read_numbers(from.curl_y(), all, kMaxUnitComponent, to.curl_y) &&
+         read_numbers(from.curl_z(), all, kMaxUnitComponent, to.curl_z) &&
+         read_numbers(from.rest_curl_rad(), all, kMaxAngle_rad, to.rest_curl_rad) &&
+         read_lengths(from.link_length_m(), all, to.link_length_m) && is_frame(to);
+}
+
+/// Has a grid room for no more points than are allowed, padding included?
+bool is_grid(std::size_t columns, std::size_t rows, std::size_t stride) {
+  return columns <= kMaxStrands && rows <= kMaxStrands && stride * rows <= kMaxStrands;
+}
+
+bool read(const fb::GridSkeleton& from, GridSkeleton& to) {
+  to.columns = from.columns();
+  to.rows = from.rows();
+  to.is_first_column_fixed = from.is_first_column_fixed();
+  const Layout all{.columns = to.columns, .rows = to.rows, .stride = to.stride()};
+  return is_grid(all.columns, all.rows, all.stride) && read_numbers(from.rest_x_m(), all, kMaxExtent_m, to.rest_x_m) &&
+         read_numbers(from.rest_y_m(), all, kMaxExtent_m, to.rest_y_m) &&
+         read_numbers(from.rest_z_m(), all, kMaxExtent_m, to.rest_z_m);
+}
+
+/// A level that grows on the levels before it, which have been read.
+bool read(const fb::TreeLevel& from, std::span<const TreeLevel> before, TreeLevel& to) {
+  if (from.strands() == nullptr || !read(*from.strands(), to.strands)) return false;
+  to.is_turned_by_block = from.is_turned_by_block();
+  to.is_leaves = from.is_leaves();
+  const Layout all = strands_of(to.strands.strand_count);
+  if (!read_lengths(from.base_radius_m(), all, to.base_radius_m) ||
+      !read_lengths(from.tip_radius_m(), all, to.tip_radius_m))
+    return false;
+  if (before.empty()) return size_of(from.parent()) == 0 && size_of(from.parent_link()) == 0;
+
+  if (from.parent_level() >= before.size()) return false;
+  to.parent_level = from.parent_level();
+  const StrandSkeleton& parents = before[to.parent_level].strands;
+  return read_indices(from.parent(), all, parents.strand_count, to.parent) &&
+         read_indices(from.parent_link(), all, parents.links_per_strand, to.parent_link);
+}
+
+bool read(const fb::TreeSkeleton& from, TreeSkeleton& to) {
+  const std::size_t count = size_of(from.levels());
+  if (count < 1 || count > kMaxTreeLevels) return false;
+  to.levels.reserve(count);
+  std::size_t room = 0;  // the levels may share arrays: few bytes must not ask for much memory
+  for (std::size_t i = 0; i < count; ++i) {
+    TreeLevel level;
+    if (!read(*from.levels()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.levels, level)) return false;
+    room += level.strands.strand_count;
+    if (room > kMaxStrands) return false;
+    to.levels.push_back(std::move(level));
+  }
+  return true;
+}
+
+bool read(const fb::SurfaceSkeleton& from, SurfaceSkeleton& to) {
+  to.columns = from.columns();
+  to.rows = from.rows();
+  to.is_closed = from.is_closed();
+  const Layout all{.columns = to.columns, .rows = to.rows};
+  const std::size_t ramp_bytes = size_of(from.ramp_rgba());
+  if (!is_grid(all.columns, all.rows, all.stride) || (ramp_bytes != 0 && ramp_bytes != kRampBytes) ||
+      !read_numbers(from.rest_x_m(), all, kMaxExtent_m, to.rest_x_m) ||
+      !read_numbers(from.rest_y_m(), all, kMaxExtent_m, to.rest_y_m) ||
+      !read_numbers(from.rest_z_m(), all, kMaxExtent_m, to.rest_z_m) ||
+      !read_numbers(from.normal_x(), all, kMaxUnitComponent, to.normal_x) ||
+      !read_numbers(from.normal_y(), all, kMaxUnitComponent, to.normal_y) ||
+      !read_numbers(from.normal_z(), all, kMaxUnitComponent, to.normal_z))
+    return false;
+  for (std::size_t i = 0; i < to.normal_x.size(); ++i) {
+    if (!is_unit(to.normal_x[i], to.normal_y[i], to.normal_z[i])) return false;
+  }
+  if (ramp_bytes > 0) to.ramp_rgba.assign(from.ramp_rgba()->begin(), from.ramp_rgba()->end());
+  return true;
+}
+
+bool read(const fb::StrandPose& from, StrandPose& to) {
+  const std::size_t count = size_of(from.bend_east());
+  const float step_rad = from.bend_step_rad();
+  return count <= kMaxStrands && step_rad > 0.0f && step_rad <= kMaxBendStep_rad &&
+         read_units(from.bend_east(), strands_of(count), step_rad, to.bend_east_rad) &&
+         read_units(from.bend_south(), strands_of(count), step_rad, to.bend_south_rad);
+}
+
+bool is_way_step(float step_m) {
+  return step_m > 0.0f && step_m <= kMaxWayStep_m;
+}
+
+bool read(const fb::GridPose& from, GridPose& to) {
+  const std::size_t columns = from.columns();
+  const std::size_t rows = columns == 0 ? 0 : size_of(from.offset_x()) / columns;
+  const Layout all{.columns = columns, .rows = rows, .stride = padded_to_blocks(columns)};
+  return is_way_step(from.step_m()) && is_grid(all.columns, all.rows, all.stride) &&
+         read_units(from.offset_x(), all, from.step_m(), to.offset_x_m) &&
+         read_units(from.offset_y(), all, from.step_m(), to.offset_y_m) &&
+         read_units(from.offset_z(), all, from.step_m(), to.offset_z_m);
+}
+
+bool read(const fb::TreePose& from, TreePose& to) {
+  const std::size_t count = size_of(from.levels());
+  if (count < 1 || count > kMaxTreeLevels) return false;
+  std::size_t room = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    StrandPose& level = to.levels.emplace_back();
+    if (!read(*from.levels()->Get(static_cast<flatbuffers::uoffset_t>(i)), level)) return false;
+    room += level.bend_east_rad.size();
+    if (room > kMaxStrands + kMaxPadding) return false;
+  }
+  return true;
+}
+
+bool read(const fb::SurfacePose& from, SurfacePose& to) {
+  const Layout all{.columns = size_of(from.displacement())};
+  const Layout glowing{.columns = size_of(from.heat()) == 0 ? 0 : all.columns};
+  return is_way_step(from.step_m()) && all.columns <= kMaxStrands &&
+         read_units(from.displacement(), all, from.step_m(), to.displacement_m) &&
+         read_array(from.heat(), glowing, to.heat,
+                    [](std::uint8_t colour) { return static_cast<float>(colour) / 255.0f; });
+}
+
+template <class Kind, class Any, class Table>
+bool read_kind(const Table* from, Any& to) {
+  return from != nullptr && read(*from, to.template emplace<Kind>());
+}
+
+}  // namespace
+
+bool read_scene(const fb::Scene& from, SceneModel& to) {
+  if (!read_text(from.name(), to.name) || !read_text(from.kind(), to.kind)) return false;
+  switch (from.skeleton_type()) {
+    case fb::Skeleton_StrandSkeleton:
+      return read_kind<StrandSkeleton>(from.skeleton_as_StrandSkeleton(), to.skeleton);
+    case fb::Skeleton_GridSkeleton:
+      return read_kind<GridSkeleton>(from.skeleton_as_GridSkeleton(), to.skeleton);
+    case fb::Skeleton_TreeSkeleton:
+      return read_kind<TreeSkeleton>(from.skeleton_as_TreeSkeleton(), to.skeleton);
+    case fb::Skeleton_SurfaceSkeleton:
+      return read_kind<SurfaceSkeleton>(from.skeleton_as_SurfaceSkeleton(), to.skeleton);
+    case fb::Skeleton_NONE:
+      return false;
+  }
+  to.skeleton.emplace<StrandSkeleton>().links_per_strand = 1;  // of a newer server
+  return true;
+}
+
+bool read_pose(const fb::ScenePose& from, Pose& pose, float& opacity) {
+  opacity = from.opacity();
+  if (!is_within(static_cast<double>(opacity), 0.0, 1.0)) return false;
+  switch (from.pose_type()) {
+    case fb::Pose_StrandPose:
+      return read_kind<StrandPose>(from.pose_as_StrandPose(), pose);
+    case fb::Pose_GridPose:
+      return read_kind<GridPose>(from.pose_as_GridPose(), pose);
+    case fb::Pose_TreePose:
+      return read_kind<TreePose>(from.pose_as_TreePose(), pose);
+    case fb::Pose_SurfacePose:
+      return read_kind<SurfacePose>(from.pose_as_SurfacePose(), pose);
+    case fb::Pose_NONE:
+      pose.emplace<StrandPose>();
+      return opacity == 0.0f;  // only what is hidden may be left out
+  }
+  pose.emplace<StrandPose>();  // of a newer server
+  return true;
+}
+
+std::size_t room_of(const Skeleton& skeleton) {
+  if (const auto* strands = std::get_if<StrandSkeleton>(&skeleton)) return strands->root_x_m.size();
+  if (const auto* grid = std::get_if<GridSkeleton>(&skeleton)) return grid->rest_x_m.size();
+  if (const auto* surface = std::get_if<SurfaceSkeleton>(&skeleton)) return surface->rest_x_m.size();
+  std::size_t room = 0;
+  for (const TreeLevel& level : std::get<TreeSkeleton>(skeleton).levels) room += level.strands.root_x_m.size();
+  return room;
+}
+
+std::size_t room_of(const Pose& pose) {
+  if (const auto* strands = std::get_if<StrandPose>(&pose)) return strands->bend_east_rad.size();
+  if (const auto* grid = std::get_if<GridPose>(&pose)) return grid->offset_x_m.size();
+  if (const auto* surface = std::get_if<SurfacePose>(&pose)) return surface->displacement_m.size();
+  std::size_t room = 0;
+  for (const StrandPose& level : std::get<TreePose>(pose).levels) room += level.bend_east_rad.size();
+  return room;
+}
+
+}  // namespace yuragi::wire

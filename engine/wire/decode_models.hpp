@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "engine/wire/schema.hpp"
+#include "engine/wire/wire.hpp"
+
+// Between decode.cpp and decode_models.cpp; nobody else needs this. Each answers false where the values
+// contradict each other or are no numbers.
+
+namespace yuragi::wire {
+
+/// False for NaN.
+inline bool is_within(double value, double low, double high) {
+  return value >= low && value <= high;
+}
+
+/// A text of at most kMaxTextBytes, its control characters defused.
+bool read_text(const flatbuffers::String* from, std::string& to);
+
+/// A scene's skeleton, in padded arrays. Of an unknown kind: strands, none of them.
+bool read_scene(const fb::Scene& from, SceneModel& to);
+
+/// A scene's pose, in padded arrays. Of an unknown kind, or left out since it is hidden: strands, none of them.
+bool read_pose(const fb::ScenePose& from, Pose& pose, float& opacity);
+
+/// How many strands, joints of cloth and points of surfaces it has, padding included: what kMaxStrands limits.
+std::size_t room_of(const Skeleton& skeleton);
+std::size_t room_of(const Pose& pose);
+
+/// What padding may add to kMaxStrands.
+inline constexpr std::size_t kMaxPadding = kMaxScenes * kMaxTreeLevels * kStrandsPerBlock;
+
+}  // namespace yuragi::wire
