@@ -5,7 +5,7 @@
 namespace yuragi {
 namespace {
 
-constexpr std::size_t kClothTileSamples = 256;
+constexpr std::size_t kClothTileSamples = 128;
 
 /// Of noise of variance 1: what is beyond 2.2 standard deviations is cut.
 constexpr float kClothNoiseScale = 0.45F;

@@ -35,8 +35,8 @@ const std::array kCurtainParameters = {
     Parameter{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
     Parameter{"travel_time", "s", 0.9, 0, 10, "that the noise takes from the top to the hem"},
     Parameter{"growth", "", 0.8, 0, 4, "the noise grows as the way from the top to this power"},
-    Parameter{"quickness", "rad/s", 9.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
-    Parameter{"tile_period", "m", 14.0, 2, 4096, "the longest wave of the noise; 256 samples"},
+    Parameter{"quickness", "rad/s", 11.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"tile_period", "m", 20.0, 2, 4096, "the longest wave of the noise; 128 samples"},
     Parameter{"beta", "", 5.0 / 3.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 

@@ -35,13 +35,13 @@ const std::array kFlagParameters = {
     Parameter{"folds", "", 3.5, 0, 50, "folds that it hangs in"},
     Parameter{"fold_angle", "deg", 8.0, 0, 45, "how far the folds stand out to the sides"},
     Parameter{"max_lift", "deg", 86.0, 0, 90, "how far from straight down the strongest wind lifts it"},
-    Parameter{"max_flutter", "deg", 45.0, 0, 90, "how far the strongest wind makes the fly flutter"},
+    Parameter{"max_flutter", "deg", 70.0, 0, 90, "how far the strongest wind makes the fly flutter"},
     Parameter{"half_lift_speed", "m/s", 3.5, 0.1, 60, "the wind that lifts it half as much"},
     Parameter{"travel_time", "s", 0.7, 0, 10, "that the noise takes from the hoist to the fly"},
     Parameter{"growth", "", 0.7, 0, 4, "the noise grows as the way from the hoist to this power"},
-    Parameter{"quickness", "rad/s", 10.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
-    Parameter{"tile_period", "m", 8.0, 2, 4096, "the longest wave of the noise; 256 samples"},
-    Parameter{"beta", "", 5.0 / 3.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
+    Parameter{"quickness", "rad/s", 16.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"tile_period", "m", 14.0, 2, 4096, "the longest wave of the noise; 128 samples"},
+    Parameter{"beta", "", 1.3, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
 /// A part of the flutter lifts and lowers, as cloth that is not quite flat does.
@@ -49,7 +49,7 @@ constexpr double kLiftFlutter = 0.25;
 
 /// How much the noise changes from the top to the bottom, against its change along the flag: a wave's front goes from
 /// top to bottom nearly straight.
-constexpr double kHeightOnNoise = 0.6;
+constexpr double kHeightOnNoise = 0.3;
 
 ClothSpec flag_spec(const ParameterValues& values) {
   // The sway takes the flag from its droop to where it is lifted, so it is no longer than both leans together.
