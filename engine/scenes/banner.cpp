@@ -31,12 +31,12 @@ const std::array kBannerParameters = {
     Parameter{"height", "m", 2.7, 0.1, 50, "of the cloth"},
     Parameter{"clearance", "m", 0.5, 0, 50, "between the cloth and the ground"},
     Parameter{"max_sway", "deg", 10.0, 0, 60, "how far the strongest wind blows the free side out"},
-    Parameter{"max_flutter", "deg", 60.0, 0, 80, "how far the strongest wind makes the free corner flutter"},
+    Parameter{"max_flutter", "deg", 50.0, 0, 80, "how far the strongest wind makes the free corner flutter"},
     Parameter{"half_sway_speed", "m/s", 4.5, 0.1, 60, "the wind that moves it half as much"},
     Parameter{"travel_time", "s", 1.2, 0, 10, "that the noise takes from the cross-arm to the bottom"},
     Parameter{"growth", "", 0.4, 0, 4, "the noise grows as the way from the cross-arm to this power"},
     Parameter{"quickness", "rad/s", 18.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
-    Parameter{"tile_period", "m", 10.0, 2, 4096, "the longest wave of the noise; 128 samples"},
+    Parameter{"tile_period", "m", 6.0, 2, 4096, "the longest wave of the noise; 128 samples"},
     Parameter{"beta", "", 1.3, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 

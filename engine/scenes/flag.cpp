@@ -35,13 +35,13 @@ const std::array kFlagParameters = {
     Parameter{"folds", "", 3.5, 0, 50, "folds that it hangs in"},
     Parameter{"fold_angle", "deg", 8.0, 0, 45, "how far the folds stand out to the sides"},
     Parameter{"max_lift", "deg", 86.0, 0, 90, "how far from straight down the strongest wind lifts it"},
-    Parameter{"max_flutter", "deg", 70.0, 0, 90, "how far the strongest wind makes the fly flutter"},
+    Parameter{"max_flutter", "deg", 75.0, 0, 90, "how far the strongest wind makes the fly flutter"},
     Parameter{"half_lift_speed", "m/s", 3.5, 0.1, 60, "the wind that lifts it half as much"},
-    Parameter{"travel_time", "s", 0.7, 0, 10, "that the noise takes from the hoist to the fly"},
+    Parameter{"travel_time", "s", 1.0, 0, 10, "that the noise takes from the hoist to the fly"},
     Parameter{"growth", "", 0.7, 0, 4, "the noise grows as the way from the hoist to this power"},
-    Parameter{"quickness", "rad/s", 16.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
-    Parameter{"tile_period", "m", 14.0, 2, 4096, "the longest wave of the noise; 128 samples"},
-    Parameter{"beta", "", 1.3, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
+    Parameter{"quickness", "rad/s", 20.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"tile_period", "m", 10.0, 2, 4096, "the longest wave of the noise; 128 samples"},
+    Parameter{"beta", "", 1.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
 /// A part of the flutter lifts and lowers, as cloth that is not quite flat does.
@@ -52,13 +52,14 @@ constexpr double kLiftFlutter = 0.25;
 constexpr double kHeightOnNoise = 0.3;
 
 ClothSpec flag_spec(const ParameterValues& values) {
-  // The sway takes the flag from its droop to where it is lifted, so it is no longer than both leans together.
+  // The sway takes the flag from rest to where it is lifted, so it is no longer than both leans together.
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("length"),
           .travel_time_s = values.number("travel_time"),
           .growth_exponent = values.number("growth"),
           .quickness_rad_s = values.number("quickness"),
-          .largest_sway = lean_of_deg(values.number("max_lift")) + lean_of_deg(values.number("droop")),
+          .largest_sway = lean_of_deg(values.number("max_lift")) +
+                          std::hypot(lean_of_deg(values.number("droop")), lean_of_deg(values.number("fold_angle"))),
           .largest_wave = lean_of_deg(values.number("max_flutter")) * std::hypot(1.0, kLiftFlutter)};
 }
 
@@ -100,15 +101,16 @@ class Flag final : public Scene {
     noise_.sample(flutter_);
     const double swell = static_cast<double>(noise_.swell());
 
-    // How much the wind lifts, and toward where. The flag gives up its droop as it is lifted.
+    // How much the wind lifts, and toward where. The flag gives up its droop and its folds as it is lifted.
     const double s = speed_m_s / half_lift_speed_m_s_;
     const double strength = s * s / (1.0 + s * s);
     const double per_speed = speed_m_s > 0.0 ? strength / speed_m_s : 0.0;
     const double east = wind_.east_m_s() * per_speed;
     const double south = wind_.south_m_s() * per_speed;
     const double lift = max_lift_ * (0.92 + 0.08 * swell);
-    const auto sway_east = static_cast<float>(lift * east - strength * droop_.east);
-    const auto sway_south = static_cast<float>(lift * south - strength * droop_.south);
+    const auto lift_east = static_cast<float>(lift * east);
+    const auto lift_south = static_cast<float>(lift * south);
+    const auto given_up = static_cast<float>(strength);
 
     // Project: all of it is lifted, and the noise runs along it, to both sides of the wind and a little up and down.
     const auto wave_east = static_cast<float>(max_wave_ * (kLiftFlutter * swell * east - south));
@@ -117,8 +119,8 @@ class Flag final : public Scene {
     const std::span<float> wave = cloth_.wave();
     const std::size_t stride = flutter_.size();
     for (std::size_t column = 0; column < stride; ++column) {
-      sway[column] = sway_east;
-      sway[stride + column] = sway_south;
+      sway[column] = lift_east - given_up * rest_east_[column];
+      sway[stride + column] = lift_south - given_up * rest_south_[column];
       wave[column] = flutter_[column] * wave_east;
       wave[stride + column] = flutter_[column] * wave_south;
     }
@@ -130,7 +132,8 @@ class Flag final : public Scene {
       : half_lift_speed_m_s_(values.number("half_lift_speed")),
         max_lift_(lean_of_deg(values.number("max_lift"))),
         max_wave_(lean_of_deg(values.number("max_flutter"))),
-        droop_(turned(setup.placement, 0.0, -lean_of_deg(values.number("droop")))),
+        rest_east_(edge.lean_east),
+        rest_south_(edge.lean_south),
         noise_(values, setup.seed ^ stream_id("flag noise"), std::vector<float>(edge.stride(), 0.0F),
                heights_on_noise(edge), setup.row),
         flutter_(edge.stride(), 0.0F),
@@ -145,7 +148,7 @@ class Flag final : public Scene {
   double half_lift_speed_m_s_;
   double max_lift_;  ///< leans
   double max_wave_;
-  Turned droop_;  ///< lean, at rest
+  std::vector<float> rest_east_, rest_south_;  ///< each column's lean at rest
 
   SceneWind wind_;
   ClothNoise noise_;
