@@ -47,6 +47,10 @@ const std::array kFlagParameters = {
 /// A part of the flutter lifts and lowers, as cloth that is not quite flat does.
 constexpr double kLiftFlutter = 0.25;
 
+/// Which way the noise's tiles are read along the flag: at no simple slope, so that none comes round (as figure 4a).
+constexpr double kAlongNoiseX = 0.8506508083520399;  // of a golden rectangle's diagonal
+constexpr double kAlongNoiseZ = 0.5257311121191336;
+
 /// How much the noise changes from the top to the bottom, against its change along the flag: a wave's front goes from
 /// top to bottom nearly straight.
 constexpr double kHeightOnNoise = 0.3;
@@ -97,7 +101,7 @@ class Flag final : public Scene {
 
     // Shift and sample: a flag stands along the wind, so the noise goes along it as the wind does.
     const double speed_m_s = wind_.speed_m_s();
-    noise_.shift(speed_m_s, 0.0, dt_s);
+    noise_.shift(speed_m_s * kAlongNoiseX, speed_m_s * kAlongNoiseZ, dt_s);
     noise_.sample(flutter_);
     const double swell = static_cast<double>(noise_.swell());
 
@@ -134,14 +138,18 @@ class Flag final : public Scene {
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         rest_east_(edge.lean_east),
         rest_south_(edge.lean_south),
-        noise_(values, setup.seed ^ stream_id("flag noise"), std::vector<float>(edge.stride(), 0.0F),
-               heights_on_noise(edge), setup.row),
+        noise_(values, setup.seed ^ stream_id("flag noise"), heights_on_noise(edge, -kAlongNoiseZ),
+               heights_on_noise(edge, kAlongNoiseX), setup.row),
         flutter_(edge.stride(), 0.0F),
         cloth_(flag_spec(values), edge, setup.row) {}
 
-  static std::vector<float> heights_on_noise(const ClothEdge& edge) {
+  /// How far below the top each column is, along one axis of the noise.
+  static std::vector<float> heights_on_noise(const ClothEdge& edge, double axis) {
     std::vector<float> heights_m = edge.y_m;
-    for (float& height_m : heights_m) height_m = static_cast<float>(kHeightOnNoise) * (edge.y_m.front() - height_m);
+    const float top_m = heights_m.front();
+    for (float& height_m : heights_m) {
+      height_m = static_cast<float>(kHeightOnNoise * axis * static_cast<double>(top_m - height_m));
+    }
     return heights_m;
   }
 
