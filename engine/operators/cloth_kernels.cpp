@@ -7,8 +7,25 @@
 namespace yuragi {
 namespace {
 
+void follow(const FollowKernelArguments& arguments) noexcept {
+  const FollowKernelArguments in = arguments;  // a copy, which no store can be taken for a change of
+  const float* const target = in.target;
+  float* const __restrict value = in.value;
+  float* const __restrict rate_per_s = in.rate_per_s;
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const float distance = value[i] - target[i];
+    const float rate = rate_per_s[i];
+    const float new_value = target[i] + (in.distance_kept * distance + in.distance_from_rate_s * rate);
+    const float new_rate = in.rate_kept * rate - in.rate_from_distance_per_s * distance;
+    const float farther = __builtin_fabsf(new_value) > __builtin_fabsf(new_rate) ? new_value : new_rate;
+    const bool moves = __builtin_fabsf(farther) >= in.at_rest;
+    value[i] = moves ? new_value : 0.0F;
+    rate_per_s[i] = moves ? new_rate : 0.0F;
+  }
+}
+
 void propagate(const PropagationKernelArguments& arguments) noexcept {
-  const PropagationKernelArguments in = arguments;  // a copy, which no store to `out` can be taken for a change of
+  const PropagationKernelArguments in = arguments;
   float* const __restrict out = in.out;
   for (std::size_t i = 0; i < in.count; ++i) {
     out[i] = in.base[i] + (in.newer_gain * in.newer[i] + in.older_gain * in.older[i]);
@@ -19,20 +36,19 @@ void propagate(const PropagationKernelArguments& arguments) noexcept {
 void hang(const ClothKernelArguments& arguments) noexcept {
   const ClothKernelArguments in = arguments;
   const std::size_t columns = in.columns;
-  const Lanes length_m = same_lanes(in.link_length_m);
+  const Lanes twice_length_m = same_lanes(in.twice_link_length_m);
   for (std::size_t i = 0; i < columns; i += kLaneCount) {
-    const Lanes rest_x = load_lanes(in.rest_direction + i);
-    const Lanes rest_y = load_lanes(in.rest_direction + columns + i);
-    const Lanes rest_z = load_lanes(in.rest_direction + 2 * columns + i);
+    const LinkEnd<Lanes> rest_m = {load_lanes(in.rest_end_m + i), load_lanes(in.rest_end_m + columns + i),
+                                   load_lanes(in.rest_end_m + 2 * columns + i)};
     Lanes x_m = load_lanes(in.offset_x_m + i);
     Lanes y_m = load_lanes(in.offset_y_m + i);
     Lanes z_m = load_lanes(in.offset_z_m + i);
     for (std::size_t link = 0; link < in.links; ++link) {
       const float* const lean = in.lean + link * 2 * columns + i;
-      const Direction<Lanes> turned = hanging_direction(load_lanes(lean), load_lanes(lean + columns));
-      x_m = x_m + length_m * (turned.x - rest_x);
-      y_m = y_m + length_m * (turned.y - rest_y);
-      z_m = z_m + length_m * (turned.z - rest_z);
+      const LinkEnd<Lanes> end_m = link_end(load_lanes(lean), load_lanes(lean + columns), twice_length_m);
+      x_m = x_m + (end_m.east - rest_m.east);
+      y_m = y_m + (rest_m.down - end_m.down);
+      z_m = z_m + (end_m.south - rest_m.south);
       const std::size_t to = (link + 1) * columns + i;
       store_lanes(in.offset_x_m + to, x_m);
       store_lanes(in.offset_y_m + to, y_m);
@@ -43,6 +59,6 @@ void hang(const ClothKernelArguments& arguments) noexcept {
 
 }  // namespace
 
-const ClothKernels YURAGI_ROW_NAME(cloth_kernels) = {propagate, hang};
+const ClothKernels YURAGI_ROW_NAME(cloth_kernels) = {follow, propagate, hang};
 
 }  // namespace yuragi

@@ -17,19 +17,33 @@ struct PropagationKernelArguments {
   float* out = nullptr;
 };
 
+/// FollowJob's step.
+struct FollowKernelArguments {
+  std::size_t count = 0;
+  const float* target = nullptr;
+  float distance_kept = 0.0F;
+  float distance_from_rate_s = 0.0F;
+  float rate_kept = 0.0F;
+  float rate_from_distance_per_s = 0.0F;
+  float at_rest = 0.0F;  ///< what is below is 0
+  float* value = nullptr;
+  float* rate_per_s = nullptr;
+};
+
 /// A band of links, from a row of joints whose offsets are there to those below it.
 struct ClothKernelArguments {
   std::size_t columns = 0;  ///< in whole blocks
   std::size_t links = 0;
   const float* lean = nullptr;
-  const float* rest_direction = nullptr;
-  float link_length_m = 0.0F;
+  const float* rest_end_m = nullptr;
+  float twice_link_length_m = 0.0F;
   float* offset_x_m = nullptr;  ///< of the row that the band begins at
   float* offset_y_m = nullptr;
   float* offset_z_m = nullptr;
 };
 
 struct ClothKernels {
+  void (*follow)(const FollowKernelArguments&) noexcept;
   void (*propagate)(const PropagationKernelArguments&) noexcept;
   void (*hang)(const ClothKernelArguments&) noexcept;
 };

@@ -18,14 +18,14 @@ ClothThreads make_threads(std::size_t links, float link_length_m, std::span<cons
                        .links = links,
                        .link_length_m = link_length_m,
                        .rest_lean = {rest_lean.begin(), rest_lean.end()},
-                       .rest_direction = {}};
+                       .rest_end_m = {}};
   const std::size_t stride = threads.stride;
-  threads.rest_direction.resize(3 * stride);
+  threads.rest_end_m.resize(3 * stride);
   for (std::size_t i = 0; i < stride; ++i) {
-    const Direction<float> rest = hanging_direction(rest_lean[i], rest_lean[stride + i]);
-    threads.rest_direction[i] = rest.x;
-    threads.rest_direction[stride + i] = rest.y;
-    threads.rest_direction[2 * stride + i] = rest.z;
+    const LinkEnd<float> rest_m = link_end(rest_lean[i], rest_lean[stride + i], 2.0F * link_length_m);
+    threads.rest_end_m[i] = rest_m.east;
+    threads.rest_end_m[stride + i] = rest_m.down;
+    threads.rest_end_m[2 * stride + i] = rest_m.south;
   }
   return threads;
 }
@@ -34,7 +34,7 @@ ClothProjectionJob::Problem ClothProjectionJob::validate() const noexcept {
   if (threads == nullptr || pose == nullptr) return Problem::kMissingPart;
   const std::size_t stride = threads->stride;
   if (stride == 0 || stride % kStrandsPerBlock != 0 || threads->rest_lean.size() != 2 * stride ||
-      threads->rest_direction.size() != 3 * stride) {
+      threads->rest_end_m.size() != 3 * stride) {
     return Problem::kThreadsSize;
   }
   if (lean.size() % (2 * stride) != 0 || first_link + lean.size() / (2 * stride) > threads->links) {
@@ -60,8 +60,8 @@ ClothProjectionJob::Problem ClothProjectionJob::run() const noexcept {
   kClothRows[row.value_or(best_simd_row())].hang({.columns = stride,
                                                   .links = lean.size() / (2 * stride),
                                                   .lean = lean.data(),
-                                                  .rest_direction = threads->rest_direction.data(),
-                                                  .link_length_m = threads->link_length_m,
+                                                  .rest_end_m = threads->rest_end_m.data(),
+                                                  .twice_link_length_m = 2.0F * threads->link_length_m,
                                                   .offset_x_m = pose->offset_x_m.data() + from,
                                                   .offset_y_m = pose->offset_y_m.data() + from,
                                                   .offset_z_m = pose->offset_z_m.data() + from});

@@ -17,8 +17,9 @@ struct ClothThreads {
   std::size_t stride = 0;  ///< columns in whole blocks
   std::size_t links = 0;   ///< of a thread: one fewer than joints
   float link_length_m = 0.0F;
-  std::vector<float> rest_lean;       ///< east of all columns, then south
-  std::vector<float> rest_direction;  ///< x of all columns, then y, then z: the leans' own, by make_threads
+  std::vector<float> rest_lean;  ///< east of all columns, then south
+  std::vector<float>
+      rest_end_m;  ///< link_end of the leans: east of all columns, then down, then south; by make_threads
 };
 
 /// The threads that lean so (2 * stride values; stride a multiple of kStrandsPerBlock). Allocates.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+
+#include "engine/base/simd_row.hpp"
 
 namespace yuragi {
 
@@ -13,11 +16,13 @@ namespace yuragi {
 /// to 1, and its derivative's magnitude to 2 w / e). That holds for vectors spread over several values as well. What
 /// has come closer to 0 than 1e-9 comes to rest there. Units: the value's own, and per second. Owns nothing; `value`
 /// and `rate_per_s` are the state, the caller's from step to step, 0 at the start. Thread-safe: jobs with different
-/// state, yes. Realtime-safe: yes. Cost: about 1 ns a value.
+/// state, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost:
+/// about 0.3 ns a value (x86-64-v3).
 struct FollowJob {
   std::span<const float> target;
   double omega_rad_s = 8.0;  ///< larger follows faster: after 4.75 / omega 95 % of a step is done
   double dt_s = 0.0;
+  std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   std::span<float> value;
   std::span<float> rate_per_s;
@@ -27,6 +32,7 @@ struct FollowJob {
     kOmega,            ///< not a finite number above 0
     kStepNotPositive,  ///< dt_s is not a finite number above 0
     kSizesDiffer,
+    kRowNotRunnable,
   };
   [[nodiscard]] Problem validate() const noexcept;
 

@@ -4,15 +4,17 @@
 
 namespace yuragi {
 
-/// A unit vector of the world. Number is float, or a vector of floats.
+/// Where a hanging link ends, seen from the point that stands its length above where it begins. Number is float, or a
+/// vector of floats.
 template <class Number>
-struct Direction {
-  Number x;
-  Number y;
-  Number z;
+struct LinkEnd {
+  Number east;
+  Number down;
+  Number south;
 };
 
-/// Where a link points to that leans by (east, south) from hanging straight down.
+/// The end of a link that leans by (east, south) from hanging straight down, its length 1: down is 1 - y, so that
+/// (east, 1 - down, south) is a unit vector in x, y, z. Twice the length in place of 2 gives it in metres.
 ///
 /// A lean is the vector toward which the link is turned, its length the tangent of half the angle: nearly half the
 /// radians while it is small, 1 where the link is level. It is the stereographic projection of the direction from
@@ -20,9 +22,9 @@ struct Direction {
 /// lean that changes by d turns the link by 2 d / (1 + lean^2), 2 d at most. (The vector tan(angle/2) is also known as
 /// Gibbs' or Rodrigues' vector.)
 template <class Number>
-[[gnu::always_inline]] inline Direction<Number> hanging_direction(Number east, Number south) noexcept {
-  const Number twice = 2.0F / (1.0F + (east * east + south * south));
-  return {twice * east, 1.0F - twice, twice * south};
+[[gnu::always_inline]] inline LinkEnd<Number> link_end(Number east, Number south, Number twice_length) noexcept {
+  const Number down = twice_length / (1.0F + (east * east + south * south));
+  return {down * east, down, down * south};
 }
 
 }  // namespace yuragi

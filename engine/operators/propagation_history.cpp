@@ -7,7 +7,7 @@ namespace yuragi {
 
 PropagationHistory::PropagationHistory(std::size_t width, double longest_s)
     : width_(width),
-      count_(static_cast<std::size_t>(std::ceil(longest_s / kInterval_s)) + 2),
+      count_(static_cast<std::size_t>(std::ceil(longest_s * kSampleRate_hz)) + 2),
       samples_(count_ * width, 0.0F),
       present_(width, 0.0F) {}
 
@@ -16,7 +16,7 @@ void PropagationHistory::push(std::span<const float> values, double dt_s) noexce
 
   // Samples that lie between the present that was and the one that comes. After a pause that is longer than the ring,
   // those that would be overwritten at once are left out.
-  const double step = dt_s / kInterval_s;
+  const double step = dt_s * kSampleRate_hz;
   const double due = std::floor(phase_ + step);
   const double first = std::max(1.0, due - static_cast<double>(count_) + 1.0);
   for (double number = first; number <= due; number += 1.0) {
@@ -30,7 +30,7 @@ void PropagationHistory::push(std::span<const float> values, double dt_s) noexce
 }
 
 PropagationHistory::Between PropagationHistory::at(double delay_s) const noexcept {
-  const double delay = std::max(delay_s, 0.0) / kInterval_s;
+  const double delay = std::max(delay_s, 0.0) * kSampleRate_hz;
   const float* const samples = samples_.data();
   if (delay < phase_) return {present_.data(), samples + sample(0), static_cast<float>(delay / phase_)};
   const double age = std::min(delay - phase_, static_cast<double>(count_ - 2));

@@ -15,8 +15,8 @@ namespace yuragi {
 /// Realtime-safe: yes.
 class PropagationHistory {
  public:
-  /// Half the period of what the cloth's inertia lets through is far longer than this.
-  static constexpr double kInterval_s = 1.0 / 60.0;
+  /// Far more often than anything that cloth lets through.
+  static constexpr double kSampleRate_hz = 60.0;
 
   /// For `width` values and delays up to `longest_s` (0 to 1000). May throw std::bad_alloc.
   PropagationHistory(std::size_t width, double longest_s);

@@ -30,15 +30,18 @@ GridSkeleton cloth_skeleton(const ClothSpec& spec, const ClothEdge& edge, const 
   const std::size_t stride = threads.stride;
   for (auto* rest_m : {&grid.rest_x_m, &grid.rest_y_m, &grid.rest_z_m}) rest_m->resize(spec.rows * stride);
   for (std::size_t row = 0; row < spec.rows; ++row) {
-    const double way_m = static_cast<double>(threads.link_length_m) * static_cast<double>(row);
+    const auto links = static_cast<double>(row);
     for (std::size_t column = 0; column < stride; ++column) {
-      const auto along = [&](float from_m, std::size_t axis) {
-        return static_cast<float>(static_cast<double>(from_m) +
-                                  way_m * static_cast<double>(threads.rest_direction[axis * stride + column]));
+      const auto along = [&](float from_m, double link_m) {
+        return static_cast<float>(static_cast<double>(from_m) + links * link_m);
       };
-      grid.rest_x_m[row * stride + column] = along(edge.x_m[column], 0);
-      grid.rest_y_m[row * stride + column] = along(edge.y_m[column], 1);
-      grid.rest_z_m[row * stride + column] = along(edge.z_m[column], 2);
+      const auto end_m = [&](std::size_t part) {
+        return static_cast<double>(threads.rest_end_m[part * stride + column]);
+      };
+      const std::size_t joint = row * stride + column;
+      grid.rest_x_m[joint] = along(edge.x_m[column], end_m(0));
+      grid.rest_y_m[joint] = along(edge.y_m[column], static_cast<double>(threads.link_length_m) - end_m(1));
+      grid.rest_z_m[joint] = along(edge.z_m[column], end_m(2));
     }
   }
   return grid;
@@ -87,7 +90,12 @@ Cloth::Cloth(const ClothSpec& spec, const ClothEdge& edge, SimdRow row)
 
 void Cloth::project(double dt_s) noexcept {
   const std::size_t width = history_.width();
-  FollowJob{.target = target_, .omega_rad_s = spec_.quickness_rad_s, .dt_s = dt_s, .value = value_, .rate_per_s = rate_}
+  FollowJob{.target = target_,
+            .omega_rad_s = spec_.quickness_rad_s,
+            .dt_s = dt_s,
+            .row = row_,
+            .value = value_,
+            .rate_per_s = rate_}
       .run();
   history_.push(std::span(value_).last(width), dt_s);
 

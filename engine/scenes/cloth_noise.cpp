@@ -1,23 +1,17 @@
 #include "engine/scenes/cloth_noise.hpp"
 
-#include <vector>
+#include <array>
 
 namespace yuragi {
 namespace {
 
-constexpr std::size_t kClothTileSamples = 256;
+constexpr std::size_t kClothTileSamples = 128;
 
 /// Of noise of variance 1: what is beyond 2.2 standard deviations is cut.
 constexpr float kClothNoiseScale = 0.45F;
 
-/// How far from the first noise the second is read, in both directions: no whole number of any period.
-constexpr float kSecondPlace_m = 1618.034F;
-
-std::vector<float> moved(std::span<const float> places_m, float by_m) {
-  std::vector<float> moved_m(places_m.begin(), places_m.end());
-  for (float& place_m : moved_m) place_m += by_m;
-  return moved_m;
-}
+/// Where the whole cloth reads it, far from any column.
+constexpr std::array kSwellPlace_m = {1618.034F, -809.017F};
 
 }  // namespace
 
@@ -28,11 +22,17 @@ ClothNoise::ClothNoise(const ParameterValues& values, std::uint64_t seed, std::s
               .samples = kClothTileSamples,
               .beta = values.number("beta"),
               .seed = seed}),
-      first_(noise_.places(x_m, z_m)),
-      second_(noise_.places(moved(x_m, kSecondPlace_m), moved(z_m, -0.5F * kSecondPlace_m))) {}
+      columns_(noise_.places(x_m, z_m)),
+      swell_(noise_.places(std::span(kSwellPlace_m).first(1), std::span(kSwellPlace_m).last(1))) {}
 
-void ClothNoise::sample(Channel channel, std::span<float> out) const noexcept {
-  noise_.sample(channel == kFirst ? first_ : second_, row_, out, kClothNoiseScale, 0.0F, -1.0F, 1.0F);
+void ClothNoise::sample(std::span<float> out) const noexcept {
+  noise_.sample(columns_, row_, out, kClothNoiseScale, 0.0F, -1.0F, 1.0F);
+}
+
+float ClothNoise::swell() const noexcept {
+  float value = 0.0F;
+  noise_.sample(swell_, row_, std::span(&value, 1), kClothNoiseScale, 0.0F, -1.0F, 1.0F);
+  return value;
 }
 
 }  // namespace yuragi

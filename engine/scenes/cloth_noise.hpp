@@ -9,13 +9,11 @@
 
 namespace yuragi {
 
-/// The noise that moves a cloth: one that the wind carries over it (CarriedNoise), read by each column where it is, as
-/// numbers from -1 to 1. kSecond reads the same noise far away: another one, as good as independent. Allocates when it
-/// is made. Thread-safe: no. Realtime-safe: yes.
+/// The noise that moves a cloth: one that the wind carries over it (CarriedNoise). Each column reads it where it is;
+/// and the whole cloth reads it once, far away, for what sways it as one: another noise, as good as independent.
+/// Numbers from -1 to 1. Allocates when it is made. Thread-safe: no. Realtime-safe: yes.
 class ClothNoise {
  public:
-  enum Channel : std::uint8_t { kFirst, kSecond };
-
   /// Reads `tile_period` and `beta` of the scene's parameters; x and z: where the columns are on the noise.
   ClothNoise(const ParameterValues& values, std::uint64_t seed, std::span<const float> x_m, std::span<const float> z_m,
              SimdRow row);
@@ -26,12 +24,15 @@ class ClothNoise {
   }
 
   /// One value a column.
-  void sample(Channel channel, std::span<float> out) const noexcept;
+  void sample(std::span<float> out) const noexcept;
+
+  /// One value for the whole cloth.
+  float swell() const noexcept;
 
  private:
   SimdRow row_;
   CarriedNoise noise_;
-  CarriedPlaces first_, second_;
+  CarriedPlaces columns_, swell_;
 };
 
 }  // namespace yuragi

@@ -32,11 +32,11 @@ const std::array kCurtainParameters = {
     Parameter{"max_sway", "deg", 50.0, 0, 80, "how far the strongest wind blows it up"},
     Parameter{"max_flutter", "deg", 50.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
     Parameter{"half_sway_speed", "m/s", 5.0, 0.1, 60, "the wind that moves it half as much"},
-    Parameter{"give_sideways", "", 0.35, 0, 1, "how far it gives way along itself, as a part of how far across"},
+    Parameter{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
     Parameter{"travel_time", "s", 0.9, 0, 10, "that the noise takes from the top to the hem"},
     Parameter{"growth", "", 0.8, 0, 4, "the noise grows as the way from the top to this power"},
-    Parameter{"quickness", "rad/s", 9.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
-    Parameter{"tile_period", "m", 14.0, 2, 4096, "the longest wave of the noise; 256 samples"},
+    Parameter{"quickness", "rad/s", 11.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"tile_period", "m", 20.0, 2, 4096, "the longest wave of the noise; 128 samples"},
     Parameter{"beta", "", 5.0 / 3.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
@@ -92,11 +92,7 @@ class Curtain final : public Scene {
     wind_.step(wind, dt_s);
     noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
   }
-
-  void sample() noexcept override {
-    noise_.sample(ClothNoise::kFirst, flutter_);
-    noise_.sample(ClothNoise::kSecond, swell_);
-  }
+  void sample() noexcept override { noise_.sample(flutter_); }
 
   void project(double dt_s) noexcept override {
     // How much the wind blows: toward where, across the curtain and, less, along it. Like the drag of the air it grows
@@ -107,21 +103,21 @@ class Curtain final : public Scene {
     const double per_speed = speed_m_s > 0.0 ? strength / speed_m_s : 0.0;
     const double along = (wind_.east_m_s() * along_.east + wind_.south_m_s() * along_.south) * per_speed;
     const double across = (wind_.south_m_s() * along_.east - wind_.east_m_s() * along_.south) * per_speed;
-    const auto sway_east =
-        static_cast<float>(max_sway_ * (give_sideways_ * along * along_.east - across * along_.south));
-    const auto sway_south =
-        static_cast<float>(max_sway_ * (give_sideways_ * along * along_.south + across * along_.east));
+    const double swell = 0.7 + 0.3 * static_cast<double>(noise_.swell());
+    const double sway_along = swell * max_sway_ * give_sideways_ * along;
+    const double sway_across = swell * max_sway_ * across;
+    const auto sway_east = static_cast<float>(sway_along * along_.east - sway_across * along_.south);
+    const auto sway_south = static_cast<float>(sway_along * along_.south + sway_across * along_.east);
     const auto wave_east = static_cast<float>(-max_wave_ * strength * along_.south);
     const auto wave_south = static_cast<float>(max_wave_ * strength * along_.east);
 
-    // All of it sways, a little more here and less there, and the noise runs down it.
+    // All of it sways, and the noise runs down it.
     const std::span<float> sway = cloth_.sway();
     const std::span<float> wave = cloth_.wave();
     const std::size_t stride = flutter_.size();
     for (std::size_t column = 0; column < stride; ++column) {
-      const float swell = 0.7F + 0.3F * swell_[column];
-      sway[column] = swell * sway_east;
-      sway[stride + column] = swell * sway_south;
+      sway[column] = sway_east;
+      sway[stride + column] = sway_south;
       wave[column] = flutter_[column] * wave_east;
       wave[stride + column] = flutter_[column] * wave_south;
     }
@@ -137,7 +133,6 @@ class Curtain final : public Scene {
         along_(turned(setup.placement, 1.0, 0.0)),
         noise_(values, setup.seed ^ stream_id("curtain noise"), edge.x_m, edge.z_m, setup.row),
         flutter_(edge.stride(), 0.0F),
-        swell_(edge.stride(), 0.0F),
         cloth_(curtain_spec(values), edge, setup.row) {}
 
   double half_sway_speed_m_s_;
@@ -148,7 +143,7 @@ class Curtain final : public Scene {
 
   SceneWind wind_;
   ClothNoise noise_;
-  std::vector<float> flutter_, swell_;  ///< each column's noises
+  std::vector<float> flutter_;  ///< each column's noise
   Cloth cloth_;
 };
 

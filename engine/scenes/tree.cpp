@@ -174,22 +174,23 @@ class Tree final : public Scene {
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
 
-  void tick(WindVector wind, double dt_s) noexcept override {
+  void shift(WindVector wind, double dt_s) noexcept override {
+    // The wind carries both noises on.
     wind_.step(wind, dt_s);
-    auto& levels = std::get_if<TreePose>(&pose_)->levels;
-
-    // Shift: the wind carries both noises on.
     noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
     const double slowed = kLargestLeafNoiseSpeed_m_s / (kLargestLeafNoiseSpeed_m_s + wind_.speed_m_s());
     leaf_noise_.shift(slowed * wind_.east_m_s(), slowed * wind_.south_m_s(), dt_s);
+  }
 
-    for (Wood& wood : wood_) {
-      sample(wood);
-      project(wood, dt_s, levels[wood.level]);
-    }
-
+  void sample() noexcept override {
+    for (Wood& wood : wood_) sample_wood(wood);
     const auto largest = static_cast<float>(kLargestNoise);
     leaf_noise_.sample(leaves_.places, row_, leaves_.noise, 1.0F, 0.0F, -largest, largest);
+  }
+
+  void project(double dt_s) noexcept override {
+    auto& levels = std::get_if<TreePose>(&pose_)->levels;
+    for (Wood& wood : wood_) project_wood(wood, dt_s, levels[wood.level]);
     FlutterJob{.wind_east_m_s = wind_.east_m_s(),
                .wind_south_m_s = wind_.south_m_s(),
                .noise = leaves_.noise,
@@ -216,8 +217,8 @@ class Tree final : public Scene {
 
   void add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest_m, const ScenePlacement& placement);
   void add_leaves(const TreeLevel& level, std::uint64_t seed);
-  void sample(Wood& wood) noexcept;
-  void project(Wood& wood, double dt_s, StrandPose& pose) noexcept;
+  void sample_wood(Wood& wood) noexcept;
+  void project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept;
   double largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept;
   double largest_leaf_step_rad(double dt_s) const noexcept;
 
@@ -325,7 +326,7 @@ void Tree::add_leaves(const TreeLevel& level, std::uint64_t seed) {
   leaves_.noise.assign(strands.padded_count(), 0.0F);
 }
 
-void Tree::sample(Wood& wood) noexcept {
+void Tree::sample_wood(Wood& wood) noexcept {
   WindSideJob{.wind_east_m_s = wind_.east_m_s(),
               .wind_south_m_s = wind_.south_m_s(),
               .calm_m_s = kSidelessWind_m_s,
@@ -348,7 +349,7 @@ void Tree::sample(Wood& wood) noexcept {
       .run();
 }
 
-void Tree::project(Wood& wood, double dt_s, StrandPose& pose) noexcept {
+void Tree::project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept {
   TiltJob{.wind_east_m_s = wind_.east_m_s(),
           .wind_south_m_s = wind_.south_m_s(),
           .vertical = wood.vertical,

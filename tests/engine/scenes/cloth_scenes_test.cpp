@@ -1,0 +1,262 @@
+// What curtain, flag and banner have in common, and what each is there for.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/units.hpp"
+#include "engine/pose/pose_arrays.hpp"
+#include "engine/scenes/scene.hpp"
+
+namespace yuragi {
+
+extern const SceneDescription kBannerScene;
+extern const SceneDescription kCurtainScene;
+extern const SceneDescription kFlagScene;
+
+namespace {
+
+constexpr double kClothTick_s = 1.0 / 60.0;
+
+std::unique_ptr<Scene> cloth(const SceneDescription& kind, const ParameterValues::Map& given = {},
+                             const ScenePlacement& placement = {}) {
+  return kind.make(ParameterValues::resolve(kind.parameters, given).value(), {.seed = 1, .placement = placement});
+}
+
+const GridSkeleton& grid_of(const Scene& scene) {
+  return std::get<GridSkeleton>(scene.skeleton());
+}
+const GridPose& offsets_of(const Scene& scene) {
+  return std::get<GridPose>(scene.pose());
+}
+
+WindVector blowing(double azimuth_deg, double speed_m_s) {
+  return {speed_m_s * std::sin(azimuth_deg * kRadPerDeg), speed_m_s * std::cos(azimuth_deg * kRadPerDeg)};
+}
+
+void blow(Scene& scene, WindVector wind, int ticks) {
+  for (int i = 0; i < ticks; ++i) scene.tick(wind, kClothTick_s);
+}
+
+struct Place {
+  double x = 0.0, y = 0.0, z = 0.0;
+
+  friend Place operator-(Place a, Place b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  double length() const { return std::hypot(x, y, z); }
+};
+
+Place rest_at(const Scene& scene, std::size_t column, std::size_t row) {
+  const GridSkeleton& grid = grid_of(scene);
+  const std::size_t at = row * grid.stride() + column;
+  return {grid.rest_x_m[at], grid.rest_y_m[at], grid.rest_z_m[at]};
+}
+Place offset_at(const Scene& scene, std::size_t column, std::size_t row) {
+  const GridPose& pose = offsets_of(scene);
+  const std::size_t at = row * grid_of(scene).stride() + column;
+  return {pose.offset_x_m[at], pose.offset_y_m[at], pose.offset_z_m[at]};
+}
+Place place_at(const Scene& scene, std::size_t column, std::size_t row) {
+  const Place rest = rest_at(scene, column, row);
+  const Place offset = offset_at(scene, column, row);
+  return {rest.x + offset.x, rest.y + offset.y, rest.z + offset.z};
+}
+
+/// The free edge's offset, averaged over its columns and over some ticks.
+Place mean_free_edge(Scene& scene, WindVector wind, int ticks) {
+  Place mean;
+  const GridSkeleton& grid = grid_of(scene);
+  const double share = 1.0 / static_cast<double>(grid.columns) / ticks;
+  for (int tick = 0; tick < ticks; ++tick) {
+    scene.tick(wind, kClothTick_s);
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const Place offset = offset_at(scene, column, grid.rows - 1);
+      mean = {mean.x + share * offset.x, mean.y + share * offset.y, mean.z + share * offset.z};
+    }
+  }
+  return mean;
+}
+
+/// By how many ticks `later` comes after `earlier`: where their cross-correlation is highest, from 0 to `most`.
+int lag_ticks(const std::vector<double>& earlier, const std::vector<double>& later, int most) {
+  const auto fluctuation = [](std::vector<double> values) {
+    double mean = 0.0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    for (double& value : values) value -= mean;
+    return values;
+  };
+  const std::vector<double> a = fluctuation(earlier);
+  const std::vector<double> b = fluctuation(later);
+  int best = 0;
+  double highest = -1e300;
+  for (int lag = 0; lag <= most; ++lag) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i + static_cast<std::size_t>(most) < a.size(); ++i) {
+      sum += a[i] * b[i + static_cast<std::size_t>(lag)];
+    }
+    if (sum > highest) {
+      highest = sum;
+      best = lag;
+    }
+  }
+  return best;
+}
+
+class ClothScene : public testing::TestWithParam<const SceneDescription*> {};
+INSTANTIATE_TEST_SUITE_P(Cloths, ClothScene, testing::Values(&kCurtainScene, &kFlagScene, &kBannerScene),
+                         [](const auto& scene) { return std::string(scene.param->name); });
+
+TEST_P(ClothScene, CalmIsExactlyTheRestPoseAndComesBackAfterAStorm) {
+  const auto scene = cloth(*GetParam());
+  const auto is_at_rest = [&] {
+    bool same = true;
+    const PoseArrays<const float> now(scene->pose());
+    for (const auto array : now) {
+      same = same && std::all_of(array.begin(), array.end(), [](float offset_m) { return offset_m == 0.0F; });
+    }
+    return same;
+  };
+  blow(*scene, {}, 100);
+  EXPECT_TRUE(is_at_rest());
+  blow(*scene, blowing(70.0, 20.0), 100);
+  EXPECT_FALSE(is_at_rest());
+  blow(*scene, {}, 900);
+  EXPECT_TRUE(is_at_rest());
+}
+
+TEST_P(ClothScene, ThreadsKeepTheirLengthAndFixedEdgesDoNotMove) {
+  const auto scene = cloth(*GetParam());
+  const GridSkeleton& grid = grid_of(*scene);
+  for (int storm = 0; storm < 6; ++storm) {
+    blow(*scene, blowing(80.0 * storm, 12.0 * storm), 40);
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      EXPECT_EQ(offset_at(*scene, column, 0).length(), 0.0);
+      double length_m = 0.0;
+      double rest_m = 0.0;
+      for (std::size_t row = 1; row < grid.rows; ++row) {
+        length_m += (place_at(*scene, column, row) - place_at(*scene, column, row - 1)).length();
+        rest_m += (rest_at(*scene, column, row) - rest_at(*scene, column, row - 1)).length();
+      }
+      EXPECT_NEAR(length_m, rest_m, 1e-3 * rest_m);
+    }
+    if (!grid.is_first_column_fixed) continue;
+    for (std::size_t row = 0; row < grid.rows; ++row) EXPECT_EQ(offset_at(*scene, 0, row).length(), 0.0);
+  }
+}
+
+TEST_P(ClothScene, MovesMoreTowardTheFreeEdge) {
+  const auto scene = cloth(*GetParam());
+  const GridSkeleton& grid = grid_of(*scene);
+  const std::size_t column = grid.columns - 1;
+  blow(*scene, blowing(30.0, 8.0), 200);
+  std::vector<double> sum(10), square(10);
+  constexpr int kTicks = 1200;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    scene->tick(blowing(30.0, 8.0), kClothTick_s);
+    for (std::size_t i = 0; i < 10; ++i) {
+      const double z_m = offset_at(*scene, column, (i + 1) * (grid.rows - 1) / 10).z;
+      sum[i] += z_m / kTicks;
+      square[i] += z_m * z_m / kTicks;
+    }
+  }
+  for (std::size_t i = 1; i < 10; ++i) {
+    EXPECT_GT(square[i] - sum[i] * sum[i], square[i - 1] - sum[i - 1] * sum[i - 1]) << i;
+  }
+}
+
+TEST_P(ClothScene, MovesMoreInAStrongerWindAndSaturates) {
+  std::vector<double> reach_m;
+  for (const double speed_m_s : {1.0, 2.5, 5.0, 40.0, 1e6}) {
+    const auto scene = cloth(*GetParam(), {{"max_flutter", 0.0}});
+    blow(*scene, blowing(0.0, speed_m_s), 200);
+    reach_m.push_back(mean_free_edge(*scene, blowing(0.0, speed_m_s), 1000).length());
+  }
+  for (std::size_t i = 1; i < 3; ++i) EXPECT_GT(reach_m[i], 1.2 * reach_m[i - 1]) << i;
+  EXPECT_LT(std::abs(reach_m[4] - reach_m[3]), 0.25 * reach_m[3]);
+}
+
+TEST_P(ClothScene, ATurnedWindTurnsTheResponse) {
+  // The whole scene turned with the wind moves as before, turned.
+  const auto scene = cloth(*GetParam(), {{"max_flutter", 0.0}});
+  const auto turned = cloth(*GetParam(), {{"max_flutter", 0.0}}, {.heading_deg = 90.0});
+  const Place mean = mean_free_edge(*scene, blowing(20.0, 6.0), 1500);
+  const Place turned_mean = mean_free_edge(*turned, blowing(110.0, 6.0), 1500);
+  EXPECT_NEAR(turned_mean.x, -mean.z, 0.15 * mean.length());
+  EXPECT_NEAR(turned_mean.z, mean.x, 0.15 * mean.length());
+  EXPECT_NEAR(turned_mean.y, mean.y, 0.15 * mean.length());
+
+  // A wind from the other side blows it to the other side.
+  const auto reversed = cloth(*GetParam(), {{"max_flutter", 0.0}});
+  const Place reversed_mean = mean_free_edge(*reversed, blowing(200.0, 6.0), 1500);
+  EXPECT_LT(reversed_mean.z * mean.z, 0.0);
+}
+
+TEST_P(ClothScene, TheNoiseComesToTheFreeEdgeATravelTimeAfterItLeftTheFixedOne) {
+  const auto scene = cloth(*GetParam(), {{"travel_time", 0.8}});
+  const GridSkeleton& grid = grid_of(*scene);
+  const std::size_t column = grid.columns - 1;
+  const std::size_t early = grid.rows / 5;
+  const std::size_t late = grid.rows - 2;
+  const WindVector wind = blowing(90.0, 6.0);  // along the cloth, so that it does not sway across
+  blow(*scene, wind, 200);
+  std::vector<double> early_m, late_m;
+  for (int tick = 0; tick < 3000; ++tick) {
+    scene->tick(wind, kClothTick_s);
+    early_m.push_back(offset_at(*scene, column, early + 1).z - offset_at(*scene, column, early).z);
+    late_m.push_back(offset_at(*scene, column, late + 1).z - offset_at(*scene, column, late).z);
+  }
+  const double expected_ticks = 48.0 * static_cast<double>(late - early) / static_cast<double>(late);
+  EXPECT_NEAR(lag_ticks(early_m, late_m, 90), expected_ticks, 1.5);
+}
+
+TEST(ClothSceneTest, CurtainAndFlagHaveThePapers30000Joints) {
+  for (const SceneDescription* kind : {&kCurtainScene, &kFlagScene}) {
+    EXPECT_EQ(node_count(cloth(*kind)->skeleton()), 30'000U);
+  }
+}
+
+TEST(CurtainTest, AWindAlongTheCurtainRunsAlongIt) {
+  const auto scene = cloth(kCurtainScene, {{"beta", 1.0}, {"quickness", 40.0}});
+  const GridSkeleton& grid = grid_of(*scene);
+  const std::size_t row = grid.rows / 4;
+  const double way_m = (rest_at(*scene, 150, 0) - rest_at(*scene, 100, 0)).x;
+  for (const double speed_m_s : {3.0, 6.0}) {
+    for (const double azimuth_deg : {90.0, 270.0}) {  // toward east, and back
+      const WindVector wind = blowing(azimuth_deg, speed_m_s);
+      blow(*scene, wind, 200);
+      std::vector<double> west_m, east_m;
+      for (int tick = 0; tick < 3000; ++tick) {
+        scene->tick(wind, kClothTick_s);
+        west_m.push_back(offset_at(*scene, 100, row + 1).z - offset_at(*scene, 100, row).z);
+        east_m.push_back(offset_at(*scene, 150, row + 1).z - offset_at(*scene, 150, row).z);
+      }
+      const int lag = azimuth_deg < 180.0 ? lag_ticks(west_m, east_m, 60) : lag_ticks(east_m, west_m, 60);
+      EXPECT_NEAR(lag, way_m / speed_m_s / kClothTick_s, 2.0) << speed_m_s << " m/s toward " << azimuth_deg;
+    }
+  }
+}
+
+TEST(FlagTest, HangsLimpInCalmAirAndFliesDownwind) {
+  const auto scene = cloth(kFlagScene);
+  const GridSkeleton& grid = grid_of(*scene);
+  const std::size_t middle = grid.columns / 2;
+  const auto fly = [&] { return place_at(*scene, middle, grid.rows - 1) - rest_at(*scene, middle, 0); };
+  EXPECT_LT(fly().y, -0.9 * 1.8);
+  for (double azimuth_deg = 0.0; azimuth_deg < 360.0; azimuth_deg += 45.0) {
+    blow(*scene, blowing(azimuth_deg, 12.0), 120);
+    Place mean;
+    for (int tick = 0; tick < 600; ++tick) {
+      scene->tick(blowing(azimuth_deg, 12.0), kClothTick_s);
+      mean = {mean.x + fly().x / 600.0, mean.y + fly().y / 600.0, mean.z + fly().z / 600.0};
+    }
+    const double downwind_m = mean.x * std::sin(azimuth_deg * kRadPerDeg) - mean.z * std::cos(azimuth_deg * kRadPerDeg);
+    const double sideways_m = mean.x * std::cos(azimuth_deg * kRadPerDeg) + mean.z * std::sin(azimuth_deg * kRadPerDeg);
+    EXPECT_GT(downwind_m, 0.75 * 1.8) << azimuth_deg;
+    EXPECT_LT(std::abs(sideways_m), 0.2) << azimuth_deg;
+  }
+}
+
+}  // namespace
+}  // namespace yuragi
