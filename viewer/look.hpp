@@ -16,7 +16,7 @@ class Look {
   Look(const Look&) = delete;
   Look& operator=(const Look&) = delete;
 
-  /// Takes a pose of the skeleton's layout; draws of it from here on. (A pose of another layout is ignored.)
+  /// Takes a pose that fits the skeleton; before anything is drawn, and for each picture.
   virtual void move_to(const Pose& pose) = 0;
 
   /// Draws what stands there. The View is bound (ViewBuffer::set). The stage has set depth and stencil tests; what a

@@ -3,15 +3,11 @@
 #include "viewer/fur_look.hpp"
 #include "viewer/grass_look.hpp"
 #include "viewer/look.hpp"
+#include "viewer/tree_look.hpp"
 #include "viewer/water_look.hpp"
 
 namespace yuragi {
 namespace {
-
-class NoLook : public Look {
-  void move_to(const Pose&) override {}
-  void draw(const View&) override {}
-};
 
 std::unique_ptr<Look> look_of(const StrandSkeleton& strands, const wire::SceneModel& scene) {
   if (scene.kind == "fur") return std::make_unique<FurLook>(strands);
@@ -20,8 +16,8 @@ std::unique_ptr<Look> look_of(const StrandSkeleton& strands, const wire::SceneMo
 std::unique_ptr<Look> look_of(const GridSkeleton& cloth, const wire::SceneModel& scene) {
   return std::make_unique<ClothLook>(cloth, scene.kind);
 }
-std::unique_ptr<Look> look_of(const TreeSkeleton&, const wire::SceneModel&) {
-  return std::make_unique<NoLook>();
+std::unique_ptr<Look> look_of(const TreeSkeleton& tree, const wire::SceneModel& scene) {
+  return std::make_unique<TreeLook>(tree, scene.name);
 }
 std::unique_ptr<Look> look_of(const SurfaceSkeleton& surface, const wire::SceneModel&) {
   if (surface.ramp_rgba.empty()) return std::make_unique<WaterLook>(surface);

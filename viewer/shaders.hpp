@@ -7,6 +7,8 @@ namespace yuragi::shaders {
 
 extern const std::string_view kCommon;  ///< in front of each of the others
 extern const std::string_view kShadeFrag;
+extern const std::string_view kBarkVert;
+extern const std::string_view kBarkFrag;
 extern const std::string_view kClothVert;
 extern const std::string_view kClothFrag;
 extern const std::string_view kDoorVert;
@@ -20,6 +22,7 @@ extern const std::string_view kGroundVert;
 extern const std::string_view kGroundFrag;
 extern const std::string_view kHairVert;
 extern const std::string_view kHillsVert;
+extern const std::string_view kLeafVert;
 extern const std::string_view kSkyVert;
 extern const std::string_view kSkyFrag;
 extern const std::string_view kSolidVert;

@@ -56,9 +56,14 @@ std::size_t Stage::node_count() const {
   return count;
 }
 
+bool Stage::is_seen(const PoseMoment& moment, std::size_t scene) const {
+  return is_chosen(scene) && scene < moment.poses.size() && scene < moment.opacities.size() &&
+         moment.opacities[scene] > 0.0F && fits(moment.poses[scene], scenes_[scene].skeleton);
+}
+
 Bounds Stage::field(const PoseMoment& moment) const {
   const auto grows = [&](std::size_t scene) {
-    return is_chosen(scene) && looks_[scene]->is_field() && moment.opacities[scene] > 0.5F;
+    return is_seen(moment, scene) && looks_[scene]->is_field() && moment.opacities[scene] > 0.5F;
   };
   return around(bounds_, grows).value_or(kNoField);
 }
@@ -75,10 +80,8 @@ void Stage::draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarg
   glDisable(GL_SCISSOR_TEST);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 
-  const std::size_t count = std::min({looks_.size(), moment.poses.size(), moment.opacities.size()});
-  const auto is_seen = [&](std::size_t scene) { return is_chosen(scene) && moment.opacities[scene] > 0.0F; };
-  for (std::size_t scene = 0; scene < count; ++scene) {
-    if (!is_seen(scene)) continue;
+  for (std::size_t scene = 0; scene < looks_.size(); ++scene) {
+    if (!is_seen(moment, scene)) continue;
     Look& look = *looks_[scene];
     look.move_to(moment.poses[scene]);
     door_.open(moment.opacities[scene], scene);
@@ -96,8 +99,8 @@ void Stage::draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarg
     door_.close();
   }
   landscape_.draw();
-  for (std::size_t scene = 0; scene < count; ++scene) {
-    if (!is_seen(scene)) continue;
+  for (std::size_t scene = 0; scene < looks_.size(); ++scene) {
+    if (!is_seen(moment, scene)) continue;
     door_.open(moment.opacities[scene], scene);
     looks_[scene]->draw_light();
     door_.close();

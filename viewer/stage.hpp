@@ -32,11 +32,12 @@ class Stage {
   /// How many joints move.
   std::size_t node_count() const;
 
-  /// Draws `moment`, whose layout is that of the scenes, into `target`, and resolves it.
+  /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit are left out.
   void draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarget& target);
 
  private:
   bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene].name == *only_; }
+  bool is_seen(const PoseMoment& moment, std::size_t scene) const;
   Bounds field(const PoseMoment& moment) const;
 
   std::vector<wire::SceneModel> scenes_;

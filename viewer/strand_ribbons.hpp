@@ -17,7 +17,7 @@ class StrandRibbons {
   /// `strands` must outlive this.
   StrandRibbons(const StrandSkeleton& strands, BladeStyle style);
 
-  /// Moves the joints to where they are in this pose. (A pose that is not of these strands is ignored.)
+  /// Moves the joints to where they are in this pose.
   void move_to(const StrandPose& pose);
   /// Draws what is in view, near ones first, with `program`.
   void draw(const GlProgram& program, const View& view);

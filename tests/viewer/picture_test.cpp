@@ -2,7 +2,6 @@
 // below, and the grass leans.
 
 #include <array>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,13 +11,13 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
 #include <stb_image.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/support/places.hpp"
 #include "tests/viewer/test_meadow.hpp"
+#include "tests/viewer/virtual_screen.hpp"
 
 namespace yuragi {
 namespace {
@@ -93,38 +92,13 @@ struct Ended {
   std::string said;  // on standard error
 };
 
-/// Starts a program; 0 if that was not possible. `environment` is all that it gets.
-pid_t start(std::vector<std::string> words, std::vector<std::string> environment, posix_spawn_file_actions_t* actions) {
-  const auto pointers = [](std::vector<std::string>& texts) {
-    std::vector<char*> made;
-    made.reserve(texts.size() + 1);
-    for (std::string& text : texts) made.push_back(text.data());
-    made.push_back(nullptr);
-    return made;
-  };
-  pid_t child = 0;
-  const int failed =
-      posix_spawnp(&child, words[0].c_str(), actions, nullptr, pointers(words).data(), pointers(environment).data());
-  return failed == 0 ? child : 0;
-}
-
-/// Our own environment, but for the screens.
-std::vector<std::string> environment_without_screen() {
-  std::vector<std::string> environment;
-  for (char** variable = environ; *variable != nullptr; ++variable) {
-    const std::string text = *variable;
-    if (!text.starts_with("DISPLAY=") && !text.starts_with("WAYLAND_DISPLAY=")) environment.push_back(text);
-  }
-  return environment;
-}
-
 /// Runs a program to its end.
 Ended run(std::vector<std::string> words, const std::filesystem::path& folder, std::vector<std::string> environment) {
   const std::filesystem::path said = folder / "said";
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  const pid_t child = start(std::move(words), std::move(environment), &actions);
+  const pid_t child = start_program(std::move(words), std::move(environment), &actions);
   posix_spawn_file_actions_destroy(&actions);
   if (child == 0) return {};
   int status = 0;
@@ -133,48 +107,6 @@ Ended run(std::vector<std::string> words, const std::filesystem::path& folder, s
   text << std::ifstream(said).rdbuf();
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
 }
-
-/// A virtual X server, on a display number that it finds free itself. (xvfb-run -a guesses one, and may lose it to
-/// another.) It ends with its first client, or with this.
-class VirtualScreen {
- public:
-  VirtualScreen() {
-    constexpr int kNumberFd = 9;
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], kNumberFd);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    server_ = start({"Xvfb", "-displayfd", std::to_string(kNumberFd), "-terminate", "-nolisten", "tcp", "-screen", "0",
-                     "640x480x24"},
-                    environment_without_screen(), &actions);
-    posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[1]);
-
-    // It says its number when it is ready, and a line's end.
-    char letter = 0;
-    while (::read(ends[0], &letter, 1) == 1 && letter != '\n') number_ += letter;
-    ::close(ends[0]);
-  }
-  ~VirtualScreen() {
-    if (server_ == 0) return;
-    ::kill(server_, SIGTERM);
-    waitpid(server_, nullptr, 0);
-  }
-  VirtualScreen(const VirtualScreen&) = delete;
-  VirtualScreen& operator=(const VirtualScreen&) = delete;
-
-  std::vector<std::string> environment() const {
-    std::vector<std::string> environment = environment_without_screen();
-    environment.push_back("DISPLAY=:" + number_);
-    return environment;
-  }
-
- private:
-  pid_t server_ = 0;
-  std::string number_;
-};
 
 /// Streams one pose of a meadow to whoever comes, while the viewer takes a picture of it.
 class PictureTest : public testing::Test {

@@ -34,10 +34,7 @@ class AllKindsTest : public testing::Test {
     frame.poses = moment.poses;
     frame.opacities = moment.opacities;
     frame.opacities.back() = last_opacity;
-    if (last_opacity == 0.0F) {
-      Pose& hidden = frame.poses.back();
-      std::visit([](auto& kind) { kind = {}; }, hidden);
-    }
+    if (last_opacity == 0.0F) frame.poses.back() = StrandPose{};  // as it is decoded
     return frame;
   }
 };

@@ -152,6 +152,115 @@ StrandSkeleton fur(TestPlace place) {
   return coat;
 }
 
+/// Strands of a level to be, one by one.
+struct Growing {
+  TreeLevel level;
+
+  Growing(std::size_t links, std::size_t parent_level, bool is_leaves) {
+    level.strands.links_per_strand = links;
+    level.parent_level = parent_level;
+    level.is_leaves = level.is_turned_by_block = is_leaves;
+  }
+
+  void add(const Point& root, const Point& rest, double length_m, double curl_rad, double base_m, double tip_m,
+           std::size_t parent, std::size_t parent_link) {
+    StrandSkeleton& s = level.strands;
+    const double norm = std::hypot(rest[0], rest[1], rest[2]);
+    const Point unit{rest[0] / norm, rest[1] / norm, rest[2] / norm};
+    const double flat = std::max(1e-3, std::hypot(unit[0], unit[2]));
+    const Point curl{-unit[0] * unit[1] / flat, flat, -unit[2] * unit[1] / flat};
+    const double curl_norm = std::hypot(curl[0], curl[1], curl[2]);
+    const auto push = [](std::vector<float>& to, double value) { to.push_back(static_cast<float>(value)); };
+    push(s.root_x_m, root[0]);
+    push(s.root_y_m, root[1]);
+    push(s.root_z_m, root[2]);
+    push(s.rest_x, unit[0]);
+    push(s.rest_y, unit[1]);
+    push(s.rest_z, unit[2]);
+    push(s.curl_x, curl[0] / curl_norm);
+    push(s.curl_y, curl[1] / curl_norm);
+    push(s.curl_z, curl[2] / curl_norm);
+    push(s.rest_curl_rad, curl_rad / static_cast<double>(s.links_per_strand));
+    push(s.link_length_m, length_m / static_cast<double>(s.links_per_strand));
+    push(level.base_radius_m, base_m);
+    push(level.tip_radius_m, tip_m);
+    level.parent.push_back(static_cast<std::uint32_t>(parent));
+    level.parent_link.push_back(static_cast<std::uint32_t>(parent_link));
+    s.strand_count = s.root_x_m.size();
+  }
+
+  /// Whole blocks: the last strand again and again.
+  TreeLevel finished() {
+    StrandSkeleton& s = level.strands;
+    for (std::vector<float>* values :
+         {&s.root_x_m, &s.root_y_m, &s.root_z_m, &s.rest_x, &s.rest_y, &s.rest_z, &s.curl_x, &s.curl_y, &s.curl_z,
+          &s.rest_curl_rad, &s.link_length_m, &level.base_radius_m, &level.tip_radius_m}) {
+      values->resize(s.padded_count(), values->back());
+    }
+    level.parent.resize(s.padded_count(), level.parent.back());
+    level.parent_link.resize(s.padded_count(), level.parent_link.back());
+    return level;
+  }
+};
+
+/// Where the joint behind a link is at rest, on the arc of the strand.
+Point joint_of(const StrandSkeleton& s, std::size_t strand, std::size_t link) {
+  Point at{static_cast<double>(s.root_x_m[strand]), static_cast<double>(s.root_y_m[strand]),
+           static_cast<double>(s.root_z_m[strand])};
+  for (std::size_t i = 0; i <= link; ++i) {
+    const double angle = static_cast<double>(s.rest_curl_rad[strand]) * static_cast<double>(i);
+    const auto length = static_cast<double>(s.link_length_m[strand]);
+    at[0] += length * (std::cos(angle) * static_cast<double>(s.rest_x[strand]) +
+                       std::sin(angle) * static_cast<double>(s.curl_x[strand]));
+    at[1] += length * (std::cos(angle) * static_cast<double>(s.rest_y[strand]) +
+                       std::sin(angle) * static_cast<double>(s.curl_y[strand]));
+    at[2] += length * (std::cos(angle) * static_cast<double>(s.rest_z[strand]) +
+                       std::sin(angle) * static_cast<double>(s.curl_z[strand]));
+  }
+  return at;
+}
+
+/// A trunk, 14 limbs, 12 twigs on each, and 16 leaves at each of four places of a twig.
+TreeSkeleton tree(TestPlace place) {
+  constexpr double kGolden = 2.399963;
+  const RandomStream chance(3, stream_id("test tree"));
+  std::uint64_t drawn = 0;
+  const auto between = [&](double low, double high) { return low + (high - low) * chance.uniform(drawn++); };
+  Growing trunk(24, 0, false);
+  Growing limbs(20, 0, false);
+  Growing twigs(12, 1, false);
+  Growing leaves(4, 2, true);
+  trunk.add({place.east_m, 0.0, place.south_m}, {0.04, 1.0, 0.02}, 4.6, 0.05, 0.17, 0.02, 0, 0);
+  for (std::size_t limb = 0; limb < 14; ++limb) {
+    const std::size_t link = 7 + limb * 16 / 14;
+    const double share = static_cast<double>(link) / 24.0;
+    const double bearing = kGolden * static_cast<double>(limb);
+    const double length_m = (2.9 - 1.9 * share) * between(0.9, 1.15);
+    limbs.add(joint_of(trunk.level.strands, 0, link), {std::cos(bearing), 0.35 + 0.8 * share, std::sin(bearing)},
+              length_m, 0.45, 0.022 + 0.04 * (1.0 - share), 0.006, 0, link);
+    for (std::size_t twig = 0; twig < 12; ++twig) {
+      const std::size_t twig_link = 4 + twig * 15 / 12;
+      const double side = bearing + (twig % 2 == 0 ? 0.9 : -0.9) + between(-0.4, 0.4);
+      twigs.add(joint_of(limbs.level.strands, limb, twig_link), {std::cos(side), between(0.0, 1.0), std::sin(side)},
+                between(0.5, 0.95), 0.3, 0.007, 0.002, limb, twig_link);
+      for (const std::size_t spray : {5U, 7U, 9U, 11U}) {
+        const std::size_t index = twigs.level.strands.strand_count - 1;
+        const Point root = joint_of(twigs.level.strands, index, spray);
+        for (int leaf = 0; leaf < 16; ++leaf) {
+          const double to = between(0.0, 2 * kPi);
+          leaves.add(root, {std::cos(to), between(-0.8, 0.9), std::sin(to)}, between(0.10, 0.17), -0.6, 0.026, 0.0,
+                     index, spray);
+        }
+      }
+    }
+  }
+  TreeSkeleton grown;
+  grown.levels = {trunk.finished(), limbs.finished(), twigs.finished(), leaves.finished()};
+  grown.levels[0].parent.clear();
+  grown.levels[0].parent_link.clear();
+  return grown;
+}
+
 Skeleton skeleton_of(std::string_view kind, TestPlace place) {
   if (kind == "grass") {
     Skeleton meadow = test_meadow(60, 6.0);
@@ -164,6 +273,7 @@ Skeleton skeleton_of(std::string_view kind, TestPlace place) {
   if (kind == "curtain") return curtain(place);
   if (kind == "flag") return flag(place);
   if (kind == "banner") return banner(place);
+  if (kind == "tree") return tree(place);
   if (kind == "ripple") return water(place);
   return kind == "flame" ? flame_body(place) : flame_panel(place);
 }
@@ -184,6 +294,20 @@ GridPose wave(const GridSkeleton& cloth, double time_s, double strength) {
       pose.offset_z_m[i] = static_cast<float>(swing + lean);
       pose.offset_y_m[i] = static_cast<float>(0.3 * lean * lean * 1.6 - (is_flag ? 0.12 * strength * share : 0.0));
       pose.offset_x_m[i] = static_cast<float>(is_flag ? -0.16 * strength * share : 0.12 * swing);
+    }
+  }
+  return pose;
+}
+
+/// Each generation sways more than that before it, leaves quickly.
+TreePose sway(const TreeSkeleton& tree, double time_s, double strength) {
+  TreePose pose = std::get<TreePose>(rest_pose(tree));
+  for (std::size_t level = 0; level < pose.levels.size(); ++level) {
+    const double gain = strength * (level == 0 ? 0.08 : 0.16 * static_cast<double>(level));
+    for (std::size_t i = 0; i < pose.levels[level].bend_east_rad.size(); ++i) {
+      const double phase = (1.5 + 2.0 * static_cast<double>(level)) * time_s + 0.7 * static_cast<double>(i % 97);
+      pose.levels[level].bend_east_rad[i] = static_cast<float>(gain * (1.0 + 0.6 * std::sin(phase)));
+      pose.levels[level].bend_south_rad[i] = static_cast<float>(0.5 * gain * std::sin(1.3 * phase));
     }
   }
   return pose;
@@ -228,13 +352,13 @@ Pose test_pose(const wire::SceneModel& model, double time_s, double strength) {
   if (const auto* const surface = std::get_if<SurfaceSkeleton>(&model.skeleton)) {
     return waves(*surface, time_s, strength);
   }
-  return rest_pose(model.skeleton);
+  return sway(std::get<TreeSkeleton>(model.skeleton), time_s, strength);
 }
 
 std::vector<wire::SceneModel> test_garden() {
   return {test_model("grass", {-7.0, 1.0}), test_model("fur", {-2.4, 3.0}),   test_model("curtain", {0.5, 0.0}),
           test_model("flag", {4.2, -1.0}),  test_model("banner", {7.4, 0.5}), test_model("ripple", {3.5, 4.5}),
-          test_model("flame", {-2.2, -0.5})};
+          test_model("flame", {-2.2, -0.5}), test_model("tree", {0.5, -6.0})};
 }
 
 }  // namespace yuragi

@@ -67,7 +67,7 @@ vec3 banner(vec2 p, float tall) {
     float foot = tall - 1.15 + 0.30 * n + 0.055 * sin(6.2832 * (p.x * 1.5 + 0.31 * n));
     paint = mix(paint, i == 1 ? kSnow : kInk, cover(p.y - foot));
   }
-  float stem = 0.022 + 0.010 * sin(2.2 * p.y);
+  float stem = 0.030 * smoothstep(1.36, 2.1, p.y) * smoothstep(tall - 1.34, tall - 1.9, p.y);
   float thread = stem - abs(p.x - 0.5 - 0.11 * sin(2.6 * p.y + 0.6));
   paint = mix(paint, kVermilion, cover(thread) * step(1.36, p.y) * step(p.y, tall - 1.34));
   return paint;

@@ -1,0 +1,39 @@
+// A branch: a tapering tube along a strand's joints.
+uniform int first;  // where the level's joints begin
+uniform int rings;
+uniform int sides;
+
+layout(location = 0) in vec4 root_base;  // metres; w: radius there
+layout(location = 1) in vec4 tint_tip;   // w: radius at the tip, metres
+layout(location = 2) in vec3 aside;
+layout(location = 3) in uint strand;
+layout(location = 4) in int root_at;     // of the parent's joint; below 0: it stands on the ground
+
+out vec3 place_m;
+out vec3 normal;
+out vec3 tint;
+out vec2 bark_m;  // around and along
+
+void main() {
+  int ring = gl_VertexID / (sides + 1);
+  float turn = 6.2831853 * float(gl_VertexID % (sides + 1)) / float(sides);
+  int link = ring * links / rings;
+  int link_below = max(ring - 1, 0) * links / rings;
+  int link_above = min(ring + 1, rings) * links / rings;
+  vec3 root = root_at < 0 ? root_base.xyz : joint_at(root_at);
+  vec3 middle = link > 0 ? joint(first, strand, link - 1) : root;
+  vec3 below = link_below > 0 ? joint(first, strand, link_below - 1) : root;
+  vec3 along = normalize(joint(first, strand, max(link_above, 1) - 1) - below);
+  vec3 across = normalize(cross(along, aside));
+  normal = cos(turn) * across + sin(turn) * cross(along, across);
+
+  // Where it stands on the ground, it spreads to its roots.
+  float t = float(link) / float(links);
+  float radius = mix(root_base.w, tint_tip.w, t);
+  if (root_at < 0) radius *= 1.0 + 0.55 * exp(-22.0 * t) * (1.0 + 0.25 * sin(5.0 * turn));
+  radius = max(radius, 0.35 * eye_m.w * distance(eye_m.xyz, middle));
+  place_m = middle + radius * normal;
+  tint = tint_tip.rgb;
+  bark_m = vec2(turn * root_base.w, distance(root, middle));
+  gl_Position = to_clip * vec4(place_m, 1.0);
+}

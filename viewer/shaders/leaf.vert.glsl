@@ -1,0 +1,54 @@
+// A leaf: a stalk and a blade along a strand's joints, with its light: sun on it, sun through it, the sky, less of each inside the
+// crown.
+uniform int first;
+uniform vec3 crown_middle_m;
+uniform vec3 crown_radius_m;
+
+layout(location = 0) in vec4 root_half;  // metres; w: half the width
+layout(location = 1) in vec4 tint;
+layout(location = 2) in vec3 upper;      // what its upper side is turned to
+layout(location = 3) in uint strand;
+layout(location = 4) in int root_at;
+
+out vec3 shade;
+
+void main() {
+  int ring = gl_VertexID >> 1;
+  float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+  vec3 root = root_at < 0 ? root_half.xyz : joint_at(root_at);
+  vec3 place = ring > 0 ? joint(first, strand, ring - 1) : root;
+  vec3 below = ring > 1 ? joint(first, strand, ring - 2) : root;
+  vec3 along = normalize((ring > 0 ? place : joint(first, strand, 0)) - below);
+  vec3 to_eye = eye_m.xyz - place;
+  float distance_m = length(to_eye);
+  to_eye /= distance_m;
+
+  // A stalk for a fifth of it, then the blade: widest before its middle, pointed.
+  float t = float(ring) / float(links);
+  float blade = clamp((t - 0.2) / 0.8, 0.0, 1.0);
+  float half_width = root_half.w * max(0.07, 2.3 * sqrt(blade) * (1.0 - blade) * (1.0 + 0.25 * blade)) * step(t, 0.999);
+  half_width = max(half_width, 0.45 * eye_m.w * distance_m * step(t, 0.999) * step(0.2, t));
+  vec3 across = normalize(cross(along, upper));
+  vec3 normal = cross(across, along);
+  place += across * (side * half_width) + normal * (0.22 * half_width);
+  normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
+  normal = normalize(normal + across * (side * 0.30));
+  gl_Position = to_clip * vec4(place, 1.0);
+
+  vec3 in_crown = (place - crown_middle_m) / crown_radius_m;
+  float depth = length(in_crown);
+  float open = smoothstep(0.30, 1.05, depth);
+  float to_light = smoothstep(-1.1, 0.9, dot(in_crown, normalize(to_sun.xyz / crown_radius_m)));
+  float facing = dot(normal, to_sun.xyz);
+  float against = max(-dot(to_eye, to_sun.xyz), 0.0);
+  vec3 through = tint.rgb * vec3(1.25, 1.10, 0.75) * max(-facing, 0.10) * (0.40 + 1.15 * against * against);
+  vec3 sum = tint.rgb * soft_light(normal) * (0.35 + 0.65 * open) * 0.9;
+  sum += kSunLight * (tint.rgb * max(facing, 0.0) * 0.75 + through) * (0.10 + 0.90 * open) * (0.30 + 0.70 * to_light);
+  float shine = max(dot(normal, normalize(to_sun.xyz + to_eye)), 0.0);
+  shine *= shine;
+  shine *= shine;
+  shine *= shine;
+  shine *= shine;
+  sum += kSunLight * 0.05 * shine * shine * to_light;
+  shade = seen(sum, place);
+}
