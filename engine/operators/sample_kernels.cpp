@@ -1,6 +1,7 @@
 #include <cstdint>
 
 #include "engine/base/kernel.hpp"
+#include "engine/math/lanes.hpp"
 #include "engine/noise/torus_read.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
@@ -70,10 +71,14 @@ struct Pairs {
   }
 }
 
-[[gnu::always_inline]] inline float scaled(const SampleKernelArguments& in, float noise) noexcept {
-  const float value = in.bias + in.scale * noise;
-  const float above = value < in.low ? in.low : value;
-  return above > in.high ? in.high : above;
+/// Number is float or Lanes.
+template <class Number>
+[[gnu::always_inline]] inline Number scaled(const SampleKernelArguments& in, Number noise) noexcept {
+  const Number low = in.low - Number{};
+  const Number high = in.high - Number{};
+  const Number value = in.bias + in.scale * noise;
+  const Number above = value < low ? low : value;
+  return above > high ? high : above;
 }
 
 /// `known_layers`: how many there are, where the loop over them is to be unrolled; 0: as many as `in` says.
@@ -84,7 +89,9 @@ template <std::size_t known_layers>
   for (; i + kAtOnce <= in.count; i += kAtOnce) {
     alignas(64) float sum[kAtOnce] = {};
     for (std::size_t layer = 0; layer < layers; ++layer) add_layer(in.layers[layer], i, sum);
-    for (std::size_t lane = 0; lane < kAtOnce; ++lane) in.out[i + lane] = scaled(in, sum[lane]);
+    for (std::size_t lane = 0; lane < kAtOnce; lane += kLaneCount) {
+      store_lanes(in.out + i + lane, scaled(in, load_lanes(sum + lane)));
+    }
   }
   for (; i < in.count; ++i) {
     float sum = 0.0F;
