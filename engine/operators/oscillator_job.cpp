@@ -46,7 +46,7 @@ OscillatorJob::Problem OscillatorJob::validate() const noexcept {
   if (south.size() != count) return Problem::kSizesDiffer;
   for (const auto* array :
        {&oscillators->value_east, &oscillators->rate_east, &oscillators->value_south, &oscillators->rate_south}) {
-    if (array->size() != count) return Problem::kSizesDiffer;
+    if (array->size() < first || array->size() - first < count) return Problem::kSizesDiffer;
   }
   if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
   return Problem::kNone;
@@ -62,13 +62,13 @@ OscillatorJob::Problem OscillatorJob::run() const noexcept {
                                       .v_from_e = static_cast<float>(step.v_from_e),
                                       .v_from_v = static_cast<float>(step.v_from_v),
                                       .blend = static_cast<float>(blend),
-                                      .value = oscillators->value_east.data(),
-                                      .rate = oscillators->rate_east.data(),
+                                      .value = oscillators->value_east.data() + first,
+                                      .rate = oscillators->rate_east.data() + first,
                                       .driven = east.data()};
   const OscillatorKernels& kernels = kOscillatorRows[row.value_or(best_simd_row())];
   kernels.step(arguments);
-  arguments.value = oscillators->value_south.data();
-  arguments.rate = oscillators->rate_south.data();
+  arguments.value = oscillators->value_south.data() + first;
+  arguments.rate = oscillators->rate_south.data() + first;
   arguments.driven = south.data();
   kernels.step(arguments);
   return Problem::kNone;

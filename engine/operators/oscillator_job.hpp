@@ -44,14 +44,16 @@ struct Oscillators {
 ///
 /// `east` and `south` hold the noise's angle g on entry, and g + blend (q - g) afterwards; with blend 0 they keep every
 /// bit, and the oscillators rest. What has died away to below 1e-9 is set to 0, so that calm ends in the rest pose.
-/// Radians (or any unit). All arrays have the same size. Owns nothing. Thread-safe: jobs on different elements, yes.
-/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.5 ns an element (x86-64-v3).
+/// Radians (or any unit). Both spans have the same size, of oscillators that are there. Owns nothing. Thread-safe: jobs
+/// on different elements, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.5 ns an element
+/// (x86-64-v3).
 struct OscillatorJob {
   OscillatorStep step;
   double blend = 1.0;                         ///< h: 0, the noise alone, to 1, the oscillator alone
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   Oscillators* oscillators = nullptr;
+  std::size_t first = 0;  ///< which oscillator the first element of `east` and `south` drives
   std::span<float> east = {};
   std::span<float> south = {};
 

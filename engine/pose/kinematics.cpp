@@ -21,14 +21,16 @@ JointPosition joint_of_strands(const JointPositions& joints, std::size_t number)
 Kinematics::Kinematics(const Skeleton& skeleton, std::optional<SimdRow> row)
     : skeleton_(&skeleton), row_(row), joints_(make_joints(skeleton)) {}
 
-bool Kinematics::run(const Pose& pose) noexcept {
+bool Kinematics::run(const Pose& pose, Part part) noexcept {
   if (const auto* strands = std::get_if<StrandSkeleton>(skeleton_)) {
     const StrandKinematicsJob job{.skeleton = strands,
                                   .pose = std::get_if<StrandPose>(&pose),
                                   .row = row_,
+                                  .part = part,
                                   .joints = std::get_if<JointPositions>(&joints_)};
     return job.run() == StrandKinematicsJob::Problem::kNone;
   }
+  if (part.index > 0) return true;
   if (const auto* grid = std::get_if<GridSkeleton>(skeleton_)) {
     const GridKinematicsJob job{
         .skeleton = grid, .pose = std::get_if<GridPose>(&pose), .points = std::get_if<PointPositions>(&joints_)};

@@ -22,8 +22,9 @@ class Kinematics {
  public:
   explicit Kinematics(const Skeleton& skeleton, std::optional<SimdRow> row = std::nullopt);
 
-  /// Computes all joints. False, and nothing done, where the pose does not fit the skeleton.
-  bool run(const Pose& pose) noexcept;
+  /// Computes all joints, or those of a part of them: parts may run at the same time (what is not worth sharing out is
+  /// all in the first). False, and nothing done, where the pose does not fit the skeleton.
+  bool run(const Pose& pose, Part part = {}) noexcept;
 
   /// The joints, in arrays that depend on the kind: JointPositions, PointPositions, TreeJoints.
   using Joints = std::variant<JointPositions, PointPositions, TreeJoints>;

@@ -58,23 +58,25 @@ StrandKinematicsJob::Problem StrandKinematicsJob::run() const noexcept {
   if (problem != Problem::kNone) return problem;
 
   const StrandKernels& kernels = kStrandRows[row.value_or(best_simd_row())];
-  kernels.joint_positions({.blocks = skeleton->padded_count() / kStrandsPerBlock,
+  const std::size_t blocks = skeleton->padded_count() / kStrandsPerBlock;
+  const std::size_t first = part.begin(blocks) * kStrandsPerBlock;
+  kernels.joint_positions({.blocks = part.end(blocks) - part.begin(blocks),
                            .links = skeleton->links_per_strand,
-                           .root_x_m = skeleton->root_x_m.data(),
-                           .root_y_m = skeleton->root_y_m.data(),
-                           .root_z_m = skeleton->root_z_m.data(),
-                           .rest_x = skeleton->rest_x.data(),
-                           .rest_y = skeleton->rest_y.data(),
-                           .rest_z = skeleton->rest_z.data(),
-                           .curl_x = skeleton->curl_x.data(),
-                           .curl_y = skeleton->curl_y.data(),
-                           .curl_z = skeleton->curl_z.data(),
-                           .curl_sin = joints->curl_sin_.data(),
-                           .curl_versine = joints->curl_versine_.data(),
-                           .link_length_m = skeleton->link_length_m.data(),
-                           .bend_east_rad = pose->bend_east_rad.data(),
-                           .bend_south_rad = pose->bend_south_rad.data(),
-                           .joints_m = joints->data().data()});
+                           .root_x_m = skeleton->root_x_m.data() + first,
+                           .root_y_m = skeleton->root_y_m.data() + first,
+                           .root_z_m = skeleton->root_z_m.data() + first,
+                           .rest_x = skeleton->rest_x.data() + first,
+                           .rest_y = skeleton->rest_y.data() + first,
+                           .rest_z = skeleton->rest_z.data() + first,
+                           .curl_x = skeleton->curl_x.data() + first,
+                           .curl_y = skeleton->curl_y.data() + first,
+                           .curl_z = skeleton->curl_z.data() + first,
+                           .curl_sin = joints->curl_sin_.data() + first,
+                           .curl_versine = joints->curl_versine_.data() + first,
+                           .link_length_m = skeleton->link_length_m.data() + first,
+                           .bend_east_rad = pose->bend_east_rad.data() + first,
+                           .bend_south_rad = pose->bend_south_rad.data() + first,
+                           .joints_m = joints->data().data() + first * skeleton->links_per_strand * 3});
   return Problem::kNone;
 }
 

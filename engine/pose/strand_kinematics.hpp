@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/part.hpp"
 #include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
 
@@ -63,6 +64,7 @@ struct StrandKinematicsJob {
   const StrandSkeleton* skeleton = nullptr;
   const StrandPose* pose = nullptr;
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
+  Part part = {};                             ///< of the blocks: parts may run at the same time
 
   JointPositions* joints = nullptr;
 

@@ -111,15 +111,15 @@ void CarriedNoise::shift(double toward_x_m_s, double toward_z_m_s, double dt_s) 
 }
 
 void CarriedNoise::sample(const CarriedPlaces& places, SimdRow row, std::span<float> out, float scale, float bias,
-                          float low, float high) const noexcept {
+                          float low, float high, std::size_t first) const noexcept {
   // A tile is one layer, and two while the wind is so strong that its finest waves fade out.
   std::array<NoiseLayer, SampleJob::kMaxLayers> layers;
   std::size_t count = 0;
   for (const Tile& tile : tiles_) {
     const bool is_first = &tile == tiles_.data();
     NoiseLayer layer{.tile = &tile.noise.level(tile.band.level),
-                     .place_x = is_first ? places.first_x : places.second_x,
-                     .place_z = is_first ? places.first_z : places.second_z,
+                     .place_x = std::span(is_first ? places.first_x : places.second_x).subspan(first, out.size()),
+                     .place_z = std::span(is_first ? places.first_z : places.second_z).subspan(first, out.size()),
                      .offset = tile.offset.phase(),
                      .weight = weight_ * (1.0F - tile.band.weight)};
     layers[count++] = layer;

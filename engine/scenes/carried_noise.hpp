@@ -53,10 +53,11 @@ class CarriedNoise {
   /// The wind (toward +x and +z, m/s) carries the noise on for dt_s (above 0); a tick later it is sampled again.
   void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept;
 
-  /// out = clamp(bias + scale * noise, low, high) at each place; `places` are of this noise and as many as `out`.
+  /// out = clamp(bias + scale * noise, low, high) at as many places as `out` has room for, from place `first` on;
+  /// `places` are of this noise.
   void sample(const CarriedPlaces& places, SimdRow row, std::span<float> out, float scale = 1.0F, float bias = 0.0F,
-              float low = -std::numeric_limits<float>::infinity(),
-              float high = std::numeric_limits<float>::infinity()) const noexcept;
+              float low = -std::numeric_limits<float>::infinity(), float high = std::numeric_limits<float>::infinity(),
+              std::size_t first = 0) const noexcept;
 
   /// No more than this does the noise change at a place from one tick of dt_s to the next while the wind is at most
   /// speed_m_s and changes by at most step_m_s: what the tiles' steepest slopes give for the way, and for a change of

@@ -69,8 +69,12 @@ class Fur final : public Scene {
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
   void shift(WindVector wind, double dt_s) noexcept override { sway_.shift(wind, dt_s); }
-  void sample() noexcept override { sway_.sample(); }
-  void project(double dt_s) noexcept override { sway_.project(dt_s, *std::get_if<StrandPose>(&pose_)); }
+  void sample() noexcept override { sway_.sample({}); }
+  void project(double dt_s) noexcept override { project_part({}, dt_s); }
+  void sample_part(Part part) noexcept override { sway_.sample(part); }
+  void project_part(Part part, double dt_s) noexcept override {
+    sway_.project(part, dt_s, *std::get_if<StrandPose>(&pose_));
+  }
   double largest_joint_step_m(double dt_s) const noexcept override { return sway_.largest_joint_step_m(dt_s); }
 
  private:

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/base/parameter.hpp"
+#include "engine/base/part.hpp"
 #include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/wind_vector.hpp"
@@ -31,10 +32,19 @@ class Scene {
     project(dt_s);
   }
 
-  // The three parts of a tick, in this order; by themselves only for who measures them.
+  // The three steps of a tick, in this order; by themselves for who measures them, or shares them out.
   virtual void shift(WindVector wind, double dt_s) noexcept = 0;  ///< the wind carries the noise on
   virtual void sample() noexcept = 0;                             ///< each element reads it
   virtual void project(double dt_s) noexcept = 0;                 ///< and is moved: the pose
+
+  // The same in parts that different threads may run at the same time: all parts of sample, then all of project. The
+  // pose is the same, bit for bit. What is not worth sharing out does all in its first part.
+  virtual void sample_part(Part part) noexcept {
+    if (part.index == 0) sample();
+  }
+  virtual void project_part(Part part, double dt_s) noexcept {
+    if (part.index == 0) project(dt_s);
+  }
 
   /// What never changes. Valid for the scene's life.
   virtual const Skeleton& skeleton() const noexcept = 0;

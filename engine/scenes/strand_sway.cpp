@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -50,24 +51,37 @@ void StrandSway::shift(WindVector wind, double dt_s) noexcept {
   way_.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
 }
 
-void StrandSway::sample() noexcept {
-  // How strong the wind is at each strand, as a factor.
-  noise_.sample(places_, row_, strength_, static_cast<float>(spec_.turbulence), 1.0F, 0.0F);
+template <class Value>
+std::span<Value> StrandSway::of_part(Part part, std::span<Value> values) const noexcept {
+  const std::size_t blocks = values.size() / kStrandsPerBlock;
+  const std::size_t begin = part.begin(blocks) * kStrandsPerBlock;
+  return values.subspan(begin, part.end(blocks) * kStrandsPerBlock - begin);
 }
 
-void StrandSway::project(double dt_s, StrandPose& pose) noexcept {
+void StrandSway::sample(Part part) noexcept {
+  // How strong the wind is at each strand, as a factor.
+  const std::span<float> strength = of_part(part, std::span(strength_));
+  const auto first = static_cast<std::size_t>(strength.data() - strength_.data());
+  noise_.sample(places_, row_, strength, static_cast<float>(spec_.turbulence), 1.0F, 0.0F,
+                std::numeric_limits<float>::infinity(), first);
+}
+
+void StrandSway::project(Part part, double dt_s, StrandPose& pose) noexcept {
+  const std::span<float> bend_east_rad = of_part(part, std::span(pose.bend_east_rad));
+  const std::span<float> bend_south_rad = of_part(part, std::span(pose.bend_south_rad));
+
   // Wind-speed times theta bends the strand toward where the wind blows.
   const double along = static_cast<double>(read_noise(along_, way_.phase()));
   const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
   BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
              .wind_south_m_s = wind_speed * wind_.south_m_s(),
-             .strength = strength_,
-             .flexibility = flexibility_,
+             .strength = of_part(part, std::span<const float>(strength_)),
+             .flexibility = of_part(part, std::span<const float>(flexibility_)),
              .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
              .max_bend_rad = spec_.max_bend_rad,
              .row = row_,
-             .bend_east_rad = pose.bend_east_rad,
-             .bend_south_rad = pose.bend_south_rad}
+             .bend_east_rad = bend_east_rad,
+             .bend_south_rad = bend_south_rad}
       .run();
 
   // And the strand, a damped oscillator, follows, overshoots, and sways on.
@@ -75,8 +89,9 @@ void StrandSway::project(double dt_s, StrandPose& pose) noexcept {
                 .blend = spec_.hybrid,
                 .row = row_,
                 .oscillators = &oscillators_,
-                .east = pose.bend_east_rad,
-                .south = pose.bend_south_rad}
+                .first = static_cast<std::size_t>(bend_east_rad.data() - pose.bend_east_rad.data()),
+                .east = bend_east_rad,
+                .south = bend_south_rad}
       .run();
 }
 

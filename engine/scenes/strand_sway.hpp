@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/parameter.hpp"
+#include "engine/base/part.hpp"
 #include "engine/noise/line_cut.hpp"
 #include "engine/noise/noise_tile.hpp"
 #include "engine/operators/oscillator_job.hpp"
@@ -43,10 +44,10 @@ class StrandSway {
   StrandSway(const StrandSkeleton& skeleton, std::span<const float> place_x_m, std::span<const float> place_z_m,
              std::vector<float> flexibility, const StrandSwaySpec& spec, SimdRow row);
 
-  // The parts of a scene's tick (Scene).
+  // The steps of a scene's tick (Scene).
   void shift(WindVector wind, double dt_s) noexcept;
-  void sample() noexcept;
-  void project(double dt_s, StrandPose& pose) noexcept;
+  void sample(Part part) noexcept;
+  void project(Part part, double dt_s, StrandPose& pose) noexcept;
 
   /// As Scene::largest_joint_step_m. With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
   /// toward the wind: its slope over s is at most 3 sqrt(3)/8 max, so in a tick it changes by at most that times the
@@ -57,6 +58,10 @@ class StrandSway {
   double largest_joint_step_m(double dt_s) const noexcept;
 
  private:
+  /// The part's strands, in whole blocks, of any array that has an element for each.
+  template <class Value>
+  std::span<Value> of_part(Part part, std::span<Value> values) const noexcept;
+
   SimdRow row_;
   StrandSwaySpec spec_;
   SceneWind wind_;

@@ -25,6 +25,15 @@ Workload::Workload(std::string_view kind, const ParameterValues::Map& given, Sim
   for (int i = 0; i < 60; ++i) frame();  // it moves when it is measured
 }
 
+void Workload::frame(WorkerPool& pool) {
+  shift();
+  pool.run([this](Part part) { scene_->sample_part(part); });
+  pool.run([this](Part part) {
+    scene_->project_part(part, kBenchTick_s);
+    kinematics_->run(scene_->pose(), part);
+  });
+}
+
 void Workload::store_only() {
   value_ += 1.0F;
   const auto fill = [this](std::span<float> joints) { std::fill(joints.begin(), joints.end(), value_); };

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/worker_pool.hpp"
 #include "engine/pose/kinematics.hpp"
 #include "engine/scenes/scene.hpp"
 
@@ -35,6 +36,9 @@ class Workload {
     sample();
     project();
   }
+
+  /// The same frame, shared out among the pool's threads.
+  void frame(WorkerPool& pool);
 
   /// Stores 12 bytes a node into the same joints, and computes nothing.
   void store_only();

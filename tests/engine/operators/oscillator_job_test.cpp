@@ -163,9 +163,14 @@ TEST(OscillatorTest, SaysWhatIsWrongAndThenDoesNothing) {
   job = good;
   job.south = job.south.first(2);
   EXPECT_EQ(job.run(), OscillatorJob::Problem::kSizesDiffer);
-  Oscillators too_many(4);
+  Oscillators too_few(2);
   job = good;
-  job.oscillators = &too_many;
+  job.oscillators = &too_few;
+  EXPECT_EQ(job.run(), OscillatorJob::Problem::kSizesDiffer);
+  job = good;
+  job.first = 1;
+  EXPECT_EQ(job.run(), OscillatorJob::Problem::kSizesDiffer);
+  job.first = 5;
   EXPECT_EQ(job.run(), OscillatorJob::Problem::kSizesDiffer);
   EXPECT_EQ(east, std::vector<float>(3, 1.0F));
 }

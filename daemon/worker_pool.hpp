@@ -1,0 +1,49 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "engine/base/part.hpp"
+
+namespace yuragi {
+
+/// Threads that share a work out with the caller, for scenes that are too large for one core in a tick.
+///
+/// The caller does a part itself. Between works a thread spins for kSpin, and sleeps after that: in a loop of works
+/// that follow each other nobody sleeps, and paced at 60 Hz nobody burns a core (a wake-up then costs some 50 us a
+/// work). Thread-safe: no, one caller. Realtime-safe: run() neither allocates nor locks; it waits for the slowest part.
+class WorkerPool {
+ public:
+  /// `threads`: how many share a work, the caller among them; 0 is taken as 1.
+  explicit WorkerPool(std::size_t threads);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  std::size_t size() const noexcept { return size_; }
+
+  /// Calls work(Part) once for each part, and returns when all are done. `work` must not throw.
+  template <class Work>
+  void run(const Work& work) noexcept {
+    run_task([](const void* task, Part part) { (*static_cast<const Work*>(task))(part); }, &work);
+  }
+
+ private:
+  using Task = void (*)(const void* work, Part part);
+
+  void run_task(Task task, const void* work) noexcept;
+  void serve(std::size_t index) noexcept;
+
+  const std::size_t size_;
+  Task task_ = nullptr;
+  const void* work_ = nullptr;
+  std::atomic<std::uint32_t> works_begun_{0};
+  std::atomic<std::size_t> parts_to_do_{0};
+  std::atomic<bool> is_ending_{false};
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace yuragi
