@@ -79,6 +79,8 @@ struct SceneDescription {
   std::span<const Parameter> parameters;
   /// Lays the model out where it stands.
   std::unique_ptr<Scene> (*make)(const ParameterValues& values, const SceneSetup& setup);
+  /// Calm air from the start keeps it in its rest pose, bit for bit. What burns is not still.
+  bool is_still_in_calm = true;
 };
 
 /// Every kind of scene (generated).

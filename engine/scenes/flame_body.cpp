@@ -1,0 +1,128 @@
+#include "engine/scenes/flame_body.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "engine/base/units.hpp"
+#include "engine/math/trig.hpp"
+#include "engine/scenes/placement.hpp"
+
+namespace yuragi {
+namespace {
+
+/// A panel is higher than its flame, whose last tongues go out above it.
+constexpr double kPanelHeight = 1.35;
+
+/// A body is this much of sqrt(v) (1 - v) of its half width thick, v from foot to top: as thick as it says at a third.
+constexpr double kThickest = 1.5 * 1.7320508075688772;
+
+/// A color of the ramp: where it stands, and red, green, blue and alpha (sRGB, straight alpha).
+struct RampColor {
+  double at;
+  std::array<double, 4> rgba;
+};
+constexpr std::array<RampColor, 7> kFlameColors = {{{0.00, {20, 0, 0, 0}},
+                                                    {0.12, {70, 6, 0, 40}},
+                                                    {0.30, {185, 32, 4, 140}},
+                                                    {0.50, {245, 100, 12, 210}},
+                                                    {0.70, {255, 175, 40, 240}},
+                                                    {0.87, {255, 228, 120, 252}},
+                                                    {1.00, {255, 250, 225, 255}}}};
+
+std::vector<std::uint8_t> flame_ramp() {
+  std::vector<std::uint8_t> ramp;
+  for (int color = 0; color < 256; ++color) {
+    const double at = color / 255.0;
+    std::size_t next = 1;
+    while (kFlameColors[next].at < at) ++next;
+    const RampColor& below = kFlameColors[next - 1];
+    const RampColor& above = kFlameColors[next];
+    const double part = (at - below.at) / (above.at - below.at);
+    for (std::size_t channel = 0; channel < 4; ++channel) {
+      const double value = below.rgba[channel] + part * (above.rgba[channel] - below.rgba[channel]);
+      ramp.push_back(static_cast<std::uint8_t>(value + 0.5));
+    }
+  }
+  return ramp;
+}
+
+void add_point(SurfaceSkeleton& surface, std::array<double, 3> place_m, std::array<double, 3> normal) {
+  surface.rest_x_m.push_back(static_cast<float>(place_m[0]));
+  surface.rest_y_m.push_back(static_cast<float>(place_m[1]));
+  surface.rest_z_m.push_back(static_cast<float>(place_m[2]));
+  surface.normal_x.push_back(static_cast<float>(normal[0]));
+  surface.normal_y.push_back(static_cast<float>(normal[1]));
+  surface.normal_z.push_back(static_cast<float>(normal[2]));
+}
+
+void add_panel_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
+  const double half_m = 0.75 * spec.width_m + spec.largest_lean * spec.height_m;
+  for (std::size_t column = 0; column < spec.columns; ++column) {
+    const double across_m = (2.0 * static_cast<double>(column) / static_cast<double>(spec.columns - 1) - 1.0) * half_m;
+    add_point(body.surface, {across_m, up_m, 0.0}, {0.0, 0.0, 1.0});
+    body.across_m.push_back(static_cast<float>(across_m));
+    body.up_m.push_back(static_cast<float>(up_m));
+    body.radius_m.push_back(0.0F);
+  }
+}
+
+void add_body_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
+  const double v = up_m / spec.height_m;
+  const double radius_m = kThickest * 0.5 * spec.width_m * std::sqrt(v) * (1.0 - v);
+
+  // The normal stands across the outline, whose radius grows by d radius / d up; at the foot it points down.
+  const double root = std::max(std::sqrt(v), 1e-6);
+  const double growth = kThickest * 0.5 * spec.width_m * (0.5 / root - 1.5 * root) / spec.height_m;
+  const double length = std::sqrt(1.0 + growth * growth);
+  for (std::size_t column = 0; column < spec.columns; ++column) {
+    const double part = static_cast<double>(column) / static_cast<double>(spec.columns);
+    const SinCos around = sin_cos(static_cast<float>(2.0 * kPi * part));
+    const auto x = static_cast<double>(around.cos);
+    const auto z = static_cast<double>(around.sin);
+    add_point(body.surface, {radius_m * x, up_m, radius_m * z}, {x / length, -growth / length, z / length});
+    body.across_m.push_back(static_cast<float>(part * body.around_m));
+    body.up_m.push_back(static_cast<float>(up_m));
+    body.radius_m.push_back(static_cast<float>(radius_m));
+  }
+  body.largest_radius_m = std::max(body.largest_radius_m, radius_m);
+}
+
+}  // namespace
+
+FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement) {
+  FlameBody body;
+  body.is_panel = spec.is_panel;
+  body.surface.columns = spec.columns;
+  body.surface.rows = spec.rows;
+  body.surface.is_closed = !spec.is_panel;
+  body.surface.ramp_rgba = flame_ramp();
+  body.around_m = kPi * spec.width_m;
+  body.per_height_m = static_cast<float>(1.0 / spec.height_m);
+
+  const double top_m = spec.is_panel ? kPanelHeight * spec.height_m : spec.height_m;
+  for (std::size_t row = 0; row < spec.rows; ++row) {
+    const double up_m = top_m * static_cast<double>(row) / static_cast<double>(spec.rows - 1);
+    const double v = up_m / spec.height_m;
+    if (spec.is_panel) {
+      add_panel_row(spec, up_m, body);
+    } else {
+      add_body_row(spec, up_m, body);
+    }
+    body.along.push_back(static_cast<float>(v));
+
+    // A leaning flame is bent: its foot stays where it is.
+    const double lever_m = up_m * (0.4 + 0.6 * std::min(v, 1.0));
+    body.lever_m.push_back(static_cast<float>(lever_m));
+    body.largest_lever_m = std::max(body.largest_lever_m, lever_m);
+    body.per_half_width_m.push_back(static_cast<float>(1.6 / (spec.width_m * (1.0 - 0.5 * std::min(v, 1.0)))));
+  }
+
+  place(placement, body.surface);
+  body.panel_east = std::cos(placement.heading_deg * kRadPerDeg);
+  body.panel_south = std::sin(placement.heading_deg * kRadPerDeg);
+  return body;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/simd_row.hpp"
+#include "engine/noise/noise_tile.hpp"
+#include "engine/noise/spectral_noise.hpp"
+#include "engine/noise/torus.hpp"
+
+namespace yuragi {
+
+/// One layer of a LayeredNoise.
+struct NoiseLayerSpec {
+  NoiseSpec noise;
+  double period_x_m = 1.0;  ///< of the tile along x, above 0
+  double period_z_m = 1.0;  ///< along z: a tile may be stretched
+  float weight = 1.0F;      ///< above 0: its standard deviation in the sum
+  std::size_t band = 0;     ///< the level of BandLimitedTile2 that is read: how many octaves of the finest are left out
+};
+
+/// Several noises over the same places, each of which goes its own way: their sum changes as it goes, where a single
+/// one would pass by as a picture. (A CarriedNoise goes one way, with the wind.) Mean 0, variance the sum of the
+/// squared weights.
+///
+/// Allocates when it is made, never afterwards; throws what make_noise_2d says, and std::bad_alloc. Thread-safe:
+/// sample() among themselves, yes. Realtime-safe: all but construction.
+class LayeredNoise {
+ public:
+  /// Layers: 1 to SampleJob::kMaxLayers. Places: coordinates in metres, as many of x as of z.
+  LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<const float> x_m, std::span<const float> z_m);
+
+  /// Shifting operator: a layer goes on by so much.
+  void shift(std::size_t layer, double x_m, double z_m) noexcept;
+
+  /// Moves the places from `first` on, `count` of them, to x_m east of where they were made.
+  void lean(std::size_t first, std::size_t count, double x_m) noexcept;
+
+  /// Sampling operator: the sum of the layers at each place, as many as `out` has.
+  void sample(SimdRow row, std::span<float> out) const noexcept;
+
+  /// No more than this does a layer, weighted, change at a place when it is moved by so much against the place.
+  double largest_change(std::size_t layer, double x_m, double z_m) const noexcept;
+
+  /// Between these the sum is.
+  double lowest() const noexcept { return lowest_; }
+  double highest() const noexcept { return highest_; }
+
+ private:
+  struct Layer {
+    NoiseTile2 tile;
+    double period_x_m;
+    double period_z_m;
+    float weight;
+    TorusOffset offset;
+    std::vector<std::uint32_t> first_place_x;  ///< where the places were made
+    std::vector<std::uint32_t> place_x, place_z;
+    double steepest_x_per_m = 0.0, steepest_z_per_m = 0.0;
+    double range = 0.0;  ///< from the lowest value to the highest
+  };
+
+  std::vector<Layer> layers_;
+  double lowest_ = 0.0, highest_ = 0.0;
+};
+
+}  // namespace yuragi
