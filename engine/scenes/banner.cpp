@@ -36,10 +36,12 @@ const std::array kBannerParameters = {
     Parameter{"travel_time", "s", 1.2, 0, 10, "that the noise takes from the cross-arm to the bottom"},
     Parameter{"growth", "", 0.4, 0, 4, "the noise grows as the way from the cross-arm to this power"},
     Parameter{"quickness", "rad/s", 18.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
     Parameter{"tile_period", "m", 6.0, 2, 4096, "the longest wave of the noise; 128 samples"},
     Parameter{"beta", "", 1.3, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
+/// In the hybrid the cloth is taut from the pole to the free side, and by its loops the pole takes most of the wind.
 ClothSpec banner_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("height"),
@@ -48,7 +50,11 @@ ClothSpec banner_spec(const ParameterValues& values) {
           .growth_exponent = values.number("growth"),
           .quickness_rad_s = values.number("quickness"),
           .largest_sway = lean_of_deg(values.number("max_sway")),
-          .largest_wave = lean_of_deg(values.number("max_flutter"))};
+          .largest_wave = lean_of_deg(values.number("max_flutter")),
+          .hybrid = values.number("hybrid"),
+          .normal_drag_per_m = 0.6 * drag_per_m(values.number("half_sway_speed")),
+          .skin_drag_per_m = 0.05 * drag_per_m(values.number("half_sway_speed")),
+          .across_stiffness_s2 = 6'000.0};
 }
 
 /// The pole stands at the scene's origin, the cross-arm points to the scene's east.
@@ -103,6 +109,7 @@ class Banner final : public Scene {
       wave[column] = column_wave * across_east;
       wave[stride + column] = column_wave * across_south;
     }
+    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), flutter_);
     cloth_.project(dt_s);
   }
 

@@ -22,6 +22,20 @@ namespace {
 /// Links in a band: its leans take about 27 kB of 200 columns, which the nearest cache holds.
 constexpr std::size_t kBandLinks = 16;
 
+/// How fast the hybrid's leans may go: some four times as fast as a swinging curtain's do.
+constexpr double kLargestLean_per_s = 8.0;
+
+/// What is left of the wave as detail where the cloth is all dynamics.
+constexpr double kDetail = 0.4;
+
+/// How much stronger than the wind, and how far aside of it, the strongest gusts blow.
+constexpr double kGustAlong = 0.4;
+constexpr double kGustAside = 0.5;
+
+double wave_share(const ClothSpec& spec) {
+  return 1.0 - (1.0 - kDetail) * spec.hybrid;
+}
+
 GridSkeleton cloth_skeleton(const ClothSpec& spec, const ClothEdge& edge, const ClothThreads& threads) {
   GridSkeleton grid;
   grid.columns = edge.columns;
@@ -58,7 +72,8 @@ std::vector<float> growth_of(const ClothSpec& spec) {
   std::vector<float> growth(spec.rows - 1);
   const double last = std::max(static_cast<double>(growth.size()) - 1.0, 1.0);
   for (std::size_t link = 0; link < growth.size(); ++link) {
-    growth[link] = static_cast<float>(std::pow(static_cast<double>(link) / last, spec.growth_exponent));
+    growth[link] =
+        static_cast<float>(wave_share(spec) * std::pow(static_cast<double>(link) / last, spec.growth_exponent));
   }
   return growth;
 }
@@ -84,12 +99,43 @@ Cloth::Cloth(const ClothSpec& spec, const ClothEdge& edge, SimdRow row)
       history_(2 * threads_.stride, spec.travel_time_s),
       base_(threads_.rest_lean),
       lean_(kBandLinks * 2 * threads_.stride, 0.0F),
+      coarse_(threads_, edge.columns, edge.x_m, edge.y_m, edge.z_m, spec.is_first_column_fixed),
+      spline_(coarse_, edge.columns, threads_.links),
+      air_east_m_s_(coarse_.stride(), 0.0F),
+      air_south_m_s_(coarse_.stride(), 0.0F),
       skeleton_(cloth_skeleton(spec, edge, threads_)) {
   pose_ = rest_pose(skeleton_);
 }
 
+void Cloth::blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept {
+  if (!(spec_.hybrid > 0.0)) return;
+  const std::size_t columns = std::get_if<GridSkeleton>(&skeleton_)->columns;
+  for (std::size_t i = 0; i < air_east_m_s_.size(); ++i) {
+    const std::size_t column = std::min(i, coarse_.columns() - 1) * (columns - 1) / (coarse_.columns() - 1);
+    const auto gust = static_cast<double>(gusts[column]);
+    const double along = 1.0 + kGustAlong * gust;
+    const double aside = kGustAside * gust;
+    air_east_m_s_[i] = static_cast<float>(along * wind_east_m_s - aside * wind_south_m_s);
+    air_south_m_s_[i] = static_cast<float>(along * wind_south_m_s + aside * wind_east_m_s);
+  }
+}
+
 void Cloth::project(double dt_s) noexcept {
   const std::size_t width = history_.width();
+  const bool is_hybrid = spec_.hybrid > 0.0;
+  if (is_hybrid) {
+    ClothDynamicsJob{.air_east_m_s = air_east_m_s_,
+                     .air_south_m_s = air_south_m_s_,
+                     .dt_s = dt_s,
+                     .normal_drag_per_m = spec_.normal_drag_per_m,
+                     .skin_drag_per_m = spec_.skin_drag_per_m,
+                     .across_stiffness_s2 = spec_.across_stiffness_s2,
+                     .largest_lean_per_s = kLargestLean_per_s,
+                     .row = row_,
+                     .cloth = &coarse_}
+        .run();
+    spline_.spread(coarse_, row_);
+  }
   FollowJob{.target = target_,
             .omega_rad_s = spec_.quickness_rad_s,
             .dt_s = dt_s,
@@ -100,7 +146,8 @@ void Cloth::project(double dt_s) noexcept {
   history_.push(std::span(value_).last(width), dt_s);
 
   // Rest and sway are the base of all links; rest alone is what the projection knows as rest, to the bit.
-  for (std::size_t i = 0; i < width; ++i) base_[i] = threads_.rest_lean[i] + value_[i];
+  const auto sway_share = static_cast<float>(1.0 - spec_.hybrid);
+  for (std::size_t i = 0; i < width; ++i) base_[i] = threads_.rest_lean[i] + sway_share * value_[i];
 
   // From the fixed edge on, band by band.
   for (std::size_t link = 0; link < threads_.links; link += kBandLinks) {
@@ -113,6 +160,11 @@ void Cloth::project(double dt_s) noexcept {
                    .row = row_,
                    .out = band}
         .run();
+    if (is_hybrid) {
+      ClothSplineJob{
+          .spline = &spline_, .share = static_cast<float>(spec_.hybrid), .first_link = link, .row = row_, .out = band}
+          .run();
+    }
     ClothProjectionJob{
         .threads = &threads_, .first_link = link, .lean = band, .row = row_, .pose = std::get_if<GridPose>(&pose_)}
         .run();
@@ -121,8 +173,10 @@ void Cloth::project(double dt_s) noexcept {
 
 double Cloth::largest_joint_step_m(double dt_s) const noexcept {
   const double mean_growth = std::accumulate(growth_.begin(), growth_.end(), 0.0) / static_cast<double>(growth_.size());
-  const double lean_per_s =
-      2.0 * spec_.quickness_rad_s / std::numbers::e * (spec_.largest_sway + spec_.largest_wave * mean_growth);
+  const double follows_per_s = 2.0 * spec_.quickness_rad_s / std::numbers::e;
+  const double noise_per_s =
+      follows_per_s * ((1.0 - spec_.hybrid) * spec_.largest_sway + mean_growth * spec_.largest_wave);
+  const double lean_per_s = noise_per_s + spec_.hybrid * std::numbers::sqrt2 * kLargestLean_per_s;
   constexpr double kRounding_m = 1e-5;
   return 2.0 * spec_.length_m * std::min(lean_per_s * dt_s, 1.0) + kRounding_m;
 }
@@ -136,6 +190,11 @@ Turned turned(const ScenePlacement& placement, double east, double south) noexce
 
 double lean_of_deg(double angle_deg) noexcept {
   return std::tan(0.5 * angle_deg * kRadPerDeg);
+}
+
+double drag_per_m(double half_speed_m_s) noexcept {
+  constexpr double kGravity_m_s2 = 9.81;
+  return kGravity_m_s2 / (half_speed_m_s * half_speed_m_s);
 }
 
 }  // namespace yuragi

@@ -36,6 +36,7 @@ const std::array kCurtainParameters = {
     Parameter{"travel_time", "s", 0.9, 0, 10, "that the noise takes from the top to the hem"},
     Parameter{"growth", "", 0.8, 0, 4, "the noise grows as the way from the top to this power"},
     Parameter{"quickness", "rad/s", 11.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
     Parameter{"tile_period", "m", 20.0, 2, 4096, "the longest wave of the noise; 128 samples"},
     Parameter{"beta", "", 5.0 / 3.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
@@ -47,7 +48,10 @@ ClothSpec curtain_spec(const ParameterValues& values) {
           .growth_exponent = values.number("growth"),
           .quickness_rad_s = values.number("quickness"),
           .largest_sway = lean_of_deg(values.number("max_sway")),
-          .largest_wave = lean_of_deg(values.number("max_flutter"))};
+          .largest_wave = lean_of_deg(values.number("max_flutter")),
+          .hybrid = values.number("hybrid"),
+          .normal_drag_per_m = drag_per_m(values.number("half_sway_speed")),
+          .skin_drag_per_m = 0.05 * drag_per_m(values.number("half_sway_speed"))};
 }
 
 /// The columns from west to east at a heading of 0, folded toward north and south.
@@ -121,6 +125,7 @@ class Curtain final : public Scene {
       wave[column] = flutter_[column] * wave_east;
       wave[stride + column] = flutter_[column] * wave_south;
     }
+    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), flutter_);
     cloth_.project(dt_s);
   }
 

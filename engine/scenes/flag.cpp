@@ -40,6 +40,7 @@ const std::array kFlagParameters = {
     Parameter{"travel_time", "s", 1.0, 0, 10, "that the noise takes from the hoist to the fly"},
     Parameter{"growth", "", 0.7, 0, 4, "the noise grows as the way from the hoist to this power"},
     Parameter{"quickness", "rad/s", 20.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
     Parameter{"tile_period", "m", 10.0, 2, 4096, "the longest wave of the noise; 128 samples"},
     Parameter{"beta", "", 1.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
@@ -64,7 +65,10 @@ ClothSpec flag_spec(const ParameterValues& values) {
           .quickness_rad_s = values.number("quickness"),
           .largest_sway = lean_of_deg(values.number("max_lift")) +
                           std::hypot(lean_of_deg(values.number("droop")), lean_of_deg(values.number("fold_angle"))),
-          .largest_wave = lean_of_deg(values.number("max_flutter")) * std::hypot(1.0, kLiftFlutter)};
+          .largest_wave = lean_of_deg(values.number("max_flutter")) * std::hypot(1.0, kLiftFlutter),
+          .hybrid = values.number("hybrid"),
+          .normal_drag_per_m = 4.0 * drag_per_m(values.number("half_lift_speed")),
+          .skin_drag_per_m = 1.0 * drag_per_m(values.number("half_lift_speed"))};
 }
 
 /// The columns from the top down, on the pole.
@@ -130,6 +134,7 @@ class Flag final : public Scene {
       wave[column] = flutter_[column] * wave_east;
       wave[stride + column] = flutter_[column] * wave_south;
     }
+    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), flutter_);
     cloth_.project(dt_s);
   }
 

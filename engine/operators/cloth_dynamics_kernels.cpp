@@ -1,0 +1,218 @@
+#include "engine/operators/cloth_dynamics_kernels.hpp"
+
+#include "engine/base/kernel.hpp"
+#include "engine/math/lanes.hpp"
+
+namespace yuragi {
+namespace {
+
+/// Below any square that counts: keeps quotients finite.
+constexpr float kTiny = 1e-12F;
+
+/// A thread may be longer than its links together by this before its long-range attachment holds it.
+constexpr float kSlack = 1.001F;
+
+struct Lanes3 {
+  Lanes x, y, z;
+};
+[[gnu::always_inline]] inline Lanes3 operator+(Lanes3 a, Lanes3 b) noexcept {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+[[gnu::always_inline]] inline Lanes3 operator-(Lanes3 a, Lanes3 b) noexcept {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline Lanes3 operator*(Lanes a, Lanes3 b) noexcept {
+  return {a * b.x, a * b.y, a * b.z};
+}
+[[gnu::always_inline]] inline Lanes dot(Lanes3 a, Lanes3 b) noexcept {
+  return a.x * b.x + (a.y * b.y + a.z * b.z);
+}
+[[gnu::always_inline]] inline Lanes3 cross(Lanes3 a, Lanes3 b) noexcept {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// Vectors as the cloth keeps them: all x, then all y, then all z, `apart` from one another.
+[[gnu::always_inline]] inline Lanes3 load3(const float* from, std::size_t apart) noexcept {
+  return {load_lanes(from), load_lanes(from + apart), load_lanes(from + 2 * apart)};
+}
+[[gnu::always_inline]] inline void store3(float* to, std::size_t apart, Lanes3 value) noexcept {
+  store_lanes(to, value.x);
+  store_lanes(to + apart, value.y);
+  store_lanes(to + 2 * apart, value.z);
+}
+
+/// `value`, each part cut to `most`.
+[[gnu::always_inline]] inline Lanes3 limited(Lanes3 value, float most) noexcept {
+  return {clamp_lanes(value.x, most), clamp_lanes(value.y, most), clamp_lanes(value.z, most)};
+}
+
+/// Where each point would go: weight, its neighbours, and the air.
+void predict(const ClothDynamicsKernelArguments& in) noexcept {
+  const std::size_t count = in.rows * in.stride;
+  for (std::size_t row = 1; row < in.rows; ++row) {
+    const bool is_last = row + 1 == in.rows;
+    const std::size_t below = is_last ? 0 : in.stride;  // the last has none: itself, without weight
+    const auto links_below = static_cast<float>(in.rows - 1 - row);
+    const Lanes weight_above = same_lanes(in.weight_s2 * (links_below + 1.0F) * in.substep_s);
+    const Lanes weight_below = same_lanes(in.weight_s2 * links_below * in.substep_s);
+    const Lanes across_s = same_lanes(in.across_s2 * in.substep_s);
+    for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+      const std::size_t at = row * in.stride + i;
+      const Lanes3 here = load3(in.offset_m + at, count);
+      const Lanes3 up = load3(in.offset_m + at - in.stride, count);
+      const Lanes3 down = load3(in.offset_m + at + below, count);
+      const Lanes3 west = load3(in.offset_m + at - 1, count);
+      const Lanes3 east = load3(in.offset_m + at + 1, count);
+      Lanes3 speed = load3(in.speed_m_s + at, count);
+      speed = speed + weight_above * (up - here) + weight_below * (down - here);
+      speed = speed + across_s * ((west - here) + (east - here));
+
+      // The cloth's normal, of no length in particular, and the air that blows past.
+      const Lanes3 rest_link = load3(in.rest_link_m + i, in.stride);
+      const Lanes3 along = (is_last ? same_lanes(1.0F) : same_lanes(2.0F)) * rest_link + (down - up);
+      const Lanes3 across = load3(in.across_m + i, in.stride) +
+                            same_lanes(static_cast<float>(row)) * load3(in.across_growth_m + i, in.stride) +
+                            (east - west);
+      const Lanes3 normal = cross(along, across);
+      const Lanes3 past = {load_lanes(in.air_east_m_s + i) - speed.x, -speed.y,
+                           load_lanes(in.air_south_m_s + i) - speed.z};
+
+      // Drag through the cloth, quadratic and implicit: with d the speed past along the normal n and a the drag of a
+      // way, the share a |d| / (1 + a |d|) of it goes over to the cloth. In one division, for n of any length.
+      const Lanes along_normal = dot(past, normal);
+      const Lanes drag = in.normal_drag * (along_normal < 0.0F ? -along_normal : along_normal);
+      const Lanes square = dot(normal, normal) + kTiny;
+      const Lanes normal_share = drag * along_normal / ((sqrt_lanes(square) + drag) * square);
+      const Lanes3 skin = past - normal_share * normal;
+      speed = speed + normal_share * normal + load_lanes(in.skin_share + i) * skin;
+      speed = (load_lanes(in.mobility + i) * in.speed_kept) * limited(speed, in.largest_speed_m_s);
+      store3(in.predicted_m + at, count, here + same_lanes(in.substep_s) * speed);
+    }
+  }
+}
+
+/// Puts the links' lengths right, from the fixed edge on, and sees what speeds come of it.
+void constrain(const ClothDynamicsKernelArguments& in) noexcept {
+  const std::size_t count = in.rows * in.stride;
+  const float per_s = 1.0F / in.substep_s;
+  const Lanes half = same_lanes(0.5F);
+  for (std::size_t link = 0; link + 1 < in.rows; ++link) {
+    const bool is_first = link == 0;
+    const auto links = static_cast<float>(link + 1);
+    for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+      const std::size_t above = link * in.stride + i;
+      const std::size_t below = above + in.stride;
+      const Lanes3 rest_link = load3(in.rest_link_m + i, in.stride);
+      const Lanes mobility = load_lanes(in.mobility + i);
+      Lanes3 from = load3(in.predicted_m + above, count);
+      Lanes3 to = load3(in.predicted_m + below, count);
+
+      // The distance constraint; the fixed edge leaves it all to the point below.
+      const Lanes3 way = rest_link + (to - from);
+      const Lanes rest_m = load_lanes(in.rest_length_m + i);
+      const Lanes excess = mobility * (1.0F - rest_m / sqrt_lanes(dot(way, way)));
+      const Lanes share = is_first ? excess : half * excess;
+      if (!is_first) from = from + share * way;
+      to = to - share * way;
+
+      // The long-range attachment to the thread's own fixed joint, to first order: 1 - sqrt(q) is (1 - q) / 2.
+      const Lanes3 reach = same_lanes(links) * rest_link + to;
+      const Lanes limit_m = (links * kSlack) * rest_m;
+      const Lanes beyond = half * (1.0F - limit_m * limit_m / (dot(reach, reach) + kTiny));
+      to = to - (beyond > 0.0F ? beyond : same_lanes(0.0F)) * (mobility * reach);
+      store3(in.predicted_m + below, count, to);
+      if (is_first) continue;
+
+      // The point above is where it will be.
+      const Lanes3 was = load3(in.offset_m + above, count);
+      const Lanes3 speed = limited(per_s * mobility * (from - was), in.largest_speed_m_s);
+      store3(in.speed_m_s + above, count, speed);
+      store3(in.offset_m + above, count, was + same_lanes(in.substep_s) * speed);
+    }
+  }
+  for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+    const std::size_t at = (in.rows - 1) * in.stride + i;
+    const Lanes3 was = load3(in.offset_m + at, count);
+    const Lanes mobility = load_lanes(in.mobility + i);
+    const Lanes3 speed = limited(per_s * mobility * (load3(in.predicted_m + at, count) - was), in.largest_speed_m_s);
+    store3(in.speed_m_s + at, count, speed);
+    store3(in.offset_m + at, count, was + same_lanes(in.substep_s) * speed);
+  }
+
+  // Ghosts copy their neighbours.
+  for (float* values : {in.offset_m, in.speed_m_s}) {
+    for (std::size_t row = 0; row < 3 * in.rows; ++row) {
+      float* const ghost = values + row * in.stride;
+      ghost[0] = ghost[1];
+      for (std::size_t i = in.columns + 1; i < in.stride; ++i) ghost[i] = ghost[in.columns];
+    }
+  }
+}
+
+/// How the links lean now, beyond rest, as far as they may in a tick.
+void lean(const ClothDynamicsKernelArguments& in) noexcept {
+  const std::size_t count = in.rows * in.stride;
+  for (std::size_t link = 0; link + 1 < in.rows; ++link) {
+    for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+      const std::size_t above = link * in.stride + i;
+      const Lanes3 rest_link = load3(in.rest_link_m + i, in.stride);
+      const Lanes3 way =
+          rest_link + (load3(in.offset_m + above + in.stride, count) - load3(in.offset_m + above, count));
+      // A link that points nearly straight up would lean without end; it is taken as one that leans by 2 at most.
+      const auto per_lean = [](Lanes3 link_m) {
+        const Lanes length_m = sqrt_lanes(dot(link_m, link_m) + kTiny * kTiny);
+        const Lanes below_top_m = length_m - link_m.y;
+        const Lanes least_m = 0.4F * length_m;
+        return 1.0F / (below_top_m > least_m ? below_top_m : least_m);
+      };
+      const Lanes now = per_lean(way);
+      const Lanes rest = per_lean(rest_link);
+      float* const east = in.lean + link * 2 * in.stride + i;
+      float* const south = east + in.stride;
+      const Lanes east_before = load_lanes(east);
+      const Lanes south_before = load_lanes(south);
+      const Lanes east_step = (way.x * now - rest_link.x * rest) - east_before;
+      const Lanes south_step = (way.z * now - rest_link.z * rest) - south_before;
+      store_lanes(east, east_before + clamp_lanes(east_step, in.largest_lean_step));
+      store_lanes(south, south_before + clamp_lanes(south_step, in.largest_lean_step));
+    }
+  }
+}
+
+void step(const ClothDynamicsKernelArguments& in) noexcept {
+  for (std::size_t substep = 0; substep < in.substeps; ++substep) {
+    predict(in);
+    constrain(in);
+  }
+  lean(in);
+}
+
+void spread(const ClothSpreadKernelArguments& in) noexcept {
+  constexpr std::size_t kBlock = 16;
+  for (std::size_t block = 0; block < in.blocks; ++block) {
+    const float* const coarse = in.coarse + in.first[block];
+    const float* const weights = in.weights + block * in.taps * kBlock;
+    for (std::size_t i = 0; i < kBlock; i += kLaneCount) {
+      Lanes sum = {};
+      for (std::size_t tap = 0; tap < in.taps; ++tap) {
+        sum = sum + same_lanes(coarse[tap]) * load_lanes(weights + tap * kBlock + i);
+      }
+      store_lanes(in.fine + block * kBlock + i, sum);
+    }
+  }
+}
+
+void add(const ClothAddKernelArguments& arguments) noexcept {
+  const ClothAddKernelArguments in = arguments;
+  float* const __restrict out = in.out;
+  for (std::size_t i = 0; i < in.count; ++i) {
+    out[i] = out[i] + ((in.weight[0] * in.row[0][i] + in.weight[1] * in.row[1][i]) +
+                       (in.weight[2] * in.row[2][i] + in.weight[3] * in.row[3][i]));
+  }
+}
+
+}  // namespace
+
+const ClothDynamicsKernels YURAGI_ROW_NAME(cloth_dynamics_kernels) = {step, spread, add};
+
+}  // namespace yuragi

@@ -1,0 +1,265 @@
+#include "engine/operators/cloth_dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/math/philox.hpp"
+#include "engine/operators/cloth_spline.hpp"
+#include "tests/support/bits.hpp"
+#include "tests/support/each_simd_row.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kDynamicsTick_s = 1.0 / 60.0;
+constexpr std::size_t kFineColumns = 100;
+constexpr std::size_t kFineLinks = 90;
+constexpr float kFineLink_m = 0.025F;
+
+/// A cloth of 2 m along x, hanging in folds, and the air around it.
+struct CoarseSetup {
+  explicit CoarseSetup(bool is_first_column_fixed = false)
+      : threads(make_threads(kFineLinks, kFineLink_m, folds())),
+        coarse(threads, kFineColumns, edge(0.02F), edge(0.0F), edge(0.0F), is_first_column_fixed),
+        east(coarse.stride(), 0.0F),
+        south(coarse.stride(), 0.0F) {}
+
+  static std::vector<float> folds() {
+    std::vector<float> lean(2 * padded_to_blocks(kFineColumns));
+    for (std::size_t i = 0; i < lean.size(); ++i) lean[i] = 0.08F * std::sin(0.3F * static_cast<float>(i));
+    return lean;
+  }
+  static std::vector<float> edge(float pitch_m) {
+    std::vector<float> places_m(padded_to_blocks(kFineColumns));
+    for (std::size_t i = 0; i < places_m.size(); ++i) places_m[i] = pitch_m * static_cast<float>(i);
+    return places_m;
+  }
+  void blow(float east_m_s, float south_m_s, std::uint64_t gust = 0) {
+    const RandomStream random(gust, stream_id("cloth dynamics test"));
+    for (std::size_t i = 0; i < east.size(); ++i) {
+      const float factor = gust == 0 ? 1.0F : static_cast<float>(2.0 * random.uniform(i));
+      east[i] = factor * east_m_s;
+      south[i] = factor * south_m_s;
+    }
+  }
+  ClothDynamicsJob job(double dt_s = kDynamicsTick_s) {
+    return {.air_east_m_s = east, .air_south_m_s = south, .dt_s = dt_s, .cloth = &coarse};
+  }
+  void go_on(int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) ASSERT_EQ(job().run(), ClothDynamicsJob::Problem::kNone);
+  }
+  bool is_at_rest() const {
+    bool rests = std::all_of(coarse.lean().begin(), coarse.lean().end(), [](float lean) { return lean == 0.0F; });
+    for (std::size_t row = 0; row < coarse.rows(); ++row) {
+      for (std::size_t column = 0; column < coarse.columns(); ++column) {
+        const auto offset = coarse.offset(column, row);
+        rests = rests && offset.x_m == 0.0F && offset.y_m == 0.0F && offset.z_m == 0.0F;
+      }
+    }
+    return rests;
+  }
+  double thread_length_m(std::size_t column) const {
+    double length_m = 0.0;
+    const auto rest = coarse.rest_link_m();
+    for (std::size_t row = 0; row < coarse.links(); ++row) {
+      const auto from = coarse.offset(column, row);
+      const auto to = coarse.offset(column, row + 1);
+      length_m += static_cast<double>(std::hypot(rest[column + 1] + to.x_m - from.x_m,
+                                                 rest[coarse.stride() + column + 1] + to.y_m - from.y_m,
+                                                 rest[2 * coarse.stride() + column + 1] + to.z_m - from.z_m));
+    }
+    return length_m;
+  }
+
+  ClothThreads threads;
+  CoarseCloth coarse;
+  std::vector<float> east, south;
+};
+
+class ClothDynamicsOnEachRow : public EachSimdRow {};
+YURAGI_ON_EACH_ROW(ClothDynamicsOnEachRow);
+
+TEST_P(ClothDynamicsOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
+  CoarseSetup expected;
+  CoarseSetup cloth;
+  for (std::uint64_t tick = 1; tick < 120; ++tick) {
+    expected.blow(3.0F, 8.0F, tick / 7);
+    cloth.blow(3.0F, 8.0F, tick / 7);
+    ClothDynamicsJob base = expected.job();
+    base.row = SimdRow::kX86_64;
+    base.run();
+    ClothDynamicsJob job = cloth.job();
+    job.row = GetParam();
+    EXPECT_EQ(job.run(), ClothDynamicsJob::Problem::kNone);
+  }
+  EXPECT_EQ(bits_of(cloth.coarse.lean()), bits_of(expected.coarse.lean()));
+
+  // And so does the spline through it.
+  ClothSpline expected_spline(expected.coarse, kFineColumns, kFineLinks);
+  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
+  expected_spline.spread(expected.coarse, SimdRow::kX86_64);
+  spline.spread(cloth.coarse, GetParam());
+  std::vector<float> expected_out(kFineLinks * 2 * padded_to_blocks(kFineColumns), 0.5F);
+  std::vector<float> out = expected_out;
+  ClothSplineJob{.spline = &expected_spline, .share = 0.7F, .row = SimdRow::kX86_64, .out = expected_out}.run();
+  ClothSplineJob{.spline = &spline, .share = 0.7F, .row = GetParam(), .out = out}.run();
+  EXPECT_EQ(bits_of(out), bits_of(expected_out));
+}
+
+TEST_P(ClothDynamicsOnEachRow, InCalmAirItDoesNotCreepFromRestIn10000Ticks) {
+  CoarseSetup cloth;
+  for (int tick = 0; tick < 10'000; ++tick) {
+    ClothDynamicsJob job = cloth.job();
+    job.row = GetParam();
+    job.run();
+  }
+  EXPECT_TRUE(cloth.is_at_rest());
+}
+
+TEST(ClothDynamicsTest, TheWindBlowsItOutAndItSwingsBackThroughRestAndComesToIt) {
+  CoarseSetup cloth;
+  cloth.blow(0.0F, 5.0F);
+  cloth.go_on(300);
+  const std::size_t last = cloth.coarse.rows() - 1;
+  const float blown_m = cloth.coarse.offset(10, last).z_m;
+  EXPECT_GT(blown_m, 0.5F);
+  cloth.blow(0.0F, 0.0F);
+  float farthest_back_m = 0.0F;
+  for (int tick = 0; tick < 200; ++tick) {
+    cloth.go_on(1);
+    farthest_back_m = std::min(farthest_back_m, cloth.coarse.offset(10, last).z_m);
+  }
+  EXPECT_LT(farthest_back_m, -0.02F * blown_m);
+  cloth.go_on(6000);
+  EXPECT_TRUE(cloth.is_at_rest());
+}
+
+TEST(ClothDynamicsTest, AStrongerWindBlowsItOutFarther) {
+  double before_m = 0.0;
+  for (const float speed_m_s : {1.0F, 2.0F, 4.0F, 8.0F, 16.0F}) {
+    CoarseSetup cloth;
+    cloth.blow(0.0F, speed_m_s);
+    cloth.go_on(600);
+    const auto offset = cloth.coarse.offset(10, cloth.coarse.rows() - 1);
+    const auto blown_m = static_cast<double>(offset.z_m);
+    EXPECT_GT(blown_m, 1.05 * before_m) << speed_m_s;
+    before_m = blown_m;
+  }
+}
+
+TEST(ClothDynamicsTest, ThreadsStretchByLessThanAHundredthInAStormOfGusts) {
+  CoarseSetup cloth;
+  for (std::uint64_t gust = 1; gust < 60; ++gust) {
+    cloth.blow(8.0F * static_cast<float>(gust % 5) - 16.0F, 10.0F * static_cast<float>(gust % 4) - 15.0F, gust);
+    cloth.go_on(12);
+    for (std::size_t column = 0; column < cloth.coarse.columns(); ++column) {
+      EXPECT_NEAR(cloth.thread_length_m(column), kFineLink_m * kFineLinks, 0.02 * kFineLink_m * kFineLinks) << gust;
+    }
+  }
+}
+
+TEST(ClothDynamicsTest, IsFiniteAndNoFasterThanItMayBeWhateverBlowsAndHoweverLongTheTicks) {
+  CoarseSetup cloth;
+  const RandomStream random(4, stream_id("cloth dynamics nasty"));
+  std::vector<float> before(cloth.coarse.lean().begin(), cloth.coarse.lean().end());
+  for (std::uint64_t tick = 0; tick < 600; ++tick) {
+    const double dt_s = tick % 50 == 0 ? 3.0 : 0.03 * random.uniform(3 * tick) + 1e-6;
+    const auto blast = static_cast<float>(tick % 3 == 0 ? 1e6 : 120.0);
+    cloth.blow(blast * (static_cast<float>(random.uniform(3 * tick + 1)) - 0.5F),
+               blast * (static_cast<float>(random.uniform(3 * tick + 2)) - 0.5F), tick);
+    EXPECT_EQ(cloth.job(dt_s).run(), ClothDynamicsJob::Problem::kNone);
+    const auto lean = cloth.coarse.lean();
+    for (std::size_t i = 0; i < lean.size(); ++i) {
+      ASSERT_LE(std::abs(lean[i] - before[i]), 8.0 * dt_s + 1e-5) << tick;  // and with it: finite
+    }
+    before.assign(lean.begin(), lean.end());
+  }
+  cloth.blow(0.0F, 0.0F);
+  cloth.go_on(20'000);
+  EXPECT_TRUE(cloth.is_at_rest());
+}
+
+TEST(ClothDynamicsTest, FixedEdgesDoNotMove) {
+  CoarseSetup cloth(true);
+  cloth.blow(6.0F, 14.0F, 3);
+  cloth.go_on(100);
+  const std::size_t last = cloth.coarse.rows() - 1;
+  EXPECT_NE(cloth.coarse.offset(2, last).z_m, 0.0F);
+  for (std::size_t row = 0; row <= last; ++row) EXPECT_EQ(cloth.coarse.offset(0, row).z_m, 0.0F);
+  for (std::size_t column = 0; column < cloth.coarse.columns(); ++column) {
+    EXPECT_EQ(cloth.coarse.offset(column, 0).z_m, 0.0F);
+  }
+
+  // Nor does the fixed column of what is made from it.
+  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
+  spline.spread(cloth.coarse, SimdRow::kX86_64);
+  const std::size_t stride = padded_to_blocks(kFineColumns);
+  std::vector<float> out(kFineLinks * 2 * stride);
+  EXPECT_EQ((ClothSplineJob{.spline = &spline, .out = out}.run()), ClothSplineJob::Problem::kNone);
+  for (std::size_t line = 0; line < 2 * kFineLinks; ++line) EXPECT_EQ(out[line * stride], 0.0F);
+  EXPECT_NE(out[1], 0.0F);
+}
+
+TEST(ClothSplineTest, StaysBetweenTheCoarseLeansAndFollowsThem) {
+  CoarseSetup cloth;
+  cloth.blow(2.0F, 6.0F);
+  cloth.go_on(200);
+  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
+  spline.spread(cloth.coarse, SimdRow::kX86_64);
+  const std::size_t stride = padded_to_blocks(kFineColumns);
+  std::vector<float> out(kFineLinks * 2 * stride);
+  ClothSplineJob{.spline = &spline, .out = out}.run();
+  const auto lean = cloth.coarse.lean();
+  const auto [low, high] = std::minmax_element(lean.begin(), lean.end());
+  for (const float value : out) {
+    EXPECT_GE(value, *low - 1e-5F);
+    EXPECT_LE(value, *high + 1e-5F);
+  }
+
+  // In the middle, where the lean goes nearly straight, it is the coarse one.
+  const std::size_t coarse_link = cloth.coarse.links() / 2;
+  const auto fine_link = static_cast<std::size_t>((static_cast<double>(coarse_link) + 0.5) * kFineLinks /
+                                                  static_cast<double>(cloth.coarse.links()));
+  const float coarse_lean = lean[(2 * coarse_link + 1) * cloth.coarse.stride() + cloth.coarse.columns() / 2];
+  EXPECT_NEAR(out[(2 * fine_link + 1) * stride + kFineColumns / 2], coarse_lean, 0.1F * std::abs(coarse_lean));
+}
+
+TEST(ClothDynamicsTest, SaysWhatIsWrongAndThenDoesNothing) {
+  using Problem = ClothDynamicsJob::Problem;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CoarseSetup cloth;
+  cloth.blow(5.0F, 5.0F);
+  ClothDynamicsJob job = cloth.job();
+  job.cloth = nullptr;
+  EXPECT_EQ(job.run(), Problem::kNoCloth);
+  for (const double dt_s : {0.0, -1.0, nan}) EXPECT_EQ(cloth.job(dt_s).run(), Problem::kStepNotPositive);
+  for (double ClothDynamicsJob::*parameter :
+       {&ClothDynamicsJob::normal_drag_per_m, &ClothDynamicsJob::skin_drag_per_m,
+        &ClothDynamicsJob::across_stiffness_s2, &ClothDynamicsJob::damping_per_s, &ClothDynamicsJob::largest_speed_m_s,
+        &ClothDynamicsJob::largest_lean_per_s}) {
+    for (const double wrong : {-1.0, nan}) {
+      job = cloth.job();
+      job.*parameter = wrong;
+      EXPECT_EQ(job.run(), Problem::kParameter);
+    }
+  }
+  job = cloth.job();
+  job.air_east_m_s = job.air_east_m_s.first(3);
+  EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  EXPECT_TRUE(cloth.is_at_rest());
+
+  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
+  std::vector<float> out(2 * padded_to_blocks(kFineColumns));
+  EXPECT_EQ((ClothSplineJob{.out = out}.run()), ClothSplineJob::Problem::kNoSpline);
+  EXPECT_EQ((ClothSplineJob{.spline = &spline, .share = NAN, .out = out}.run()),
+            ClothSplineJob::Problem::kShareNotFinite);
+  EXPECT_EQ((ClothSplineJob{.spline = &spline, .first_link = kFineLinks, .out = out}.run()),
+            ClothSplineJob::Problem::kSizesDiffer);
+}
+
+}  // namespace
+}  // namespace yuragi
