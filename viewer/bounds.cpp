@@ -19,6 +19,18 @@ glm::vec3 joint_at_rest(const GridSkeleton& cloth, std::size_t column, std::size
   return {cloth.rest_x_m[i], cloth.rest_y_m[i], cloth.rest_z_m[i]};
 }
 
+/// From the root of a strand at rest to its tip, along the arc (skeleton.hpp).
+glm::vec3 chord_m(const StrandSkeleton& s, std::size_t strand) {
+  const glm::vec3 rest(s.rest_x[strand], s.rest_y[strand], s.rest_z[strand]);
+  const glm::vec3 curl(s.curl_x[strand], s.curl_y[strand], s.curl_z[strand]);
+  glm::vec3 sum(0.0F);
+  for (std::size_t link = 0; link < s.links_per_strand; ++link) {
+    const float turn_rad = static_cast<float>(link) * s.rest_curl_rad[strand];
+    sum += std::cos(turn_rad) * rest + std::sin(turn_rad) * curl;
+  }
+  return s.link_length_m[strand] * sum;
+}
+
 Bounds widened(const Bounds& bounds, const glm::vec3& by_m) {
   return {bounds.low_m - by_m, bounds.high_m + by_m};
 }
@@ -70,8 +82,7 @@ Bounds bounds_of(const TreeSkeleton& tree) {
     for (std::size_t i = 0; i < level.strands.strand_count; ++i) {
       const StrandSkeleton& s = level.strands;
       const glm::vec3 root(s.root_x_m[i], s.root_y_m[i], s.root_z_m[i]);
-      const glm::vec3 rest(s.rest_x[i], s.rest_y[i], s.rest_z[i]);
-      const glm::vec3 tip = root + rest * (s.link_length_m[i] * static_cast<float>(s.links_per_strand));
+      const glm::vec3 tip = root + chord_m(s, i);
       bounds = united(bounds, {glm::min(root, tip), glm::max(root, tip)});
       is_empty = false;
     }

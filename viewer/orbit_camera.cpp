@@ -19,7 +19,7 @@ constexpr double kAcrossHeights = 1.05;   // of the eye, in heights of what it l
 constexpr double kFromCorner_deg = 32.0;  // how far a broad side is looked at aslant
 constexpr double kAroundPitch_deg = 4.0;
 constexpr double kFlatPitch_deg = 9.0;
-constexpr double kFilled = 0.86;  // of the picture
+constexpr double kFilled = 0.95;  // of the picture
 
 glm::dvec3 direction(const CameraPlace& place) {
   const double heading = glm::radians(place.heading_deg);

@@ -25,6 +25,7 @@ void describe_blade(const GlVertexArray& array, const GlBuffer& buffer) {
 StrandRibbons::StrandRibbons(const StrandSkeleton& strands, BladeStyle style)
     : strands_(&strands), sorter_(strands, style), joints_(strands) {
   describe_blade(blade_array_, blade_buffer_);
+  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // it is there, even if no pose is ever taken
 }
 
 void StrandRibbons::move_to(const StrandPose& pose) {

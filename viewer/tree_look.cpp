@@ -88,6 +88,7 @@ TreeLook::TreeLook(const TreeSkeleton& tree, std::string_view name)
     set_sampler(*program, "joints", 0);
     set_crown(*program, tree, bounds_);
   }
+  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // it is there, even if no pose is ever taken
 }
 
 void TreeLook::move_to(const Pose& pose) {

@@ -31,7 +31,7 @@ LeafTints tints_of(Foliage foliage) {
     case Foliage::kGreen:
       break;
   }
-  return {{0.038F, 0.096F, 0.018F}, {0.130F, 0.205F, 0.036F}};
+  return {{0.050F, 0.118F, 0.020F}, {0.150F, 0.225F, 0.038F}};
 }
 
 std::array<float, 3> array_of(const glm::vec3& v) {

@@ -22,7 +22,8 @@ struct TreePart {
   float tip_radius_m = 0.0F;
   std::array<float, 3> facing{};  ///< of a leaf: what its upper side is turned to; of a branch: aside of it
   std::uint32_t strand = 0;
-  std::int32_t root_at = -1;  ///< where in the array the x of the joint is that it grows from; below 0: it stands on the ground
+  std::int32_t root_at =
+      -1;  ///< where in the array the x of the joint is that it grows from; below 0: it stands on the ground
 };
 
 /// Where in the array the joints of a level begin.

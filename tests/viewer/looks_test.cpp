@@ -198,6 +198,25 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
   EXPECT_GT(darker, 500U);
 }
 
+TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
+  StrandSkeleton no_strands;
+  no_strands.links_per_strand = 1;
+  TreeSkeleton no_branches;
+  no_branches.levels.resize(1);
+  no_branches.levels[0].strands.links_per_strand = 1;
+  SurfaceSkeleton no_flame;
+  no_flame.ramp_rgba.resize(1024);
+  show({{"a", "grass", no_strands},
+        {"b", "fur", no_strands},
+        {"c", "curtain", GridSkeleton{}},
+        {"d", "tree", TreeSkeleton{}},
+        {"e", "tree", no_branches},
+        {"f", "ripple", SurfaceSkeleton{}},
+        {"g", "flame", no_flame}});
+  EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));
+  stage_->draw(rest_moment(models_), camera_, *target_);
+}
+
 TEST_F(StageTest, IsAtHomeInNothing) {
   show({});
   EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));

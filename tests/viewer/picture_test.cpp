@@ -1,6 +1,7 @@
 // The real program, drawing under a virtual X server. What it writes is looked at as a person would: sky above, grass
 // below, and the grass leans.
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -17,6 +18,7 @@
 
 #include "tests/support/places.hpp"
 #include "tests/viewer/test_meadow.hpp"
+#include "tests/viewer/test_models.hpp"
 #include "tests/viewer/virtual_screen.hpp"
 
 namespace yuragi {
@@ -55,6 +57,16 @@ class Picture {
     }
     const double count = static_cast<double>(last - first) * width_;
     return {sum.r / count, sum.g / count, sum.b / count};
+  }
+
+  /// The brightness of the darkest pixel.
+  double darkest(double from_top, double to_bottom) const {
+    double least = 255.0;
+    for (int i = 3 * width_ * static_cast<int>(from_top * height_);
+         i < 3 * width_ * static_cast<int>(to_bottom * height_); i += 3) {
+      least = std::min(least, (pixels_.get()[i] + pixels_.get()[i + 1] + pixels_.get()[i + 2]) / 3.0);
+    }
+    return least;
   }
 
   /// Mean absolute difference of two pictures' pixels, 0 to 255.
@@ -188,6 +200,34 @@ TEST_F(PictureTest, DrawsTheOverlayWhenAsked) {
   const auto with = take("with.png", 0.3, {"--frames", "2", "--overlay", "--samples", "1", "--camera", "225,7,4"});
   ASSERT_TRUE(without->is_there() && with->is_there());
   EXPECT_GT(without->difference(*with), 1.0);
+}
+
+TEST_F(PictureTest, ShowsEveryKindThatTheStreamCarriesAndEachAlone) {
+  const std::vector<wire::SceneModel> garden = test_garden();
+  std::vector<float> opacities(garden.size(), 1.0F);
+  opacities.front() = 0.0F;
+  wire::FrameEncoder encoder;
+  wire::Bytes greeting = greeting_for(garden);
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    greeting = greeting + frame_of(garden, opacities, 0.1 * static_cast<double>(i), 0.5, i, encoder);
+  }
+  const StreamServer server(greeting);
+  EXPECT_EQ(take_picture(server.port(), "all.png", {"--frames", "2"}).code, 0);
+  EXPECT_EQ(take_picture(server.port(), "hidden.png", {"--frames", "2", "--scene", "grass"}).code, 0);
+  EXPECT_EQ(take_picture(server.port(), "tree.png", {"--frames", "2", "--scene", "tree"}).code, 0);
+  const Picture all(folder_ / "all.png");
+  const Picture hidden(folder_ / "hidden.png");
+  const Picture tree(folder_ / "tree.png");
+  ASSERT_TRUE(all.is_there() && hidden.is_there() && tree.is_there());
+  EXPECT_GT(all.difference(tree), 3.0);
+
+  // A tree's crown hides what would be bright sky; where the meadow is hidden, nothing does.
+  EXPECT_LT(tree.darkest(0.15, 0.35), 60.0);
+  EXPECT_GT(hidden.darkest(0.0, 0.15), 60.0);
+
+  const Ended ended = take_picture(server.port(), "none.png", {"--scene", "a scene that is not there"});
+  EXPECT_EQ(ended.code, 64);
+  EXPECT_THAT(ended.said, testing::HasSubstr("it has: grass, fur, curtain"));
 }
 
 TEST_F(PictureTest, EndsWith69WhenNoDaemonAnswers) {

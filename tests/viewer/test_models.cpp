@@ -356,9 +356,34 @@ Pose test_pose(const wire::SceneModel& model, double time_s, double strength) {
 }
 
 std::vector<wire::SceneModel> test_garden() {
-  return {test_model("grass", {-7.0, 1.0}), test_model("fur", {-2.4, 3.0}),   test_model("curtain", {0.5, 0.0}),
-          test_model("flag", {4.2, -1.0}),  test_model("banner", {7.4, 0.5}), test_model("ripple", {3.5, 4.5}),
+  return {test_model("grass", {-7.0, 1.0}),  test_model("fur", {-2.4, 3.0}),   test_model("curtain", {0.5, 0.0}),
+          test_model("flag", {4.2, -1.0}),   test_model("banner", {7.4, 0.5}), test_model("ripple", {3.5, 4.5}),
           test_model("flame", {-2.2, -0.5}), test_model("tree", {0.5, -6.0})};
+}
+
+wire::Bytes greeting_for(const std::vector<wire::SceneModel>& models) {
+  return wire::encode(wire::Hello{wire::kProtocol, "a test garden", 60.0}) + wire::encode(wire::Scenes{models});
+}
+
+wire::Bytes frame_of(const std::vector<wire::SceneModel>& models, std::span<const float> opacities, double time_s,
+                     double strength, std::uint64_t sequence, wire::FrameEncoder& encoder) {
+  std::vector<Pose> poses;
+  std::vector<const Skeleton*> skeletons;
+  std::vector<const Pose*> pointers;
+  for (const wire::SceneModel& model : models) {
+    poses.push_back(test_pose(model, time_s, strength));
+    skeletons.push_back(&model.skeleton);
+  }
+  pointers.reserve(poses.size());
+  for (const Pose& pose : poses) pointers.push_back(&pose);
+  wire::FrameInfo info;
+  info.sequence = info.tick = sequence;
+  info.time_s = time_s;
+  info.wind.wind = wind_from(12.0 * strength, 270.0);
+  info.wind.source = WindSource::kLive;
+  info.wind.live_weight = 1.0;
+  const auto bytes = encoder.encode(info, skeletons, pointers, opacities);
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace yuragi

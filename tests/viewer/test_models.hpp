@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "engine/wire/wire.hpp"
 
@@ -21,5 +23,12 @@ Pose test_pose(const wire::SceneModel& model, double time_s, double strength);
 
 /// All of them side by side.
 std::vector<wire::SceneModel> test_garden();
+
+/// A server of models: greets with Hello and Scenes.
+wire::Bytes greeting_for(const std::vector<wire::SceneModel>& models);
+
+/// A frame of them in that wind, as bytes. One opacity a model.
+wire::Bytes frame_of(const std::vector<wire::SceneModel>& models, std::span<const float> opacities, double time_s,
+                     double strength, std::uint64_t sequence, wire::FrameEncoder& encoder);
 
 }  // namespace yuragi

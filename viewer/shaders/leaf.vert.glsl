@@ -41,9 +41,9 @@ void main() {
   float to_light = smoothstep(-1.1, 0.9, dot(in_crown, normalize(to_sun.xyz / crown_radius_m)));
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
-  vec3 through = tint.rgb * vec3(1.25, 1.10, 0.75) * max(-facing, 0.10) * (0.40 + 1.15 * against * against);
-  vec3 sum = tint.rgb * soft_light(normal) * (0.35 + 0.65 * open) * 0.9;
-  sum += kSunLight * (tint.rgb * max(facing, 0.0) * 0.75 + through) * (0.10 + 0.90 * open) * (0.30 + 0.70 * to_light);
+  vec3 through = tint.rgb * vec3(1.25, 1.10, 0.75) * max(-facing, 0.14) * (0.50 + 1.35 * against * against);
+  vec3 sum = tint.rgb * soft_light(normal) * (0.55 + 0.45 * open);
+  sum += kSunLight * (tint.rgb * max(facing, 0.0) * 0.75 + through) * (0.22 + 0.78 * open) * (0.42 + 0.58 * to_light);
   float shine = max(dot(normal, normalize(to_sun.xyz + to_eye)), 0.0);
   shine *= shine;
   shine *= shine;
