@@ -1,7 +1,6 @@
 #include "engine/operators/crown_kernels.hpp"
 
 #include "engine/base/kernel.hpp"
-#include "engine/math/trig.hpp"
 
 namespace yuragi {
 namespace {
@@ -39,12 +38,11 @@ void tilt(const TiltKernelArguments& arguments) noexcept {
   float* const __restrict east = in.out_east_rad;
   float* const __restrict south = in.out_south_rad;
   for (std::size_t i = 0; i < in.count; ++i) {
-    const float wind = in.response / in.distance[i];
-    const float theta = in.max_tilt_rad * saturated(wind * in.gain[i] * (in.vertical[i] + in.alpha_vertical));
-    const float swing = in.max_swing_rad * saturated(wind * (in.horizontal[i] + in.beta_horizontal));
-    const SinCos<float> turn = sin_cos(swing);  // clockwise, from east to south
-    east[i] = theta * (in.toward_east * turn.cos - in.toward_south * turn.sin);
-    south[i] = theta * (in.toward_south * turn.cos + in.toward_east * turn.sin);
+    const float wind = in.gain[i] * in.response / in.distance[i];
+    const float along = in.max_tilt_rad * saturated(wind * (in.vertical[i] + in.alpha_vertical));
+    const float across = in.max_swing_rad * saturated(wind * (in.horizontal[i] + in.beta_horizontal));
+    east[i] = in.toward_east * along - in.toward_south * across;
+    south[i] = in.toward_south * along + in.toward_east * across;
   }
 }
 

@@ -15,12 +15,15 @@ namespace yuragi {
 ///   phi   = W_direction + W_speed (N_horizontal + beta_horizontal) / dist_to_wind_side
 ///
 /// To make that a matter of numbers without units which saturates, W_speed is s^2 / (1 + s^2), s = wind /
-/// half_tilt_speed; the distance is in radii of the tree (WindSideJob); and what comes of each line goes through
-/// x / sqrt(1 + x^2) before it becomes an angle, so that no branch tilts by more than max_tilt or swings off the wind's
-/// direction by more than max_swing. The gain, (root thickness / thickness)^p over that of the thinnest branch,
-/// multiplies theta. The bend is theta toward phi. Calm gives (0, 0). m/s, radians. All spans have the same size; the
-/// outputs overlap nothing else. Owns nothing. Thread-safe: jobs with different outputs, yes. Realtime-safe: yes. Every
-/// SIMD row computes the same bits. Cost: about 2 ns a branch (x86-64-v3).
+/// half_tilt_speed; the distance is in radii of the tree (WindSideJob); and what is added to the rest pose's own angles
+/// goes through x / sqrt(1 + x^2) before it becomes one: a bend of at most max_tilt along the wind from the first line,
+/// and of at most max_swing across it (to the right of where it blows to) from the second, since a pose has no turn
+/// about the vertical. The gain, (root thickness / thickness)^p over that of the thinnest branch, multiplies both. Calm
+/// gives (0, 0).
+///
+/// m/s, radians. All spans have the same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with
+/// different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 1 ns a branch
+/// (x86-64-v3).
 struct TiltJob {
   double wind_east_m_s = 0.0;
   double wind_south_m_s = 0.0;
@@ -32,7 +35,7 @@ struct TiltJob {
   double alpha_vertical = 0.0;
   double beta_horizontal = 0.0;
   double max_tilt_rad = 0.6;                  ///< 0 to pi
-  double max_swing_rad = 0.8;                 ///< 0 to pi
+  double max_swing_rad = 0.6;                 ///< 0 to pi
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   std::span<float> bend_east_rad;

@@ -49,7 +49,7 @@ const std::array kTreeParameters = {
     Parameter{"branch_links", "", std::int64_t{256}, 1, 1024, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
     Parameter{"max_tilt", "deg", 45.0, 0, 120, "how far the strongest wind bends the thinnest twig"},
-    Parameter{"max_swing", "deg", 50.0, 0, 120, "how far off the wind's direction a branch may swing"},
+    Parameter{"max_swing", "deg", 45.0, 0, 120, "and how far sideways"},
     Parameter{"half_tilt_speed", "m/s", 10.0, 0.1, 60, "the wind that wood answers half to"},
     Parameter{"turbulence", "", 0.5, 0, 2, "how much the wind differs from branch to branch: its standard deviation"},
     Parameter{"hybrid", "", 0.7, 0, 1, "0: wood follows the noise alone; 1: each branch is a damped oscillator"},
@@ -374,18 +374,21 @@ void Tree::project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept {
       .run();
 }
 
-// How far the bend of a branch may change in a tick, with x = gain W (N_vertical + alpha) / dist, at most k where W is
-// 1, so that theta = max_tilt x / sqrt(1 + x^2), which is never steeper than max_tilt over x:
-//   wind      s changes by ds; W is nowhere steeper than 0.65, and theta as a vector over s nowhere than 1.02 sqrt(k)
-//             (x = k s^2/(1 + s^2) in the slope of x / sqrt(1 + x^2) is at most 2 sqrt(k x) / (1 + x^2)^1.5) or 0.65 k
+// How far the bend of a branch may change in a tick. Along the wind it is max_tilt x / sqrt(1 + x^2), x = gain W
+// (N_vertical + alpha) / dist, at most k where W is 1; nowhere steeper than max_tilt over x:
+//
+//   wind      s changes by ds; as a vector that points along the wind the bend is nowhere steeper over s than 1.02
+//   sqrt(k)
+//             max_tilt (since x = k s^2/(1 + s^2), and that slope is at most 2 sqrt(k x) / (1 + x^2)^1.5), or 0.65 k
 //   noise     each part of the split changes by no more than noise and threshold together
 //   distance  the unit vector of WindSideJob changes by at most dU / U, and W / U is at most 1 / (2 half_tilt_speed):
 //   by
 //             ds / 2 in all, times the rise of the threshold and the slope of 1 / dist; a place is within 1 of the
 //             middle
-//   phi       the same three, on the length that theta gives the bend
-// and by no more than from one extreme G to the other, 2 G. An oscillator moves by at most its largest gain times that,
-// and by at most what its largest rate gives for a bend that never exceeds G.
+//
+// and by no more than from one extreme G to the other, 2 G. Across the wind it is the same with its own numbers. An
+// oscillator moves by at most its largest gain times that, and by at most what its largest rate gives for a bend that
+// never exceeds G.
 double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept {
   const double ds = SceneWind::largest_step_m_s(dt_s) / half_tilt_speed_m_s_;
   const double largest_noise = kLargestNoise * turbulence_;
@@ -393,17 +396,23 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
       turbulence_ * noise_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
   const double dd = 0.5 * ds;  // with W in it
 
-  // What noise and distance do to each part of the split over the distance, and the largest of these over the distance.
-  const double split = (dn + kThresholdRise * turbulence_ * dd) / kWindSideFloor;
-  const double tilt = (largest_noise + species_.alpha_vertical) / kWindSideFloor;
-  const double swing = (largest_noise + species_.beta_horizontal) / kWindSideFloor;
-  const double k = wood.largest_gain * tilt;
-  const double theta = std::min(WindResponse::kSteepest * k, 1.02 * std::sqrt(k)) * ds +
-                       wood.largest_gain * (split + tilt * dd / kWindSideFloor);
-  const double phi = WindResponse::kSteepest * swing * ds + split + swing * dd / kWindSideFloor;
+  // The parts along the wind and across it: how far they may change, and how large they may be.
+  double step_rad = 0.0;
+  double largest_rad = 0.0;
+  const auto add_part = [&](double constant, double max_rad) {
+    const double over_distance = wood.largest_gain / kWindSideFloor;
+    const double k = over_distance * (largest_noise + constant);
+    const double part_rad = max_rad * k / std::sqrt(1.0 + k * k);
+    const double from_wind = std::min(WindResponse::kSteepest * k, 1.02 * std::sqrt(k)) * ds;
+    const double from_noise = over_distance * (dn + kThresholdRise * turbulence_ * dd);
+    const double from_distance = k / kWindSideFloor * dd;
+    step_rad += max_rad * (from_wind + from_noise + from_distance);
+    largest_rad = std::hypot(largest_rad, part_rad);
+  };
+  add_part(species_.alpha_vertical, max_tilt_rad_);
+  add_part(species_.beta_horizontal, max_swing_rad_);
+  step_rad = std::min(step_rad, 2.0 * largest_rad);
 
-  const double largest_rad = max_tilt_rad_ * k / std::sqrt(1.0 + k * k);
-  const double step_rad = std::min(max_tilt_rad_ * theta + largest_rad * max_swing_rad_ * phi, 2.0 * largest_rad);
   const double swayed_rad =
       std::min(OscillatorStep::largest_gain(damping_ratio_) * step_rad,
                OscillatorStep::largest_rate_per_s(wood.natural_hz, damping_ratio_) * dt_s * largest_rad);

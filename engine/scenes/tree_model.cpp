@@ -91,12 +91,12 @@ Course course_of(const Shoot& shoot, std::size_t links) {
   return course;
 }
 
-double between(const std::array<double, 2>& ends, double part) {
+double interpolated(const std::array<double, 2>& ends, double part) {
   return ends[0] + part * (ends[1] - ends[0]);
 }
 
 /// A factor around 1, within 40 % of it.
-double varied(const RandomStream& random, std::size_t index, double deviation) {
+double random_factor(const RandomStream& random, std::size_t index, double deviation) {
   return std::clamp(1.0 + deviation * random.normal(index), 0.6, 1.4);
 }
 
@@ -153,11 +153,13 @@ class Grower {
         const double part = (static_cast<double>(i) + 0.2 + 0.6 * random.uniform(index)) / static_cast<double>(own);
         const std::size_t link = link_at(habit.first_at + part * (1.0 - habit.first_at));
         const double around_rad = kGoldenAngle_rad * static_cast<double>(first + i) + 0.5 * random.uniform(index + 1);
-        const double angle_rad = between(habit.angle_deg, part) * kRadPerDeg * varied(random, index + 2, 0.12);
+        const double angle_rad =
+            interpolated(habit.angle_deg, part) * kRadPerDeg * random_factor(random, index + 2, 0.12);
         const TreeVector rest = std::cos(angle_rad) * course.direction[link] +
                                 std::sin(angle_rad) * across(course.direction[link], around_rad);
-        const double length_m = between(habit.length_share, part) * height_m_ * varied(random, index + 4, 0.15);
-        const double lift_rad = habit.lift_deg * kRadPerDeg * varied(random, index + 6, 0.3);
+        const double length_m =
+            interpolated(habit.length_share, part) * height_m_ * random_factor(random, index + 4, 0.15);
+        const double lift_rad = habit.lift_deg * kRadPerDeg * random_factor(random, index + 6, 0.3);
         Shoot& branch = branches.emplace_back(shoot(course.joint[link], rest, {0.0, lift_rad < 0.0 ? -1.0 : 1.0, 0.0},
                                                     std::abs(lift_rad), length_m, spec_.branch_links));
         branch.parent = static_cast<std::uint32_t>(p);
@@ -203,11 +205,11 @@ class Grower {
       const Course& course = courses[spray.twig];
       const std::size_t node = spray.node + leaf % kStrandsPerBlock;
       const std::size_t link = link_at(static_cast<double>(node) / kNodesOfATwig);
-      const double angle_rad = habit.leaf_angle_deg * kRadPerDeg * varied(random, 4 * leaf, 0.2);
+      const double angle_rad = habit.leaf_angle_deg * kRadPerDeg * random_factor(random, 4 * leaf, 0.2);
       const TreeVector rest =
           std::cos(angle_rad) * course.direction[link] +
           std::sin(angle_rad) * across(course.direction[link], kGoldenAngle_rad * static_cast<double>(leaf));
-      const double length_m = habit.leaf_length_m * spec_.size * varied(random, 4 * leaf + 2, 0.15);
+      const double length_m = habit.leaf_length_m * spec_.size * random_factor(random, 4 * leaf + 2, 0.15);
       Shoot& grown = leaves_.emplace_back(shoot(course.joint[link], rest, {0.0, -1.0, 0.0},
                                                 habit.leaf_droop_deg * kRadPerDeg, length_m, spec_.leaf_links));
       grown.parent = static_cast<std::uint32_t>(spray.twig);

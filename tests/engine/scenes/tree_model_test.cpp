@@ -1,0 +1,219 @@
+#include "engine/scenes/tree_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/math/philox.hpp"
+#include "engine/pose/pose_arrays.hpp"
+#include "engine/pose/tree_kinematics.hpp"
+#include "engine/scenes/tree_species.hpp"
+#include "tests/support/bits.hpp"
+#include "tests/support/random_strands.hpp"
+
+namespace yuragi {
+namespace {
+
+TreeSpec spec_of(std::string_view species, std::uint64_t seed = 1) {
+  return {.habit = tree_species(species).habit, .seed = seed};
+}
+
+TreeJoints joints_in(const TreeSkeleton& tree, const TreePose& pose) {
+  TreeJoints joints(tree);
+  EXPECT_EQ((TreeKinematicsJob{.skeleton = &tree, .pose = &pose, .joints = &joints}.run()),
+            TreeKinematicsJob::Problem::kNone);
+  return joints;
+}
+
+TreePose resting(const TreeSkeleton& tree) {
+  return std::get<TreePose>(rest_pose(tree));
+}
+
+double gap_m(JointPosition a, JointPosition b) {
+  return static_cast<double>(std::hypot(a.x_m - b.x_m, a.y_m - b.y_m, a.z_m - b.z_m));
+}
+
+TEST(TreeModelTest, HasThePapersSizeByDefault) {
+  const TreeSkeleton tree = make_tree(spec_of("cherry"));
+  ASSERT_EQ(tree.levels.size(), kTreePartCount);
+  EXPECT_EQ(tree.levels[kTrunk].strands.strand_count + tree.levels[kLimbs].strands.strand_count +
+                tree.levels[kTwigs].strands.strand_count,
+            256U);
+  EXPECT_EQ(tree.levels[kTwigs].strands.links_per_strand, 256U);
+  EXPECT_EQ(tree.levels[kLeaves].strands.strand_count, 10000U);
+  EXPECT_EQ(node_count(tree), 105'536U);
+}
+
+TEST(TreeModelTest, EveryKindOfTreeIsASoundSkeleton) {
+  for (const std::string_view species : kTreeSpeciesNames) {
+    for (const std::size_t limbs : {1U, 7U, 15U}) {
+      TreeSpec spec = spec_of(species, limbs);
+      spec.limbs = limbs;
+      spec.twigs = limbs == 7 ? 3 : 40;
+      spec.leaves = limbs == 1 ? 1 : 500;
+      spec.branch_links = limbs == 15 ? 5 : 40;
+      const TreeSkeleton tree = make_tree(spec);
+      const TreeJoints joints = joints_in(tree, resting(tree));  // which checks sizes and parents
+      for (std::size_t i = 0; i < kTreePartCount; ++i) {
+        const TreeLevel& level = tree.levels[i];
+        const StrandSkeleton& strands = level.strands;
+        ASSERT_EQ(level.base_radius_m.size(), strands.padded_count());
+        ASSERT_EQ(level.tip_radius_m.size(), strands.padded_count());
+        for (std::size_t s = 0; s < strands.padded_count(); ++s) {
+          EXPECT_NEAR(std::hypot(strands.rest_x[s], strands.rest_y[s], strands.rest_z[s]), 1.0F, 1e-6F);
+          EXPECT_NEAR(std::hypot(strands.curl_x[s], strands.curl_y[s], strands.curl_z[s]), 1.0F, 1e-6F);
+          EXPECT_NEAR(strands.rest_x[s] * strands.curl_x[s] + strands.rest_y[s] * strands.curl_y[s] +
+                          strands.rest_z[s] * strands.curl_z[s],
+                      0.0F, 1e-6F);
+          EXPECT_GE(level.base_radius_m[s], level.tip_radius_m[s]);
+          if (s >= strands.strand_count) continue;
+          EXPECT_GT(level.tip_radius_m[s], 0.0F);
+          EXPECT_GT(strands.link_length_m[s], 0.0F);
+          if (i == kTrunk) continue;
+          const JointPosition root{strands.root_x_m[s], strands.root_y_m[s], strands.root_z_m[s]};
+          EXPECT_LE(gap_m(root, joints.level(i - 1).joint(level.parent[s], level.parent_link[s])), 2e-5);
+        }
+      }
+    }
+  }
+}
+
+TEST(TreeModelTest, WoodIsAsThickAsWhatItCarries) {
+  const TreeSkeleton tree = make_tree(spec_of("zelkova"));
+  for (const std::size_t part : {kLimbs, kTwigs}) {
+    std::vector<double> carried_m2(tree.levels[part - 1].strands.strand_count, 0.0);
+    for (std::size_t s = 0; s < tree.levels[part].strands.strand_count; ++s) {
+      carried_m2[tree.levels[part].parent[s]] += std::pow(static_cast<double>(tree.levels[part].base_radius_m[s]), 2);
+    }
+    for (std::size_t p = 0; p < carried_m2.size(); ++p) {
+      EXPECT_NEAR(std::pow(static_cast<double>(tree.levels[part - 1].base_radius_m[p]), 2), carried_m2[p],
+                  1e-5 * carried_m2[p]);
+    }
+  }
+}
+
+TEST(TreeModelTest, LeavesStandInSpraysOf16OnOneTwigEach) {
+  const TreeSkeleton tree = make_tree(spec_of("poplar"));
+  const TreeLevel& leaves = tree.levels[kLeaves];
+  EXPECT_TRUE(leaves.is_leaves);
+  EXPECT_TRUE(leaves.is_turned_by_block);
+  std::vector<std::size_t> on_twig(tree.levels[kTwigs].strands.strand_count, 0);
+  for (std::size_t s = 0; s < leaves.strands.strand_count; ++s) {
+    EXPECT_EQ(leaves.parent[s], leaves.parent[s / 16 * 16]);
+    ++on_twig[leaves.parent[s]];
+  }
+  EXPECT_GE(*std::min_element(on_twig.begin(), on_twig.end()), 32U);
+  EXPECT_LE(*std::max_element(on_twig.begin(), on_twig.end()), 48U);
+}
+
+/// The outline of a tree's wood: how high, how wide, and how high up it is widest.
+struct Outline {
+  double height_m = 0.0;
+  double radius_m = 0.0;
+  double widest_at_m = 0.0;
+};
+
+Outline outline_of(const TreeSkeleton& tree) {
+  Outline outline;
+  const TreeJoints joints = joints_in(tree, resting(tree));
+  for (std::size_t i = kTrunk; i < kLeaves; ++i) {
+    const StrandSkeleton& strands = tree.levels[i].strands;
+    for (std::size_t s = 0; s < strands.strand_count; ++s) {
+      const JointPosition tip = joints.level(i).joint(s, strands.links_per_strand - 1);
+      const auto radius_m = static_cast<double>(std::hypot(tip.x_m, tip.z_m));
+      if (radius_m > outline.radius_m) outline.widest_at_m = static_cast<double>(tip.y_m);
+      outline.radius_m = std::max(outline.radius_m, radius_m);
+      outline.height_m = std::max(outline.height_m, static_cast<double>(tip.y_m));
+    }
+  }
+  return outline;
+}
+
+TEST(TreeModelTest, EachSpeciesHasItsHabit) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Outline cherry = outline_of(make_tree(spec_of("cherry", seed)));
+    const Outline zelkova = outline_of(make_tree(spec_of("zelkova", seed)));
+    const Outline poplar = outline_of(make_tree(spec_of("poplar", seed)));
+    for (const auto& [outline, species] :
+         {std::pair{cherry, "cherry"}, std::pair{zelkova, "zelkova"}, std::pair{poplar, "poplar"}}) {
+      EXPECT_NEAR(outline.height_m, tree_species(species).habit.height_m, 0.25 * outline.height_m) << species;
+    }
+    EXPECT_GT(2.0 * cherry.radius_m, 0.8 * cherry.height_m);   // as broad as high
+    EXPECT_GT(zelkova.widest_at_m, 0.45 * zelkova.height_m);   // a vase
+    EXPECT_LT(2.0 * poplar.radius_m, 0.45 * poplar.height_m);  // a column
+    EXPECT_LT(cherry.widest_at_m, zelkova.widest_at_m);
+  }
+}
+
+TEST(TreeModelTest, SizeIsAllLengths) {
+  TreeSpec spec = spec_of("cherry");
+  const TreeSkeleton one = make_tree(spec);
+  spec.size = 2.0;
+  const TreeSkeleton two = make_tree(spec);
+  for (std::size_t i = 0; i < kTreePartCount; ++i) {
+    for (std::size_t s = 0; s < one.levels[i].strands.strand_count; s += 7) {
+      EXPECT_NEAR(two.levels[i].strands.root_y_m[s], 2.0F * one.levels[i].strands.root_y_m[s], 1e-5F);
+      EXPECT_NEAR(two.levels[i].strands.link_length_m[s], 2.0F * one.levels[i].strands.link_length_m[s], 1e-6F);
+      EXPECT_NEAR(two.levels[i].base_radius_m[s], 2.0F * one.levels[i].base_radius_m[s], 1e-6F);
+    }
+  }
+}
+
+TEST(TreeModelTest, TheSameSeedGivesTheSameTreeAndAnotherSeedAnother) {
+  const TreeSkeleton tree = make_tree(spec_of("cherry", 4));
+  const TreeSkeleton same = make_tree(spec_of("cherry", 4));
+  const TreeSkeleton other = make_tree(spec_of("cherry", 5));
+  for (std::size_t i = 1; i < kTreePartCount; ++i) {
+    EXPECT_EQ(bits_of(tree.levels[i].strands.root_x_m), bits_of(same.levels[i].strands.root_x_m));
+    EXPECT_NE(bits_of(tree.levels[i].strands.root_x_m), bits_of(other.levels[i].strands.root_x_m));
+  }
+}
+
+TEST(TreeModelTest, NoChangeOfTheBendsMovesAJointFartherThanTheLeversSay) {
+  TreeSpec spec = spec_of("zelkova");
+  spec.twigs = 60;
+  spec.leaves = 480;
+  spec.branch_links = 12;
+  const TreeSkeleton tree = make_tree(spec);
+  const auto levers_m = tree_levers_m(tree);
+  EXPECT_EQ(levers_m[kTreePartCount], 0.0);
+  double largest_share = 0.0;
+  for (std::uint64_t trial = 0; trial < 200; ++trial) {
+    // Some pose, and one that differs by up to `change_rad` in some of the levels.
+    TreePose before;
+    TreePose after;
+    double allowed_m = 0.0;
+    for (std::size_t i = 0; i < kTreePartCount; ++i) {
+      before.levels.push_back(random_bends(tree.levels[i].strands, 1.2, 7 * trial + i));
+      StrandPose changed = before.levels.back();
+      const double change_rad = (trial >> i & 1U) == 0 ? 0.0 : 0.1 * static_cast<double>(trial % 7 + 1);
+      const StrandPose change = random_bends(tree.levels[i].strands, change_rad, 1000 + 7 * trial + i);
+      for (std::size_t s = 0; s < change.bend_east_rad.size(); ++s) {
+        // All toward one side in every other trial: then they add up.
+        const bool is_common = trial % 2 == 0;
+        changed.bend_east_rad[s] += is_common ? static_cast<float>(change_rad) : change.bend_east_rad[s];
+        changed.bend_south_rad[s] += is_common ? 0.0F : change.bend_south_rad[s];
+      }
+      after.levels.push_back(changed);
+      allowed_m += levers_m[i] * change_rad;
+    }
+    const TreeJoints from = joints_in(tree, before);
+    const TreeJoints to = joints_in(tree, after);
+    for (std::size_t i = 0; i < kTreePartCount; ++i) {
+      const StrandSkeleton& strands = tree.levels[i].strands;
+      for (std::size_t s = 0; s < strands.strand_count; ++s) {
+        for (std::size_t link = 0; link < strands.links_per_strand; ++link) {
+          const double way_m = gap_m(from.level(i).joint(s, link), to.level(i).joint(s, link));
+          ASSERT_LE(way_m, allowed_m + 1e-5);
+          if (allowed_m > 0.0) largest_share = std::max(largest_share, way_m / allowed_m);
+        }
+      }
+    }
+  }
+  EXPECT_GT(largest_share, 0.2);  // the levers are not idle talk
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,418 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/units.hpp"
+#include "engine/pose/pose_arrays.hpp"
+#include "engine/pose/pose_hash.hpp"
+#include "engine/pose/tree_kinematics.hpp"
+#include "engine/scenes/scene.hpp"
+#include "engine/scenes/tree_model.hpp"
+#include "engine/scenes/tree_species.hpp"
+#include "tests/support/scripted_wind.hpp"
+
+namespace yuragi {
+
+extern const SceneDescription kTreeScene;
+
+namespace {
+
+constexpr double kTreeTick_s = 1.0 / 60.0;
+
+std::unique_ptr<Scene> tree_scene(const ParameterValues::Map& given = {}, const SceneSetup& setup = {.seed = 1}) {
+  return kTreeScene.make(ParameterValues::resolve(kTreeScene.parameters, given).value(), setup);
+}
+
+/// A tree that is quick to compute, of a species.
+ParameterValues::Map little(std::string_view species = "cherry", ParameterValues::Map also = {}) {
+  also["species"] = std::string(species);
+  also["limbs"] = std::int64_t{8};
+  also["twigs"] = std::int64_t{64};
+  also["leaves"] = std::int64_t{1600};
+  also["branch_links"] = std::int64_t{16};
+  return also;
+}
+
+/// No noise: what is left is the answer to the wind.
+ParameterValues::Map without_noise(ParameterValues::Map also = {}) {
+  also["turbulence"] = 0.0;
+  also["leaf_flutter"] = 0.0;
+  return little("cherry", also);
+}
+
+const TreeSkeleton& tree_of(const Scene& scene) {
+  return std::get<TreeSkeleton>(scene.skeleton());
+}
+const StrandPose& bends_of(const Scene& scene, std::size_t part) {
+  return std::get<TreePose>(scene.pose()).levels[part];
+}
+double bend_of(const Scene& scene, std::size_t part, std::size_t strand) {
+  const StrandPose& bends = bends_of(scene, part);
+  return static_cast<double>(std::hypot(bends.bend_east_rad[strand], bends.bend_south_rad[strand]));
+}
+
+TreeJoints tree_joints(const Scene& scene) {
+  TreeJoints joints(tree_of(scene));
+  const TreeKinematicsJob job{
+      .skeleton = &tree_of(scene), .pose = &std::get<TreePose>(scene.pose()), .joints = &joints};
+  EXPECT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
+  return joints;
+}
+
+WindVector blowing_toward(double azimuth_rad, double speed_m_s) {
+  return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
+}
+
+void blow(Scene& scene, WindVector wind, int ticks) {
+  for (int i = 0; i < ticks; ++i) scene.tick(wind, kTreeTick_s);
+}
+
+/// Mean and variance of a number as it comes.
+struct Moments {
+  void add(double value) {
+    ++count;
+    const double off = value - mean;
+    mean += off / count;
+    squares += off * (value - mean);
+  }
+  double variance() const { return squares / count; }
+
+  double count = 0.0;
+  double mean = 0.0;
+  double squares = 0.0;
+};
+
+TEST(TreeTest, IsInTheSceneTable) {
+  const auto table = scene_table();
+  EXPECT_EQ(std::count(table.begin(), table.end(), &kTreeScene), 1);
+}
+
+TEST(TreeTest, HasThePapers105536NodesByDefaultWhateverItsSpecies) {
+  for (const std::string_view species : kTreeSpeciesNames) {
+    EXPECT_EQ(node_count(tree_scene({{"species", std::string(species)}})->skeleton()), 105'536U);
+  }
+}
+
+TEST(TreeTest, ComesToRestBitForBitWhenTheWindHasGone) {
+  const auto scene = tree_scene(little());
+  const std::uint64_t rest = pose_hash(0, tree_joints(*scene).level(kLeaves).data());
+  blow(*scene, blowing_toward(1.0, 12.0), 120);
+  EXPECT_NE(pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
+  blow(*scene, {}, 60 * 90);  // the trunk sways on for long
+  EXPECT_EQ(pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
+}
+
+TEST(TreeTest, MoreWindBendsEveryPartMoreAndNoWindBeyondTheLargest) {
+  std::array<double, kTreePartCount> before = {};
+  for (const double speed_m_s : {1.0, 3.0, 6.0, 12.0, 24.0, 48.0}) {
+    const auto scene = tree_scene(little("zelkova", {{"hybrid", 0.0}}));
+    std::array<Moments, kTreePartCount> bend_rad;
+    for (int tick = 0; tick < 1200; ++tick) {
+      scene->tick(blowing_toward(0.4, speed_m_s), kTreeTick_s);
+      if (tick < 120) continue;
+      for (std::size_t part = 0; part < kTreePartCount; ++part) {
+        const std::size_t count = tree_of(*scene).levels[part].strands.strand_count;
+        for (std::size_t s = 0; s < count; s += 1 + count / 50) bend_rad[part].add(bend_of(*scene, part, s));
+      }
+      for (std::size_t s = 0; s < 64; ++s)
+        ASSERT_LE(bend_of(*scene, kTwigs, s), std::numbers::sqrt2 * 45.0 * kRadPerDeg);
+    }
+    for (std::size_t part = 0; part < kTreePartCount; ++part) {
+      EXPECT_GT(bend_rad[part].mean, before[part]) << part << " at " << speed_m_s << " m/s";
+      before[part] = bend_rad[part].mean;
+    }
+  }
+}
+
+TEST(TreeTest, ATurnedTreeInATurnedWindBendsTheSameTurned) {
+  const auto scene = tree_scene(without_noise());
+  const auto turned = tree_scene(without_noise(), {.seed = 1, .placement = {5.0, 0.0, -7.0, 40.0}});
+  blow(*scene, blowing_toward(0.4, 9.0), 300);
+  blow(*turned, blowing_toward(0.4 + 40.0 * kRadPerDeg, 9.0), 300);
+  const double cosine = std::cos(40.0 * kRadPerDeg);
+  const double sine = std::sin(40.0 * kRadPerDeg);
+  for (std::size_t part = 0; part < kTreePartCount; ++part) {
+    for (std::size_t s = 0; s < tree_of(*scene).levels[part].strands.strand_count; ++s) {
+      const auto east = static_cast<double>(bends_of(*scene, part).bend_east_rad[s]);
+      const auto south = static_cast<double>(bends_of(*scene, part).bend_south_rad[s]);
+      EXPECT_NEAR(bends_of(*turned, part).bend_east_rad[s], cosine * east - sine * south, 2e-5);
+      EXPECT_NEAR(bends_of(*turned, part).bend_south_rad[s], sine * east + cosine * south, 2e-5);
+    }
+  }
+}
+
+TEST(TreeTest, LeansToWhereTheWindBlows) {
+  for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 45) {
+    const double azimuth_rad = azimuth_deg * kRadPerDeg;
+    const auto scene = tree_scene(little());
+    const TreeJoints rest = tree_joints(*scene);
+    blow(*scene, blowing_toward(azimuth_rad, 12.0), 60);
+    Moments downwind_m;
+    Moments sideways_m;
+    for (int sample = 0; sample < 20; ++sample) {
+      blow(*scene, blowing_toward(azimuth_rad, 12.0), 60);
+      const TreeJoints joints = tree_joints(*scene);
+      for (std::size_t leaf = 0; leaf < 1600; leaf += 16) {
+        const auto x_m =
+            static_cast<double>(joints.level(kLeaves).joint(leaf, 3).x_m - rest.level(kLeaves).joint(leaf, 3).x_m);
+        const auto z_m =
+            static_cast<double>(joints.level(kLeaves).joint(leaf, 3).z_m - rest.level(kLeaves).joint(leaf, 3).z_m);
+        downwind_m.add(x_m * std::sin(azimuth_rad) - z_m * std::cos(azimuth_rad));
+        sideways_m.add(x_m * std::cos(azimuth_rad) + z_m * std::sin(azimuth_rad));
+      }
+    }
+    EXPECT_GT(downwind_m.mean, 0.05) << azimuth_deg;
+    EXPECT_LT(std::abs(sideways_m.mean), 0.5 * downwind_m.mean) << azimuth_deg;
+  }
+}
+
+TEST(TreeTest, LinksKeepTheirLengthTo1e5AndTheFootStandsStill) {
+  const auto scene = tree_scene();
+  const TreeSkeleton& tree = tree_of(*scene);
+  for (int storm = 0; storm < 3; ++storm) {
+    blow(*scene, blowing_toward(storm, 15.0 * storm), 60);
+    const TreeJoints joints = tree_joints(*scene);
+    for (std::size_t part = 0; part < kTreePartCount; ++part) {
+      const TreeLevel& level = tree.levels[part];
+      for (std::size_t s = 0; s < level.strands.strand_count; ++s) {
+        JointPosition from{level.strands.root_x_m[s], level.strands.root_y_m[s], level.strands.root_z_m[s]};
+        if (part > 0) from = joints.level(level.parent_level).joint(level.parent[s], level.parent_link[s]);
+        const auto length_m = static_cast<double>(level.strands.link_length_m[s]);
+        for (std::size_t link = 0; link < level.strands.links_per_strand; ++link) {
+          const JointPosition to = joints.level(part).joint(s, link);
+          const double found_m = std::hypot(static_cast<double>(to.x_m) - static_cast<double>(from.x_m),
+                                            static_cast<double>(to.y_m) - static_cast<double>(from.y_m),
+                                            static_cast<double>(to.z_m) - static_cast<double>(from.z_m));
+          // To 1e-5 of it, beyond what floats 8 m off can say (a unit in the last place there is 1e-6 m).
+          ASSERT_NEAR(found_m, length_m, 1e-5 * length_m + 1e-6);
+          from = to;
+        }
+      }
+    }
+  }
+}
+
+/// How far each strand of a part is moved to and fro on average, after a while of a steady wind: the standard
+/// deviation.
+double liveliness_rad(Scene& scene, std::size_t part, WindVector wind, int ticks) {
+  const std::size_t count = tree_of(scene).levels[part].strands.strand_count;
+  std::vector<Moments> east(count);
+  std::vector<Moments> south(count);
+  blow(scene, wind, 120);
+  for (int tick = 0; tick < ticks; ++tick) {
+    scene.tick(wind, kTreeTick_s);
+    for (std::size_t s = 0; s < count; ++s) {
+      east[s].add(static_cast<double>(bends_of(scene, part).bend_east_rad[s]));
+      south[s].add(static_cast<double>(bends_of(scene, part).bend_south_rad[s]));
+    }
+  }
+  double variance = 0.0;
+  for (std::size_t s = 0; s < count; ++s) {
+    variance += (east[s].variance() + south[s].variance()) / static_cast<double>(count);
+  }
+  return std::sqrt(variance);
+}
+
+TEST(TreeTest, PoplarLeavesMoveAtLeastThreeTimesAsMuchAsCherryLeaves) {
+  for (const double speed_m_s : {3.0, 8.0, 20.0}) {
+    const auto cherry = tree_scene(little("cherry"));
+    const auto poplar = tree_scene(little("poplar"));
+    const WindVector wind = blowing_toward(0.5, speed_m_s);
+    EXPECT_GT(liveliness_rad(*poplar, kLeaves, wind, 600), 3.0 * liveliness_rad(*cherry, kLeaves, wind, 600));
+  }
+}
+
+TEST(TreeTest, TheThinnerTheWoodTheMoreItSways) {
+  for (const std::string_view species : kTreeSpeciesNames) {
+    double before = 0.0;
+    for (const std::size_t part : {kTrunk, kLimbs, kTwigs}) {
+      const auto scene = tree_scene(little(species, {{"hybrid", 0.0}}));
+      const double sway_rad = liveliness_rad(*scene, part, blowing_toward(0.5, 8.0), 1200);
+      EXPECT_GT(sway_rad, 1.5 * before) << species << " part " << part;
+      before = sway_rad;
+    }
+  }
+}
+
+/// How often a second the east bends of a part pass through their mean.
+double crossings_per_s(Scene& scene, std::size_t part, WindVector wind) {
+  constexpr int kTicks = 1800;
+  const std::size_t count = std::min<std::size_t>(tree_of(scene).levels[part].strands.strand_count, 64);
+  std::vector<std::vector<double>> course(count);
+  blow(scene, wind, 120);
+  for (int tick = 0; tick < kTicks; ++tick) {
+    scene.tick(wind, kTreeTick_s);
+    for (std::size_t s = 0; s < count; ++s) {
+      course[s].push_back(static_cast<double>(bends_of(scene, part).bend_east_rad[s]));
+    }
+  }
+  double crossings = 0.0;
+  for (const auto& one : course) {
+    Moments moments;
+    for (const double bend : one) moments.add(bend);
+    for (std::size_t i = 1; i < one.size(); ++i) {
+      if ((one[i] > moments.mean) != (one[i - 1] > moments.mean)) crossings += 1.0;
+    }
+  }
+  return crossings / static_cast<double>(count) / (kTicks * kTreeTick_s);
+}
+
+TEST(TreeTest, LeavesFlutterFasterThanBranchesSwayAndLimbsFasterThanTheTrunk) {
+  const WindVector wind = blowing_toward(1.2, 8.0);
+  const double leaves = crossings_per_s(*tree_scene(little()), kLeaves, wind);
+  const double twigs = crossings_per_s(*tree_scene(little()), kTwigs, wind);
+  const double trunk = crossings_per_s(*tree_scene(little()), kTrunk, wind);
+  EXPECT_GT(leaves, 1.5 * twigs);
+  EXPECT_GT(twigs, 1.2 * trunk);
+}
+
+TEST(TreeTest, NeighbouringLeavesMoveMoreAlikeThanDistantOnes) {
+  const auto scene = tree_scene(little("poplar"));
+  const WindVector wind = blowing_toward(0.3, 6.0);
+  blow(*scene, wind, 120);
+  std::vector<Moments> east(1600);
+  std::vector<std::vector<double>> course(1600);
+  for (int tick = 0; tick < 900; ++tick) {
+    scene->tick(wind, kTreeTick_s);
+    for (std::size_t leaf = 0; leaf < 1600; ++leaf) {
+      course[leaf].push_back(bend_of(*scene, kLeaves, leaf));
+      east[leaf].add(course[leaf].back());
+    }
+  }
+  const auto correlation = [&](std::size_t a, std::size_t b) {
+    double product = 0.0;
+    for (std::size_t i = 0; i < course[a].size(); ++i) {
+      product += (course[a][i] - east[a].mean) * (course[b][i] - east[b].mean);
+    }
+    return product / static_cast<double>(course[a].size()) / std::sqrt(east[a].variance() * east[b].variance());
+  };
+  // Pairs by how far apart they stand, up to 0.2 m, and from 1 m on.
+  const StrandSkeleton& leaves = tree_of(*scene).levels[kLeaves].strands;
+  Moments near;
+  Moments far;
+  for (std::size_t a = 0; a < 1600; a += 5) {
+    for (std::size_t b = a + 1; b < 1600; b += 7) {
+      const float apart_m = std::hypot(leaves.root_x_m[a] - leaves.root_x_m[b], leaves.root_y_m[a] - leaves.root_y_m[b],
+                                       leaves.root_z_m[a] - leaves.root_z_m[b]);
+      if (apart_m < 0.2F) near.add(correlation(a, b));
+      if (apart_m > 1.0F && b % 4 == 0) far.add(correlation(a, b));
+    }
+  }
+  EXPECT_GT(near.count, 50.0);
+  EXPECT_GT(near.mean, 0.6);
+  EXPECT_LT(std::abs(far.mean), 0.3);
+}
+
+TEST(TreeTest, WindwardBranchesMoveUpAndDownAndLeeOnesSideways) {
+  // On the two sides of the tree, the wind from every side: the share of the bend along the wind in how twigs are bent
+  // to and fro, and of the vertical in how the tips of limbs move. Their own motion: what the trunk carries along is
+  // left out.
+  std::array<Moments, 2> share_along;
+  std::array<Moments, 2> share_vertical;
+  for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 30) {
+    const double azimuth_rad = azimuth_deg * kRadPerDeg;
+    const double east = std::sin(azimuth_rad);
+    const double south = -std::cos(azimuth_rad);
+    const auto scene = tree_scene(little("cherry", {{"limbs", std::int64_t{40}}, {"hybrid", 0.0}}));
+    const TreeSkeleton& tree = tree_of(*scene);
+    const TreePose resting = std::get<TreePose>(scene->pose());
+    const TreeJoints rest = tree_joints(*scene);
+    TreeJoints joints = rest;
+    std::vector<std::array<Moments, 3>> tips(tree.levels[kLimbs].strands.strand_count);
+    std::vector<std::array<Moments, 2>> twigs(tree.levels[kTwigs].strands.strand_count);
+    blow(*scene, blowing_toward(azimuth_rad, 10.0), 60);
+    for (int sample = 0; sample < 300; ++sample) {
+      blow(*scene, blowing_toward(azimuth_rad, 10.0), 6);
+      TreePose own = resting;
+      own.levels[kLimbs] = bends_of(*scene, kLimbs);
+      TreeKinematicsJob{.skeleton = &tree, .pose = &own, .joints = &joints}.run();
+      for (std::size_t s = 0; s < tips.size(); ++s) {
+        const JointPosition tip = joints.level(kLimbs).joint(s, 15);
+        tips[s][0].add(static_cast<double>(tip.x_m));
+        tips[s][1].add(static_cast<double>(tip.y_m));
+        tips[s][2].add(static_cast<double>(tip.z_m));
+      }
+      for (std::size_t s = 0; s < twigs.size(); ++s) {
+        const auto bend_east = static_cast<double>(bends_of(*scene, kTwigs).bend_east_rad[s]);
+        const auto bend_south = static_cast<double>(bends_of(*scene, kTwigs).bend_south_rad[s]);
+        twigs[s][0].add(bend_east * east + bend_south * south);
+        twigs[s][1].add(bend_south * east - bend_east * south);
+      }
+    }
+    const auto side_of = [&](std::size_t part, std::size_t strand) {  // 0 windward, 1 lee, 2 neither
+      const JointPosition middle = rest.level(part).joint(strand, 7);
+      const double downwind_m = static_cast<double>(middle.x_m) * east + static_cast<double>(middle.z_m) * south;
+      return downwind_m < -1.3 ? 0U : downwind_m > 1.3 ? 1U : 2U;
+    };
+    for (std::size_t s = 0; s < tips.size(); ++s) {
+      const double all = tips[s][0].variance() + tips[s][1].variance() + tips[s][2].variance();
+      if (side_of(kLimbs, s) < 2) share_vertical[side_of(kLimbs, s)].add(tips[s][1].variance() / all);
+    }
+    for (std::size_t s = 0; s < twigs.size(); ++s) {
+      const double all = twigs[s][0].variance() + twigs[s][1].variance();
+      if (side_of(kTwigs, s) < 2) share_along[side_of(kTwigs, s)].add(twigs[s][0].variance() / all);
+    }
+  }
+  EXPECT_GT(share_along[0].mean, 0.8);
+  EXPECT_LT(share_along[1].mean, 0.4);
+  EXPECT_GE(share_vertical[0].count, 8.0);
+  EXPECT_GE(share_vertical[1].count, 8.0);
+  EXPECT_GT(share_vertical[0].mean, 1.3 * share_vertical[1].mean);
+}
+
+TEST(TreeTest, BranchesSwayOnAfterAGustWhereTheyAreOscillators) {
+  const auto turns = [](Scene& scene) {  // how often a twig changes between going and coming back
+    blow(scene, blowing_toward(0.0, 12.0), 900);
+    int count = 0;
+    double before = bend_of(scene, kTwigs, 0);
+    double step = 0.0;
+    for (int tick = 0; tick < 90; ++tick) {
+      scene.tick(blowing_toward(0.0, 4.0), kTreeTick_s);
+      const double now = bend_of(scene, kTwigs, 0);
+      if ((now - before) * step < -1e-12) ++count;
+      step = now - before;
+      before = now;
+    }
+    return count;
+  };
+  EXPECT_LE(turns(*tree_scene(without_noise({{"hybrid", 0.0}}))), 1);
+  EXPECT_GE(turns(*tree_scene(without_noise({{"hybrid", 1.0}}))), 3);
+}
+
+TEST(TreeTest, NoWindMovesAJointFartherThanTheBoundWhateverTheSpecies) {
+  for (const std::string_view species : kTreeSpeciesNames) {
+    for (const double hybrid : {0.0, 0.7, 1.0}) {
+      const auto scene = tree_scene(little(species, {{"hybrid", hybrid}}));
+      const double bound_m = scene->largest_joint_step_m(kTreeTick_s);
+      TreeJoints before = tree_joints(*scene);
+      double largest_m = 0.0;
+      for (int tick = 0; tick < 240; ++tick) {
+        // Reversed again and again, turned through north, gone.
+        const double speed_m_s = tick % 60 < 50 ? 60.0 : 0.0;
+        const double azimuth_deg = tick < 120 ? (tick / 8 % 2 == 0 ? 20.0 : 200.0) : (tick / 5 % 2 == 0 ? 350.0 : 10.0);
+        scene->tick(blowing_toward(azimuth_deg * kRadPerDeg, speed_m_s), kTreeTick_s);
+        TreeJoints now = tree_joints(*scene);
+        for (std::size_t part = 0; part < kTreePartCount; ++part) {
+          const StrandSkeleton& strands = tree_of(*scene).levels[part].strands;
+          for (std::size_t s = 0; s < strands.strand_count; ++s) {
+            const JointPosition a = before.level(part).joint(s, strands.links_per_strand - 1);
+            const JointPosition b = now.level(part).joint(s, strands.links_per_strand - 1);
+            largest_m =
+                std::max(largest_m, static_cast<double>(std::hypot(b.x_m - a.x_m, b.y_m - a.y_m, b.z_m - a.z_m)));
+          }
+        }
+        before = std::move(now);
+      }
+      EXPECT_LE(largest_m, bound_m) << species << " hybrid " << hybrid;
+      EXPECT_GT(largest_m, bound_m / 60.0) << species << " hybrid " << hybrid;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace yuragi
