@@ -10,6 +10,7 @@
 #include "engine/base/units.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/scenes/scene.hpp"
+#include "tests/support/bits.hpp"
 
 namespace yuragi {
 
@@ -209,6 +210,65 @@ TEST_P(ClothScene, TheNoiseComesToTheFreeEdgeATravelTimeAfterItLeftTheFixedOne) 
   }
   const double expected_ticks = 48.0 * static_cast<double>(late - early) / static_cast<double>(late);
   EXPECT_NEAR(lag_ticks(early_m, late_m, 90), expected_ticks, 1.5);
+}
+
+TEST_P(ClothScene, HybridZeroIsTheNoiseAloneBitForBitAndMoreIsNot) {
+  const auto noise = cloth(*GetParam());
+  const auto zero = cloth(*GetParam(), {{"hybrid", 0.0}});
+  const auto half = cloth(*GetParam(), {{"hybrid", 0.5}});
+  for (Scene* each : {noise.get(), zero.get(), half.get()}) blow(*each, blowing(40.0, 7.0), 60);
+  EXPECT_EQ(bits_of(offsets_of(*zero).offset_z_m), bits_of(offsets_of(*noise).offset_z_m));
+  EXPECT_NE(bits_of(offsets_of(*half).offset_z_m), bits_of(offsets_of(*noise).offset_z_m));
+}
+
+TEST_P(ClothScene, TheHybridKeepsWhatTheNoiseKeeps) {
+  const auto scene = cloth(*GetParam(), {{"hybrid", 1.0}});
+  const GridSkeleton& grid = grid_of(*scene);
+  const double bound_m = scene->largest_joint_step_m(kClothTick_s);
+  blow(*scene, {}, 100);
+  for (const float offset_m : offsets_of(*scene).offset_z_m) ASSERT_EQ(offset_m, 0.0F);
+
+  // Steps, gaps, reversals: threads keep their length, fixed edges stay, and no joint moves beyond the bound.
+  GridPose before = offsets_of(*scene);
+  for (int tick = 0; tick < 400; ++tick) {
+    const double speed_m_s = tick % 70 < 50 ? 10.0 * (tick / 70) : 0.0;
+    scene->tick(blowing(tick / 35 % 2 == 0 ? 30.0 : 200.0, speed_m_s), kClothTick_s);
+    const GridPose& now = offsets_of(*scene);
+    for (std::size_t i = 0; i < now.offset_x_m.size(); ++i) {
+      const double x = static_cast<double>(now.offset_x_m[i] - before.offset_x_m[i]);
+      const double y = static_cast<double>(now.offset_y_m[i] - before.offset_y_m[i]);
+      const double z = static_cast<double>(now.offset_z_m[i] - before.offset_z_m[i]);
+      ASSERT_LE(std::sqrt(x * x + y * y + z * z), bound_m) << tick;  // and with it: finite
+    }
+    before = now;
+  }
+  for (std::size_t column = 0; column < grid.columns; ++column) {
+    double length_m = 0.0;
+    double rest_m = 0.0;
+    for (std::size_t row = 1; row < grid.rows; ++row) {
+      length_m += (place_at(*scene, column, row) - place_at(*scene, column, row - 1)).length();
+      rest_m += (rest_at(*scene, column, row) - rest_at(*scene, column, row - 1)).length();
+    }
+    EXPECT_NEAR(length_m, rest_m, 1e-3 * rest_m);
+    EXPECT_EQ(offset_at(*scene, column, 0).length(), 0.0);
+  }
+  if (!grid.is_first_column_fixed) return;
+  for (std::size_t row = 0; row < grid.rows; ++row) EXPECT_EQ(offset_at(*scene, 0, row).length(), 0.0);
+}
+
+TEST_P(ClothScene, EveryRowComputesTheSameBitsNoiseAndHybrid) {
+  for (const double hybrid : {0.0, 0.6}) {
+    std::vector<std::uint32_t> base;
+    for (const SimdRow row : kSimdRows) {
+      if (!is_runnable(row)) continue;
+      const auto values = ParameterValues::resolve(GetParam()->parameters, {{"hybrid", hybrid}}).value();
+      const auto scene = GetParam()->make(values, {.seed = 1, .row = row});
+      blow(*scene, blowing(250.0, 9.0), 100);
+      const auto bits = bits_of(offsets_of(*scene).offset_x_m);
+      if (base.empty()) base = bits;
+      EXPECT_EQ(bits, base) << name_of(row);
+    }
+  }
 }
 
 TEST(ClothSceneTest, CurtainAndFlagHaveThePapers30000Joints) {
