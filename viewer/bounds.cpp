@@ -13,6 +13,7 @@ namespace {
 constexpr float kSwingPerLength = 0.45F;  // how far a hanging cloth swings out
 constexpr float kFlyPerLength = 0.9F;     // how far a flag reaches, in whatever direction it flies
 constexpr float kWaveRoom_m = 0.05F;      // above and below a surface
+constexpr float kRimPerSide = 0.05F;      // of a basin around water
 
 glm::vec3 joint_at_rest(const GridSkeleton& cloth, std::size_t column, std::size_t row) {
   const std::size_t i = row * cloth.stride() + column;
@@ -96,7 +97,10 @@ Bounds bounds_of(const SurfaceSkeleton& surface) {
   const auto [low_x, high_x] = range(surface.rest_x_m);
   const auto [low_y, high_y] = range(surface.rest_y_m);
   const auto [low_z, high_z] = range(surface.rest_z_m);
-  return widened({{*low_x, *low_y, *low_z}, {*high_x, *high_y, *high_z}}, glm::vec3(kWaveRoom_m));
+  const Bounds bounds{{*low_x, *low_y, *low_z}, {*high_x, *high_y, *high_z}};
+  const float side_m = std::max(*high_x - *low_x, *high_z - *low_z);
+  const float rim_m = surface.ramp_rgba.empty() ? kRimPerSide * side_m : kWaveRoom_m;
+  return widened(bounds, {rim_m, kWaveRoom_m, rim_m});
 }
 
 Bounds bounds_of(const Skeleton& skeleton) {

@@ -12,6 +12,7 @@ namespace yuragi {
 namespace {
 
 const glm::vec3 kIron(0.030F, 0.027F, 0.025F);
+const glm::vec3 kEmbers(0.95F, 0.22F, 0.035F);
 constexpr std::size_t kRampColors = 256;
 constexpr float kGlowPerHeight = 1.15F;  // the glow's radius
 
@@ -31,24 +32,15 @@ SolidMesh flame_bowl(const SurfaceSkeleton& surface) {
     if (point.y < foot_m + 0.1F * size_m.y) foot = united(foot, {point, point});
   }
   const glm::vec3 middle = (foot.low_m + foot.high_m) / 2.0F;
-  if (!surface.is_closed) {
-    // A sheet of flames stands in a trough.
-    const glm::vec3 first(surface.rest_x_m[0], 0.0F, surface.rest_z_m[0]);
-    const std::size_t last = surface.columns - 1;
-    const glm::vec3 end(surface.rest_x_m[last], 0.0F, surface.rest_z_m[last]);
-    const float width_m = glm::distance(first, end);
-    bowl.add_beam(first, end, 0.06F * width_m, foot_m - 0.10F * width_m, foot_m + 0.015F * width_m, kIron);
-    bowl.add_beam(first + 0.2F * (end - first), first + 0.8F * (end - first), 0.045F * width_m, 0.0F,
-                  foot_m - 0.10F * width_m, 1.5F * kIron);
-    return bowl;
-  }
-  const float radius_m = 0.55F * std::max(foot.high_m.x - foot.low_m.x, foot.high_m.z - foot.low_m.z) + 0.03F;
+  // (A sheet is wide so that its flames have room to lean; they burn from its middle.)
+  const float share = surface.is_closed ? 0.55F : 0.09F;
+  const float radius_m = share * std::max(foot.high_m.x - foot.low_m.x, foot.high_m.z - foot.low_m.z) + 0.03F;
   const auto at = [&](float y_m) { return glm::vec3(middle.x, y_m, middle.z); };
   const float rim_m = foot_m + 0.25F * radius_m;
   const float depth_m = 0.45F * radius_m;
   bowl.add_tube(at(rim_m - depth_m), at(rim_m - 0.4F * depth_m), 0.45F * radius_m, 0.85F * radius_m, kIron);
   bowl.add_tube(at(rim_m - 0.4F * depth_m), at(rim_m), 0.85F * radius_m, radius_m, kIron);
-  bowl.add_tube(at(rim_m - 0.1F * depth_m), at(rim_m - depth_m), radius_m * 0.97F, 0.0F, 0.5F * kIron);
+  bowl.add_tube(at(rim_m - 0.15F * depth_m), at(rim_m - 0.35F * depth_m), radius_m * 0.97F, 0.0F, kEmbers);
   if (rim_m - depth_m > 0.0F) {
     bowl.add_tube(at(0.0F), at(rim_m - 0.9F * depth_m), 0.14F * radius_m, 0.12F * radius_m, kIron);
     bowl.add_tube(at(0.0F), at(0.08F * radius_m), 0.6F * radius_m, 0.14F * radius_m, kIron);

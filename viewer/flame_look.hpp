@@ -31,7 +31,7 @@ class FlameLook : public Look {
   float strength_ = 0.0F;  // of the glow: the mean heat
 };
 
-/// A bowl under the foot of a body of flame, a trough under that of a sheet. Pure.
+/// A bowl of embers under the flame's foot. Pure.
 SolidMesh flame_bowl(const SurfaceSkeleton& surface);
 
 }  // namespace yuragi

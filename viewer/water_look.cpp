@@ -11,8 +11,8 @@ namespace yuragi {
 namespace {
 
 const glm::vec3 kStone(0.23F, 0.21F, 0.18F);
-constexpr float kRimPerSide = 0.02F;  // half the rim's width, of the longest side
-constexpr float kRimRise_m = 0.06F;   // above the water at rest
+constexpr float kHalfRimPerSide = 0.02F;  // half the rim's width, of the longest side
+constexpr float kRimRise_m = 0.06F;       // above the water at rest
 constexpr float kBasinDepth_m = 0.6F;
 
 std::array<glm::vec3, 4> corners_of(const SurfaceSkeleton& surface) {
@@ -36,7 +36,7 @@ SolidMesh water_basin(const SurfaceSkeleton& surface) {
   const std::array<glm::vec3, 4> corners = corners_of(surface);
   const glm::vec3 middle = (corners[0] + corners[2]) / 2.0F;
   const float side_m = std::max(glm::distance(corners[0], corners[1]), glm::distance(corners[1], corners[2]));
-  const float half_m = std::clamp(kRimPerSide * side_m, 0.02F, 0.2F);
+  const float half_m = std::clamp(kHalfRimPerSide * side_m, 0.02F, 0.2F);
   const float low_m = std::min(0.0F, middle.y) - kBasinDepth_m;
 
   // The rim stands outside of the water: its inner side is the water's edge.

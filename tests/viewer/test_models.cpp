@@ -331,7 +331,7 @@ SurfacePose waves(const SurfaceSkeleton& surface, double time_s, double strength
     const double lick = std::sin(9.0 * x_m + 7.0 * z_m + 3.0 * std::sin(3.0 * y_m - 3.0 * time_s)) +
                         0.8 * std::sin(17.0 * x_m - 9.0 * z_m + 5.0 * y_m - 9.0 * time_s) +
                         0.5 * std::sin(11.0 * y_m - 12.0 * time_s + 4.0 * x_m);
-    const double aside = surface.is_closed ? 0.0 : std::pow(std::abs(x_m) / 0.45, 2.0);
+    const double aside = surface.is_closed ? 0.0 : std::pow(std::abs(x_m) / 0.25, 2.0);
     pose.heat[i] = static_cast<float>(std::clamp(0.95 - 0.85 * up - 0.8 * aside + 0.16 * lick, 0.0, 1.0));
     if (surface.is_closed) pose.displacement_m[i] = static_cast<float>(0.035 * lick * (0.3 + up));
   }

@@ -23,7 +23,7 @@ void main() {
   // Light from within: more where a wave's slope lets the sun in.
   float sun = max(dot(up_facing, to_sun.xyz), 0.0);
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
-  vec3 within = vec3(0.006, 0.026, 0.027) + vec3(0.012, 0.050, 0.034) * (sun + 0.7 * against * missing);
+  vec3 within = vec3(0.010, 0.040, 0.042) + vec3(0.012, 0.050, 0.034) * (sun + 0.7 * against * missing);
   vec3 light = mix(within, sky, mirrored) + kSunLight * 1.3 * glint;
   color = vec4(seen(light, place_m), 1.0);
 }
