@@ -377,14 +377,11 @@ void Tree::project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept {
 // How far the bend of a branch may change in a tick. Along the wind it is max_tilt x / sqrt(1 + x^2), x = gain W
 // (N_vertical + alpha) / dist, at most k where W is 1; nowhere steeper than max_tilt over x:
 //
-//   wind      s changes by ds; as a vector that points along the wind the bend is nowhere steeper over s than 1.02
-//   sqrt(k)
-//             max_tilt (since x = k s^2/(1 + s^2), and that slope is at most 2 sqrt(k x) / (1 + x^2)^1.5), or 0.65 k
+//   wind      s changes by ds. As a vector along the wind the bend is nowhere steeper over s than 1.02 sqrt(k) max_tilt
+//             (x = k s^2/(1 + s^2); that slope is at most 2 sqrt(k x) / (1 + x^2)^1.5), nor than 0.65 k max_tilt
 //   noise     each part of the split changes by no more than noise and threshold together
-//   distance  the unit vector of WindSideJob changes by at most dU / U, and W / U is at most 1 / (2 half_tilt_speed):
-//   by
-//             ds / 2 in all, times the rise of the threshold and the slope of 1 / dist; a place is within 1 of the
-//             middle
+//   distance  the unit vector of WindSideJob changes by at most dU / U, W / U is at most 1 / (2 half_tilt_speed), and
+//             a place is within 1 of the middle: ds / 2 in all, times the threshold's rise and the slope of 1 / dist
 //
 // and by no more than from one extreme G to the other, 2 G. Across the wind it is the same with its own numbers. An
 // oscillator moves by at most its largest gain times that, and by at most what its largest rate gives for a bend that

@@ -18,7 +18,7 @@
 namespace yuragi {
 namespace {
 
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<float> normal_numbers(std::size_t count, double scale, std::uint64_t seed) {
   const RandomStream random(seed, stream_id("crown jobs test"));
@@ -92,14 +92,14 @@ TEST(WindSideJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   using Problem = WindSideJob::Problem;
   Sides sides(10);
   EXPECT_EQ(sides.job(0.0, 1.0).validate(), Problem::kNone);
-  EXPECT_EQ(sides.job(0.0, kNoNumber).run(), Problem::kWindNotFinite);
+  EXPECT_EQ(sides.job(0.0, kNotANumber).run(), Problem::kWindNotFinite);
   EXPECT_EQ(sides.job(0.0, 1e200).run(), Problem::kWindNotFinite);
-  for (const double wrong : {0.0, -1.0, kNoNumber, 1e-200, 1e200}) {
+  for (const double wrong : {0.0, -1.0, kNotANumber, 1e-200, 1e200}) {
     WindSideJob job = sides.job(0.0, 1.0);
     job.calm_m_s = wrong;
     EXPECT_EQ(job.run(), Problem::kCalmSpeed);
   }
-  for (const double wrong : {0.0, -1.0, kNoNumber, std::numeric_limits<double>::infinity()}) {
+  for (const double wrong : {0.0, -1.0, kNotANumber, std::numeric_limits<double>::infinity()}) {
     WindSideJob job = sides.job(0.0, 1.0);
     job.floor = wrong;
     EXPECT_EQ(job.run(), Problem::kFloor);
@@ -210,9 +210,9 @@ TEST(SplitJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   using Problem = SplitJob::Problem;
   Parts parts(10);
   EXPECT_EQ(parts.job().validate(), Problem::kNone);
-  EXPECT_EQ(parts.job(kNoNumber).run(), Problem::kThresholdNotFinite);
-  EXPECT_EQ(parts.job(0.0, kNoNumber).run(), Problem::kThresholdNotFinite);
-  for (const double width : {0.0, -1.0, kNoNumber, 1e30}) {
+  EXPECT_EQ(parts.job(kNotANumber).run(), Problem::kThresholdNotFinite);
+  EXPECT_EQ(parts.job(0.0, kNotANumber).run(), Problem::kThresholdNotFinite);
+  for (const double width : {0.0, -1.0, kNotANumber, 1e30}) {
     EXPECT_EQ(parts.job(0.0, 0.0, width).run(), Problem::kWidth);
   }
   for (int which = 0; which < 3; ++which) {
@@ -310,18 +310,18 @@ TEST(TiltJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   using Problem = TiltJob::Problem;
   Branches branches(10);
   EXPECT_EQ(branches.job(0.0, 1.0).validate(), Problem::kNone);
-  EXPECT_EQ(branches.job(0.0, kNoNumber).run(), Problem::kWindNotFinite);
+  EXPECT_EQ(branches.job(0.0, kNotANumber).run(), Problem::kWindNotFinite);
   EXPECT_EQ(branches.job(0.0, 1e200).run(), Problem::kWindNotFinite);
   TiltJob job = branches.job(0.0, 1.0);
   job.half_tilt_speed_m_s = 0.0;
   EXPECT_EQ(job.run(), Problem::kHalfTiltSpeed);
   job = branches.job(0.0, 1.0);
-  job.alpha_vertical = kNoNumber;
+  job.alpha_vertical = kNotANumber;
   EXPECT_EQ(job.run(), Problem::kConstants);
   job = branches.job(0.0, 1.0);
-  job.beta_horizontal = kNoNumber;
+  job.beta_horizontal = kNotANumber;
   EXPECT_EQ(job.run(), Problem::kConstants);
-  for (const double angle_rad : {-0.1, 3.2, kNoNumber}) {
+  for (const double angle_rad : {-0.1, 3.2, kNotANumber}) {
     job = branches.job(0.0, 1.0);
     job.max_tilt_rad = angle_rad;
     EXPECT_EQ(job.run(), Problem::kLargestAngles);
@@ -408,16 +408,16 @@ TEST(FlutterJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   using Problem = FlutterJob::Problem;
   Leaves leaves(10);
   EXPECT_EQ(leaves.job(1.0, 1.0).validate(), Problem::kNone);
-  EXPECT_EQ(leaves.job(kNoNumber, 1.0).run(), Problem::kWindNotFinite);
+  EXPECT_EQ(leaves.job(kNotANumber, 1.0).run(), Problem::kWindNotFinite);
   EXPECT_EQ(leaves.job(1.0, 1e200).run(), Problem::kWindNotFinite);
   FlutterJob job = leaves.job(1.0, 1.0);
   job.half_flutter_speed_m_s = 0.001;
   EXPECT_EQ(job.run(), Problem::kHalfFlutterSpeed);
   job = leaves.job(1.0, 1.0);
-  job.lean_rad = kNoNumber;
+  job.lean_rad = kNotANumber;
   EXPECT_EQ(job.run(), Problem::kAngles);
   job = leaves.job(1.0, 1.0);
-  job.flutter_rad = kNoNumber;
+  job.flutter_rad = kNotANumber;
   EXPECT_EQ(job.run(), Problem::kAngles);
   for (int which = 0; which < 4; ++which) {
     job = leaves.job(1.0, 1.0);

@@ -14,22 +14,22 @@
 namespace yuragi {
 namespace {
 
-using Problem = TreeKinematicsJob::Problem;
-using Vector = std::array<double, 3>;
-using Matrix = std::array<Vector, 3>;
+using TreeProblem = TreeKinematicsJob::Problem;
+using TreeVector3 = std::array<double, 3>;
+using TreeMatrix3 = std::array<TreeVector3, 3>;
 
-constexpr Matrix kNoTurn = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+constexpr TreeMatrix3 kNoTurn = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 
-Vector operator*(const Matrix& m, const Vector& v) {
-  Vector result = {};
+TreeVector3 operator*(const TreeMatrix3& m, const TreeVector3& v) {
+  TreeVector3 result = {};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) result[i] += m[i][k] * v[k];
   }
   return result;
 }
 
-Matrix operator*(const Matrix& a, const Matrix& b) {
-  Matrix result = {};
+TreeMatrix3 operator*(const TreeMatrix3& a, const TreeMatrix3& b) {
+  TreeMatrix3 result = {};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       for (std::size_t k = 0; k < 3; ++k) result[i][j] += a[i][k] * b[k][j];
@@ -39,13 +39,13 @@ Matrix operator*(const Matrix& a, const Matrix& b) {
 }
 
 /// The turn about up x bend by `share` of the bend's angle (Rodrigues).
-Matrix turn_by(double east_rad, double south_rad, double share) {
+TreeMatrix3 turn_by(double east_rad, double south_rad, double share) {
   const double angle = std::hypot(east_rad, south_rad);
   if (angle == 0.0) return kNoTurn;
-  const Vector a = {south_rad / angle, 0.0, -east_rad / angle};
+  const TreeVector3 a = {south_rad / angle, 0.0, -east_rad / angle};
   const double c = std::cos(share * angle);
   const double s = std::sin(share * angle);
-  Matrix m;
+  TreeMatrix3 m;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) m[i][j] = (i == j ? c : 0.0) + (1.0 - c) * a[i] * a[j];
   }
@@ -61,10 +61,10 @@ Matrix turn_by(double east_rad, double south_rad, double share) {
 double number(float value) {
   return static_cast<double>(value);
 }
-Vector vector_of(JointPosition joint) {
+TreeVector3 place_of(JointPosition joint) {
   return {number(joint.x_m), number(joint.y_m), number(joint.z_m)};
 }
-double distance(const Vector& a, const Vector& b) {
+double distance(const TreeVector3& a, const TreeVector3& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
@@ -73,38 +73,38 @@ class Reference {
  public:
   Reference(const TreeSkeleton& tree, const TreePose& pose) : tree_(tree), pose_(pose) {}
 
-  Matrix root_turn(std::size_t level, std::size_t strand) const {
+  TreeMatrix3 root_turn(std::size_t level, std::size_t strand) const {
     if (level == 0) return kNoTurn;
     const TreeLevel& here = tree_.levels[level];
     const std::size_t of = here.is_turned_by_block ? strand / kStrandsPerBlock * kStrandsPerBlock : strand;
     return link_turn(here.parent_level, here.parent[of], here.parent_link[of]);
   }
 
-  Matrix link_turn(std::size_t level, std::size_t strand, std::size_t link) const {
+  TreeMatrix3 link_turn(std::size_t level, std::size_t strand, std::size_t link) const {
     const double links = static_cast<double>(tree_.levels[level].strands.links_per_strand);
     return turn_by(number(pose_.levels[level].bend_east_rad[strand]),
                    number(pose_.levels[level].bend_south_rad[strand]), static_cast<double>(link + 1) / links) *
            root_turn(level, strand);
   }
 
-  Vector root(std::size_t level, std::size_t strand) const {
+  TreeVector3 root(std::size_t level, std::size_t strand) const {
     const TreeLevel& here = tree_.levels[level];
     if (level > 0) return joint(here.parent_level, here.parent[strand], here.parent_link[strand]);
     return {number(here.strands.root_x_m[strand]), number(here.strands.root_y_m[strand]),
             number(here.strands.root_z_m[strand])};
   }
 
-  Vector joint(std::size_t level, std::size_t strand, std::size_t link) const {
+  TreeVector3 joint(std::size_t level, std::size_t strand, std::size_t link) const {
     const StrandSkeleton& strands = tree_.levels[level].strands;
-    Vector at = root(level, strand);
+    TreeVector3 at = root(level, strand);
     for (std::size_t k = 0; k <= link; ++k) {
       const double curled_rad = static_cast<double>(k) * number(strands.rest_curl_rad[strand]);
       const double c = std::cos(curled_rad);
       const double s = std::sin(curled_rad);
-      const Vector rest = {number(strands.rest_x[strand]) * c + number(strands.curl_x[strand]) * s,
-                           number(strands.rest_y[strand]) * c + number(strands.curl_y[strand]) * s,
-                           number(strands.rest_z[strand]) * c + number(strands.curl_z[strand]) * s};
-      const Vector now = link_turn(level, strand, k) * rest;
+      const TreeVector3 rest = {number(strands.rest_x[strand]) * c + number(strands.curl_x[strand]) * s,
+                                number(strands.rest_y[strand]) * c + number(strands.curl_y[strand]) * s,
+                                number(strands.rest_z[strand]) * c + number(strands.curl_z[strand]) * s};
+      const TreeVector3 now = link_turn(level, strand, k) * rest;
       for (std::size_t i = 0; i < 3; ++i) at[i] += number(strands.link_length_m[strand]) * now[i];
     }
     return at;
@@ -161,7 +161,7 @@ TreeSkeleton wild_tree() {
   for (std::size_t i = 1; i < tree.levels.size(); ++i) {
     StrandSkeleton& own = tree.levels[i].strands;
     for (std::size_t s = 0; s < own.padded_count(); ++s) {
-      const Vector root = reference.root(i, s);
+      const TreeVector3 root = reference.root(i, s);
       own.root_x_m[s] = static_cast<float>(root[0]);
       own.root_y_m[s] = static_cast<float>(root[1]);
       own.root_z_m[s] = static_cast<float>(root[2]);
@@ -172,7 +172,8 @@ TreeSkeleton wild_tree() {
 
 TreeJoints joints_of(const TreeSkeleton& tree, const TreePose& pose, std::optional<SimdRow> row = {}) {
   TreeJoints joints(tree);
-  EXPECT_EQ((TreeKinematicsJob{.skeleton = &tree, .pose = &pose, .row = row, .joints = &joints}.run()), Problem::kNone);
+  EXPECT_EQ((TreeKinematicsJob{.skeleton = &tree, .pose = &pose, .row = row, .joints = &joints}.run()),
+            TreeProblem::kNone);
   return joints;
 }
 
@@ -199,7 +200,7 @@ TEST_P(TreeKinematicsOnEachRow, PutsEachJointWhereTheDefinitionSays) {
       const StrandSkeleton& strands = tree.levels[i].strands;
       for (std::size_t s = 0; s < strands.strand_count; ++s) {
         for (std::size_t link = 0; link < strands.links_per_strand; ++link) {
-          EXPECT_LE(distance(vector_of(joints.level(i).joint(s, link)), reference.joint(i, s, link)), 1e-5);
+          EXPECT_LE(distance(place_of(joints.level(i).joint(s, link)), reference.joint(i, s, link)), 1e-5);
         }
       }
     }
@@ -213,10 +214,10 @@ TEST_P(TreeKinematicsOnEachRow, LinksKeepTheirLengthTo1e5OfIt) {
     const TreeLevel& level = tree.levels[i];
     for (std::size_t s = 0; s < level.strands.strand_count; ++s) {
       const double length_m = number(level.strands.link_length_m[s]);
-      Vector from = {};
-      if (i > 0) from = vector_of(joints.level(level.parent_level).joint(level.parent[s], level.parent_link[s]));
+      TreeVector3 from = {};
+      if (i > 0) from = place_of(joints.level(level.parent_level).joint(level.parent[s], level.parent_link[s]));
       for (std::size_t link = 0; link < level.strands.links_per_strand; ++link) {
-        const Vector to = vector_of(joints.level(i).joint(s, link));
+        const TreeVector3 to = place_of(joints.level(i).joint(s, link));
         EXPECT_NEAR(distance(from, to), length_m, 1e-5 * length_m);
         from = to;
       }
@@ -247,12 +248,12 @@ TEST(TreeKinematicsTest, ABentTrunkCarriesWhatGrowsOnItAsOneRigidThing) {
   const StrandSkeleton& limbs = tree.levels[1].strands;
   double moved_m = 0.0;
   for (std::size_t s = 0; s < limbs.strand_count; ++s) {
-    const Vector tip_at_rest = vector_of(rest.level(1).joint(s, 4));
-    const Vector tip = vector_of(bent.level(1).joint(s, 4));
+    const TreeVector3 tip_at_rest = place_of(rest.level(1).joint(s, 4));
+    const TreeVector3 tip = place_of(bent.level(1).joint(s, 4));
     moved_m = std::max(moved_m, distance(tip, tip_at_rest));
     for (std::size_t link = 0; link < 4; ++link) {
-      EXPECT_NEAR(distance(vector_of(bent.level(1).joint(s, link)), tip),
-                  distance(vector_of(rest.level(1).joint(s, link)), tip_at_rest), 1e-5);
+      EXPECT_NEAR(distance(place_of(bent.level(1).joint(s, link)), tip),
+                  distance(place_of(rest.level(1).joint(s, link)), tip_at_rest), 1e-5);
     }
   }
   EXPECT_GT(moved_m, 0.5);
@@ -261,8 +262,8 @@ TEST(TreeKinematicsTest, ABentTrunkCarriesWhatGrowsOnItAsOneRigidThing) {
   const TreeLevel& twigs = tree.levels[2];
   for (std::size_t s = 0; s < twigs.strands.strand_count; ++s) {
     for (std::size_t link = 0; link < 5; ++link) {
-      EXPECT_NEAR(distance(vector_of(bent.level(2).joint(s, 0)), vector_of(bent.level(1).joint(twigs.parent[s], link))),
-                  distance(vector_of(rest.level(2).joint(s, 0)), vector_of(rest.level(1).joint(twigs.parent[s], link))),
+      EXPECT_NEAR(distance(place_of(bent.level(2).joint(s, 0)), place_of(bent.level(1).joint(twigs.parent[s], link))),
+                  distance(place_of(rest.level(2).joint(s, 0)), place_of(rest.level(1).joint(twigs.parent[s], link))),
                   1e-5);
     }
   }
@@ -289,34 +290,34 @@ TEST(TreeKinematicsTest, EveryFiniteBendHasFiniteJoints) {
 
 /// What a tree is refused for after `spoil` has had it.
 template <class Spoil>
-Problem problem_after(Spoil spoil) {
+TreeProblem problem_after(Spoil spoil) {
   TreeSkeleton tree = wild_tree();
   TreePose pose = no_bends(tree);
   TreeJoints joints(tree);
   spoil(tree, pose);
-  const Problem problem = TreeKinematicsJob{.skeleton = &tree, .pose = &pose, .joints = &joints}.run();
-  if (problem != Problem::kNone) {
+  const TreeProblem problem = TreeKinematicsJob{.skeleton = &tree, .pose = &pose, .joints = &joints}.run();
+  if (problem != TreeProblem::kNone) {
     for (const float coordinate : joints.level(0).data()) EXPECT_EQ(coordinate, 0.0F) << "something was done";
   }
   return problem;
 }
 
 TEST(TreeKinematicsTest, RefusesParentsThatAreNotThere) {
-  EXPECT_EQ(problem_after([](TreeSkeleton&, TreePose&) {}), Problem::kNone);
+  EXPECT_EQ(problem_after([](TreeSkeleton&, TreePose&) {}), TreeProblem::kNone);
   EXPECT_EQ(problem_after([](TreeSkeleton& tree, TreePose&) { tree.levels[1].parent[5] = 16; }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& tree, TreePose&) { tree.levels[4].parent.back() = 0xFFFFFFFFU; }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& tree, TreePose&) { tree.levels[1].parent_link[31] = 8; }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& tree, TreePose&) { tree.levels[3].parent_level = 3; }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& tree, TreePose&) { tree.levels[3].parent_level = 99; }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& tree, TreePose&) { tree.levels[2].parent.pop_back(); }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& tree, TreePose&) { tree.levels[0].parent.assign(16, 0); }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
 }
 
 TEST(TreeKinematicsTest, SaysWhatElseIsWrongAndThenDoesNothing) {
@@ -328,20 +329,20 @@ TEST(TreeKinematicsTest, SaysWhatElseIsWrongAndThenDoesNothing) {
     if (missing == 0) job.skeleton = nullptr;
     if (missing == 1) job.pose = nullptr;
     if (missing == 2) job.joints = nullptr;
-    EXPECT_EQ(job.run(), Problem::kMissingPart);
+    EXPECT_EQ(job.run(), TreeProblem::kMissingPart);
   }
-  EXPECT_EQ(problem_after([](TreeSkeleton& spoilt, TreePose&) { spoilt.levels.clear(); }), Problem::kSkeletonSize);
+  EXPECT_EQ(problem_after([](TreeSkeleton& spoilt, TreePose&) { spoilt.levels.clear(); }), TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& spoilt, TreePose&) { spoilt.levels.resize(kMaxTreeLevels + 1); }),
-            Problem::kSkeletonSize);
+            TreeProblem::kSkeletonSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& spoilt, TreePose&) { spoilt.levels[2].strands.curl_x.pop_back(); }),
-            Problem::kSkeletonSize);
-  EXPECT_EQ(problem_after([](TreeSkeleton&, TreePose& spoilt) { spoilt.levels.pop_back(); }), Problem::kPoseSize);
+            TreeProblem::kSkeletonSize);
+  EXPECT_EQ(problem_after([](TreeSkeleton&, TreePose& spoilt) { spoilt.levels.pop_back(); }), TreeProblem::kPoseSize);
   EXPECT_EQ(problem_after([](TreeSkeleton&, TreePose& spoilt) { spoilt.levels[4].bend_south_rad.pop_back(); }),
-            Problem::kPoseSize);
+            TreeProblem::kPoseSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& spoilt, TreePose&) { spoilt.levels[4].is_turned_by_block = false; }),
-            Problem::kJointsSize);
+            TreeProblem::kJointsSize);
   EXPECT_EQ(problem_after([](TreeSkeleton& spoilt, TreePose&) { ++spoilt.levels[4].strands.links_per_strand; }),
-            Problem::kJointsSize);
+            TreeProblem::kJointsSize);
 }
 
 }  // namespace
