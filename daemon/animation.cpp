@@ -4,7 +4,7 @@
 
 namespace yuragi {
 
-Animation::Animation(const Config& config) {
+Animation::Animation(const Config& config) : pool_(static_cast<std::size_t>(config.animation.integer("threads"))) {
   for (const SceneConfig& scene : config.scenes) {
     const ScenePlacement placement{.x_m = scene.values.number("x"),
                                    .y_m = scene.values.number("y"),
@@ -27,7 +27,11 @@ void Animation::step(WindVector wind, double dt_s) noexcept {
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     fades_[i].advance(dt_s);
     opacities_[i] = fades_[i].opacity();
-    if (opacities_[i] > 0.0F) scenes_[i]->tick(gains_[i] * wind, dt_s);
+    if (opacities_[i] == 0.0F) continue;
+    Scene& scene = *scenes_[i];
+    scene.shift(gains_[i] * wind, dt_s);
+    pool_.run([&scene](Part part) { scene.sample_part(part); });
+    pool_.run([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "daemon/config.hpp"
 #include "daemon/fade.hpp"
+#include "daemon/worker_pool.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/wire.hpp"
@@ -21,10 +22,11 @@ struct SceneCue {
 };
 
 /// The scenes of an installation, each where it stands and with its gain on the wind, stepped together, and the frame
-/// that shows them. A scene that is hidden stands still and costs nothing. No thread, no clock: the daemon's loop, the
-/// lock-step replay and the tests all step this one.
+/// that shows them. A scene that is hidden stands still and costs nothing. No clock: the daemon's loop, the lock-step
+/// replay and the tests all step this one.
 ///
-/// Thread-safe: no. step(), cue() and encode() are realtime-safe.
+/// Thread-safe: no. step(), cue() and encode() are realtime-safe; with [animation] threads above 1 a step waits for the
+/// pool's threads (WorkerPool). Poses do not depend on how many there are.
 class Animation {
  public:
   explicit Animation(const Config& config);
@@ -54,6 +56,7 @@ class Animation {
  private:
   std::vector<std::string> names_, kinds_;
   std::vector<std::unique_ptr<Scene>> scenes_;
+  WorkerPool pool_;
   std::vector<double> gains_;
   std::vector<Fade> fades_;
   std::vector<const Skeleton*> skeletons_;

@@ -44,6 +44,12 @@ const std::array kStreamParameters = {
 
 const std::array kAnimationParameters = {
     Parameter{.name = "rate", .unit = "Hz", .default_value = 60.0, .min = 1.0, .max = 240.0, .help = "poses a second"},
+    Parameter{.name = "threads",
+              .unit = "",
+              .default_value = std::int64_t{1},
+              .min = 1,
+              .max = 64,
+              .help = "that share a tick: more than one pays from about a million nodes on"},
 };
 
 const std::array kWindParameters = {

@@ -61,6 +61,19 @@ TEST(AnimationTest, GainIsAFactorOnTheWindThatASceneFeels) {
   EXPECT_EQ(largest(*one.poses()[1]), 0.0F) << "no wind, no bend";
 }
 
+TEST(AnimationTest, PosesDoNotDependOnHowManyThreadsShareATick) {
+  const auto hash_with = [](std::int64_t threads) {
+    Config config = installation("", "");
+    config.animation.set("threads", threads);
+    Animation animation(config);
+    for (int tick = 0; tick < 30; ++tick) animation.step({6.0, 2.0}, 1.0 / 60.0);
+    std::uint64_t hash = kPoseHashSeed;
+    for (const Pose* pose : animation.poses()) hash = pose_hash(hash, *pose);
+    return hash;
+  };
+  EXPECT_EQ(hash_with(3), hash_with(1));
+}
+
 TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
   Animation animation(installation("", "shown = false"));
   for (int tick = 0; tick < 60; ++tick) animation.step(kBreeze, kTick_s);
