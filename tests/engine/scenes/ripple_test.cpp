@@ -119,14 +119,13 @@ TEST(RippleTest, TheWaterChangesAsItGoesAndIsNoPictureThatPassesBy) {
   const auto scene = ripple({{"gustiness", 0.0}});
   run_ripple(*scene, over_water(0.0, 8.0), 600);
   const std::vector<float> before = heights_of(*scene);
-  // After 1.4 s no displacement brings it back whole.
-  run_ripple(*scene, over_water(0.0, 8.0), 84);
+  // In 0.6 s it goes 0.8 m, eight points: a picture that passes by would be found there whole.
+  run_ripple(*scene, over_water(0.0, 8.0), 36);
   double best = 0.0;
-  for (int south = -30; south <= 0; ++south) {
-    if (south < -10) continue;  // beyond the edge of what is compared
+  for (int south = -10; south <= 0; ++south) {
     for (int east = -10; east <= 10; ++east) best = std::max(best, likeness(before, heights_of(*scene), east, south));
   }
-  EXPECT_LT(best, 0.9);
+  EXPECT_LT(best, 0.8);
 }
 
 TEST(RippleTest, IsSteepEnoughToBeSeenAndSmoothEnoughForItsGrid) {
