@@ -5,8 +5,7 @@
 namespace yuragi {
 namespace {
 
-// Outputs may be inputs, element by element: the loops say so by `ivdep`, for no element is read after another one has
-// been written.
+// Outputs may be inputs, element by element, so nothing is declared __restrict.
 
 [[gnu::always_inline]] inline float from_0_to_1(float value) noexcept {
   const float positive = value > 0.0F ? value : 0.0F;  // what is no number is 0
@@ -15,7 +14,6 @@ namespace {
 
 void threshold_ramp(const ThresholdRampArguments& arguments) noexcept {
   const ThresholdRampArguments in = arguments;  // a copy, which no store can be taken for a change of
-#pragma GCC ivdep
   for (std::size_t i = 0; i < in.count; ++i) {
     const float threshold = in.first_threshold + in.rise * in.along[i];
     const float t = from_0_to_1((in.noise[i] - threshold) * in.per_edge);
@@ -34,7 +32,6 @@ void map_colors(const ColorMapArguments& arguments) noexcept {
 void displace(const DisplacementArguments& arguments) noexcept {
   const DisplacementArguments in = arguments;
   // + 0: what does not move is at 0, and not at -0, for poses are compared bit for bit.
-#pragma GCC ivdep
   for (std::size_t i = 0; i < in.count; ++i) in.out[i] = in.amplitude_m * in.share[i] * in.noise[i] + 0.0F;
 }
 

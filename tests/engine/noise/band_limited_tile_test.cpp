@@ -13,17 +13,17 @@
 namespace yuragi {
 namespace {
 
-constexpr std::size_t kSize = 128;
-constexpr double kPeriod_m = 64.0;
+constexpr std::size_t kTileSize = 128;
+constexpr double kTilePeriod_m = 64.0;
 
 NoiseTile2 plain_tile() {
-  return make_noise_2d({.size = kSize, .beta = 0.0, .seed = 6}).value();
+  return make_noise_2d({.size = kTileSize, .beta = 0.0, .seed = 6}).value();
 }
 
 /// |k| in cycles an edge of the i-th mode of the half spectrum.
 double cycles_of(std::size_t i) {
-  const std::size_t z = i / (kSize / 2 + 1);
-  return std::hypot(static_cast<double>(i % (kSize / 2 + 1)), static_cast<double>(std::min(z, kSize - z)));
+  const std::size_t z = i / (kTileSize / 2 + 1);
+  return std::hypot(static_cast<double>(i % (kTileSize / 2 + 1)), static_cast<double>(std::min(z, kTileSize - z)));
 }
 
 TEST(BandLimitedTileTest, TheBaseLevelIsThePlainTileBitForBit) {
@@ -56,12 +56,12 @@ TEST(BandLimitedTileTest, NothingThatIsPickedIsFasterThanTheTicksCanShow) {
   const BandLimitedTile2 tile(plain_tile(), 6);
   for (const double rate_hz : {25.0, 60.0, 120.0}) {
     for (double speed_m_s = 0.0; speed_m_s < 60.0; speed_m_s += 0.1) {
-      const BandPick pick = tile.pick(speed_m_s, rate_hz, kPeriod_m);
+      const BandPick pick = tile.pick(speed_m_s, rate_hz, kTilePeriod_m);
       ASSERT_GE(pick.weight, 0.0F);
       ASSERT_LT(pick.weight, 1.0F);
       ASSERT_EQ(pick.next, std::min(pick.level + 1, tile.level_count() - 1));
       if (pick.level + 1 == tile.level_count()) continue;  // beyond what it can do
-      const double finest_rad_m = 2.0 * std::numbers::pi * tile.end_cycles(pick.level) / kPeriod_m;
+      const double finest_rad_m = 2.0 * std::numbers::pi * tile.end_cycles(pick.level) / kTilePeriod_m;
       ASSERT_LE(finest_rad_m * speed_m_s, std::numbers::pi * rate_hz) << speed_m_s;
     }
   }
@@ -69,13 +69,13 @@ TEST(BandLimitedTileTest, NothingThatIsPickedIsFasterThanTheTicksCanShow) {
 
 TEST(BandLimitedTileTest, SixLevelsReachAsFarAsTheStrongestWind) {
   const BandLimitedTile2 tile(plain_tile(), 6);
-  EXPECT_LT(tile.pick(60.0, 60.0, kPeriod_m).level, 5U);
+  EXPECT_LT(tile.pick(60.0, 60.0, kTilePeriod_m).level, 5U);
 }
 
 TEST(BandLimitedTileTest, TheChoiceIsContinuousInTheSpeed) {
   const BandLimitedTile2 tile(plain_tile(), 5);
   const auto place = [&tile](double speed_m_s) {
-    const BandPick pick = tile.pick(speed_m_s, 60.0, kPeriod_m);
+    const BandPick pick = tile.pick(speed_m_s, 60.0, kTilePeriod_m);
     return static_cast<double>(pick.level) + static_cast<double>(pick.weight);
   };
   EXPECT_EQ(place(0.0), 0.0);
@@ -103,13 +103,13 @@ TEST(BandLimitedTileTest, InAStormNoPlaceJittersFromTickToTick) {
         both += static_cast<double>(now) * static_cast<double>(before);
         all += static_cast<double>(now) * static_cast<double>(now);
         before = now;
-        way.add(40.0 / 60.0, kPeriod_m);
+        way.add(40.0 / 60.0, kTilePeriod_m);
       }
     }
     return both / all;
   };
   EXPECT_LT(likeness({}), 0.4);
-  EXPECT_GT(likeness(tile.pick(40.0, 60.0, kPeriod_m)), 0.9);
+  EXPECT_GT(likeness(tile.pick(40.0, 60.0, kTilePeriod_m)), 0.9);
 }
 
 TEST(BandLimitedTileTest, RefusesWhatIsNoTileAndTooManyLevels) {

@@ -12,7 +12,7 @@
 namespace yuragi {
 namespace {
 
-constexpr double kPeriod_m = 256.0;
+constexpr double kLinePeriod_m = 256.0;
 
 double turns(std::uint32_t phase) {
   return static_cast<double>(static_cast<std::int32_t>(phase)) / 4294967296.0;
@@ -22,17 +22,17 @@ TEST(LineCutTest, GoesADistanceAlongALineOfGoldenSlope) {
   EXPECT_NEAR(LineCut::kEast * LineCut::kEast + LineCut::kSouth * LineCut::kSouth, 1.0, 1e-15);
   EXPECT_NEAR(LineCut::kEast / LineCut::kSouth, std::numbers::phi, 1e-15);
   LineCut cut;
-  for (int i = 0; i < 1000; ++i) cut.add(0.05, kPeriod_m);
-  const TorusPhase expected = LineCut::apart(50.0, kPeriod_m);
+  for (int i = 0; i < 1000; ++i) cut.add(0.05, kLinePeriod_m);
+  const TorusPhase expected = LineCut::apart(50.0, kLinePeriod_m);
   EXPECT_NEAR(turns(cut.phase().x - expected.x), 0.0, 1e-9);
   EXPECT_NEAR(turns(cut.phase().z - expected.z), 0.0, 1e-9);
-  EXPECT_NEAR(turns(cut.phase().x) * kPeriod_m, 50.0 * LineCut::kEast, 1e-6);
+  EXPECT_NEAR(turns(cut.phase().x) * kLinePeriod_m, 50.0 * LineCut::kEast, 1e-6);
 }
 
 TEST(LineCutTest, GoesBackToWhereItCameFrom) {
   LineCut cut;
-  for (const double way_m : {3.7, 1e6, 0.01}) cut.add(way_m, kPeriod_m);
-  for (const double way_m : {-0.01, -1e6, -3.7}) cut.add(way_m, kPeriod_m);
+  for (const double way_m : {3.7, 1e6, 0.01}) cut.add(way_m, kLinePeriod_m);
+  for (const double way_m : {-0.01, -1e6, -3.7}) cut.add(way_m, kLinePeriod_m);
   EXPECT_NEAR(turns(cut.phase().x), 0.0, 1e-9);
   EXPECT_NEAR(turns(cut.phase().z), 0.0, 1e-9);
 }
@@ -44,7 +44,7 @@ TEST(LineCutTest, MissesItselfByAtLeastAsMuchAsItSays) {
   double nearest = 1.0;
   int first_within_a_sample = 0;
   for (int round = 1; round <= 10'000; ++round) {
-    cut.add(kPeriod_m / LineCut::kEast, kPeriod_m);
+    cut.add(kLinePeriod_m / LineCut::kEast, kLinePeriod_m);
     ASSERT_NEAR(turns(cut.phase().x), 0.0, 1e-8);
     const double missed = std::abs(turns(cut.phase().z));
     nearest = std::min(nearest, missed * round);
@@ -60,7 +60,7 @@ std::vector<float> along(const NoiseTile2& tile, std::size_t count, double step_
   LineCut cut;
   for (std::size_t i = 0; i < count; ++i) {
     values.push_back(read_noise(tile, cut.phase()));
-    cut.add(step_m, kPeriod_m);
+    cut.add(step_m, kLinePeriod_m);
   }
   return values;
 }
@@ -97,7 +97,7 @@ TEST(LineCutTest, HasTheSpectrumThatTransectAsksFor) {
     std::vector<double> mean(kWindow / 2 + 1, 0.0);
     for (std::uint64_t seed = 0; seed < 2; ++seed) {
       const NoiseTile2 tile = make_noise_2d({.size = 1024, .beta = beta, .seed = seed}).value();
-      const std::vector<float> line = along(tile, 32 * kWindow, kPeriod_m / 1024.0);
+      const std::vector<float> line = along(tile, 32 * kWindow, kLinePeriod_m / 1024.0);
       RealFft fft(1, kWindow);
       for (std::size_t begin = 0; begin < line.size(); begin += kWindow) {
         for (std::size_t i = 0; i < kWindow; ++i) {

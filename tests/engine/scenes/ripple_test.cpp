@@ -38,7 +38,7 @@ double rms(const std::vector<float>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-WindVector blowing(double azimuth_rad, double speed_m_s) {
+WindVector over_water(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
@@ -73,7 +73,7 @@ TEST(RippleTest, IsFlatInCalmAirAndGrowsFlatAgain) {
   const auto scene = ripple();
   run_ripple(*scene, {}, 100);
   EXPECT_EQ(pose_hash(0, scene->pose()), pose_hash(0, rest_pose(scene->skeleton())));
-  run_ripple(*scene, blowing(1.0, 8.0), 300);
+  run_ripple(*scene, over_water(1.0, 8.0), 300);
   EXPECT_GT(rms(heights_of(*scene)), 0.01);
   run_ripple(*scene, {}, 60 * 60);
   EXPECT_EQ(pose_hash(0, scene->pose()), pose_hash(0, rest_pose(scene->skeleton())));
@@ -85,7 +85,7 @@ TEST(RippleTest, WavesGrowWithTheWindAndSaturate) {
   for (const double speed_m_s : {1.0, 2.0, 4.0, 8.0, 16.0, 30.0, 60.0}) {
     // The same waves for each wind: no gusts, and where the waves are does not depend on the wind's speed, or hardly.
     const auto scene = ripple({{"gustiness", 0.0}});
-    run_ripple(*scene, blowing(1.0, speed_m_s), 600);
+    run_ripple(*scene, over_water(1.0, speed_m_s), 600);
     heights_m.push_back(rms(heights_of(*scene)));
     EXPECT_GT(heights_m.back(), before) << speed_m_s;
     before = 0.9 * heights_m.back();
@@ -102,9 +102,9 @@ TEST(RippleTest, WavesTravelDownwindAtTheirOwnSpeedWhateverTheWinds) {
     for (int eighth = 0; eighth < 8; ++eighth) {
       const double azimuth_rad = eighth * std::numbers::pi / 4.0;
       const auto scene = ripple({{"gustiness", 0.0}, {"width", 3.15}, {"depth", 3.15}});
-      run_ripple(*scene, blowing(azimuth_rad, speed_m_s), 600);
+      run_ripple(*scene, over_water(azimuth_rad, speed_m_s), 600);
       const std::vector<float> before = heights_of(*scene);
-      run_ripple(*scene, blowing(azimuth_rad, speed_m_s), 12);
+      run_ripple(*scene, over_water(azimuth_rad, speed_m_s), 12);
       const int east = static_cast<int>(std::lround(4.4 * std::sin(azimuth_rad)));
       const int south = static_cast<int>(std::lround(-4.4 * std::cos(azimuth_rad)));
       const double downwind = likeness(before, heights_of(*scene), east, south);
@@ -117,21 +117,20 @@ TEST(RippleTest, WavesTravelDownwindAtTheirOwnSpeedWhateverTheWinds) {
 
 TEST(RippleTest, TheWaterChangesAsItGoesAndIsNoPictureThatPassesBy) {
   const auto scene = ripple({{"gustiness", 0.0}});
-  run_ripple(*scene, blowing(0.0, 8.0), 600);
+  run_ripple(*scene, over_water(0.0, 8.0), 600);
   const std::vector<float> before = heights_of(*scene);
-  // After 1.4 s no displacement brings it back whole.
-  run_ripple(*scene, blowing(0.0, 8.0), 84);
+  // In 0.6 s it goes 0.8 m, eight points: a picture that passes by would be found there whole.
+  run_ripple(*scene, over_water(0.0, 8.0), 36);
   double best = 0.0;
-  for (int south = -30; south <= 0; ++south) {
-    if (south < -10) continue;  // beyond the edge of what is compared
+  for (int south = -10; south <= 0; ++south) {
     for (int east = -10; east <= 10; ++east) best = std::max(best, likeness(before, heights_of(*scene), east, south));
   }
-  EXPECT_LT(best, 0.9);
+  EXPECT_LT(best, 0.8);
 }
 
 TEST(RippleTest, IsSteepEnoughToBeSeenAndSmoothEnoughForItsGrid) {
   const auto scene = kRippleScene.make(ParameterValues::resolve(kRippleScene.parameters, {}).value(), {.seed = 1});
-  run_ripple(*scene, blowing(1.0, 8.0), 300);
+  run_ripple(*scene, over_water(1.0, 8.0), 300);
   const std::vector<float>& heights_m = heights_of(*scene);
   double slopes = 0.0;
   double bends = 0.0;
@@ -153,7 +152,7 @@ TEST(RippleTest, GustsRoughenTheWaterHereAndThere) {
   // Roughness by the corner, over time: with gusts it differs more.
   const auto unevenness = [](double gustiness) {
     const auto scene = ripple({{"gustiness", gustiness}, {"width", 60.0}, {"depth", 60.0}});
-    run_ripple(*scene, blowing(1.0, 8.0), 300);
+    run_ripple(*scene, over_water(1.0, 8.0), 300);
     std::vector<double> squares(16, 0.0);
     for (std::size_t i = 0; i < 4096; ++i) {
       const auto height_m = static_cast<double>(heights_of(*scene)[i]);
