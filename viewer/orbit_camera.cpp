@@ -137,7 +137,7 @@ CameraPlace place_around(const Bounds& bounds, double aspect) {
   const double tan_up = kFilled * std::tan(glm::radians(OrbitCamera::kFieldOfView_deg) / 2.0);
   double distance_m = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 sign((corner & 1) * 2 - 1, (corner & 2) - 1, (corner & 4) / 2 - 1);
+    const glm::dvec3 sign((corner & 1) * 2 - 1, (corner >> 1 & 1) * 2 - 1, (corner >> 2 & 1) * 2 - 1);
     const glm::dvec3 from_middle = sign * size_m / 2.0;
     const double across = std::abs(glm::dot(from_middle, right)) / (tan_up * aspect);
     const double upright = std::abs(glm::dot(from_middle, up)) / tan_up;
