@@ -6,16 +6,37 @@ namespace yuragi {
 
 Animation::Animation(const Config& config) {
   for (const SceneConfig& scene : config.scenes) {
+    const ScenePlacement placement{.x_m = scene.values.number("x"),
+                                   .y_m = scene.values.number("y"),
+                                   .z_m = scene.values.number("z"),
+                                   .heading_deg = scene.values.number("heading")};
     names_.push_back(scene.name);
     kinds_.emplace_back(scene.kind->name);
-    scenes_.push_back(scene.kind->make(scene.values, {.seed = config.seed + scenes_.size()}));
+    scenes_.push_back(scene.kind->make(scene.values, {.seed = config.seed + scenes_.size(), .placement = placement}));
+    gains_.push_back(scene.values.number("gain"));
+    fades_.emplace_back(scene.values.flag("shown"));
     skeletons_.push_back(&scenes_.back()->skeleton());
     poses_.push_back(&scenes_.back()->pose());
+    opacities_.push_back(fades_.back().opacity());
   }
+  // The first frame shows every scene, so that the encoder has all the room that it will ever need.
+  largest_frame_bytes_ = encoder_.encode({}, skeletons_, poses_).size();
 }
 
 void Animation::step(WindVector wind, double dt_s) noexcept {
-  for (const auto& scene : scenes_) scene->tick(wind, dt_s);
+  for (std::size_t i = 0; i < scenes_.size(); ++i) {
+    fades_[i].advance(dt_s);
+    opacities_[i] = fades_[i].opacity();
+    if (opacities_[i] > 0.0F) scenes_[i]->tick(gains_[i] * wind, dt_s);
+  }
+}
+
+void Animation::cue(const SceneCue& cue) noexcept {
+  if (cue.scene >= fades_.size()) return;
+  if (cue.hide_others) {
+    for (Fade& fade : fades_) fade.begin(false, cue.over_s);
+  }
+  fades_[cue.scene].begin(cue.shown, cue.over_s);
 }
 
 wire::Scenes Animation::describe() const {

@@ -5,41 +5,62 @@
 #include <vector>
 
 #include "daemon/config.hpp"
+#include "daemon/fade.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi {
 
-/// The scenes of an installation, stepped together, and the frame that shows them. No thread, no clock: the daemon's
-/// loop, the lock-step replay and the tests all step this one.
+/// A change of what is shown.
+struct SceneCue {
+  std::size_t scene = 0;  ///< its number, in the order of the configuration
+  bool shown = true;
+  bool hide_others = false;  ///< and every other scene is hidden in the same time
+  double over_s = 0.0;       ///< at least 0
+};
+
+/// The scenes of an installation, each where it stands and with its gain on the wind, stepped together, and the frame
+/// that shows them. A scene that is hidden stands still and costs nothing. No thread, no clock: the daemon's loop, the
+/// lock-step replay and the tests all step this one.
 ///
-/// Thread-safe: no. step() and encode() are realtime-safe after the first encode().
+/// Thread-safe: no. step(), cue() and encode() are realtime-safe.
 class Animation {
  public:
   explicit Animation(const Config& config);
 
-  /// Moves every scene on by dt_s under `wind`.
+  /// Moves every scene that is seen on by dt_s under `wind`, and every fade.
   void step(WindVector wind, double dt_s) noexcept;
+
+  /// Begins a fade. A scene that is not there is no scene to show: nothing happens.
+  void cue(const SceneCue& cue) noexcept;
 
   /// The frame of the present poses, size prefix included; valid until the next call.
   std::span<const std::uint8_t> encode(const wire::FrameInfo& info) {
-    return encoder_.encode(info, skeletons_, poses_);
+    return encoder_.encode(info, skeletons_, poses_, opacities_);
   }
+
+  /// The size of a frame in which every scene is seen: none is larger.
+  std::size_t largest_frame_bytes() const noexcept { return largest_frame_bytes_; }
 
   /// The skeletons, for clients that join.
   wire::Scenes describe() const;
 
   std::span<const Skeleton* const> skeletons() const noexcept { return skeletons_; }
   std::span<const Pose* const> poses() const noexcept { return poses_; }
+  std::span<const float> opacities() const noexcept { return opacities_; }
   std::size_t node_count() const;
 
  private:
   std::vector<std::string> names_, kinds_;
   std::vector<std::unique_ptr<Scene>> scenes_;
+  std::vector<double> gains_;
+  std::vector<Fade> fades_;
   std::vector<const Skeleton*> skeletons_;
   std::vector<const Pose*> poses_;
+  std::vector<float> opacities_;
   wire::FrameEncoder encoder_;
+  std::size_t largest_frame_bytes_ = 0;
 };
 
 }  // namespace yuragi

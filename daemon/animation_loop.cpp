@@ -26,10 +26,8 @@ void sleep_until(MonoTime deadline) {
   }
 }
 
-/// Buffers that hold `frame` and a little more without allocating.
-wire::Bytes with_room_for(std::span<const std::uint8_t> frame) {
-  return wire::Bytes(frame.size() + kFrameSlack_bytes);
-}
+// Changes of what is shown that may wait for the next tick.
+constexpr std::size_t kWaitingCues = 64;
 
 }  // namespace
 
@@ -38,7 +36,8 @@ AnimationLoop::AnimationLoop(Animation& animation, Latest<WindState>& wind, cons
       wind_(wind),
       clock_(clock),
       rate_hz_(rate_hz),
-      frames_(with_room_for(animation.encode({}))),
+      frames_(wire::Bytes(animation.largest_frame_bytes() + kFrameSlack_bytes)),
+      cues_(kWaitingCues),
       frame_ready_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (frame_ready_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
@@ -78,6 +77,7 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   wind_.refresh();
   const WindState& wind = wind_.value();
   const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
+  cues_.drain([this](const SceneCue& cue) { animation_.cue(cue); });
   animation_.step(wind.wind, dt_s);
 
   const wire::FrameInfo info{.sequence = sequence_++,

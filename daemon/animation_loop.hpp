@@ -10,6 +10,7 @@
 #include "daemon/tick_schedule.hpp"
 #include "drivers/clock.hpp"
 #include "engine/base/latest.hpp"
+#include "engine/base/spsc_ring.hpp"
 
 namespace yuragi {
 
@@ -22,8 +23,8 @@ struct LoopCounters {
 };
 
 /// The animation's own thread: at a fixed rate it takes the newest wind, steps the scenes, encodes the frame and hands
-/// it over. After start it neither allocates nor waits for anybody: its ways in and out are triple buffers, and it
-/// wakes the I/O thread by an eventfd.
+/// it over. After start it neither allocates nor waits for anybody: its ways in and out are triple buffers and a
+/// queue of cues, and it wakes the I/O thread by an eventfd.
 class AnimationLoop {
  public:
   /// `wind` must outlive the loop; its writer is the I/O thread. The clock must be the machine's: the loop sleeps on
@@ -43,6 +44,9 @@ class AnimationLoop {
   /// The I/O thread: the newest frame, if there is one that it has not had. Valid until the next call.
   const wire::Bytes* take_frame() noexcept { return frames_.refresh() ? &frames_.value() : nullptr; }
 
+  /// The I/O thread: a change of what is shown, which the next tick begins. False where too many wait: it is lost.
+  bool cue(const SceneCue& cue) { return cues_.push(cue); }
+
   const LoopCounters& counters() const noexcept { return counters_; }
 
  private:
@@ -55,6 +59,7 @@ class AnimationLoop {
   double rate_hz_;
   std::uint64_t sequence_ = 0;
   Latest<wire::Bytes> frames_;
+  SpscRing<SceneCue> cues_;
   LoopCounters counters_;
   int frame_ready_fd_;
   std::jthread thread_;

@@ -22,6 +22,8 @@ const std::array kGeneralParameters = {
               .help = "everything random comes from it: the same seed and wind give the same motion"},
 };
 
+constexpr std::array<std::string_view, 3> kControlChoices = {"loopback", "anywhere", "nobody"};
+
 const std::array kStreamParameters = {
     Parameter{.name = "listen",
               .unit = "",
@@ -33,6 +35,11 @@ const std::array kStreamParameters = {
               .min = 1,
               .max = 1000,
               .help = "connections at once; more are turned away"},
+    Parameter{.name = "control",
+              .unit = "",
+              .default_value = std::string("loopback"),
+              .help = "from where scenes may be shown and hidden (yuragi scene): this machine, anywhere, or nobody",
+              .choices = kControlChoices},
 };
 
 const std::array kAnimationParameters = {
@@ -72,6 +79,33 @@ const std::array kWindParameters = {
               .help = "a sensor that is silent for this many of its own intervals is stale"},
 };
 
+const std::array kCommonSceneParameters = {
+    Parameter{.name = "x",
+              .unit = "m",
+              .default_value = 0.0,
+              .min = -1000.0,
+              .max = 1000.0,
+              .help = "where the scene stands, to the east"},
+    Parameter{.name = "y", .unit = "m", .default_value = 0.0, .min = -1000.0, .max = 1000.0, .help = "upward"},
+    Parameter{.name = "z", .unit = "m", .default_value = 0.0, .min = -1000.0, .max = 1000.0, .help = "to the south"},
+    Parameter{.name = "heading",
+              .unit = "deg",
+              .default_value = 0.0,
+              .min = -360.0,
+              .max = 360.0,
+              .help = "where the scene's own north points to, clockwise from north; the wind is not turned with it"},
+    Parameter{.name = "gain",
+              .unit = "",
+              .default_value = 1.0,
+              .min = 0.0,
+              .max = 10.0,
+              .help = "how many times stronger than it is the wind is for this scene"},
+    Parameter{.name = "shown",
+              .unit = "",
+              .default_value = true,
+              .help = "false: hidden until `yuragi scene show` or `switch` asks for it"},
+};
+
 const std::array kConfigTables = {
     ConfigTable{"", "at the top of the file", kGeneralParameters},
     ConfigTable{"stream", "where viewers connect", kStreamParameters},
@@ -80,6 +114,16 @@ const std::array kConfigTables = {
 };
 
 constexpr std::string_view kNameKey = "name";
+
+/// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
+std::vector<Parameter> parameters_of(const DriverDescription& driver) {
+  return {driver.parameters.begin(), driver.parameters.end()};
+}
+std::vector<Parameter> parameters_of(const SceneDescription& scene) {
+  std::vector<Parameter> all(scene.parameters.begin(), scene.parameters.end());
+  all.insert(all.end(), kCommonSceneParameters.begin(), kCommonSceneParameters.end());
+  return all;
+}
 
 /// A TOML value as a parameter's; nothing for dates, arrays and tables, which no parameter takes.
 std::optional<ParameterValue> to_parameter_value(const toml::node& node) {
@@ -218,7 +262,7 @@ class ConfigReader {
         mistake(entry->source(), prefix + "name",
                 "\"" + name + "\" is there twice; give each " + std::string(list) + " a name");
       }
-      const ParameterValues values = read_values(*entry, prefix, description->parameters, {kNameKey, kind_key});
+      const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), {kNameKey, kind_key});
       use(name, description, values, place(entry->source()));
     }
   }
@@ -277,15 +321,19 @@ std::span<const ConfigTable> config_tables() {
   return kConfigTables;
 }
 
+std::span<const Parameter> common_scene_parameters() {
+  return kCommonSceneParameters;
+}
+
 Config default_config() {
   Config config;
   config.stream = defaults_of(kStreamParameters);
   config.animation = defaults_of(kAnimationParameters);
   config.wind = defaults_of(kWindParameters);
   const auto* synthetic = find_by_name(driver_table(), "synthetic");
-  config.sensors.push_back({"synthetic", synthetic, defaults_of(synthetic->parameters), {}});
+  config.sensors.push_back({"synthetic", synthetic, defaults_of(parameters_of(*synthetic)), {}});
   const auto* grass = find_by_name(scene_table(), "grass");
-  config.scenes.push_back({"grass", grass, defaults_of(grass->parameters)});
+  config.scenes.push_back({"grass", grass, defaults_of(parameters_of(*grass))});
   return config;
 }
 

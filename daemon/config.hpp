@@ -26,7 +26,7 @@ struct SensorConfig {
 struct SceneConfig {
   std::string name;
   const SceneDescription* kind = nullptr;
-  ParameterValues values;
+  ParameterValues values;  ///< its kind's own, and common_scene_parameters()
 };
 
 /// An installation, read from TOML. Every value is there and within its range; what the file leaves out has its
@@ -47,6 +47,9 @@ struct ConfigTable {
   std::span<const Parameter> parameters;
 };
 std::span<const ConfigTable> config_tables();
+
+/// What a scene of any kind may hold besides: where it stands, its gain, whether it is shown.
+std::span<const Parameter> common_scene_parameters();
 
 /// What is wrong with a configuration, one line for each mistake: `file:line:column: key: what is wrong; what is
 /// allowed`.

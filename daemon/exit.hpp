@@ -12,6 +12,7 @@ inline constexpr int kExitNoInput = 66;       ///< an input file that is not the
 inline constexpr int kExitUnavailable = 69;   ///< nobody answers, or an address is taken
 inline constexpr int kExitSoftware = 70;      ///< anything not foreseen
 inline constexpr int kExitCannotCreate = 73;  ///< an output file
+inline constexpr int kExitNoPermission = 77;  ///< asked of somebody who does not take it from here
 inline constexpr int kExitConfig = 78;        ///< the configuration
 
 /// A failure during set-up: its text tells a person what to do, its code tells the shell. Caught once, in main.

@@ -12,6 +12,7 @@
 #include "daemon/animation.hpp"
 #include "daemon/animation_loop.hpp"
 #include "daemon/recorder.hpp"
+#include "daemon/scene_director.hpp"
 #include "daemon/sensor_hub.hpp"
 #include "daemon/system_clock.hpp"
 #include "daemon/transports/tcp_stream.hpp"
@@ -33,6 +34,7 @@ class Service::Io {
       : options_(options),
         rate_hz_(config.animation.number("rate")),
         animation_(options.with_scenes ? std::make_unique<Animation>(config) : nullptr),
+        director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
         hub_(config, clock_, listener()) {
@@ -72,11 +74,16 @@ class Service::Io {
   }
 
  private:
-  TcpStreamSettings stream_settings(const Config& config) const {
+  TcpStreamSettings stream_settings(const Config& config) {
     TcpStreamSettings settings;
     settings.hello.software = kSoftware;
     settings.hello.tick_rate_hz = rate_hz_;
-    if (animation_) settings.scenes = animation_->describe();
+    if (animation_) {
+      settings.scenes = animation_->describe();
+      settings.on_control = [this](const wire::Control& wish, bool is_local) {
+        return director_.answer(wish, is_local);
+      };
+    }
     settings.max_clients = static_cast<std::size_t>(config.stream.integer("max_clients"));
     return settings;
   }
@@ -153,6 +160,7 @@ class Service::Io {
 
   // In this order: a second daemon stops at the address that is taken, before it touches the recording or a sensor.
   std::unique_ptr<Animation> animation_;
+  SceneDirector director_;
   TcpStream stream_;
   std::unique_ptr<Recorder> recorder_;
   SensorHub hub_;

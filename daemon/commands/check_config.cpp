@@ -48,6 +48,8 @@ void describe_everything() {
     fmt::print("\n[[sensor]]  # driver = \"{}\": {}\n", driver->name, driver->summary);
     print_parameters(driver->parameters);
   }
+  fmt::print("\n[[scene]]  # of any kind: where it stands, and how it is seen\n");
+  print_parameters(common_scene_parameters());
   for (const SceneDescription* scene : scene_table()) {
     fmt::print("\n[[scene]]  # kind = \"{}\": {}\n", scene->name, scene->summary);
     print_parameters(scene->parameters);

@@ -39,6 +39,13 @@ void ClientQueue::offer_sensors(SharedBytes sensors) {
   if (wants_sensors_) pending_sensors_ = std::move(sensors);
 }
 
+bool ClientQueue::offer_reply(SharedBytes reply) {
+  constexpr std::size_t kMostWaiting = 16;
+  if (setup_.size() >= kMostWaiting) return false;
+  setup_.push_back(std::move(reply));
+  return true;
+}
+
 std::span<const std::uint8_t> ClientQueue::to_write(MonoTime now) {
   if (!in_flight_) {
     // Sensors go before frames: they are small and rare, and frames never end.

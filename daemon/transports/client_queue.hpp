@@ -42,6 +42,10 @@ class ClientQueue {
   void offer_frame(SharedBytes frame);
   void offer_sensors(SharedBytes sensors);
 
+  /// An answer to what the client asked: sent before anything newer, and never replaced. False where as many wait as
+  /// may: the client asks faster than it reads.
+  bool offer_reply(SharedBytes reply);
+
   /// The rest of the message in flight, or else the next message, which is in flight from `now`. Empty: nothing to
   /// send. Valid until written() has told of all of it.
   std::span<const std::uint8_t> to_write(MonoTime now);
@@ -62,7 +66,7 @@ class ClientQueue {
   bool wants_poses_ = false;
   bool wants_sensors_ = false;
 
-  std::deque<SharedBytes> setup_;  // hello and scenes: sent first, never replaced
+  std::deque<SharedBytes> setup_;  // hello, scenes and replies: sent first, never replaced
   SharedBytes pending_sensors_;
   SharedBytes pending_frame_;
 

@@ -122,6 +122,10 @@ bool StreamClient::subscribe(const wire::Subscribe& wish) {
   return connection_->write(wire::encode(wish));
 }
 
+bool StreamClient::send(const wire::Control& wish) {
+  return connection_->write(wire::encode(wish));
+}
+
 Result<wire::Message, StreamEnd> StreamClient::receive(Nanoseconds timeout) {
   return connection_->receive(timeout);
 }

@@ -42,6 +42,9 @@ class StreamClient {
   /// Says what is wanted, once. False where the connection is gone.
   bool subscribe(const wire::Subscribe& wish);
 
+  /// Asks to show or hide a scene, after subscribe(). False where the connection is gone.
+  bool send(const wire::Control& wish);
+
   /// The next message, which is waited for no longer than `timeout`. Messages of kinds unknown here are passed over.
   Result<wire::Message, StreamEnd> receive(Nanoseconds timeout);
 

@@ -32,6 +32,13 @@ SharedBytes share(wire::Bytes bytes) {
   return std::make_shared<const wire::Bytes>(std::move(bytes));
 }
 
+/// Loopback, also where an IPv6 socket took an IPv4 client.
+bool is_of_this_machine(const asio::ip::address& address) {
+  if (address.is_v6() && address.to_v6().is_v4_mapped())
+    return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
+  return address.is_loopback();
+}
+
 /// Opens the listening socket, or says what to do instead.
 tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
   const auto address = parse_address(listen);
@@ -69,7 +76,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
         feed_(std::move(feed)),
         queue_(feed_->settings.limits, feed_->hello, feed_->settings.now()) {
     error_code ignored;
-    peer_ = text_of(socket_.remote_endpoint(ignored));
+    const tcp::endpoint peer = socket_.remote_endpoint(ignored);
+    peer_ = text_of(peer);
+    is_local_ = is_of_this_machine(peer.address());
     socket_.set_option(tcp::no_delay(true), ignored);
     limit_send_buffer();
   }
@@ -151,10 +160,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
     });
   }
 
-  /// The only message that a client may send, and only once, is its subscription.
+  /// A client may send its subscription, once, and after that its wishes to show or hide scenes.
   void take_message() {
     const auto message = wire::decode(body_);
     if (!message) return end("its message is refused: " + std::string(name_of(message.error())));
+    const auto* control = std::get_if<wire::Control>(&*message);
+    if (control != nullptr && queue_.is_subscribed()) return take_control(*control);
     const auto* wish = std::get_if<wire::Subscribe>(&*message);
     if (wish == nullptr || queue_.is_subscribed()) return end("it sent what a client may not send");
     if (wish->protocol != wire::kProtocol) return end("it speaks protocol " + std::to_string(wish->protocol));
@@ -167,10 +178,22 @@ class Connection : public std::enable_shared_from_this<Connection> {
     read_prefix();  // tells when it closes the connection
   }
 
+  void take_control(const wire::Control& wish) {
+    const auto& answer = feed_->settings.on_control;
+    const wire::ControlReply reply =
+        answer ? answer(wish, is_local_)
+               : wire::ControlReply{.done = false, .message = "there are no scenes here", .scenes = {}};
+    if (!wish.scene.empty()) spdlog::info("client {} {}: {}", peer_, client_name_, reply.message);
+    if (!queue_.offer_reply(share(wire::encode(reply)))) return end("it asks faster than it reads");
+    write();
+    read_prefix();
+  }
+
   tcp::socket socket_;
   std::shared_ptr<const Feed> feed_;
   ClientQueue queue_;
   std::string peer_, client_name_;
+  bool is_local_ = false;
   bool is_writing_ = false;
   std::array<std::uint8_t, wire::kSizePrefixBytes> prefix_{};
   wire::Bytes body_;

@@ -16,6 +16,8 @@ struct TcpStreamSettings {
   wire::Hello hello;             ///< what every client is greeted with
   wire::Scenes scenes;           ///< what those who ask for poses get first
   std::size_t max_clients = 32;  ///< more are told so, and let go
+  /// Answers a client's wish to show or hide a scene; `is_local`: it asks from this machine. None: nothing is taken.
+  std::function<wire::ControlReply(const wire::Control& wish, bool is_local)> on_control = {};
   ClientLimits limits = {};
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are looked at
   std::function<MonoTime()> now = steady_now;                ///< what the limits are measured with
@@ -25,9 +27,9 @@ struct TcpStreamSettings {
 
 /// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
 ///
-/// Each client is greeted, says once what it wants, and gets the newest of it from then on (ClientQueue). One that
-/// sends anything else, never says what it wants, or stops reading is let go and logged. Send buffers are kept short,
-/// so that what a slow client sees is new.
+/// Each client is greeted, says once what it wants, and gets the newest of it from then on (ClientQueue). After that it
+/// may send Controls, each of which is answered. One that sends anything else, never says what it wants, or stops
+/// reading is let go and logged. Send buffers are kept short, so that what a slow client sees is new.
 ///
 /// Everything happens in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class TcpStream final : public Transport {

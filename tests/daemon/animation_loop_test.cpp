@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "daemon/system_clock.hpp"
+#include "engine/pose/pose_arrays.hpp"
 
 // Every allocation of this program by a thread other than the test's own is counted: that leaves the animation's.
 namespace {
@@ -62,6 +63,12 @@ class AnimationLoopTest : public ::testing::Test {
     }
   }
 
+  static std::size_t value_bytes(const wire::Frame& frame) {
+    std::size_t bytes = 0;
+    for_each_array(frame.poses.at(0), [&bytes](std::span<const float> values) { bytes += values.size_bytes(); });
+    return bytes;
+  }
+
   SystemClock clock_;
   Latest<WindState> wind_;
   Animation animation_{default_config()};
@@ -96,6 +103,20 @@ TEST_F(AnimationLoopTest, AllocatesNothingAfterItsStart) {
   for (int count = 0; count < 5; ++count) next_frame();
   const int before = other_threads_allocations.load();
   for (int count = 0; count < 60; ++count) next_frame();
+  EXPECT_EQ(other_threads_allocations.load(), before);
+}
+
+TEST_F(AnimationLoopTest, ACueFadesTheSceneWithoutAnyAllocation) {
+  loop_.start();
+  for (int count = 0; count < 5; ++count) next_frame();
+  const int before = other_threads_allocations.load();
+  ASSERT_TRUE(loop_.cue({.scene = 0, .shown = false, .over_s = 0.1}));
+  wire::Frame frame = next_frame();
+  while (frame.opacities.at(0) > 0.0F) frame = next_frame();
+  EXPECT_EQ(value_bytes(frame), 0U) << "what is hidden is not sent";
+  ASSERT_TRUE(loop_.cue({.scene = 0, .shown = true, .over_s = 0.1}));
+  while (frame.opacities.at(0) < 1.0F) frame = next_frame();
+  EXPECT_GT(value_bytes(frame), 0U);
   EXPECT_EQ(other_threads_allocations.load(), before);
 }
 

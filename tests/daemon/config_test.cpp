@@ -77,6 +77,38 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
               HasSubstr("\"synthetic\" is there twice"));
 }
 
+TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
+  const Config config = parse_config(
+      "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades = 500\n"
+      "[[scene]]\nkind = \"grass\"\nname = \"other\"\n",
+      "wall.toml");
+  const ParameterValues& placed = config.scenes[0].values;
+  EXPECT_EQ(placed.number("x"), 3.0);
+  EXPECT_EQ(placed.number("z"), -2.5);
+  EXPECT_EQ(placed.number("heading"), 90.0);
+  EXPECT_EQ(placed.number("gain"), 1.5);
+  EXPECT_FALSE(placed.flag("shown"));
+  EXPECT_EQ(config.scenes[1].values.number("gain"), 1.0);
+  EXPECT_TRUE(config.scenes[1].values.flag("shown"));
+  EXPECT_THAT(to_toml(config), HasSubstr("heading = 90.0"));
+
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\ngain = 11\n"),
+              StartsWith("wall.toml:3:8: scene.gain: is 11; allowed: number from 0 to 10"));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nshown = 1\n"), StartsWith("wall.toml:3:9: scene.shown: "));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nxx = 1\n"), HasSubstr("heading"));
+  EXPECT_THAT(mistakes_of("[stream]\ncontrol = \"me\"\n"), StartsWith("wall.toml:2:11: stream.control: "));
+}
+
+TEST(Config, NoKindOfSceneHasAParameterOfTheCommonNames) {
+  for (const SceneDescription* scene : scene_table()) {
+    for (const Parameter& own : scene->parameters) {
+      for (const Parameter& common : common_scene_parameters()) EXPECT_NE(own.name, common.name) << scene->name;
+      EXPECT_NE(own.name, "name") << scene->name;
+      EXPECT_NE(own.name, "kind") << scene->name;
+    }
+  }
+}
+
 TEST(Config, AnAddressThatIsNoneIsAMistakeAtItsPlace) {
   EXPECT_THAT(mistakes_of("[stream]\nlisten = \"here\"\n"), StartsWith("wall.toml:2:10: stream.listen: "));
   EXPECT_THAT(mistakes_of("[stream]\nlisten = \"127.0.0.1:99999\"\n"), StartsWith("wall.toml:2:10: stream.listen: "));
@@ -115,6 +147,7 @@ TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
     }
   };
   for (const ConfigTable& table : config_tables()) check(table.name, table.parameters);
+  check("scene", common_scene_parameters());
   for (const DriverDescription* driver : driver_table()) check(driver->name, driver->parameters);
   for (const SceneDescription* scene : scene_table()) check(scene->name, scene->parameters);
 }

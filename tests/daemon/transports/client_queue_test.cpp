@@ -55,6 +55,25 @@ TEST_F(ClientQueueTest, WhatWasNotAskedForIsNotSent) {
   EXPECT_EQ(take_all(), "hello sensors ");
 }
 
+TEST_F(ClientQueueTest, AReplyGoesBeforeWhatIsNewerAndIsNeverReplaced) {
+  subscribe();
+  queue_.offer_frame(message("frame "));
+  EXPECT_TRUE(queue_.offer_reply(message("one ")));
+  EXPECT_TRUE(queue_.offer_reply(message("two ")));
+  EXPECT_EQ(take_all(), "hello scenes one two frame ");
+}
+
+TEST_F(ClientQueueTest, RepliesDoNotPileUp) {
+  subscribe();
+  take_all();
+  int taken = 0;
+  while (taken < 1000 && queue_.offer_reply(message("reply "))) ++taken;
+  EXPECT_GE(taken, 8);
+  EXPECT_LE(taken, 16);
+  take_one();
+  EXPECT_TRUE(queue_.offer_reply(message("reply ")));
+}
+
 TEST_F(ClientQueueTest, SensorsAreNotSentToOneWhoWantsPosesOnly) {
   queue_.subscribe(true, false, message("scenes "), message("frame "), message("sensors "));
   queue_.offer_sensors(message("sensors "));

@@ -95,6 +95,7 @@ class TestClient {
   std::vector<wire::Scenes> scenes;
   std::vector<std::uint64_t> frames;  // their sequence numbers
   std::vector<wire::Sensors> sensors;
+  std::vector<wire::ControlReply> replies;
   std::vector<std::size_t> kinds;  // of all messages, in order
 
  private:
@@ -104,6 +105,7 @@ class TestClient {
     if (auto* set = std::get_if<wire::Scenes>(&message)) scenes.push_back(*set);
     if (auto* one = std::get_if<wire::Frame>(&message)) frames.push_back(one->info.sequence);
     if (auto* state = std::get_if<wire::Sensors>(&message)) sensors.push_back(*state);
+    if (auto* reply = std::get_if<wire::ControlReply>(&message)) replies.push_back(*reply);
   }
 
   tcp::socket socket_;
@@ -120,6 +122,11 @@ class TcpStreamTest : public testing::Test {
     settings.scenes = samples::scenes();
     settings.check_every = 1ms;
     settings.now = [this] { return now_; };
+    settings.on_control = [this](const wire::Control& wish, bool is_local) {
+      wishes_.push_back(wish);
+      all_were_local_ = all_were_local_ && is_local;
+      return wire::ControlReply{.done = true, .message = "it is done", .scenes = {}};
+    };
     return settings;
   }
 
@@ -134,6 +141,8 @@ class TcpStreamTest : public testing::Test {
     return done();
   }
 
+  std::vector<wire::Control> wishes_;
+  bool all_were_local_ = true;
   MonoTime now_{std::chrono::hours(1)};
   asio::io_context io_{1};
   TcpStream stream_{io_, "127.0.0.1:0", settings()};
@@ -356,6 +365,35 @@ TEST_F(TcpStreamTest, AnAddressInUseIsNamedWithWhatToDo) {
 TEST_F(TcpStreamTest, AnAddressOfAnotherMachineOrNoneIsRefused) {
   EXPECT_THROW(TcpStream(io_, "192.0.2.1:7410", settings()), ExitError);
   EXPECT_THROW(TcpStream(io_, "nonsense", settings()), ExitError);
+}
+
+TEST_F(TcpStreamTest, EveryWishToShowASceneIsAnswered) {
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.poses = false, .client = "test"}));
+  client.send(wire::encode(wire::Control{.scene = "meadow", .shown = false, .over_s = 1.5}));
+  client.send(wire::encode(wire::Control{.scene = "bank"}));
+  ASSERT_TRUE(turn_until([&] { return client.replies.size() == 2; }));
+  EXPECT_EQ(client.replies[0].message, "it is done");
+  ASSERT_EQ(wishes_.size(), 2u);
+  EXPECT_EQ(wishes_[0].scene, "meadow");
+  EXPECT_FALSE(wishes_[0].shown);
+  EXPECT_EQ(wishes_[0].over_s, 1.5);
+  EXPECT_TRUE(all_were_local_) << "127.0.0.1 is this machine";
+}
+
+TEST_F(TcpStreamTest, AWishOfOneWhoHasNotSubscribedIsNotTaken) {
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Control{.scene = "meadow"}));
+  EXPECT_TRUE(turn_until([&] { return client.closed; }));
+  EXPECT_TRUE(wishes_.empty());
+}
+
+TEST_F(TcpStreamTest, AWishThatIsNoneEndsTheConnection) {
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.poses = false, .client = "test"}));
+  client.send(wire::encode(wire::Control{.scene = "meadow", .over_s = -1.0}));
+  EXPECT_TRUE(turn_until([&] { return client.closed; }));
+  EXPECT_TRUE(wishes_.empty());
 }
 
 }  // namespace

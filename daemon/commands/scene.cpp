@@ -1,0 +1,95 @@
+// `yuragi scene`: what a running daemon shows, and changing that.
+#include <algorithm>
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/exit.hpp"
+#include "daemon/transports/stream_client.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr auto kSceneConnectTimeout = std::chrono::seconds(2);
+constexpr auto kReplyTimeout = std::chrono::seconds(5);
+
+struct SceneOptions {
+  std::string connect = fmt::format("127.0.0.1:{}", wire::kDefaultPort);
+  wire::Control control = {};
+};
+
+/// Asks the daemon, and waits for its answer.
+wire::ControlReply ask(const SceneOptions& options) {
+  auto client = StreamClient::connect(options.connect, kSceneConnectTimeout);
+  if (!client) throw ExitError(kExitUnavailable, client.error().message + ". Is `yuragi run` running?");
+  if (!client->subscribe({.poses = false, .client = "scene"}) || !client->send(options.control))
+    throw ExitError(kExitUnavailable, fmt::format("the daemon at {} does not listen", options.connect));
+  while (true) {
+    const auto message = client->receive(kReplyTimeout);
+    if (!message) {
+      throw ExitError(kExitUnavailable,
+                      fmt::format("no answer from the daemon at {} ({})", options.connect, name_of(message.error())));
+    }
+    if (const auto* hello = std::get_if<wire::Hello>(&*message); hello != nullptr && hello->refused) {
+      throw ExitError(kExitUnavailable,
+                      fmt::format("the daemon at {} lets nobody in: {}", options.connect, *hello->refused));
+    }
+    if (const auto* reply = std::get_if<wire::ControlReply>(&*message)) return *reply;
+  }
+}
+
+void list_scenes(const SceneOptions& options) {
+  for (const wire::SceneState& scene : ask(options).scenes)
+    fmt::print("{:<24} {:<10} {}\n", scene.name, scene.kind, scene.shown ? "shown" : "hidden");
+}
+
+void change_scene(const SceneOptions& options) {
+  const wire::ControlReply reply = ask(options);
+  if (reply.done) {
+    fmt::print("{}\n", reply.message);
+    return;
+  }
+  const bool is_known = std::any_of(reply.scenes.begin(), reply.scenes.end(),
+                                    [&](const wire::SceneState& scene) { return scene.name == options.control.scene; });
+  throw ExitError(is_known ? kExitNoPermission : kExitUsage, reply.message);
+}
+
+void add_scene(CLI::App& app) {
+  CLI::App* scene = app.add_subcommand("scene", "show, hide and switch the scenes of a running daemon");
+  scene->require_subcommand(1);
+  scene->footer(
+      "  yuragi scene list                        what there is, and what is shown\n"
+      "  yuragi scene switch elm --fade 5         show this one and hide all others: a cross-fade\n"
+      "Exit code 0: done; 64: there is no such scene; 69: no daemon answers; 77: the daemon does not take it from\n"
+      "here (see `yuragi describe`, [stream] control).");
+
+  const auto add = [scene](const char* name, const char* help, bool shown, bool hide_others) {
+    CLI::App* command = scene->add_subcommand(name, help);
+    auto options = std::make_shared<SceneOptions>();
+    options->control.shown = shown;
+    options->control.hide_others = hide_others;
+    command->add_option("scene", options->control.scene, "as the configuration calls it")
+        ->required()
+        ->type_name("NAME");
+    command->add_option("--fade", options->control.over_s, "how long it takes, 0 to 3600 (default 2)")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.0, wire::kMaxFade_s));
+    command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
+    command->callback([options] { change_scene(*options); });
+  };
+  CLI::App* list = scene->add_subcommand("list", "what there is, and what is shown");
+  auto options = std::make_shared<SceneOptions>();
+  list->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
+  list->callback([options] { list_scenes(*options); });
+  add("show", "fade a scene in", true, false);
+  add("hide", "fade a scene out", false, false);
+  add("switch", "fade a scene in, and all others out", true, true);
+}
+
+}  // namespace
+
+extern const Command kSceneCommand;
+const Command kSceneCommand{add_scene};
+
+}  // namespace yuragi

@@ -1,0 +1,123 @@
+#include "daemon/animation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/pose/pose_arrays.hpp"
+#include "engine/pose/pose_hash.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kTick_s = 1.0 / 60.0;
+constexpr WindVector kBreeze{5.0, 1.0};
+
+Config installation(const std::string& first, const std::string& second) {
+  return parse_config("[[scene]]\nkind = \"grass\"\nname = \"first\"\n" + first +
+                          "\n[[scene]]\nkind = \"grass\"\nname = \"second\"\n" + second,
+                      "test.toml");
+}
+
+wire::Frame shown_by(Animation& animation) {
+  return std::get<wire::Frame>(wire::decode(animation.encode({}).subspan(wire::kSizePrefixBytes)).value());
+}
+
+float largest(const Pose& pose) {
+  float most = 0.0F;
+  for_each_array(pose, [&most](std::span<const float> values) {
+    for (const float value : values) most = std::max(most, std::abs(value));
+  });
+  return most;
+}
+
+TEST(AnimationTest, ASceneStandsWhereTheConfigurationSays) {
+  const Animation here(installation("", "shown = false"));
+  const Animation there(installation("x = 30\ny = 2\nz = -4\n", "heading = 90"));
+  const auto& a = std::get<StrandSkeleton>(*here.skeletons()[0]);
+  const auto& b = std::get<StrandSkeleton>(*there.skeletons()[0]);
+  EXPECT_NEAR(b.root_x_m[7], a.root_x_m[7] + 30.0F, 1e-4);
+  EXPECT_NEAR(b.root_y_m[7], a.root_y_m[7] + 2.0F, 1e-4);
+  EXPECT_NEAR(b.root_z_m[7], a.root_z_m[7] - 4.0F, 1e-4);
+
+  // What was north, -z, is east.
+  const auto& c = std::get<StrandSkeleton>(*here.skeletons()[1]);
+  const auto& d = std::get<StrandSkeleton>(*there.skeletons()[1]);
+  EXPECT_NEAR(d.root_x_m[7], -c.root_z_m[7], 1e-4);
+  EXPECT_NEAR(d.root_z_m[7], c.root_x_m[7], 1e-4);
+  EXPECT_EQ(here.node_count(), 2 * node_count(*here.skeletons()[0]));
+}
+
+TEST(AnimationTest, GainIsAFactorOnTheWindThatASceneFeels) {
+  Animation one(installation("gain = 2", "gain = 0"));
+  Animation other(installation("", ""));
+  for (int tick = 0; tick < 90; ++tick) {
+    one.step(kBreeze, kTick_s);
+    other.step(2.0 * kBreeze, kTick_s);
+  }
+  EXPECT_EQ(pose_hash(kPoseHashSeed, *one.poses()[0]), pose_hash(kPoseHashSeed, *other.poses()[0]));
+  EXPECT_GT(largest(*one.poses()[0]), 0.1F);
+  EXPECT_EQ(largest(*one.poses()[1]), 0.0F) << "no wind, no bend";
+}
+
+TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
+  Animation animation(installation("", "shown = false"));
+  for (int tick = 0; tick < 60; ++tick) animation.step(kBreeze, kTick_s);
+  EXPECT_GT(largest(*animation.poses()[0]), 0.0F);
+  EXPECT_EQ(largest(*animation.poses()[1]), 0.0F);
+  const std::size_t bytes = animation.encode({}).size();
+  const wire::Frame frame = shown_by(animation);
+  EXPECT_EQ(frame.opacities, (std::vector{1.0F, 0.0F}));
+  EXPECT_TRUE(std::get<StrandPose>(frame.poses[1]).bend_east_rad.empty());
+  EXPECT_LT(bytes, animation.largest_frame_bytes() * 2 / 3);
+  EXPECT_TRUE(wire::fits(frame, animation.describe()));
+}
+
+TEST(AnimationTest, ACrossFadeTakesItsTimeAndNeverJumps) {
+  Animation animation(installation("", "shown = false"));
+  animation.step(kBreeze, kTick_s);
+  animation.cue({.scene = 1, .shown = true, .hide_others = true, .over_s = 2.0});
+  std::vector<float> before(animation.opacities().begin(), animation.opacities().end());
+  for (int tick = 1; tick <= 120; ++tick) {
+    animation.step(kBreeze, kTick_s);
+    const auto now = animation.opacities();
+    EXPECT_LE(before[1], now[1]);
+    EXPECT_NEAR(now[0] + now[1], 1.0F, 1e-6F);
+    EXPECT_LT(now[1] - before[1], 1.5 / 120.0 * 1.001) << "the steepest of a smooth step";
+    if (tick < 119) {
+      EXPECT_LT(now[1], 1.0F);
+    }
+    before.assign(now.begin(), now.end());
+  }
+  EXPECT_EQ(animation.opacities()[0], 0.0F);
+  EXPECT_EQ(animation.opacities()[1], 1.0F);
+  EXPECT_EQ(shown_by(animation).opacities, (std::vector{0.0F, 1.0F}));
+}
+
+TEST(AnimationTest, AFadeThatIsTurnedRoundGoesOnFromWhereItIs) {
+  Animation animation(installation("", ""));
+  animation.cue({.scene = 0, .shown = false, .over_s = 1.0});
+  for (int tick = 0; tick < 24; ++tick) animation.step(kBreeze, kTick_s);
+  const float midway = animation.opacities()[0];
+  EXPECT_GT(midway, 0.4F);
+  EXPECT_LT(midway, 0.9F);
+  animation.cue({.scene = 0, .shown = true, .over_s = 1.0});
+  animation.step(kBreeze, kTick_s);
+  EXPECT_NEAR(animation.opacities()[0], midway, 0.01F);
+  for (int tick = 0; tick < 60; ++tick) animation.step(kBreeze, kTick_s);
+  EXPECT_EQ(animation.opacities()[0], 1.0F);
+  EXPECT_EQ(animation.opacities()[1], 1.0F) << "the other was not asked to do anything";
+}
+
+TEST(AnimationTest, AFadeOfNoTimeIsDoneAtTheNextTickAndASceneThatIsNotThereIsIgnored) {
+  Animation animation(installation("", ""));
+  animation.cue({.scene = 7, .shown = true, .hide_others = true, .over_s = 0.0});
+  animation.cue({.scene = 1, .shown = false, .over_s = 0.0});
+  animation.step(kBreeze, kTick_s);
+  EXPECT_EQ(animation.opacities()[0], 1.0F);
+  EXPECT_EQ(animation.opacities()[1], 0.0F);
+}
+
+}  // namespace
+}  // namespace yuragi
