@@ -15,8 +15,8 @@ constexpr double kTick_s = 1.0 / 60.0;
 constexpr WindVector kBreeze{5.0, 1.0};
 
 Config installation(const std::string& first, const std::string& second) {
-  return parse_config("[[scene]]\nkind = \"grass\"\nname = \"first\"\n" + first +
-                          "\n[[scene]]\nkind = \"grass\"\nname = \"second\"\n" + second,
+  const std::string small = "[[scene]]\nkind = \"grass\"\nblades_across = 12\nblades_deep = 8\n";
+  return parse_config(small + "name = \"first\"\n" + first + "\n" + small + "name = \"second\"\n" + second,
                       "test.toml");
 }
 

@@ -79,7 +79,7 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
 
 TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
   const Config config = parse_config(
-      "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades = 500\n"
+      "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades_across = 50\n"
       "[[scene]]\nkind = \"grass\"\nname = \"other\"\n",
       "wall.toml");
   const ParameterValues& placed = config.scenes[0].values;

@@ -84,7 +84,8 @@ class FrameWatcher(threading.Thread):
         while self.is_wanted:
             frame = self.stream.next("Frame")
             wind = numpy.array([frame.Wind().UMS(), frame.Wind().VMS()])
-            bend = numpy.array(pose_client.read_bends(frame.Scenes(0)))
+            bends = pose_client.read_pose(frame.Scenes(0))
+            bend = numpy.array([bends.east_rad, bends.south_rad])
             self.frames += 1
             self.all_finite = self.all_finite and bool(numpy.isfinite(wind).all() and numpy.isfinite(bend).all())
             if last is not None and frame.Tick() == last[0] + 1:
@@ -306,6 +307,103 @@ port = {port}
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("no daemon", done.stdout)
         self.assertIn("simulated", done.stdout)
+
+    # ---- scenes ----
+
+    TWO_SCENES = """
+[stream]
+control = "{control}"
+[[scene]]
+kind = "grass"
+name = "meadow"
+blades_across = 20
+blades_deep = 20
+[[scene]]
+kind = "grass"
+name = "bank"
+blades_across = 10
+blades_deep = 10
+x = 12
+shown = false
+"""
+
+    def start_two_scenes(self, control="loopback"):
+        daemon = self.start_daemon("--config", self.file("two.toml", self.TWO_SCENES.format(control=control)))
+        return daemon.address()
+
+    def test_a_switch_cross_fades_two_scenes_without_a_jump(self):
+        address = self.start_two_scenes()
+        over_s = 1.0
+        with Stream(address, sensors=False) as stream:
+            frame = stream.next("Frame")
+            self.assertEqual([frame.Scenes(i).Opacity() for i in range(2)], [1.0, 0.0])
+            self.assertIsNone(pose_client.read_pose(frame.Scenes(1)), "what is hidden is not sent")
+            self.assertLess(abs(float(stream.scenes[1][2].root_m[:, 0].mean()) - 12.0), 0.2)
+
+            done = run("scene", "switch", "bank", "--fade", over_s, "--connect", address)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("bank is shown", done.stdout)
+
+            seen, last = [], None
+            deadline = time.monotonic() + 10.0
+            while time.monotonic() < deadline:
+                frame = stream.next("Frame")
+                meadow, bank = (frame.Scenes(i).Opacity() for i in range(2))
+                self.assertAlmostEqual(meadow + bank, 1.0, 5)
+                if last is not None:
+                    ticks = frame.Tick() - last[0]
+                    self.assertLessEqual(abs(bank - last[1]), 1.5 * ticks / (60.0 * over_s) + 1e-6)
+                if 0.0 < bank < 1.0:
+                    seen.append(bank)
+                last = (frame.Tick(), bank)
+                if bank == 1.0:
+                    break
+            self.assertEqual(last[1], 1.0)
+            self.assertGreater(len(seen), 30, "it takes its second")
+            self.assertEqual(seen, sorted(seen))
+            self.assertIsNone(pose_client.read_pose(frame.Scenes(0)))
+
+        listed = run("scene", "list", "--connect", address).stdout
+        self.assertRegex(listed, r"meadow\s+grass\s+hidden")
+        self.assertRegex(listed, r"bank\s+grass\s+shown")
+
+    def test_a_scene_is_hidden_and_shown_and_mistakes_are_told(self):
+        address = self.start_two_scenes()
+        self.assertEqual(run("scene", "show", "bank", "--fade", 0, "--connect", address).returncode, 0)
+        self.assertEqual(run("scene", "hide", "meadow", "--fade", 0, "--connect", address).returncode, 0)
+        with Stream(address, sensors=False) as stream:
+            opacities = None
+            for _ in range(60):
+                frame = stream.next("Frame")
+                opacities = [frame.Scenes(i).Opacity() for i in range(2)]
+                if opacities == [0.0, 1.0]:
+                    break
+            self.assertEqual(opacities, [0.0, 1.0])
+
+        unknown = run("scene", "show", "forest", "--connect", address)
+        self.assertEqual(unknown.returncode, 64)
+        self.assertIn("meadow, bank", unknown.stderr)
+        self.assertEqual(run("scene", "show", "bank", "--fade", -1, "--connect", address).returncode, 64)
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            nobody = run("scene", "list", "--connect", f"127.0.0.1:{free.getsockname()[1]}")
+        self.assertEqual(nobody.returncode, 69)
+
+    def test_where_nobody_may_switch_scenes_it_is_refused_with_77(self):
+        address = self.start_two_scenes(control="nobody")
+        refused = run("scene", "hide", "meadow", "--connect", address)
+        self.assertEqual(refused.returncode, 77)
+        self.assertIn("control", refused.stderr)
+        self.assertRegex(run("scene", "list", "--connect", address).stdout, r"meadow\s+grass\s+shown")
+
+    def test_every_example_installation_is_right(self):
+        project = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+        examples = [os.path.join(project, "config", name) for name in sorted(os.listdir(os.path.join(project, "config")))]
+        examples = [path for path in examples if path.endswith(".toml")]
+        self.assertTrue(examples)
+        for path in examples:
+            done = run("check-config", path)
+            self.assertEqual(done.returncode, 0, done.stderr)
 
     # ---- clients ----
 

@@ -111,9 +111,28 @@ def subscribe_message(poses=True, sensors=False, client="pose_client.py"):
     return bytes(builder.Output())
 
 
+def control_message(scene, shown=True, hide_others=False, over_s=2.0):
+    """The wish to show or hide a scene; to be sent at any time after subscribe_message()."""
+    from yuragi.stream import Body, Control, Message
+
+    builder = flatbuffers.Builder(256)
+    name = builder.CreateString(scene)
+    Control.Start(builder)
+    Control.AddScene(builder, name)
+    Control.AddShown(builder, shown)
+    Control.AddHideOthers(builder, hide_others)
+    Control.AddOverS(builder, over_s)
+    control = Control.End(builder)
+    Message.Start(builder)
+    Message.AddBodyType(builder, Body.Body.Control)
+    Message.AddBody(builder, control)
+    builder.FinishSizePrefixed(Message.End(builder), b"YURA")
+    return bytes(builder.Output())
+
+
 def body_of(message):
     """The message's body as (name, table), or (None, None) for a kind that this schema does not have."""
-    from yuragi.stream import Frame, Hello, Scenes, Sensors
+    from yuragi.stream import ControlReply, Frame, Hello, Scenes, Sensors
     from yuragi.stream.Body import Body
 
     kinds = {
@@ -121,6 +140,7 @@ def body_of(message):
         Body.Scenes: ("Scenes", Scenes.Scenes),
         Body.Frame: ("Frame", Frame.Frame),
         Body.Sensors: ("Sensors", Sensors.Sensors),
+        Body.ControlReply: ("ControlReply", ControlReply.ControlReply),
     }
     if message.BodyType() not in kinds:
         return None, None
@@ -143,6 +163,37 @@ def vectors(*components):
     return np.stack([numbers(component) for component in components], axis=1)
 
 
+def is_unit(vectors_):
+    return bool(np.allclose(np.linalg.norm(vectors_, axis=1), 1.0, atol=1e-3))
+
+
+def turned(vectors_, axis, angle_rad):
+    """Vectors turned about unit axes by angles (Rodrigues' formula)."""
+    cos, sin = np.cos(angle_rad)[:, None], np.sin(angle_rad)[:, None]
+    along = np.sum(axis * vectors_, axis=1)[:, None]
+    return vectors_ * cos + np.cross(axis, vectors_) * sin + axis * along * (1.0 - cos)
+
+
+class Bends:
+    """A StrandPose: a vector (east, south) for each strand, in radians."""
+
+    def __init__(self, table):
+        self.east_rad = table.BendStepRad() * numbers(table.BendEastAsNumpy())
+        self.south_rad = table.BendStepRad() * numbers(table.BendSouthAsNumpy())
+
+    def __len__(self):
+        return len(self.east_rad) if len(self.east_rad) == len(self.south_rad) else -1
+
+    def angle_rad(self):
+        return np.hypot(self.east_rad, self.south_rad)
+
+    def axis(self):
+        """up x bend = (0, 1, 0) x (east, 0, south), of length 1; any axis does for no bend."""
+        angle_rad = self.angle_rad()
+        safe = np.where(angle_rad > 0.0, angle_rad, 1.0)
+        return np.stack([self.south_rad / safe, np.zeros(len(safe)), -self.east_rad / safe], axis=1)
+
+
 class Strands:
     """A StrandSkeleton: chains that stand somewhere, point somewhere at rest, and curl."""
 
@@ -158,56 +209,252 @@ class Strands:
     def count(self):
         return len(self.root_m)
 
-    def tips_m(self, bend_east_rad, bend_south_rad):
-        """Where the tips are in a pose: the forward kinematics that the schema describes. World: x east, y up, z south."""
-        # The axis of every turn is up x bend = (0, 1, 0) x (east, 0, south); any axis does for no bend.
-        angle_rad = np.hypot(bend_east_rad, bend_south_rad)
-        safe = np.where(angle_rad > 0.0, angle_rad, 1.0)
-        axis = vectors(bend_south_rad / safe, np.zeros(self.count), -bend_east_rad / safe)
+    @property
+    def nodes(self):
+        return self.count * self.links
 
-        tip_m = self.root_m.copy()
+    def describe(self):
+        return f"{self.count} strands of {self.links} links"
+
+    def faults(self):
+        across = np.abs(np.sum(self.rest * self.curl, axis=1))
+        if not is_unit(self.rest) or not is_unit(self.curl):
+            yield "rest or curl is no unit vector"
+        if not np.all(across < 1e-3):
+            yield "curl is not across rest"
+        if not np.all(np.isfinite(self.root_m)):
+            yield "a root is not finite"
+        if not np.all(self.link_length_m > 0.0):
+            yield "a link has no length"
+
+    def fits(self, bends):
+        return isinstance(bends, Bends) and len(bends) == self.count
+
+    def joints_m(self, bends, root_m=None, root_turns=()):
+        """Every joint in a pose, (links, strands, 3): the forward kinematics that the schema describes. World: x east, y up,
+        z south. In a tree the roots are elsewhere, and first turned, by a list of (axis, angle)."""
+        angle_rad, axis = bends.angle_rad(), bends.axis()
+        at_m = (self.root_m if root_m is None else root_m).copy()
+        joints_m = np.empty((self.links, self.count, 3))
         for i in range(self.links):
-            # Link i at rest, then turned by its share of the bend (Rodrigues' formula).
+            # Link i at rest, turned with its root, then turned by its share of the bend.
             curl_rad = (i * self.rest_curl_rad)[:, None]
-            rest = self.rest * np.cos(curl_rad) + self.curl * np.sin(curl_rad)
-            turn_rad = ((i + 1) / self.links * angle_rad)[:, None]
-            along_axis = np.sum(axis * rest, axis=1)[:, None]
-            link = (
-                rest * np.cos(turn_rad)
-                + np.cross(axis, rest) * np.sin(turn_rad)
-                + axis * along_axis * (1.0 - np.cos(turn_rad))
-            )
-            tip_m += self.link_length_m[:, None] * link
-        return tip_m
+            link = self.rest * np.cos(curl_rad) + self.curl * np.sin(curl_rad)
+            for turn_axis, turn_rad in root_turns:
+                link = turned(link, turn_axis, turn_rad)
+            link = turned(link, axis, (i + 1) / self.links * angle_rad)
+            at_m += self.link_length_m[:, None] * link
+            joints_m[i] = at_m
+        return joints_m
+
+    def points_m(self, bends):
+        """The tips."""
+        return self.joints_m(bends)[-1]
+
+    def pose_faults(self, bends):
+        reach_m = np.linalg.norm(self.points_m(bends) - self.root_m, axis=1)
+        if not np.all(reach_m <= self.links * self.link_length_m * (1 + 1e-5)):
+            yield "a strand has stretched"
+
+
+class Ways:
+    """A GridPose: how far each joint is from its place at rest, in metres."""
+
+    def __init__(self, table):
+        self.columns = table.Columns()
+        step_m = table.StepM()
+        self.offset_m = step_m * vectors(table.OffsetXAsNumpy(), table.OffsetYAsNumpy(), table.OffsetZAsNumpy())
+
+
+class Cloth:
+    """A GridSkeleton: rows of joints, the first of which is fixed."""
+
+    def __init__(self, table):
+        self.columns, self.rows = table.Columns(), table.Rows()
+        self.is_first_column_fixed = table.IsFirstColumnFixed()
+        self.rest_m = vectors(table.RestXMAsNumpy(), table.RestYMAsNumpy(), table.RestZMAsNumpy())
+        self.nodes = self.columns * self.rows
+
+    def describe(self):
+        return f"a cloth of {self.columns} x {self.rows} joints"
+
+    def faults(self):
+        if len(self.rest_m) != self.nodes:
+            yield "its arrays have not columns * rows joints"
+        if not np.all(np.isfinite(self.rest_m)):
+            yield "a joint is not finite"
+
+    def fits(self, ways):
+        return isinstance(ways, Ways) and ways.columns == self.columns and len(ways.offset_m) == self.nodes
+
+    def points_m(self, ways):
+        """Every joint, row after row."""
+        return self.rest_m + ways.offset_m
+
+    def pose_faults(self, ways):
+        if not np.all(np.isfinite(ways.offset_m)):
+            yield "an offset is not finite"
+
+
+class Sways:
+    """A TreePose: Bends for each level."""
+
+    def __init__(self, table):
+        self.levels = [Bends(table.Levels(i)) for i in range(table.LevelsLength())]
+
+
+class Tree:
+    """A TreeSkeleton: levels of strands that grow on the strands of earlier levels."""
+
+    class Level:
+        def __init__(self, table):
+            self.strands = Strands(table.Strands())
+            self.parent_level = table.ParentLevel()
+            self.parent = numbers(table.ParentAsNumpy()).astype(int)
+            self.parent_link = numbers(table.ParentLinkAsNumpy()).astype(int)
+            self.is_turned_by_block = table.IsTurnedByBlock()
+            self.is_leaves = table.IsLeaves()
+            self.radius_m = np.stack([numbers(table.BaseRadiusMAsNumpy()), numbers(table.TipRadiusMAsNumpy())])
+
+    def __init__(self, table):
+        self.levels = [Tree.Level(table.Levels(i)) for i in range(table.LevelsLength())]
+        self.nodes = sum(level.strands.nodes for level in self.levels)
+
+    def describe(self):
+        return "a tree of " + ", ".join(str(level.strands.count) for level in self.levels) + " strands"
+
+    def faults(self):
+        for number, level in enumerate(self.levels):
+            yield from level.strands.faults()
+            if level.radius_m.shape != (2, level.strands.count) or not np.all(level.radius_m >= 0.0):
+                yield "radii are missing or below 0"
+            if number == 0:
+                continue
+            if level.parent_level >= number or len(level.parent) != level.strands.count:
+                yield "a level does not grow on an earlier one"
+                continue
+            parents = self.levels[level.parent_level].strands
+            if not np.all((level.parent < parents.count) & (level.parent_link < parents.links)):
+                yield "a strand grows on a link that is not there"
+
+    def fits(self, sways):
+        return (
+            isinstance(sways, Sways)
+            and len(sways.levels) == len(self.levels)
+            and all(level.strands.fits(bends) for level, bends in zip(self.levels, sways.levels))
+        )
+
+    def points_m(self, sways):
+        """The tips of every level, one after the other."""
+        joints_m, turns = [], []
+        for number, (level, bends) in enumerate(zip(self.levels, sways.levels)):
+            if number == 0:
+                turns.append([])
+                joints_m.append(level.strands.joints_m(bends))
+                continue
+            # The turn of the link that each strand grows from; of the first strand of 16, where they share it.
+            parents, parent_bends = self.levels[level.parent_level].strands, sways.levels[level.parent_level]
+            strand = np.arange(level.strands.count)
+            of = strand // 16 * 16 if level.is_turned_by_block else strand
+            parent, link = level.parent[of], level.parent_link[of]
+            share_rad = (link + 1) / parents.links * parent_bends.angle_rad()[parent]
+            root_turns = [(axis[parent], angle[parent]) for axis, angle in turns[level.parent_level]]
+            root_turns.append((parent_bends.axis()[parent], share_rad))
+            turns.append(root_turns)
+            root_m = joints_m[level.parent_level][level.parent_link, level.parent]
+            joints_m.append(level.strands.joints_m(bends, root_m, root_turns))
+        return np.concatenate([level[-1] for level in joints_m])
+
+    def pose_faults(self, sways):
+        if not np.all(np.isfinite(self.points_m(sways))):
+            yield "a tip is not finite"
+
+
+class Displacements:
+    """A SurfacePose: how far each point is moved along its normal, in metres, and its colour on the ramp."""
+
+    def __init__(self, table):
+        self.displacement_m = table.StepM() * numbers(table.DisplacementAsNumpy())
+        self.heat = numbers(table.HeatAsNumpy()).astype(int)
+
+
+class Surface:
+    """A SurfaceSkeleton: points that move along their normals."""
+
+    def __init__(self, table):
+        self.columns, self.rows = table.Columns(), table.Rows()
+        self.rest_m = vectors(table.RestXMAsNumpy(), table.RestYMAsNumpy(), table.RestZMAsNumpy())
+        self.normal = vectors(table.NormalXAsNumpy(), table.NormalYAsNumpy(), table.NormalZAsNumpy())
+        self.ramp_rgba = numbers(table.RampRgbaAsNumpy()).reshape(-1, 4)
+        self.nodes = self.columns * self.rows
+
+    def describe(self):
+        return f"a surface of {self.columns} x {self.rows} points"
+
+    def faults(self):
+        if len(self.rest_m) != self.nodes or len(self.normal) != self.nodes:
+            yield "its arrays have not columns * rows points"
+        if not is_unit(self.normal):
+            yield "a normal is no unit vector"
+        if len(self.ramp_rgba) not in (0, 256):
+            yield f"the ramp has {len(self.ramp_rgba)} colours"
+
+    def fits(self, moved):
+        return (
+            isinstance(moved, Displacements)
+            and len(moved.displacement_m) == self.nodes
+            and len(moved.heat) == (self.nodes if len(self.ramp_rgba) else 0)
+        )
+
+    def points_m(self, moved):
+        """Every point, row after row."""
+        return self.rest_m + moved.displacement_m[:, None] * self.normal
+
+    def pose_faults(self, moved):
+        if not np.all(np.isfinite(moved.displacement_m)):
+            yield "a displacement is not finite"
 
 
 def read_scenes(table):
-    """The Scenes message as [(name, kind, Strands)]; None in place of strands of a kind that this client does not know."""
-    from yuragi.stream.Skeleton import Skeleton
-    from yuragi.stream.StrandSkeleton import StrandSkeleton
+    """The Scenes message as [(name, kind, model)]; None in place of a model of a kind that this client does not know."""
+    from yuragi.stream import GridSkeleton, Skeleton, StrandSkeleton, SurfaceSkeleton, TreeSkeleton
 
+    kinds = {
+        Skeleton.Skeleton.StrandSkeleton: (StrandSkeleton.StrandSkeleton, Strands),
+        Skeleton.Skeleton.GridSkeleton: (GridSkeleton.GridSkeleton, Cloth),
+        Skeleton.Skeleton.TreeSkeleton: (TreeSkeleton.TreeSkeleton, Tree),
+        Skeleton.Skeleton.SurfaceSkeleton: (SurfaceSkeleton.SurfaceSkeleton, Surface),
+    }
     scenes = []
     for i in range(table.ScenesLength()):
         scene = table.Scenes(i)
-        strands = None
-        if scene.SkeletonType() == Skeleton.StrandSkeleton:
-            skeleton = StrandSkeleton()
-            skeleton.Init(scene.Skeleton().Bytes, scene.Skeleton().Pos)
-            strands = Strands(skeleton)
-        scenes.append((scene.Name().decode(), scene.Kind().decode(), strands))
+        model = read_union(kinds, scene.SkeletonType(), scene.Skeleton())
+        scenes.append((scene.Name().decode(), scene.Kind().decode(), model))
     return scenes
 
 
-def read_bends(scene_pose):
-    """A ScenePose as (east, south) in radians, one value a strand; None for a kind that this client does not know."""
-    from yuragi.stream.Pose import Pose
-    from yuragi.stream.StrandPose import StrandPose
+def read_pose(scene_pose):
+    """A ScenePose as Bends, Ways, Sways or Displacements; None for a kind that this client does not know, and for a scene that
+    is hidden."""
+    from yuragi.stream import GridPose, Pose, StrandPose, SurfacePose, TreePose
 
-    if scene_pose.PoseType() != Pose.StrandPose:
+    kinds = {
+        Pose.Pose.StrandPose: (StrandPose.StrandPose, Bends),
+        Pose.Pose.GridPose: (GridPose.GridPose, Ways),
+        Pose.Pose.TreePose: (TreePose.TreePose, Sways),
+        Pose.Pose.SurfacePose: (SurfacePose.SurfacePose, Displacements),
+    }
+    return read_union(kinds, scene_pose.PoseType(), scene_pose.Pose())
+
+
+def read_union(kinds, kind, table):
+    """What `kinds` makes of the table in a union; None for a kind that is not among them."""
+    if kind not in kinds:
         return None
-    pose = StrandPose()
-    pose.Init(scene_pose.Pose().Bytes, scene_pose.Pose().Pos)
-    return pose.BendStepRad() * numbers(pose.BendEastAsNumpy()), pose.BendStepRad() * numbers(pose.BendSouthAsNumpy())
+    table_class, meaning = kinds[kind]
+    body = table_class()
+    body.Init(table.Bytes, table.Pos)
+    return meaning(body)
 
 
 # ---- What this program does with it ----
@@ -228,7 +475,8 @@ class Watcher:
         self.first = self.last = None  # (sequence, tick, time_s, when it arrived)
         self.first_bytes = 0
         self.wind = (0.0, 0.0)
-        self.bends = []
+        self.poses = []
+        self.opacities = []
 
     def expect(self, condition, problem):
         if self.check and not condition and len(self.problems) < 20:
@@ -244,15 +492,10 @@ class Watcher:
     def scenes_message(self, table):
         self.expect(self.scenes is None, "Scenes came twice")
         self.scenes = read_scenes(table)
-        for name, _, strands in self.scenes:
-            if strands is None or not self.check:
-                continue
-            across = np.abs(np.sum(strands.rest * strands.curl, axis=1))
-            self.expect(np.allclose(np.linalg.norm(strands.rest, axis=1), 1.0, atol=1e-3), f"{name}: rest is no unit vector")
-            self.expect(np.allclose(np.linalg.norm(strands.curl, axis=1), 1.0, atol=1e-3), f"{name}: curl is no unit vector")
-            self.expect(np.all(across < 1e-3), f"{name}: curl is not across rest")
-            self.expect(np.all(np.isfinite(strands.root_m)), f"{name}: a root is not finite")
-            self.expect(np.all(strands.link_length_m > 0.0), f"{name}: a link has no length")
+        for name, _, model in self.scenes:
+            if model is not None and self.check:
+                for fault in model.faults():
+                    self.expect(False, f"{name}: {fault}")
 
     def frame(self, frame, size, now_s):
         here = (frame.Sequence(), frame.Tick(), frame.TimeS(), now_s)
@@ -269,30 +512,32 @@ class Watcher:
         self.wind = (frame.Wind().UMS(), frame.Wind().VMS())
         self.expect(np.all(np.isfinite(self.wind)), "the wind is not finite")
 
-        # Dequantise every scene's bends. They pair with the skeletons of the Scenes message.
+        # Dequantise every scene's pose. They pair with the skeletons of the Scenes message.
         self.expect(self.scenes is not None, "a Frame came before Scenes")
         scenes = self.scenes or []
         self.expect(frame.ScenesLength() == len(scenes), f"{frame.ScenesLength()} poses for {len(scenes)} scenes")
-        self.bends = [read_bends(frame.Scenes(i)) for i in range(frame.ScenesLength())]
-        for (name, _, strands), bend in zip(scenes, self.bends):
-            if strands is None or bend is None:
+        self.poses = [read_pose(frame.Scenes(i)) for i in range(frame.ScenesLength())]
+        self.opacities = [frame.Scenes(i).Opacity() for i in range(frame.ScenesLength())]
+        for (name, _, model), pose, opacity in zip(scenes, self.poses, self.opacities):
+            self.expect(0.0 <= opacity <= 1.0, f"{name}: an opacity of {opacity}")
+            if model is None or pose is None:
+                self.expect(model is None or opacity == 0.0, f"{name}: is seen, and has no pose")
                 continue
-            self.expect(len(bend[0]) == len(bend[1]) == strands.count, f"{name}: pose and skeleton differ in length")
-            if len(bend[0]) == len(bend[1]) == strands.count > 0:
-                self.max_bend_rad = max(self.max_bend_rad, float(np.max(np.hypot(*bend))))
-                if self.check and self.frames % 60 == 1:
-                    self.check_tips(name, strands, bend)
+            self.expect(model.fits(pose), f"{name}: pose and skeleton differ in length")
+            if not model.fits(pose):
+                continue
+            for bends in pose.levels if isinstance(pose, Sways) else [pose] if isinstance(pose, Bends) else []:
+                self.max_bend_rad = max(self.max_bend_rad, float(np.max(bends.angle_rad(), initial=0.0)))
+            if self.check and self.frames % 60 == 1:
+                for fault in model.pose_faults(pose):
+                    self.expect(False, f"{name}: {fault}")
 
-    def check_tips(self, name, strands, bend):
-        reach_m = np.linalg.norm(strands.tips_m(*bend) - strands.root_m, axis=1)
-        self.expect(np.all(reach_m <= strands.links * strands.link_length_m * (1 + 1e-5)), f"{name}: a strand has stretched")
-
-    def tips_m(self):
-        """The tips of every known scene in the last frame: {name: array of (x, y, z)}."""
+    def points_m(self):
+        """The tips or points of every scene that is known and seen in the last frame: {name: array of (x, y, z)}."""
         return {
-            name: strands.tips_m(*bend)
-            for (name, _, strands), bend in zip(self.scenes, self.bends)
-            if strands is not None and bend is not None
+            name: model.points_m(pose)
+            for (name, _, model), pose in zip(self.scenes, self.poses)
+            if model is not None and pose is not None
         }
 
     def summary(self, subscribed_s):
@@ -302,7 +547,7 @@ class Watcher:
             rate_hz = (self.last[1] - self.first[1]) / stream_s
             self.expect(abs(rate_hz / self.tick_rate_hz - 1.0) < 0.01, f"ticks come at {rate_hz:.2f} Hz")
         latency_s = self.first[3] - subscribed_s if self.first else None
-        strands = [s for _, _, s in self.scenes or [] if s is not None]
+        models = [model for _, _, model in self.scenes or [] if model is not None]
         return {
             "frames": self.frames,
             "bytes": self.bytes,
@@ -313,8 +558,8 @@ class Watcher:
             "missed": self.missed,
             "max_bend_rad": self.max_bend_rad,
             "tick_rate_hz": self.tick_rate_hz,
-            "strands": sum(s.count for s in strands),
-            "nodes": sum(s.count * s.links for s in strands),
+            "strands": sum(model.count for model in models if isinstance(model, Strands)),
+            "nodes": sum(model.nodes for model in models),
             "wind_u_m_s": self.wind[0],
             "wind_v_m_s": self.wind[1],
             "problems": self.problems,
@@ -329,7 +574,7 @@ def parse_arguments():
     parser.add_argument("--frames", type=int, help="end after this many frames")
     parser.add_argument("--timeout", type=float, default=10.0, help="seconds without any message that end it (10)")
     parser.add_argument("--check", action="store_true", help="verify everything that the schema promises")
-    parser.add_argument("--tips", action="store_true", help="print the first tips of the last frame")
+    parser.add_argument("--tips", action="store_true", help="print the first tips or points of the last frame")
     parser.add_argument("--json", action="store_true", help="print a summary in JSON and nothing else")
     return parser.parse_args()
 
@@ -354,8 +599,8 @@ def main():
                 say(f"{table.Software().decode()}, {table.TickRateHz():g} Hz")
             elif kind == "Scenes":
                 watcher.scenes_message(table)
-                for name, scene_kind, strands in watcher.scenes:
-                    what = f"{strands.count} strands of {strands.links} links" if strands else "not known here"
+                for name, scene_kind, model in watcher.scenes:
+                    what = model.describe() if model else "not known here"
                     say(f"scene {name} ({scene_kind}): {what}")
             elif kind == "Frame":
                 watcher.frame(table, size, now_s)
@@ -381,7 +626,7 @@ def main():
         watcher.problems.append(ended_early)
     summary = watcher.summary(subscribed_s)
     if options.tips and watcher.scenes:
-        for name, tips_m in watcher.tips_m().items():
+        for name, tips_m in watcher.points_m().items():
             for tip_m in tips_m[:10]:
                 say(f"tip in {name}: x {tip_m[0]:+.4f} y {tip_m[1]:+.4f} z {tip_m[2]:+.4f} m")
     if options.json:

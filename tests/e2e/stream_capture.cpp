@@ -4,13 +4,16 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "engine/pose/point_kinematics.hpp"
 #include "engine/pose/strand_kinematics.hpp"
+#include "engine/pose/tree_kinematics.hpp"
 #include "engine/wire/wire.hpp"
 #include "tests/engine/wire/samples.hpp"
 
-// stream_capture FOLDER: writes stream.bin, a stream as it goes over the wire, and beside it tips.f32, the tips of the
-// last frame as our own kinematics has them: x, y, z (float, little-endian) of each strand, scene by scene.
-// stream_schema_test.py reads the first by the schema's comments alone, and compares.
+// stream_capture FOLDER: writes stream.bin, a stream as it goes over the wire, and beside it points.f32: x, y, z
+// (float, little-endian) of what our own kinematics makes of the last frame, scene by scene: the tips of strands and of
+// each level of a tree, all joints of a cloth, all points of a surface. stream_schema_test.py reads the first by the
+// schema's comments alone, and compares.
 
 namespace {
 
@@ -22,44 +25,80 @@ void write(const std::filesystem::path& file, const void* data, std::size_t size
   out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
 
+template <class Job>
+void run(const Job& job) {
+  if (job.run() != Job::Problem::kNone) throw std::logic_error("skeleton and pose do not fit");
+}
+
+void add_tips(const StrandSkeleton& skeleton, const JointPositions& joints, std::vector<JointPosition>& points) {
+  for (std::size_t strand = 0; strand < skeleton.strand_count; ++strand)
+    points.push_back(joints.joint(strand, skeleton.links_per_strand - 1));
+}
+
+/// What our own kinematics makes of a pose that a client decoded.
+void add_points(const Skeleton& skeleton, const Pose& pose, std::vector<JointPosition>& points) {
+  if (const auto* strands = std::get_if<StrandSkeleton>(&skeleton)) {
+    JointPositions joints(*strands);
+    run(StrandKinematicsJob{.skeleton = strands, .pose = &std::get<StrandPose>(pose), .row = {}, .joints = &joints});
+    add_tips(*strands, joints, points);
+  } else if (const auto* grid = std::get_if<GridSkeleton>(&skeleton)) {
+    PointPositions joints(*grid);
+    run(GridKinematicsJob{.skeleton = grid, .pose = &std::get<GridPose>(pose), .points = &joints});
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      if (i % grid->stride() < grid->columns) points.push_back(joints.point(i));
+  } else if (const auto* tree = std::get_if<TreeSkeleton>(&skeleton)) {
+    TreeJoints joints(*tree);
+    run(TreeKinematicsJob{.skeleton = tree, .pose = &std::get<TreePose>(pose), .row = {}, .joints = &joints});
+    for (std::size_t i = 0; i < tree->levels.size(); ++i) add_tips(tree->levels[i].strands, joints.level(i), points);
+  } else {
+    const auto& surface = std::get<SurfaceSkeleton>(skeleton);
+    PointPositions moved(surface);
+    run(SurfaceKinematicsJob{.skeleton = &surface, .pose = &std::get<SurfacePose>(pose), .points = &moved});
+    for (std::size_t i = 0; i < moved.size(); ++i) points.push_back(moved.point(i));
+  }
+}
+
 void capture(const std::filesystem::path& folder) {
+  // Two meadows, one scene of each kind, and a hidden one.
+  wire::Scenes scenes{{{"bank", "grass", samples::meadow(3, 1)}}};
+  for (const wire::SceneModel& scene : samples::all_kinds().scenes) scenes.scenes.push_back(scene);
+  scenes.scenes[1].skeleton = samples::meadow(1000);
+  scenes.scenes.push_back({"nobody's", "grass", samples::meadow(5)});
+  const std::vector<float> opacities{1.0f, 1.0f, 0.5f, 1.0f, 0.25f, 1.0f, 0.0f};
+
   // Hello, scenes, and frames with and without a bend.
-  const wire::Scenes scenes = samples::scenes(1000);
   wire::Bytes stream = wire::encode(wire::Hello{.software = "stream_capture", .tick_rate_hz = 60.0});
   const wire::Bytes scenes_message = wire::encode(scenes);
   stream.insert(stream.end(), scenes_message.begin(), scenes_message.end());
-  const Skeleton* skeletons[] = {&scenes.scenes[0].skeleton, &scenes.scenes[1].skeleton};
   wire::FrameEncoder encoder;
   wire::Bytes newest;
   for (std::uint64_t i = 0; i < 5; ++i) {
     const auto largest_rad = 0.5f * static_cast<float>(i);
-    const Pose meadow = samples::bent(1000, largest_rad);
-    const Pose bank = samples::bent(3, largest_rad);
-    const Pose* poses[] = {&meadow, &bank};
+    std::vector<Pose> moved{samples::bent(3, largest_rad)};
+    for (const Pose& pose : samples::all_moved()) moved.push_back(pose);
+    moved[1] = samples::bent(1000, largest_rad);
+    moved.emplace_back(samples::bent(5));
+    std::vector<const Skeleton*> skeletons;
+    std::vector<const Pose*> poses;
+    for (std::size_t scene = 0; scene < moved.size(); ++scene) {
+      skeletons.push_back(&scenes.scenes[scene].skeleton);
+      poses.push_back(&moved[scene]);
+    }
     wire::FrameInfo info = samples::frame_info();
     info.sequence = info.tick = i + 1;
     info.time_s = static_cast<double>(i + 1) / 60.0;
-    const auto bytes = encoder.encode(info, skeletons, poses);
+    const auto bytes = encoder.encode(info, skeletons, poses, opacities);
     newest.assign(bytes.begin(), bytes.end());
     stream.insert(stream.end(), newest.begin(), newest.end());
   }
 
-  // The tips of what a client decodes: the quantised pose, not the one that it was made of.
+  // The points of what a client decodes: the quantised pose, not the one that it was made of.
   const auto frame = std::get<wire::Frame>(wire::decode(samples::body(newest)).value());
-  std::vector<float> tips;
-  for (std::size_t i = 0; i < frame.poses.size(); ++i) {
-    const auto& skeleton = std::get<StrandSkeleton>(scenes.scenes[i].skeleton);
-    JointPositions joints(skeleton);
-    const StrandKinematicsJob job{
-        .skeleton = &skeleton, .pose = &std::get<StrandPose>(frame.poses[i]), .row = {}, .joints = &joints};
-    if (job.run() != StrandKinematicsJob::Problem::kNone) throw std::logic_error("skeleton and pose do not fit");
-    for (std::size_t strand = 0; strand < skeleton.strand_count; ++strand) {
-      const JointPosition tip = joints.joint(strand, skeleton.links_per_strand - 1);
-      tips.insert(tips.end(), {tip.x_m, tip.y_m, tip.z_m});
-    }
-  }
+  std::vector<JointPosition> points;
+  for (std::size_t i = 0; i < frame.poses.size(); ++i)
+    if (frame.opacities[i] > 0.0f) add_points(scenes.scenes[i].skeleton, frame.poses[i], points);
   write(folder / "stream.bin", stream.data(), stream.size());
-  write(folder / "tips.f32", tips.data(), tips.size() * sizeof(float));
+  write(folder / "points.f32", points.data(), points.size() * sizeof(JointPosition));
 }
 
 }  // namespace
