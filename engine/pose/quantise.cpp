@@ -32,9 +32,14 @@ constexpr std::size_t kExtentSamples = 16;  // along each side of a grid
 constexpr float kFinestStep_m = 1e-6F;
 constexpr float kCoarsestStep_m = 1.0F;
 
+constexpr float kReachOfCloth = 2.0F;  // as a part of the extent
+constexpr float kReachOfBody = 2.0F;
+constexpr float kReachOfOpenSurface = 0.25F;
+
 /// Of a grid of columns x rows points whose rows are `stride` apart.
 template <class Points>
-float way_step_of(const Points& points, std::size_t columns, std::size_t rows, std::size_t stride) noexcept {
+float way_step_of(const Points& points, std::size_t columns, std::size_t rows, std::size_t stride,
+                  float reach) noexcept {
   if (columns == 0 || rows == 0) return kFinestStep_m;
   float square_m2 = 0.0F;
   for (const auto* axis : {&points.rest_x_m, &points.rest_y_m, &points.rest_z_m}) {
@@ -50,7 +55,7 @@ float way_step_of(const Points& points, std::size_t columns, std::size_t rows, s
     }
     square_m2 += (most_m - least_m) * (most_m - least_m);
   }
-  return std::clamp(2.0F * std::sqrt(square_m2) / kLargestUnit, kFinestStep_m, kCoarsestStep_m);
+  return std::clamp(reach * std::sqrt(square_m2) / kLargestUnit, kFinestStep_m, kCoarsestStep_m);
 }
 
 }  // namespace
@@ -74,11 +79,12 @@ void quantise_heat(std::span<const float> heat, std::span<std::uint8_t> units) n
 }
 
 float way_step_m(const GridSkeleton& grid) noexcept {
-  return way_step_of(grid, grid.columns, grid.rows, grid.stride());
+  return way_step_of(grid, grid.columns, grid.rows, grid.stride(), kReachOfCloth);
 }
 
 float way_step_m(const SurfaceSkeleton& surface) noexcept {
-  return way_step_of(surface, surface.columns, surface.rows, surface.columns);
+  return way_step_of(surface, surface.columns, surface.rows, surface.columns,
+                     surface.is_closed ? kReachOfBody : kReachOfOpenSurface);
 }
 
 }  // namespace yuragi

@@ -25,9 +25,11 @@ void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::in
 /// yes.
 void quantise_heat(std::span<const float> heat, std::span<std::uint8_t> units) noexcept;
 
-/// What one unit of a way is worth, for a skeleton: ways up to twice its extent at rest fit in, so that a cloth of 2 m
-/// by 2 m is within 0.09 mm. The extent is the diagonal of a box around some of its points, the corners among them; it
-/// takes as long for every size. Thread-safe and realtime-safe: yes.
+/// What one unit of a way is worth, for a skeleton. Ways have room up to a multiple of its extent at rest: twice for a
+/// cloth (one of 2 m by 2 m is within 0.09 mm) and for a closed surface, which may lean; a quarter for an open one,
+/// where small waves glitter (8 m by 8 m of water are within 0.05 mm). The extent is the diagonal of a box around some
+/// of its points, the corners among them, so that this takes as long for every size. Thread-safe and realtime-safe:
+/// yes.
 float way_step_m(const GridSkeleton& grid) noexcept;
 float way_step_m(const SurfaceSkeleton& surface) noexcept;
 

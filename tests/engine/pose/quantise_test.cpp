@@ -118,6 +118,16 @@ TEST(QuantiseTest, AClothOfTwoMetresIsWithinATenthOfAMillimetre) {
   EXPECT_LE(step_m / 2.0F, 0.0001F);
   EXPECT_GE(step_m * 32767.0F, 2.0F * std::sqrt(8.0F) * 0.9999F) << "twice its diagonal fits in, and so every fold";
   EXPECT_GT(way_step_m(GridSkeleton{}), 0.0F);
+
+  SurfaceSkeleton water;
+  water.columns = water.rows = 2;
+  water.rest_x_m = {-4.0F, 4.0F, -4.0F, 4.0F};
+  water.rest_y_m = {0.0F, 0.0F, 0.0F, 0.0F};
+  water.rest_z_m = {-4.0F, -4.0F, 4.0F, 4.0F};
+  EXPECT_LE(way_step_m(water) / 2.0F, 0.00005F);
+  water.is_closed = true;
+  EXPECT_GE(way_step_m(water) * 32767.0F, 16.0F) << "a flame may lean by more than its height";
+
   SurfaceSkeleton point;
   point.columns = point.rows = 1;
   point.rest_x_m = point.rest_y_m = point.rest_z_m = {1.0F};
