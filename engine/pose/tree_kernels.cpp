@@ -150,24 +150,28 @@ void carry(const TreeKernelArguments& arguments) noexcept {
     }
 
     const std::size_t each = in.turn.strands_per_turn;
+    Rotation r = {};
     for (std::size_t i = begin; i < begin + kBlock; i += kLaneCount) {
       const std::size_t strand = first_strand + i;
-      const Rotation r = rotation(turn_part(in.turn.w, each, strand), turn_part(in.turn.x, each, strand),
-                                  turn_part(in.turn.y, each, strand), turn_part(in.turn.z, each, strand));
+      if (each == 1 || i == begin) {  // else it is that of the whole block
+        r = rotation(turn_part(in.turn.w, each, strand), turn_part(in.turn.x, each, strand),
+                     turn_part(in.turn.y, each, strand), turn_part(in.turn.z, each, strand));
+      }
       rotate(r, in.rest, strand, in.carried_rest, i);
       rotate(r, in.curl, strand, in.carried_curl, i);
     }
   }
 }
 
-std::uint32_t largest(const std::uint32_t* numbers, std::size_t count) noexcept {
-  std::uint32_t largest_yet = 0;
-  for (std::size_t i = 0; i < count; ++i) largest_yet = numbers[i] > largest_yet ? numbers[i] : largest_yet;
-  return largest_yet;
+bool all_below(const std::uint32_t* numbers, std::size_t count, std::uint32_t limit) noexcept {
+  // A number that is not has the highest bit, or gives it to the difference.
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < count; ++i) bits |= numbers[i] | (limit - 1 - numbers[i]);
+  return bits >> 31U == 0;
 }
 
 }  // namespace
 
-const TreeKernels YURAGI_ROW_NAME(tree_kernels) = {largest, turn, carry};
+const TreeKernels YURAGI_ROW_NAME(tree_kernels) = {all_below, turn, carry};
 
 }  // namespace yuragi

@@ -40,8 +40,8 @@ struct TreeKernelArguments {
 };
 
 struct TreeKernels {
-  /// The largest of many numbers; 0 of none.
-  std::uint32_t (*largest)(const std::uint32_t* numbers, std::size_t count) noexcept;
+  /// Are all of these numbers below `limit`, which is at most 2^31?
+  bool (*all_below)(const std::uint32_t* numbers, std::size_t count, std::uint32_t limit) noexcept;
   /// Parent's turn and bend -> `turn`, for all strands.
   void (*turn)(const TreeKernelArguments&) noexcept;
   /// `turn`, rest, curl and the parent's joints -> what is `carried_`, for some blocks.

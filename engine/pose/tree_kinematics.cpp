@@ -36,8 +36,10 @@ bool has_its_parents(const TreeSkeleton& tree, std::size_t index, const TreeKern
   if (level.parent_level >= index || level.parent.size() != count || level.parent_link.size() != count) return false;
   const StrandSkeleton& parents = tree.levels[level.parent_level].strands;
   if (parents.padded_count() > kMostNumbers / 3 / parents.links_per_strand) return false;
-  return count == 0 || (kernels.largest(level.parent.data(), count) < parents.padded_count() &&
-                        kernels.largest(level.parent_link.data(), count) < parents.links_per_strand);
+  const auto all_below = [&](const std::vector<std::uint32_t>& numbers, std::size_t limit) {
+    return kernels.all_below(numbers.data(), count, static_cast<std::uint32_t>(limit));
+  };
+  return all_below(level.parent, parents.padded_count()) && all_below(level.parent_link, parents.links_per_strand);
 }
 
 /// The same problem in the tree's terms.
