@@ -143,7 +143,7 @@ void carry(const TreeKernelArguments& arguments) noexcept {
       at[i] = (parent / kBlock * parent_links + link) * (3 * kBlock) + parent % kBlock;
     }
     for (std::size_t i = 0; i < kBlock; ++i) {
-      const float* const joint = in.parent_joints_m + at[i];
+      const float* const joint = in.parent_joints_m + std::size_t{at[i]};
       root_x_m[begin + i] = joint[0];
       root_y_m[begin + i] = joint[kBlock];
       root_z_m[begin + i] = joint[2 * kBlock];
