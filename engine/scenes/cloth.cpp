@@ -12,9 +12,12 @@
 
 // The bound of largest_joint_step_m, for any wind whatever. A sway that stays within S changes by at most 2 S w / e in
 // a second (follow_job.hpp), a wave that stays within W by 2 W w / e; what is read from its history does not change
-// faster (propagation_history.hpp), and link i takes growth_i of it. A lean that changes by d turns its link by at most
-// 2 d (lean.hpp), and a joint moves by no more than the links before it together: length * 2 * dt * (2 w / e) * (S + W
-// mean growth). And never by more than from one end of its reach to the other, twice the length.
+// faster (propagation_history.hpp), and link i takes growth_i of it. The hybrid's leans are two numbers that change by
+// at most R a second each (cloth_dynamics.hpp), and a spline through them does not change faster; they count by h, and
+// the sway then by 1 - h. A lean that changes by d turns its link by at most 2 d (lean.hpp), and a joint moves by no
+// more than the links before it together:
+//   2 length dt ((2 w / e) ((1 - h) S + W mean growth) + h sqrt(2) R).
+// And never by more than from one end of its reach to the other, twice the length.
 
 namespace yuragi {
 namespace {

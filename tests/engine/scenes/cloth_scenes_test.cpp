@@ -34,11 +34,11 @@ const GridPose& offsets_of(const Scene& scene) {
   return std::get<GridPose>(scene.pose());
 }
 
-WindVector blowing(double azimuth_deg, double speed_m_s) {
+WindVector cloth_wind(double azimuth_deg, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_deg * kRadPerDeg), speed_m_s * std::cos(azimuth_deg * kRadPerDeg)};
 }
 
-void blow(Scene& scene, WindVector wind, int ticks) {
+void blow_on(Scene& scene, WindVector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kClothTick_s);
 }
 
@@ -119,11 +119,11 @@ TEST_P(ClothScene, CalmIsExactlyTheRestPoseAndComesBackAfterAStorm) {
     }
     return same;
   };
-  blow(*scene, {}, 100);
+  blow_on(*scene, {}, 100);
   EXPECT_TRUE(is_at_rest());
-  blow(*scene, blowing(70.0, 20.0), 100);
+  blow_on(*scene, cloth_wind(70.0, 20.0), 100);
   EXPECT_FALSE(is_at_rest());
-  blow(*scene, {}, 900);
+  blow_on(*scene, {}, 900);
   EXPECT_TRUE(is_at_rest());
 }
 
@@ -131,7 +131,7 @@ TEST_P(ClothScene, ThreadsKeepTheirLengthAndFixedEdgesDoNotMove) {
   const auto scene = cloth(*GetParam());
   const GridSkeleton& grid = grid_of(*scene);
   for (int storm = 0; storm < 6; ++storm) {
-    blow(*scene, blowing(80.0 * storm, 12.0 * storm), 40);
+    blow_on(*scene, cloth_wind(80.0 * storm, 12.0 * storm), 40);
     for (std::size_t column = 0; column < grid.columns; ++column) {
       EXPECT_EQ(offset_at(*scene, column, 0).length(), 0.0);
       double length_m = 0.0;
@@ -151,11 +151,11 @@ TEST_P(ClothScene, MovesMoreTowardTheFreeEdge) {
   const auto scene = cloth(*GetParam());
   const GridSkeleton& grid = grid_of(*scene);
   const std::size_t column = grid.columns - 1;
-  blow(*scene, blowing(30.0, 8.0), 200);
+  blow_on(*scene, cloth_wind(30.0, 8.0), 200);
   std::vector<double> sum(10), square(10);
   constexpr int kTicks = 1200;
   for (int tick = 0; tick < kTicks; ++tick) {
-    scene->tick(blowing(30.0, 8.0), kClothTick_s);
+    scene->tick(cloth_wind(30.0, 8.0), kClothTick_s);
     for (std::size_t i = 0; i < 10; ++i) {
       const double z_m = offset_at(*scene, column, (i + 1) * (grid.rows - 1) / 10).z;
       sum[i] += z_m / kTicks;
@@ -171,8 +171,8 @@ TEST_P(ClothScene, MovesMoreInAStrongerWindAndSaturates) {
   std::vector<double> reach_m;
   for (const double speed_m_s : {1.0, 2.5, 5.0, 40.0, 1e6}) {
     const auto scene = cloth(*GetParam(), {{"max_flutter", 0.0}});
-    blow(*scene, blowing(0.0, speed_m_s), 200);
-    reach_m.push_back(mean_free_edge(*scene, blowing(0.0, speed_m_s), 1000).length());
+    blow_on(*scene, cloth_wind(0.0, speed_m_s), 200);
+    reach_m.push_back(mean_free_edge(*scene, cloth_wind(0.0, speed_m_s), 1000).length());
   }
   for (std::size_t i = 1; i < 3; ++i) EXPECT_GT(reach_m[i], 1.2 * reach_m[i - 1]) << i;
   EXPECT_LT(std::abs(reach_m[4] - reach_m[3]), 0.25 * reach_m[3]);
@@ -182,15 +182,15 @@ TEST_P(ClothScene, ATurnedWindTurnsTheResponse) {
   // The whole scene turned with the wind moves as before, turned.
   const auto scene = cloth(*GetParam(), {{"max_flutter", 0.0}});
   const auto turned = cloth(*GetParam(), {{"max_flutter", 0.0}}, {.heading_deg = 90.0});
-  const Place mean = mean_free_edge(*scene, blowing(20.0, 6.0), 1500);
-  const Place turned_mean = mean_free_edge(*turned, blowing(110.0, 6.0), 1500);
+  const Place mean = mean_free_edge(*scene, cloth_wind(20.0, 6.0), 1500);
+  const Place turned_mean = mean_free_edge(*turned, cloth_wind(110.0, 6.0), 1500);
   EXPECT_NEAR(turned_mean.x, -mean.z, 0.15 * mean.length());
   EXPECT_NEAR(turned_mean.z, mean.x, 0.15 * mean.length());
   EXPECT_NEAR(turned_mean.y, mean.y, 0.15 * mean.length());
 
   // A wind from the other side blows it to the other side.
   const auto reversed = cloth(*GetParam(), {{"max_flutter", 0.0}});
-  const Place reversed_mean = mean_free_edge(*reversed, blowing(200.0, 6.0), 1500);
+  const Place reversed_mean = mean_free_edge(*reversed, cloth_wind(200.0, 6.0), 1500);
   EXPECT_LT(reversed_mean.z * mean.z, 0.0);
 }
 
@@ -200,8 +200,8 @@ TEST_P(ClothScene, TheNoiseComesToTheFreeEdgeATravelTimeAfterItLeftTheFixedOne) 
   const std::size_t column = grid.columns - 1;
   const std::size_t early = grid.rows / 5;
   const std::size_t late = grid.rows - 2;
-  const WindVector wind = blowing(90.0, 6.0);  // along the cloth, so that it does not sway across
-  blow(*scene, wind, 200);
+  const WindVector wind = cloth_wind(90.0, 6.0);  // along the cloth, so that it does not sway across
+  blow_on(*scene, wind, 200);
   std::vector<double> early_m, late_m;
   for (int tick = 0; tick < 3000; ++tick) {
     scene->tick(wind, kClothTick_s);
@@ -216,7 +216,7 @@ TEST_P(ClothScene, HybridZeroIsTheNoiseAloneBitForBitAndMoreIsNot) {
   const auto noise = cloth(*GetParam());
   const auto zero = cloth(*GetParam(), {{"hybrid", 0.0}});
   const auto half = cloth(*GetParam(), {{"hybrid", 0.5}});
-  for (Scene* each : {noise.get(), zero.get(), half.get()}) blow(*each, blowing(40.0, 7.0), 60);
+  for (Scene* each : {noise.get(), zero.get(), half.get()}) blow_on(*each, cloth_wind(40.0, 7.0), 60);
   EXPECT_EQ(bits_of(offsets_of(*zero).offset_z_m), bits_of(offsets_of(*noise).offset_z_m));
   EXPECT_NE(bits_of(offsets_of(*half).offset_z_m), bits_of(offsets_of(*noise).offset_z_m));
 }
@@ -225,14 +225,14 @@ TEST_P(ClothScene, TheHybridKeepsWhatTheNoiseKeeps) {
   const auto scene = cloth(*GetParam(), {{"hybrid", 1.0}});
   const GridSkeleton& grid = grid_of(*scene);
   const double bound_m = scene->largest_joint_step_m(kClothTick_s);
-  blow(*scene, {}, 100);
+  blow_on(*scene, {}, 100);
   for (const float offset_m : offsets_of(*scene).offset_z_m) ASSERT_EQ(offset_m, 0.0F);
 
   // Steps, gaps, reversals: threads keep their length, fixed edges stay, and no joint moves beyond the bound.
   GridPose before = offsets_of(*scene);
   for (int tick = 0; tick < 400; ++tick) {
     const double speed_m_s = tick % 70 < 50 ? 10.0 * (tick / 70) : 0.0;
-    scene->tick(blowing(tick / 35 % 2 == 0 ? 30.0 : 200.0, speed_m_s), kClothTick_s);
+    scene->tick(cloth_wind(tick / 35 % 2 == 0 ? 30.0 : 200.0, speed_m_s), kClothTick_s);
     const GridPose& now = offsets_of(*scene);
     for (std::size_t i = 0; i < now.offset_x_m.size(); ++i) {
       const double x = static_cast<double>(now.offset_x_m[i] - before.offset_x_m[i]);
@@ -263,7 +263,7 @@ TEST_P(ClothScene, EveryRowComputesTheSameBitsNoiseAndHybrid) {
       if (!is_runnable(row)) continue;
       const auto values = ParameterValues::resolve(GetParam()->parameters, {{"hybrid", hybrid}}).value();
       const auto scene = GetParam()->make(values, {.seed = 1, .row = row});
-      blow(*scene, blowing(250.0, 9.0), 100);
+      blow_on(*scene, cloth_wind(250.0, 9.0), 100);
       const auto bits = bits_of(offsets_of(*scene).offset_x_m);
       if (base.empty()) base = bits;
       EXPECT_EQ(bits, base) << name_of(row);
@@ -284,8 +284,8 @@ TEST(CurtainTest, AWindAlongTheCurtainRunsAlongIt) {
   const double way_m = (rest_at(*scene, 150, 0) - rest_at(*scene, 100, 0)).x;
   for (const double speed_m_s : {3.0, 6.0}) {
     for (const double azimuth_deg : {90.0, 270.0}) {  // toward east, and back
-      const WindVector wind = blowing(azimuth_deg, speed_m_s);
-      blow(*scene, wind, 200);
+      const WindVector wind = cloth_wind(azimuth_deg, speed_m_s);
+      blow_on(*scene, wind, 200);
       std::vector<double> west_m, east_m;
       for (int tick = 0; tick < 3000; ++tick) {
         scene->tick(wind, kClothTick_s);
@@ -305,10 +305,10 @@ TEST(FlagTest, HangsLimpInCalmAirAndFliesDownwind) {
   const auto fly = [&] { return place_at(*scene, middle, grid.rows - 1) - rest_at(*scene, middle, 0); };
   EXPECT_LT(fly().y, -0.9 * 1.8);
   for (double azimuth_deg = 0.0; azimuth_deg < 360.0; azimuth_deg += 45.0) {
-    blow(*scene, blowing(azimuth_deg, 12.0), 120);
+    blow_on(*scene, cloth_wind(azimuth_deg, 12.0), 120);
     Place mean;
     for (int tick = 0; tick < 600; ++tick) {
-      scene->tick(blowing(azimuth_deg, 12.0), kClothTick_s);
+      scene->tick(cloth_wind(azimuth_deg, 12.0), kClothTick_s);
       mean = {mean.x + fly().x / 600.0, mean.y + fly().y / 600.0, mean.z + fly().z / 600.0};
     }
     const double downwind_m = mean.x * std::sin(azimuth_deg * kRadPerDeg) - mean.z * std::cos(azimuth_deg * kRadPerDeg);
