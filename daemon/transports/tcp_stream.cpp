@@ -171,8 +171,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish->protocol != wire::kProtocol) return end("it speaks protocol " + std::to_string(wish->protocol));
 
     client_name_ = "(" + wish->client + ")";
-    spdlog::info("client {} {} subscribes to{}{}", peer_, client_name_, wish->poses ? " poses" : "",
-                 wish->sensors ? " sensors" : "");
+    spdlog::info("client {} {} subscribes to{}{}{}", peer_, client_name_, wish->poses ? " poses" : "",
+                 wish->sensors ? " sensors" : "", wish->poses || wish->sensors ? "" : " nothing");
     queue_.subscribe(wish->poses, wish->sensors, feed_->scenes, feed_->newest_frame, feed_->newest_sensors);
     write();
     read_prefix();  // tells when it closes the connection
