@@ -146,7 +146,7 @@ void carry(const TreeKernelArguments& arguments) noexcept {
       const float* const joint = in.parent_joints_m + std::size_t{at[i]};
       root_x_m[begin + i] = joint[0];
       root_y_m[begin + i] = joint[kBlock];
-      root_z_m[begin + i] = joint[2 * kBlock];
+      root_z_m[begin + i] = joint[std::size_t{2} * kBlock];
     }
 
     const std::size_t each = in.turn.strands_per_turn;
