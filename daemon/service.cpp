@@ -6,6 +6,7 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -74,12 +75,23 @@ class Service::Io {
   }
 
  private:
+  /// The stream's limits hold for all scenes together: better no start than clients that refuse what they get.
+  static void refuse_what_no_client_takes(const wire::Scenes& scenes) {
+    const wire::Bytes message = wire::encode(scenes);
+    if (wire::decode(std::span(message).subspan(wire::kSizePrefixBytes))) return;
+    throw ConfigError(
+        fmt::format("[[scene]]: the scenes are more than a client takes; allowed in all: {} scenes, {} strands, "
+                    "joints of cloth and points of surfaces",
+                    wire::kMaxScenes, wire::kMaxStrands));
+  }
+
   TcpStreamSettings stream_settings(const Config& config) {
     TcpStreamSettings settings;
     settings.hello.software = kSoftware;
     settings.hello.tick_rate_hz = rate_hz_;
     if (animation_) {
       settings.scenes = animation_->describe();
+      refuse_what_no_client_takes(settings.scenes);
       settings.on_control = [this](const wire::Control& wish, bool is_local) {
         return director_.answer(wish, is_local);
       };

@@ -87,7 +87,7 @@ Result<void, Failure> WindlogWriter::prepare_file() {
       !done) {
     return done;
   }
-  if (const auto done =
+  if (auto done =
           prepare(insert_sensor_, "INSERT INTO sensor (session, name, driver, options) VALUES (?1, ?2, ?3, ?4)");
       !done) {
     return done;

@@ -25,7 +25,7 @@ NoiseTile2 without_waves_from(double end, const NoiseTile2& base, RealFft& fft) 
   fft.forward();
   const std::size_t columns = fft.row_modes();
   for (std::size_t i = 0; i < fft.spectrum().size(); ++i) {
-    const std::size_t row = i / columns;
+    const std::size_t row = i / columns;  // of the spectrum
     const auto wave_z = static_cast<double>(spectrum_row(row, base.size, 2).wave_z);
     fft.spectrum()[i] *= passed(std::hypot(static_cast<double>(i % columns), wave_z), end);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace yuragi {
 
@@ -19,7 +20,8 @@ void PropagationHistory::push(std::span<const float> values, double dt_s) noexce
   const double step = dt_s * kSampleRate_hz;
   const double due = std::floor(phase_ + step);
   const double first = std::max(1.0, due - static_cast<double>(count_) + 1.0);
-  for (double number = first; number <= due; number += 1.0) {
+  for (std::int64_t ahead = 0; first + static_cast<double>(ahead) <= due; ++ahead) {
+    const double number = first + static_cast<double>(ahead);
     const auto part = static_cast<float>(std::clamp((number - phase_) / step, 0.0, 1.0));
     latest_ = (latest_ + count_ - 1) % count_;
     float* const row = samples_.data() + sample(0);

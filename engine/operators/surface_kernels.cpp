@@ -1,5 +1,8 @@
 #include "engine/operators/surface_kernels.hpp"
 
+#include <cstddef>
+#include <cstdint>
+
 #include "engine/base/kernel.hpp"
 
 namespace yuragi {
@@ -24,8 +27,9 @@ void threshold_ramp(const ThresholdRampArguments& arguments) noexcept {
 void map_colors(const ColorMapArguments& arguments) noexcept {
   const ColorMapArguments in = arguments;
   for (std::size_t i = 0; i < in.count; ++i) {
-    const auto color = static_cast<std::int32_t>(from_0_to_1(in.level[i]) * 255.0F + 0.5F);
-    __builtin_memcpy(in.out + 4 * i, in.ramp_rgba + 4 * color, 4);
+    const float nearest = from_0_to_1(in.level[i]) * 255.0F + 0.5F;  // of colours 0 to 255, once cut to a whole number
+    const auto color = static_cast<std::int32_t>(nearest);
+    __builtin_memcpy(in.out + 4 * i, in.ramp_rgba + std::ptrdiff_t{4} * color, 4);
   }
 }
 

@@ -113,8 +113,9 @@ Cloth::Cloth(const ClothSpec& spec, const ClothEdge& edge, SimdRow row)
 void Cloth::blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept {
   if (!(spec_.hybrid > 0.0)) return;
   const std::size_t columns = std::get_if<GridSkeleton>(&skeleton_)->columns;
+  const std::size_t last = std::max<std::size_t>(coarse_.columns(), 2) - 1;
   for (std::size_t i = 0; i < air_east_m_s_.size(); ++i) {
-    const std::size_t column = std::min(i, coarse_.columns() - 1) * (columns - 1) / (coarse_.columns() - 1);
+    const std::size_t column = std::min(i, last) * (columns - 1) / last;
     const auto gust = static_cast<double>(gusts[column]);
     const double along = 1.0 + kGustAlong * gust;
     const double aside = kGustAside * gust;

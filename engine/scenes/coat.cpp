@@ -9,6 +9,7 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/noise/spectral_noise.hpp"
+#include "engine/scenes/blank_strands.hpp"
 
 namespace yuragi {
 namespace {
@@ -41,20 +42,6 @@ NoiseTile2 coat_noise(const CoatSpec& spec, std::string_view property) {
                         .meaning = BetaMeaning::kRadial,
                         .seed = spec.seed ^ stream_id(property)})
       .value();
-}
-
-/// What is behind the last strand points up and has no length.
-StrandSkeleton blank_strands(std::size_t strands, std::size_t links) {
-  StrandSkeleton skeleton;
-  skeleton.strand_count = strands;
-  skeleton.links_per_strand = links;
-  for (auto* zeros : {&skeleton.root_x_m, &skeleton.root_y_m, &skeleton.root_z_m, &skeleton.rest_x, &skeleton.rest_z,
-                      &skeleton.curl_y, &skeleton.curl_z, &skeleton.rest_curl_rad, &skeleton.link_length_m}) {
-    zeros->assign(skeleton.padded_count(), 0.0F);
-  }
-  skeleton.rest_y.assign(skeleton.padded_count(), 1.0F);
-  skeleton.curl_x.assign(skeleton.padded_count(), 1.0F);
-  return skeleton;
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ std::vector<std::uint8_t> flame_ramp() {
     const double part = (at - below.at) / (above.at - below.at);
     for (std::size_t channel = 0; channel < 4; ++channel) {
       const double value = below.rgba[channel] + part * (above.rgba[channel] - below.rgba[channel]);
-      ramp.push_back(static_cast<std::uint8_t>(value + 0.5));
+      ramp.push_back(static_cast<std::uint8_t>(std::lround(value)));
     }
   }
   return ramp;

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "engine/math/philox.hpp"
-#include "engine/pose/pose_arrays.hpp"
 #include "engine/scenes/coat.hpp"
 #include "engine/scenes/placement.hpp"
 #include "engine/scenes/scene.hpp"
@@ -62,32 +61,11 @@ Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
   return coat;
 }
 
-class Fur final : public Scene {
- public:
-  Fur(const ParameterValues& values, const SceneSetup& setup) : Fur(placed_coat(values, setup), values, setup) {}
-
-  const Skeleton& skeleton() const noexcept override { return skeleton_; }
-  const Pose& pose() const noexcept override { return pose_; }
-  void shift(WindVector wind, double dt_s) noexcept override { sway_.shift(wind, dt_s); }
-  void sample() noexcept override { sway_.sample({}); }
-  void project(double dt_s) noexcept override { project_part({}, dt_s); }
-  void sample_part(Part part) noexcept override { sway_.sample(part); }
-  void project_part(Part part, double dt_s) noexcept override {
-    sway_.project(part, dt_s, *std::get_if<StrandPose>(&pose_));
-  }
-  double largest_joint_step_m(double dt_s) const noexcept override { return sway_.largest_joint_step_m(dt_s); }
-
- private:
-  Fur(Coat coat, const ParameterValues& values, const SceneSetup& setup)
-      : sway_(coat.skeleton, coat.place_x_m, coat.place_z_m, std::move(coat.flexibility),
-              strand_sway_spec(values, setup.seed ^ stream_id("wind in the fur")), setup.row),
-        skeleton_(std::move(coat.skeleton)),
-        pose_(rest_pose(skeleton_)) {}
-
-  StrandSway sway_;
-  Skeleton skeleton_;
-  Pose pose_;
-};
+std::unique_ptr<Scene> make_fur(const ParameterValues& values, const SceneSetup& setup) {
+  Coat coat = placed_coat(values, setup);
+  return std::make_unique<StrandSway>(coat.skeleton, coat.place_x_m, coat.place_z_m, std::move(coat.flexibility),
+                                      strand_sway_spec(values, setup.seed ^ stream_id("wind in the fur")), setup.row);
+}
 
 }  // namespace
 
@@ -95,8 +73,6 @@ extern const SceneDescription kFurScene;
 const SceneDescription kFurScene = {.name = "fur",
                                     .summary = "a coat on a curved body: the wind parts it and strokes over it",
                                     .parameters = kFurParameters,
-                                    .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                      return std::unique_ptr<Scene>(std::make_unique<Fur>(values, setup));
-                                    }};
+                                    .make = make_fur};
 
 }  // namespace yuragi

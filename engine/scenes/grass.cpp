@@ -1,9 +1,9 @@
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/math/philox.hpp"
-#include "engine/pose/pose_arrays.hpp"
 #include "engine/scenes/meadow.hpp"
 #include "engine/scenes/placement.hpp"
 #include "engine/scenes/scene.hpp"
@@ -59,32 +59,12 @@ Meadow placed_meadow(const ParameterValues& values, const SceneSetup& setup) {
   return meadow;
 }
 
-class Grass final : public Scene {
- public:
-  Grass(const ParameterValues& values, const SceneSetup& setup) : Grass(placed_meadow(values, setup), values, setup) {}
-
-  const Skeleton& skeleton() const noexcept override { return skeleton_; }
-  const Pose& pose() const noexcept override { return pose_; }
-  void shift(WindVector wind, double dt_s) noexcept override { sway_.shift(wind, dt_s); }
-  void sample() noexcept override { sway_.sample({}); }
-  void project(double dt_s) noexcept override { project_part({}, dt_s); }
-  void sample_part(Part part) noexcept override { sway_.sample(part); }
-  void project_part(Part part, double dt_s) noexcept override {
-    sway_.project(part, dt_s, *std::get_if<StrandPose>(&pose_));
-  }
-  double largest_joint_step_m(double dt_s) const noexcept override { return sway_.largest_joint_step_m(dt_s); }
-
- private:
-  Grass(Meadow meadow, const ParameterValues& values, const SceneSetup& setup)
-      : sway_(meadow.skeleton, meadow.skeleton.root_x_m, meadow.skeleton.root_z_m, std::move(meadow.flexibility),
-              strand_sway_spec(values, setup.seed ^ stream_id("grass wind on the ground")), setup.row),
-        skeleton_(std::move(meadow.skeleton)),
-        pose_(rest_pose(skeleton_)) {}
-
-  StrandSway sway_;
-  Skeleton skeleton_;
-  Pose pose_;
-};
+std::unique_ptr<Scene> make_grass(const ParameterValues& values, const SceneSetup& setup) {
+  Meadow meadow = placed_meadow(values, setup);
+  return std::make_unique<StrandSway>(
+      meadow.skeleton, meadow.skeleton.root_x_m, meadow.skeleton.root_z_m, std::move(meadow.flexibility),
+      strand_sway_spec(values, setup.seed ^ stream_id("grass wind on the ground")), setup.row);
+}
 
 }  // namespace
 
@@ -92,8 +72,6 @@ extern const SceneDescription kGrassScene;
 const SceneDescription kGrassScene = {.name = "grass",
                                       .summary = "a meadow in the wind: blades bend as gusts pass over them",
                                       .parameters = kGrassParameters,
-                                      .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                        return std::unique_ptr<Scene>(std::make_unique<Grass>(values, setup));
-                                      }};
+                                      .make = make_grass};
 
 }  // namespace yuragi

@@ -8,6 +8,7 @@
 #include "engine/math/philox.hpp"
 #include "engine/math/trig.hpp"
 #include "engine/noise/spectral_noise.hpp"
+#include "engine/scenes/blank_strands.hpp"
 
 namespace yuragi {
 namespace {
@@ -25,20 +26,6 @@ NoiseTile2 layout_noise(const MeadowSpec& spec, std::string_view property) {
       .value();
 }
 
-/// All arrays of a skeleton at their padded size; what is behind the last strand stands upright and has no length.
-StrandSkeleton empty_skeleton(std::size_t strands, std::size_t links) {
-  StrandSkeleton skeleton;
-  skeleton.strand_count = strands;
-  skeleton.links_per_strand = links;
-  for (auto* zeros : {&skeleton.root_x_m, &skeleton.root_y_m, &skeleton.root_z_m, &skeleton.rest_x, &skeleton.rest_z,
-                      &skeleton.curl_y, &skeleton.curl_z, &skeleton.rest_curl_rad, &skeleton.link_length_m}) {
-    zeros->assign(skeleton.padded_count(), 0.0F);
-  }
-  skeleton.rest_y.assign(skeleton.padded_count(), 1.0F);
-  skeleton.curl_x.assign(skeleton.padded_count(), 1.0F);
-  return skeleton;
-}
-
 /// `mean` with relative fluctuations of standard deviation `variation`, kept between `low` and `high` times the mean.
 float varied(double mean, double variation, float noise, double low, double high) {
   return static_cast<float>(mean * std::clamp(1.0 + variation * static_cast<double>(noise), low, high));
@@ -48,7 +35,7 @@ float varied(double mean, double variation, float noise, double low, double high
 
 Meadow make_meadow(const MeadowSpec& spec) {
   const std::size_t count = spec.blades_across * spec.blades_deep;
-  Meadow meadow{empty_skeleton(count, spec.links), {}};
+  Meadow meadow{blank_strands(count, spec.links), {}};
   meadow.flexibility.assign(meadow.skeleton.padded_count(), 0.0F);
   const NoiseTile2 x_noise = layout_noise(spec, "meadow x");
   const NoiseTile2 z_noise = layout_noise(spec, "meadow z");

@@ -10,7 +10,7 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/operators/bending_job.hpp"
-#include "engine/scenes/scene.hpp"
+#include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi {
 namespace {
@@ -23,9 +23,8 @@ double largest_of(std::span<const float> values) {
 
 }  // namespace
 
-StrandSway::StrandSway(const StrandSkeleton& skeleton, std::span<const float> place_x_m,
-                       std::span<const float> place_z_m, std::vector<float> flexibility, const StrandSwaySpec& spec,
-                       SimdRow row)
+StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
+                       std::vector<float> flexibility, const StrandSwaySpec& spec, SimdRow row)
     : row_(row),
       spec_(spec),
       noise_(spec.noise),
@@ -39,7 +38,9 @@ StrandSway::StrandSway(const StrandSkeleton& skeleton, std::span<const float> pl
       strength_(flexibility_.size(), 0.0F),
       oscillators_(flexibility_.size()),
       largest_flexibility_(largest_of(flexibility_)),
-      lever_m_(largest_of(skeleton.link_length_m) * (static_cast<double>(skeleton.links_per_strand) + 1.0) / 2.0) {
+      lever_m_(largest_of(strands.link_length_m) * (static_cast<double>(strands.links_per_strand) + 1.0) / 2.0),
+      skeleton_(std::move(strands)),
+      pose_(rest_pose(skeleton_)) {
   steepest_along_per_m_ = steepest_slope(along_, spec_.noise.period_m);
   largest_along_ = largest_of(along_.values);
 }
@@ -58,7 +59,7 @@ std::span<Value> StrandSway::of_part(Part part, std::span<Value> values) const n
   return values.subspan(begin, part.end(blocks) * kStrandsPerBlock - begin);
 }
 
-void StrandSway::sample(Part part) noexcept {
+void StrandSway::sample_part(Part part) noexcept {
   // How strong the wind is at each strand, as a factor.
   const std::span<float> strength = of_part(part, std::span(strength_));
   const auto first = static_cast<std::size_t>(strength.data() - strength_.data());
@@ -66,7 +67,8 @@ void StrandSway::sample(Part part) noexcept {
                 std::numeric_limits<float>::infinity(), first);
 }
 
-void StrandSway::project(Part part, double dt_s, StrandPose& pose) noexcept {
+void StrandSway::project_part(Part part, double dt_s) noexcept {
+  StrandPose& pose = *std::get_if<StrandPose>(&pose_);
   const std::span<float> bend_east_rad = of_part(part, std::span(pose.bend_east_rad));
   const std::span<float> bend_south_rad = of_part(part, std::span(pose.bend_south_rad));
 

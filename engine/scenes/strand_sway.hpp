@@ -11,6 +11,7 @@
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/scenes/carried_noise.hpp"
+#include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 
 namespace yuragi {
@@ -37,25 +38,29 @@ struct StrandSwaySpec {
 ///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: a tick.
-class StrandSway {
+class StrandSway final : public Scene {
  public:
   /// `place_x_m` and `place_z_m`: where each strand reads the noise; `flexibility`: of each. All have
-  /// skeleton.padded_count() elements.
-  StrandSway(const StrandSkeleton& skeleton, std::span<const float> place_x_m, std::span<const float> place_z_m,
+  /// strands.padded_count() elements.
+  StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
              std::vector<float> flexibility, const StrandSwaySpec& spec, SimdRow row);
 
-  // The steps of a scene's tick (Scene).
-  void shift(WindVector wind, double dt_s) noexcept;
-  void sample(Part part) noexcept;
-  void project(Part part, double dt_s, StrandPose& pose) noexcept;
+  const Skeleton& skeleton() const noexcept override { return skeleton_; }
+  const Pose& pose() const noexcept override { return pose_; }
 
-  /// As Scene::largest_joint_step_m. With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
+  void shift(WindVector wind, double dt_s) noexcept override;
+  void sample() noexcept override { sample_part({}); }
+  void project(double dt_s) noexcept override { project_part({}, dt_s); }
+  void sample_part(Part part) noexcept override;
+  void project_part(Part part, double dt_s) noexcept override;
+
+  /// With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
   /// toward the wind: its slope over s is at most 3 sqrt(3)/8 max, so in a tick it changes by at most that times the
   /// largest changes of wind, strength and noise at their largest other factors, and never by more than from one
   /// extreme to the other. An oscillator moves by at most its largest gain times that, and by at most what its largest
   /// rate gives for a bend that never exceeds max. A joint moves by at most half the strand's length (and a link) times
   /// that, since link i of n turns by i/n of the bend.
-  double largest_joint_step_m(double dt_s) const noexcept;
+  double largest_joint_step_m(double dt_s) const noexcept override;
 
  private:
   /// The part's strands, in whole blocks, of any array that has an element for each.
@@ -75,6 +80,8 @@ class StrandSway {
   std::vector<float> strength_;
   Oscillators oscillators_;
   double largest_flexibility_ = 0.0, lever_m_ = 0.0;
+  Skeleton skeleton_;
+  Pose pose_;
 };
 
 /// The parameters that go with it (max_bend, half_bend_speed, turbulence ... beta_meaning): for a scene's own table,

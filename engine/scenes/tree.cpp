@@ -46,7 +46,7 @@ const std::array kTreeParameters = {
     Parameter{"limbs", "", std::int64_t{15}, 1, 500, "branches on the trunk"},
     Parameter{"twigs", "", std::int64_t{240}, 1, 20000, "branches on the limbs"},
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
-    Parameter{"branch_links", "", std::int64_t{256}, 1, 1024, "links of the trunk and of each branch"},
+    Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
     Parameter{"max_tilt", "deg", 45.0, 0, 120, "how far the strongest wind bends the thinnest twig"},
     Parameter{"max_swing", "deg", 45.0, 0, 120, "and how far sideways"},

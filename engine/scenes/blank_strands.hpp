@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstddef>
+
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi {
+
+/// All arrays of strands at their padded size, for a model to be laid out in: each stands upright at the origin and has
+/// no length, and what is behind the last stays so. Allocates.
+StrandSkeleton blank_strands(std::size_t strands, std::size_t links);
+
+}  // namespace yuragi
