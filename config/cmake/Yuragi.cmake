@@ -101,12 +101,19 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
   target_sources(${target} PRIVATE ${file})
 endfunction()
 
-# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, each of its cases a CTest test.
+# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, each of its cases a CTest test. Those of the
+# engine but for its base, in which there are no threads, are labelled `threadless`.
 function(yuragi_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} yuragi_test_places GTest::gtest_main GTest::gmock)
   set(properties TIMEOUT 120)
+  if(YURAGI_SANITIZE)
+    set(properties TIMEOUT 600)
+  endif()
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/base")
+    list(APPEND ARG_LABELS threadless)
+  endif()
   if(ARG_LABELS)
     list(APPEND properties LABELS ${ARG_LABELS})
   endif()

@@ -68,7 +68,7 @@ WindVector blowing_toward(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
-void blow_on(Scene& scene, WindVector wind, int ticks) {
+void blow_on_tree(Scene& scene, WindVector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kTreeTick_s);
 }
 
@@ -101,9 +101,9 @@ TEST(TreeTest, HasThePapers105536NodesByDefaultWhateverItsSpecies) {
 TEST(TreeTest, ComesToRestBitForBitWhenTheWindHasGone) {
   const auto scene = tree_scene(little());
   const std::uint64_t rest = pose_hash(0, tree_joints(*scene).level(kLeaves).data());
-  blow_on(*scene, blowing_toward(1.0, 12.0), 120);
+  blow_on_tree(*scene, blowing_toward(1.0, 12.0), 120);
   EXPECT_NE(pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
-  blow_on(*scene, {}, 60 * 90);  // the trunk sways on for long
+  blow_on_tree(*scene, {}, 60 * 90);  // the trunk sways on for long
   EXPECT_EQ(pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
 }
 
@@ -132,8 +132,8 @@ TEST(TreeTest, MoreWindBendsEveryPartMoreAndNoWindBeyondTheLargest) {
 TEST(TreeTest, ATurnedTreeInATurnedWindBendsTheSameTurned) {
   const auto scene = tree_scene(without_noise());
   const auto turned = tree_scene(without_noise(), {.seed = 1, .placement = {5.0, 0.0, -7.0, 40.0}});
-  blow_on(*scene, blowing_toward(0.4, 9.0), 300);
-  blow_on(*turned, blowing_toward(0.4 + 40.0 * kRadPerDeg, 9.0), 300);
+  blow_on_tree(*scene, blowing_toward(0.4, 9.0), 300);
+  blow_on_tree(*turned, blowing_toward(0.4 + 40.0 * kRadPerDeg, 9.0), 300);
   const double cosine = std::cos(40.0 * kRadPerDeg);
   const double sine = std::sin(40.0 * kRadPerDeg);
   for (std::size_t part = 0; part < kTreePartCount; ++part) {
@@ -151,11 +151,11 @@ TEST(TreeTest, LeansToWhereTheWindBlows) {
     const double azimuth_rad = azimuth_deg * kRadPerDeg;
     const auto scene = tree_scene(little());
     const TreeJoints rest = tree_joints(*scene);
-    blow_on(*scene, blowing_toward(azimuth_rad, 12.0), 60);
+    blow_on_tree(*scene, blowing_toward(azimuth_rad, 12.0), 60);
     Moments downwind_m;
     Moments sideways_m;
     for (int sample = 0; sample < 20; ++sample) {
-      blow_on(*scene, blowing_toward(azimuth_rad, 12.0), 60);
+      blow_on_tree(*scene, blowing_toward(azimuth_rad, 12.0), 60);
       const TreeJoints joints = tree_joints(*scene);
       for (std::size_t leaf = 0; leaf < 1600; leaf += 16) {
         const auto x_m =
@@ -175,7 +175,7 @@ TEST(TreeTest, LinksKeepTheirLengthTo1e5AndTheFootStandsStill) {
   const auto scene = tree_scene();
   const TreeSkeleton& tree = tree_of(*scene);
   for (int storm = 0; storm < 3; ++storm) {
-    blow_on(*scene, blowing_toward(storm, 15.0 * storm), 60);
+    blow_on_tree(*scene, blowing_toward(storm, 15.0 * storm), 60);
     const TreeJoints joints = tree_joints(*scene);
     for (std::size_t part = 0; part < kTreePartCount; ++part) {
       const TreeLevel& level = tree.levels[part];
@@ -203,7 +203,7 @@ double liveliness_rad(Scene& scene, std::size_t part, WindVector wind, int ticks
   const std::size_t count = tree_of(scene).levels[part].strands.strand_count;
   std::vector<Moments> east(count);
   std::vector<Moments> south(count);
-  blow_on(scene, wind, 120);
+  blow_on_tree(scene, wind, 120);
   for (int tick = 0; tick < ticks; ++tick) {
     scene.tick(wind, kTreeTick_s);
     for (std::size_t s = 0; s < count; ++s) {
@@ -244,7 +244,7 @@ double crossings_per_s(Scene& scene, std::size_t part, WindVector wind) {
   constexpr int kTicks = 1800;
   const std::size_t count = std::min<std::size_t>(tree_of(scene).levels[part].strands.strand_count, 64);
   std::vector<std::vector<double>> course(count);
-  blow_on(scene, wind, 120);
+  blow_on_tree(scene, wind, 120);
   for (int tick = 0; tick < kTicks; ++tick) {
     scene.tick(wind, kTreeTick_s);
     for (std::size_t s = 0; s < count; ++s) {
@@ -274,7 +274,7 @@ TEST(TreeTest, LeavesFlutterFasterThanBranchesSwayAndLimbsFasterThanTheTrunk) {
 TEST(TreeTest, NeighbouringLeavesMoveMoreAlikeThanDistantOnes) {
   const auto scene = tree_scene(little("poplar"));
   const WindVector wind = blowing_toward(0.3, 6.0);
-  blow_on(*scene, wind, 120);
+  blow_on_tree(*scene, wind, 120);
   std::vector<Moments> east(1600);
   std::vector<std::vector<double>> course(1600);
   for (int tick = 0; tick < 900; ++tick) {
@@ -325,9 +325,9 @@ TEST(TreeTest, WindwardBranchesMoveUpAndDownAndLeeOnesSideways) {
     TreeJoints joints = rest;
     std::vector<std::array<Moments, 3>> tips(tree.levels[kLimbs].strands.strand_count);
     std::vector<std::array<Moments, 2>> twigs(tree.levels[kTwigs].strands.strand_count);
-    blow_on(*scene, blowing_toward(azimuth_rad, 10.0), 60);
+    blow_on_tree(*scene, blowing_toward(azimuth_rad, 10.0), 60);
     for (int sample = 0; sample < 300; ++sample) {
-      blow_on(*scene, blowing_toward(azimuth_rad, 10.0), 6);
+      blow_on_tree(*scene, blowing_toward(azimuth_rad, 10.0), 6);
       TreePose own = resting;
       own.levels[kLimbs] = bends_of(*scene, kLimbs);
       TreeKinematicsJob{.skeleton = &tree, .pose = &own, .joints = &joints}.run();
@@ -367,7 +367,7 @@ TEST(TreeTest, WindwardBranchesMoveUpAndDownAndLeeOnesSideways) {
 
 TEST(TreeTest, BranchesSwayOnAfterAGustWhereTheyAreOscillators) {
   const auto turns = [](Scene& scene) {  // how often a twig changes between going and coming back
-    blow_on(scene, blowing_toward(0.0, 12.0), 900);
+    blow_on_tree(scene, blowing_toward(0.0, 12.0), 900);
     int count = 0;
     double before = bend_of(scene, kTwigs, 0);
     double step = 0.0;
