@@ -1,6 +1,5 @@
 #include "drivers/decode/gill.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
