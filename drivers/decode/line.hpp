@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/text_fields.hpp"
+
+namespace yuragi {
+
+// Numbers that a microcontroller prints, one reading a line:
+//
+//   4.2,270,6.1                      columns
+//   speed=4.2 direction=270; gust=6.1    keys; ':' does as well as '=', and blank, tab, ',', ';' and '&' separate
+//
+// There is no standard: the options say what stands where. What Arduino's Serial.print writes for a number that is none
+// (nan) means that the value is not known, as do an empty field and "null".
+
+enum class LineFormat : std::uint8_t {
+  kAuto,  ///< keys if the line has '=' or ':', otherwise columns
+  kColumns,
+  kKeys,
+};
+
+/// Where a quantity stands and what it means: value * scale + offset is in m/s, or in degrees.
+struct LineQuantity {
+  std::optional<std::size_t> column;  ///< from 0; none: the line never has it as a column
+  std::string key;                    ///< exact; empty: the line never has it as a key
+  double scale = 1.0;
+  double offset = 0.0;
+};
+
+struct LineOptions {
+  LineFormat format = LineFormat::kAuto;
+  char separator = ',';  ///< of columns; a blank stands for any number of blanks and tabs
+  LineQuantity speed = {.column = 0, .key = "speed"};
+  LineQuantity direction = {.column = 1, .key = "direction"};
+  LineQuantity gust = {.column = 2, .key = "gust"};
+  std::optional<double> invalid;  ///< the number, unscaled, that means "no value" (-999, say)
+  WindReference reference = WindReference::kUnknown;
+};
+
+/// The wind in one line, or why there is none: kTooShort (an empty line), kNotMine (a comment: it begins with '#'; or
+/// it has none of the keys), kMalformed (what should be a number is none, or a key comes twice), kInvalid (no value is
+/// there), kImplausible. Lines that end before a column leave it empty. Thread-safe and realtime-safe: yes.
+Result<DecodedWind, Refusal> decode_line(const LineOptions& options, std::string_view line) noexcept;
+
+}  // namespace yuragi

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+/// Where a line ends.
+enum class LineEnding : std::uint8_t {
+  kNewline,  ///< at CR, LF or both; an ETX within belongs to the line (Gill has its checksum behind it)
+  kEtx,      ///< at ETX too
+};
+
+/// Makes lines of bytes, however these were split on their way. Bounded: a line longer than kMaxLine is refused once
+/// and skipped up to its end. STX begins a line anew; empty lines, and an ETX at the beginning of one, are skipped.
+/// Every other byte is kept, whatever it is.
+///
+///     while (!bytes.empty()) {
+///       if (const auto line = assembler.next(bytes)) use(*line);
+///     }
+///
+/// Not thread-safe; realtime-safe: no allocation.
+class LineAssembler {
+ public:
+  /// The longest line without its end: NMEA allows 80, and 129 are seen.
+  static constexpr std::size_t kMaxLine = 512;
+
+  using Line = Result<std::string_view, Refusal>;
+
+  explicit LineAssembler(LineEnding ending = LineEnding::kNewline) noexcept : ending_(ending) {}
+
+  /// Takes bytes from the front of `bytes` until a line is whole or they are used up. The view is valid until the next
+  /// call. Refusals: kMalformed (longer than kMaxLine), kTooShort (cut off by the STX of the next one).
+  std::optional<Line> next(std::span<const std::uint8_t>& bytes) noexcept;
+
+  /// What has come since the last end: the last line of a file or datagram. Leaves nothing behind.
+  std::optional<Line> finish() noexcept;
+
+  /// Forgets what has come, after a connection was lost.
+  void clear() noexcept;
+
+ private:
+  std::optional<Line> take() noexcept;
+
+  std::array<char, kMaxLine> text_{};
+  std::size_t size_ = 0;
+  bool is_skipping_ = false;  // an overlong line has been refused, and goes on
+  LineEnding ending_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string_view>
+
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/text_fields.hpp"
+
+namespace yuragi {
+
+// The wind in sentences of NMEA 0183, of any talker (WI, II, a number):
+//
+//   $--MWV,angle,R|T,speed,K|N|M|S,A|V*hh               from the bow, clockwise; R: apparent, T: true wind
+//   $--MWD,deg,T,deg,M,kn,N,m/s,M*hh                    from true north, from magnetic north
+//   $--VWR,0..180,L|R,kn,N,m/s,M,km/h,K*hh              from the bow to port or starboard, apparent
+//   $--VWT,...                                          the same, true wind
+//   $--MDA,<12 fields of weather>,deg,T,deg,M,kn,N,m/s,M*hh
+//   $--XDR,A,deg,D,id,...,S,speed,M|N|K|S,id,...*hh     Vaisala WXT: id is address + 0 least, 1 mean, 2 greatest
+//
+// hh is the exclusive or of what stands between '$' and '*'. Sources: gpsd www/NMEA.adoc; SignalK nmea0183-signalk
+// hooks; Lufft V200A-UMB manual V25 20.5.4 (S is mph); Gill 1405-PS-0019 (status 00 and 60 are good); ../shared/
+// sensors.md 4 for what devices do instead: lower-case checksums, a trailing dot, angles of 360 and beyond, lines
+// longer than 82 characters, NUL bytes in front, no status, no checksum, other sentences and comments in between.
+
+struct NmeaOptions {
+  WhenMissing checksum = WhenMissing::kRefuse;
+  WhenMissing status = WhenMissing::kRefuse;  ///< of MWV; a reading that is accepted without one is kUncertain
+  int xdr_first_id = 0;                       ///< the address of the device whose XDR is read
+};
+
+/// The wind in one line, without its line end, or why there is none: as sentence_of() refuses, then kNotMine (another
+/// sentence, or XDR without wind), kMalformed (fields, units or letters that the sentence does not have, or no status
+/// where that is refused), kInvalid (its status says so, or no value is there), kImplausible. One half may be empty.
+/// Where a sentence has the speed in several units, m/s is taken first. Thread-safe and realtime-safe: yes.
+Result<DecodedWind, Refusal> decode_nmea(const NmeaOptions& options, std::string_view line) noexcept;
+
+}  // namespace yuragi

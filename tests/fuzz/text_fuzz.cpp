@@ -1,0 +1,83 @@
+// Any bytes as what a text protocol sends, in pieces of any size, with every policy: lines stay bounded, and a reading
+// has something in it and is physical.
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <string>
+
+#include "drivers/decode/ft.hpp"
+#include "drivers/decode/gill.hpp"
+#include "drivers/decode/line.hpp"
+#include "drivers/decode/line_assembler.hpp"
+#include "drivers/decode/nmea.hpp"
+#include "drivers/decode/umb.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace {
+
+using namespace yuragi;
+
+void require_text(bool holds) {
+  if (!holds) std::abort();
+}
+
+void require_physical(const Result<DecodedWind, Refusal>& decoded) {
+  if (!decoded) return;
+  require_text(decoded->speed_m_s || decoded->direction_deg || decoded->gust_m_s);
+  const double speed_m_s = decoded->speed_m_s.value_or(0.0);
+  const double gust_m_s = decoded->gust_m_s.value_or(0.0);
+  const double direction_deg = decoded->direction_deg.value_or(0.0);
+  require_text(speed_m_s >= 0.0 && speed_m_s <= kMaxPlausibleSpeed_m_s);
+  require_text(gust_m_s >= 0.0 && gust_m_s <= kMaxPlausibleSpeed_m_s);
+  require_text(direction_deg >= 0.0 && direction_deg < 360.0);
+}
+
+/// The line as each decoder reads it: as it is, and with a checksum that is right, so that the fields are reached.
+void decode_everything(std::string_view line, unsigned choices) {
+  const WhenMissing checksum = (choices & 1U) != 0 ? WhenMissing::kAccept : WhenMissing::kRefuse;
+  const WhenMissing status = (choices & 2U) != 0 ? WhenMissing::kAccept : WhenMissing::kRefuse;
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  const unsigned sum = xor_checksum(line);
+  const std::string digits = {kDigits[sum / 16], kDigits[sum % 16]};
+  const std::string sentence = "$" + std::string(line) + "*" + digits;
+  const std::string frame = '\x02' + std::string(line) + '\x03' + digits;
+
+  GillOptions gill;
+  gill.checksum = checksum;
+  gill.status = status;
+  LineOptions numbers;
+  numbers.format = static_cast<LineFormat>((choices >> 2U) % 3);
+  numbers.separator = (choices & 32U) != 0 ? ' ' : ',';
+  for (const std::string_view text : {line, std::string_view(sentence), std::string_view(frame)}) {
+    require_physical(decode_nmea({.checksum = checksum, .status = status, .xdr_first_id = 0}, text));
+    require_physical(decode_gill(gill, text));
+    require_physical(decode_ft({.checksum = checksum, .status = status}, text));
+    require_physical(decode_umb({}, text));
+    require_physical(decode_line(numbers, text));
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {  // NOLINT(readability-identifier-naming)
+  if (size < 2) return 0;
+  const unsigned choices = data[0];
+  const std::size_t piece_size = 1U + data[1];
+  std::span<const std::uint8_t> rest(data + 2, size - 2);
+
+  LineAssembler assembler((choices & 64U) != 0 ? LineEnding::kEtx : LineEnding::kNewline);
+  const auto use = [&](const std::optional<LineAssembler::Line>& line) {
+    if (!line || !*line) return;
+    require_text(!(*line)->empty() && (*line)->size() <= LineAssembler::kMaxLine);
+    decode_everything(**line, choices);
+  };
+  while (!rest.empty()) {
+    std::span<const std::uint8_t> piece = rest.first(std::min(piece_size, rest.size()));
+    rest = rest.subspan(piece.size());
+    while (!piece.empty()) use(assembler.next(piece));
+  }
+  use(assembler.finish());
+  return 0;
+}
