@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+/// What a direction is measured from, clockwise, where the message itself says it.
+enum class WindReference : std::uint8_t {
+  kUnknown,   ///< the message does not say: for a fixed device its own north mark
+  kRelative,  ///< the device's mark or the vessel's bow; on a moving vessel the apparent wind
+  kTrue,      ///< still the bow, but the vessel's own motion is taken out ("true wind" of MWV and VWT)
+  kNorth,     ///< geographic north
+  kMagnetic,  ///< magnetic north: the local variation (east positive) is still to be added
+};
+inline constexpr std::array<std::string_view, 5> kWindReferenceNames = {"unknown", "relative", "true", "north",
+                                                                        "magnetic"};
+
+/// How much the values are worth by the device's own word. Values that it calls invalid are a Refusal, not a status.
+enum class DecodedStatus : std::uint8_t {
+  kGood,       ///< the device says it is well, or its protocol has no way to say
+  kUncertain,  ///< the device flags something (low battery, partial data), or leaves out the status that is due
+};
+inline constexpr std::array<std::string_view, 2> kDecodedStatusNames = {"good", "uncertain"};
+
+/// What one message of any anemometer says: SI units, no time, before calibration. What every decoder but Modbus's
+/// yields. At least one value is there; a value that is not known is empty, never 0.
+struct DecodedWind {
+  std::optional<double> speed_m_s;      ///< [0, kMaxPlausibleSpeed_m_s]
+  std::optional<double> direction_deg;  ///< where the wind comes *from*, clockwise from `reference`, [0, 360)
+  std::optional<double> gust_m_s;       ///< the strongest of the device's own recent past
+  WindReference reference = WindReference::kUnknown;
+  DecodedStatus status = DecodedStatus::kGood;
+
+  bool operator==(const DecodedWind&) const = default;
+};
+
+std::string_view name_of(WindReference reference) noexcept;
+std::string_view name_of(DecodedStatus status) noexcept;
+
+/// A direction in [0, 360): 360 is 0, and a whole turn too many (530) is taken off. Empty for what is negative, from
+/// 720 on, or not finite. Thread-safe and realtime-safe: yes.
+std::optional<double> wrapped_direction_deg(double direction_deg) noexcept;
+
+/// The last step of every decoder: `wind` itself if at least one value is there and all are as DecodedWind promises;
+/// kInvalid where none is there, kImplausible where one is out of its range. Thread-safe and realtime-safe: yes.
+Result<DecodedWind, Refusal> checked(const DecodedWind& wind) noexcept;
+
+}  // namespace yuragi
