@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+
+#include "drivers/decode/byte_order.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+// AcuRite 01025, 01035, 01036, 02032, 02064 (USB 24c0:0003).
+// Source: ../shared/sensors.md 2.4, which read weewx drivers/acurite.py and weewx issue 39; wxforum topic 27244
+// (speed).
+//
+// Nothing comes by itself: input report 1 is asked for every 18 s. Its contents alternate, so that a direction comes
+// every 36 s.
+//
+//   0   1, the report's id
+//   1   high nibble: channel; low nibble with byte 2: the sensor's id. xF here and ff in byte 3: no sensor
+//   3   high nibble: battery, 7 is well; low nibble: 1 wind, direction, rain; 8 wind, temperature, humidity
+//   4   low 5 bits: speed n, high bits      5   bits 4 to 6: speed n, low bits; low nibble in 1: direction's index
+//   8   low nibble: link, 0 to 3; at 0 all numbers are old
+//   9   00 or ff
+//
+// Speed is 0 at n = 0, else 0.8278 n + 1 km/h.
+
+inline constexpr std::size_t kAcuriteReport1 = 10;
+
+/// The wind of report 1 with its id in front, or the first thing that is wrong: kTooShort, kNotMine (another report),
+/// kMalformed (too long, or marks that no report has: a console gone mad), kInvalid (no sensor, or old numbers). A
+/// report without a direction leaves it empty: it is not kept from the one before. Thread-safe and realtime-safe: yes.
+Result<DecodedWind, Refusal> decode_acurite(ByteSpan report) noexcept;
+
+}  // namespace yuragi

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "drivers/decode/byte_order.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+// Fine Offset WH1080, WH1090, WH2080, WH3080 and their many names (USB 1941:8021).
+// Source: ../shared/sensors.md 2.3, which read weewx drivers/fousb.py and pywws weatherstation.py.
+//
+// The console's memory of 64 KiB is read in blocks of 32 bytes: a fixed block at 0, then a ring of records, of which
+// the fixed block says the current one.
+//
+//   request       a1, address high, low, 20, and the same four again; 32 bytes come in four input reports
+//   fixed block   0, 1     55 aa, or another mark that consoles have been seen with
+//                 16       minutes between two records
+//                 27, 28   records in the ring, low byte first
+//                 30, 31   address of the current record, low byte first
+//   record        9        average, low 8 bits     10   gust, low 8 bits
+//   (16 bytes,    11       low nibble: average's high 4 bits; high nibble: gust's. Both 0.1 m/s; 0xfff: none
+//   WH3080: 20)   12       direction, points of 22.5 degrees; bit 7: none
+//                 15       bit 6: no contact with the sensors, the values are old
+//
+// A record in the ring and the current one are alike; the console writes the latter every 48 s.
+
+inline constexpr std::size_t kFineOffsetBlock = 32;             ///< bytes of one read
+inline constexpr std::uint16_t kFineOffsetFirstRecord = 0x100;  ///< where the ring begins; it ends with the memory
+
+/// How long a console's records are.
+enum class FineOffsetModel : std::uint8_t { kWh1080 = 16, kWh3080 = 20 };
+
+/// What the fixed block says.
+struct FineOffsetFixedBlock {
+  std::uint8_t read_period_min = 0;
+  std::uint16_t record_count = 0;
+  std::uint16_t current_position = 0;  ///< address of the current record
+};
+
+/// The 8 bytes that ask for the 32 bytes at `address`; hidapi wants a report id 0 in front.
+std::array<std::uint8_t, 8> encode_fineoffset_read(std::uint16_t address) noexcept;
+
+/// The fixed block's first 32 bytes (or more of it), or kTooShort, or kMalformed (another mark), or kImplausible (a
+/// position outside the ring or between two records). Thread-safe and realtime-safe: yes.
+Result<FineOffsetFixedBlock, Refusal> decode_fineoffset_fixed_block(ByteSpan block, FineOffsetModel model) noexcept;
+
+/// Where the record before `position` stands: the ring's last one before the first.
+std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetModel model) noexcept;
+
+/// The wind of one record (16 bytes, 20, or the whole block of 32 that begins with it), or the first thing that is
+/// wrong: kTooShort, kMalformed (longer, or memory that was never written), kInvalid (no contact, or no value),
+/// kImplausible. A direction that is no point of the compass is left out, and the reading uncertain. Thread-safe and
+/// realtime-safe: yes.
+Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept;
+
+}  // namespace yuragi

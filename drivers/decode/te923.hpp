@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "drivers/decode/byte_order.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+// Hideki TE923 (Meade, TFA Nexus, Mebus, IROX; USB 1130:6801).
+// Source: ../shared/sensors.md 2.5, and weewx drivers/te923.py, whose indices count from behind the header byte: ours
+// count from the block's first byte, and are one more.
+//
+// A block is asked for with an output report of 8 bytes, comes in input reports of 8 bytes (how many of the next 7 are
+// valid, then those), and is acknowledged.
+//
+//   request   05 af, address low, middle, high, exclusive or of af and these three, 00 00  (acknowledgement: 24 for 05)
+//   block     0         0x5A
+//   (34)      33        exclusive or of bytes 0 to 32
+//   at        26, 27    gust           28, 29   speed          both mph, as below
+//   0x020001  30        low nibble: direction, points of 22.5 degrees
+//   speed     first     two decimal digits: ones and tenths
+//             second    low nibble: tens; bit 4: hundred. ee 8e, ff ff: no sensor
+
+inline constexpr std::size_t kTe923Block = 34;
+inline constexpr std::uint32_t kTe923Readings = 0x020001;  ///< the address of the current readings
+
+std::array<std::uint8_t, 8> encode_te923_request(std::uint32_t address) noexcept;
+std::array<std::uint8_t, 8> encode_te923_acknowledgement(std::uint32_t address) noexcept;
+
+/// The wind of the block at kTe923Readings, or the first thing that is wrong: kTooShort, kMalformed (another header,
+/// too long), kBadChecksum, kInvalid (no sensor, or digits that are none). Without a speed there is no direction
+/// either: the block keeps an old one. Thread-safe and realtime-safe: yes.
+Result<DecodedWind, Refusal> decode_te923(ByteSpan block) noexcept;
+
+}  // namespace yuragi

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "drivers/decode/byte_order.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+// Oregon Scientific WMR100, WMR100N, WMR88, WMRS200, RMS300, RMS600 (USB 0fde:ca01).
+// Source: ../shared/sensors.md 2.1, which read weewx drivers/wmr100.py, WLoggerDaemon's Station_protocol.md and
+// barnybug/wmr100.
+//
+// An input report of 8 bytes: how many of the next 7 are valid, then those. The valid bytes of all reports are one
+// stream of frames, with ff ff between two of them; one ff alone is data.
+//
+//   frame   0       flags; a high nibble other than 0: the battery is low
+//           1       kind: 0x41 rain, 0x42 temperature, 0x44 water, 0x46 pressure, 0x47 UV, 0x48 wind, 0x60 clock
+//           last 2  sum of all bytes before, low byte first
+//   wind    2       low nibble: direction, points of 22.5 degrees
+//   (11     4       gust, low 8 bits, 0.1 m/s
+//   bytes)  5       low nibble: gust, high 4 bits; high nibble: average, low 4 bits
+//           6       average, high 8 bits, 0.1 m/s
+//           7, 8    wind chill
+
+/// No frame is longer (rain).
+inline constexpr std::size_t kWmr100LongestFrame = 17;
+
+/// The report to send once to make the console talk (without report id).
+inline constexpr std::array<std::uint8_t, 8> kWmr100Start = {0x20, 0x00, 0x08, 0x01, 0x00, 0x00, 0x00, 0x00};
+
+/// The valid bytes of one input report, which may be empty. A count beyond the report is clamped to it. It points into
+/// `report`. Thread-safe and realtime-safe: yes.
+ByteSpan wmr100_report_bytes(ByteSpan report) noexcept;
+
+/// Where in the stream we are; its owner keeps one for each time that the device was opened, and looks at nothing in
+/// it.
+struct Wmr100Stream {
+  std::array<std::uint8_t, kWmr100LongestFrame + 1> frame{};  ///< and the first ff behind it
+  std::size_t size = 0;
+  bool is_skipping = false;  ///< nothing more of this frame is wanted
+  bool was_ff = false;       ///< the last byte was ff
+};
+
+/// Takes the stream's next byte. Where that ends a frame: the wind, or why there is none (the order of
+/// decode_wmr100_frame(), and kMalformed for a frame without end); else nothing. A wind frame ends with its eleventh
+/// byte, so that it need not wait for the next sensor's. Whatever is broken, the frame after the next ff ff is read.
+/// Memory is bounded. Realtime-safe: yes; thread-safe: for distinct streams.
+std::optional<Result<DecodedWind, Refusal>> take_wmr100_byte(Wmr100Stream& stream, std::uint8_t byte) noexcept;
+
+/// The stream ends here: what its last frame says if it was still waiting for the ff ff behind it; nothing if not.
+std::optional<Result<DecodedWind, Refusal>> finish_wmr100(Wmr100Stream& stream) noexcept;
+
+/// The wind of one frame without its ff ff, or the first thing that is wrong: kTooShort, kBadChecksum, kNotMine
+/// (another sensor's), kMalformed (longer than a wind frame), kImplausible. A gust below the average does come: it is
+/// passed on as the device says it. Thread-safe and realtime-safe: yes.
+Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept;
+
+}  // namespace yuragi

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "drivers/decode/byte_order.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+// Oregon Scientific WMR300 (USB 0fde:ca08).
+// Source: ../shared/sensors.md 2.2, which read weewx drivers/wmr300.py.
+//
+// Every packet is one input report. The console sends for about 100 s by itself, and goes on while it gets a heartbeat
+// every 20 s and an acknowledgement of every packet 0xD1 to 0xDC. Wind, every 2.5 to 3 s, is packet 0xD4 (54 bytes,
+// numbers big-endian, 0x7Fxx: no data):
+//
+//   0        0xD4
+//   1        54, the packet's length
+//   2 to 6   year, month, day, hour, minute
+//   7        channel
+//   8, 9     gust, 0.1 m/s           10, 11   the gust's direction, degrees
+//   12, 13   average, 0.1 m/s        14, 15   the average's direction, degrees
+//   18, 19   wind chill              20 ...   the records of the day
+//   52, 53   sum of bytes 0 to 51, high byte first (of 0xD2, the history, low byte first)
+
+inline constexpr std::size_t kWmr300WindPacket = 54;
+
+/// What keeps the console talking.
+inline constexpr std::array<std::uint8_t, 5> kWmr300Heartbeat = {0xA6, 0x91, 0xCA, 0x45, 0x52};
+
+/// The wind of a packet, or the first thing that is wrong: kTooShort, kNotMine (another packet), kMalformed (a length
+/// that 0xD4 does not have), kBadChecksum, kInvalid (no data), kImplausible. Bytes behind the packet are the report's
+/// padding. The packet's state is all in itself: nothing is kept. Thread-safe and realtime-safe: yes.
+Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept;
+
+/// Must this packet be acknowledged? Any data packet, also one that decode_wmr300() refuses as kNotMine.
+bool wants_wmr300_acknowledgement(ByteSpan packet) noexcept;
+
+/// The acknowledgement of `packet`, for which wants_wmr300_acknowledgement() holds.
+std::array<std::uint8_t, 6> encode_wmr300_acknowledgement(ByteSpan packet) noexcept;
+
+}  // namespace yuragi

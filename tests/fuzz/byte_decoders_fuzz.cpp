@@ -1,0 +1,118 @@
+// Any bytes for every decoder of USB stations and DAQs; sums and heads are mended on request, so that values are
+// reached.
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "drivers/decode/acurite.hpp"
+#include "drivers/decode/cup_counter.hpp"
+#include "drivers/decode/fineoffset.hpp"
+#include "drivers/decode/labjack.hpp"
+#include "drivers/decode/mcc1208.hpp"
+#include "drivers/decode/potentiometer_vane.hpp"
+#include "drivers/decode/te923.hpp"
+#include "drivers/decode/wmr100.hpp"
+#include "drivers/decode/wmr300.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace {
+
+using namespace yuragi;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+void require_physical(const Result<DecodedWind, Refusal>& decoded) {
+  require(!decoded || checked(*decoded).has_value());
+}
+
+void read_stream(ByteSpan bytes) {
+  Wmr100Stream stream;
+  for (const std::uint8_t byte : bytes) {
+    if (const auto result = take_wmr100_byte(stream, byte)) require_physical(*result);
+    require(stream.size <= kWmr100LongestFrame + 1);
+  }
+  if (const auto result = finish_wmr100(stream)) require_physical(*result);
+  require(stream.size == 0);
+  require(wmr100_report_bytes(bytes).size() <= 7);
+}
+
+void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
+  require_physical(decode_wmr100_frame(bytes));
+  require_physical(decode_wmr300(bytes));
+  require_physical(decode_te923(bytes));
+  require_physical(decode_acurite(bytes));
+  require_physical(decode_fineoffset_record(bytes));
+  static_cast<void>(encode_wmr300_acknowledgement(bytes));
+  for (const auto model : {FineOffsetModel::kWh1080, FineOffsetModel::kWh3080}) {
+    if (const auto fixed = decode_fineoffset_fixed_block(bytes, model)) {
+      require(previous_fineoffset_position(fixed->current_position, model) >= kFineOffsetFirstRecord);
+    }
+  }
+  if (!is_mended) return;
+  if (bytes.size() >= 11) {
+    std::vector<std::uint8_t> frame(bytes.begin(), bytes.begin() + 11);
+    frame[1] = 0x48;
+    const auto sum = sum_16(ByteSpan(frame).first(9));
+    frame[9] = static_cast<std::uint8_t>(sum & 0xFFU);
+    frame[10] = static_cast<std::uint8_t>(sum >> 8U);
+    require_physical(decode_wmr100_frame(frame));
+  }
+  if (bytes.size() >= kTe923Block) {
+    std::vector<std::uint8_t> block(bytes.begin(), bytes.begin() + kTe923Block);
+    block[0] = 0x5A;
+    block[33] = static_cast<std::uint8_t>(block[33] ^ xor_8(block));
+    const auto decoded = decode_te923(block);
+    require(decoded || decoded.error() == Refusal::kInvalid);
+    require_physical(decoded);
+  }
+  if (bytes.size() >= kWmr300WindPacket) {
+    bytes[0] = 0xD4;
+    bytes[1] = 54;
+    const auto sum = sum_16(ByteSpan(bytes).first(52));
+    bytes[52] = static_cast<std::uint8_t>(sum >> 8U);
+    bytes[53] = static_cast<std::uint8_t>(sum & 0xFFU);
+    require_physical(decode_wmr300(bytes));
+  }
+}
+
+void read_daq(ByteSpan bytes, std::uint8_t choice) {
+  LabjackRequest request;
+  if ((choice & 1U) != 0) request.analog_channel.reset();
+  request.wants_counter = (choice & 2U) != 0;
+  if (const auto reply = decode_labjack(request, bytes)) {
+    require(reply->analog.has_value() == request.analog_channel.has_value());
+    require(reply->count.has_value() == request.wants_counter);
+  }
+  if (const auto reply = decode_mcc1208(bytes)) require(reply->count.has_value() != reply->analog.has_value());
+}
+
+/// Counts and any doubles, as they come.
+void turn_cup_and_vane(ByteSpan bytes) {
+  constexpr std::size_t kStep = 4 + sizeof(double);
+  CupState state;
+  for (; bytes.size() >= kStep; bytes = bytes.subspan(kStep)) {
+    double number = 0.0;
+    std::memcpy(&number, bytes.data() + 4, sizeof number);
+    const auto speed = advance_cup(state, {.metres_per_pulse = 0.1}, little_endian_32(bytes, 0), number);
+    if (speed && *speed) require(**speed >= 0.0 && **speed <= kMaxPlausibleSpeed_m_s);
+    const auto direction_deg = vane_direction_deg({.start_deg = 17.0}, number, 5.0);
+    if (direction_deg) require(*direction_deg >= 0.0 && *direction_deg < 360.0);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {  // NOLINT(readability-identifier-naming)
+  if (size == 0) return 0;
+  const ByteSpan bytes(data + 1, size - 1);
+  read_stream(bytes);
+  read_frames({bytes.begin(), bytes.end()}, (data[0] & 4U) != 0);
+  read_daq(bytes, data[0]);
+  turn_cup_and_vane(bytes);
+  return 0;
+}
