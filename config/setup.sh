@@ -10,17 +10,22 @@ set -euo pipefail
 build_packages=(
   build-essential cmake ninja-build ccache pkg-config
   libboost1.81-dev          # Asio; Debian's default 1.74 does not fit C++20, and the two exclude each other
-  libfftw3-dev libmodbus-dev libsqlite3-dev libfccp-dev libhowardhinnant-date-dev
-  libtomlplusplus-dev libcli11-dev libspdlog-dev libfmt-dev
+  libfftw3-dev libsqlite3-dev libfccp-dev libhowardhinnant-date-dev
+  libmodbus-dev libhidapi-dev libusb-1.0-0-dev portaudio19-dev libmosquitto-dev liblo-dev # the sensors
+  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
   libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
   libgl1-mesa-dri xvfb xauth # the viewer's picture where there is no display
 )
 test_packages=(
-  libgtest-dev libbenchmark-dev nlohmann-json3-dev
+  libgtest-dev libbenchmark-dev
   clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev
   python3 python3-numpy python3-flatbuffers
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
+  mosquitto liblo-tools socat                             # independent MQTT and OSC peers; serial lines
+  umockdev libumockdev-dev                                # USB devices without a kernel's
+  libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
+  qemu-system-x86 busybox-static kmod cpio usbip alsa-utils     # USB and sound through a real kernel, in a virtual machine
 )
 
 packages=("${build_packages[@]}")

@@ -45,9 +45,16 @@ void SensorRunner::refused(Refusal why) {
 
 void SensorRunner::link(LinkState state, std::string_view detail) {
   const std::lock_guard lock(link_mutex_);
+  const bool connects = state == LinkState::kConnected && link_.state != LinkState::kConnected;
+  if (connects && has_been_connected_) reconnects_.fetch_add(1, std::memory_order_relaxed);
+  has_been_connected_ = has_been_connected_ || connects;
   link_.state = state;
   link_.detail = detail;
   link_reports_.fetch_add(1, std::memory_order_release);
+}
+
+void SensorRunner::raw(RawDirection direction, std::span<const std::uint8_t> /*message*/) {
+  if (direction == RawDirection::kReceived) frames_.fetch_add(1, std::memory_order_relaxed);
 }
 
 LinkReport SensorRunner::link() const {

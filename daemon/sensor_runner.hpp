@@ -44,6 +44,10 @@ class SensorRunner final : private SensorSink {
   std::uint64_t refused_count(Refusal why) const noexcept {
     return refused_[static_cast<std::size_t>(why)].load(std::memory_order_relaxed);
   }
+  /// Messages that have come from the device, of use or not.
+  std::uint64_t frame_count() const noexcept { return frames_.load(std::memory_order_relaxed); }
+  /// How often the device was found again after it had been lost.
+  std::uint64_t reconnect_count() const noexcept { return reconnects_.load(std::memory_order_relaxed); }
   /// Readings that the ring had no room for, since nobody took them.
   std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
@@ -54,12 +58,16 @@ class SensorRunner final : private SensorSink {
   void reading(const WindReading& reading) override;
   void refused(Refusal why) override;
   void link(LinkState state, std::string_view detail) override;
+  void raw(RawDirection direction, std::span<const std::uint8_t> message) override;
 
   std::unique_ptr<Sensor> sensor_;
   const Clock& clock_;
   SpscRing<WindReading> readings_{kRingCapacity};
   std::array<std::atomic<std::uint64_t>, kRefusalCount> refused_{};
   std::atomic<std::uint64_t> lost_{0};
+  std::atomic<std::uint64_t> frames_{0};
+  std::atomic<std::uint64_t> reconnects_{0};
+  bool has_been_connected_ = false;  // of the sensor's thread
 
   mutable std::mutex link_mutex_;  // of the link's text: rare, and never on the animation's way
   LinkReport link_;

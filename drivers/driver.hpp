@@ -3,7 +3,9 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
+#include "drivers/found_device.hpp"
 #include "drivers/sensor.hpp"
 #include "engine/base/parameter.hpp"
 
@@ -17,6 +19,9 @@ struct DriverDescription {
   /// Makes a sensor of resolved values, without touching the device: poll() does that. Throws std::runtime_error,
   /// saying what to do, where the values cannot work together or name a file that is not there.
   std::unique_ptr<Sensor> (*open)(const ParameterValues& values);
+  /// What is plugged in that this driver could read; nullptr where there is nothing to plug in. Opens nothing for
+  /// longer than it takes to look at it.
+  std::vector<FoundDevice> (*find)() = nullptr;
 };
 
 /// Every driver (generated).

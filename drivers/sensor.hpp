@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "drivers/clock.hpp"
@@ -18,6 +19,9 @@ enum class LinkState : std::uint8_t {
 
 std::string_view name_of(LinkState state);
 
+/// Which way a message went.
+enum class RawDirection : std::uint8_t { kReceived, kSent };
+
 /// Where a sensor puts what it has. Called on the thread that polls; the strings need to live for the call only.
 class SensorSink {
  public:
@@ -26,6 +30,9 @@ class SensorSink {
   virtual void refused(Refusal why) = 0;
   /// Told at each change, and with each failed attempt: what happened, and what to do about it.
   virtual void link(LinkState state, std::string_view detail) = 0;
+  /// Each message as it came from the device or went to it, before anybody judges it: a line, a report, a request. What
+  /// is received counts as a frame; a trace shows the bytes.
+  virtual void raw(RawDirection direction, std::span<const std::uint8_t> message) = 0;
 };
 
 /// An open sensor, real or not. It holds its device for as long as it lives and finds it again for ever.

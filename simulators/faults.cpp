@@ -7,16 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "engine/math/philox.hpp"
+
 namespace yuragi::sim {
 namespace {
 
 constexpr double kDefaultDuration_s = 3.0;
-
-std::optional<FaultKind> kind_named(std::string_view name) {
-  const auto found = std::ranges::find(kFaultNames, name);
-  if (found == kFaultNames.end()) return std::nullopt;
-  return static_cast<FaultKind>(found - kFaultNames.begin());
-}
 
 std::optional<double> time_in(std::string_view text) {
   double value_s = 0.0;
@@ -26,22 +22,41 @@ std::optional<double> time_in(std::string_view text) {
   return is_time ? std::optional(value_s) : std::nullopt;
 }
 
-std::string kinds() {
-  return fmt::format("{}", fmt::join(kFaultNames, ", "));
-}
-
 }  // namespace
 
-std::optional<FaultKind> Faults::at(double time_s) const {
-  const Fault* latest = nullptr;
-  for (const Fault& fault : faults_) {
-    const bool holds = time_s >= fault.start_s && time_s < fault.start_s + fault.duration_s;
-    if (holds && (latest == nullptr || fault.start_s >= latest->start_s)) latest = &fault;
-  }
-  return latest != nullptr ? std::optional(latest->kind) : std::nullopt;
+std::string_view name_of(FaultKind kind) {
+  return kFaultNames[static_cast<std::size_t>(kind)];
 }
 
-Result<Fault, Failure> parse_fault(std::string_view text) {
+void Faults::clear() {
+  faults_.clear();
+  random_.reset();
+}
+
+std::optional<FaultKind> Faults::at(double time_s) const {
+  std::optional<Fault> latest = random_at(time_s);
+  for (const Fault& fault : faults_) {
+    const bool holds = time_s >= fault.start_s && time_s < fault.start_s + fault.duration_s;
+    if (holds && (!latest || fault.start_s >= latest->start_s)) latest = fault;
+  }
+  return latest ? std::optional(latest->kind) : std::nullopt;
+}
+
+std::optional<Fault> Faults::random_at(double time_s) const {
+  if (!random_ || known_.empty() || time_s < 0.0) return std::nullopt;
+  // Each stretch of time draws its own two numbers: one for when, one for what.
+  const double stretch = std::floor(time_s / random_->every_s);
+  const auto [when, what] =
+      RandomStream(random_->seed, stream_id("faults")).uniform_pair(static_cast<std::uint64_t>(stretch));
+  const double slack_s = random_->every_s - random_->duration_s;
+  const Fault fault{.kind = known_[static_cast<std::size_t>(what * static_cast<double>(known_.size()))],
+                    .start_s = stretch * random_->every_s + when * slack_s,
+                    .duration_s = random_->duration_s};
+  const bool holds = time_s >= fault.start_s && time_s < fault.start_s + fault.duration_s;
+  return holds ? std::optional(fault) : std::nullopt;
+}
+
+Result<Fault, Failure> Faults::parse(std::string_view text) const {
   const std::size_t at = text.find('@');
   const std::size_t plus = text.find('+', at == std::string_view::npos ? text.size() : at);
   if (plus != std::string_view::npos) {
@@ -55,21 +70,32 @@ Result<Fault, Failure> parse_fault(std::string_view text) {
       kinds())};
 }
 
-std::string obey(Faults& faults, std::string_view line, double time_s) {
+std::string Faults::obey(std::string_view line, double time_s) {
   std::istringstream words{std::string(line)};
   std::string word, duration;
   words >> word >> duration;
 
   if (word.empty()) return "";
   if (word == "clear") {
-    faults.clear();
+    clear();
     return "no faults";
   }
   const auto kind = kind_named(word);
   const auto duration_s = duration.empty() ? std::optional(kDefaultDuration_s) : time_in(duration);
   if (!kind || !duration_s) return fmt::format("say KIND [SECONDS], with KIND one of {}; or clear", kinds());
-  faults.add({*kind, time_s, *duration_s});
+  add(Fault{*kind, time_s, *duration_s});
   return fmt::format("{} for {:g} s", word, *duration_s);
+}
+
+std::optional<FaultKind> Faults::kind_named(std::string_view name) const {
+  const auto found = std::ranges::find(known_, name, [](FaultKind kind) { return name_of(kind); });
+  return found != known_.end() ? std::optional(*found) : std::nullopt;
+}
+
+std::string Faults::kinds() const {
+  std::string all;
+  for (const FaultKind kind : known_) all += fmt::format("{}{}", all.empty() ? "" : ", ", name_of(kind));
+  return all;
 }
 
 }  // namespace yuragi::sim

@@ -100,12 +100,13 @@ struct ModbusSimulator::State {
   int listener = -1;
   std::vector<int> clients;
   std::vector<Line> lines;
-  std::unique_ptr<PlayedWind> wind;
+  MeasuredWind wind;
   PlayedMoment moment;
   std::mt19937_64 random;
   std::uint64_t answered = 0;
   std::optional<FaultKind> fault;
 
+  explicit State(MeasuredWind measured) : wind(std::move(measured)) {}
   ~State() { drop(); }
 
   bool listen() {
@@ -150,7 +151,7 @@ struct ModbusSimulator::State {
     modbus_t* const line_context = context.get();
     if (fault == FaultKind::kSilence) return true;
     if (fault == FaultKind::kGarbage) return send_garbage(client);
-    if (fault == FaultKind::kShort) return send_short(client, request);
+    if (fault == FaultKind::kPartial) return send_partial(client, request);
     ++answered;
     if (line == lines.end()) {
       return modbus_reply_exception(line_context, request.data(), MODBUS_EXCEPTION_GATEWAY_TARGET) >= 0;
@@ -179,7 +180,7 @@ struct ModbusSimulator::State {
   }
 
   /// The answer to a request for registers without its last byte.
-  bool send_short(int client, const Request& request) const {
+  bool send_partial(int client, const Request& request) const {
     const auto data = static_cast<std::uint8_t>(2U * std::min<unsigned>(request[kCountLow], MODBUS_MAX_READ_REGISTERS));
     std::vector<std::uint8_t> bytes(request.begin(), request.begin() + kFunction + 1);
     bytes[4] = 0;
@@ -198,11 +199,10 @@ std::vector<std::string> modbus_device_names() {
 }
 
 ModbusSimulator::ModbusSimulator(std::string_view device, const std::string& host, std::uint16_t port,
-                                 std::uint64_t seed, std::unique_ptr<PlayedWind> wind)
-    : state_(std::make_unique<State>()) {
+                                 std::uint64_t seed, MeasuredWind wind)
+    : state_(std::make_unique<State>(std::move(wind))) {
   state_->host = host;
   state_->port = port;
-  state_->wind = std::move(wind);
   state_->random.seed(seed);
   for (const Slave& slave : device_named(device).slaves) {
     Mapping registers(modbus_mapping_new(0, 0, slave.registers, 0));
@@ -221,6 +221,13 @@ std::uint16_t ModbusSimulator::port() const {
   return state_->port;
 }
 
+std::span<const FaultKind> ModbusSimulator::known_faults() const {
+  static constexpr std::array kKnown = {FaultKind::kSilence,          FaultKind::kFreeze,    FaultKind::kSpike,
+                                        FaultKind::kGarbage,          FaultKind::kPartial,   FaultKind::kWrongId,
+                                        FaultKind::kWrongTransaction, FaultKind::kException, FaultKind::kDisconnect};
+  return kKnown;
+}
+
 std::vector<int> ModbusSimulator::descriptors() const {
   std::vector<int> all = state_->clients;
   if (state_->listener >= 0) all.push_back(state_->listener);
@@ -230,12 +237,12 @@ std::vector<int> ModbusSimulator::descriptors() const {
 void ModbusSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
   // The devices measure on, whoever asks.
   State& state = *state_;
-  state.moment = state.wind->at(time_s);
+  state.moment = state.wind.at(time_s, fault);
   for (State::Line& line : state.lines) line.slave.measure(state.moment, line.registers->tab_registers);
 
   // Dropped: nobody is served until the listener is back.
   state.fault = fault;
-  if (fault == FaultKind::kDrop) return state.drop();
+  if (fault == FaultKind::kDisconnect) return state.drop();
   if (state.listener < 0) {
     state.listen();
     return;
@@ -255,7 +262,7 @@ std::string ModbusSimulator::status() const {
   const State& state = *state_;
   return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {} clients, {} answers{}{}", state.moment.speed_m_s,
                      state.moment.direction_deg, state.clients.size(), state.answered, state.fault ? ", fault: " : "",
-                     state.fault ? kFaultNames[static_cast<std::size_t>(*state.fault)] : "");
+                     state.fault ? name_of(*state.fault) : "");
 }
 
 }  // namespace yuragi::sim

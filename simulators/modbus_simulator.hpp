@@ -21,12 +21,13 @@ class ModbusSimulator final : public Simulator {
   /// Listens at once; port 0 takes a free one. Throws std::runtime_error for a device it does not know or an address
   /// that cannot be had. `seed` makes the bytes of the garbage fault.
   ModbusSimulator(std::string_view device, const std::string& host, std::uint16_t port, std::uint64_t seed,
-                  std::unique_ptr<PlayedWind> wind);
+                  MeasuredWind wind);
   ~ModbusSimulator() override;
 
   /// The port that it listens on.
   std::uint16_t port() const;
 
+  std::span<const FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override;
   void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
   std::string status() const override;

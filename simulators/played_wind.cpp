@@ -7,6 +7,8 @@
 namespace yuragi::sim {
 namespace {
 
+constexpr double kSpike_m_s = 55.0;
+
 class SyntheticPlayedWind final : public PlayedWind {
  public:
   explicit SyntheticPlayedWind(const SyntheticWindSettings& settings) : wind_(settings) {}
@@ -49,6 +51,14 @@ std::unique_ptr<PlayedWind> play_synthetic_wind(const SyntheticWindSettings& set
 
 std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file) {
   return std::make_unique<RecordedPlayedWind>(file);
+}
+
+PlayedMoment MeasuredWind::at(double time_s, std::optional<FaultKind> fault) {
+  PlayedMoment moment = wind_->at(time_s);
+  if (fault == FaultKind::kFreeze) return last_;
+  last_ = moment;
+  if (fault == FaultKind::kSpike) moment.speed_m_s = kSpike_m_s;
+  return moment;
 }
 
 }  // namespace yuragi::sim

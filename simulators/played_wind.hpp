@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/wind/synthetic_wind.hpp"
+#include "simulators/faults.hpp"
 
 namespace yuragi::sim {
 
@@ -28,5 +29,19 @@ std::unique_ptr<PlayedWind> play_synthetic_wind(const SyntheticWindSettings& set
 /// A recording (.windlog), at the pace at which it was recorded, again and again. Each reading holds until the next.
 /// Throws std::runtime_error where the file cannot be played.
 std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file);
+
+/// What a sensor that stands in that wind measures: the wind, but for the faults kFreeze and kSpike.
+/// Thread-safe: no.
+class MeasuredWind {
+ public:
+  explicit MeasuredWind(std::unique_ptr<PlayedWind> wind) : wind_(std::move(wind)) {}
+
+  /// Asked for times that never go back.
+  PlayedMoment at(double time_s, std::optional<FaultKind> fault);
+
+ private:
+  std::unique_ptr<PlayedWind> wind_;
+  PlayedMoment last_;
+};
 
 }  // namespace yuragi::sim

@@ -14,11 +14,14 @@ class Simulator {
  public:
   virtual ~Simulator() = default;
 
+  /// What it can suffer; a constant.
+  virtual std::span<const FaultKind> known_faults() const = 0;
+
   /// The descriptors that bring it work.
   virtual std::vector<int> descriptors() const = 0;
 
   /// Does what there is to do `time_s` after the start: `ready` are those of its descriptors that can be read, `fault`
-  /// is what goes wrong at the moment. Called at least 20 times a second.
+  /// is what goes wrong at the moment, one of its known ones. Called at least 20 times a second.
   virtual void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) = 0;
 
   /// One line for people.

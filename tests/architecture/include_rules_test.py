@@ -24,12 +24,12 @@ ROOMS = {
     "engine/wire": ("engine/base engine/pose engine/wind", "flatbuffers pose_generated.h"),
     "drivers/decode": ("engine/base engine/fft engine/wind", ""),
     "drivers/windlog": ("engine/base engine/wind", "sqlite3.h POSIX"),
-    "drivers/bus": ("drivers/decode engine/base engine/wind", "modbus hidapi libusb portaudio boost/asio POSIX"),
-    "drivers": ("drivers/bus drivers/decode drivers/windlog engine/base engine/wind", "toml++ fmt POSIX"),
+    "drivers/bus": ("drivers/decode engine/base engine/wind", "modbus hidapi libusb portaudio mosquitto.h lo boost/asio boost/system fmt POSIX"),
+    "drivers": ("drivers/bus drivers/decode drivers/windlog engine/base engine/wind", "toml++ nlohmann fmt POSIX"),
     "daemon": (
         "engine/base engine/math engine/fft engine/noise engine/wind engine/pose engine/operators engine/scenes"
         " engine/wire drivers drivers/bus drivers/decode drivers/windlog",
-        "boost/asio boost/beast boost/system CLI toml++ spdlog fmt libfccp date POSIX",
+        "boost/asio boost/beast boost/system CLI toml++ nlohmann spdlog fmt libfccp date POSIX",
     ),
     "viewer": (
         "engine/base engine/math engine/pose engine/wire",
@@ -37,7 +37,7 @@ ROOMS = {
     ),
     "simulators": (
         "engine/base engine/math engine/fft engine/noise engine/wind drivers/windlog",
-        "modbus boost/asio boost/system CLI toml++ fmt spdlog POSIX",
+        "modbus umockdev.h boost/asio boost/system CLI toml++ fmt spdlog POSIX",
     ),
 }
 
@@ -51,7 +51,7 @@ ALLOWED_ALL_THE_SAME = {("engine/fft", "mutex")}
 CLOCK_READ = re.compile(r"\b(?:steady|system|high_resolution|utc)_clock::now\b")
 
 # Of these a driver's file may wrap one.
-C_LIBRARIES = "modbus hidapi libusb portaudio sqlite3.h".split()
+C_LIBRARIES = "modbus hidapi libusb portaudio sqlite3.h mosquitto.h lo umockdev.h".split()
 
 # The operating system's own headers.
 POSIX = set(

@@ -1,4 +1,5 @@
 // Counter and ADC: MCC USB-1208FS-Plus, LabJack U3, and the cup and vane behind them.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -57,17 +58,17 @@ const std::string kLabjackReplyHex = "ff f8 05 00 00 02 00 00 00 b0 7a d2 04 00 
 DaqBytes labjack_reply(const std::string& data_hex, std::uint8_t command = 0) {
   const auto data = hex_bytes(data_hex);
   const std::uint16_t sum = sum_16(data);
-  DaqBytes reply = {0,
-                    0xF8,
-                    static_cast<std::uint8_t>(data.size() / 2),
-                    command,
-                    static_cast<std::uint8_t>(sum & 0xFFU),
-                    static_cast<std::uint8_t>(sum >> 8U)};
+  DaqBytes reply(6 + data.size());
+  reply[1] = 0xF8;
+  reply[2] = static_cast<std::uint8_t>(data.size() / 2);
+  reply[3] = command;
+  reply[4] = static_cast<std::uint8_t>(sum & 0xFFU);
+  reply[5] = static_cast<std::uint8_t>(sum >> 8U);
+  std::ranges::copy(data, reply.begin() + 6);
   unsigned head = 0;
   for (std::size_t i = 1; i < 6; ++i) head += reply[i];
   while (head > 0xFF) head = (head & 0xFFU) + (head >> 8U);
   reply[0] = static_cast<std::uint8_t>(head);
-  reply.insert(reply.end(), data.begin(), data.end());
   return reply;
 }
 

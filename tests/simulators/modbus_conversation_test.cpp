@@ -96,10 +96,10 @@ TEST(DriverAndSimulator, CountEveryFaultPublishNoneOfItAndComeBack) {
       {"exception", counts(Refusal::kException)},
       {"wrong-id", counts(Refusal::kNotMine)},
       {"wrong-transaction", counts(Refusal::kNotMine)},
-      {"short", counts(Refusal::kTooShort)},
+      {"partial", counts(Refusal::kTooShort)},
       // Random bytes look like this or that; none of it is an answer.
       {"garbage", [&] { return bench.sink.count(Refusal::kMalformed) + bench.sink.count(Refusal::kTooShort) >= 2; }},
-      {"drop", [&] { return bench.sink.last_detail().starts_with("cannot connect"); }},
+      {"disconnect", [&] { return bench.sink.last_detail().starts_with("cannot connect"); }},
   };
   for (const auto& [fault, is_counted] : faults) {
     SCOPED_TRACE(fault);

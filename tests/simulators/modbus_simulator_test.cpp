@@ -58,7 +58,8 @@ class ModbusSimulatorTest : public testing::Test {
   const Bytes ask_speed_ = {0, 7, 0, 0, 0, 6, 1, 3, 0, 0, 0, 1};
   const Bytes ask_vane_ = {0, 8, 0, 0, 0, 6, 2, 3, 0, 0, 0, 2};
   double time_s_ = 0.0;
-  ModbusSimulator simulator_{"renke-rs-fsjt-rs-fxjt-n01", "127.0.0.1", 0, 1, std::make_unique<SteadyWind>()};
+  ModbusSimulator simulator_{"renke-rs-fsjt-rs-fxjt-n01", "127.0.0.1", 0, 1,
+                             MeasuredWind(std::make_unique<SteadyWind>())};
 };
 
 TEST_F(ModbusSimulatorTest, PlaysTheWindInTimeOnTheRegistersOfBothDevices) {
@@ -91,7 +92,7 @@ TEST_F(ModbusSimulatorTest, FailsInEveryWayItIsToldTo) {
   EXPECT_THAT(ask(client, ask_speed_, FaultKind::kException), ElementsAre(0, 7, 0, 0, 0, 3, 1, 0x83, 4));
   EXPECT_THAT(ask(client, ask_speed_, FaultKind::kWrongId), ElementsAre(0, 7, 0, 0, 0, 5, 2, 3, 2, 0, 86));
   EXPECT_THAT(ask(client, ask_speed_, FaultKind::kWrongTransaction), ElementsAre(0, 6, 0, 0, 0, 5, 1, 3, 2, 0, 86));
-  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kShort), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0));
+  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kPartial), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0));
   EXPECT_EQ(ask(client, ask_speed_, FaultKind::kGarbage).size(), 24U);
   EXPECT_THAT(ask(client, ask_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
 }
@@ -101,7 +102,7 @@ TEST_F(ModbusSimulatorTest, DropsItsClientsRefusesNewOnesAndIsBackOnTheSamePort)
   ASSERT_EQ(ask(client, ask_speed_).size(), 11U);
   const std::uint16_t port = simulator_.port();
 
-  simulator_.serve({}, time_s_, FaultKind::kDrop);
+  simulator_.serve({}, time_s_, FaultKind::kDisconnect);
   char byte = 0;
   EXPECT_EQ(recv(client.get(), &byte, 1, 0), 0);
   EXPECT_LT(connect_client().get(), 0);
@@ -119,11 +120,12 @@ TEST_F(ModbusSimulatorTest, OutlivesAClientThatStopsInTheMiddleOfARequest) {
 }
 
 TEST(ModbusSimulatorSetUp, RefusesADeviceThatItDoesNotKnowAndAnAddressThatIsTaken) {
-  EXPECT_THROW(ModbusSimulator("no-such-device", "127.0.0.1", 0, 1, std::make_unique<SteadyWind>()),
+  EXPECT_THROW(ModbusSimulator("no-such-device", "127.0.0.1", 0, 1, MeasuredWind(std::make_unique<SteadyWind>())),
                std::runtime_error);
-  const ModbusSimulator first("renke-rs-fsjt-n01", "127.0.0.1", 0, 1, std::make_unique<SteadyWind>());
-  EXPECT_THROW(ModbusSimulator("renke-rs-fsjt-n01", "127.0.0.1", first.port(), 1, std::make_unique<SteadyWind>()),
-               std::runtime_error);
+  const ModbusSimulator first("renke-rs-fsjt-n01", "127.0.0.1", 0, 1, MeasuredWind(std::make_unique<SteadyWind>()));
+  EXPECT_THROW(
+      ModbusSimulator("renke-rs-fsjt-n01", "127.0.0.1", first.port(), 1, MeasuredWind(std::make_unique<SteadyWind>())),
+      std::runtime_error);
 }
 
 }  // namespace

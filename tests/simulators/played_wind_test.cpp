@@ -63,5 +63,22 @@ TEST(PlayedWind, ThatIsNoRecordingIsRefused) {
   EXPECT_THROW(play_recorded_wind("/no/such/file.windlog"), std::runtime_error);
 }
 
+/// 1 m/s more each second.
+class GrowingWind final : public PlayedWind {
+ public:
+  PlayedMoment at(double time_s) override { return {time_s, 90.0}; }
+};
+
+TEST(MeasuredWind, IsTheWindButForWhatFreezesOrSpikesIt) {
+  MeasuredWind wind(std::make_unique<GrowingWind>());
+  EXPECT_EQ(wind.at(1.0, std::nullopt).speed_m_s, 1.0);
+  EXPECT_EQ(wind.at(2.0, FaultKind::kFreeze).speed_m_s, 1.0);
+  EXPECT_EQ(wind.at(3.0, FaultKind::kFreeze).speed_m_s, 1.0);
+  EXPECT_EQ(wind.at(4.0, FaultKind::kGarbage).speed_m_s, 4.0);
+  EXPECT_EQ(wind.at(5.0, FaultKind::kSpike).speed_m_s, 55.0);
+  EXPECT_EQ(wind.at(6.0, FaultKind::kFreeze).speed_m_s, 5.0);
+  EXPECT_EQ(wind.at(7.0, std::nullopt).speed_m_s, 7.0);
+}
+
 }  // namespace
 }  // namespace yuragi::sim

@@ -15,13 +15,22 @@ struct RecordingSink final : SensorSink {
     std::string detail;
   };
 
+  struct Raw {
+    RawDirection direction;
+    std::vector<std::uint8_t> message;
+  };
+
   std::vector<WindReading> readings;
   std::vector<Refusal> refusals;
   std::vector<Link> links;
+  std::vector<Raw> raws;
 
   void reading(const WindReading& reading) override { readings.push_back(reading); }
   void refused(Refusal why) override { refusals.push_back(why); }
   void link(LinkState state, std::string_view detail) override { links.push_back({state, std::string(detail)}); }
+  void raw(RawDirection direction, std::span<const std::uint8_t> message) override {
+    raws.push_back({direction, {message.begin(), message.end()}});
+  }
 
   std::ptrdiff_t count(Refusal why) const { return std::ranges::count(refusals, why); }
   LinkState last_state() const { return links.empty() ? LinkState::kConnecting : links.back().state; }

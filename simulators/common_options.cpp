@@ -1,0 +1,69 @@
+#include "simulators/common_options.hpp"
+
+#include <utility>
+
+namespace yuragi::sim {
+
+void CommonOptions::add_to(CLI::App& command) {
+  command.add_option("--wind", wind, "synthetic, or a recording FILE.windlog, played again and again")
+      ->capture_default_str();
+  command.add_option("--speed", synthetic.mean_speed_m_s, "mean of the synthetic wind, m/s")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  command.add_option("--direction", synthetic.mean_direction_deg, "where it comes from, degrees")
+      ->check(CLI::Range(0.0, 360.0))
+      ->capture_default_str();
+  command.add_option("--turbulence", synthetic.turbulence_intensity, "its standard deviation over its mean")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--seed", synthetic.seed, "the same seed gives the same wind and the same random faults")
+      ->capture_default_str();
+  command.add_option("--fault", faults,
+                     "KIND@START+DURATION in seconds, such as silence@10+5; can be given again. The same by standard "
+                     "input, live: KIND [SECONDS], clear, help");
+  command.add_option("--random-faults", random_faults_every_s, "one fault of any kind in each so many seconds")
+      ->check(CLI::Range(1.0, 1e6));
+  command.add_option("--random-fault-duration", random_fault_s, "how long each of them lasts, s")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str();
+  command.add_option("--duration", run.duration_s, "end after so many seconds")->check(CLI::NonNegativeNumber);
+  command.add_flag("--verbose", run.verbose, "a status line a second even where nobody watches");
+}
+
+MeasuredWind CommonOptions::make_wind() const {
+  return MeasuredWind(wind == "synthetic" ? play_synthetic_wind(synthetic) : play_recorded_wind(wind));
+}
+
+void CommonOptions::run_simulator(Simulator& simulator) const {
+  Faults all(simulator.known_faults());
+  for (const std::string& text : faults) {
+    const auto fault = all.parse(text);
+    if (!fault) throw CLI::ValidationError("--fault", fault.error().message);
+    all.add(*fault);
+  }
+  if (random_faults_every_s) {
+    if (*random_faults_every_s <= random_fault_s) {
+      throw CLI::ValidationError("--random-faults", "must be longer than --random-fault-duration");
+    }
+    all.add(RandomFaults{.every_s = *random_faults_every_s, .duration_s = random_fault_s, .seed = synthetic.seed});
+  }
+  sim::run(simulator, std::move(all), run);
+}
+
+Address parse_address(const std::string& option, const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon != std::string::npos && colon > 0) {
+    std::string host = text.substr(0, colon);
+    if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+    const std::string digits = text.substr(colon + 1);
+    const bool is_number =
+        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos;
+    if (const unsigned long port = is_number ? std::stoul(digits) : 65536; port <= 65535) {
+      return {host, static_cast<std::uint16_t>(port)};
+    }
+  }
+  throw CLI::ValidationError(
+      option, "\"" + text + "\" is no address; allowed: HOST:PORT, with a port from 0 (a free one) to 65535");
+}
+
+}  // namespace yuragi::sim

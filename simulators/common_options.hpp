@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "simulators/played_wind.hpp"
+#include "simulators/simulator.hpp"
+
+namespace yuragi::sim {
+
+/// The options that every simulator has: the wind that it plays, what goes wrong, and for how long it runs.
+struct CommonOptions {
+  std::string wind = "synthetic";
+  SyntheticWindSettings synthetic;
+  std::vector<std::string> faults;
+  std::optional<double> random_faults_every_s;
+  double random_fault_s = 5.0;
+  RunOptions run;
+
+  void add_to(CLI::App& command);
+
+  /// The wind that is asked for. Throws std::runtime_error where the recording cannot be played.
+  MeasuredWind make_wind() const;
+
+  /// Runs the simulator with the faults that are asked for. Throws CLI::ValidationError for those that it does not
+  /// know.
+  void run_simulator(Simulator& simulator) const;
+};
+
+/// "HOST:PORT".
+struct Address {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+/// Reads "HOST:PORT", where an IPv6 address may stand in brackets. Throws CLI::ValidationError, naming `option`.
+Address parse_address(const std::string& option, const std::string& text);
+
+}  // namespace yuragi::sim

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulators/faults.hpp"
+#include "simulators/played_wind.hpp"
+
+namespace yuragi::sim {
+
+using UsbBytes = std::vector<std::uint8_t>;
+
+/// The 8 bytes that begin a control transfer (USB 2.0 specification, 9.3).
+struct UsbSetup {
+  std::uint8_t request_type = 0;
+  std::uint8_t request = 0;
+  std::uint16_t value = 0;
+  std::uint16_t index = 0;
+  std::uint16_t length = 0;
+
+  bool is_to_host() const noexcept { return (request_type & 0x80U) != 0; }
+};
+
+/// What a device shows of itself, as the bytes that it would send (USB 2.0 specification, 9.5 and 9.6). One
+/// configuration.
+struct UsbDescriptors {
+  UsbBytes device;                   ///< 18 bytes
+  UsbBytes configuration;            ///< with interfaces, HID descriptors and end points behind it
+  UsbBytes hid_report;               ///< of interface 0; empty: no HID device
+  std::vector<std::string> strings;  ///< ASCII; number 1 first
+};
+
+/// A simulated USB device, the same for every way to attach it (USB/IP, umockdev). It computes: no socket, no file, no
+/// clock. What comes from the host is hostile: any bytes of any length.
+///
+/// Standard requests (descriptors, address, configuration) are answered for it by usb_standard.hpp: control() sees
+/// class and vendor requests only. Thread-safe: no.
+class UsbDevice {
+ public:
+  virtual ~UsbDevice() = default;
+
+  virtual const UsbDescriptors& descriptors() const = 0;
+  virtual std::span<const FaultKind> known_faults() const = 0;
+
+  /// Goes on to `time_s` after the start, in that wind. Called before anything else of that moment. kUnplug and
+  /// kSilence of the whole device are the carrier's to do; what the device says wrongly is its own.
+  virtual void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) = 0;
+
+  /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host gets, at most
+  /// `setup.length` bytes of it; nothing for a request that the device refuses (a stall).
+  virtual std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) = 0;
+
+  /// What waits at an IN end point (its number without the direction bit), at most `max_size` bytes of it: one
+  /// interrupt report, or bulk data. Nothing: the host has to wait (NAK).
+  virtual std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) = 0;
+
+  /// What the host sends to an OUT end point. False: refused (a stall).
+  virtual bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) = 0;
+};
+
+}  // namespace yuragi::sim
