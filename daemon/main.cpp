@@ -9,19 +9,20 @@
 
 int main(int argc, char** argv) {
   using namespace yuragi;
-  CLI::App app{
-      "Yuragi: real wind moves grass, cloth, trees and flames on a wall.\n"
-      "Start with `yuragi run`: it needs no sensor and no configuration; watch it with `yuragi-viewer`.",
-      "yuragi"};
-  app.set_version_flag("--version", "yuragi " YURAGI_VERSION);
-  app.require_subcommand(1);
-  for (const Command* command : command_table()) command->add(app);
-
   try {
-    app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
+    CLI::App app{
+        "Yuragi: real wind moves grass, cloth, trees and flames on a wall.\n"
+        "Start with `yuragi run`: it needs no sensor and no configuration; watch it with `yuragi-viewer`.",
+        "yuragi"};
+    app.set_version_flag("--version", "yuragi " YURAGI_VERSION);
+    app.require_subcommand(1);
+    for (const Command* command : command_table()) command->add(app);
+    try {
+      app.parse(argc, argv);
+      return 0;
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? 0 : kExitUsage;
+    }
   } catch (const ConfigError& error) {
     std::fprintf(stderr, "%s\n", error.what());  // its lines begin with the place, as compilers' do
     return kExitConfig;

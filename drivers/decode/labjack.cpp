@@ -61,7 +61,7 @@ Result<LabjackReply, LabjackRefusal> decode_labjack(const LabjackRequest& reques
   }
   if (reply.size() < kLabjackHeader) return refuse_labjack(Refusal::kTooShort);
   if (reply[1] != kLabjackExtended) return refuse_labjack(Refusal::kMalformed);
-  const std::size_t whole = kLabjackHeader + 2U * reply[2];
+  const std::size_t whole = kLabjackHeader + std::size_t{2} * reply[2];
   if (reply.size() < whole) return refuse_labjack(Refusal::kTooShort);
   if (reply.size() > whole) return refuse_labjack(Refusal::kMalformed);
   const bool is_undamaged =

@@ -25,7 +25,7 @@ inline std::uint64_t pose_hash(std::uint64_t seed, std::span<const float> values
 
 /// The same over a pose of any kind, array after array, padding included.
 template <PoseLike AnyPose>
-std::uint64_t pose_hash(std::uint64_t seed, const AnyPose& pose) noexcept {
+std::uint64_t pose_hash(std::uint64_t seed, const AnyPose& pose) {
   std::uint64_t hash = seed;
   for_each_array(pose, [&hash](std::span<const float> values) { hash = pose_hash(hash, values); });
   return hash;

@@ -20,7 +20,7 @@ constexpr float kMaxBendStep_rad = 1e-3f;
 constexpr float kMaxWayStep_m = 1.0f;
 constexpr float kUnitTolerance = 1e-2f;
 constexpr float kMaxUnitComponent = 2.0f;  // before is_unit() looks at all three
-constexpr std::size_t kRampBytes = 4 * 256;
+constexpr std::size_t kRampBytes = std::size_t{4} * 256;
 
 template <class T>
 std::size_t size_of(const flatbuffers::Vector<T>* vector) {

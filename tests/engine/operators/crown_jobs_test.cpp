@@ -181,7 +181,8 @@ TEST(SplitJobTest, BothPartsRiseWithTheNoiseAndNeitherFasterThanIt) {
   const float step = 0.001F;
   Parts before(50);
   Parts after(50);
-  for (float noise = -3.0F; noise < 3.0F; noise += step) {
+  for (int k = -3000; k < 3000; ++k) {
+    const float noise = step * static_cast<float>(k);
     before.noise.assign(50, noise);
     after.noise.assign(50, noise + step);
     before.job().run();
@@ -199,7 +200,8 @@ TEST(SplitJobTest, AMovingThresholdMovesThePartsByNoMoreThanItself) {
   const double step = 0.002;
   Parts before(200);
   Parts after(200);
-  for (double threshold = -4.0; threshold < 4.0; threshold += step) {
+  for (int k = -2000; k < 2000; ++k) {
+    const double threshold = step * k;
     before.job(threshold, 0.0).run();
     after.job(threshold + step, 0.0).run();
     for (std::size_t i = 0; i < 200; ++i) ASSERT_LE(std::abs(after.above[i] - before.above[i]), step + 1e-6);

@@ -112,7 +112,8 @@ TEST(QuantiseTest, AClothOfTwoMetresIsWithinATenthOfAMillimetre) {
   for (auto* values : {&cloth.rest_x_m, &cloth.rest_y_m, &cloth.rest_z_m}) values->assign(150 * cloth.stride(), 7.0F);
   for (std::size_t i = 0; i < cloth.rest_x_m.size(); ++i) {
     cloth.rest_x_m[i] = 100.0F + 2.0F * static_cast<float>(i % cloth.stride()) / 199.0F;
-    cloth.rest_y_m[i] = 2.0F * static_cast<float>(i / cloth.stride()) / 149.0F;
+    const std::size_t row = i / cloth.stride();
+    cloth.rest_y_m[i] = 2.0F * static_cast<float>(row) / 149.0F;
   }
   const float step_m = way_step_m(cloth);
   EXPECT_LE(step_m / 2.0F, 0.0001F);

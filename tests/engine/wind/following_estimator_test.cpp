@@ -166,7 +166,7 @@ TEST(FollowingEstimator, ATurnFrom350To10DegreesPassesThroughNorth) {
 TEST(FollowingEstimator, FallsBackToTheNextLiveSourceAndReturnsToTheFirst) {
   Scenario run(2);
   const auto both_for = [&run](double duration_s, bool first_speaks) {
-    for (double time_s = 0.0; time_s < duration_s; time_s += 0.5) {
+    for (int half = 0; half < static_cast<int>(2.0 * duration_s); ++half) {
       if (first_speaks) run.read(8.0, 90.0, 0);
       run.read(4.0, 0.0, 1);
       run.run_for(0.5);
