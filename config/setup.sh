@@ -15,6 +15,7 @@ build_packages=(
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
   libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
+  gnuplot-nox                # plots
   libgl1-mesa-dri xvfb xauth # the viewer's picture where there is no display
 )
 test_packages=(
