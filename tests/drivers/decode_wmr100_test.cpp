@@ -142,7 +142,7 @@ TEST(Wmr100Vectors, OfTheSharedCollectionDecodeAsTheySay) {
   for (const auto& vector : vectors) {
     const std::string layer = vector["layer"];
     const std::string hex = vector["bytes"];
-    SCOPED_TRACE(layer + ": " + hex);
+    SCOPED_TRACE(testing::Message() << layer << ": " << hex);
     if (layer.starts_with("frame")) {
       const auto decoded = decode_wmr100_frame(hex_bytes(hex));
       if (vector["expect"].contains("type")) {

@@ -231,7 +231,8 @@ TEST_P(ClothScene, TheHybridKeepsWhatTheNoiseKeeps) {
   // Steps, gaps, reversals: threads keep their length, fixed edges stay, and no joint moves beyond the bound.
   GridPose before = offsets_of(*scene);
   for (int tick = 0; tick < 400; ++tick) {
-    const double speed_m_s = tick % 70 < 50 ? 10.0 * (tick / 70) : 0.0;
+    const int round = tick / 70;
+    const double speed_m_s = tick % 70 < 50 ? 10.0 * round : 0.0;
     scene->tick(cloth_wind(tick / 35 % 2 == 0 ? 30.0 : 200.0, speed_m_s), kClothTick_s);
     const GridPose& now = offsets_of(*scene);
     for (std::size_t i = 0; i < now.offset_x_m.size(); ++i) {
@@ -304,7 +305,8 @@ TEST(FlagTest, HangsLimpInCalmAirAndFliesDownwind) {
   const std::size_t middle = grid.columns / 2;
   const auto fly = [&] { return place_at(*scene, middle, grid.rows - 1) - rest_at(*scene, middle, 0); };
   EXPECT_LT(fly().y, -0.9 * 1.8);
-  for (double azimuth_deg = 0.0; azimuth_deg < 360.0; azimuth_deg += 45.0) {
+  for (int eighth = 0; eighth < 8; ++eighth) {
+    const double azimuth_deg = 45.0 * eighth;
     blow_on(*scene, cloth_wind(azimuth_deg, 12.0), 120);
     Place mean;
     for (int tick = 0; tick < 600; ++tick) {

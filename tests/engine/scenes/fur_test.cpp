@@ -38,7 +38,7 @@ TEST(FurTest, RootsAreOnTheBodyAndHairsLeaveItOutward) {
          static_cast<double>(hairs.rest_z[i]) * z / 0.35) /
         length;
     EXPECT_GT(outward, 0.08);  // cos 85 deg
-    const double rest = std::hypot(hairs.rest_x[i], hairs.rest_y[i], hairs.rest_z[i]);
+    const double rest = static_cast<double>(std::hypot(hairs.rest_x[i], hairs.rest_y[i], hairs.rest_z[i]));
     const double across = static_cast<double>(hairs.rest_x[i] * hairs.curl_x[i] + hairs.rest_y[i] * hairs.curl_y[i] +
                                               hairs.rest_z[i] * hairs.curl_z[i]);
     EXPECT_NEAR(rest, 1.0, 1e-5);

@@ -114,7 +114,7 @@ ParameterValues::Map even(ParameterValues::Map also = {}) {
 TEST(GrassTest, DoublingTheWindNeverBendsABladeLess) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     std::vector<double> before(400, 0.0);
-    for (double speed_m_s = 0.5; speed_m_s < 70.0; speed_m_s *= 2.0) {
+    for (const double speed_m_s : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0}) {
       const auto scene = grass(even(), seed);
       run(*scene, toward(0.3 * speed_m_s, speed_m_s), 600);
       for (std::size_t i = 0; i < before.size(); ++i) {

@@ -53,8 +53,10 @@ double likeness(const std::vector<float>& before, const std::vector<float>& now,
   double second = 0.0;
   for (int row = 10; row < 54; ++row) {
     for (int column = 10; column < 54; ++column) {
-      const auto a = static_cast<double>(before[static_cast<std::size_t>(64 * row + column)]);
-      const auto b = static_cast<double>(now[static_cast<std::size_t>(64 * (row + south) + column + east)]);
+      const int here = 64 * row + column;
+      const int there = here + 64 * south + east;
+      const auto a = static_cast<double>(before[static_cast<std::size_t>(here)]);
+      const auto b = static_cast<double>(now[static_cast<std::size_t>(there)]);
       both += a * b;
       first += a * a;
       second += b * b;

@@ -317,7 +317,9 @@ TEST(HostileBytes, AnOpacityOutOfBoundsIsRefusedAndSoIsAPoseThatIsMissedWhereItI
 }
 
 TEST(HostileBytes, AGridOfMorePointsThanThereAreIsRefused) {
-  for (const auto& [columns, rows] : {std::pair{1u, 1u << 20}, {~0u, ~0u}, {1u << 16, 1u << 16}, {2u, 6u}, {4u, 4u}}) {
+  for (const auto& size : {std::pair{1u, 1u << 20}, {~0u, ~0u}, {1u << 16, 1u << 16}, {2u, 6u}, {4u, 4u}}) {
+    const auto columns = size.first;
+    const auto rows = size.second;
     const auto cloth = decode_built(fb::Body_Scenes, [&](auto& builder) {
       const auto values = builder.CreateVector(std::vector<float>(12));
       const auto grid = fb::CreateGridSkeleton(builder, columns, rows, false, values, values, values).Union();

@@ -130,7 +130,8 @@ inline SurfaceSkeleton bowl(bool glows, std::size_t columns = 13, std::size_t ro
   surface.is_closed = glows;
   for (std::size_t i = 0; i < columns * rows; ++i) {
     const float around = 6.28f * static_cast<float>(i % columns) / static_cast<float>(columns);
-    const float up = 1.5f * static_cast<float>(i / columns) / static_cast<float>(rows);
+    const std::size_t row = i / columns;
+    const float up = 1.5f * static_cast<float>(row) / static_cast<float>(rows);
     surface.normal_x.push_back(std::cos(up) * std::cos(around));
     surface.normal_y.push_back(std::sin(up));
     surface.normal_z.push_back(std::cos(up) * std::sin(around));
