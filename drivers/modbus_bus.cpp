@@ -166,7 +166,10 @@ ModbusBus::Answer ModbusBus::exchange(const ModbusRequest& request, const Modbus
                                       const WakeEvent& wake, SensorSink& sink) {
   if (is_unsettled_) {
     const std::size_t leftover = connection_->settle(buffer_, patience, wake);
-    if (leftover > 0) sink.raw(RawDirection::kReceived, std::span(buffer_).first(leftover));
+    const auto bytes = std::span(buffer_).first(leftover);
+    if (leftover > 0) sink.raw(RawDirection::kReceived, bytes);
+    // A late answer, as a rule; noise has been counted when it was taken for an answer.
+    if (leftover > 0 && modbus_crc(bytes) == 0) sink.refused(Refusal::kNotMine);
   }
   is_unsettled_ = true;
   if (!connection_->send(request, patience)) return fail(BusStatus::kLost, false, sink);
