@@ -220,7 +220,8 @@ std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble
                        refusal.exception, modbus_exception_name(refusal.exception));
   }
   return fmt::format(
-      "an answer of {} is {}: check wiring and termination, baud rate, parity, and that no other device has its id",
+      "an answer of {} is no use ({}): check wiring and termination, baud rate, parity, and that no other device has "
+      "its id",
       slave, name_of(refusal.why));
 }
 
