@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+#include "simulators/played_wind.hpp"
+
+namespace yuragi::sim {
+
+/// What a cup and a vane say that stand in the played wind and are wired to a counter and an analogue input.
+///
+///   cup    one pulse for each 0.1 m of wind that has passed
+///   vane   a potentiometer between ground and 5 V; its track begins at north, runs clockwise and covers 356 degrees.
+///   In the
+///          4 degrees without a track a resistor pulls the input to 5.5 V, where no track is
+///
+/// Thread-safe: no.
+class CupAndVane {
+ public:
+  static constexpr double kMetresPerPulse = 0.1;
+  static constexpr double kReference_v = 5.0;
+  static constexpr double kTrack_deg = 356.0;
+  static constexpr double kOpenWiper_v = 5.5;
+
+  /// Goes on to `time_s`, which never goes back. A cup that is jammed makes no pulses, and the vane beside it stands.
+  void advance(double time_s, const PlayedMoment& wind, bool is_jammed);
+
+  /// Pulses since the start.
+  std::uint64_t pulses() const noexcept;
+  double wiper_v() const noexcept { return wiper_v_; }
+
+ private:
+  double time_s_ = 0.0;
+  double passed_m_ = 0.0;
+  double wiper_v_ = 0.0;
+};
+
+}  // namespace yuragi::sim

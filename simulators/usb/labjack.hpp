@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "simulators/usb/usb_device.hpp"
+
+namespace yuragi::sim {
+
+/// A simulated LabJack U3-HV. See CupAndVane for what is wired to it: the cup to FIO4.
+std::unique_ptr<UsbDevice> make_labjack();
+
+}  // namespace yuragi::sim

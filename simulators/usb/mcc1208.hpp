@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "simulators/usb/usb_device.hpp"
+
+namespace yuragi::sim {
+
+/// A simulated MCC USB-1208FS-Plus. See CupAndVane for what is wired to it.
+std::unique_ptr<UsbDevice> make_mcc1208();
+
+}  // namespace yuragi::sim
