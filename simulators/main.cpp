@@ -16,6 +16,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "yuragi-sim " YURAGI_VERSION);
   app.require_subcommand(1);
   yuragi::sim::add_modbus_command(app);
+  yuragi::sim::add_hid_command(app);
+  yuragi::sim::add_usb_command(app);
   try {
     app.parse(argc, argv);
     return 0;
