@@ -1,11 +1,9 @@
-// `yuragi-sim hid` and `yuragi-sim usb`: simulated USB devices, attached to a real kernel over USB/IP.
+// `yuragi-sim hid` and `yuragi-sim usb`: simulated USB devices, attached to a real kernel over USB/IP, or shown to one
+// program in a testbed of umockdev's.
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "simulators/commands.hpp"
 #include "simulators/common_options.hpp"
@@ -13,6 +11,11 @@
 #include "simulators/usb/hid_stations.hpp"
 #include "simulators/usb/usb_port.hpp"
 #include "simulators/usb/usbip_server.hpp"
+#if YURAGI_UMOCKDEV
+#include "simulators/launched_program.hpp"
+#include "simulators/usb/umockdev_simulator.hpp"
+#include "simulators/usb/umockdev_testbed.hpp"
+#endif
 
 namespace yuragi::sim {
 namespace {
@@ -20,6 +23,8 @@ namespace {
 struct UsbOptions {
   std::vector<std::string> devices;
   std::string usbip = "127.0.0.1:3240";
+  bool in_umockdev = false;
+  std::vector<std::string> program;
   double pace = 1.0;
   CommonOptions common;
 };
@@ -45,6 +50,18 @@ void serve_usbip(const UsbOptions& options, MakeUsbDevice make) {
   options.common.run_simulator(server);
 }
 
+#if YURAGI_UMOCKDEV
+/// Shows the devices to one program, and ends with it and as it does.
+void launch_in_umockdev(const UsbOptions& options, MakeUsbDevice make) {
+  if (options.program.empty()) throw CLI::RequiredError("PROGRAM");
+  if (!is_in_umockdev()) restart_in_umockdev();
+  UmockdevSimulator simulator(make_ports(options, make));
+  LaunchedProgram program(options.program, simulator);
+  options.common.run_simulator(program);
+  if (program.exit_code().value_or(0) != 0) throw CLI::RuntimeError(*program.exit_code());
+}
+#endif
+
 CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::string& summary,
                           const std::vector<std::string>& devices, const std::shared_ptr<UsbOptions>& options,
                           MakeUsbDevice make) {
@@ -60,8 +77,21 @@ CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::str
                    "HOST:PORT to serve USB/IP on; port 0 takes a free one. A Linux machine with the module vhci_hcd "
                    "attaches the first device by `usbip attach -r HOST -b 1-1`, the second is 1-2")
       ->capture_default_str();
+#if YURAGI_UMOCKDEV
+  command
+      ->add_flag("--umockdev", options->in_umockdev,
+                 "instead: run a program that finds the devices in /sys and /dev, without any kernel's help; ends "
+                 "with it, and with its exit code")
+      ->excludes("--usbip");
+  command->add_option("program", options->program, "behind --: that program, and its arguments")->type_name("PROGRAM");
+#endif
   options->common.add_to(*command);
-  command->callback([options, make] { serve_usbip(*options, make); });
+  command->callback([options, make] {
+#if YURAGI_UMOCKDEV
+    if (options->in_umockdev) return launch_in_umockdev(*options, make);
+#endif
+    serve_usbip(*options, make);
+  });
   return command;
 }
 
