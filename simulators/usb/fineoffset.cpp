@@ -54,18 +54,21 @@ FineOffset::FineOffset(FineOffsetRecord record, const HidModelOptions& options)
       position_(kFirstRecord),
       next_update_s_(paced(kFirstUpdate_s)),
       next_minute_s_(paced(kFirstMinute_s)) {
-  // The fixed block of a console that somebody has set up, and one record that it has just begun.
+  // The fixed block of a console that somebody has set up, and one record, before it heard of its sensors.
   memory_[0x00] = 0x55;
   memory_[0x01] = 0xAA;
   std::fill(memory_.begin() + 0x10, memory_.begin() + 0x100, std::uint8_t{0});
   memory_[0x10] = kMinutesPerRecord;
   memory_[kRecordCountAt] = 1;
   memory_[kPositionAt + 1] = static_cast<std::uint8_t>(position_ >> 8U);
-  const std::vector<std::uint8_t> first = measured();
-  std::ranges::copy(first, memory_.begin() + position_);
+  memory_[position_ + 15U] = 0x40;
 }
 
 void FineOffset::play() {
+  if (!has_begun_) {  // it has been standing in this wind for some time
+    has_begun_ = true;
+    std::ranges::copy(measured(), memory_.begin() + position_);
+  }
   gust_m_s_ = std::max(gust_m_s_, wind().speed_m_s);
   while (!writes_.empty() && writes_.front().at_s <= now_s()) {
     memory_[writes_.front().address] = writes_.front().value;

@@ -50,7 +50,8 @@ class FineOffset final : public HidModel {
   double next_update_s_;
   double next_minute_s_;
   double last_write_s_ = -1e9;
-  double gust_m_s_ = 0.0;
+  double gust_m_s_ = 0.0;  ///< since the last update
+  bool has_begun_ = false;
   int reads_near_writing_ = 0;
   int blocks_read_ = 0;
 };

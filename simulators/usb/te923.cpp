@@ -40,7 +40,11 @@ class Te923 final : public HidModel {
                   .manufacturer = "",
                   .product_name = "",
                   .report_descriptor = plain_report_descriptor(8)},
-                 kTe923Faults, options) {}
+                 kTe923Faults, options) {
+    // Before it heard of its anemometer.
+    constexpr std::array<std::uint8_t, 4> kNoSensor = {0xEE, 0x8E, 0xEE, 0x8E};
+    std::ranges::copy(kNoSensor, readings_.begin() + 25);
+  }
 
  protected:
   void play() override {
