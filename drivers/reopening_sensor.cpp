@@ -13,7 +13,10 @@ constexpr Nanoseconds kLongestWait = std::chrono::seconds(10);
 ReopeningSensor::ReopeningSensor(std::uint32_t seed) : backoff_(kFirstWait, kLongestWait, seed) {}
 
 MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
-  if (clock.now().mono < next_poll_) return next_poll_;
+  if (clock.now().mono < next_poll_) {
+    if (is_open_ || !has_returned()) return next_poll_;
+    backoff_.reset();
+  }
 
   const Result<MonoTime, Failure> next = is_open_ ? work(clock, sink) : open(clock);
   if (next) {

@@ -33,6 +33,10 @@ class ReopeningSensor : public Sensor {
   /// Lets go of the device. Called after a failed work() too; never twice.
   virtual void close() noexcept = 0;
 
+  /// Has the device come back, as far as can be seen without waiting? Asked at each poll() that comes too early for the
+  /// next attempt to open it, which is then made at once.
+  virtual bool has_returned() { return false; }
+
   /// For work(): the device is there and says something of use. `detail` is for people: what it is, and where.
   void is_well(SensorSink& sink, const std::string& detail);
   /// For work(): the device is open, but does not say what it should; why, and what to do.

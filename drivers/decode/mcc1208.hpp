@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
 
 #include "drivers/decode/byte_order.hpp"
 #include "drivers/decode/refusal.hpp"
@@ -11,29 +9,18 @@
 namespace yuragi {
 
 // Measurement Computing USB-1208FS-Plus (USB 09db:00e8): a counter for a cup, an ADC of 12 bits for a vane.
-// Source: ../shared/sensors.md 3, and wjasper/Linux_Drivers USB/mcc-libusb/usb-1208FS-Plus.c (usbCounter, usbAIn,
-// volts).
+// Source: wjasper/Linux_Drivers USB/mcc-libusb/usb-1208FS-Plus.{h,c} (usbCounter, usbAIn, usbReadCalMemory, volts) and
+// USB/python/usb_1208FS_Plus.py ("Range for Single Ended is +/- 10V only"; UP_5V is a range of the analogue outputs).
 //
 // Everything is a vendor's control transfer to the device:
 //
-//   counter   C0 20, wValue 0, wIndex 0              4 bytes: events since the last reset, low byte first
-//   reset     40 20, wValue 0, wIndex 0              nothing
-//   ADC       C0 10, wValue mode << 8 | channel,     2 bytes: 0 to 4095, low byte first
-//             wIndex range
-
-/// The analogue inputs' ranges, as wIndex has them: bipolar ones on two inputs against each other (mode 1), and
-/// kBipolar10V and kUnipolar5V on one against ground (mode 0).
-enum class Mcc1208Range : std::uint8_t {
-  kBipolar20V,
-  kBipolar10V,
-  kBipolar5V,
-  kBipolar4V,
-  kBipolar2_5V,
-  kBipolar2V,
-  kBipolar1_25V,
-  kBipolar1V,
-  kUnipolar5V,
-};
+//   counter       C0 20, wValue 0, wIndex 0           4 bytes: events since the last reset, low byte first
+//   reset         40 20, wValue 0, wIndex 0           nothing
+//   ADC           C0 10, wValue channel (0 to 7),     2 bytes: 0 to 4095, low byte first; the input against ground,
+//                 wIndex 1                            -10 to 10 V
+//   calibration   C0 30, wValue 0x100 + 8 * channel   8 bytes: slope and intercept of that input, two 32-bit floats,
+//   low
+//                                                     byte first: right code = code * slope + intercept
 
 /// A vendor's control transfer, as libusb_control_transfer() wants its arguments.
 struct Mcc1208Transfer {
@@ -46,23 +33,33 @@ struct Mcc1208Transfer {
   bool operator==(const Mcc1208Transfer&) const = default;
 };
 
+inline constexpr std::uint8_t kMcc1208Inputs = 8;
 inline constexpr Mcc1208Transfer kMcc1208ReadCounter = {0xC0, 0x20, 0, 0, 4};
 inline constexpr Mcc1208Transfer kMcc1208ResetCounter = {0x40, 0x20, 0, 0, 0};
 
-/// Asks for `channel` (0 to 7) against ground, or against its neighbour.
-Mcc1208Transfer mcc1208_read_analog(std::uint8_t channel, bool is_differential, Mcc1208Range range) noexcept;
+/// Asks for the value of input `channel`, or for its calibration.
+constexpr Mcc1208Transfer mcc1208_read_analog(std::uint8_t channel) noexcept {
+  return {0xC0, 0x10, channel, 1, 2};
+}
+constexpr Mcc1208Transfer mcc1208_read_calibration(std::uint8_t channel) noexcept {
+  return {0xC0, 0x30, static_cast<std::uint16_t>(0x100 + 8 * channel), 0, 8};
+}
 
-/// What a reply holds: the one or the other. What wind it means, advance_cup() and vane_direction_deg() say.
-struct Mcc1208Reply {
-  std::optional<std::uint32_t> count;
-  std::optional<std::uint16_t> analog;  ///< 0 to 4095
+/// How an input's codes are made right; by itself, one that needs nothing.
+struct Mcc1208Calibration {
+  double slope = 1.0;
+  double intercept_steps = 0.0;
 };
 
-/// A reply by its length: kTooShort (neither), kMalformed (longer, or more than 12 bits). Thread-safe and
-/// realtime-safe: yes.
-Result<Mcc1208Reply, Refusal> decode_mcc1208(ByteSpan reply) noexcept;
+// The replies to these, by their length: kTooShort, kMalformed (longer, or more than 12 bits). What wind they mean,
+// advance_cup() and vane_direction_deg() say. Thread-safe and realtime-safe: yes.
 
-/// The voltage of an uncalibrated `analog` value.
-double mcc1208_volts(std::uint16_t analog, Mcc1208Range range) noexcept;
+Result<std::uint32_t, Refusal> decode_mcc1208_count(ByteSpan reply) noexcept;
+Result<std::uint16_t, Refusal> decode_mcc1208_analog(ByteSpan reply) noexcept;
+/// kInvalid for what no input is off by: a memory that was erased, or never written.
+Result<Mcc1208Calibration, Refusal> decode_mcc1208_calibration(ByteSpan reply) noexcept;
+
+/// The voltage of an `analog` value.
+double mcc1208_volts(std::uint16_t analog, const Mcc1208Calibration& calibration) noexcept;
 
 }  // namespace yuragi

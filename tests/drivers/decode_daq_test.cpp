@@ -22,32 +22,43 @@ using DaqBytes = std::vector<std::uint8_t>;
 
 // --- MCC USB-1208FS-Plus
 
-TEST(Mcc1208Reply, IsACountOrAnAnalogValueByItsLength) {
-  EXPECT_EQ(decode_mcc1208(hex_bytes("d2 04 00 00"))->count, 1234U);
-  EXPECT_EQ(decode_mcc1208(hex_bytes("ff ff ff ff"))->count, 0xFFFFFFFFU);
-  const auto analog = decode_mcc1208(hex_bytes("ff 0f"));
-  ASSERT_TRUE(analog.has_value());
-  EXPECT_EQ(analog->analog, 4095);
-  EXPECT_FALSE(analog->count.has_value());
+TEST(Mcc1208Reply, IsACountOrAnAnalogValue) {
+  EXPECT_EQ(*decode_mcc1208_count(hex_bytes("d2 04 00 00")), 1234U);
+  EXPECT_EQ(*decode_mcc1208_count(hex_bytes("ff ff ff ff")), 0xFFFFFFFFU);
+  EXPECT_EQ(*decode_mcc1208_analog(hex_bytes("ff 0f")), 4095);
 }
 
 TEST(Mcc1208Reply, OfAnotherLengthOrMoreThanTwelveBitsIsRefused) {
-  EXPECT_EQ(decode_mcc1208({}).error(), Refusal::kTooShort);
-  EXPECT_EQ(decode_mcc1208(hex_bytes("01 02 03")).error(), Refusal::kTooShort);
-  EXPECT_EQ(decode_mcc1208(hex_bytes("01 02 03 04 05")).error(), Refusal::kMalformed);
-  EXPECT_EQ(decode_mcc1208(hex_bytes("00 10")).error(), Refusal::kMalformed);
+  EXPECT_EQ(decode_mcc1208_count({}).error(), Refusal::kTooShort);
+  EXPECT_EQ(decode_mcc1208_count(hex_bytes("01 02")).error(), Refusal::kTooShort) << "no analog value for a count";
+  EXPECT_EQ(decode_mcc1208_count(hex_bytes("01 02 03 04 05")).error(), Refusal::kMalformed);
+  EXPECT_EQ(decode_mcc1208_analog(hex_bytes("01")).error(), Refusal::kTooShort);
+  EXPECT_EQ(decode_mcc1208_analog(hex_bytes("01 02 03")).error(), Refusal::kMalformed);
+  EXPECT_EQ(decode_mcc1208_analog(hex_bytes("00 10")).error(), Refusal::kMalformed);
 }
 
-TEST(Mcc1208Volts, FollowTheRange) {
-  EXPECT_DOUBLE_EQ(mcc1208_volts(2048, Mcc1208Range::kUnipolar5V), 2.5);
-  EXPECT_DOUBLE_EQ(mcc1208_volts(2048, Mcc1208Range::kBipolar10V), 0.0);
-  EXPECT_DOUBLE_EQ(mcc1208_volts(0, Mcc1208Range::kBipolar20V), -20.0);
-  EXPECT_DOUBLE_EQ(mcc1208_volts(3072, Mcc1208Range::kBipolar1_25V), 0.625);
+TEST(Mcc1208Volts, AreThoseOfTheInputsAgainstGround) {
+  EXPECT_DOUBLE_EQ(mcc1208_volts(2048, {}), 0.0);
+  EXPECT_DOUBLE_EQ(mcc1208_volts(0, {}), -10.0);
+  EXPECT_DOUBLE_EQ(mcc1208_volts(3072, {}), 5.0);
+  EXPECT_NEAR(mcc1208_volts(2048, {.slope = 1.0, .intercept_steps = 2.048}), 0.01, 1e-12);
+}
+
+TEST(Mcc1208Calibration, IsTwoFloatsOfWhichBothMustBeBelievable) {
+  const auto calibration = decode_mcc1208_calibration(hex_bytes("00 00 80 3f 00 00 20 c1"));
+  ASSERT_TRUE(calibration.has_value());
+  EXPECT_DOUBLE_EQ(calibration->slope, 1.0);
+  EXPECT_DOUBLE_EQ(calibration->intercept_steps, -10.0);
+  for (const char* const hex : {"ff ff ff ff ff ff ff ff", "00 00 00 00 00 00 00 00", "00 00 80 3f 00 00 80 7f",
+                                "00 00 80 3f 00 00 80 44", "00 00 00 40 00 00 00 00"}) {
+    EXPECT_EQ(decode_mcc1208_calibration(hex_bytes(hex)).error(), Refusal::kInvalid) << hex;
+  }
+  EXPECT_EQ(decode_mcc1208_calibration(hex_bytes("00 00 80 3f")).error(), Refusal::kTooShort);
 }
 
 TEST(Mcc1208Transfers, AreThePublishedOnes) {
-  EXPECT_EQ(mcc1208_read_analog(3, false, Mcc1208Range::kUnipolar5V), (Mcc1208Transfer{0xC0, 0x10, 3, 8, 2}));
-  EXPECT_EQ(mcc1208_read_analog(1, true, Mcc1208Range::kBipolar5V), (Mcc1208Transfer{0xC0, 0x10, 0x101, 2, 2}));
+  EXPECT_EQ(mcc1208_read_analog(3), (Mcc1208Transfer{0xC0, 0x10, 3, 1, 2}));
+  EXPECT_EQ(mcc1208_read_calibration(7), (Mcc1208Transfer{0xC0, 0x30, 0x138, 0, 8}));
 }
 
 // --- LabJack U3
@@ -84,7 +95,7 @@ TEST(LabjackReply, HoldsWhatWasAskedFor) {
   EXPECT_EQ(both->analog, 31408);
   EXPECT_EQ(both->count, 1234U);
 
-  const auto analog = decode_labjack({.echo = 7, .wants_counter = false}, labjack_reply("00 00 07 34 12 00"));
+  const auto analog = decode_labjack({.echo = 7, .counter = {}}, labjack_reply("00 00 07 34 12 00"));
   ASSERT_TRUE(analog.has_value());
   EXPECT_EQ(analog->analog, 0x1234);
   EXPECT_FALSE(analog->count.has_value());
@@ -125,9 +136,67 @@ TEST(LabjackReply, ThatIsAnErrorSaysWhich) {
   EXPECT_TRUE(is_refused_by_labjack({}, hex_bytes("b8 b8"), Refusal::kException));
 }
 
+TEST(LabjackReply, HoldsAReferenceBetweenTheTwo) {
+  const LabjackRequest request = {.echo = 9, .reference_channel = 1, .counter = 1};
+  const auto command = encode_labjack_feedback(request);
+  const auto data = hex_bytes("09 01 00 1f 01 01 1f 37 00 00");
+  EXPECT_TRUE(std::ranges::equal(command.span().subspan(6), std::span(data).first(command.size - 6)));
+  const auto reply = decode_labjack(request, labjack_reply("00 00 09 10 27 e8 03 05 00 00 00 00"));
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(reply->analog, 10'000);
+  EXPECT_EQ(reply->reference, 1'000);
+  EXPECT_EQ(reply->count, 5U);
+}
+
+TEST(LabjackConfiguration, IsRefusedWhereTheDeviceDidSomethingElse) {
+  EXPECT_TRUE(decode_labjack_configuration(0, labjack_reply("00 00 44 00 0f 00", 0x0B)).has_value());
+  EXPECT_TRUE(decode_labjack_configuration(1, labjack_reply("00 00 48 00 ff 00", 0x0B)).has_value());
+  EXPECT_EQ(decode_labjack_configuration(1, labjack_reply("00 00 44 00 0f 00", 0x0B)).error().why, Refusal::kInvalid);
+  EXPECT_EQ(decode_labjack_configuration(0, labjack_reply("00 00 44 00 0e 00", 0x0B)).error().why, Refusal::kInvalid);
+  const auto refused = decode_labjack_configuration(0, labjack_reply("51 00 44 00 0f 00", 0x0B));
+  EXPECT_EQ(refused.error().why, Refusal::kException);
+  EXPECT_EQ(refused.error().error, 0x51);
+  EXPECT_EQ(decode_labjack_configuration(0, labjack_reply("00 00 44 00", 0x0B)).error().why, Refusal::kMalformed);
+}
+
+TEST(LabjackIdentity, IsItsSerialNumberAndHowItsInputsAreBuilt) {
+  std::string hex = "00 00 00 00 00 00 00 00 00 39 30 13 13";
+  for (int i = 13; i < 31; ++i) hex += " 00";
+  const auto high = decode_labjack_identity(labjack_reply(hex + " 12", 0x08));
+  ASSERT_TRUE(high.has_value());
+  EXPECT_EQ(high->serial, 320'024'633U);
+  EXPECT_EQ(high->input, LabjackInput::kHighVoltage);
+  EXPECT_EQ(decode_labjack_identity(labjack_reply(hex + " 02", 0x08))->input, LabjackInput::kLowVoltage);
+  EXPECT_EQ(decode_labjack_identity(labjack_reply(hex, 0x08)).error().why, Refusal::kMalformed);
+}
+
+TEST(LabjackMemory, HoldsFourNumbersWithThePointInTheMiddle) {
+  const auto block =
+      decode_labjack_memory(labjack_reply("00 00  00 00 00 80 01 00 00 00  00 00 00 40 f5 ff ff ff"
+                                          "  00 00 00 00 00 00 00 00  00 00 00 00 02 00 00 00",
+                                          0x2D));
+  ASSERT_TRUE(block.has_value());
+  EXPECT_THAT(*block, testing::ElementsAre(1.5, -10.75, 0.0, 2.0));
+}
+
+TEST(LabjackCommands, HaveTheSumsThatTheMakersDriverComputes) {
+  const auto identity = encode_labjack_identity();
+  EXPECT_EQ(identity.size, 26U);
+  EXPECT_EQ(identity.bytes[0], 11);  // as LJUSB_U3_FirmwareHardwareVersion() has it
+  const auto memory = encode_labjack_memory(3);
+  EXPECT_EQ(DaqBytes(memory.span().begin(), memory.span().end()), hex_bytes("2a f8 01 2d 03 00 00 03"));
+}
+
 TEST(LabjackVolts, AreNominal) {
-  EXPECT_NEAR(labjack_volts(65535, LabjackInput::kLowVoltage), 2.44, 1e-3);
-  EXPECT_NEAR(labjack_volts(32803, LabjackInput::kHighVoltage), 0.0, 1e-3);
+  EXPECT_NEAR(nominal_labjack_calibration(LabjackInput::kLowVoltage).volts(65535), 2.44, 1e-3);
+  EXPECT_NEAR(nominal_labjack_calibration(LabjackInput::kHighVoltage).volts(32803), 0.0, 1e-3);
+}
+
+TEST(LabjackCalibration, OfWhatNoInputIsOffByIsNotBelieved) {
+  EXPECT_TRUE(is_believable({0.000316, -10.4}, LabjackInput::kHighVoltage));
+  EXPECT_FALSE(is_believable({0.000316, -12.0}, LabjackInput::kHighVoltage));
+  EXPECT_FALSE(is_believable({0.0, 0.0}, LabjackInput::kLowVoltage));
+  EXPECT_FALSE(is_believable({std::numeric_limits<double>::quiet_NaN(), 0.0}, LabjackInput::kLowVoltage));
 }
 
 TEST(DaqVectors, OfTheSharedCollectionDecodeAsTheySay) {
@@ -139,10 +208,11 @@ TEST(DaqVectors, OfTheSharedCollectionDecodeAsTheySay) {
     const std::string operation = vector["op"];
     SCOPED_TRACE(operation);
     if (operation == "read counter 0") {
-      EXPECT_EQ(decode_mcc1208(hex_bytes(vector["reply"]))->count, vector["expect"]["count"].get<unsigned>());
+      EXPECT_EQ(*decode_mcc1208_count(hex_bytes(vector["reply"])), vector["expect"]["count"].get<unsigned>());
       ++checked_count;
     } else if (operation.starts_with("ConfigIO")) {
-      EXPECT_EQ(DaqBytes(kLabjackConfiguration.begin(), kLabjackConfiguration.end()), hex_bytes(vector["bytes"]));
+      const auto command = encode_labjack_configuration(0);
+      EXPECT_EQ(DaqBytes(command.span().begin(), command.span().end()), hex_bytes(vector["bytes"]));
       ++checked_count;
     } else if (operation.starts_with("Feedback")) {
       const auto command = encode_labjack_feedback({});
@@ -302,7 +372,9 @@ TEST(DaqDecoders, TakeNoRandomBytesForALabjacksReply) {
       bytes[2] = 5;
     }
     EXPECT_FALSE(decode_labjack({}, bytes).has_value());
-    static_cast<void>(decode_mcc1208(bytes));
+    EXPECT_FALSE(decode_labjack_identity(bytes).has_value());
+    EXPECT_FALSE(decode_labjack_configuration(0, bytes).has_value());
+    EXPECT_FALSE(decode_labjack_memory(bytes).has_value());
   }
 }
 

@@ -19,6 +19,7 @@ class FickleSensor final : public ReopeningSensor {
 
   bool is_there = true;
   bool makes_sense = true;
+  bool is_back = false;
   int opened = 0;
   int closed = 0;
   int worked = 0;
@@ -40,6 +41,7 @@ class FickleSensor final : public ReopeningSensor {
     return clock.now().mono + std::chrono::seconds(1);
   }
   void close() noexcept override { ++closed; }
+  bool has_returned() override { return std::exchange(is_back, false); }
 };
 
 class ReopeningSensorTest : public testing::Test {
@@ -114,6 +116,26 @@ TEST_F(ReopeningSensorTest, DoesNotTakeAnOpenedDeviceForOneThatIsWell) {
     last_s = poll_s();
   }
   EXPECT_GT(last_s, 5.0) << "opening alone does not make the waits small again";
+}
+
+TEST_F(ReopeningSensorTest, DoesNotWaitOnceTheDeviceIsBack) {
+  sensor_.is_there = false;
+  for (int attempt = 0; attempt < 8; ++attempt) poll_s();
+  sensor_.poll(clock_, sink_);
+  sensor_.is_there = true;
+  const MonoTime later = sensor_.poll(clock_, sink_);
+  EXPECT_GT(later, clock_.now().mono) << "nobody has told it";
+  sensor_.is_back = true;
+  EXPECT_LE(sensor_.poll(clock_, sink_), clock_.now().mono);
+  EXPECT_EQ(sensor_.opened, 1);
+}
+
+TEST_F(ReopeningSensorTest, WaitsLittleAgainForADeviceThatIsBackButNotYetToBeOpened) {
+  sensor_.is_there = false;
+  for (int attempt = 0; attempt < 8; ++attempt) poll_s();
+  sensor_.poll(clock_, sink_);
+  sensor_.is_back = true;
+  EXPECT_LE(sensor_.poll(clock_, sink_) - clock_.now().mono, std::chrono::milliseconds(250));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Any bytes for every decoder of USB stations and DAQs; sums and heads are mended on request, so that values are
 // reached.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -82,12 +83,21 @@ void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
 void read_daq(ByteSpan bytes, std::uint8_t choice) {
   LabjackRequest request;
   if ((choice & 1U) != 0) request.analog_channel.reset();
-  request.wants_counter = (choice & 2U) != 0;
+  if ((choice & 2U) != 0) request.counter.reset();
+  if ((choice & 4U) != 0) request.reference_channel = 1;
   if (const auto reply = decode_labjack(request, bytes)) {
     require(reply->analog.has_value() == request.analog_channel.has_value());
-    require(reply->count.has_value() == request.wants_counter);
+    require(reply->reference.has_value() == request.reference_channel.has_value());
+    require(reply->count.has_value() == request.counter.has_value());
   }
-  if (const auto reply = decode_mcc1208(bytes)) require(reply->count.has_value() != reply->analog.has_value());
+  if (const auto analog = decode_mcc1208_analog(bytes)) require(*analog < 4096 && bytes.size() == 2);
+  if (decode_mcc1208_count(bytes)) require(bytes.size() == 4);
+  if (const auto calibration = decode_mcc1208_calibration(bytes)) {
+    require(std::isfinite(mcc1208_volts(4095, *calibration)));
+  }
+  if (const auto block = decode_labjack_memory(bytes)) require(std::isfinite((*block)[0]));
+  static_cast<void>(decode_labjack_identity(bytes));
+  static_cast<void>(decode_labjack_configuration(0, bytes));
 }
 
 /// Counts and any doubles, as they come.
