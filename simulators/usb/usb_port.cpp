@@ -13,6 +13,9 @@ constexpr std::array kFaultsOfAPort = {FaultKind::kSilence, FaultKind::kFreeze, 
 /// How many transfers a host may have under way; a kernel has a few.
 constexpr std::size_t kMostWaiting = 1024;
 
+/// A device that never stops talking must not keep us.
+constexpr int kMostLost = 1000;
+
 }  // namespace
 
 UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind)
@@ -30,11 +33,21 @@ UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind)
 
 void UsbPort::advance(double time_s, std::optional<FaultKind> fault) {
   moment_ = wind_.at(time_s, fault);
+  const bool was_plugged_in = std::exchange(is_plugged_in_, fault != FaultKind::kUnplug);
   is_silent_ = fault == FaultKind::kSilence;
-  is_plugged_in_ = fault != FaultKind::kUnplug;
   if (!is_plugged_in_) waiting_.clear();
   const bool is_the_devices = fault && std::ranges::count(device_faults_, *fault) != 0;
   device_->advance(time_s, moment_, is_the_devices ? fault : std::nullopt);
+  if (!was_plugged_in) lose_what_waits();
+}
+
+void UsbPort::lose_what_waits() {
+  for (const UsbEndpoint& endpoint : summary_.endpoints) {
+    if ((endpoint.address & 0x80U) == 0) continue;
+    for (int i = 0; i < kMostLost; ++i) {
+      if (!device_->in(endpoint.address & 0x0FU, endpoint.max_packet_size)) break;
+    }
+  }
 }
 
 void UsbPort::submit(UsbTransfer transfer) {
@@ -63,6 +76,7 @@ std::vector<UsbOutcome> UsbPort::take_outcomes() {
       ++transfer;
     }
   }
+  if (is_silent_) lose_what_waits();
   return outcomes;
 }
 

@@ -34,7 +34,8 @@ struct UsbOutcome {
 
 /// A simulated device in its wind, as whatever attaches it to a host sees it: transfers go in, outcomes come out, at
 /// once or when the device has something to say. Two faults are played here, for every device alike: a silent device
-/// hears and says nothing (but still tells what it is), an unplugged one is not there. It computes; thread-safe: no.
+/// hears and says nothing (but still tells what it is), an unplugged one is not there; what it would have said is lost.
+/// It computes; thread-safe: no.
 class UsbPort {
  public:
   UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind);
@@ -60,6 +61,7 @@ class UsbPort {
 
  private:
   std::optional<UsbOutcome> attempt(const UsbTransfer& transfer);
+  void lose_what_waits();
 
   std::unique_ptr<UsbDevice> device_;
   UsbControlPipe control_pipe_;

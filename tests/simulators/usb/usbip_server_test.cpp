@@ -171,6 +171,7 @@ TEST_F(UsbipServerTest, ADeviceIsUnpluggedAndPluggedInAgain) {
 
   time_s_ = 2.0;
   const Descriptor again = attach();
+  time_s_ = 3.0;
   EXPECT_EQ(ask(again, usbip_submit_in(1, 1, 8), kReport).size(), kReport);
 }
 
