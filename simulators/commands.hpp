@@ -10,5 +10,7 @@ void add_microphone_command(CLI::App& app);
 void add_modbus_command(CLI::App& app);
 void add_nmea_command(CLI::App& app);
 void add_line_command(CLI::App& app);
+void add_hid_command(CLI::App& app);
+void add_usb_command(CLI::App& app);
 
 }  // namespace yuragi::sim

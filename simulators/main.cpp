@@ -19,9 +19,13 @@ int run(int argc, char** argv) {
   yuragi::sim::add_modbus_command(app);
   yuragi::sim::add_nmea_command(app);
   yuragi::sim::add_line_command(app);
+  yuragi::sim::add_hid_command(app);
+  yuragi::sim::add_usb_command(app);
   try {
     app.parse(argc, argv);
     return 0;
+  } catch (const CLI::RuntimeError& error) {
+    return error.get_exit_code();  // of a program that was launched
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
