@@ -117,6 +117,7 @@ void run(Simulator& simulator, Faults faults, const RunOptions& options) {
       if (wait.revents != 0) ready.push_back(wait.fd);
     }
     simulator.serve(ready, time_s, faults.at(time_s));
+    if (simulator.is_over()) return;
 
     if (shows_status && time_s >= next_status_s) {
       next_status_s = time_s + 1.0;

@@ -26,6 +26,9 @@ class Simulator {
 
   /// One line for people.
   virtual std::string status() const = 0;
+
+  /// True: there is nothing left to do, and run() returns.
+  virtual bool is_over() const { return false; }
 };
 
 struct RunOptions {
@@ -33,7 +36,8 @@ struct RunOptions {
   bool verbose = false;              ///< a status line a second, terminal or not
 };
 
-/// Runs a simulator in real time until the duration is over or SIGINT or SIGTERM comes. Faults come by `faults` and, as
+/// Runs a simulator in real time until it is over, the duration is over, or SIGINT or SIGTERM
+/// comes. Faults come by `faults` and, as
 /// lines, by standard input; its end changes nothing. The status goes to standard error.
 void run(Simulator& simulator, Faults faults, const RunOptions& options);
 

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/stations/hid_station.hpp"
 #include "drivers/usb_daq.hpp"
 #include "tests/support/places.hpp"
 
@@ -85,11 +86,10 @@ TEST(UdevRules, MatchUsbDevicesAndNotTheirInterfaces) {
   }
 }
 
-TEST(UdevRules, NameTheStations) {
-  // Oregon Scientific WMR100 and WMR300, Fine Offset, AcuRite, Hideki TE923: weewx, its drivers' VENDOR_ID and
-  // PRODUCT_ID.
-  EXPECT_THAT(ids_of_subsystem("hidraw", "ATTRS"),
-              UnorderedElementsAreArray({"0fde:ca01", "0fde:ca08", "1941:8021", "24c0:0003", "1130:6801"}));
+TEST(UdevRules, NameTheStationsOfTheDriverHid) {
+  std::vector<std::string> ids;
+  for (const StationKind& kind : station_kinds()) ids.push_back(describe(kind.id));
+  EXPECT_THAT(ids_of_subsystem("hidraw", "ATTRS"), UnorderedElementsAreArray(ids));
 }
 
 }  // namespace

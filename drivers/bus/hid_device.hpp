@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// The numbers that a USB device is known by.
+struct HidId {
+  std::uint16_t vendor = 0;
+  std::uint16_t product = 0;
+
+  bool operator==(const HidId&) const = default;
+};
+
+/// "0fde:ca01", as lsusb writes it.
+std::string describe(const HidId& id);
+
+/// Which of several devices alike; what is empty does not matter.
+struct HidPlace {
+  std::string serial;
+  std::string path;  ///< a USB port ("1-1.2"), which stays the same while the cable stays in its socket; or a file: a
+                     ///< /dev/hidrawN, or a link to one that udev keeps
+};
+
+/// A HID device that is plugged in.
+struct HidInfo {
+  HidId id;
+  std::string node;    ///< "/dev/hidraw0", for as long as it is plugged in
+  std::string port;    ///< "1-1.2"; empty if it does not hang on USB
+  std::string serial;  ///< empty: it has none
+  int interface = -1;  ///< of a USB device
+};
+
+/// "USB port 1-1.2", or else the node: for people.
+std::string where_is(const HidInfo& info);
+
+/// A device and whether it can be used.
+struct HidListing {
+  HidInfo info;
+  std::string trouble;  ///< why it cannot be opened; empty: it can
+};
+
+/// What to do about a device node that may not be opened.
+extern const char* const kHidPermissionRemedy;
+
+enum class HidStatus : std::uint8_t {
+  kReport,
+  kSilence,      ///< nothing until the time-out; or, of a report that was asked for, no answer
+  kInterrupted,  ///< interrupt() was called
+  kLost,         ///< the device is gone, or cannot be used any more
+};
+
+struct HidArrival {
+  HidStatus status = HidStatus::kSilence;
+  std::size_t size = 0;  ///< for kReport
+};
+
+/// A HID device that can be closed and opened again for as long as this lives. Carries reports and judges nothing. A
+/// test may put another in its place.
+///
+/// Thread-safe: interrupt() alone; everything else belongs to one thread.
+class HidDevice {
+ public:
+  virtual ~HidDevice() = default;
+
+  /// Finds the one device that has one of these ids and is at that place, and opens it. The failure says what is
+  /// missing, or that there are several, and what to do.
+  virtual Result<HidInfo, Failure> open(std::span<const HidId> ids, const HidPlace& place) = 0;
+  virtual void close() noexcept = 0;
+
+  /// The next input report, waiting for at most `timeout`; numbered reports begin with their number.
+  virtual HidArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) = 0;
+
+  /// Sends an output report: its number (0 where the device has none), then its bytes. False: it did not go. Waits for
+  /// at most 5 s, the kernel's own limit, which nothing can shorten.
+  virtual bool write(std::span<const std::uint8_t> report) = 0;
+
+  /// Asks for input report `id`, which begins with that number. A device that refuses or does not answer (within the
+  /// kernel's 5 s) is silent.
+  virtual HidArrival get_input_report(std::uint8_t id, std::span<std::uint8_t> buffer) = 0;
+
+  /// Ends a read() that waits, within 50 ms, and makes all later work end at once.
+  virtual void interrupt() noexcept = 0;
+};
+
+/// The real one, by hidapi (hidraw). Thread-safe: any number of devices may live on any number of threads.
+std::unique_ptr<HidDevice> make_hid_device();
+
+/// What is plugged in that has one of these ids. Opens each for a moment, to see whether it may.
+std::vector<HidListing> list_hid_devices(std::span<const HidId> ids);
+
+}  // namespace yuragi

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// When a console does something that it does at regular intervals, learned from outside: by looks at it that find that
+/// it has happened since the look before. What is known is an interval of time, narrowed by every further look. Two
+/// clocks drift apart: its owner lets it forget from time to time. Thread-safe: no. Realtime-safe: yes.
+class WriteClock {
+ public:
+  /// `period`: from one time to the next. `margin`: how far to keep away, before and after.
+  WriteClock(Nanoseconds period, Nanoseconds margin) : period_(period), margin_(margin) {}
+
+  /// It happened after `from` and not later than `to`. Looks that are a period or more apart teach nothing: false.
+  bool happened_between(MonoTime from, MonoTime to);
+
+  void forget() { window_.reset(); }
+  /// Is the moment known to a third of the period at least? Otherwise keeping away from it would leave no time.
+  bool is_known() const { return window_ && window_->to - window_->from <= period_ / 3; }
+
+  /// The first time from `time` on that is not near the moment; `time` itself while nothing is known.
+  MonoTime clear_from(MonoTime time) const;
+  /// The first time from `time` on at which it has just happened and is no longer near; `time` while nothing is known.
+  MonoTime behind(MonoTime time) const;
+
+ private:
+  /// The moment lies in here, and a whole number of periods later again.
+  struct Window {
+    MonoTime from;
+    MonoTime to;
+  };
+  /// The window of the last period that began at `time` or before.
+  Window window_before(MonoTime time) const;
+
+  Nanoseconds period_;
+  Nanoseconds margin_;
+  std::optional<Window> window_;
+};
+
+}  // namespace yuragi

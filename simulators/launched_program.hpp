@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "simulators/simulator.hpp"
+
+namespace yuragi::sim {
+
+/// A program that runs beside a simulator and in its world; with its end, all ends. Its standard input is empty, since
+/// ours takes the faults.
+class LaunchedProgram final : public Simulator {
+ public:
+  /// Starts it; `simulator` must outlive this. Throws std::system_error.
+  LaunchedProgram(const std::vector<std::string>& command, Simulator& simulator);
+  /// Ends it, if it still runs: by SIGTERM first, and kills it after two seconds.
+  ~LaunchedProgram() override;
+  LaunchedProgram(const LaunchedProgram&) = delete;
+  LaunchedProgram& operator=(const LaunchedProgram&) = delete;
+
+  /// As a shell has it: 128 and more for a signal, 127 for a program that is not there. Nothing: it still runs.
+  std::optional<int> exit_code() const noexcept { return exit_code_; }
+
+  std::span<const FaultKind> known_faults() const override { return simulator_.known_faults(); }
+  std::vector<int> descriptors() const override;
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override { return simulator_.status(); }
+  bool is_over() const override { return exit_code_.has_value(); }
+
+ private:
+  bool has_ended();
+
+  Simulator& simulator_;
+  pid_t process_ = -1;
+  int descriptor_ = -1;  // readable when it has ended
+  std::optional<int> exit_code_;
+};
+
+}  // namespace yuragi::sim

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "simulators/usb/hid_model.hpp"
+
+namespace yuragi::sim {
+
+/// An AcuRite 01035 console, in USB mode 3 or 4.
+std::unique_ptr<UsbDevice> make_acurite(const HidModelOptions& options);
+
+}  // namespace yuragi::sim

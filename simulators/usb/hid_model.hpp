@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+
+#include "simulators/usb/usb_device.hpp"
+
+namespace yuragi::sim {
+
+/// What distinguishes one HID device from another on the bus. Ours have one interface, one interrupt IN end point (1)
+/// and, some of them, one interrupt OUT end point (1).
+struct HidIdentity {
+  std::uint16_t vendor = 0;
+  std::uint16_t product = 0;
+  std::string manufacturer;
+  std::string product_name;
+  UsbBytes report_descriptor;     ///< HID 1.11 specification, 6.2.2
+  std::uint8_t report_size = 8;   ///< of the interrupt end points, bytes
+  std::uint8_t interval_ms = 10;  ///< how often the host asks for a report
+  bool has_out_endpoint = false;  ///< otherwise output reports come as SET_REPORT
+  bool is_full_speed = false;     ///< otherwise low speed, with packets of 8 bytes
+};
+
+/// The descriptors that such a device sends.
+UsbDescriptors hid_descriptors(const HidIdentity& identity);
+
+/// The report descriptor of a vendor's own device without report ids: one input and one output report of `size` bytes.
+UsbBytes plain_report_descriptor(std::uint8_t size);
+
+/// How a simulated station runs.
+struct HidModelOptions {
+  double pace = 1.0;       ///< how many times as fast as the real station, for tests; USB itself keeps its speed
+  std::uint64_t seed = 1;  ///< of the garbage fault
+};
+
+/// What every HID station shares: descriptors, the requests of the HID class, and the reports that wait for the host.
+/// What a station adds is what it says, and when.
+///
+/// kFreeze and kSpike come with the wind that it is given (MeasuredWind). Thread-safe: no.
+class HidModel : public UsbDevice {
+ public:
+  const UsbDescriptors& descriptors() const final { return descriptors_; }
+  std::span<const FaultKind> known_faults() const final { return known_faults_; }
+  void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) final;
+  std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) final;
+  std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) final;
+  bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) final;
+
+ protected:
+  /// `known_faults` must live for ever.
+  HidModel(const HidIdentity& identity, std::span<const FaultKind> known_faults, const HidModelOptions& options);
+
+  /// Goes on to now_s().
+  virtual void play() = 0;
+  /// An output report came, by either way (without a report id). False: refused.
+  virtual bool take_output(std::span<const std::uint8_t> report) = 0;
+  /// What GET_REPORT brings of input report `id`; nothing: refused.
+  virtual std::optional<UsbBytes> input_report(std::uint8_t id);
+
+  double now_s() const noexcept { return now_s_; }
+  const PlayedMoment& wind() const noexcept { return wind_; }
+  bool suffers(FaultKind kind) const noexcept { return fault_ == kind; }
+  /// A duration of the real station as it is here.
+  double paced(double duration_s) const noexcept { return duration_s / options_.pace; }
+
+  /// Lays a report ready for the host, to be fetched from `delay_s` on. What nobody fetches is lost after some seconds.
+  void say(UsbBytes report, double delay_s = 0.0);
+  /// Takes back what has not been fetched.
+  void say_nothing_more() { waiting_.clear(); }
+  UsbBytes random_bytes(std::size_t size);
+  /// A number from 0 up to, but without, `end`.
+  std::uint64_t random_below(std::uint64_t end) { return random_() % end; }
+
+ private:
+  struct Waiting {
+    double from_s;
+    UsbBytes report;
+  };
+
+  UsbDescriptors descriptors_;
+  std::span<const FaultKind> known_faults_;
+  HidModelOptions options_;
+  bool has_out_endpoint_;
+  std::deque<Waiting> waiting_;
+  std::mt19937_64 random_;
+  double now_s_ = 0.0;
+  PlayedMoment wind_;
+  std::optional<FaultKind> fault_;
+};
+
+/// Which of the 16 points of the compass: 0 north, 1 north-north-east ... 15.
+unsigned compass_point(double direction_deg);
+
+}  // namespace yuragi::sim

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "simulators/usb/usb_device.hpp"
+
+namespace yuragi::sim {
+
+/// The names that make_hid_station() knows: wmr100, wmr300, fineoffset (WH1080), fineoffset-wh3080, acurite, te923.
+std::vector<std::string_view> hid_station_names();
+
+/// A USB HID weather station. `pace` says how many times as fast as the real one it goes: 20 makes a Fine Offset
+/// console write its record every 2.4 s and not every 48 s (USB itself keeps its speed). `seed` makes the bytes of the
+/// garbage fault. Throws std::runtime_error for a name that it does not know.
+std::unique_ptr<UsbDevice> make_hid_station(std::string_view name, double pace = 1.0, std::uint64_t seed = 1);
+
+}  // namespace yuragi::sim

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulators/usb/emulated_node.hpp"
+#include "simulators/usb/readiness_node.hpp"
+#include "simulators/usb/usb_host.hpp"
+
+namespace yuragi::sim {
+
+/// /dev/hidrawN of a simulated device, with the kernel's usbhid behind it: reports are read while somebody has it open,
+/// and kept for whoever reads them; writes become SET_REPORT, or go to the interrupt OUT end point where there is one.
+/// Source: Linux 6.1, drivers/hid/hidraw.c and drivers/hid/usbhid/hid-core.c.
+class HidrawNode final : public EmulatedNode {
+ public:
+  /// `path`: the node's file inside the testbed. `host` must outlive unplug().
+  HidrawNode(UsbHost& host, const std::string& path);
+
+  void serve(double time_s) override;
+  void unplug() override;
+
+ private:
+  void obey(ProgramCall call);
+  void obey_ioctl(ProgramCall call);
+  void get_report(ProgramCall call, const ProgramMemory& buffer, std::uint16_t type);
+  void set_report(ProgramCall call, std::span<const std::uint8_t> report, std::uint16_t type);
+  /// Submits it; whoever waits in `call` waits for kTimeout_s at most.
+  void submit(std::shared_ptr<ProgramCall> call, UsbTransfer transfer, UsbHost::Then then);
+  void give_up_late_ones();
+  void read_reports();
+  void hand_out_reports();
+
+  /// A call that waits for a transfer.
+  struct Pending {
+    std::uint64_t transfer = 0;
+    double deadline_s = 0.0;
+    std::weak_ptr<ProgramCall> call;  // gone when it is answered
+  };
+
+  UsbHost* host_;
+  ReadinessNode readiness_;
+  std::uint8_t in_endpoint_ = 0;
+  std::uint8_t out_endpoint_ = 0;
+  std::size_t report_size_ = 0;
+  std::optional<std::uint64_t> reading_;  // the transfer that waits for the next report
+  std::deque<UsbBytes> reports_;
+  std::deque<ProgramCall> readers_;
+  std::vector<Pending> pending_;
+  double time_s_ = 0.0;
+};
+
+}  // namespace yuragi::sim

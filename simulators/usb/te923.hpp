@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "simulators/usb/hid_model.hpp"
+
+namespace yuragi::sim {
+
+/// A Hideki TE923 console (Meade, TFA Nexus, Mebus, IROX).
+std::unique_ptr<UsbDevice> make_te923(const HidModelOptions& options);
+
+}  // namespace yuragi::sim

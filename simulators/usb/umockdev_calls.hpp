@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+// GObject's own types, so that its headers stay in the source files.
+struct _UMockdevIoctlBase;
+struct _UMockdevIoctlClient;
+struct _UMockdevIoctlData;
+
+namespace yuragi::sim {
+
+/// Memory of the program under test, as umockdev lets us see it: a copy here, which goes back to the program with the
+/// answer to a call that leads to it. Copies of this refer to the same memory. Thread-safe: no.
+class ProgramMemory {
+ public:
+  ProgramMemory() = default;
+  /// Takes the reference over.
+  explicit ProgramMemory(_UMockdevIoctlData* data);
+
+  explicit operator bool() const noexcept { return data_ != nullptr; }
+  std::span<const std::uint8_t> bytes() const;
+  /// Where it is in the program: what its pointers hold.
+  std::uintptr_t address() const;
+  /// What the pointer at `offset` points to; nothing for a null pointer, no bytes, or a program that is gone.
+  ProgramMemory pointed_to(std::size_t offset, std::size_t size) const;
+  /// Writes as much as there is room for.
+  void write(std::size_t offset, std::span<const std::uint8_t> bytes) const;
+  /// Makes the pointer at `offset`, not looked at before, point to that memory.
+  void point_to(std::size_t offset, const ProgramMemory& target) const;
+
+  template <class T>
+  void write_value(const T& value) const {
+    write(0, {reinterpret_cast<const std::uint8_t*>(&value), sizeof value});
+  }
+
+ private:
+  std::shared_ptr<_UMockdevIoctlData> data_;
+};
+
+enum class ProgramCallKind : std::uint8_t { kIoctl, kRead, kWrite };
+
+/// A call on a device node that the program under test waits in. It is answered once, or when it is destroyed: then
+/// with EIO. Movable. Thread-safe: no.
+class ProgramCall {
+ public:
+  /// Takes the reference over.
+  ProgramCall(ProgramCallKind kind, _UMockdevIoctlClient* client);
+  ProgramCall(ProgramCall&& other) noexcept;
+  ProgramCall& operator=(ProgramCall&& other) noexcept;
+  ProgramCall(const ProgramCall&) = delete;
+  ProgramCall& operator=(const ProgramCall&) = delete;
+  ~ProgramCall();
+
+  ProgramCallKind kind() const noexcept { return kind_; }
+  /// Of an ioctl.
+  unsigned long request() const;
+  /// Of an ioctl: its argument, which is a pointer or a number. Of a read or a write: the buffer.
+  ProgramMemory argument() const;
+
+  void answer(long result) { finish(result, 0); }
+  void fail(int error) { finish(-1, error); }
+
+ private:
+  void finish(long result, int error);
+
+  ProgramCallKind kind_;
+  _UMockdevIoctlClient* client_;
+};
+
+/// The calls on one device node, from umockdev's thread to ours.
+class ProgramCallQueue {
+ public:
+  ProgramCallQueue();
+  ~ProgramCallQueue();
+  ProgramCallQueue(const ProgramCallQueue&) = delete;
+  ProgramCallQueue& operator=(const ProgramCallQueue&) = delete;
+
+  /// Readable while calls wait.
+  int descriptor() const noexcept;
+  /// The next call, if one waits.
+  std::optional<ProgramCall> take();
+  /// How often the node is open at the moment.
+  int opens() const noexcept;
+
+  /// What umockdev is to attach to the node; a new reference.
+  _UMockdevIoctlBase* make_handler() const;
+
+  struct State;
+
+ private:
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace yuragi::sim

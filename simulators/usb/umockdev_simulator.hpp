@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulators/simulator.hpp"
+#include "simulators/usb/usb_port.hpp"
+
+namespace yuragi::sim {
+
+/// Simulated USB devices in a testbed of umockdev's: programs that run beside it in that testbed find them with libusb,
+/// and stations with hidapi's hidraw backend, as if they were plugged in. Unplugged, a device vanishes with its nodes,
+/// and returns with new ones, and whoever listens to udev is told.
+class UmockdevSimulator final : public Simulator {
+ public:
+  /// Throws std::runtime_error where this program does not run in umockdev (see is_in_umockdev()).
+  explicit UmockdevSimulator(std::vector<std::unique_ptr<UsbPort>> ports);
+  ~UmockdevSimulator() override;
+
+  std::span<const FaultKind> known_faults() const override;
+  std::vector<int> descriptors() const override;
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace yuragi::sim

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "simulators/usb/usb_port.hpp"
+
+namespace yuragi::sim {
+
+/// The host's end of a port, for several users of one device: whoever submits a transfer says what to do then.
+/// Thread-safe: no.
+class UsbHost {
+ public:
+  using Then = std::function<void(const UsbOutcome&)>;
+
+  /// `port` must outlive this.
+  explicit UsbHost(UsbPort& port) : port_(port) {}
+
+  UsbPort& port() const noexcept { return port_; }
+
+  /// `transfer.id` is chosen here, and returned.
+  std::uint64_t submit(UsbTransfer transfer, Then then) {
+    transfer.id = ++last_id_;
+    waiting_.emplace(transfer.id, std::move(then));
+    port_.submit(std::move(transfer));
+    return last_id_;
+  }
+
+  /// Forgets a transfer that waits; nothing is done then. False: it is not waiting.
+  bool cancel(std::uint64_t id) {
+    port_.cancel(id);
+    return waiting_.erase(id) != 0;
+  }
+
+  void cancel_all() {
+    port_.cancel_all();
+    waiting_.clear();
+  }
+
+  /// Does what is to be done with the transfers that have come to their ends; these may submit others.
+  void serve() {
+    for (int round = 0; round < kMostRounds; ++round) {
+      const auto outcomes = port_.take_outcomes();
+      if (outcomes.empty()) return;
+      for (const UsbOutcome& outcome : outcomes) {
+        if (auto found = waiting_.extract(outcome.id)) found.mapped()(outcome);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kMostRounds = 64;  // a device that never stops talking must not keep the others waiting
+
+  UsbPort& port_;
+  std::uint64_t last_id_ = 0;
+  std::map<std::uint64_t, Then> waiting_;
+};
+
+}  // namespace yuragi::sim

@@ -1,0 +1,114 @@
+#include "simulators/usb/usb_port.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace yuragi::sim {
+namespace {
+
+/// Every device can suffer these: by its wind, or by its port.
+constexpr std::array kFaultsOfAPort = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike, FaultKind::kUnplug};
+
+/// How many transfers a host may have under way; a kernel has a few.
+constexpr std::size_t kMostWaiting = 1024;
+
+/// A device that never stops talking must not keep us.
+constexpr int kMostLost = 1000;
+
+}  // namespace
+
+UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind)
+    : device_(std::move(device)),
+      control_pipe_(*device_),
+      summary_(summary_of(device_->descriptors())),
+      known_faults_(kFaultsOfAPort.begin(), kFaultsOfAPort.end()),
+      wind_(std::move(wind)) {
+  const auto own = device_->known_faults();
+  device_faults_.assign(own.begin(), own.end());
+  for (const FaultKind kind : own) {
+    if (std::ranges::count(known_faults_, kind) == 0) known_faults_.push_back(kind);
+  }
+}
+
+void UsbPort::advance(double time_s, std::optional<FaultKind> fault) {
+  moment_ = wind_.at(time_s, fault);
+  const bool was_plugged_in = std::exchange(is_plugged_in_, fault != FaultKind::kUnplug);
+  is_silent_ = fault == FaultKind::kSilence;
+  if (!is_plugged_in_) waiting_.clear();
+  const bool is_the_devices = fault && std::ranges::count(device_faults_, *fault) != 0;
+  device_->advance(time_s, moment_, is_the_devices ? fault : std::nullopt);
+  if (!was_plugged_in) lose_what_waits();
+}
+
+void UsbPort::lose_what_waits() {
+  for (const UsbEndpoint& endpoint : summary_.endpoints) {
+    if ((endpoint.address & 0x80U) == 0) continue;
+    for (int i = 0; i < kMostLost; ++i) {
+      if (!device_->in(endpoint.address & 0x0FU, endpoint.max_packet_size)) break;
+    }
+  }
+}
+
+void UsbPort::submit(UsbTransfer transfer) {
+  if (is_plugged_in_ && waiting_.size() < kMostWaiting) waiting_.push_back(std::move(transfer));
+}
+
+bool UsbPort::cancel(std::uint64_t id) {
+  return std::erase_if(waiting_, [id](const UsbTransfer& transfer) { return transfer.id == id; }) != 0;
+}
+
+void UsbPort::cancel_all() {
+  waiting_.clear();
+}
+
+std::vector<UsbOutcome> UsbPort::take_outcomes() {
+  std::vector<UsbOutcome> outcomes;
+  std::array<bool, 256> is_busy{};  // by end point address: one that waits keeps those behind it waiting
+  for (auto transfer = waiting_.begin(); transfer != waiting_.end();) {
+    bool& busy = is_busy[transfer->endpoint | (transfer->is_to_host && transfer->endpoint != 0 ? 0x80U : 0U)];
+    std::optional<UsbOutcome> outcome = busy ? std::nullopt : attempt(*transfer);
+    if (outcome) {
+      outcomes.push_back(std::move(*outcome));
+      transfer = waiting_.erase(transfer);
+    } else {
+      busy = true;
+      ++transfer;
+    }
+  }
+  if (is_silent_) lose_what_waits();
+  return outcomes;
+}
+
+std::optional<UsbOutcome> UsbPort::attempt(const UsbTransfer& transfer) {
+  UsbOutcome outcome;
+  outcome.id = transfer.id;
+  const auto give = [&](std::optional<UsbBytes> data) {
+    outcome.is_refused = !data;
+    if (data) outcome.data = std::move(*data);
+    outcome.size = outcome.data.size();
+  };
+
+  if (transfer.endpoint == 0) {
+    const bool is_answered = !is_silent_ || !transfer.setup.is_to_host() || UsbControlPipe::is_standard(transfer.setup);
+    if (!is_answered) return std::nullopt;
+    give(control_pipe_.control(transfer.setup, transfer.data));
+    if (!outcome.is_refused && !transfer.setup.is_to_host()) outcome.size = transfer.data.size();
+  } else if (transfer.is_to_host) {
+    if (summary_.endpoint(transfer.endpoint | 0x80U) == nullptr) {
+      outcome.is_refused = true;
+      return outcome;
+    }
+    std::optional<UsbBytes> data = is_silent_ ? std::nullopt : device_->in(transfer.endpoint, transfer.max_size);
+    if (!data) return std::nullopt;
+    if (data->size() > transfer.max_size) data->resize(transfer.max_size);
+    give(std::move(data));
+  } else {
+    outcome.is_refused =
+        summary_.endpoint(transfer.endpoint) == nullptr || !device_->out(transfer.endpoint, transfer.data);
+    outcome.size = outcome.is_refused ? 0 : transfer.data.size();
+  }
+  return outcome;
+}
+
+}  // namespace yuragi::sim

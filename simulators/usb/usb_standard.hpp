@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulators/usb/usb_device.hpp"
+
+namespace yuragi::sim {
+
+/// What the kernel shows of an interface in sysfs, and a USB/IP server in its list.
+struct UsbInterface {
+  std::uint8_t number = 0;
+  std::uint8_t device_class = 0;
+  std::uint8_t subclass = 0;
+  std::uint8_t protocol = 0;
+};
+
+/// An end point as the configuration describes it.
+struct UsbEndpoint {
+  std::uint8_t address = 0;  ///< its number, with bit 7 set for one to the host
+  std::uint8_t type = 0;     ///< 0 control, 1 isochronous, 2 bulk, 3 interrupt
+  std::uint16_t max_packet_size = 0;
+};
+
+/// A device's descriptors, read. What they lack stays zero.
+struct UsbSummary {
+  std::uint16_t vendor_id = 0;
+  std::uint16_t product_id = 0;
+  std::uint16_t release = 0;  ///< bcdDevice
+  std::uint8_t device_class = 0;
+  std::uint8_t subclass = 0;
+  std::uint8_t protocol = 0;
+  std::uint8_t configurations = 0;
+  std::uint8_t configuration_value = 0;
+  std::string manufacturer, product, serial;
+  std::vector<UsbInterface> interfaces;
+  std::vector<UsbEndpoint> endpoints;
+
+  /// The end point of that address; nullptr: there is none.
+  const UsbEndpoint* endpoint(std::uint8_t address) const;
+};
+
+UsbSummary summary_of(const UsbDescriptors& descriptors);
+
+/// The 8 bytes that begin a control transfer, read.
+UsbSetup usb_setup_of(std::span<const std::uint8_t, 8> bytes);
+
+/// The control pipe of a simulated device: answers the standard requests (USB 2.0 specification, 9.4) from its
+/// descriptors, and hands the others to it. Any bytes may come from the host. Thread-safe: no.
+class UsbControlPipe {
+ public:
+  /// `device` must outlive this.
+  explicit UsbControlPipe(UsbDevice& device);
+
+  /// True: a request that is answered here, and is never seen by the device.
+  static bool is_standard(const UsbSetup& setup) noexcept { return (setup.request_type & 0x60U) == 0; }
+
+  /// As UsbDevice::control(), and never more than `setup.length` bytes.
+  std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data);
+
+  /// What the host set; 0: not configured yet.
+  std::uint8_t configuration() const noexcept { return configuration_; }
+
+ private:
+  std::optional<UsbBytes> standard(const UsbSetup& setup);
+  std::optional<UsbBytes> descriptor(const UsbSetup& setup) const;
+
+  UsbDevice& device_;
+  std::uint8_t configuration_value_ = 0;
+  std::uint8_t configuration_ = 0;
+};
+
+}  // namespace yuragi::sim

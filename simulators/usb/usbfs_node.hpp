@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+
+#include "simulators/usb/emulated_node.hpp"
+#include "simulators/usb/readiness_node.hpp"
+#include "simulators/usb/usb_host.hpp"
+
+namespace yuragi::sim {
+
+/// /dev/bus/usb/BBB/DDD of a simulated device, as far as libusb uses it: transfers are submitted, discarded and reaped.
+/// Waiting for a transfer's end is real waiting: the node becomes writable then. Source: Linux 6.1,
+/// drivers/usb/core/devio.c and include/uapi/linux/usbdevice_fs.h; libusb 1.0.26, os/linux_usbfs.c.
+class UsbfsNode final : public EmulatedNode {
+ public:
+  /// `path`: the node's file inside the testbed. `host` must outlive unplug().
+  UsbfsNode(UsbHost& host, const std::string& path);
+
+  void serve(double time_s) override;
+  void unplug() override;
+
+ private:
+  /// What the program calls a URB.
+  struct Urb {
+    ProgramMemory memory;  // its struct usbdevfs_urb
+    ProgramMemory buffer;
+    std::size_t header_size = 0;  // of the buffer: a control transfer's setup
+    std::uint64_t transfer = 0;
+  };
+
+  void obey(ProgramCall call);
+  void submit(ProgramCall call);
+  void discard(ProgramCall call);
+  void reap(ProgramCall call);
+  void finish(std::uintptr_t address, const UsbOutcome& outcome);
+  void finish(std::uintptr_t address, int status, std::size_t size);
+
+  UsbHost* host_;
+  ReadinessNode readiness_;
+  std::map<std::uintptr_t, Urb> under_way_;  // by the URB's address in the program
+  std::deque<Urb> done_;
+};
+
+}  // namespace yuragi::sim

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulators/simulator.hpp"
+#include "simulators/usb/usb_port.hpp"
+
+namespace yuragi::sim {
+
+/// Simulated USB devices as a USB/IP server: any Linux machine with the module vhci_hcd gets them as if they were
+/// plugged in, by `usbip attach -r HOST -b 1-1` (the first; the second is 1-2, and so on). A device is given to one
+/// host at a time. Unplugged, it is not offered, and the connection of the host that has it is closed.
+class UsbipServer final : public Simulator {
+ public:
+  /// Listens at once; port 0 takes a free one. Throws std::runtime_error for an address that cannot be had.
+  UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<UsbPort>> ports);
+  ~UsbipServer() override;
+
+  /// The port that it listens on.
+  std::uint16_t port() const;
+
+  std::span<const FaultKind> known_faults() const override;
+  std::vector<int> descriptors() const override;
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What any of these devices can suffer; a device that does not know a fault suffers none.
+std::vector<FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports);
+
+}  // namespace yuragi::sim

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "simulators/usb/hid_model.hpp"
+
+namespace yuragi::sim {
+
+/// An Oregon Scientific WMR100 console with its wind, thermometer, pressure and clock frames.
+std::unique_ptr<UsbDevice> make_wmr100(const HidModelOptions& options);
+
+}  // namespace yuragi::sim

@@ -1,0 +1,133 @@
+// Oregon Scientific WMR300 (0fde:ca08). Source: weewx wmr300.py (its comment).
+//
+// Interrupt end points of 64 bytes both ways. Each heartbeat (a6 91 ca 45 52) is answered with who it is (57 4d 52 33
+// 30 30 ...). Sends no data before 73 e5 0a 26 and two bytes of that answer, which it acknowledges, and none 100 s
+// after the last heartbeat or acknowledgement (41 43 4b kind channel). A packet: its kind, length, five bytes of date
+// and time, channel, ..., the sum of all before, high byte first.
+//
+//   every     packet
+//   2.75 s    d4 wind, 54 bytes, big-endian from 8 on: gust 0.1 m/s, its direction, average 0.1 m/s, its direction
+//   11 s      d3 temperature, 61 bytes
+//   22 s      d5 rain, 40 bytes
+#include "simulators/usb/wmr300.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace yuragi::sim {
+namespace {
+
+constexpr std::array kWmr300Faults = {FaultKind::kSilence, FaultKind::kFreeze,  FaultKind::kSpike,
+                                      FaultKind::kGarbage, FaultKind::kPartial, FaultKind::kBadChecksum};
+constexpr std::array<std::uint8_t, 5> kHeartbeat = {0xA6, 0x91, 0xCA, 0x45, 0x52};
+constexpr std::array<std::uint8_t, 6> kBegin = {0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1};
+constexpr std::array<std::uint8_t, 3> kAcknowledgement = {0x41, 0x43, 0x4B};
+constexpr UsbBytes::size_type kWmr300Report = 64;
+constexpr double kRunsOnFor_s = 100.0;
+
+struct PacketKind {
+  std::uint8_t kind;
+  std::uint8_t size;
+  double every_s;
+};
+constexpr std::array<PacketKind, 3> kPacketKinds = {{{0xD4, 54, 2.75}, {0xD3, 61, 11.0}, {0xD5, 40, 22.0}}};
+
+class Wmr300 final : public HidModel {
+ public:
+  explicit Wmr300(const HidModelOptions& options)
+      : HidModel({.vendor = 0x0FDE,
+                  .product = 0xCA08,
+                  .manufacturer = "Oregon Scientific",
+                  .product_name = "WMR300",
+                  .report_descriptor = plain_report_descriptor(kWmr300Report),
+                  .report_size = kWmr300Report,
+                  .interval_ms = 1,
+                  .has_out_endpoint = true,
+                  .is_full_speed = true},
+                 kWmr300Faults, options) {
+    for (std::size_t i = 0; i < kPacketKinds.size(); ++i) next_s_[i] = paced(1.0 + static_cast<double>(i));
+  }
+
+ protected:
+  void play() override {
+    gust_m_s_ = std::max(gust_m_s_, wind().speed_m_s);
+    const bool speaks = has_begun_ && now_s() < heard_s_ + paced(kRunsOnFor_s) && !suffers(FaultKind::kSilence);
+    for (std::size_t i = 0; i < kPacketKinds.size(); ++i) {
+      if (now_s() < next_s_[i]) continue;
+      next_s_[i] = std::max(next_s_[i] + paced(kPacketKinds[i].every_s), now_s());
+      if (speaks) say_packet(packet(kPacketKinds[i]));
+    }
+  }
+
+  bool take_output(std::span<const std::uint8_t> report) override {
+    const auto begins_with = [report](std::span<const std::uint8_t> head) {
+      return report.size() >= head.size() && std::equal(head.begin(), head.end(), report.begin());
+    };
+    if (begins_with(kHeartbeat)) {
+      heard_s_ = now_s();
+      if (!suffers(FaultKind::kSilence)) say_packet(who_it_is());
+    } else if (begins_with(kBegin)) {
+      has_begun_ = true;
+      if (!suffers(FaultKind::kSilence)) say_packet({0x41, 0x43, 0x4B, 0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1});
+    } else if (begins_with(kAcknowledgement)) {
+      heard_s_ = now_s();
+    }
+    return true;
+  }
+
+ private:
+  static UsbBytes who_it_is() {
+    return {0x57, 0x4D, 0x52, 0x33, 0x30, 0x30, 0x2C, 0x41, 0x30, 0x30, 0x32, 0x2C,
+            0x0E, 0xC1, 0x00, 0x00, 0x2C, 0x67, 0x17, 0x2C, 0x4B, 0x2C, 0x52, 0x2C};
+  }
+
+  UsbBytes packet(const PacketKind& kind) {
+    UsbBytes bytes(kind.size, 0x00);
+    const auto put = [&bytes](std::size_t at, double number) {
+      const auto value = static_cast<unsigned>(std::lround(number));
+      bytes[at] = static_cast<std::uint8_t>(value >> 8U);
+      bytes[at + 1] = static_cast<std::uint8_t>(value & 0xFFU);
+    };
+    constexpr std::array<std::uint8_t, 6> kDateAndChannel = {14, 5, 9, 18, 20, 1};
+    bytes[0] = kind.kind;
+    bytes[1] = kind.size;
+    std::ranges::copy(kDateAndChannel, bytes.begin() + 2);
+    if (kind.kind == 0xD4) {
+      put(8, 10.0 * gust_m_s_);
+      put(10, std::fmod(std::round(wind().direction_deg), 360.0));
+      put(12, 10.0 * wind().speed_m_s);
+      put(14, std::fmod(std::round(wind().direction_deg), 360.0));
+      put(18, 0x7FFD);  // no wind chill
+      gust_m_s_ = 0.0;
+    }
+    unsigned sum = 0;
+    for (const std::uint8_t byte : bytes) sum += byte;
+    if (suffers(FaultKind::kBadChecksum)) sum ^= 0x0005U;
+    put(bytes.size() - 2, static_cast<double>(sum & 0xFFFFU));
+    return bytes;
+  }
+
+  void say_packet(UsbBytes bytes) {
+    if (suffers(FaultKind::kPartial)) {
+      bytes.resize(bytes.size() / 2);  // a short packet ends the report
+    } else {
+      bytes.resize(kWmr300Report, 0x00);
+    }
+    if (suffers(FaultKind::kGarbage)) bytes = random_bytes(kWmr300Report);
+    say(std::move(bytes));
+  }
+
+  bool has_begun_ = false;
+  double heard_s_ = 0.0;  ///< the last word from the host
+  std::array<double, kPacketKinds.size()> next_s_{};
+  double gust_m_s_ = 0.0;  ///< since the last wind packet
+};
+
+}  // namespace
+
+std::unique_ptr<UsbDevice> make_wmr300(const HidModelOptions& options) {
+  return std::make_unique<Wmr300>(options);
+}
+
+}  // namespace yuragi::sim

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "simulators/usb/hid_model.hpp"
+
+namespace yuragi::sim {
+
+/// An Oregon Scientific WMR300 console with its wind, thermometer and rain packets.
+std::unique_ptr<UsbDevice> make_wmr300(const HidModelOptions& options);
+
+}  // namespace yuragi::sim

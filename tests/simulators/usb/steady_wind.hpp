@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "simulators/played_wind.hpp"
+#include "simulators/usb/usb_port.hpp"
+#include "tests/simulators/usb/echo_device.hpp"
+
+namespace yuragi::sim {
+
+/// The same wind all the time.
+class SteadyWind final : public PlayedWind {
+ public:
+  explicit SteadyWind(PlayedMoment moment) : moment_(moment) {}
+  PlayedMoment at(double /*time_s*/) override { return moment_; }
+
+ private:
+  PlayedMoment moment_;
+};
+
+inline MeasuredWind steady_wind(double speed_m_s, double direction_deg) {
+  return MeasuredWind(std::make_unique<SteadyWind>(PlayedMoment{speed_m_s, direction_deg}));
+}
+
+inline std::unique_ptr<UsbPort> echo_port() {
+  return std::make_unique<UsbPort>(std::make_unique<EchoDevice>(), steady_wind(7.5, 240.0));
+}
+
+inline std::vector<std::unique_ptr<UsbPort>> echo_ports(std::size_t count) {
+  std::vector<std::unique_ptr<UsbPort>> ports;
+  for (std::size_t i = 0; i < count; ++i) ports.push_back(echo_port());
+  return ports;
+}
+
+}  // namespace yuragi::sim

@@ -1,0 +1,11 @@
+// main of tests whose devices stand in a testbed of umockdev's: they run under its library, and start themselves anew
+// where they do not.
+#include <gtest/gtest.h>
+
+#include "simulators/usb/umockdev_testbed.hpp"
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  if (!testing::GTEST_FLAG(list_tests) && !yuragi::sim::is_in_umockdev()) yuragi::sim::restart_in_umockdev();
+  return RUN_ALL_TESTS();
+}
