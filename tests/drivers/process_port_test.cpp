@@ -158,6 +158,7 @@ TEST_F(ProcessPortTest, InterruptEndsAWaitFromAnotherThread) {
   port->interrupt();
   reader.join();
   EXPECT_EQ(status, ByteStatus::kInterrupted);
+  EXPECT_FALSE(port->open()) << "it is not started again";
 }
 
 /// A sensor whose worker is a script; impatient, so that the test is short.
