@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "drivers/decode/modbus_quantity.hpp"
 #include "engine/base/time.hpp"
@@ -50,5 +51,8 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
 /// not empty), $YURAGI_PROFILE_DIR, ../share/yuragi/profiles beside the executable, the source tree.
 /// Throws std::runtime_error as above, or, for a name that is nowhere, one that lists the names that are.
 ModbusProfile load_modbus_profile(const std::string& name, const std::string& directory);
+
+/// The names of all profiles that can be found so, in alphabetical order.
+std::vector<std::string> modbus_profile_names(const std::string& directory);
 
 }  // namespace yuragi
