@@ -27,21 +27,12 @@ bool has_side_effects(const ModbusProfile& profile) {
 }
 
 bool has_one_slave(const ModbusProfile& profile) {
-  return (!profile.direction || profile.direction->slave == profile.speed.slave) &&
-         (!profile.gust || profile.gust->slave == profile.speed.slave);
+  return !profile.direction || profile.direction->slave == profile.speed.slave;
 }
 
 bool is_home_of(const ModbusLine& line, const ModbusProfile& profile) {
   return line.framing == ModbusFraming::kTcp ||
          (line.baud == profile.baud && line.parity == profile.parity && line.stop_bits == profile.stop_bits);
-}
-
-/// The profile for a device that has this id.
-ModbusProfile moved_to(ModbusProfile profile, std::uint8_t id) {
-  profile.speed.slave = id;
-  if (profile.direction) profile.direction->slave = id;
-  if (profile.gust) profile.gust->slave = id;
-  return profile;
 }
 
 /// One open line, which is asked whatever is to be known, and nothing twice.
@@ -95,11 +86,7 @@ class ProbedLine {
 
 /// Is somebody there who said this? A gateway's word that nobody is does not count.
 bool is_sign_of_life(const Registers& answer) {
-  constexpr std::uint8_t kGatewayPathUnavailable = 10;
-  constexpr std::uint8_t kGatewayTargetSilent = 11;
-  if (answer) return true;
-  if (answer.error().why != Refusal::kException) return false;
-  return answer.error().exception != kGatewayPathUnavailable && answer.error().exception != kGatewayTargetSilent;
+  return answer || (answer.error().why == Refusal::kException && !is_gateway_silence(answer.error().exception));
 }
 
 /// Enters what one answer tells into `fit`. False: it makes no sense. A mark for "no value" does, but not in place of
@@ -171,7 +158,8 @@ std::vector<ModbusFit> fits_of(std::uint8_t id, const ModbusLine& settings, cons
     // One of several slaves is looked for where the profile says that they are.
     const bool is_pair = !has_one_slave(named.profile);
     if (is_pair && named.profile.speed.slave != id) continue;
-    const ModbusProfile profile = is_pair ? named.profile : moved_to(named.profile, id);
+    ModbusProfile profile = named.profile;
+    if (!is_pair) set_slave(profile, id);
     auto fit = fit_of(named.name, profile, plan_modbus_reads(profile), line);
     if (!fit) continue;
     fit->is_at_home = named.profile.speed.slave == id && is_home_of(settings, named.profile);
@@ -269,10 +257,8 @@ std::string sensor_table_for(const ModbusLine& line, const ModbusFit& fit, const
       table += fmt::format("parity = \"{}\"\n", line.parity == 'N' ? "none" : line.parity == 'E' ? "even" : "odd");
     }
   }
+  // Whatever else is on the slave of the speed follows it.
   if (fit.speed_slave != profile.speed.slave) table += fmt::format("speed_slave = {}\n", fit.speed_slave);
-  if (profile.direction && fit.direction_slave != profile.direction->slave) {
-    table += fmt::format("direction_slave = {}\n", *fit.direction_slave);
-  }
   return table;
 }
 

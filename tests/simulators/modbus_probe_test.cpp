@@ -91,7 +91,7 @@ TEST_F(ModbusProbeTest, WritesTheTableThatTheDriverTakes) {
   EXPECT_EQ(sensor_table_for(hits[0].line, hits[0].fits.at(0), named->profile, ""),
             "[[sensor]]\nname = \"wind\"\ndriver = \"modbus\"\nprofile = \"calypso-ulp\"\ntransport = \"tcp\"\n"
             "host = \"127.0.0.1\"\nport = " +
-                simulator_->where() + "\nspeed_slave = 3\ndirection_slave = 3\n");
+                simulator_->where() + "\nspeed_slave = 3\n");
 
   ModbusLine serial;
   serial.framing = ModbusFraming::kRtu;
