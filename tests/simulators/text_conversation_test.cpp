@@ -142,7 +142,7 @@ TEST(TextConversation, ComesBackFromEveryFault) {
   const std::string link = (folder / "anemometer").string();
   TextSimulatorProcess simulator("nmea", {"--pty", "--link", link, "--rate", "20"});
   LiveSensor live("nmea", {{"device", link}, {"talker", std::string("WI")}});
-  ASSERT_TRUE(live.poll_for_readings(3));
+  ASSERT_TRUE(live.poll_for_readings(10));
 
   const std::vector<std::pair<std::string, std::string>> faults = {
       {"silence", "says nothing"}, {"garbage", "but no line: check baud"},
@@ -160,7 +160,7 @@ TEST(TextConversation, ComesBackFromEveryFault) {
 
     simulator.process().type("clear");
     simulator.process().line_after("no faults");
-    ASSERT_TRUE(live.poll_for_readings(3)) << live.sink.last_detail();
+    ASSERT_TRUE(live.poll_for_readings(10)) << live.sink.last_detail();
     live.expect_the_wind();
     EXPECT_EQ(live.sink.last_state(), LinkState::kConnected);
   }
