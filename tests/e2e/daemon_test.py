@@ -235,6 +235,30 @@ port = {port}
         self.assertLess(watcher.largest_wind_step_m_s, 1.2)
         self.assertLess(watcher.largest_bend_step_rad, 0.35)
 
+    def test_a_probe_finds_the_simulator_and_what_it_prints_is_a_right_configuration(self):
+        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3")
+        done = run("sensors", "probe", "modbus", simulator.address(), "--id", "1-5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("slave 3 at", done.stdout)
+        self.assertIn("fits thies-clima-sensor-us", done.stdout)
+        table = done.stdout[done.stdout.index("[[sensor]]"):]
+        self.assertEqual(run("check-config", self.file("found.toml", table)).returncode, 0)
+
+        nobody = run("sensors", "probe", "modbus", simulator.address(), "--id", "4")
+        self.assertEqual(nobody.returncode, 69)
+        self.assertIn("nobody answers", nobody.stderr)
+        self.assertEqual(run("sensors", "probe", "modbus", simulator.address(), "--id", "0-3").returncode, 64)
+
+    def test_a_probe_of_a_serial_line_can_be_interrupted(self):
+        link = os.path.join(self.folder, "bus")
+        self.start(SIMULATOR, "modbus", "--rtu", "--link", link).wait_for("serving ")
+        probe = self.start(YURAGI, "sensors", "probe", "modbus", link, "--baud", "4800", "--id", "1-247")
+        probe.wait_for("fits renke-rs-fsjt-rs-fxjt-n01")
+        code, lasted_s = probe.end(signal.SIGINT)
+        self.assertEqual(code, 0)
+        self.assertLess(lasted_s, 5.0)
+        self.assertIn("interrupted", probe.text())
+
     # ---- recording ----
 
     def test_kill_9_loses_at_most_the_last_second_of_a_recording(self):
