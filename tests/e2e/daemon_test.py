@@ -31,9 +31,9 @@ LIVE, STALE = 1, 2  # enum SensorHealth
 class Stream:
     """A subscribed client."""
 
-    def __init__(self, address, poses=True, sensors=True):
+    def __init__(self, address, poses=True, sensors=True, raw_sensor=None):
         self.source = pose_client.SocketBytes(address, 10.0)
-        self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py"))
+        self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py", raw_sensor))
         self.messages = pose_client.messages(self.source)
         self.scenes = None
 
@@ -356,6 +356,20 @@ port = {port}
         unknown = run("sensors", "watch", "--raw", "mast", "--listen", daemon.address(), "--duration", "5")
         self.assertEqual(unknown.returncode, 64)
         self.assertIn("there are: roof", unknown.stderr)
+
+    def test_raw_messages_are_read_by_a_client_that_knows_the_schema_alone(self):
+        daemon = self.start_daemon("--config", self.modbus_config(self.start_simulator().address()))
+        with Stream(daemon.address(), poses=False, raw_sensor="roof") as stream:
+            traces = [stream.next("RawTrace") for _ in range(8)]
+        for before, trace in zip(traces, traces[1:]):
+            self.assertEqual(trace.Sensor(), b"roof")
+            self.assertGreaterEqual(trace.MonoNs(), before.MonoNs())
+            self.assertLess(abs(trace.UtcNs() - time.time_ns()), 60e9)
+            self.assertEqual(trace.Length(), trace.BytesLength())
+            self.assertEqual(trace.Lost(), 0)
+            if trace.Received() and not before.Received():  # an answer has its request's transaction
+                self.assertEqual(trace.BytesAsNumpy()[:2].tolist(), before.BytesAsNumpy()[:2].tolist())
+        self.assertEqual({trace.Received() for trace in traces}, {False, True})
 
     def test_raw_messages_are_what_decode_reads(self):
         config = self.modbus_config(self.start_simulator().address())
