@@ -36,23 +36,27 @@ class CounterMeaning {
   CupState cup_;
 };
 
+/// A reply does not say what it answers: of two bytes it is an analogue value, of any other length a count or nothing.
 class Mcc1208Decoder final : public UnitDecoder {
  public:
-  explicit Mcc1208Decoder(const UnitDecoderOptions& options) : range_(options.range), meaning_(options) {}
+  explicit Mcc1208Decoder(const UnitDecoderOptions& options) : meaning_(options) {}
 
   void take(const RawUnit& unit, const Sink& sink) override {
-    const auto reply = decode_mcc1208(unit.bytes);
-    if (!reply) {
-      meaning_.interrupt();
-      return sink(UnitRefusal{reply.error(), {}});
+    constexpr std::size_t kAnalogSize = 2;
+    if (unit.bytes.size() == kAnalogSize) {
+      const auto analog = decode_mcc1208_analog(unit.bytes);
+      return analog ? sink(meaning_.of({}, mcc1208_volts(*analog, {}))) : refuse(analog.error(), sink);
     }
-    std::optional<double> volts;
-    if (reply->analog) volts = mcc1208_volts(*reply->analog, range_);
-    sink(meaning_.of(reply->count, volts));
+    const auto count = decode_mcc1208_count(unit.bytes);
+    return count ? sink(meaning_.of(*count, {})) : refuse(count.error(), sink);
   }
 
  private:
-  Mcc1208Range range_;
+  void refuse(Refusal why, const Sink& sink) {
+    meaning_.interrupt();
+    sink(UnitRefusal{why, {}});
+  }
+
   CounterMeaning meaning_;
 };
 
@@ -61,7 +65,7 @@ LabjackRequest labjack_request_of(ByteSpan reply) {
   constexpr std::size_t kEchoAt = 8;
   LabjackRequest request;
   if (reply.size() > kEchoAt) request.echo = reply[kEchoAt];
-  if (reply.size() == 12) request.wants_counter = false;
+  if (reply.size() == 12) request.counter.reset();
   if (reply.size() == 14) request.analog_channel.reset();
   return request;
 }
@@ -78,7 +82,7 @@ class LabjackDecoder final : public UnitDecoder {
       return sink(UnitRefusal{reply.error().why, has_code ? fmt::format("error {}", reply.error().error) : ""});
     }
     std::optional<double> volts;
-    if (reply->analog) volts = labjack_volts(*reply->analog, input_);
+    if (reply->analog) volts = nominal_labjack_calibration(input_).volts(*reply->analog);
     sink(meaning_.of(reply->count, volts));
   }
 

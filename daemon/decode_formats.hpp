@@ -72,7 +72,6 @@ struct UnitDecoderOptions {
   // mcc1208, labjack. Two counts make a speed only if it is known how long apart they are.
   std::optional<double> interval_s;  ///< from one reply to the next
   CupCalibration cup;                ///< read where there is an interval
-  Mcc1208Range range = Mcc1208Range::kUnipolar5V;
   LabjackInput input = LabjackInput::kLowVoltage;
   std::optional<double> vane_reference_v;  ///< over the vane's track: what is measured is then its wiper
   VaneCalibration vane;

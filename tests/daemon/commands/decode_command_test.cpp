@@ -201,7 +201,7 @@ TEST_F(DecodeCommand, RefusesAnOptionThatMeansNothingToTheFormat) {
   for (const Arguments& arguments : std::vector<Arguments>{{"nmea", "--node", "Q"},
                                                            {"line", "--checksum", "accept"},
                                                            {"acurite", "--hex", "--slope", "1", "--interval", "1"},
-                                                           {"labjack", "--hex", "--range", "bipolar-5V"},
+                                                           {"mcc1208", "--hex", "--input", "low-voltage"},
                                                            {"gill", "--speed-slave", "1"}}) {
     const auto done = run("", arguments);
     EXPECT_EQ(done.code, kExitUsage) << arguments[1];
@@ -302,7 +302,7 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
 // ---- counters ----
 
 TEST_F(DecodeCommand, GivesCountsAndVoltsAndTheirMeaningWhereTheOptionsSayIt) {
-  const auto plain = run("d2 04 00 00\n00 08\n", {"mcc1208", "--hex"});
+  const auto plain = run("d2 04 00 00\n00 0a\n", {"mcc1208", "--hex"});
   ASSERT_EQ(plain.objects.size(), 2U);
   EXPECT_EQ(plain.objects[0]["count"], 1234);
   EXPECT_TRUE(plain.objects[0]["speed_m_s"].is_null());
@@ -311,13 +311,13 @@ TEST_F(DecodeCommand, GivesCountsAndVoltsAndTheirMeaningWhereTheOptionsSayIt) {
   EXPECT_TRUE(plain.objects[1]["direction_deg"].is_null());
 
   // 20 pulses in 2 s, of 0.7 m each: 7 m/s. Half of a track of 356 degrees: 178.
-  const auto told = run("d2 04 00 00\ne6 04 00 00\n00 08\n",
+  const auto told = run("d2 04 00 00\ne6 04 00 00\n00 0a\n",
                         {"mcc1208", "--hex", "--slope", "0.7", "--interval", "2", "--vane-reference", "5"});
   ASSERT_EQ(told.objects.size(), 3U);
   EXPECT_TRUE(told.objects[0]["speed_m_s"].is_null()) << "one count is no speed";
   EXPECT_TRUE(is_value(told.objects[1]["speed_m_s"], 7.0, 1e-9));
   EXPECT_TRUE(is_value(told.objects[2]["direction_deg"], 178.0, 1e-9));
-  EXPECT_TRUE(is_value(one("00 08\n", {"mcc1208", "--hex", "--range", "bipolar-10V"})["volts"], 0.0));
+  EXPECT_TRUE(is_value(one("00 08\n", {"mcc1208", "--hex"})["volts"], 0.0));
 }
 
 TEST_F(DecodeCommand, BeginsAnewAfterAReplyThatIsNoUse) {
