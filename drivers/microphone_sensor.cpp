@@ -38,9 +38,11 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const Clock& clock, SensorSink&
   const MonoTime now = clock.now().mono;
   switch (arrival.status) {
     case ByteStatus::kBytes:
+    case ByteStatus::kForeign:
       if (now < deadline_) return now;
       break;
     case ByteStatus::kSilence:
+    case ByteStatus::kForeign:
       break;
     case ByteStatus::kInterrupted:
       return Failure{"interrupted"};

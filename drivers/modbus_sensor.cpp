@@ -12,14 +12,10 @@ namespace {
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
 constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
 
-// What a gateway says of a slave that does not answer it (MODBUS Application Protocol V1.1b3, section 7).
-constexpr std::uint8_t kGatewayPathUnavailable = 10;
-constexpr std::uint8_t kGatewayTargetSilent = 11;
-
 /// Does a gateway answer for a slave that does not?
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
   return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == Refusal::kException &&
-         (trouble.refusal.exception == kGatewayPathUnavailable || trouble.refusal.exception == kGatewayTargetSilent);
+         is_gateway_silence(trouble.refusal.exception);
 }
 
 /// "without direction and gust", for what this read should have brought.

@@ -33,6 +33,7 @@ void DecodeCommandOptions::add_to(CLI::App& command) {
   command.add_flag("--refused", shows_refused, "tell of what is refused too, and why");
   add_policies(command);
   add_line_options(command);
+  add_station_options(command);
   add_modbus_options(command);
   add_counter_options(command);
 }
@@ -131,6 +132,12 @@ void DecodeCommandOptions::add_line_options(CLI::App& command) {
   add("--speed-offset", line.speed.offset, "in the speed's unit (default 0)", "NUMBER");
   add("--direction-scale", line.direction.scale, "22.5 for points 0 to 15 (default 1)", "FACTOR");
   add("--invalid", line.invalid, "the number that means no value, -999 say", "NUMBER");
+}
+
+void DecodeCommandOptions::add_station_options(CLI::App& command) {
+  limit(command.add_flag("--reports", decoder.are_reports,
+                         "each line is an input report of 8 bytes as it came over USB (sensors watch --raw --hex)"),
+        "wmr100, te923, fineoffset");
 }
 
 void DecodeCommandOptions::add_modbus_options(CLI::App& command) {
