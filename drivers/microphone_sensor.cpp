@@ -38,7 +38,6 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const Clock& clock, SensorSink&
   const MonoTime now = clock.now().mono;
   switch (arrival.status) {
     case ByteStatus::kBytes:
-    case ByteStatus::kForeign:
       if (now < deadline_) return now;
       break;
     case ByteStatus::kSilence:

@@ -360,7 +360,56 @@ port = {port}
         self.assertTrue(told, done.stderr)
         self.assertGreaterEqual(int(told.group(2)), 2 * int(told.group(1)) - 1, "a speed and a direction make a reading")
 
+    # What USB devices are decoded with, and what the driver calls them: (simulator, device, format, options).
+    USB_DEVICES = (
+        ("hid", "wmr100", "wmr100", ["--reports"]),
+        ("hid", "wmr300", "wmr300", []),
+        ("hid", "fineoffset", "fineoffset", ["--reports"]),
+        ("hid", "acurite", "acurite", []),
+        ("hid", "te923", "te923", ["--reports"]),
+        ("usb", "mcc1208", "mcc1208", ["--slope", "0.1", "--interval", "0.1", "--vane-reference", "5"]),
+        ("usb", "labjack-u3", "labjack", ["--slope", "0.1", "--interval", "0.1", "--input", "high-voltage",
+                                          "--vane-reference", "5"]),
+    )
+
+    def test_raw_messages_of_every_usb_device_are_what_decode_reads(self):
+        watched = []
+        for driver, device, kind, options in self.USB_DEVICES:
+            key = "station" if driver == "hid" else "device"
+            pace = ["--pace", "20"] if driver == "hid" else []
+            config = self.file(device + ".toml", f'[[sensor]]\nname = "roof"\ndriver = "{driver}"\n{key} = "{device}"\n'
+                               + ("pace = 20\n" if pace else ""))
+            watch = self.start(SIMULATOR, driver, "--device", device, *pace, "--speed", "6", "--umockdev", "--", YURAGI,
+                               "sensors", "watch", "--raw", "roof", "--hex", "--duration", "6", "--config", config,
+                               "--listen", self.free_address())
+            watched.append((device, kind, options, watch))
+        for device, kind, options, watch in watched:
+            with self.subTest(device=device):
+                self.assertEqual(watch.process.wait(60), 0, watch.text())
+                lines = [line for line in watch.text().splitlines() if re.fullmatch(r"[0-9a-f |]+", line)]
+                decoded = run("decode", kind, self.file(device + ".hex", "\n".join(lines) + "\n"), "--hex", *options)
+                self.assertEqual(decoded.returncode, 0, decoded.stderr)
+                readings = [json.loads(line) for line in decoded.stdout.splitlines()]
+                speeds = [reading["speed_m_s"] for reading in readings if reading["speed_m_s"] is not None]
+                directions = [reading["direction_deg"] for reading in readings if reading["direction_deg"] is not None]
+                self.assertTrue(speeds and directions, watch.text() + decoded.stderr)
+                self.assertTrue(all(0.0 < speed < 20.0 for speed in speeds), speeds)
+                self.assertTrue(all(200.0 < direction < 280.0 for direction in directions), directions)
+
     # ---- sensors list, sensors describe ----
+
+    def test_list_finds_what_is_plugged_in_and_prints_a_configuration_of_it(self):
+        for driver, devices in (("hid", ("wmr100", "te923")), ("usb", ("mcc1208", "labjack-u3"))):
+            simulated = [word for device in devices for word in ("--device", device)]
+            done = subprocess.run([SIMULATOR, driver, *simulated, "--umockdev", "--", YURAGI, "sensors", "list"],
+                                  capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            toml = "\n".join(line[4:] for line in done.stdout.splitlines() if line.startswith("    "))
+            for device in devices:
+                self.assertIn(f'"{device}"', toml, done.stdout)
+            found = run("check-config", self.file(driver + ".toml", toml))
+            self.assertEqual(found.returncode, 0, found.stderr + toml)
+            self.assertIn(f"sensor {driver}-2 ({driver})", found.stdout)
 
     def test_list_looks_and_tells(self):
         done = run("sensors", "list")
