@@ -246,7 +246,7 @@ void check_source(std::string_view name, const MqttSource& source) {
   if (!is_json_pointer(source.place.pointer)) {
     throw std::runtime_error(
         fmt::format("{}path: \"{}\" is no JSON pointer; it begins with a slash, as in /TX23/Speed/Act",
-                    name == "" ? "speed_" : name, source.place.pointer));
+                    name.empty() ? "speed_" : name, source.place.pointer));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <type_traits>
 
@@ -27,20 +28,28 @@ struct FreeOscMessage {
 };
 using LibloMessage = std::unique_ptr<std::remove_pointer_t<lo_message>, FreeOscMessage>;
 
-std::optional<double> osc_number(char type, const lo_arg& argument) {
+/// liblo points to where the argument stands in the datagram, which may be no place for a number of 8 bytes.
+template <class Number>
+double osc_number_at(const void* argument) {
+  Number number{};
+  std::memcpy(&number, argument, sizeof number);
+  return static_cast<double>(number);
+}
+
+std::optional<double> osc_number(char type, const void* argument) {
   double number = 0.0;
   switch (type) {
     case LO_INT32:
-      number = argument.i;
+      number = osc_number_at<std::int32_t>(argument);
       break;
     case LO_INT64:
-      number = static_cast<double>(argument.h);
+      number = osc_number_at<std::int64_t>(argument);
       break;
     case LO_FLOAT:
-      number = static_cast<double>(argument.f);
+      number = osc_number_at<float>(argument);
       break;
     case LO_DOUBLE:
-      number = argument.d;
+      number = osc_number_at<double>(argument);
       break;
     default:
       return std::nullopt;
@@ -59,7 +68,7 @@ bool take_message(OscBytes bytes, std::vector<OscMessage>& messages) {
   const char* const types = lo_message_get_types(message.get());
   lo_arg** const arguments = lo_message_get_argv(message.get());
   for (int i = 0; i < lo_message_get_argc(message.get()); ++i)
-    taken.numbers.push_back(osc_number(types[i], *arguments[i]));
+    taken.numbers.push_back(osc_number(types[i], arguments[i]));
   return true;
 }
 
