@@ -21,7 +21,7 @@ struct ModbusTrouble {
     kOthersOnly,   ///< others were heard, and not whom we asked
     kRefused,      ///< a message came that is no use: `refusal`
     kLost,         ///< the connection is gone
-    kInterrupted,  ///< the wake event was set
+    kInterrupted,  ///< the interruption was set
   };
   Kind kind = Kind::kSilence;
   ModbusRefusal refusal;  ///< for kRefused
@@ -30,12 +30,13 @@ struct ModbusTrouble {
 /// One line with Modbus devices: a serial port, or a host and port. All sensors on that line share it, each from a
 /// thread of its own, and are served one after the other in the order in which they asked.
 ///
-/// A late answer of one request is never taken for that of another. Over TCP each request has a number of its own. On a
-/// serial line nothing tells them apart, so whoever did not answer in time is not asked again before another response
-/// time-out has gone by, and after any trouble nothing is sent before the line has been quiet.
+/// A late answer to one request is never taken for that to another. Over TCP each request has a number of its own. On a
+/// serial line nothing tells them apart but the slave's id, so whoever did not answer in time is to be let be for
+/// another response time-out (ready_at()), and after any trouble nothing is sent before the line has been quiet. A
+/// device that is slower than two time-outs needs a longer one.
 ///
-/// Thread-safe: yes. Whoever waits, waits for those before him, each for one response time-out at most; his `wake` ends
-/// that.
+/// Thread-safe: yes. Whoever waits, waits for those before him, each for one response time-out at most; his
+/// `interruption` ends that.
 class ModbusBus {
  public:
   using Answer = Result<ModbusRegisters, ModbusTrouble>;
@@ -53,27 +54,27 @@ class ModbusBus {
   void keep_gap(Nanoseconds min_gap);
 
   /// Opens the line if it is not open. Returns when that was, or says why it failed and what to do.
-  Result<MonoTime, Failure> open(const WakeEvent& wake, const Clock& clock);
+  Result<MonoTime, Failure> open(const Interruption& interruption, const Clock& clock);
 
   /// From when on a device may be asked; a time that has passed, mostly.
   MonoTime ready_at(std::uint8_t unit) const;
 
   /// Asks, and waits for the answer. The request's transaction is chosen here. Counts in `sink` what it refuses, and
   /// shows it each message.
-  Answer ask(ModbusRequest request, const ModbusPatience& patience, const WakeEvent& wake, const Clock& clock,
-             SensorSink& sink);
+  Answer ask(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
+             const Clock& clock, SensorSink& sink);
 
   /// How many have asked and not been answered yet.
   std::size_t waiting_count() const;
 
-  /// To be called after a wake event was set, so that whoever waits for his turn with it looks at it.
+  /// To be called after an interruption was set, so that whoever waits for his turn with it looks at it.
   void wake_waiters() noexcept;
 
  private:
   class Turn;
 
   void close_line() noexcept;
-  Answer exchange(const ModbusRequest& request, const ModbusPatience& patience, const WakeEvent& wake,
+  Answer exchange(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
                   SensorSink& sink);
   ModbusTrouble fail(BusStatus status, bool heard_others, SensorSink& sink);
   ModbusTrouble refuse(const ModbusRefusal& refusal, SensorSink& sink);

@@ -38,13 +38,13 @@ bool is_home_of(const ModbusLine& line, const ModbusProfile& profile) {
 /// One open line, which is asked whatever is to be known, and nothing twice.
 class ProbedLine {
  public:
-  ProbedLine(const ModbusLine& line, Nanoseconds response_timeout, const WakeEvent& wake)
+  ProbedLine(const ModbusLine& line, Nanoseconds response_timeout, const Interruption& interruption)
       : line_(line),
         patience_{.response_timeout = response_timeout, .byte_timeout = kProbeQuiet},
-        wake_(wake),
+        interruption_(interruption),
         connection_(make_modbus_connection(line)) {}
 
-  Result<void, Failure> open() { return connection_->open(wake_); }
+  Result<void, Failure> open() { return connection_->open(interruption_); }
 
   /// The registers, or what was wrong with the answer; kTimeout where there was none.
   Registers ask(const ModbusRequest& request) {
@@ -61,14 +61,14 @@ class ProbedLine {
     std::array<std::uint8_t, kModbusMaxMessage> buffer{};
     request.transaction = ++transaction_;
     // A TCP peer that says no Modbus may hang up.
-    if (!connection_->is_open() && !connection_->open(wake_)) return kSilence;
-    connection_->settle(buffer, patience_, wake_);
+    if (!connection_->is_open() && !connection_->open(interruption_)) return kSilence;
+    connection_->settle(buffer, patience_, interruption_);
     if (!connection_->send(request, patience_)) {
       connection_->close();
       return kSilence;
     }
     for (;;) {
-      const BusMessage message = connection_->receive(buffer, wake_);
+      const BusMessage message = connection_->receive(buffer, interruption_);
       if (message.status == BusStatus::kLost) connection_->close();
       if (message.status != BusStatus::kMessage) return kSilence;
       const auto registers = decode_modbus(line_.framing, request, std::span(buffer).first(message.size));
@@ -78,7 +78,7 @@ class ProbedLine {
 
   const ModbusLine line_;
   const ModbusPatience patience_;
-  const WakeEvent& wake_;
+  const Interruption& interruption_;
   std::unique_ptr<ModbusConnection> connection_;
   std::map<std::tuple<std::uint8_t, std::uint8_t, std::uint16_t, std::uint16_t>, Registers> answers_;
   std::uint16_t transaction_ = 0;
@@ -151,10 +151,10 @@ bool answers_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusPro
 }
 
 std::vector<ModbusFit> fits_of(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan,
-                               ProbedLine& line, const WakeEvent& wake) {
+                               ProbedLine& line, const Interruption& interruption) {
   std::vector<ModbusFit> fits;
   for (const NamedModbusProfile& named : plan.profiles) {
-    if (wake.is_set() || has_side_effects(named.profile)) continue;
+    if (interruption.is_set() || has_side_effects(named.profile)) continue;
     // One of several slaves is looked for where the profile says that they are.
     const bool is_pair = !has_one_slave(named.profile);
     if (is_pair && named.profile.speed.slave != id) continue;
@@ -183,19 +183,19 @@ std::vector<ModbusFit> fits_of(std::uint8_t id, const ModbusLine& settings, cons
 }  // namespace
 
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
-                                  const ModbusProbeFound& found, const WakeEvent& wake) {
+                                  const ModbusProbeFound& found, const Interruption& interruption) {
   int hits = 0;
   const double all = static_cast<double>(plan.lines.size() * plan.ids.size());
   double done = 0.0;
   for (const ModbusLine& settings : plan.lines) {
-    ProbedLine line(settings, plan.response_timeout, wake);
+    ProbedLine line(settings, plan.response_timeout, interruption);
     if (const auto opened = line.open(); !opened) return opened.error();
     for (const std::uint8_t id : plan.ids) {
-      if (wake.is_set()) return hits;
+      if (interruption.is_set()) return hits;
       progress(settings, id, done++ / all);
       if (!answers_at_all(id, settings, plan, line)) continue;
       ++hits;
-      found({.line = settings, .id = id, .fits = fits_of(id, settings, plan, line, wake)});
+      found({.line = settings, .id = id, .fits = fits_of(id, settings, plan, line, interruption)});
     }
     if (hits > 0 && !plan.tries_all_lines) break;
   }

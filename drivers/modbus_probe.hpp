@@ -53,9 +53,9 @@ using ModbusProbeFound = std::function<void(const ModbusHit& hit)>;
 
 /// Asks every id on every line for a register or two, and whoever answers for what the profiles know. Reads only, and
 /// leaves out every profile in which a reading has side effects. Returns how many slaves were found, or why a line
-/// cannot be opened. Ends soon after `wake` was set.
+/// cannot be opened. Ends soon after `interruption` was set.
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
-                                  const ModbusProbeFound& found, const WakeEvent& wake);
+                                  const ModbusProbeFound& found, const Interruption& interruption);
 
 /// The line settings of a serial port that are worth trying, the likeliest first: those of the profiles, and then the
 /// others that devices can be set to. `bauds` and `parities` narrow them; empty: all.

@@ -54,13 +54,13 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
 }
 
 void ModbusSensor::interrupt() noexcept {
-  wake_.set();
+  interruption_.set();
   bus_->wake_waiters();
   direction_bus_->wake_waiters();
 }
 
 Result<MonoTime, Failure> ModbusSensor::open(const Clock& clock) {
-  const auto opened = bus_->open(wake_, clock);
+  const auto opened = bus_->open(interruption_, clock);
   if (!opened) return opened.error();
   opened_at_ = *opened;
   step_ = 0;
@@ -110,7 +110,7 @@ Result<MonoTime, Failure> ModbusSensor::ask_first(const Clock& clock, SensorSink
 
 void ModbusSensor::ask_more(Read& read, const Clock& clock, SensorSink& sink) {
   // The vane's own line, where it has one, is opened here; without it there is no direction.
-  if (const auto opened = read.bus->open(wake_, clock); !opened) {
+  if (const auto opened = read.bus->open(interruption_, clock); !opened) {
     read.trouble = without(read.what) + ": " + opened.error().message;
     read.not_before = clock.now().mono + read.backoff.next();
     return;
@@ -127,7 +127,7 @@ void ModbusSensor::ask_more(Read& read, const Clock& clock, SensorSink& sink) {
 
 ModbusBus::Answer ModbusSensor::ask(const Read& read, const Clock& clock, SensorSink& sink) {
   const ModbusPatience patience{.response_timeout = profile_.response_timeout, .byte_timeout = profile_.byte_timeout};
-  return read.bus->ask(read.what.request, patience, wake_, clock, sink);
+  return read.bus->ask(read.what.request, patience, interruption_, clock, sink);
 }
 
 MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {

@@ -29,13 +29,14 @@ struct ProbeOptions {
   std::string profile_dir;
 };
 
-/// While it lives, Ctrl-C sets a wake event instead of ending the program.
+/// While it lives, Ctrl-C sets an interruption instead of ending the program.
 class WakeOnInterrupt {
  public:
   WakeOnInterrupt() {
-    target = &wake_;
+    target = &interruption_;
     before_ = std::signal(SIGINT, [](int) {
-      if (WakeEvent* const wake = target.load()) wake->set();  // a write(), which a signal handler may do
+      if (Interruption* const interruption = target.load())
+        interruption->set();  // a write(), which a signal handler may do
     });
   }
   ~WakeOnInterrupt() {
@@ -45,11 +46,11 @@ class WakeOnInterrupt {
   WakeOnInterrupt(const WakeOnInterrupt&) = delete;
   WakeOnInterrupt& operator=(const WakeOnInterrupt&) = delete;
 
-  const WakeEvent& wake() const { return wake_; }
+  const Interruption& interruption() const { return interruption_; }
 
  private:
-  static inline std::atomic<WakeEvent*> target = nullptr;
-  WakeEvent wake_;
+  static inline std::atomic<Interruption*> target = nullptr;
+  Interruption interruption_;
   void (*before_)(int) = nullptr;
 };
 
@@ -174,9 +175,9 @@ void probe(const ProbeOptions& options) {
   if (plan.lines.empty()) throw ExitError(kExitUsage, "--baud and --parity leave nothing to try");
   const WakeOnInterrupt interrupt;
   const auto hits = probe_modbus(
-      plan, show_progress, [&plan](const ModbusHit& hit) { show_hit(hit, plan); }, interrupt.wake());
+      plan, show_progress, [&plan](const ModbusHit& hit) { show_hit(hit, plan); }, interrupt.interruption());
   end_progress();
-  if (interrupt.wake().is_set()) fmt::print(stderr, "interrupted\n");
+  if (interrupt.interruption().is_set()) fmt::print(stderr, "interrupted\n");
   if (!hits) throw ExitError(kExitUnavailable, hits.error().message);
   if (*hits > 0) return;
   throw ExitError(kExitUnavailable,

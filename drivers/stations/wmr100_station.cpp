@@ -6,13 +6,13 @@
 namespace yuragi {
 namespace {
 
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
-constexpr Nanoseconds kWmr100Listen = seconds(1);
-constexpr Nanoseconds kWmr100Silent = seconds(60);   // the clock's frame comes once a minute, the wind's more often
-constexpr Nanoseconds kWmr100Restart = seconds(30);  // from one start report to the next, to a console that is silent
-constexpr Nanoseconds kWmr100GiveUp = seconds(180);  // of silence; then the device is opened again
-constexpr Nanoseconds kWmr100NoWind = seconds(90);   // six winds that did not come
+constexpr Nanoseconds kWmr100Listen = 1s;
+constexpr Nanoseconds kWmr100Silent = 60s;   // the clock's frame comes once a minute, the wind's more often
+constexpr Nanoseconds kWmr100Restart = 30s;  // from one start report to the next, to a console that is silent
+constexpr Nanoseconds kWmr100GiveUp = 180s;  // of silence; then the device is opened again
+constexpr Nanoseconds kWmr100NoWind = 90s;   // six winds that did not come
 
 class Wmr100Station final : public HidStation {
  public:
@@ -27,7 +27,7 @@ class Wmr100Station final : public HidStation {
     if (message.status == HidStatus::kLost) return station_is_gone();
     if (message.status != HidStatus::kReport) return bear_silence(talk);
 
-    StationStep step{talk.now(), StationHealth::kSame, ""};
+    StationStep step = StationStep::same(talk.now());
     for (const std::uint8_t byte : wmr100_report_bytes(message.bytes)) {
       if (const auto frame = take_wmr100_byte(stream_, byte)) judge(*frame, talk, step);
     }
@@ -57,14 +57,14 @@ class Wmr100Station final : public HidStation {
   Result<StationStep, Failure> bear_silence(HidTalk& talk) {
     const MonoTime now = talk.now();
     const Nanoseconds silent = now - heard_;
-    if (silent < timing_.paced(kWmr100Silent)) return StationStep{now, StationHealth::kSame, ""};
+    if (silent < timing_.paced(kWmr100Silent)) return StationStep::same(now);
     if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"says nothing, so it is opened again"};
     if (now - started_ >= timing_.paced(kWmr100Restart)) {
       started_ = now;
       talk.refuse(Refusal::kTimeout);
       if (!talk.send(kWmr100Start)) return station_is_gone();
     }
-    return StationStep{now, StationHealth::kUnwell, "says nothing: check the console's power"};
+    return StationStep::unwell(now, "says nothing: check the console's power");
   }
 
   StationTiming timing_;

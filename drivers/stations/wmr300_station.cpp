@@ -9,12 +9,12 @@
 namespace yuragi {
 namespace {
 
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
-constexpr Nanoseconds kWmr300Listen = std::chrono::milliseconds(500);
-constexpr Nanoseconds kWmr300HeartbeatEvery = seconds(20);
-constexpr Nanoseconds kWmr300NoWind = seconds(15);  // five winds that did not come
-constexpr Nanoseconds kWmr300GiveUp = seconds(60);  // of silence; then the device is opened again
+constexpr Nanoseconds kWmr300Listen = 500ms;
+constexpr Nanoseconds kWmr300HeartbeatEvery = 20s;
+constexpr Nanoseconds kWmr300NoWind = 15s;  // five winds that did not come
+constexpr Nanoseconds kWmr300GiveUp = 60s;  // of silence; then the device is opened again
 
 class Wmr300Station final : public HidStation {
  public:
@@ -32,7 +32,7 @@ class Wmr300Station final : public HidStation {
     const Nanoseconds until_heartbeat = next_heartbeat_ - begin;
     const HidMessage message = talk.read(std::min(kWmr300Listen, until_heartbeat));
     if (message.status == HidStatus::kLost) return station_is_gone();
-    StationStep step{talk.now(), StationHealth::kSame, ""};
+    StationStep step = StationStep::same(talk.now());
     if (message.status == HidStatus::kReport && !take(message.bytes, talk, step)) return station_is_gone();
     if (step.health == StationHealth::kSame) return miss_the_wind(talk, step);
     return step;

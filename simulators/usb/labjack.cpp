@@ -2,8 +2,7 @@
 // come in on bulk end point 1, replies go out on 2. Both begin with sum8, F8, words, command, sum16 (low byte first),
 // and go on with:
 //
-//   00  Feedback   echo, then for each input its type: 01 channel 31 (AIN against ground), 36 0 or 37 0 (Counter0,
-//   Counter1)
+//   00  Feedback   echo, then for each input: 01 channel 1f (AIN against ground), 36 00 (Counter0), 37 00 (Counter1)
 //                  reply: error, which of them, echo, then 2 bytes for an AIN, 4 for a counter
 //   08  ConfigU3   20 bytes; reply: error, ..., from 15 the serial number, 37 the version: 18 is a U3-HV
 //   0B  ConfigIO   mask, 0, timers and counters, DAC1, FIO analogue, EIO analogue; reply: error, 0, the same four
@@ -41,7 +40,7 @@ double volts_at_zero(unsigned channel) {
   return -10.3 - 0.05 * (channel + 1.0);
 }
 
-std::uint16_t sum_of(UsbView bytes) {
+std::uint16_t labjack_sum_of(UsbView bytes) {
   unsigned sum = 0;
   for (const std::uint8_t byte : bytes) sum += byte;
   return static_cast<std::uint16_t>(sum);
@@ -49,21 +48,22 @@ std::uint16_t sum_of(UsbView bytes) {
 
 /// The sum of what follows the first byte of a header, folded into 8 bits twice.
 std::uint8_t folded_sum(UsbView frame) {
-  unsigned sum = sum_of(frame.subspan(1, kFrameHeader - 1));
+  unsigned sum = labjack_sum_of(frame.subspan(1, kFrameHeader - 1));
   sum = (sum & 0xFFU) + (sum >> 8U);
   return static_cast<std::uint8_t>((sum & 0xFFU) + (sum >> 8U));
 }
 
 void seal(UsbBytes& frame) {
-  const std::uint16_t sum = sum_of(UsbView(frame).subspan(kFrameHeader));
+  const std::uint16_t sum = labjack_sum_of(UsbView(frame).subspan(kFrameHeader));
   frame[4] = static_cast<std::uint8_t>(sum & 0xFFU);
   frame[5] = static_cast<std::uint8_t>(sum >> 8U);
   frame[0] = folded_sum(frame);
 }
 
 bool is_sealed(UsbView frame) {
-  if (frame.size() < kFrameHeader || frame[1] != 0xF8 || frame.size() != kFrameHeader + 2U * frame[2]) return false;
-  const std::uint16_t sum = sum_of(frame.subspan(kFrameHeader));
+  if (frame.size() < kFrameHeader || frame[1] != 0xF8 || frame.size() != kFrameHeader + std::size_t{2} * frame[2])
+    return false;
+  const std::uint16_t sum = labjack_sum_of(frame.subspan(kFrameHeader));
   return frame[4] == (sum & 0xFFU) && frame[5] == sum >> 8U && frame[0] == folded_sum(frame);
 }
 

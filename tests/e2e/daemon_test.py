@@ -31,9 +31,9 @@ LIVE, STALE = 1, 2  # enum SensorHealth
 class Stream:
     """A subscribed client."""
 
-    def __init__(self, address, poses=True, sensors=True):
+    def __init__(self, address, poses=True, sensors=True, raw_sensor=None):
         self.source = pose_client.SocketBytes(address, 10.0)
-        self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py"))
+        self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py", raw_sensor))
         self.messages = pose_client.messages(self.source)
         self.scenes = None
 
@@ -235,6 +235,30 @@ port = {port}
         self.assertLess(watcher.largest_wind_step_m_s, 1.2)
         self.assertLess(watcher.largest_bend_step_rad, 0.35)
 
+    def test_a_probe_finds_the_simulator_and_what_it_prints_is_a_right_configuration(self):
+        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3")
+        done = run("sensors", "probe", "modbus", simulator.address(), "--id", "1-5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("slave 3 at", done.stdout)
+        self.assertIn("fits thies-clima-sensor-us", done.stdout)
+        table = done.stdout[done.stdout.index("[[sensor]]"):]
+        self.assertEqual(run("check-config", self.file("found.toml", table)).returncode, 0)
+
+        nobody = run("sensors", "probe", "modbus", simulator.address(), "--id", "4")
+        self.assertEqual(nobody.returncode, 69)
+        self.assertIn("nobody answers", nobody.stderr)
+        self.assertEqual(run("sensors", "probe", "modbus", simulator.address(), "--id", "0-3").returncode, 64)
+
+    def test_a_probe_of_a_serial_line_can_be_interrupted(self):
+        link = os.path.join(self.folder, "bus")
+        self.start(SIMULATOR, "modbus", "--rtu", "--link", link).wait_for("serving ")
+        probe = self.start(YURAGI, "sensors", "probe", "modbus", link, "--baud", "4800", "--id", "1-247")
+        probe.wait_for("fits renke-rs-fsjt-rs-fxjt-n01")
+        code, lasted_s = probe.end(signal.SIGINT)
+        self.assertEqual(code, 0)
+        self.assertLess(lasted_s, 5.0)
+        self.assertIn("interrupted", probe.text())
+
     # ---- recording ----
 
     def test_kill_9_loses_at_most_the_last_second_of_a_recording(self):
@@ -332,6 +356,20 @@ port = {port}
         unknown = run("sensors", "watch", "--raw", "mast", "--listen", daemon.address(), "--duration", "5")
         self.assertEqual(unknown.returncode, 64)
         self.assertIn("there are: roof", unknown.stderr)
+
+    def test_raw_messages_are_read_by_a_client_that_knows_the_schema_alone(self):
+        daemon = self.start_daemon("--config", self.modbus_config(self.start_simulator().address()))
+        with Stream(daemon.address(), poses=False, raw_sensor="roof") as stream:
+            traces = [stream.next("RawTrace") for _ in range(8)]
+        for before, trace in zip(traces, traces[1:]):
+            self.assertEqual(trace.Sensor(), b"roof")
+            self.assertGreaterEqual(trace.MonoNs(), before.MonoNs())
+            self.assertLess(abs(trace.UtcNs() - time.time_ns()), 60e9)
+            self.assertEqual(trace.Length(), trace.BytesLength())
+            self.assertEqual(trace.Lost(), 0)
+            if trace.Received() and not before.Received():  # an answer has its request's transaction
+                self.assertEqual(trace.BytesAsNumpy()[:2].tolist(), before.BytesAsNumpy()[:2].tolist())
+        self.assertEqual({trace.Received() for trace in traces}, {False, True})
 
     def test_raw_messages_are_what_decode_reads(self):
         config = self.modbus_config(self.start_simulator().address())

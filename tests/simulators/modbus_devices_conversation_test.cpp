@@ -114,12 +114,15 @@ TEST(PlayedDevices, AreAllThatHaveAProfile) {
 /// Three cups on one line, each a sensor of its own.
 class SharedLineTest : public testing::TestWithParam<Transport> {
  protected:
-  std::unique_ptr<RunningSensor> cup(std::int64_t id) {
+  static constexpr double kPatient_s = 10.0;
+  static constexpr double kTimeoutOfTheDead_s = 1.0;
+
+  std::unique_ptr<RunningSensor> cup(std::int64_t id, double timeout_s = kPatient_s) {
     ParameterValues::Map parameters = simulator_.parameters();
     parameters["profile"] = std::string("dfrobot-sen0483");
     parameters["speed_slave"] = id;
     parameters["poll_interval"] = 0.05;
-    parameters["response_timeout"] = 0.3;
+    parameters["response_timeout"] = timeout_s;
     return std::make_unique<RunningSensor>(test::open_modbus_sensor(parameters));
   }
   /// The longest time from one reading to the next.
@@ -140,12 +143,11 @@ class SharedLineTest : public testing::TestWithParam<Transport> {
 };
 
 TEST_P(SharedLineTest, ServesAllWhoAreWellAndSlowsThemByOneTimeOutAtMostForOneWhoIsDead) {
-  const auto one = cup(1);
+  const auto one = cup(1, kTimeoutOfTheDead_s);
   const auto two = cup(2);
   const auto three = cup(3);
   for (const auto* sensor : {&one, &two, &three}) {
     ASSERT_TRUE((*sensor)->wait_until([](const RecordingSink& sink) { return sink.readings.size() >= 5; }));
-    EXPECT_TRUE((*sensor)->look([](const RecordingSink& sink) { return sink.refusals.empty(); }));
   }
 
   // One dies: it is asked less and less often, and the others go on.
@@ -153,11 +155,10 @@ TEST_P(SharedLineTest, ServesAllWhoAreWellAndSlowsThemByOneTimeOutAtMostForOneWh
   ASSERT_TRUE(one->wait_until([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout) >= 1; }));
   two->forget();
   three->forget();
-  ASSERT_TRUE(one->wait_until([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout) >= 4; }));
+  ASSERT_TRUE(one->wait_until([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout) >= 3; }));
   for (const auto* sensor : {&two, &three}) {
-    EXPECT_GE((*sensor)->look([](const RecordingSink& sink) { return sink.readings.size(); }), 5U);
-    EXPECT_LT(longest_pause_s(**sensor),
-              0.3 + 0.5);  // the time-out, its own exchanges with their gaps, and the machine
+    EXPECT_GE((*sensor)->look([](const RecordingSink& sink) { return sink.readings.size(); }), 3U);
+    EXPECT_LT(longest_pause_s(**sensor), 2 * kTimeoutOfTheDead_s);  // one, the gaps, and what else the machine does
     EXPECT_EQ((*sensor)->look([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout); }), 0);
   }
 

@@ -36,7 +36,7 @@ class ModbusProbeTest : public testing::Test {
     std::vector<ModbusHit> hits;
     const auto count = probe_modbus(
         plan_, [this](const ModbusLine&, std::uint8_t, double) { ++tried_; },
-        [&hits](const ModbusHit& hit) { hits.push_back(hit); }, wake_);
+        [&hits](const ModbusHit& hit) { hits.push_back(hit); }, interruption_);
     EXPECT_TRUE(count);
     EXPECT_EQ(*count, static_cast<int>(hits.size()));
     return hits;
@@ -49,7 +49,7 @@ class ModbusProbeTest : public testing::Test {
 
   std::unique_ptr<test::ModbusSimulatorProgram> simulator_;
   ModbusProbePlan plan_;
-  WakeEvent wake_;
+  Interruption interruption_;
   int tried_ = 0;
 };
 
@@ -116,9 +116,9 @@ TEST_F(ModbusProbeTest, EndsWhenItIsInterrupted) {
       plan_, [](const ModbusLine&, std::uint8_t, double) {},
       [&](const ModbusHit&) {
         ++found;
-        wake_.set();
+        interruption_.set();
       },
-      wake_);
+      interruption_);
   EXPECT_EQ(found, 1);
   EXPECT_EQ(*count, 1);
 }
@@ -127,7 +127,7 @@ TEST_F(ModbusProbeTest, SaysWhyAPortCannotBeOpened) {
   plan_.lines = likely_modbus_lines("/no/such/port", {}, {}, {});
   plan_.ids = {1};
   const auto count = probe_modbus(
-      plan_, [](const ModbusLine&, std::uint8_t, double) {}, [](const ModbusHit&) {}, wake_);
+      plan_, [](const ModbusLine&, std::uint8_t, double) {}, [](const ModbusHit&) {}, interruption_);
   ASSERT_FALSE(count);
   EXPECT_THAT(count.error().message, HasSubstr("cannot open /no/such/port"));
 }

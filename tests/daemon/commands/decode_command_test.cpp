@@ -685,6 +685,13 @@ TEST(DecodeProgram, EndsWithZeroWhateverWasRefusedAndWith66WithoutInput) {
   EXPECT_EQ(lost.wait(), 66);
 }
 
+TEST(DecodeProgram, SaysSoWhereItsOutputCannotBeWritten) {
+  const std::string program = test::built_path("bin/yuragi");
+  ChildProcess full({"sh", "-c", "echo '$WIMWV,214.8,R,10.0,N,A*1D' | '" + program + "' decode nmea - >/dev/full"});
+  EXPECT_THAT(full.rest(), HasSubstr("cannot write to standard output"));
+  EXPECT_EQ(full.wait(), kExitCannotCreate);
+}
+
 TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
   ChildProcess program({test::built_path("bin/yuragi"), "decode", "--help"});
   const std::string help = program.rest();
