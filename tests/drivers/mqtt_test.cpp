@@ -122,6 +122,17 @@ TEST(MqttDriver, ReadsPlainNumbersEachFromATopicOfItsOwn) {
   EXPECT_DOUBLE_EQ(run.last().gust_m_s.value(), 10.0);
 }
 
+TEST(MqttDriver, ReachesABrokerByItsName) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"host", std::string("localhost")}});
+  EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); })) << "whichever of its addresses it has";
+}
+
+TEST(MqttDriver, SaysThatThereIsNoSuchHost) {
+  MqttRun run(1, {{"host", std::string("no-such-host.invalid")}});
+  EXPECT_TRUE(run.says("no-such-host.invalid"));
+}
+
 TEST(MqttDriver, ForgetsADirectionThatIsOldOrNotKnownAnyMore) {
   const MosquittoBroker broker;
   MqttRun run(broker, {{"direction_topic", std::string("garden/direction")}, {"hold", 0.2}});
