@@ -177,7 +177,8 @@ class FineOffsetStation final : public HidStation {
     const Look look = compare(record);
     learn(look, now);
     // A look between two of the console's measurements is for its clock alone.
-    const bool was_for_clock = is_searching() && !look.is_first && !look.has_measured;
+    const bool is_due = look.is_first || look.has_measured || now - told_ >= timing_.paced(kFineOffsetEvery);
+    const bool was_for_clock = is_searching() && !is_due;
     if (look.is_news()) last_news_ = now;
     last_record_ = record;
     last_position_ = position_;
@@ -189,7 +190,9 @@ class FineOffsetStation final : public HidStation {
       return StationStep::unwell(
           next, "does not measure any more; one that has locked up needs its batteries and its cable taken out");
     }
-    return was_for_clock ? StationStep::same(next) : publish(record, talk, next);
+    if (was_for_clock) return StationStep::same(next);
+    told_ = now;
+    return publish(record, talk, next);
   }
 
   static StationStep publish(const Record& record, HidTalk& talk, MonoTime next) {
@@ -251,6 +254,7 @@ class FineOffsetStation final : public HidStation {
 
   int search_steps_ = 0;  ///< looks of the search for the sensor clock
   MonoTime searched_{};   ///< when the last search ended
+  MonoTime told_{};       ///< the last look whose wind was told
   MonoTime last_news_{};  ///< the last look that found any change
   MonoTime due_{};        ///< when the next look should be, if the console does not write just then
   int failures_ = 0;      ///< in a row
