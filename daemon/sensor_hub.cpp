@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "daemon/sensor_table.hpp"
 #include "engine/wind/following_estimator.hpp"
 
 namespace yuragi {
@@ -78,8 +79,9 @@ void SensorHub::log_changes(std::size_t index) {
 
   const SourceReport report = estimator_->report(index);
   if (report.health != channel.logged_health) {
-    spdlog::info("sensor {}: {} (was {}); last reading {:.1f} s ago, interval {:.3g} s", channel.config.name,
-                 name_of(report.health), name_of(channel.logged_health), report.age_s, report.interval_s);
+    spdlog::info("sensor {}: {} (was {}); last reading {:.1f} s ago, interval {:.3g} s; {} frames, {} reconnects",
+                 channel.config.name, name_of(report.health), name_of(channel.logged_health), report.age_s,
+                 report.interval_s, channel.runner->frame_count(), channel.runner->reconnect_count());
     channel.logged_health = report.health;
   }
 }
@@ -113,9 +115,38 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
       }
     }
     if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
+    status.frames = channel.runner->frame_count();
+    status.reconnects = channel.runner->reconnect_count();
     all.push_back(std::move(status));
   }
   return all;
+}
+
+void SensorHub::trace(const std::function<bool(std::string_view)>& is_wanted) {
+  for (const Channel& channel : channels_) channel.runner->trace(is_wanted(channel.config.name));
+}
+
+void SensorHub::drain_traces(const std::function<void(const wire::RawTrace&)>& use) {
+  const auto nanoseconds = [](auto time) { return std::int64_t{time.time_since_epoch().count()}; };
+  for (const Channel& channel : channels_) {
+    channel.runner->drain_trace([&](const RawMessage& message) {
+      const auto kept = message.kept();
+      use({.sensor = channel.config.name,
+           .mono_ns = nanoseconds(message.time.mono),
+           .utc_ns = nanoseconds(message.time.utc),
+           .received = message.direction == RawDirection::kReceived,
+           .bytes = {kept.begin(), kept.end()},
+           .length = message.length,
+           .lost = message.lost});
+    });
+  }
+}
+
+void SensorHub::log_summary() const {
+  for (const wire::SensorStatus& sensor : status()) {
+    spdlog::info("sensor {}: {} readings from {} frames, {} reconnects; refused: {}", sensor.name, sensor.readings,
+                 sensor.frames, sensor.reconnects, refusal_text(sensor));
+  }
 }
 
 bool SensorHub::is_finished() const {

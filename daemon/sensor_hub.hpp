@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "daemon/config.hpp"
@@ -29,6 +30,15 @@ class SensorHub {
 
   /// How each sensor does, for the stream and for `sensors watch`.
   std::vector<wire::SensorStatus> status() const;
+
+  /// Decides for each sensor, by its name, whether the messages to and from its device are kept for drain_traces().
+  void trace(const std::function<bool(std::string_view sensor)>& is_wanted);
+
+  /// Hands on the messages that were kept since the last time: sensor by sensor, oldest first.
+  void drain_traces(const std::function<void(const wire::RawTrace&)>& use);
+
+  /// A line for each sensor in the log: what came of it since the start.
+  void log_summary() const;
 
   /// True when every sensor is a recording that has come to its end.
   bool is_finished() const;

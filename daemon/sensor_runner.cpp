@@ -53,8 +53,26 @@ void SensorRunner::link(LinkState state, std::string_view detail) {
   link_reports_.fetch_add(1, std::memory_order_release);
 }
 
-void SensorRunner::raw(RawDirection direction, std::span<const std::uint8_t> /*message*/) {
+void SensorRunner::raw(RawDirection direction, std::span<const std::uint8_t> message) {
   if (direction == RawDirection::kReceived) frames_.fetch_add(1, std::memory_order_relaxed);
+  if (!is_trace_wanted_.load(std::memory_order_acquire)) {
+    lost_of_trace_ = 0;
+    return;
+  }
+  RawMessage kept{.time = clock_.now(),
+                  .direction = direction,
+                  .length = static_cast<std::uint32_t>(message.size()),
+                  .bytes = {},
+                  .lost = lost_of_trace_};
+  std::ranges::copy(message.first(kept.kept().size()), kept.bytes.begin());
+  lost_of_trace_ = trace_->push(kept) ? 0 : lost_of_trace_ + 1;
+}
+
+void SensorRunner::trace(bool wanted) {
+  if (wanted == is_trace_wanted_.load(std::memory_order_relaxed)) return;
+  if (wanted && !trace_) trace_ = std::make_unique<SpscRing<RawMessage>>(kTraceCapacity);
+  if (wanted) drain_trace([](const RawMessage&) {});  // what an earlier trace left behind
+  is_trace_wanted_.store(wanted, std::memory_order_release);
 }
 
 LinkReport SensorRunner::link() const {

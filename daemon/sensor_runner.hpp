@@ -1,16 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
 
 #include "drivers/sensor.hpp"
 #include "engine/base/spsc_ring.hpp"
+#include "engine/wire/wire.hpp"
 
 namespace yuragi {
 
@@ -18,6 +21,19 @@ namespace yuragi {
 struct LinkReport {
   LinkState state = LinkState::kConnecting;
   std::string detail;
+};
+
+/// A message to or from a device, as SensorSink::raw() was told of it, and when.
+struct RawMessage {
+  Instant time{};
+  RawDirection direction = RawDirection::kReceived;
+  std::uint32_t length = 0;  ///< of the whole message
+  std::array<std::uint8_t, wire::kMaxRawBytes> bytes{};
+  std::uint64_t lost = 0;  ///< messages just before this one that there was no room for
+
+  std::span<const std::uint8_t> kept() const {
+    return std::span(bytes).first(std::min<std::size_t>(length, bytes.size()));
+  }
 };
 
 /// Runs one sensor on a thread of its own, since a device may block. Readings wait in a ring until the I/O thread takes
@@ -38,6 +54,16 @@ class SensorRunner final : private SensorSink {
     readings_.drain(use);
   }
 
+  /// From now on keeps the messages that are exchanged with the device, until drain_trace() hands them on; or no more.
+  /// Room for them is made when they are first wanted. Where it is full, later messages are passed over and counted.
+  void trace(bool wanted);
+
+  /// Hands each message that was kept to `use`, oldest first.
+  template <class Use>
+  void drain_trace(Use&& use) {
+    if (trace_) trace_->drain(use);
+  }
+
   LinkReport link() const;
   /// How often the link has been told of; looks cheaply whether there is news.
   std::uint64_t link_reports() const noexcept { return link_reports_.load(std::memory_order_acquire); }
@@ -53,6 +79,7 @@ class SensorRunner final : private SensorSink {
 
  private:
   static constexpr std::size_t kRingCapacity = 1024;
+  static constexpr std::size_t kTraceCapacity = 256;
 
   void run(const std::stop_token& stop);
   void reading(const WindReading& reading) override;
@@ -68,6 +95,10 @@ class SensorRunner final : private SensorSink {
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> reconnects_{0};
   bool has_been_connected_ = false;  // of the sensor's thread
+
+  std::unique_ptr<SpscRing<RawMessage>> trace_;  // made before it is first wanted, and then left alone
+  std::atomic<bool> is_trace_wanted_{false};
+  std::uint64_t lost_of_trace_ = 0;  // of the sensor's thread: since the last message that was kept
 
   mutable std::mutex link_mutex_;  // of the link's text: rare, and never on the animation's way
   LinkReport link_;

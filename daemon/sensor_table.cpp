@@ -1,5 +1,6 @@
 #include "daemon/sensor_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -45,6 +46,23 @@ std::string optional_text(const std::optional<double>& value, const char* format
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
+/// `text` under a row: indented, broken between words.
+std::string wrapped(std::string_view text) {
+  constexpr std::size_t kWidth = 100;
+  std::string result;
+  std::string line = " ";
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    if (line.size() > 4 && line.size() + 1 + word.size() > kWidth) {
+      result += line + "\n";
+      line = "   ";
+    }
+    line += fmt::format(" {}", word);
+  }
+  return result + line + "\n";
+}
+
 }  // namespace
 
 std::string compass_point(double direction_deg) {
@@ -54,29 +72,32 @@ std::string compass_point(double direction_deg) {
   return kPoints[static_cast<std::size_t>(std::lround(turns * 16.0)) % 16];
 }
 
+std::string refusal_text(const wire::SensorStatus& sensor) {
+  std::string text;
+  for (const auto& [why, count] : sensor.refused) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", why, count);
+  return text.empty() ? "nothing" : text;
+}
+
 std::string sensor_table(const wire::Sensors& sensors) {
   const WindVector wind = sensors.wind.wind;
   std::string table = fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n\n", speed_of(wind),
                                   direction_text(direction_from_deg(wind)), wind_source(sensors.wind), sensors.clients,
                                   sensors.late_ticks);
   const auto out = std::back_inserter(table);
-  fmt::format_to(out, "{:<16} {:<10} {:<10} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9}  {}\n", "sensor", "driver", "state",
-                 "speed m/s", "from deg", "gust m/s", "age s", "interval", "readings", "refused");
+  const auto row = [&](const auto&... cells) {
+    fmt::format_to(out, "{:<14.14} {:<10.10} {:<10} {:>6} {:>7} {:>6} {:>7} {:>7} {:>9} {:>9} {:>5}\n", cells...);
+  };
+  row("sensor", "driver", "state", "m/s", "from", "gust", "age s", "every s", "frames", "readings", "again");
   for (const wire::SensorStatus& sensor : sensors.sensors) {
-    std::string refused;
-    for (const auto& [why, count] : sensor.refused) {
-      refused += fmt::format("{}{} {}", refused.empty() ? "" : ", ", why, count);
-    }
-    const bool has_spoken = sensor.readings > 0;
-    fmt::format_to(out, "{:<16.16} {:<10.10} {:<10} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9}  {}\n", sensor.name,
-                   sensor.driver, state_of(sensor), optional_text(sensor.speed_m_s, "{:.2f}"),
-                   sensor.direction_deg ? direction_text(*sensor.direction_deg) : "-",
-                   optional_text(sensor.gust_m_s, "{:.2f}"), has_spoken ? fmt::format("{:.1f}", sensor.age_s) : "-",
-                   sensor.interval_s > 0.0 ? fmt::format("{:.2f} s", sensor.interval_s) : "-", sensor.readings,
-                   refused.empty() ? "-" : refused);
+    row(sensor.name, sensor.driver, state_of(sensor), optional_text(sensor.speed_m_s, "{:.2f}"),
+        sensor.direction_deg ? direction_text(*sensor.direction_deg) : "-", optional_text(sensor.gust_m_s, "{:.2f}"),
+        sensor.readings > 0 ? fmt::format("{:.1f}", sensor.age_s) : "-",
+        sensor.interval_s > 0.0 ? fmt::format("{:.2f}", sensor.interval_s) : "-", sensor.frames, sensor.readings,
+        sensor.reconnects);
     if (!sensor.detail.empty()) {
-      fmt::format_to(out, "  {}: {}\n", name_of(static_cast<LinkState>(sensor.link)), sensor.detail);
+      table += wrapped(fmt::format("{}: {}", name_of(static_cast<LinkState>(sensor.link)), sensor.detail));
     }
+    if (!sensor.refused.empty()) table += wrapped("refused: " + refusal_text(sensor));
   }
   return table;
 }

@@ -7,8 +7,12 @@
 namespace yuragi {
 
 /// The state of all sensors as a table for a terminal: the wind on top, then a line for each sensor, and under it what
-/// its link did last. Lines end in '\n'; nothing but text, no cursor movement.
+/// its link did last and what was refused. No line is longer than 100 columns, but for a word that is. Lines end in
+/// '\n'; nothing but text, no cursor movement.
 std::string sensor_table(const wire::Sensors& sensors);
+
+/// "timeout 3, exception 1"; "nothing" where nothing was refused.
+std::string refusal_text(const wire::SensorStatus& sensor);
 
 /// The name of the nearest of 16 compass points: "WSW".
 std::string compass_point(double direction_deg);

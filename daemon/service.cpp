@@ -110,6 +110,8 @@ class Service::Io {
   /// Takes in readings and lets the wind go on, at the animation's pace.
   void step_wind() {
     wind_.publish(hub_.advance());
+    hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
+    hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     if (options_.end_with_recordings && hub_.is_finished()) return end("the recording is over");
 
     // Steps keep to their own grid; those that a halted machine missed are left out.
@@ -191,6 +193,7 @@ std::unique_ptr<Recorder> Service::Io::make_recorder(const Config& config, const
 }
 
 void Service::Io::log_summary() const {
+  hub_.log_summary();
   if (recorder_) {
     const RecorderStatus status = recorder_->status();
     spdlog::info("recorded {} readings, lost {}", status.written, status.lost);

@@ -1,17 +1,12 @@
-// Wind sensors that speak Modbus, over TCP or a serial line (RTU). Which registers hold what is data: drivers/profiles.
-// The two that are shipped, 16-bit registers read by function 3 (Renke RS-FX-N01 manual, p. 9; esphome-devices
-// Renke-RS-FSJT-N01-Wind-Speed and Renke-RS-FXJT-N01):
-//
-//   profile                     slave  register  meaning
-//   renke-rs-fsjt-n01             1     0x0000   speed, 0.1 m/s
-//   renke-rs-fsjt-rs-fxjt-n01     1     0x0000   speed, 0.1 m/s
-//                                 2     0x0001   direction, degrees, 0 to 360
+// Wind sensors that speak Modbus, over TCP or a serial line (RTU). Which registers hold what is data: one TOML file a
+// device in drivers/profiles, which names its source. Functions 3 and 4, big-endian 16-bit registers on the wire
+// (MODBUS Application Protocol Specification V1.1b3).
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <stdexcept>
 #include <string>
 
+#include "drivers/bus/serial_ports.hpp"
 #include "drivers/driver.hpp"
 #include "drivers/modbus_sensor.hpp"
 
@@ -42,6 +37,10 @@ const std::array kModbusParameters = {
               .unit = "",
               .default_value = std::string(""),
               .help = "rtu: the serial port, best by its stable name in /dev/serial/by-id"},
+    Parameter{.name = "direction_device",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "rtu: the serial port of the direction's slave, where it has one of its own"},
     Parameter{.name = "baud",
               .unit = "bit/s",
               .default_value = std::int64_t{0},
@@ -123,8 +122,7 @@ ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) 
   line.baud = profile.baud;
   line.parity = profile.parity;
   line.stop_bits = profile.stop_bits;
-  line.response_timeout = profile.response_timeout;
-  line.byte_timeout = profile.byte_timeout;
+  line.connect_timeout = std::max(profile.response_timeout, line.connect_timeout);
 
   if (line.framing == ModbusFraming::kTcp) {
     if (line.host.empty())
@@ -144,14 +142,40 @@ ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) 
   return line;
 }
 
+/// The line of a direction that has one of its own; nullptr where it has not.
+std::shared_ptr<ModbusBus> direction_bus_of(const ParameterValues& values, const ModbusProfile& profile,
+                                            const ModbusLine& line) {
+  const std::string& device = values.text("direction_device");
+  if (device.empty()) return nullptr;
+  if (line.framing != ModbusFraming::kRtu) {
+    throw std::runtime_error("direction_device: is for transport rtu; over tcp both slaves are behind one host");
+  }
+  if (!profile.direction) {
+    throw std::runtime_error("direction_device: profile \"" + profile.name + "\" has no direction");
+  }
+  ModbusLine own = line;
+  own.device = device;
+  return shared_modbus_bus(own);
+}
+
 std::unique_ptr<Sensor> open_modbus(const ParameterValues& values) {
   ModbusProfile profile = profile_of(values);
   const ModbusLine line = line_of(values, profile);
-  std::string where = describe(line);
-  // Any number will do that differs among the sensors of an installation.
-  const auto seed = static_cast<std::uint32_t>(std::hash<std::string>{}(where + profile.name));
-  return std::make_unique<ModbusSensor>(std::move(profile), line.framing, std::move(where), seed,
-                                        make_modbus_connection(line));
+  const std::uint32_t seed = seed_of(describe(line) + profile.name + std::to_string(profile.speed.slave));
+  auto direction_bus = direction_bus_of(values, profile, line);
+  return std::make_unique<ModbusSensor>(std::move(profile), shared_modbus_bus(line), std::move(direction_bus), seed);
+}
+
+/// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.
+std::vector<FoundDevice> find_modbus() {
+  std::vector<FoundDevice> found;
+  for (const SerialPortInfo& port : find_serial_ports()) {
+    found.push_back({.what = "serial port " + port.node,
+                     .settings = "transport = \"rtu\"\ndevice = \"" + port.name + "\"",
+                     .trouble = port.trouble,
+                     .remedy = port.remedy});
+  }
+  return found;
 }
 
 }  // namespace
@@ -160,6 +184,7 @@ extern const DriverDescription kModbusDriver;
 const DriverDescription kModbusDriver{.name = "modbus",
                                       .summary = "anemometers and vanes on Modbus TCP or RTU, by device profiles",
                                       .parameters = kModbusParameters,
-                                      .open = open_modbus};
+                                      .open = open_modbus,
+                                      .find = find_modbus};
 
 }  // namespace yuragi

@@ -201,6 +201,7 @@ ModbusQuantity read_quantity(TableReader& reader, std::int64_t address_base) {
   return quantity;
 }
 
+/// A speed, or a gust.
 ModbusQuantity read_speed(TableReader reader, std::int64_t address_base) {
   ModbusQuantity speed = read_quantity(reader, address_base);
   // Every unit but the last is one of speed.
@@ -260,6 +261,7 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   read_serial(reader.table("serial", false), profile);
   read_timing(reader.table("timing", false), profile);
   profile.block_read = reader.flag("block_read", true);
+  profile.block_gap = static_cast<int>(reader.whole("block_gap", 0, 100, 0));
   profile.north_offset_deg = reader.number("north_offset_deg", -360.0, 360.0, 0.0);
 
   // Numbered from 0 as on the wire, from 1, or with the table's digit in front. A maker's 30001 that goes on the wire
@@ -270,6 +272,9 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   const bool has_direction = reader.has("direction");
   TableReader direction = reader.table("direction", false);
   if (has_direction) profile.direction = read_direction(std::move(direction), address_base);
+  const bool has_gust = reader.has("gust");
+  TableReader gust = reader.table("gust", false);
+  if (has_gust) profile.gust = read_speed(std::move(gust), address_base);
   reader.finish();
   return profile;
 }

@@ -34,10 +34,12 @@ struct ModbusProfile {
   Nanoseconds warm_up{0};                                         ///< from opening until what it says can be believed
 
   bool block_read = true;         ///< registers that adjoin may be read by one request
+  int block_gap = 0;              ///< so many registers between two quantities may be read along with them
   double north_offset_deg = 0.0;  ///< added to the direction: the device's mark points there instead of to north
 
   ModbusQuantity speed;
   std::optional<ModbusQuantity> direction;
+  std::optional<ModbusQuantity> gust;  ///< the strongest of the device's own recent past
 };
 
 /// Reads a profile's text. Throws std::runtime_error "file:line:column: key: what is wrong, what is allowed"; `file` is

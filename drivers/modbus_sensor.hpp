@@ -1,73 +1,70 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
-#include "drivers/bus/backoff.hpp"
-#include "drivers/bus/modbus_connection.hpp"
+#include "drivers/modbus_bus.hpp"
+#include "drivers/modbus_plan.hpp"
 #include "drivers/modbus_profile.hpp"
-#include "drivers/sensor.hpp"
+#include "drivers/reopening_sensor.hpp"
 
 namespace yuragi {
 
-/// A wind sensor of one or two Modbus slaves, asked in rounds: the speed, then the direction, one exchange a poll().
+/// A wind sensor of one or two Modbus slaves, asked in rounds, one exchange a poll(): the speed, then what did not come
+/// along with it (direction, gust).
 ///
 /// Each round publishes one reading at most, timed when the speed arrived. Without a speed there is none; without a
-/// direction it goes without. A vane that does not answer is asked less and less often, so that it cannot slow the
-/// speed down. A connection that fails, or on which three requests in a row met silence, is opened again, for ever,
-/// after waits that double from 0.25 s up to 10 s.
-class ModbusSensor final : public Sensor {
+/// direction or gust it goes without. A slave that does not answer is asked less and less often, so that it slows
+/// nobody down: after waits that double from 0.25 s up to 10 s.
+class ModbusSensor final : public ReopeningSensor {
  public:
-  /// `where` names the line, for people. `seed` makes the waits of several sensors differ.
-  ModbusSensor(ModbusProfile profile, ModbusFraming framing, std::string where, std::uint32_t seed,
-               std::unique_ptr<ModbusConnection> connection);
+  /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
+  /// differ.
+  ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus, std::shared_ptr<ModbusBus> direction_bus,
+               std::uint32_t seed);
 
-  MonoTime poll(const Clock& clock, SensorSink& sink) override;
-  void interrupt() noexcept override { connection_->interrupt(); }
+  void interrupt() noexcept override;
+
+ protected:
+  Result<MonoTime, Failure> open(const Clock& clock) override;
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  /// The line may be another sensor's too: the bus itself closes what is of no use any more.
+  void close() noexcept override {}
 
  private:
-  enum class Step : std::uint8_t { kSpeed, kDirection };
-  /// The registers, or what to tell people about their absence (which has been counted).
-  using Answer = Result<ModbusRegisters, Failure>;
+  /// One of the requests of a round.
+  struct Read {
+    ModbusRead what;
+    ModbusBus* bus;
+    Backoff backoff;
+    MonoTime not_before{};  ///< its slave has not answered: let it be until then
+    std::string trouble;    ///< why the readings come without it; empty if they do not
+  };
 
-  MonoTime open(const Clock& clock, SensorSink& sink);
-  MonoTime ask_speed(const Clock& clock, SensorSink& sink);
-  MonoTime ask_direction(const Clock& clock, SensorSink& sink);
-  Answer ask(ModbusRequest request, SensorSink& sink);
-  Failure fail(BusStatus status, std::uint8_t unit, bool heard_others, SensorSink& sink);
-  Failure refuse(const ModbusRefusal& refusal, std::uint8_t unit, SensorSink& sink);
+  Result<MonoTime, Failure> ask_first(const Clock& clock, SensorSink& sink);
+  void ask_more(Read& read, const Clock& clock, SensorSink& sink);
+  ModbusBus::Answer ask(const Read& read, const Clock& clock, SensorSink& sink);
+  /// The next read of this round that is due, or the end of the round.
+  MonoTime go_on(MonoTime now, SensorSink& sink);
+  MonoTime next_round(MonoTime now) const;
 
-  void take_direction(std::span<const std::uint16_t> registers, SensorSink& sink);
-  MonoTime end_round(MonoTime now, SensorSink& sink);
-  MonoTime next_round(MonoTime now);
-  void tell(SensorSink& sink, LinkState state, const std::string& detail);
-  std::string name_of_slave(std::uint8_t unit) const;
+  void take(Read& read, const ModbusRegisters& registers, SensorSink& sink);
+  void take_direction(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink);
+  void take_gust(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink);
+  std::string explain(const Read& read, const ModbusTrouble& trouble) const;
 
-  ModbusProfile profile_;
-  ModbusFraming framing_;
-  std::string where_;
-  std::unique_ptr<ModbusConnection> connection_;
-  ModbusRequest speed_request_;                     ///< also brings the direction, if both can be read at once
-  std::optional<ModbusRequest> direction_request_;  ///< a request of its own
+  const ModbusProfile profile_;
+  const std::shared_ptr<ModbusBus> bus_;
+  const std::shared_ptr<ModbusBus> direction_bus_;
+  WakeEvent wake_;
+  std::vector<Read> reads_;  ///< the first one brings the speed
 
-  Backoff reopen_backoff_;
-  Backoff direction_backoff_;
-  MonoTime next_poll_{};
-  MonoTime next_direction_{};
-  MonoTime believe_from_{};  ///< the end of the warm-up
+  MonoTime opened_at_{};
   MonoTime round_start_{};
-  Step step_ = Step::kSpeed;
-  WindReading reading_;  ///< of the round that is under way
-  std::uint16_t transaction_ = 0;
-  int silent_requests_ = 0;  ///< in a row
-
-  LinkState told_state_ = LinkState::kConnecting;
-  std::string told_detail_;
-  std::string direction_trouble_;  ///< why the readings come without direction; empty if they do not
-  std::array<std::uint8_t, kModbusMaxMessage> buffer_{};
+  std::size_t step_ = 0;  ///< which of the reads is next
+  WindReading reading_;   ///< of the round that is under way
 };
 
 }  // namespace yuragi

@@ -40,6 +40,10 @@ void ReopeningSensor::is_unwell(SensorSink& sink, const std::string& detail) {
   tell(sink, LinkState::kConnecting, detail);
 }
 
+void ReopeningSensor::is_at_its_end(SensorSink& sink, const std::string& detail) {
+  tell(sink, LinkState::kFinished, detail);
+}
+
 void ReopeningSensor::tell(SensorSink& sink, LinkState state, const std::string& detail) {
   if (state == told_state_ && detail == told_detail_) return;
   told_state_ = state;

@@ -41,6 +41,8 @@ class ReopeningSensor : public Sensor {
   void is_well(SensorSink& sink, const std::string& detail);
   /// For work(): the device is open, but does not say what it should; why, and what to do.
   void is_unwell(SensorSink& sink, const std::string& detail);
+  /// For work(): what there was to read has been read to its end.
+  void is_at_its_end(SensorSink& sink, const std::string& detail);
 
  private:
   void tell(SensorSink& sink, LinkState state, const std::string& detail);

@@ -6,7 +6,10 @@ namespace yuragi::sim {
 
 // Each adds one kind of simulator as a subcommand, in a file of its own. What a callback throws, main reports.
 
+void add_microphone_command(CLI::App& app);
 void add_modbus_command(CLI::App& app);
+void add_nmea_command(CLI::App& app);
+void add_line_command(CLI::App& app);
 void add_hid_command(CLI::App& app);
 void add_usb_command(CLI::App& app);
 

@@ -34,8 +34,8 @@ MeasuredWind CommonOptions::make_wind() const {
   return MeasuredWind(wind == "synthetic" ? play_synthetic_wind(synthetic) : play_recorded_wind(wind));
 }
 
-void CommonOptions::run_simulator(Simulator& simulator) const {
-  Faults all(simulator.known_faults());
+Faults CommonOptions::make_faults(std::span<const FaultKind> known) const {
+  Faults all(known);
   for (const std::string& text : faults) {
     const auto fault = all.parse(text);
     if (!fault) throw CLI::ValidationError("--fault", fault.error().message);
@@ -47,7 +47,11 @@ void CommonOptions::run_simulator(Simulator& simulator) const {
     }
     all.add(RandomFaults{.every_s = *random_faults_every_s, .duration_s = random_fault_s, .seed = synthetic.seed});
   }
-  sim::run(simulator, std::move(all), run);
+  return all;
+}
+
+void CommonOptions::run_simulator(Simulator& simulator) const {
+  sim::run(simulator, make_faults(simulator.known_faults()), run);
 }
 
 Address parse_address(const std::string& option, const std::string& text) {

@@ -26,6 +26,9 @@ struct CommonOptions {
   /// The wind that is asked for. Throws std::runtime_error where the recording cannot be played.
   MeasuredWind make_wind() const;
 
+  /// The faults that are asked for, of those that are known. Throws CLI::ValidationError for any other.
+  Faults make_faults(std::span<const FaultKind> known) const;
+
   /// Runs the simulator with the faults that are asked for. Throws CLI::ValidationError for those that it does not
   /// know.
   void run_simulator(Simulator& simulator) const;

@@ -15,7 +15,10 @@ int run(int argc, char** argv) {
   CLI::App app{"Simulated wind sensors, which speak the protocols of real ones and can be made to fail.", "yuragi-sim"};
   app.set_version_flag("--version", "yuragi-sim " YURAGI_VERSION);
   app.require_subcommand(1);
+  yuragi::sim::add_microphone_command(app);
   yuragi::sim::add_modbus_command(app);
+  yuragi::sim::add_nmea_command(app);
+  yuragi::sim::add_line_command(app);
   yuragi::sim::add_hid_command(app);
   yuragi::sim::add_usb_command(app);
   try {

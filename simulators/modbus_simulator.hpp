@@ -3,29 +3,33 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "simulators/modbus_devices.hpp"
+#include "simulators/modbus_port.hpp"
 #include "simulators/played_wind.hpp"
 #include "simulators/simulator.hpp"
 
 namespace yuragi::sim {
 
-/// The names that ModbusSimulator knows devices by.
-std::vector<std::string> modbus_device_names();
+struct ModbusFaultOptions {
+  std::optional<std::uint8_t> id;  ///< the only slave that suffers; the others stay well. Freeze and spike are in the
+                                   ///< air, disconnect and unplug on the line: those are all slaves' at once
+  double late_s = 0.8;     ///< how late a late answer is
+  std::uint64_t seed = 1;  ///< of the bytes of the garbage fault
+};
 
-/// A Modbus TCP server, on libmodbus, with the registers of real devices: what a gateway with those devices behind it
-/// looks like. Serves any number of clients.
+/// A bus of Modbus devices with the registers of real ones, over TCP (what a gateway with those devices behind it looks
+/// like) or a serial line.
 class ModbusSimulator final : public Simulator {
  public:
-  /// Listens at once; port 0 takes a free one. Throws std::runtime_error for a device it does not know or an address
-  /// that cannot be had. `seed` makes the bytes of the garbage fault.
-  ModbusSimulator(std::string_view device, const std::string& host, std::uint16_t port, std::uint64_t seed,
-                  MeasuredWind wind);
+  /// Throws std::runtime_error for two slaves of one id.
+  ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port, MeasuredWind wind,
+                  const ModbusFaultOptions& options = {});
   ~ModbusSimulator() override;
 
-  /// The port that it listens on.
-  std::uint16_t port() const;
+  /// Where it is reached.
+  std::string name() const;
 
   std::span<const FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override;
@@ -33,7 +37,7 @@ class ModbusSimulator final : public Simulator {
   std::string status() const override;
 
  private:
-  struct State;
+  class State;
   std::unique_ptr<State> state_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/config.hpp"
+#include "daemon/driver_reference.hpp"
 
 namespace yuragi {
 namespace {
@@ -33,9 +34,7 @@ void add_check_config(CLI::App& app) {
 }
 
 void print_parameters(std::span<const Parameter> parameters) {
-  for (const Parameter& parameter : parameters) {
-    fmt::print("  {:<18} {}\n  {:<18} {}\n", parameter.name, parameter.help, "", describe_allowed(parameter));
-  }
+  fmt::print("{}", parameter_text(parameters));
 }
 
 void describe_everything() {

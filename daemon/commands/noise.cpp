@@ -70,6 +70,8 @@ std::string blamed_option(const NoiseSpec& spec, NoiseError error) {
       return fmt::format("--beta {}", spec.beta);
     case NoiseError::kIntegralScaleOutOfRange:
       return fmt::format("--integral-scale {}", spec.integral_scale);
+    case NoiseError::kBandOutOfRange:
+      break;  // no option sets it
   }
   return "?";
 }

@@ -46,14 +46,24 @@ bool ClientQueue::offer_reply(SharedBytes reply) {
   return true;
 }
 
+bool ClientQueue::offer_trace(SharedBytes trace) {
+  constexpr std::size_t kMostWaiting = 256;
+  if (traces_.size() >= kMostWaiting) return false;
+  traces_.push_back(std::move(trace));
+  return true;
+}
+
 std::span<const std::uint8_t> ClientQueue::to_write(MonoTime now) {
   if (!in_flight_) {
-    // Sensors go before frames: they are small and rare, and frames never end.
+    // Sensors and traces go before frames: they are small and rare, and frames never end.
     if (!setup_.empty()) {
       in_flight_ = std::move(setup_.front());
       setup_.pop_front();
     } else if (pending_sensors_) {
       in_flight_ = std::exchange(pending_sensors_, nullptr);
+    } else if (!traces_.empty()) {
+      in_flight_ = std::move(traces_.front());
+      traces_.pop_front();
     } else if (pending_frame_) {
       in_flight_ = std::exchange(pending_frame_, nullptr);
       in_flight_is_frame_ = true;

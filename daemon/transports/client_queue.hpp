@@ -25,7 +25,8 @@ enum class Overdue : std::uint8_t {
 std::string_view name_of(Overdue why);
 
 /// What one client is sent, in which order, and when it has to go: one message in flight; behind it at most one frame
-/// and one state of the sensors, each replaced by a newer one. Pure: it knows no socket, and time is a parameter.
+/// and one state of the sensors, each replaced by a newer one, and a bounded number of raw traces, which are not. Pure:
+/// it knows no socket, and time is a parameter.
 ///
 /// The socket's side of it: write what to_write() says, tell written() how much of that the socket took, ask again.
 /// Thread-safe: no.
@@ -45,6 +46,9 @@ class ClientQueue {
   /// An answer to what the client asked: sent before anything newer, and never replaced. False where as many wait as
   /// may: the client asks faster than it reads.
   bool offer_reply(SharedBytes reply);
+
+  /// A raw trace: sent in its order, and never replaced. False where as many wait as may: it is passed over.
+  bool offer_trace(SharedBytes trace);
 
   /// The rest of the message in flight, or else the next message, which is in flight from `now`. Empty: nothing to
   /// send. Valid until written() has told of all of it.
@@ -67,6 +71,7 @@ class ClientQueue {
   bool wants_sensors_ = false;
 
   std::deque<SharedBytes> setup_;  // hello, scenes and replies: sent first, never replaced
+  std::deque<SharedBytes> traces_;
   SharedBytes pending_sensors_;
   SharedBytes pending_frame_;
 

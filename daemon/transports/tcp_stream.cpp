@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -101,6 +102,23 @@ class Connection : public std::enable_shared_from_this<Connection> {
     write();
   }
 
+  bool wants_trace(std::string_view sensor) const {
+    return is_open() && wants_traces_ && (traced_sensor_.empty() || traced_sensor_ == sensor);
+  }
+
+  /// `bytes` are those of `trace`, which most clients get as they are.
+  void offer_trace(const wire::RawTrace& trace, const SharedBytes& bytes) {
+    auto& lost = lost_traces_[trace.sensor];
+    SharedBytes own = bytes;
+    if (lost > 0) {
+      wire::RawTrace told = trace;
+      told.lost += lost;
+      own = share(wire::encode(told));
+    }
+    lost = queue_.offer_trace(std::move(own)) ? 0 : lost + trace.lost + 1;
+    write();
+  }
+
   /// What the kernel holds back is old by the time it is read: keep that short.
   void limit_send_buffer() {
     error_code ignored;
@@ -171,8 +189,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish->protocol != wire::kProtocol) return end("it speaks protocol " + std::to_string(wish->protocol));
 
     client_name_ = "(" + wish->client + ")";
-    spdlog::info("client {} {} subscribes to{}{}{}", peer_, client_name_, wish->poses ? " poses" : "",
-                 wish->sensors ? " sensors" : "", wish->poses || wish->sensors ? "" : " nothing");
+    spdlog::info("client {} {} subscribes to{}{}{}{}", peer_, client_name_, wish->poses ? " poses" : "",
+                 wish->sensors ? " sensors" : "", wish->raw ? " raw messages" : "",
+                 wish->poses || wish->sensors || wish->raw ? "" : " nothing");
+    wants_traces_ = wish->raw;
+    traced_sensor_ = wish->raw_sensor;
     queue_.subscribe(wish->poses, wish->sensors, feed_->scenes, feed_->newest_frame, feed_->newest_sensors);
     write();
     read_prefix();  // tells when it closes the connection
@@ -194,6 +215,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   ClientQueue queue_;
   std::string peer_, client_name_;
   bool is_local_ = false;
+  bool wants_traces_ = false;
+  std::string traced_sensor_;                         // empty: all of them
+  std::map<std::string, std::uint64_t> lost_traces_;  // of each sensor, since the last one that found room
   bool is_writing_ = false;
   std::array<std::uint8_t, wire::kSizePrefixBytes> prefix_{};
   wire::Bytes body_;
@@ -239,6 +263,18 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   void publish_sensors(SharedBytes sensors) {
     feed_->newest_sensors = std::move(sensors);
     for (const auto& connection : connections_) connection->offer_sensors(feed_->newest_sensors);
+  }
+
+  bool wants_trace(std::string_view sensor) const {
+    return std::ranges::any_of(connections_, [&](const auto& connection) { return connection->wants_trace(sensor); });
+  }
+
+  void publish_trace(const wire::RawTrace& trace) {
+    if (!wants_trace(trace.sensor)) return;
+    const SharedBytes bytes = share(wire::encode(trace));
+    for (const auto& connection : connections_) {
+      if (connection->wants_trace(trace.sensor)) connection->offer_trace(trace, bytes);
+    }
   }
 
   void close() {
@@ -340,6 +376,12 @@ void TcpStream::publish_sensors(SharedBytes sensors) {
 }
 std::size_t TcpStream::client_count() const {
   return server_->client_count();
+}
+bool TcpStream::wants_trace(std::string_view sensor) const {
+  return server_->wants_trace(sensor);
+}
+void TcpStream::publish_trace(const wire::RawTrace& trace) {
+  server_->publish_trace(trace);
 }
 void TcpStream::close() {
   server_->close();

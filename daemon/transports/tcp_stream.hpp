@@ -45,6 +45,12 @@ class TcpStream final : public Transport {
   void publish(SharedBytes frame) override;
   void publish_sensors(SharedBytes sensors) override;
   std::size_t client_count() const override;
+
+  /// Does a client want to see the messages to and from this sensor's device?
+  bool wants_trace(std::string_view sensor) const;
+  /// Sends one to those who do. A client that reads too slowly misses some, and is told how many.
+  void publish_trace(const wire::RawTrace& trace);
+
   void close() override;
 
   /// Clients let go because they stopped reading.

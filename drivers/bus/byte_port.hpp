@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -16,31 +17,42 @@ enum class BytePortKind : std::uint8_t {
   kSerial,     ///< a serial port
   kTcpClient,  ///< a server in the network that we connect to
   kUdp,        ///< datagrams that come to one of our ports
-  kFile,       ///< a file or named pipe; a file that has been read to its end is not lost, it says nothing more
+  kFile,       ///< a file or named pipe
 };
+
+/// The rates that a serial port can have.
+inline constexpr std::array<int, 12> kBytePortBauds = {300,   600,   1200,  2400,   4800,   9600,
+                                                       19200, 38400, 57600, 115200, 230400, 460800};
 
 struct BytePortAddress {
   BytePortKind kind = BytePortKind::kSerial;
 
   std::string path;  ///< serial: best by its stable name under /dev/serial/by-id; file: its path
-  int baud = 9600;
+  int baud = 9600;   ///< one of kBytePortBauds
   int data_bits = 8;
   char parity = 'N';  ///< N, E or O
   int stop_bits = 1;
 
-  std::string host;  ///< TCP: name or address to connect to; UDP: the local address to listen at
+  std::string
+      host;  ///< TCP: name or address to connect to; UDP: the local or multicast address to listen at, empty: any
   std::uint16_t port = 10110;
+  std::string sender;  ///< UDP: take datagrams from this address only; empty: from any
+
+  /// File: from its beginning to its end, once. Otherwise from the first line that is appended to it, for ever, also
+  /// when it is cut short or another takes its name. A named pipe is always read for ever, whoever writes into it.
+  bool is_played = false;
 
   Nanoseconds connect_timeout = std::chrono::seconds(3);
 };
 
-/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110": for people.
+/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", a path: for people.
 std::string describe(const BytePortAddress& address);
 
 enum class ByteStatus : std::uint8_t {
   kBytes,        ///< some have come
+  kForeign,      ///< a datagram of another sender than the one that was asked for; it is gone
   kSilence,      ///< none until the time-out
-  kEnd,          ///< of a file
+  kEnd,          ///< of a file that is played; nothing more will come
   kInterrupted,  ///< interrupt() was called
   kLost,         ///< the port is gone
 };
@@ -51,6 +63,9 @@ struct ByteArrival {
   bool is_whole_datagram = false;  ///< UDP: what has come ends here
 };
 
+/// A datagram that is longer than what it is read into loses its end; this is enough for each.
+inline constexpr std::size_t kLargestDatagram = 65536;
+
 /// A port that can be closed and opened again for as long as it lives. Carries bytes and judges nothing. A test may put
 /// another in its place.
 ///
@@ -59,21 +74,26 @@ class BytePort {
  public:
   virtual ~BytePort() = default;
 
-  /// Opens, or says why that failed and what to do. Blocks for the connect time-out at most.
+  /// Opens, or says why that failed and what to do. Blocks for the connect time-out at most, or twice that where a host
+  /// name has to be looked up.
   virtual Result<void, Failure> open() = 0;
   virtual void close() noexcept = 0;
 
-  /// The next bytes, waiting for at most `timeout`.
+  /// The next bytes, waiting for at most `timeout`; none: what is there already. kLost while it is not open.
   virtual ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) = 0;
 
-  /// Sends all of it (serial and TCP). False: the port is lost, or cannot be written to.
+  /// Sends all of it (serial and TCP). False: the port is lost, takes nothing for a second, or cannot be written to.
   virtual bool write(std::span<const std::uint8_t> bytes) = 0;
 
-  /// Ends a read() or open() that waits and makes all later work end at once.
+  /// Ends a read(), write() or open() that waits and makes all later work end at once.
   virtual void interrupt() noexcept = 0;
 };
 
-/// The real one, by Boost.Asio.
+/// The real one. Serial ports and sockets are Boost.Asio's. Throws std::system_error where the process has no
+/// descriptors left.
+///
+/// A serial port is locked against other programs while it is open (flock, and TIOCEXCL against those that do not ask
+/// for locks). Opening it raises DTR and closing it lowers DTR again, which restarts most Arduinos.
 std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address);
 
 }  // namespace yuragi

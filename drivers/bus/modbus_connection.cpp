@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <system_error>
 
 #include <modbus/modbus.h>
 #include <poll.h>
-#include <sys/eventfd.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include "drivers/bus/tcp_connect.hpp"
 
 namespace yuragi {
 namespace {
@@ -23,27 +24,6 @@ struct FreeModbus {
   void operator()(modbus_t* context) const noexcept { modbus_free(context); }
 };
 using Context = std::unique_ptr<modbus_t, FreeModbus>;
-
-/// An eventfd: something to wait for beside the device.
-class WakeEvent {
- public:
-  WakeEvent() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
-  }
-  ~WakeEvent() { ::close(descriptor_); }
-  WakeEvent(const WakeEvent&) = delete;
-  WakeEvent& operator=(const WakeEvent&) = delete;
-
-  int descriptor() const noexcept { return descriptor_; }
-  void set() noexcept { eventfd_write(descriptor_, 1); }
-  bool is_set() const noexcept {
-    pollfd wait{descriptor_, POLLIN, 0};
-    return poll(&wait, 1, 0) == 1;
-  }
-
- private:
-  int descriptor_;
-};
 
 timespec to_timespec(Nanoseconds duration) {
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(duration);
@@ -76,18 +56,27 @@ class LibmodbusConnection final : public ModbusConnection {
   LibmodbusConnection(const LibmodbusConnection&) = delete;
   LibmodbusConnection& operator=(const LibmodbusConnection&) = delete;
 
-  Result<void, Failure> open() override {
+  Result<void, Failure> open(const WakeEvent& wake) override {
     close();
-    if (wake_.is_set()) return Failure{"interrupted"};
-
+    if (wake.is_set()) return Failure{"interrupted"};
     Context context(is_tcp() ? modbus_new_tcp_pi(line_.host.c_str(), std::to_string(line_.port).c_str())
                              : modbus_new_rtu(line_.device.c_str(), line_.baud, line_.parity, 8, line_.stop_bits));
-    if (!context) return Failure{explain(errno)};
-
+    if (!context) return Failure{explain(modbus_strerror(errno))};
     // No byte time-out: a whole message has to be there within the response time-out, however it trickles.
-    set_response_timeout(context.get(), line_.response_timeout);
     modbus_set_byte_timeout(context.get(), 0, 0);
-    if (modbus_connect(context.get()) != 0) return Failure{explain(errno)};
+
+    if (is_tcp()) {
+      const auto socket = connect_tcp(line_.host, line_.port, line_.connect_timeout, wake);
+      if (!socket) return Failure{explain(socket.error().message)};
+      modbus_set_socket(context.get(), *socket);
+    } else {
+      if (modbus_connect(context.get()) != 0) return Failure{explain(modbus_strerror(errno))};
+      // Two programs that ask on one line hear each other's answers.
+      if (flock(modbus_get_socket(context.get()), LOCK_EX | LOCK_NB) != 0) {
+        modbus_close(context.get());
+        return Failure{"cannot open " + describe(line_) + ": another program reads it; end that one first"};
+      }
+    }
     context_ = std::move(context);
     return {};
   }
@@ -99,9 +88,17 @@ class LibmodbusConnection final : public ModbusConnection {
     context_.reset();
   }
 
-  bool send(const ModbusRequest& request) override {
+  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage> buffer, const ModbusPatience& patience,
+                     const WakeEvent& wake) override {
+    if (!context_ || is_tcp()) return 0;
+    const Nanoseconds quiet = std::max(patience.byte_timeout, frame_gap(line_));
+    return read_until_quiet(buffer, quiet, SteadyClock::now() + patience.response_timeout, wake);
+  }
+
+  bool send(const ModbusRequest& request, const ModbusPatience& patience) override {
     if (!context_) return false;
-    deadline_ = SteadyClock::now() + line_.response_timeout;
+    patience_ = patience;
+    deadline_ = SteadyClock::now() + patience.response_timeout;
     if (is_tcp()) {
       const auto message = encode_tcp(request);
       return ::send(modbus_get_socket(context_.get()), message.data(), message.size(), MSG_NOSIGNAL) ==
@@ -113,12 +110,12 @@ class LibmodbusConnection final : public ModbusConnection {
            modbus_send_raw_request(context_.get(), message.data(), static_cast<int>(message.size())) >= 0;
   }
 
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer) override {
-    // Wait for the first byte here, where interrupt() can end it and where silence differs from a message cut off.
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const WakeEvent& wake) override {
+    // Wait for the first byte here, where `wake` can end it and where silence differs from a message cut off.
     if (!context_) return {BusStatus::kLost};
     const Nanoseconds remaining = deadline_ - SteadyClock::now();
-    const bool has_bytes = remaining > Nanoseconds::zero() && wait_for_bytes(remaining);
-    if (wake_.is_set()) return {BusStatus::kInterrupted};
+    const bool has_bytes = remaining > Nanoseconds::zero() && wait_for_bytes(remaining, wake);
+    if (wake.is_set()) return {BusStatus::kInterrupted};
     if (!has_bytes) return {BusStatus::kSilence};
 
     // Then libmodbus cuts out one message.
@@ -131,23 +128,14 @@ class LibmodbusConnection final : public ModbusConnection {
       // not cut where it should be: the decoder shall see all that the line brings.
       const std::size_t framed = std::min(refused_length(buffer), buffer.size());
       const bool is_whole = modbus_crc(buffer.first(framed)) == 0;
-      return {BusStatus::kMessage, framed + (is_whole ? 0 : read_until_quiet(buffer.subspan(framed)))};
+      const Nanoseconds quiet = std::max(patience_.byte_timeout, frame_gap(line_));
+      const std::size_t more = is_whole ? 0 : read_until_quiet(buffer.subspan(framed), quiet, deadline_, wake);
+      return {BusStatus::kMessage, framed + more};
     }
     if (errno == ETIMEDOUT) return {BusStatus::kCutOff};
     if (errno == EMBBADDATA) return {BusStatus::kGarbled};
     return {BusStatus::kLost};
   }
-
-  void resynchronise() override {
-    if (is_tcp()) {
-      close();
-    } else if (context_) {
-      std::array<std::uint8_t, kModbusMaxMessage> discarded{};
-      read_until_quiet(discarded);
-    }
-  }
-
-  void interrupt() noexcept override { wake_.set(); }
 
  private:
   bool is_tcp() const { return line_.framing == ModbusFraming::kTcp; }
@@ -159,27 +147,30 @@ class LibmodbusConnection final : public ModbusConnection {
                                 static_cast<std::uint32_t>(time.tv_nsec / 1000));
   }
 
-  /// Is there something to read, or news of the line's end, within `timeout`? interrupt() ends the wait.
-  bool wait_for_bytes(Nanoseconds timeout) const {
+  /// Is there something to read, or news of the line's end, within `timeout`? `wake` ends the wait.
+  bool wait_for_bytes(Nanoseconds timeout, const WakeEvent& wake) const {
     std::array<pollfd, 2> waits = {pollfd{modbus_get_socket(context_.get()), POLLIN, 0},
-                                   pollfd{wake_.descriptor(), POLLIN, 0}};
+                                   pollfd{wake.descriptor(), POLLIN, 0}};
     const timespec time = to_timespec(timeout);
     return ppoll(waits.data(), waits.size(), &time, nullptr) > 0 && waits[0].revents != 0;
   }
 
-  /// Reads until nothing comes for the byte time-out or the buffer is full; returns how much that was.
-  std::size_t read_until_quiet(std::span<std::uint8_t> buffer) const {
+  /// Reads until nothing comes for `quiet`, or until `deadline`; returns how much of it is in the buffer.
+  std::size_t read_until_quiet(std::span<std::uint8_t> buffer, Nanoseconds quiet, SteadyClock::time_point deadline,
+                               const WakeEvent& wake) const {
     std::size_t size = 0;
-    while (size < buffer.size() && wait_for_bytes(line_.byte_timeout) && !wake_.is_set()) {
-      const ssize_t got = ::read(modbus_get_socket(context_.get()), &buffer[size], buffer.size() - size);
+    while (SteadyClock::now() < deadline && wait_for_bytes(quiet, wake) && !wake.is_set()) {
+      std::array<std::uint8_t, kModbusMaxMessage> bytes{};
+      const ssize_t got = ::read(modbus_get_socket(context_.get()), bytes.data(), bytes.size());
       if (got <= 0) break;
-      size += static_cast<std::size_t>(got);
+      const std::size_t kept = std::min(static_cast<std::size_t>(got), buffer.size() - size);
+      std::ranges::copy_n(bytes.begin(), static_cast<std::ptrdiff_t>(kept), buffer.subspan(size).begin());
+      size += kept;
     }
     return size;
   }
 
-  std::string explain(int error) const {
-    const std::string reason = modbus_strerror(error);
+  std::string explain(const std::string& reason) const {
     if (is_tcp()) {
       return "cannot connect to " + describe(line_) + " (" + reason +
              "): check the host and port, the network, and that the device or gateway is switched on";
@@ -189,7 +180,7 @@ class LibmodbusConnection final : public ModbusConnection {
   }
 
   ModbusLine line_;
-  WakeEvent wake_;
+  ModbusPatience patience_;
   Context context_;
   SteadyClock::time_point deadline_{};
 };
@@ -200,6 +191,14 @@ std::string describe(const ModbusLine& line) {
   if (line.framing == ModbusFraming::kRtu) return line.device;
   const bool is_ipv6 = line.host.find(':') != std::string::npos;
   return (is_ipv6 ? "[" + line.host + "]" : line.host) + ":" + std::to_string(line.port);
+}
+
+Nanoseconds frame_gap(const ModbusLine& line) noexcept {
+  constexpr int kFastest = 19200;
+  constexpr int kBits = 39;  // 3.5 characters of 11 bits
+  if (line.framing == ModbusFraming::kTcp) return Nanoseconds::zero();
+  if (line.baud > kFastest) return std::chrono::microseconds(1750);
+  return std::chrono::nanoseconds(std::chrono::seconds(1)) * kBits / line.baud;
 }
 
 std::unique_ptr<ModbusConnection> make_modbus_connection(const ModbusLine& line) {

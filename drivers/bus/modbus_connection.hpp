@@ -6,13 +6,14 @@
 #include <span>
 #include <string>
 
+#include "drivers/bus/wake_event.hpp"
 #include "drivers/decode/modbus.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi {
 
-/// Where Modbus devices are reached, and how long they may take.
+/// Where Modbus devices are reached.
 struct ModbusLine {
   ModbusFraming framing = ModbusFraming::kTcp;
 
@@ -24,13 +25,21 @@ struct ModbusLine {
   char parity = 'N';  ///< N, E or O
   int stop_bits = 1;
 
-  Nanoseconds response_timeout =
-      std::chrono::milliseconds(500);                        ///< from request to the end of the answer; also to connect
+  Nanoseconds connect_timeout = std::chrono::seconds(1);  ///< TCP
+};
+
+/// How long a device may take.
+struct ModbusPatience {
+  Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< from request to the end of the answer
   Nanoseconds byte_timeout = std::chrono::milliseconds(50);  ///< RTU: a line quiet for so long has ended its message
 };
 
 /// "host:port", or the serial port: for people.
 std::string describe(const ModbusLine& line);
+
+/// The silence that separates two messages on a serial line: 3.5 characters, or 1.75 ms above 19200 bit/s (MODBUS over
+/// Serial Line V1.02, section 2.5.1.1); nothing over TCP.
+Nanoseconds frame_gap(const ModbusLine& line) noexcept;
 
 /// What came of waiting for an answer.
 enum class BusStatus : std::uint8_t {
@@ -38,7 +47,7 @@ enum class BusStatus : std::uint8_t {
   kSilence,      ///< nothing until the response time-out
   kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
   kGarbled,      ///< bytes that are no message; the line is no longer in step
-  kInterrupted,  ///< interrupt() was called
+  kInterrupted,  ///< somebody set the wake event
   kLost,         ///< the connection is gone
 };
 
@@ -48,37 +57,35 @@ struct BusMessage {
 };
 
 /// A connection to the devices on one line, which can be closed and opened again for as long as it lives. Carries bytes
-/// and judges nothing. A test may put another in its place.
+/// and judges nothing. A test may put another in its place. A `wake` that is set ends whatever waits with it, at once.
 ///
-/// Thread-safe: interrupt() alone; everything else belongs to one thread.
+/// Thread-safe: no; one thread after the other may use it.
 class ModbusConnection {
  public:
   virtual ~ModbusConnection() = default;
 
-  /// Opens, or says why that failed and what to do. Blocks for the response time-out at most (and while the system
+  /// Opens, or says why that failed and what to do. Blocks for the connect time-out at most (and while the system
   /// looks up a host name).
-  virtual Result<void, Failure> open() = 0;
+  virtual Result<void, Failure> open(const WakeEvent& wake) = 0;
   virtual bool is_open() const noexcept = 0;
   /// Whatever goes wrong while closing is of no interest: the descriptor is gone.
   virtual void close() noexcept = 0;
 
-  /// Sends a request and starts its response time-out. On a serial line, what an earlier request left behind is
-  /// discarded first. False: the connection is gone.
-  virtual bool send(const ModbusRequest& request) = 0;
+  /// Reads what the line brings until it has been quiet for the byte time-out, or chattering for the response time-out,
+  /// and returns how much of it is in `buffer` (the rest is dropped). Over TCP there is nothing to wait for: 0.
+  virtual std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage> buffer, const ModbusPatience& patience,
+                             const WakeEvent& wake) = 0;
+
+  /// Sends a request and starts its response time-out. On a serial line, what came unasked is discarded first. False:
+  /// the connection is gone.
+  virtual bool send(const ModbusRequest& request, const ModbusPatience& patience) = 0;
 
   /// The next message since, waiting until the response time-out that send() began. Can be called again after a message
   /// that turned out to be another one's.
-  virtual BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer) = 0;
-
-  /// Gets back into step after bytes that made no sense: reads a serial line until it is quiet, closes a TCP
-  /// connection.
-  virtual void resynchronise() = 0;
-
-  /// Ends a receive() that waits and makes all later work end at once.
-  virtual void interrupt() noexcept = 0;
+  virtual BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const WakeEvent& wake) = 0;
 };
 
-/// The real one, by libmodbus. Throws std::system_error where the process has no descriptors left.
+/// The real one, by libmodbus.
 std::unique_ptr<ModbusConnection> make_modbus_connection(const ModbusLine& line);
 
 }  // namespace yuragi

@@ -64,6 +64,16 @@ std::array<std::uint8_t, 6> encode_rtu_without_crc(const ModbusRequest& request)
           low(request.address), high(request.count), low(request.count)};
 }
 
+std::array<std::uint8_t, 8> encode_rtu(const ModbusRequest& request) noexcept {
+  const auto body = encode_rtu_without_crc(request);
+  const std::uint16_t crc = modbus_crc(body);
+  std::array<std::uint8_t, 8> message{};
+  for (std::size_t i = 0; i < body.size(); ++i) message[i] = body[i];
+  message[body.size()] = low(crc);
+  message[body.size() + 1] = high(crc);
+  return message;
+}
+
 Answer decode_tcp(const ModbusRequest& request, Bytes message) noexcept {
   // The header: is this Modbus, whole, and for us?
   if (message.size() < kTcpHeader) return refuse(Refusal::kTooShort);

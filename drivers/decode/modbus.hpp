@@ -41,6 +41,9 @@ std::array<std::uint8_t, 12> encode_tcp(const ModbusRequest& request) noexcept;
 /// The request as it goes on a serial line, still without its CRC.
 std::array<std::uint8_t, 6> encode_rtu_without_crc(const ModbusRequest& request) noexcept;
 
+/// The request as it goes on a serial line, its CRC behind it.
+std::array<std::uint8_t, 8> encode_rtu(const ModbusRequest& request) noexcept;
+
 /// What an answer holds.
 struct ModbusRegisters {
   std::array<std::uint16_t, kModbusMaxRegisters> values{};

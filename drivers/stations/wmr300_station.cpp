@@ -15,6 +15,17 @@ constexpr Nanoseconds kWmr300HeartbeatEvery = seconds(20);
 constexpr Nanoseconds kWmr300NoWind = seconds(15);  // five winds that did not come
 constexpr Nanoseconds kWmr300GiveUp = seconds(60);  // of silence; then the device is opened again
 
+/// Is it whole and undamaged, whatever it says? Data packets end with the sum of their bytes, either byte of it first;
+/// the others have none.
+bool is_sound(ByteSpan packet) {
+  constexpr std::size_t kSum = 2;
+  if (!wants_wmr300_acknowledgement(packet)) return packet.size() > 2 && (packet[0] == 'W' || packet[0] == 'A');
+  const std::size_t size = packet[1];
+  if (size < kSum || size > packet.size()) return false;
+  const std::uint16_t sum = sum_16(packet.first(size - kSum));
+  return sum == big_endian_16(packet, size - kSum) || sum == little_endian_16(packet, size - kSum);
+}
+
 class Wmr300Station final : public HidStation {
  public:
   explicit Wmr300Station(const StationTiming& timing) : timing_(timing) {}
@@ -41,7 +52,7 @@ class Wmr300Station final : public HidStation {
   /// A packet came. False: the device went while it was acknowledged.
   bool take(ByteSpan packet, HidTalk& talk, StationStep& step) {
     const auto wind = decode_wmr300(packet);
-    if (wind || wind.error() == Refusal::kNotMine) heard_ = step.next;
+    if (is_sound(packet)) heard_ = step.next;
     const auto acknowledgement = encode_wmr300_acknowledgement(packet);
     const bool is_due = wants_wmr300_acknowledgement(packet);
     if (!wind) {

@@ -42,6 +42,9 @@ std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept 
   if (spec.integral_scale != 0.0 && !(spec.integral_scale >= kMinNoiseIntegralScale)) {
     return NoiseError::kIntegralScaleOutOfRange;
   }
+  const bool has_waves = spec.from_cycles >= 0.0 && spec.from_cycles <= static_cast<double>(spec.size) / 2.0 &&
+                         spec.to_cycles >= 2.0 * spec.from_cycles && spec.to_cycles > 1.0;
+  if (!has_waves) return NoiseError::kBandOutOfRange;
   return std::nullopt;
 }
 
@@ -70,9 +73,11 @@ void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
       const auto wave_x = static_cast<std::int64_t>(x);
       Mode& mode = spectrum[index * columns + x];
 
-      // The constant mode is the mean: 0.
+      // The constant mode is the mean: 0. Waves outside the band are left out.
       const auto k_squared = static_cast<double>(wave_x * wave_x + row.wave_z * row.wave_z + row.wave_y * row.wave_y);
-      if (k_squared == 0.0) {
+      const bool is_wanted =
+          k_squared >= spec.from_cycles * spec.from_cycles && k_squared < spec.to_cycles * spec.to_cycles;
+      if (k_squared == 0.0 || !is_wanted) {
         mode = 0.0;
         continue;
       }

@@ -28,6 +28,8 @@ std::string_view name_of(NoiseError error) noexcept {
       return "beta-out-of-range";
     case NoiseError::kIntegralScaleOutOfRange:
       return "integral-scale-out-of-range";
+    case NoiseError::kBandOutOfRange:
+      return "band-out-of-range";
   }
   return "?";
 }
@@ -50,6 +52,8 @@ std::string_view explain(NoiseError error) noexcept {
       return "beta must be a number from 0 to 8";
     case NoiseError::kIntegralScaleOutOfRange:
       return "the integral scale must be 0 (none) or a part of the edge of at least 0.000001";
+    case NoiseError::kBandOutOfRange:
+      return "the band must be an octave wide or more, end above 1 cycle an edge and begin at half the size or before";
   }
   return "?";
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,6 +27,9 @@ struct NoiseSpec {
   /// How far gusts reach, L, as a part of the edge: L = 0.1 on a tile of period 256 m is 25.6 m. Waves much longer than
   /// L have no more power than those of about L. 0 (or infinity): no such limit, a pure 1/f^beta.
   double integral_scale = 0.0;
+  /// Only waves of `from_cycles` up to, not including, `to_cycles` an edge: at least an octave, or all of them.
+  double from_cycles = 0.0;
+  double to_cycles = std::numeric_limits<double>::infinity();
 };
 
 inline constexpr std::size_t kMinNoiseSize = 8;
@@ -36,7 +40,7 @@ inline constexpr double kMaxNoiseBeta = 8.0;
 inline constexpr double kMinNoiseIntegralScale = 1e-6;  ///< besides 0
 
 /// Why there is no noise.
-enum class NoiseError : std::uint8_t { kSizeNotAllowed, kBetaOutOfRange, kIntegralScaleOutOfRange };
+enum class NoiseError : std::uint8_t { kSizeNotAllowed, kBetaOutOfRange, kIntegralScaleOutOfRange, kBandOutOfRange };
 
 std::string_view name_of(NoiseError error) noexcept;
 std::string_view name_of(BetaMeaning meaning) noexcept;

@@ -48,7 +48,8 @@ bool read(const fb::Subscribe& from, Subscribe& to) {
   to.protocol = from.protocol();
   to.poses = from.poses();
   to.sensors = from.sensors();
-  return read_text(from.client(), to.client);
+  to.raw = from.raw();
+  return read_text(from.client(), to.client) && read_text(from.raw_sensor(), to.raw_sensor);
 }
 
 bool read(const fb::Scenes& from, Scenes& to) {
@@ -96,6 +97,8 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   to.age_s = from.age_s();
   to.interval_s = from.interval_s();
   to.readings = from.readings();
+  to.frames = from.frames();
+  to.reconnects = from.reconnects();
   const std::size_t reasons = from.refused() == nullptr ? 0 : from.refused()->size();
   if (reasons > kMaxRefusalReasons) return false;
   for (std::size_t i = 0; i < reasons; ++i) {
@@ -138,6 +141,18 @@ bool read(const fb::ControlReply& from, ControlReply& to) {
     if (!read_text(state.name(), scene.name) || !read_text(state.kind(), scene.kind)) return false;
   }
   return true;
+}
+
+bool read(const fb::RawTrace& from, RawTrace& to) {
+  to.mono_ns = from.mono_ns();
+  to.utc_ns = from.utc_ns();
+  to.received = from.received();
+  to.length = from.length();
+  to.lost = from.lost();
+  const std::size_t count = from.bytes() == nullptr ? 0 : from.bytes()->size();
+  if (count > kMaxRawBytes || count > to.length) return false;
+  if (count > 0) to.bytes.assign(from.bytes()->begin(), from.bytes()->end());
+  return read_text(from.sensor(), to.sensor);
 }
 
 template <class T, class Table>
@@ -188,6 +203,8 @@ Result<Message, WireError> decode(std::span<const std::uint8_t> bytes) {
       return read_body<Control>(message.body_as_Control());
     case fb::Body_ControlReply:
       return read_body<ControlReply>(message.body_as_ControlReply());
+    case fb::Body_RawTrace:
+      return read_body<RawTrace>(message.body_as_RawTrace());
     case fb::Body_NONE:
       break;
   }

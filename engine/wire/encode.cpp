@@ -124,6 +124,8 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   table.add_interval_s(sensor.interval_s);
   table.add_readings(sensor.readings);
   table.add_refused(refused_vector);
+  table.add_frames(sensor.frames);
+  table.add_reconnects(sensor.reconnects);
   return table.Finish();
 }
 
@@ -146,8 +148,10 @@ Bytes encode(const Hello& hello) {
 Bytes encode(const Subscribe& subscribe) {
   Builder builder;
   const auto client = add_text(builder, subscribe.client);
+  const auto raw_sensor = subscribe.raw_sensor.empty() ? Text() : add_text(builder, subscribe.raw_sensor);
   return finish(builder, fb::Body_Subscribe,
-                fb::CreateSubscribe(builder, subscribe.protocol, subscribe.poses, subscribe.sensors, client));
+                fb::CreateSubscribe(builder, subscribe.protocol, subscribe.poses, subscribe.sensors, client,
+                                    subscribe.raw, raw_sensor));
 }
 
 Bytes encode(const Scenes& scenes) {
@@ -194,6 +198,15 @@ Bytes encode(const ControlReply& reply) {
   const auto message = add_text(builder, reply.message);
   return finish(builder, fb::Body_ControlReply,
                 fb::CreateControlReply(builder, reply.done, message, builder.CreateVector(scenes)));
+}
+
+Bytes encode(const RawTrace& trace) {
+  Builder builder;
+  const auto sensor = add_text(builder, trace.sensor);
+  const auto bytes = builder.CreateVector(trace.bytes.data(), std::min(trace.bytes.size(), kMaxRawBytes));
+  return finish(builder, fb::Body_RawTrace,
+                fb::CreateRawTrace(builder, sensor, trace.mono_ns, trace.utc_ns, trace.received, bytes, trace.length,
+                                   trace.lost));
 }
 
 }  // namespace yuragi::wire

@@ -39,6 +39,7 @@ inline constexpr std::size_t kMaxLinksPerStrand = 256;
 inline constexpr std::size_t kMaxSensors = 256;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
 inline constexpr double kMaxFade_s = 3600.0;
+inline constexpr std::size_t kMaxRawBytes = 512;  ///< of one message to or from a device; encoders cut longer ones
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -54,6 +55,8 @@ struct Subscribe {
   bool poses = true;
   bool sensors = false;
   std::string client;
+  bool raw = false;             ///< RawTrace
+  std::string raw_sensor = {};  ///< of this one only; empty: of every sensor
 };
 
 /// A skeleton of a kind that this build does not know is decoded as one of no strands, and so are its poses.
@@ -95,6 +98,8 @@ struct SensorStatus {
   double interval_s = 0.0;
   std::uint64_t readings = 0;
   std::vector<std::pair<std::string, std::uint64_t>> refused;
+  std::uint64_t frames = 0;      ///< messages from the device, of use or not
+  std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
 };
 
 struct Sensors {
@@ -124,7 +129,18 @@ struct ControlReply {
   std::vector<SceneState> scenes;
 };
 
-using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors, Control, ControlReply>;
+/// One message to or from a sensor's device, as it went over the wire.
+struct RawTrace {
+  std::string sensor;
+  std::int64_t mono_ns = 0;
+  std::int64_t utc_ns = 0;
+  bool received = true;             ///< from the device; otherwise sent to it
+  std::vector<std::uint8_t> bytes;  ///< the first kMaxRawBytes of them at most
+  std::uint32_t length = 0;         ///< of the whole message
+  std::uint64_t lost = 0;           ///< messages of this sensor that were passed over just before
+};
+
+using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors, Control, ControlReply, RawTrace>;
 
 enum class WireError : std::uint8_t {
   kTooLong,       ///< the size prefix is above the limit
@@ -146,6 +162,7 @@ Bytes encode(const Scenes& scenes);
 Bytes encode(const Sensors& sensors);
 Bytes encode(const Control& control);
 Bytes encode(const ControlReply& reply);
+Bytes encode(const RawTrace& trace);
 
 /// Encodes frame after frame into one buffer that it owns and keeps. Realtime-safe after the first frame that shows
 /// every scene of a set: it quantises straight into the buffer, and nothing is allocated. Thread-safe: no.

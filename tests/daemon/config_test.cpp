@@ -64,9 +64,9 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
   EXPECT_THAT(mistakes_of("wind = 3\n"), StartsWith("wall.toml:1:1: wind: is a value; write it as a table"));
   EXPECT_THAT(mistakes_of("[sensor]\ndriver = \"synthetic\"\n"),
               StartsWith("wall.toml:1:2: sensor: is one table; write [[sensor]]"));
-  EXPECT_THAT(
-      mistakes_of("[[sensor]]\nspeed = 3\n"),
-      HasSubstr("sensor.driver: is missing or not a text; allowed: one of \"modbus\", \"synthetic\", \"windlog\""));
+  EXPECT_THAT(mistakes_of("[[sensor]]\nspeed = 3\n"),
+              testing::AllOf(HasSubstr("sensor.driver: is missing or not a text; allowed: one of "),
+                             HasSubstr("\"synthetic\"")));
   EXPECT_THAT(mistakes_of("[[sensor]]\ndriver = \"barometer\"\n"),
               StartsWith("wall.toml:2:10: sensor.driver: is \"barometer\"; allowed: one of"));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nlinks = [1, 2]\n"),

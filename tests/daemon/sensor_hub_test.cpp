@@ -144,6 +144,99 @@ TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
   EXPECT_EQ(status.readings + status.refused[0].second, 2000U) << "every reading is accounted for";
 }
 
+TEST_F(SensorHubTest, CountsFramesAndHowOftenTheDeviceCameAgain) {
+  script_.first_poll = [](const Clock&, SensorSink& sink) {
+    const std::vector<std::uint8_t> message = {1, 2, 3};
+    sink.raw(RawDirection::kSent, message);
+    for (int i = 0; i < 5; ++i) sink.raw(RawDirection::kReceived, message);
+    for (const auto state : {LinkState::kConnected, LinkState::kConnecting, LinkState::kConnected,
+                             LinkState::kConnecting, LinkState::kConnected, LinkState::kConnected}) {
+      sink.link(state, "");
+    }
+  };
+  SensorHub hub(config_, clock_);
+  script_.polled.get_future().wait();
+  EXPECT_EQ(hub.status().at(0).frames, 5U) << "what is sent is no frame";
+  EXPECT_EQ(hub.status().at(0).reconnects, 2U) << "the first connection is none";
+
+  int kept = 0;
+  hub.drain_traces([&](const wire::RawTrace&) { ++kept; });
+  EXPECT_EQ(kept, 0) << "nobody asked for the messages";
+}
+
+TEST_F(SensorHubTest, HandsOnTheMessagesOfATracedSensorInTheirOrder) {
+  std::promise<void> is_traced;
+  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+    is_traced.get_future().wait();
+    sink.raw(RawDirection::kSent, std::vector<std::uint8_t>{1, 3, 0});
+    sink.raw(RawDirection::kReceived, std::vector<std::uint8_t>(700, 0x5A));
+  };
+  SensorHub hub(config_, clock_);
+  clock_.advance(2.0);
+  hub.trace([](std::string_view sensor) { return sensor == "roof"; });
+  is_traced.set_value();
+  script_.polled.get_future().wait();
+
+  std::vector<wire::RawTrace> traces;
+  hub.drain_traces([&](const wire::RawTrace& trace) { traces.push_back(trace); });
+  ASSERT_EQ(traces.size(), 2U);
+  EXPECT_EQ(traces[0].sensor, "roof");
+  EXPECT_FALSE(traces[0].received);
+  EXPECT_EQ(traces[0].bytes, (wire::Bytes{1, 3, 0}));
+  EXPECT_EQ(traces[0].mono_ns, 3'000'000'000);
+  EXPECT_TRUE(traces[1].received);
+  EXPECT_EQ(traces[1].bytes, wire::Bytes(wire::kMaxRawBytes, 0x5A)) << "the beginning of a long one";
+  EXPECT_EQ(traces[1].length, 700U);
+  hub.drain_traces([&](const wire::RawTrace& trace) { traces.push_back(trace); });
+  EXPECT_EQ(traces.size(), 2U) << "each once";
+}
+
+TEST_F(SensorHubTest, MessagesThatFindNoRoomAreCountedInTheNextOne) {
+  std::promise<void> is_traced, is_drained, is_flooded;
+  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+    const std::vector<std::uint8_t> message = {1};
+    is_traced.get_future().wait();
+    for (int i = 0; i < 1000; ++i) sink.raw(RawDirection::kReceived, message);
+    is_flooded.set_value();
+    is_drained.get_future().wait();
+    sink.raw(RawDirection::kReceived, message);
+  };
+  SensorHub hub(config_, clock_);
+  hub.trace([](std::string_view) { return true; });
+  is_traced.set_value();
+  is_flooded.get_future().wait();
+  std::uint64_t kept = 0;
+  std::uint64_t lost = 0;
+  const auto count = [&](const wire::RawTrace& trace) {
+    ++kept;
+    lost += trace.lost;
+  };
+  hub.drain_traces(count);
+  EXPECT_LT(kept, 1000U) << "room without bounds";
+  EXPECT_EQ(lost, 0U);
+  is_drained.set_value();
+  script_.polled.get_future().wait();
+  hub.drain_traces(count);
+  EXPECT_EQ(kept + lost, 1001U) << "every message is accounted for";
+}
+
+TEST_F(SensorHubTest, ATraceThatBeginsAgainHasNothingOfTheOneBefore) {
+  std::promise<void> is_traced;
+  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+    is_traced.get_future().wait();
+    sink.raw(RawDirection::kReceived, std::vector<std::uint8_t>{1});
+  };
+  SensorHub hub(config_, clock_);
+  hub.trace([](std::string_view) { return true; });
+  is_traced.set_value();
+  script_.polled.get_future().wait();
+  hub.trace([](std::string_view) { return false; });
+  hub.trace([](std::string_view) { return true; });
+  int kept = 0;
+  hub.drain_traces([&](const wire::RawTrace&) { ++kept; });
+  EXPECT_EQ(kept, 0);
+}
+
 TEST_F(SensorHubTest, IsFinishedWhenEveryRecordingIs) {
   script_.first_poll = [](const Clock&, SensorSink& sink) { sink.link(LinkState::kFinished, "the end"); };
   const SensorHub hub(config_, clock_);

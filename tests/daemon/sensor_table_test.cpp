@@ -1,11 +1,14 @@
 #include "daemon/sensor_table.hpp"
 
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace yuragi {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 TEST(SensorTable, NamesTheCompassPoints) {
@@ -46,6 +49,46 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   EXPECT_THAT(table, HasSubstr("timeout 3, exception 1"));
   EXPECT_THAT(table, HasSubstr("connected: answers at 10.0.0.5:502"));
   EXPECT_THAT(table, HasSubstr("connecting")) << "a sensor that never spoke shows what its link does";
+}
+
+TEST(SensorTable, ShowsFramesAndReconnects) {
+  wire::SensorStatus sensor;
+  sensor.name = "roof";
+  sensor.readings = 1200;
+  sensor.frames = 34567;
+  sensor.reconnects = 12;
+  EXPECT_THAT(sensor_table({{sensor}, {}, 0, 0}), ContainsRegex(" 34567 +1200 +12\n"));
+}
+
+TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
+  wire::SensorStatus sensor;
+  sensor.name = "a sensor with a name that is long";
+  sensor.driver = "a driver with a long name";
+  sensor.health = 1;
+  sensor.detail =
+      "slave 1 at /dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A50285BI-if00-port0 does not answer within 0.5 s: check "
+      "its "
+      "power, its wiring and its id, and that nobody else asks on its line";
+  sensor.speed_m_s = 120.0;
+  sensor.direction_deg = 247.5;
+  sensor.gust_m_s = 119.99;
+  sensor.age_s = 99999.9;
+  sensor.interval_s = 3600.0;
+  sensor.frames = 999'999'999;
+  sensor.readings = 999'999'999;
+  sensor.reconnects = 99'999;
+  for (const char* why : {"timeout", "too short", "not mine", "bad checksum", "exception", "malformed", "invalid"}) {
+    sensor.refused.emplace_back(why, 123'456'789);
+  }
+  const std::string table = sensor_table({{sensor}, {}, 0, 0});
+  std::istringstream lines(table);
+  std::string words;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 100U) << line;
+    if (!line.empty()) words += line.substr(line.find_first_not_of(' ')) + " ";
+  }
+  EXPECT_THAT(words, HasSubstr(sensor.detail));
+  EXPECT_THAT(words, HasSubstr("bad checksum 123456789, exception 123456789"));
 }
 
 TEST(SensorTable, AStaleSensorCannotBeTakenForALiveOne) {

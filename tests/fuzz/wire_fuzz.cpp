@@ -30,6 +30,9 @@ void demand_consistency(const wire::Message& message) {
     for (const auto& scene : scenes->scenes)
       if (!samples::is_sound(scene.skeleton)) std::abort();
   }
+  if (const auto* trace = std::get_if<wire::RawTrace>(&message)) {
+    if (trace->bytes.size() > wire::kMaxRawBytes || trace->bytes.size() > trace->length) std::abort();
+  }
   if (const auto* frame = std::get_if<wire::Frame>(&message)) {
     if (frame->opacities.size() != frame->poses.size()) std::abort();
     for (const auto& pose : frame->poses)

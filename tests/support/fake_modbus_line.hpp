@@ -14,8 +14,7 @@ struct FakeLine {
   bool can_open = true;
   std::vector<ModbusRequest> requests;
   int opened = 0;
-  int resynchronised = 0;
-  bool interrupted = false;
+  int settled = 0;
   /// What a request brings, message after message; silence when they are used up.
   std::function<std::deque<BusStatus>(const ModbusRequest&)> statuses;
   std::function<std::vector<std::uint8_t>(const ModbusRequest&)> message;
@@ -45,7 +44,7 @@ class FakeConnection final : public ModbusConnection {
  public:
   explicit FakeConnection(FakeLine& line) : line_(line) {}
 
-  Result<void, Failure> open() override {
+  Result<void, Failure> open(const WakeEvent&) override {
     ++line_.opened;
     if (!line_.can_open) return Failure{"cannot open the fake"};
     is_open_ = true;
@@ -53,12 +52,17 @@ class FakeConnection final : public ModbusConnection {
   }
   bool is_open() const noexcept override { return is_open_; }
   void close() noexcept override { is_open_ = false; }
-  bool send(const ModbusRequest& request) override {
+  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const WakeEvent&) override {
+    ++line_.settled;
+    return 0;
+  }
+  bool send(const ModbusRequest& request, const ModbusPatience&) override {
     line_.requests.push_back(request);
     coming_ = line_.statuses(request);
     return true;
   }
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer) override {
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const WakeEvent& wake) override {
+    if (wake.is_set()) return {BusStatus::kInterrupted};
     if (coming_.empty()) return {BusStatus::kSilence};
     const BusStatus status = coming_.front();
     coming_.pop_front();
@@ -67,11 +71,6 @@ class FakeConnection final : public ModbusConnection {
     std::ranges::copy(bytes, buffer.begin());
     return {status, bytes.size()};
   }
-  void resynchronise() override {
-    ++line_.resynchronised;
-    close();
-  }
-  void interrupt() noexcept override { line_.interrupted = true; }
 
  private:
   FakeLine& line_;

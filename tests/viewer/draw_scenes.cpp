@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <string>
 
 #include <fmt/format.h>
@@ -51,10 +52,8 @@ std::unique_ptr<Scene> made(const std::string& words) {
   throw std::runtime_error("there is no scene of the kind " + kind);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
+/// Draws what the command line asks for. Returns the exit code.
+int draw_scenes(const std::vector<std::string>& words) {
   if (words.empty()) return 64;
   int width_px = 960;
   int height_px = 540;
@@ -84,4 +83,15 @@ int main(int argc, char** argv) {
     }
   }
   return gl_error_count() == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return draw_scenes({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "draw_scenes: %s\n", error.what());
+    return 70;
+  }
 }

@@ -66,7 +66,8 @@ TEST(GridNormals, PointOutOfARoundBodyWithoutASeam) {
   for (std::size_t i = 0; i < layout.size(); ++i) {
     const double angle = 2 * kPi * static_cast<double>(i % kColumns) / kColumns;
     points[i] = static_cast<float>(std::cos(angle));
-    points[layout.size() + i] = static_cast<float>(i / kColumns);
+    const std::size_t row = i / kColumns;
+    points[layout.size() + i] = static_cast<float>(row);
     points[2 * layout.size() + i] = static_cast<float>(std::sin(angle));
   }
   std::vector<float> normals(points.size());

@@ -35,7 +35,7 @@ class OnScreenTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     screen_ = std::make_unique<VirtualScreen>();
-    ::setenv("DISPLAY", screen_->name().c_str(), 1);
+    ::setenv("DISPLAY", screen_->name().c_str(), 1);  // NOLINT(concurrency-mt-unsafe): before any thread begins
     window_ =
         std::make_unique<Window>(WindowOptions{.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
     report_gl_errors();
@@ -177,7 +177,7 @@ TEST_F(StageTest, OpensTheGroundOverWater) {
   std::size_t green = 0;
   for (int row = kHeight_px / 2 - 6; row < kHeight_px / 2 + 6; ++row) {
     for (int column = kWidth_px / 2 - 30; column < kWidth_px / 2 + 30; ++column) {
-      const auto at = static_cast<std::size_t>(3 * (row * kWidth_px + column));
+      const auto at = 3 * static_cast<std::size_t>(row * kWidth_px + column);
       if (2 * storm[at + 2] < storm[at + 1]) ++green;
     }
   }

@@ -74,6 +74,23 @@ TEST_F(ClientQueueTest, RepliesDoNotPileUp) {
   EXPECT_TRUE(queue_.offer_reply(message("reply ")));
 }
 
+TEST_F(ClientQueueTest, TracesGoInTheirOrderBeforeFramesAndOnlySoManyWait) {
+  subscribe();
+  take_all();
+  queue_.offer_frame(message("frame "));
+  EXPECT_TRUE(queue_.offer_trace(message("one ")));
+  EXPECT_TRUE(queue_.offer_trace(message("two ")));
+  queue_.offer_sensors(message("sensors "));
+  EXPECT_EQ(take_all(), "sensors one two frame ");
+
+  int taken = 0;
+  while (taken < 10'000 && queue_.offer_trace(message("trace "))) ++taken;
+  EXPECT_GE(taken, 100);
+  EXPECT_LE(taken, 1000);
+  take_one();
+  EXPECT_TRUE(queue_.offer_trace(message("trace ")));
+}
+
 TEST_F(ClientQueueTest, SensorsAreNotSentToOneWhoWantsPosesOnly) {
   queue_.subscribe(true, false, message("scenes "), message("frame "), message("sensors "));
   queue_.offer_sensors(message("sensors "));

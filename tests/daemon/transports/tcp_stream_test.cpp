@@ -96,6 +96,7 @@ class TestClient {
   std::vector<std::uint64_t> frames;  // their sequence numbers
   std::vector<wire::Sensors> sensors;
   std::vector<wire::ControlReply> replies;
+  std::vector<wire::RawTrace> traces;
   std::vector<std::size_t> kinds;  // of all messages, in order
 
  private:
@@ -105,6 +106,7 @@ class TestClient {
     if (auto* set = std::get_if<wire::Scenes>(&message)) scenes.push_back(*set);
     if (auto* one = std::get_if<wire::Frame>(&message)) frames.push_back(one->info.sequence);
     if (auto* state = std::get_if<wire::Sensors>(&message)) sensors.push_back(*state);
+    if (auto* trace = std::get_if<wire::RawTrace>(&message)) traces.push_back(*trace);
     if (auto* reply = std::get_if<wire::ControlReply>(&message)) replies.push_back(*reply);
   }
 
@@ -189,6 +191,74 @@ TEST_F(TcpStreamTest, OneWhoWatchesSensorsOnlyGetsNoPoses) {
   stream_.publish_sensors(share(wire::encode(samples::sensors())));
   ASSERT_TRUE(turn_until([&] { return client.sensors.size() == 2; }));
   EXPECT_EQ(client.kinds, (std::vector<std::size_t>{0, 4, 4}));
+}
+
+wire::RawTrace trace_of(const std::string& sensor, std::size_t size = 7) {
+  return {
+      .sensor = sensor, .received = true, .bytes = wire::Bytes(size, 0x5A), .length = static_cast<std::uint32_t>(size)};
+}
+
+TEST_F(TcpStreamTest, RawMessagesGoToThoseWhoAskedForThatSensorAndToNobodyElse) {
+  TestClient all(io_, stream_.local_endpoint());
+  TestClient roof(io_, stream_.local_endpoint());
+  TestClient none(io_, stream_.local_endpoint());
+  EXPECT_FALSE(stream_.wants_trace("roof"));
+  all.send(wire::encode(wire::Subscribe{.poses = false, .client = "", .raw = true}));
+  ASSERT_TRUE(turn_until([&] { return stream_.wants_trace("mast"); }));
+  roof.send(
+      wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = "", .raw = true, .raw_sensor = "roof"}));
+  none.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
+  stream_.publish_sensors(share(wire::encode(samples::sensors())));
+  ASSERT_TRUE(turn_until([&] { return !roof.sensors.empty() && !none.sensors.empty(); }));
+
+  stream_.publish_trace(trace_of("mast"));
+  stream_.publish_trace(samples::raw_trace());
+  ASSERT_TRUE(turn_until([&] { return all.traces.size() == 2 && roof.traces.size() == 1; }));
+  EXPECT_EQ(all.traces[0].sensor, "mast");
+  EXPECT_EQ(roof.traces[0].sensor, "roof");
+  EXPECT_EQ(roof.traces[0].bytes, samples::raw_trace().bytes);
+  EXPECT_EQ(roof.traces[0].lost, 3u);
+  stream_.publish_sensors(share(wire::encode(samples::sensors())));
+  ASSERT_TRUE(turn_until([&] { return none.sensors.size() == 2; }));
+  EXPECT_TRUE(none.traces.empty());
+}
+
+TEST_F(TcpStreamTest, NobodyWantsTracesAnyMoreOnceTheClientIsGone) {
+  {
+    TestClient client(io_, stream_.local_endpoint());
+    client.send(wire::encode(wire::Subscribe{.poses = false, .client = "", .raw = true, .raw_sensor = "roof"}));
+    ASSERT_TRUE(turn_until([&] { return stream_.wants_trace("roof"); }));
+    EXPECT_FALSE(stream_.wants_trace("mast"));
+  }
+  EXPECT_TRUE(turn_until([&] { return !stream_.wants_trace("roof"); }));
+}
+
+TEST_F(TcpStreamTest, ASlowReaderOfRawMessagesIsToldHowManyItMissed) {
+  constexpr std::uint64_t kMessages = 40'000;
+  TestClient slow(io_, stream_.local_endpoint(), 16384);
+  slow.send(wire::encode(wire::Subscribe{.poses = false, .client = "", .raw = true}));
+  ASSERT_TRUE(turn_until([&] { return stream_.wants_trace("roof"); }));
+  slow.pause();
+  for (std::uint64_t i = 0; i < kMessages; ++i) stream_.publish_trace(trace_of("roof", wire::kMaxRawBytes));
+  slow.resume();
+
+  // One more, once there is room again, tells of all that were missed before it.
+  const auto accounted = [&] {
+    std::uint64_t count = slow.traces.size();
+    for (const wire::RawTrace& trace : slow.traces) count += trace.lost;
+    return count;
+  };
+  std::uint64_t sent = kMessages;
+  ASSERT_TRUE(turn_until([&] {
+    const std::size_t before = slow.traces.size();
+    if (before > 0 && slow.traces.back().lost == 0) {
+      stream_.publish_trace(trace_of("roof"));
+      ++sent;
+    }
+    return before > 0 && slow.traces.back().lost > 0;
+  }));
+  EXPECT_TRUE(turn_until([&] { return accounted() == sent; })) << accounted() << " of " << sent;
+  EXPECT_LT(slow.traces.size(), kMessages / 2) << "all of them were kept for it";
 }
 
 TEST_F(TcpStreamTest, OneWhoDidNotSubscribeGetsOnlyTheGreeting) {

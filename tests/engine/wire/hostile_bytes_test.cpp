@@ -24,6 +24,9 @@ bool is_safe(const Message& message) {
     return std::all_of(scenes->scenes.begin(), scenes->scenes.end(),
                        [](const SceneModel& scene) { return samples::is_sound(scene.skeleton); });
   }
+  if (const auto* trace = std::get_if<RawTrace>(&message)) {
+    return trace->bytes.size() <= kMaxRawBytes && trace->bytes.size() <= trace->length;
+  }
   if (const auto* frame = std::get_if<Frame>(&message)) {
     if (!std::isfinite(frame->info.time_s) || !std::isfinite(frame->info.wind.wind.u_m_s)) return false;
     if (frame->opacities.size() != frame->poses.size()) return false;
@@ -384,6 +387,20 @@ TEST(HostileBytes, AVeryLongTextIsRefused) {
         .Union();
   });
   EXPECT_EQ(result.error(), WireError::kInconsistent);
+}
+
+TEST(HostileBytes, ARawTraceOfMoreThanIsPromisedIsRefused) {
+  const auto trace = [](std::size_t kept, std::uint32_t length) {
+    return decode_built(fb::Body_RawTrace, [&](auto& builder) {
+      const auto sensor = builder.CreateString("roof");
+      const auto bytes = builder.CreateVector(std::vector<std::uint8_t>(kept));
+      return fb::CreateRawTrace(builder, sensor, 1, 1, true, bytes, length, 0).Union();
+    });
+  };
+  EXPECT_TRUE(trace(kMaxRawBytes, 2000).has_value());
+  EXPECT_TRUE(trace(0, 0).has_value());
+  EXPECT_EQ(trace(kMaxRawBytes + 1, 2000).error(), WireError::kInconsistent);
+  EXPECT_EQ(trace(8, 7).error(), WireError::kInconsistent) << "more bytes than the message has";
 }
 
 // ---- of a newer server ----

@@ -32,6 +32,9 @@ TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
   EXPECT_TRUE(wish.poses);
   EXPECT_TRUE(wish.sensors);
   EXPECT_EQ(wish.client, "a wall in Morioka");
+  EXPECT_TRUE(wish.raw);
+  EXPECT_EQ(wish.raw_sensor, "roof");
+  EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).raw) << "only where it is asked for";
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.poses = false, .client = ""})).poses);
 }
 
@@ -207,10 +210,32 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.interval_s, 1.0);
   EXPECT_EQ(gauge.readings, 1234u);
   EXPECT_EQ(gauge.refused, samples::sensors().sensors[0].refused);
+  EXPECT_EQ(gauge.frames, 1250u);
+  EXPECT_EQ(gauge.reconnects, 2u);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
   EXPECT_EQ(sensors.late_ticks, 5u);
   EXPECT_EQ(sensors.clients, 2u);
+}
+
+TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {
+  const RawTrace sent = samples::raw_trace();
+  const RawTrace trace = decoded<RawTrace>(encode(sent));
+  EXPECT_EQ(trace.sensor, "roof");
+  EXPECT_EQ(trace.mono_ns, sent.mono_ns);
+  EXPECT_EQ(trace.utc_ns, sent.utc_ns);
+  EXPECT_TRUE(trace.received);
+  EXPECT_EQ(trace.bytes, sent.bytes);
+  EXPECT_EQ(trace.length, 7u);
+  EXPECT_EQ(trace.lost, 3u);
+  EXPECT_FALSE(decoded<RawTrace>(encode(RawTrace{.sensor = "roof", .received = false, .bytes = {}})).received);
+}
+
+TEST(WireRoundTrip, OfALongRawMessageTheBeginningTravelsAndItsLengthIsTold) {
+  const RawTrace trace =
+      decoded<RawTrace>(encode(RawTrace{.sensor = "roof", .bytes = Bytes(2000, 0x5A), .length = 2000}));
+  EXPECT_EQ(trace.bytes, Bytes(kMaxRawBytes, 0x5A));
+  EXPECT_EQ(trace.length, 2000u);
 }
 
 TEST(WireRoundTrip, ALongTextIsCutAtTheStartOfACharacter) {
@@ -248,6 +273,9 @@ TEST(WireRoundTrip, TheSizePrefixIsTheBodysSize) {
 
 TEST(WireRoundTrip, WhatAClientSendsIsWithinWhatTheServerReads) {
   EXPECT_LE(encode(Subscribe{.client = std::string(99999, 'x')}).size(), kSizePrefixBytes + kMaxClientMessageBytes);
+  EXPECT_LE(
+      encode(Subscribe{.client = std::string(99999, 'x'), .raw = true, .raw_sensor = std::string(99999, 'x')}).size(),
+      kSizePrefixBytes + kMaxClientMessageBytes);
   EXPECT_LE(encode(Control{.scene = std::string(99999, 'x')}).size(), kSizePrefixBytes + kMaxClientMessageBytes);
 }
 

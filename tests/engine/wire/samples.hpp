@@ -161,7 +161,7 @@ inline wire::Hello hello() {
 }
 
 inline wire::Subscribe subscribe() {
-  return {.poses = true, .sensors = true, .client = "a wall in Morioka"};
+  return {.poses = true, .sensors = true, .client = "a wall in Morioka", .raw = true, .raw_sensor = "roof"};
 }
 
 inline wire::Scenes scenes(std::size_t strand_count = 37) {
@@ -235,14 +235,27 @@ inline wire::Sensors sensors() {
   gauge.interval_s = 1.0;
   gauge.readings = 1234;
   gauge.refused = {{"timeout", 3}, {"exception", 1}};
+  gauge.frames = 1250;
+  gauge.reconnects = 2;
   return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2};
+}
+
+inline wire::RawTrace raw_trace() {
+  return {.sensor = "roof",
+          .mono_ns = 12'345'678'901,
+          .utc_ns = 1'700'000'000'000'000'000,
+          .received = true,
+          .bytes = {0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A},
+          .length = 7,
+          .lost = 3};
 }
 
 /// One of each, in the order of wire::Message, and scenes and a frame of all kinds; with their size prefixes.
 inline std::vector<wire::Bytes> one_of_each() {
-  return {wire::encode(hello()),   wire::encode(subscribe()), wire::encode(scenes()),        frame_bytes(),
-          wire::encode(sensors()), wire::encode(control()),   wire::encode(control_reply()), wire::encode(all_kinds()),
-          frame_of_all_kinds()};
+  return {
+      wire::encode(hello()),     wire::encode(subscribe()), wire::encode(scenes()),        frame_bytes(),
+      wire::encode(sensors()),   wire::encode(control()),   wire::encode(control_reply()), wire::encode(raw_trace()),
+      wire::encode(all_kinds()), frame_of_all_kinds()};
 }
 
 /// What decode() takes: the bytes behind the size prefix.

@@ -1,0 +1,224 @@
+// `yuragi decode`: what a log from the field, or a message on the bench, says to the drivers' own decoders.
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/commands/decode_options.hpp"
+#include "daemon/decode_formats.hpp"
+#include "daemon/exit.hpp"
+#include "daemon/unit_reader.hpp"
+
+namespace yuragi {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// An input to read from to its end: a file, a pipe, a terminal.
+class Input {
+ public:
+  explicit Input(const std::string& file) : name_(file == "-" ? "standard input" : file) {
+    if (file != "-") fd_ = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd_ < 0) refuse();
+  }
+  ~Input() {
+    if (fd_ > STDIN_FILENO) close(fd_);
+  }
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+
+  /// What has come, waiting until something has. Empty: the end.
+  ByteSpan read_some() {
+    while (true) {
+      const ssize_t size = read(fd_, block_.data(), block_.size());
+      if (size >= 0) return ByteSpan(block_).first(static_cast<std::size_t>(size));
+      if (errno != EINTR) refuse();
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
+    const int why = errno;
+    throw ExitError(kExitNoInput, fmt::format("cannot read {}: {}. Give the name of a file that you may read, or - for "
+                                              "standard input",
+                                              name_, std::strerror(why)));
+  }
+
+  std::string name_;
+  int fd_ = STDIN_FILENO;
+  std::array<std::uint8_t, 16384> block_{};
+};
+
+/// `text` as JSON can hold it: where it is not UTF-8, each byte beyond ASCII as \xNN.
+std::string as_utf8(std::string_view text) {
+  try {
+    (void)Json(text).dump();
+    return std::string(text);
+  } catch (const Json::type_error&) {
+    std::string escaped;
+    for (const char c : text) {
+      const auto byte = static_cast<unsigned char>(c);
+      escaped += byte < 0x80 ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+    }
+    return escaped;
+  }
+}
+
+Json number_or_null(std::optional<double> value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json json_of(const UnitReading& reading) {
+  const DecodedWind& wind = reading.wind;
+  Json json = {{"speed_m_s", number_or_null(wind.speed_m_s)},
+               {"direction_deg", number_or_null(wind.direction_deg)},
+               {"gust_m_s", number_or_null(wind.gust_m_s)}};
+  if (wind.reference != WindReference::kUnknown) json["reference"] = name_of(wind.reference);
+  json["status"] = name_of(wind.status);
+  if (reading.count) json["count"] = *reading.count;
+  if (reading.volts) json["volts"] = *reading.volts;
+  return json;
+}
+
+/// One JSON object a line, each of them written at once.
+class Output {
+ public:
+  explicit Output(bool shows_refused) : shows_refused_(shows_refused) {}
+
+  void reading(const UnitReading& reading) {
+    ++readings_;
+    write(json_of(reading));
+  }
+
+  void refusal(Refusal why, std::string_view detail, std::string_view input) {
+    ++refused_[name_of(why)];
+    if (!shows_refused_) return;
+    Json json = {{"refused", name_of(why)}};
+    if (!detail.empty()) json["detail"] = detail;
+    json["input"] = as_utf8(input);
+    write(json);
+  }
+
+  /// For people, beside the output: how much was refused.
+  void summary() const {
+    if (refused_.empty()) return;
+    std::string reasons;
+    for (const auto& [why, count] : refused_)
+      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", why, count);
+    fmt::print(stderr, "decode: {} readings; refused: {}{}\n", readings_, reasons,
+               shows_refused_ ? "" : ". --refused shows each");
+  }
+
+ private:
+  static void write(const Json& json) {
+    const std::string line = json.dump(-1, ' ', true) + "\n";  // ASCII: harmless in any terminal
+    const bool is_written = std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0;
+    if (!is_written) {
+      throw ExitError(kExitCannotCreate, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+    }
+  }
+
+  bool shows_refused_;
+  std::uint64_t readings_ = 0;
+  std::map<std::string_view, std::uint64_t> refused_;
+};
+
+const UnitFormat& format_of(DecodeCommandOptions& options) {
+  const UnitFormat* format = find_unit_format(options.format);
+  if (format == nullptr) {
+    std::string known;
+    for (const UnitFormat& each : unit_formats()) known += fmt::format("{}{}", known.empty() ? "" : ", ", each.name);
+    throw ExitError(kExitUsage, fmt::format("'{}' is no format: choose one of {}", options.format, known));
+  }
+  if (!format->is_text && !options.is_hex) {
+    throw ExitError(kExitUsage,
+                    fmt::format("{} is made of bytes: write them as hexadecimal digits, {} a line, and give --hex "
+                                "(xxd -p makes them of a file)",
+                                options.format, format->unit));
+  }
+  if (const auto colon = options.format.find(':'); colon != std::string::npos) {
+    options.decoder.profile = options.format.substr(colon + 1);
+  }
+  return *format;
+}
+
+std::unique_ptr<UnitDecoder> make_decoder(const UnitFormat& format, const UnitDecoderOptions& options) {
+  try {
+    return format.make(options);
+  } catch (const std::runtime_error& error) {
+    throw ExitError(kExitConfig, error.what());
+  }
+}
+
+void decode_input(DecodeCommandOptions& options) {
+  const UnitFormat& format = format_of(options);
+  const auto decoder = make_decoder(format, options.decoder);
+  Input input(options.file);
+  Output output(options.shows_refused);
+
+  std::string_view text;  // of the message at hand
+  const auto outcome = [&](const UnitDecoder::Outcome& decoded) {
+    if (decoded) {
+      output.reading(*decoded);
+    } else {
+      output.refusal(decoded.error().why, decoded.error().detail, text);
+    }
+  };
+  const auto message = [&](const ReadUnit& unit) {
+    if (unit.why) return output.refusal(*unit.why, unit.detail, unit.text);
+    text = unit.text;
+    decoder->take({unit.bytes, unit.request}, outcome);
+  };
+
+  using Form = UnitReader::Form;
+  UnitReader reader(!options.is_hex ? Form::kLines : format.is_text ? Form::kHexLines : Form::kHexFrames);
+  for (ByteSpan bytes = input.read_some(); !bytes.empty(); bytes = input.read_some()) reader.feed(bytes, message);
+  reader.finish(message);
+  text = {};
+  decoder->finish(outcome);
+  output.summary();
+}
+
+std::string footer() {
+  std::string text =
+      "Each reading is one JSON object a line: speed_m_s, direction_deg and gust_m_s (null where the message does not\n"
+      "have it), reference (of the direction: relative, true, north or magnetic, where the message says it), status\n"
+      "(good, uncertain). Of counters also count and volts. A refused message gives, with --refused, an object with\n"
+      "refused (why), detail and input.\n\nFormats, and an example of each:\n";
+  for (const UnitFormat& format : unit_formats()) {
+    text += fmt::format("  {:<15} {}\n{:18}{}: {}\n{:18}yuragi decode {}\n", format.name, format.devices, "",
+                        format.is_text ? "text" : "bytes", format.unit, "", format.example);
+  }
+  text +=
+      "Text may come as hexadecimal digits too (--hex). Standard input may be endless:\n"
+      "  tail -f voyage.log | yuragi decode nmea | jq .speed_m_s\n"
+      "Exit code 0: the input was read to its end, whatever was refused; 64: a mistake in the command line; 66: the\n"
+      "input cannot be read; 78: the Modbus profile is not there, or wrong.";
+  return text;
+}
+
+void add_decode(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("decode", "read a sensor's messages from a file or pipe, as the drivers do");
+  command->footer(footer());
+  auto options = std::make_shared<DecodeCommandOptions>();
+  options->add_to(*command);
+  command->callback([options] {
+    options->check();
+    decode_input(*options);
+  });
+}
+
+}  // namespace
+
+extern const Command kDecodeCommand;
+const Command kDecodeCommand{add_decode};
+
+}  // namespace yuragi

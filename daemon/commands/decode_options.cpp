@@ -1,0 +1,163 @@
+#include "daemon/commands/decode_options.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "daemon/exit.hpp"
+
+namespace yuragi {
+namespace {
+
+/// An option whose words stand for values.
+template <class Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value,
+                        const std::map<std::string, Value>& words, const std::string& help) {
+  return command
+      .add_option_function<std::string>(
+          name, [&value, words](const std::string& word) { value = words.at(word); }, help)
+      ->check(CLI::IsMember(words));
+}
+
+}  // namespace
+
+void DecodeCommandOptions::add_to(CLI::App& command) {
+  command.add_option("format", format, "how the messages are written; see below")->required()->option_text("FORMAT");
+  command.add_option("file", file, "where they are; - or nothing: standard input")->option_text("[FILE|-]");
+  command.add_flag(
+      "--hex", is_hex,
+      "a message a line, as hexadecimal digits (blanks, commas and 0x may stand between bytes; a line that "
+      "begins with # is a comment)");
+  command.add_flag("--refused", shows_refused, "tell of what is refused too, and why");
+  add_policies(command);
+  add_line_options(command);
+  add_modbus_options(command);
+  add_counter_options(command);
+}
+
+void DecodeCommandOptions::check() {
+  const std::string name = format.substr(0, format.find(':'));
+  for (const auto& [option, formats] : limited_) {
+    const TextFields words = split_fields(formats, ',');
+    const auto* const end = words.values.data() + words.count;
+    const bool is_read = std::any_of(words.values.data(), end, [&](auto word) { return trimmed(word) == name; });
+    if (option->count() > 0 && !is_read) {
+      throw ExitError(kExitUsage,
+                      fmt::format("{} means nothing to {}: it is for {}", option->get_name(), name, formats));
+    }
+  }
+  take_columns();
+}
+
+CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string& formats) {
+  option->group("Only for " + formats);
+  limited_.push_back({option, formats});
+  return option;
+}
+
+/// "-,direction,speed": which quantity stands in which column.
+void DecodeCommandOptions::take_columns() {
+  const TextFields names = split_fields(columns_, ',');
+  LineOptions& line = decoder.line;
+  const std::map<std::string_view, LineQuantity*> quantities = {
+      {"speed", &line.speed}, {"direction", &line.direction}, {"gust", &line.gust}};
+  for (const auto& [name, quantity] : quantities) quantity->column.reset();
+  for (std::size_t column = 0; column < names.count; ++column) {
+    if (names[column] == "-") continue;
+    const auto found = quantities.find(names[column]);
+    if (found == quantities.end() || found->second->column) {
+      throw ExitError(kExitUsage, fmt::format("--columns: '{}' does not work in '{}': name speed, direction and gust, "
+                                              "once each at most, in the order of the columns, with - for any other",
+                                              names[column], columns_));
+    }
+    found->second->column = column;
+  }
+}
+
+void DecodeCommandOptions::add_policies(CLI::App& command) {
+  const std::map<std::string, WhenMissing> missing = {{"refuse", WhenMissing::kRefuse},
+                                                      {"accept", WhenMissing::kAccept}};
+  const auto add_missing = [&](const char* name, WhenMissing& value, const char* help) {
+    limit(add_choice(command, name, value, missing, help)->option_text("refuse|accept"), "nmea, gill, umb, ft");
+  };
+  add_missing("--checksum", decoder.checksum,
+              "what to do where the checksum is missing (default refuse); a wrong one is always refused");
+  add_missing("--status", decoder.status,
+              "the same of the status (default refuse); accepted, the reading is uncertain");
+  limit(command.add_option("--xdr-id", decoder.xdr_first_id, "the address of the WXT whose XDR is read (default 0)")
+            ->check(CLI::Range(0, 255))
+            ->option_text("N"),
+        "nmea");
+  limit(command.add_option("--node", decoder.node, "take only this one's messages")->option_text("A..Z"), "gill");
+  limit(command.add_option("--device", decoder.umb_device, "take only this one's answers (28673 is WS no. 1)")
+            ->option_text("N"),
+        "umb");
+  limit(command
+            .add_option("--speed-range", decoder.umb_speed_range_m_s,
+                        "in ASCII mode: the speed that 65520 stands for (default 75; a VENTUS has 90)")
+            ->check(CLI::PositiveNumber)
+            ->option_text("M/S"),
+        "umb");
+}
+
+void DecodeCommandOptions::add_line_options(CLI::App& command) {
+  LineOptions& line = decoder.line;
+  const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
+    return limit(command.add_option(name, value, help)->option_text(type), "line");
+  };
+  add("--columns", columns_, "what stands in which column; - for any other (default speed,direction,gust)", "LIST");
+  add("--separator", line.separator, "of columns (default ,); a blank is any number of blanks and tabs", "CHARACTER");
+  add("--speed-key", line.speed.key, "where lines have keys: the speed's (default speed)", "KEY");
+  add("--direction-key", line.direction.key, "the direction's (default direction)", "KEY");
+  add("--gust-key", line.gust.key, "the gust's (default gust)", "KEY");
+  add("--speed-scale", line.speed.scale, "one unit of the speed in m/s: 0.2777778 for km/h (default 1)", "FACTOR")
+      ->check(CLI::PositiveNumber);
+  add("--gust-scale", line.gust.scale, "the same of the gust", "FACTOR")->check(CLI::PositiveNumber);
+  add("--invalid", line.invalid, "the number that means no value, -999 say", "NUMBER");
+}
+
+void DecodeCommandOptions::add_modbus_options(CLI::App& command) {
+  const auto add = [&](const char* name, int& value, const char* help) {
+    limit(command.add_option(name, value, help)->check(CLI::Range(1, 247))->option_text("ID"), "modbus");
+  };
+  add("--speed-slave", decoder.speed_slave, "the slave that measures speed, instead of the profile's");
+  add("--direction-slave", decoder.direction_slave, "the same of the direction");
+}
+
+void DecodeCommandOptions::add_counter_options(CLI::App& command) {
+  const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
+    return limit(command.add_option(name, value, help)->option_text(type), "mcc1208, labjack");
+  };
+  CLI::Option* slope = add("--slope", decoder.cup.metres_per_pulse,
+                           "wind that passes between two pulses: m/s for each pulse a second", "METRES");
+  CLI::Option* interval =
+      add("--interval", decoder.interval_s, "from one reply to the next: with it, counts are a speed", "SECONDS");
+  slope->check(CLI::PositiveNumber)->needs(interval);
+  interval->check(CLI::PositiveNumber)->needs(slope);
+  add("--offset", decoder.cup.offset_m_s, "the wind below which the cup stands (default 0)", "M/S")
+      ->check(CLI::Range(0.0, 10.0))
+      ->needs(slope);
+  add("--vane-reference", decoder.vane_reference_v, "over the vane's track: with it, volts are a direction", "VOLTS")
+      ->check(CLI::PositiveNumber);
+
+  const std::map<std::string, Mcc1208Range> ranges = {
+      {"bipolar-20V", Mcc1208Range::kBipolar20V},     {"bipolar-10V", Mcc1208Range::kBipolar10V},
+      {"bipolar-5V", Mcc1208Range::kBipolar5V},       {"bipolar-4V", Mcc1208Range::kBipolar4V},
+      {"bipolar-2.5V", Mcc1208Range::kBipolar2_5V},   {"bipolar-2V", Mcc1208Range::kBipolar2V},
+      {"bipolar-1.25V", Mcc1208Range::kBipolar1_25V}, {"bipolar-1V", Mcc1208Range::kBipolar1V},
+      {"unipolar-5V", Mcc1208Range::kUnipolar5V}};
+  limit(add_choice(command, "--range", decoder.range, ranges,
+                   "of the analogue input: bipolar-20V, -10V, -5V, -4V, -2.5V, -2V, -1.25V, -1V, or unipolar-5V (the "
+                   "default)")
+            ->option_text("RANGE"),
+        "mcc1208");
+  const std::map<std::string, LabjackInput> inputs = {{"low-voltage", LabjackInput::kLowVoltage},
+                                                      {"high-voltage", LabjackInput::kHighVoltage}};
+  limit(add_choice(command, "--input", decoder.input, inputs,
+                   "low-voltage: 0 to 2.44 V (the default); high-voltage: AIN0 to AIN3 of a U3-HV")
+            ->option_text("INPUT"),
+        "labjack");
+}
+
+}  // namespace yuragi

@@ -1,0 +1,98 @@
+// `yuragi mic-worker`: the process that the driver `microphone` keeps PortAudio in. People use its --list.
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/exit.hpp"
+#include "daemon/system_clock.hpp"
+#include "drivers/microphone_worker.hpp"
+
+namespace yuragi {
+namespace {
+
+struct WorkerOptions {
+  MicWorkerOptions worker;
+  bool list = false;
+  bool verbose = false;
+};
+
+/// SIGTERM and SIGINT end the work, and whoever reads no more.
+std::atomic<bool> is_worker_over = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+
+void end_worker(int /*signal*/) {
+  is_worker_over = true;
+}
+
+/// What libraries print must not come between the frames: standard output becomes standard error, which is shut up
+/// unless somebody wants to hear (ALSA complains at length of each device that it tries). Returns the true standard
+/// output.
+int take_output(bool verbose) {
+  const int output = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  if (output < 0) throw ExitError(kExitUnavailable, "mic-worker has no standard output");
+  if (!verbose) {
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+  }
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  return output;
+}
+
+void list_devices(AudioInput& input, int output) {
+  const auto devices = input.list();
+  const std::string text = devices ? list_of_microphones(*devices) : "";
+  if (write(output, text.data(), text.size()) < 0 || !devices) _exit(kExitUnavailable);
+}
+
+void work(const WorkerOptions& options) {
+  if (!options.list && isatty(STDOUT_FILENO) != 0) {
+    throw ExitError(kExitUsage, "mic-worker speaks to the daemon, not to people; --list shows the inputs");
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGTERM, end_worker);
+  std::signal(SIGINT, end_worker);
+  setenv("JACK_NO_START_SERVER", "1", 0);  // looking for inputs must not start a server
+
+  const int output = take_output(options.verbose);
+  auto input = make_portaudio_input();
+  if (options.list) {
+    list_devices(*input, output);
+  } else {
+    static const SystemClock clock;  // outlives the sound system's thread
+    const bool was_told = run_microphone_worker(options.worker, *input, clock, output, is_worker_over);
+    // A device that is gone can hang the library when it closes: the system does that better.
+    if (!was_told) _exit(kExitUnavailable);
+  }
+}
+
+void add_mic_worker(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("mic-worker", "the microphone driver's own process; --list shows the inputs");
+  command->group("");  // not in the main help
+  auto options = std::make_shared<WorkerOptions>();
+  MicWorkerOptions& worker = options->worker;
+  command->add_flag("--list", options->list,
+                    "print the inputs: sound system, channels, preferred rate in Hz, \"default\" or \"-\", name");
+  command->add_option("--device", worker.choice.device, "a part of the input's name; empty: the default");
+  command->add_option("--host-api", worker.choice.host_api, "a part of the sound system's name");
+  command->add_option("--channels", worker.choice.channels, "channels")
+      ->check(CLI::Range(1, static_cast<int>(kAudioMaxChannels)));
+  command->add_option("--rate", worker.choice.rate_hz, "sample rate, Hz; 0: what the device prefers")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--band-low", worker.low_hz, "where the band of the wind begins, Hz")
+      ->check(CLI::Range(2.0, 1000.0));
+  command->add_option("--band-high", worker.high_hz, "where it ends, Hz")->check(CLI::Range(10.0, 2000.0));
+  command->add_flag("--verbose", options->verbose, "let the sound system complain on standard error");
+  command->callback([options] { work(*options); });
+}
+
+}  // namespace
+
+extern const Command kMicWorkerCommand;
+const Command kMicWorkerCommand{add_mic_worker};
+
+}  // namespace yuragi

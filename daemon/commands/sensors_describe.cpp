@@ -1,0 +1,48 @@
+// `yuragi sensors describe`: what a driver reads, and what it can be told.
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/commands/sensors.hpp"
+#include "daemon/driver_reference.hpp"
+#include "daemon/exit.hpp"
+
+namespace yuragi {
+namespace {
+
+struct DescribeOptions {
+  std::string driver;
+  bool all = false;
+};
+
+void describe(const DescribeOptions& options) {
+  const auto drivers = driver_table();
+  if (options.all) {
+    fmt::print("{}", driver_reference(drivers));
+  } else if (options.driver.empty()) {
+    fmt::print("{}\n`yuragi sensors describe DRIVER` says what each can be told.\n", driver_names(drivers));
+  } else {
+    const auto found =
+        std::ranges::find_if(drivers, [&](const DriverDescription* driver) { return driver->name == options.driver; });
+    if (found == drivers.end()) {
+      throw ExitError(kExitUsage,
+                      fmt::format("there is no driver \"{}\"; there are:\n{}", options.driver, driver_names(drivers)));
+    }
+    fmt::print("{}", describe_driver(**found));
+  }
+}
+
+}  // namespace
+
+void add_sensors_describe(CLI::App& sensors) {
+  CLI::App* command =
+      sensors.add_subcommand("describe", "the drivers, and what one can be told: unit, range, default, help");
+  auto options = std::make_shared<DescribeOptions>();
+  CLI::Option* driver = command->add_option("driver", options->driver, "which one; without it: a list of all");
+  driver->option_text("[DRIVER]");
+  command->add_flag("--all", options->all, "every driver, as a page of Markdown")->excludes(driver);
+  command->callback([options] { describe(*options); });
+}
+
+}  // namespace yuragi

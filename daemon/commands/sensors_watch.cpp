@@ -1,0 +1,207 @@
+// `yuragi sensors watch`: what the sensors say, from the running daemon, or from the devices where none runs.
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "daemon/commands/run_options.hpp"
+#include "daemon/commands/sensors.hpp"
+#include "daemon/exit.hpp"
+#include "daemon/raw_text.hpp"
+#include "daemon/sensor_hub.hpp"
+#include "daemon/sensor_table.hpp"
+#include "daemon/system_clock.hpp"
+#include "daemon/transports/stream_client.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr auto kConnectTimeout = std::chrono::seconds(2);
+constexpr auto kSilenceTimeout = std::chrono::seconds(5);
+constexpr auto kTableInterval = std::chrono::milliseconds(500);
+constexpr double kWindStep_s = 0.02;
+
+struct WatchOptions {
+  RunOptions run;
+  bool once = false;
+  bool raw = false;
+  bool hex = false;
+  std::string sensor;  ///< of raw messages; empty: all
+};
+
+/// Where watching ends by itself.
+class Deadline {
+ public:
+  explicit Deadline(const std::optional<double>& duration_s) : duration_s_(duration_s), begun_(clock_.now().mono) {}
+
+  bool is_over() const { return duration_s_ && seconds(clock_.now().mono - begun_) >= *duration_s_; }
+
+ private:
+  SystemClock clock_;
+  std::optional<double> duration_s_;
+  MonoTime begun_;
+};
+
+/// What is watched, as it comes from either source. Each function says false when enough was shown.
+class Screen {
+ public:
+  virtual ~Screen() = default;
+  virtual wire::Subscribe wish() const = 0;
+  /// What the sensors are, at once and then about twice a second; `source` says whose word it is.
+  virtual bool show_sensors(const wire::Sensors& sensors, const std::string& source) = 0;
+  virtual bool show_message(const wire::RawTrace& /*trace*/) { return true; }
+};
+
+/// Table after table: in place on a terminal, one below the other elsewhere.
+class TableScreen final : public Screen {
+ public:
+  explicit TableScreen(bool once) : once_(once) {}
+
+  wire::Subscribe wish() const override { return {.poses = false, .sensors = true, .client = "sensors watch"}; }
+
+  bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
+    constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
+    const bool in_place = isatty(STDOUT_FILENO) != 0 && !once_;
+    fmt::print("{}{}\n{}{}", in_place ? kHomeAndClear : "", source, sensor_table(sensors),
+               in_place ? "\nCtrl-C ends this; the daemon goes on.\n" : "\n");
+    std::fflush(stdout);
+    return !once_;
+  }
+
+ private:
+  bool once_;
+};
+
+/// The messages to and from the devices, one below the other.
+class RawScreen final : public Screen {
+ public:
+  explicit RawScreen(const WatchOptions& options) : options_(options) {}
+
+  wire::Subscribe wish() const override {
+    return {
+        .poses = false, .sensors = true, .client = "sensors watch --raw", .raw = true, .raw_sensor = options_.sensor};
+  }
+
+  /// Says once where they come from, and whether there is such a sensor.
+  bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
+    if (std::exchange(is_begun_, true)) return true;
+    std::string known;
+    bool is_known = options_.sensor.empty();
+    for (const wire::SensorStatus& sensor : sensors.sensors) {
+      known += fmt::format("{}{}", known.empty() ? "" : ", ", sensor.name);
+      is_known = is_known || sensor.name == options_.sensor;
+    }
+    if (!is_known) {
+      throw ExitError(kExitUsage, fmt::format("there is no sensor \"{}\"; there are: {}", options_.sensor, known));
+    }
+    fmt::print(stderr, "{}; times are UTC; <- from the device, -> to it\n", source);
+    return true;
+  }
+
+  bool show_message(const wire::RawTrace& trace) override {
+    const std::string text = options_.hex ? hex_lines_.line_of(trace) : raw_text(trace);
+    const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!is_written) throw ExitError(kExitCannotCreate, "cannot write to standard output");
+    return !options_.once || text.empty();
+  }
+
+ private:
+  const WatchOptions& options_;
+  RawHexLines hex_lines_;
+  bool is_begun_ = false;
+};
+
+void watch_daemon(StreamClient client, const std::string& address, const Deadline& deadline, Screen& screen) {
+  const std::string source = "daemon at " + address;
+  client.subscribe(screen.wish());
+  while (!deadline.is_over()) {
+    const auto message = client.receive(kSilenceTimeout);
+    if (!message) {
+      throw ExitError(kExitUnavailable,
+                      fmt::format("the daemon at {} has gone ({})", address, name_of(message.error())));
+    }
+    if (const auto* hello = std::get_if<wire::Hello>(&*message); hello != nullptr && hello->refused) {
+      throw ExitError(kExitUnavailable, fmt::format("the daemon at {} lets nobody in: {}", address, *hello->refused));
+    }
+    const auto* sensors = std::get_if<wire::Sensors>(&*message);
+    if (sensors != nullptr && !screen.show_sensors(*sensors, source)) return;
+    const auto* trace = std::get_if<wire::RawTrace>(&*message);
+    if (trace != nullptr && !screen.show_message(*trace)) return;
+  }
+}
+
+void watch_devices(const Config& config, const std::string& why, const Deadline& deadline, Screen& screen) {
+  const SystemClock clock;
+  SensorHub hub(config, clock);
+  const wire::Subscribe wish = screen.wish();
+  hub.trace(
+      [&](std::string_view sensor) { return wish.raw && (wish.raw_sensor.empty() || wish.raw_sensor == sensor); });
+  const std::string source = "no daemon (" + why + "): the devices themselves";
+
+  // A table comes late enough to show something, a raw message at once.
+  MonoTime next_status = clock.now().mono + (wish.raw ? Nanoseconds::zero() : kTableInterval);
+  while (!deadline.is_over()) {
+    wire::Sensors sensors;
+    sensors.wind = hub.advance();
+    if (clock.now().mono >= next_status) {
+      next_status += kTableInterval;
+      sensors.sensors = hub.status();
+      if (!screen.show_sensors(sensors, source)) return;
+    }
+    bool is_enough = false;
+    hub.drain_traces([&](const wire::RawTrace& trace) { is_enough = is_enough || !screen.show_message(trace); });
+    if (is_enough) return;
+    std::this_thread::sleep_for(from_seconds(kWindStep_s));
+  }
+}
+
+void watch(const WatchOptions& options) {
+  if (!options.raw && (options.hex || !options.sensor.empty())) {
+    throw ExitError(kExitUsage, "a SENSOR and --hex are for raw messages: add --raw");
+  }
+  options.run.set_up_log();
+  if (!options.run.verbose) spdlog::set_level(spdlog::level::warn);  // the table tells the rest
+  const Config config = options.run.config();
+  const std::string& address = config.stream.text("listen");
+  std::unique_ptr<Screen> screen;
+  if (options.raw) {
+    screen = std::make_unique<RawScreen>(options);
+  } else {
+    screen = std::make_unique<TableScreen>(options.once);
+  }
+  const Deadline deadline(options.run.duration_s);
+  auto client = StreamClient::connect(address, kConnectTimeout);
+  if (client) {
+    watch_daemon(std::move(*client), address, deadline, *screen);
+  } else {
+    watch_devices(config, client.error().message, deadline, *screen);
+  }
+}
+
+}  // namespace
+
+void add_sensors_watch(CLI::App& sensors) {
+  CLI::App* command = sensors.add_subcommand("watch", "a live table of what the sensors say, or their raw messages");
+  command->footer(
+      "Asks the running daemon over its stream, so that nothing is opened twice; where no daemon runs, it opens the\n"
+      "configured sensors itself. Away from a terminal it prints table after table.\n"
+      "The table: m/s, gust and from (degrees) as the sensor says them; age of the last reading; the interval "
+      "measured\n"
+      "between two; frames (messages from the device), readings among them, and how often the device came again.\n"
+      "  yuragi sensors watch --raw roof                            every message to and from its device\n"
+      "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
+  auto options = std::make_shared<WatchOptions>();
+  options->run.add_to(*command);
+  command->add_flag("--once", options->once, "print one table, or one message, and end");
+  command->add_flag("--raw", options->raw, "the messages to and from the devices, as they come");
+  command->add_option("sensor", options->sensor, "with --raw: of this one only")->option_text("[SENSOR]");
+  command->add_flag("--hex", options->hex,
+                    "with --raw: hexadecimal digits alone, a message a line, for `yuragi decode --hex`");
+  command->callback([options] { watch(*options); });
+}
+
+}  // namespace yuragi

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/clock.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+/// An input of the machine's sound system.
+struct AudioDevice {
+  std::string name;
+  std::string host_api;  ///< "ALSA", "JACK Audio Connection Kit"
+  std::size_t channels = 0;
+  double rate_hz = 0.0;  ///< what it prefers
+  bool is_default = false;
+};
+
+struct AudioChoice {
+  std::string device;        ///< a part of the name, in any case; empty: the default input
+  std::string host_api;      ///< likewise; empty: any
+  std::size_t channels = 1;  ///< 1 to kAudioMaxChannels
+  double rate_hz = 0.0;      ///< 0: what the device prefers
+};
+
+inline constexpr std::size_t kAudioMaxChannels = 4;
+inline constexpr std::size_t kAudioBlockFrames = 128;
+
+/// A piece of what came, as the sound system handed it over.
+struct AudioBlock {
+  std::int64_t end_mono_ns = 0;   ///< when its last frame was at the microphone, by the sound system's word
+  std::uint64_t end_frame = 0;    ///< frames since the stream began, lost ones included
+  std::uint32_t lost_frames = 0;  ///< just before it
+  std::uint32_t frames = 0;
+  std::array<float, kAudioBlockFrames * kAudioMaxChannels> samples{};  ///< frame after frame
+};
+
+/// The one sound input of a process. A test may put another in its place. Thread-safe: no.
+class AudioInput {
+ public:
+  virtual ~AudioInput() = default;
+
+  /// The devices that were there when the process asked first: PortAudio's list is frozen from then on.
+  virtual Result<std::vector<AudioDevice>, Failure> list() = 0;
+
+  /// Opens and starts; what was opened. The failure says what is missing and what there is instead.
+  virtual Result<AudioDevice, Failure> open(const AudioChoice& choice, const Clock& clock) = 0;
+
+  /// The next piece; false: none has come yet.
+  virtual bool take(AudioBlock& block) = 0;
+
+  /// False: the stream has ended by itself. True says little: a device that is gone may leave a stream that never says
+  /// so.
+  virtual bool is_running() = 0;
+};
+
+/// The real one, by PortAudio (19). `clock` must outlive the stream, and be realtime-safe.
+std::unique_ptr<AudioInput> make_portaudio_input();
+
+}  // namespace yuragi

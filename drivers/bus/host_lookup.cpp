@@ -1,0 +1,88 @@
+#include "drivers/bus/host_lookup.hpp"
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+
+#include <boost/asio/io_context.hpp>
+
+namespace yuragi {
+namespace {
+
+using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
+using LookupAnswer = Result<Endpoints, Failure>;
+
+/// Asks the system. Blocks.
+LookupAnswer ask_system(const std::string& host, std::uint16_t port) {
+  boost::asio::io_context context;
+  boost::asio::ip::tcp::resolver resolver(context);
+  boost::system::error_code error;
+  Endpoints endpoints;
+  for (const auto& entry : resolver.resolve(host, std::to_string(port), error)) endpoints.push_back(entry.endpoint());
+  if (!endpoints.empty()) return endpoints;
+  return Failure{"no host \"" + host + "\" (" + error.message() +
+                 "): check its name, and that this machine reaches its name server; an address needs neither"};
+}
+
+}  // namespace
+
+/// Shared with the thread, which may outlive whoever asked.
+struct HostLookup::State {
+  std::string host;
+  std::uint16_t port = 0;
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool is_under_way = false;
+  bool is_interrupted = false;
+  std::optional<LookupAnswer> answer;
+};
+
+HostLookup::HostLookup(std::string host, std::uint16_t port) : state_(std::make_shared<State>()) {
+  state_->host = std::move(host);
+  state_->port = port;
+}
+
+LookupAnswer HostLookup::find(Nanoseconds timeout) {
+  // An address needs no name server.
+  boost::system::error_code no_address;
+  const auto address = boost::asio::ip::make_address(state_->host, no_address);
+  if (!no_address) return Endpoints{{address, state_->port}};
+
+  std::unique_lock lock(state_->mutex);
+  if (state_->is_interrupted) return Failure{"interrupted"};
+  if (!state_->is_under_way && !state_->answer) {
+    try {
+      std::thread([state = state_] {
+        LookupAnswer answer = ask_system(state->host, state->port);
+        const std::lock_guard guard(state->mutex);
+        state->answer = std::move(answer);
+        state->is_under_way = false;
+        state->changed.notify_all();
+      }).detach();
+      state_->is_under_way = true;
+    } catch (const std::system_error& error) {
+      return Failure{"cannot look up \"" + state_->host + "\" (" + error.what() + ")"};
+    }
+  }
+
+  state_->changed.wait_for(lock, timeout, [this] { return state_->answer || state_->is_interrupted; });
+  if (state_->is_interrupted) return Failure{"interrupted"};
+  if (!state_->answer) {
+    return Failure{"no name server tells the address of \"" + state_->host +
+                   "\": check the network; an address in place of the name needs none"};
+  }
+  LookupAnswer answer = std::move(*state_->answer);
+  state_->answer.reset();
+  return answer;
+}
+
+void HostLookup::interrupt() noexcept {
+  const std::lock_guard lock(state_->mutex);
+  state_->is_interrupted = true;
+  state_->changed.notify_all();
+}
+
+}  // namespace yuragi

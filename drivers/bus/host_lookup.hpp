@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// The addresses of a host name. The system's own look-up cannot be ended, and waits for a name server for as long as
+/// it likes: here it has a thread to itself, which is left behind where it takes too long.
+///
+/// Thread-safe: interrupt() alone; everything else belongs to one thread.
+class HostLookup {
+ public:
+  HostLookup(std::string host, std::uint16_t port);
+
+  /// The addresses, best first, at least one. After a failure it can be called again: a look-up that is still under
+  /// way is waited for, not begun anew.
+  Result<std::vector<boost::asio::ip::tcp::endpoint>, Failure> find(Nanoseconds timeout);
+
+  /// Ends a find() that waits, and all later ones.
+  void interrupt() noexcept;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace yuragi

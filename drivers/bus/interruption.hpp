@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// What came of waiting for a descriptor.
+enum class WaitEnd : std::uint8_t {
+  kReady,        ///< it can be read (or written), or has an error to tell
+  kTimeout,      ///< not within the time
+  kInterrupted,  ///< set() was called
+};
+
+/// What to wait for.
+enum class WaitFor : std::uint8_t { kReadable, kWritable };
+
+/// Lets another thread end whatever a port waits for, now and from then on.
+///
+/// Thread-safe: yes. Throws std::system_error where the process has no descriptors left.
+class Interruption {
+ public:
+  Interruption();
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  void set() noexcept;
+  bool is_set() const noexcept;
+
+  /// Waits for `descriptor`, or, if that is -1, for the interruption alone.
+  WaitEnd wait(int descriptor, WaitFor what, Nanoseconds timeout) const noexcept;
+
+ private:
+  int event_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace yuragi {
+
+/// The level of a calm, as a low percentile of all levels of the recent past: the running minimum of a noise estimator
+/// (Martin 2001, "Noise power spectral density estimation based on optimal smoothing and minimum statistics"), made of
+/// a histogram that forgets, so that it costs the same for an hour and for a week.
+///
+/// A wind that never dies down within the memory raises it; that costs little as long as the wind gusts, since a lull
+/// of half the speed has a sixteenth of the power, and nothing where a fixed floor is given instead.
+/// Thread-safe: no. Realtime-safe: yes.
+class MicNoiseFloor {
+ public:
+  /// `memory_s`: how long until a level is forgotten to a third.
+  explicit MicNoiseFloor(double memory_s) noexcept : memory_s_(memory_s) {}
+
+  /// Level in dB re full scale, held for `duration_s`.
+  void add(double level_db, double duration_s) noexcept;
+
+  /// The floor in dB; nothing until a minute has been heard.
+  std::optional<double> floor_db() const noexcept;
+
+ private:
+  static constexpr double kLowest_db = -140.0;
+  static constexpr double kBin_db = 0.25;
+  static constexpr std::size_t kBins = 640;
+
+  double memory_s_;
+  double total_s_ = 0.0;
+  std::array<double, kBins> weight_s_{};
+};
+
+}  // namespace yuragi

@@ -1,0 +1,130 @@
+#include "engine/wind/gust_noise.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/math/philox.hpp"
+#include "engine/noise/spectral_noise.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kTurn_rad = 1.0;  // of the second tile
+/// The way repeats after so many tiles: one octave above its shortest waves the tiles begin.
+constexpr double kTilesPerWay = static_cast<double>(std::size_t{1} << GustNoise::kWayOctaves);
+constexpr std::size_t kWaySamples = std::size_t{4} << GustNoise::kWayOctaves;
+constexpr double kBeta = 5.0 / 3.0;
+
+/// What reading between samples leaves of an octave's standard deviation, measured at places at random.
+template <class Tile, class PlaceAt>
+double read_deviation(const Tile& tile, PlaceAt place_at) {
+  constexpr std::uint64_t kPlaces = 1 << 14U;
+  const RandomStream random(1, stream_id("gust noise: where an octave is measured"));
+  double squares = 0.0;
+  for (std::uint64_t i = 0; i < kPlaces; ++i) {
+    const auto [x, z] = random.uniform_pair(i);
+    const auto value = static_cast<double>(read_noise(tile, place_at(x, z)));
+    squares += value * value;
+  }
+  return std::sqrt(squares / static_cast<double>(kPlaces));
+}
+
+std::uint32_t phase_of(double part) noexcept {
+  return static_cast<std::uint32_t>(part * 4294967296.0);
+}
+
+NoiseTile2 tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
+  const double cycles = std::ldexp(1.0, static_cast<int>(octave));
+  NoiseTile2 tile =
+      make_noise_2d({.size = samples, .beta = kBeta, .seed = seed, .from_cycles = cycles, .to_cycles = 2.0 * cycles})
+          .value();
+  const double deviation = read_deviation(tile, [](double x, double z) {
+    return TorusPhase{phase_of(x), phase_of(z)};
+  });
+  for (float& value : tile.values) value = static_cast<float>(static_cast<double>(value) / deviation);
+  return tile;
+}
+
+NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
+  const double cycles = std::ldexp(1.0, static_cast<int>(octave));
+  NoiseTile1 tile =
+      make_noise_1d(
+          {.size = kWaySamples, .beta = kBeta, .seed = seed, .from_cycles = cycles, .to_cycles = 2.0 * cycles})
+          .value();
+  const double deviation = read_deviation(tile, [](double x, double) { return phase_of(x); });
+  for (float& value : tile.values) value = static_cast<float>(static_cast<double>(value) / deviation);
+  return tile;
+}
+
+}  // namespace
+
+GustNoise::GustNoise(const GustNoiseSettings& settings)
+    : periods_m_{settings.period_m, std::numbers::phi * settings.period_m},
+      along_(make_component(settings, settings.seed ^ stream_id("gusts along the wind"))),
+      across_(make_component(settings, settings.seed ^ stream_id("gusts across the wind"))) {
+  // The octaves of the way, then those of the tiles. The first tile's and the second's overlap, and share.
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  std::size_t next = 0;
+  for (std::size_t which = 0; which < 2; ++which) {
+    for (std::size_t octave = 0; octave < kWayOctaves; ++octave) {
+      const double from = kTurn / (kTilesPerWay * periods_m_[which]) * std::ldexp(1.0, static_cast<int>(octave));
+      octaves_[next++] = {from, 2.0 * from, 0.5};
+    }
+  }
+  for (std::size_t which = 0; which < 2; ++which) {
+    for (std::size_t octave = 0; octave < kTileOctaves; ++octave) {
+      const double from = kTurn / periods_m_[which] * std::ldexp(1.0, static_cast<int>(octave));
+      octaves_[next++] = {from, 2.0 * from, 0.5};
+    }
+  }
+}
+
+GustNoise::Component GustNoise::make_component(const GustNoiseSettings& settings, std::uint64_t seed) {
+  Component component;
+  for (std::size_t which = 0; which < 2; ++which) {
+    for (std::size_t octave = 0; octave < kTileOctaves; ++octave) {
+      component.tiles[which].push_back(tile_octave(octave, settings.samples, seed + 100 * which + octave));
+    }
+    for (std::size_t octave = 0; octave < kWayOctaves; ++octave) {
+      component.ways[which].push_back(way_octave(octave, seed + 100 * which + octave));
+    }
+  }
+  return component;
+}
+
+void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, double dt_s) const noexcept {
+  const double c = std::cos(kTurn_rad);
+  const double s = std::sin(kTurn_rad);
+  carried.first.x.add(east_m_s * dt_s, periods_m_[0]);
+  carried.first.z.add(south_m_s * dt_s, periods_m_[0]);
+  carried.second.x.add((c * east_m_s + s * south_m_s) * dt_s, periods_m_[1]);
+  carried.second.z.add((c * south_m_s - s * east_m_s) * dt_s, periods_m_[1]);
+  const double way_m = std::hypot(east_m_s, south_m_s) * dt_s;
+  carried.way_first.add(way_m, kTilesPerWay * periods_m_[0]);
+  carried.way_second.add(way_m, kTilesPerWay * periods_m_[1]);
+}
+
+GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m) const noexcept {
+  // A field that has moved by X is read at x - X.
+  const double c = std::cos(kTurn_rad);
+  const double s = std::sin(kTurn_rad);
+  const TorusPhase first =
+      TorusPhase{torus_phase(east_m, periods_m_[0]), torus_phase(south_m, periods_m_[0])} - carried.first.phase();
+  const TorusPhase second = TorusPhase{torus_phase(c * east_m + s * south_m, periods_m_[1]),
+                                       torus_phase(c * south_m - s * east_m, periods_m_[1])} -
+                            carried.second.phase();
+  return {read(along_, first, second, carried), read(across_, first, second, carried)};
+}
+
+std::array<float, GustNoise::kOctaves> GustNoise::read(const Component& component, TorusPhase first, TorusPhase second,
+                                                       const Carried& carried) const noexcept {
+  std::array<float, kOctaves> values{};
+  std::size_t next = 0;
+  for (const NoiseTile1& way : component.ways[0]) values[next++] = read_noise(way, carried.way_first.phase());
+  for (const NoiseTile1& way : component.ways[1]) values[next++] = read_noise(way, carried.way_second.phase());
+  for (const NoiseTile2& tile : component.tiles[0]) values[next++] = read_noise(tile, first);
+  for (const NoiseTile2& tile : component.tiles[1]) values[next++] = read_noise(tile, second);
+  return values;
+}
+
+}  // namespace yuragi

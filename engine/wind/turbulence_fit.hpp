@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace yuragi {
+
+/// How unruly one component of the wind is: von Karman's spectrum, and how the real one differs from it.
+struct Turbulence {
+  double intensity = 0.2;     ///< standard deviation over the mean speed
+  double time_scale_s = 8.0;  ///< integral length scale over the mean speed, L / U
+};
+
+/// What a fit believes before it has seen anything, and goes back to where it sees little.
+struct TurbulencePrior {
+  double intensity = 0.2;  ///< standard deviation over the mean speed
+  double length_m = 57.0;  ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
+  double weight = 10.0;    ///< it counts as so many independent observations
+};
+
+/// Fits turbulence to the readings of one component as they come: a rolling fit that knows the past alone.
+///
+/// It looks at Haar's variances: the mean squares of the differences between neighbouring means over 1, 2, 4 ...
+/// readings. Each is what a reading's averaging leaves of von Karman's spectrum, in closed form but for one integral
+/// that is tabled; intensity and time scale are fitted to all of them by least squares of logarithms. What remains
+/// between the spectrum and each of the scales is kept as a correction, so that the noise above the last scale goes on
+/// from what is measured there. Speeds are divided by the mean speed of their moment, so that a fit outlives a change
+/// of the wind. Source: Allan 1966, Statistics of atomic frequency standards (the variances); von Karman 1948.
+///
+/// Thread-safe: no. Realtime-safe after construction: yes.
+class TurbulenceFit {
+ public:
+  static constexpr std::size_t kScales = 10;
+
+  TurbulenceFit(const TurbulencePrior& prior, double memory_s);
+
+  /// A difference between two neighbouring means of 2^scale readings each, over the mean speed.
+  void add(std::size_t scale, double difference) noexcept;
+
+  /// What has been added fades: so much time has gone by.
+  void forget(double dt_s) noexcept;
+
+  /// Fits anew, for readings that are means over `interval_s` (above 0) in a wind of mean speed `speed_m_s` (above 0).
+  void fit(double interval_s, double speed_m_s) noexcept;
+
+  Turbulence turbulence() const noexcept { return turbulence_; }
+
+  /// By how much the measured power differs from von Karman's at a frequency: 1 where nothing is known.
+  double correction(double frequency_hz) const noexcept;
+
+ private:
+  TurbulencePrior prior_;
+  double memory_s_;
+  std::array<double, kScales> squares_{};
+  std::array<double, kScales> counts_{};
+  Turbulence turbulence_;
+  std::array<double, kScales> log_correction_{};
+  double interval_s_ = 1.0;
+  std::size_t scales_used_ = 0;
+};
+
+/// The part of von Karman's variance of u between two frequencies (the upper may be infinite).
+double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexcept;
+
+/// Haar's variance over the variance of a von Karman spectrum: the mean square of the difference between two
+/// neighbouring means over tau, for tau / time scale. Tabled and interpolated, within 1 % from 1e-3 to 1e3.
+double von_karman_haar_variance(double tau_over_time_scale) noexcept;
+
+}  // namespace yuragi

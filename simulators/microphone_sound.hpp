@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "engine/noise/noise_tile.hpp"
+#include "simulators/faults.hpp"
+#include "simulators/played_wind.hpp"
+
+namespace yuragi::sim {
+
+inline constexpr std::size_t kMicrophoneMaxChannels = 4;
+
+/// Microphones in the wind, and how they hear it. Levels are root mean squares in dB re full scale.
+struct MicrophoneOptions {
+  std::size_t channels = 1;  ///< 1 to kMicrophoneMaxChannels
+  double rate_hz = 48000.0;
+  double exponent = 2.0;            ///< the root mean square grows with the wind to this power
+  double level_at_10_m_s_db = -20;  ///< of the whole wind noise, before it clips
+  double noise_db = -80;            ///< of each microphone's own white noise
+  std::optional<double> voice_db;   ///< somebody speaks; all microphones hear it alike
+  std::optional<double> music_db;   ///< likewise
+  bool has_faces = false;  ///< the microphones face the directions 0, 360 / channels, ... and hear the wind by how it
+                           ///< meets them; else they hear it all the same
+  std::uint64_t seed = 1;
+};
+
+/// The sound at each microphone. The wind's own noise is made at each by itself: pressure with the spectrum f^-7/3
+/// above 5 Hz (Raspet, Webster and Dillion 2006, "Framework for wind noise studies"), so that two microphones hear it
+/// independently. Voices and music reach all of them alike. What is beyond full scale is cut off, as a converter does.
+/// The same options give the same sound, bit for bit. Thread-safe: no.
+class MicrophoneSound {
+ public:
+  /// Throws std::invalid_argument for options out of range.
+  explicit MicrophoneSound(const MicrophoneOptions& options);
+
+  /// Adds `frames` frames to `out`, a sample a channel, while the wind changes evenly to `moment`. kFreeze says the
+  /// last second again and again, kGarbage noise at full scale; the faults of the wind itself are the caller's.
+  void render(const PlayedMoment& moment, std::size_t frames, std::optional<FaultKind> fault, std::vector<float>& out);
+
+ private:
+  using Amplitudes = std::array<double, kMicrophoneMaxChannels>;
+
+  Amplitudes amplitudes_of(const PlayedMoment& moment) const;
+  double voice_at(double time_s);
+  double music_at(double time_s) const;
+
+  MicrophoneOptions options_;
+  std::vector<NoiseTile1> wind_;  ///< of each channel
+  std::mt19937_64 random_;
+  Amplitudes amplitudes_{};
+  double voice_phase_ = 0.0;
+  std::uint64_t frame_ = 0;
+  std::vector<float> last_second_;  ///< a ring of frames
+  std::uint64_t replayed_ = 0;
+};
+
+}  // namespace yuragi::sim

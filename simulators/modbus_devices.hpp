@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulators/played_wind.hpp"
+
+namespace yuragi::sim {
+
+/// The air, as devices report it.
+struct ModbusAir {
+  double speed_m_s = 0.0;
+  double direction_deg = 0.0;  ///< where it comes from
+  double gust_m_s = 0.0;       ///< the strongest of the last seconds
+  double lull_m_s = 0.0;       ///< the weakest of them
+  double mean_m_s = 0.0;
+};
+
+/// What stands in the registers of a device: 16 bits at an address as it goes on the wire.
+class ModbusRegisterBank {
+ public:
+  void set(int address, double value);      ///< as a whole number of 16 bits, negative ones in two's complement
+  void set_two(int address, double value);  ///< as a whole number of 32 bits in two registers, the high one first
+  void set_float(int address, double value);
+  void set_bits(int address, std::uint16_t bits) { registers_[static_cast<std::uint16_t>(address)] = bits; }
+
+  /// Empty: there is no such register.
+  std::optional<std::uint16_t> at(std::uint16_t address) const;
+
+ private:
+  std::map<std::uint16_t, std::uint16_t> registers_;
+};
+
+/// One slave of a simulated bus.
+struct ModbusSlave {
+  std::uint8_t id = 1;
+  std::uint8_t function = 3;  ///< the only one that it knows: 3 or 4
+  void (*measure)(const ModbusAir& air, ModbusRegisterBank& registers) = nullptr;
+  /// A register whose reading clears lull, mean and gust; 0 where there is none.
+  std::uint16_t clearing_register = 0;
+};
+
+/// The names that devices are known by.
+std::vector<std::string> modbus_device_names();
+
+/// The slaves of a device: "NAME", or "NAME@ID" with the id of its first one; those of a device of several follow it.
+/// Throws std::runtime_error for a name that nobody has and an id that no slave can have.
+std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id);
+
+}  // namespace yuragi::sim

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace yuragi::sim {
+
+// Modbus from the slave's side, byte by byte: the faults need answers that no library would give.
+// Source: MODBUS Application Protocol V1.1b3 (sections 4, 6, 7); MODBUS over Serial Line V1.02 (2.5.1, 6.2.2); MODBUS
+// Messaging on TCP/IP V1.0b (3.1.3).
+
+using ModbusBytes = std::vector<std::uint8_t>;
+
+inline constexpr std::uint8_t kIllegalFunction = 1;
+inline constexpr std::uint8_t kIllegalAddress = 2;
+inline constexpr std::uint8_t kIllegalValue = 3;
+inline constexpr std::uint8_t kDeviceFailure = 4;
+inline constexpr std::uint8_t kGatewayTargetSilent = 11;
+
+/// What a master asks.
+struct ModbusQuestion {
+  std::uint16_t transaction = 0;  ///< TCP only
+  std::uint8_t unit = 0;
+  std::uint8_t function = 0;
+  std::uint16_t address = 0;  ///< for functions 1 to 4 alone; else whatever stands there
+  std::uint16_t count = 0;
+};
+
+/// Takes the first whole question out of what a TCP client has sent; nothing if it is not all there yet. What cannot be
+/// Modbus empties `incoming`.
+std::optional<ModbusQuestion> take_tcp_question(ModbusBytes& incoming);
+
+/// The same for a serial line: what has no right sum is passed over byte by byte.
+std::optional<ModbusQuestion> take_rtu_question(ModbusBytes& incoming);
+
+/// The part of an answer that both framings carry: these registers.
+ModbusBytes registers_answer(std::uint8_t function, std::span<const std::uint16_t> registers);
+ModbusBytes exception_answer(std::uint8_t function, std::uint8_t code);
+
+ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& answer);
+ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& answer);
+
+}  // namespace yuragi::sim

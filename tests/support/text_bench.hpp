@@ -1,0 +1,133 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <poll.h>
+
+#include "drivers/bus/byte_port.hpp"
+#include "drivers/sensor.hpp"
+#include "simulators/text_simulator.hpp"
+#include "tests/support/manual_clock.hpp"
+#include "tests/support/recording_sink.hpp"
+
+namespace yuragi {
+
+/// The real port, whose waits the test shortens: its time is not the machine's.
+class ImpatientPort final : public BytePort {
+ public:
+  ImpatientPort(std::unique_ptr<BytePort> port, const Nanoseconds& patience)
+      : port_(std::move(port)), patience_(patience) {}
+
+  Result<void, Failure> open() override { return port_->open(); }
+  void close() noexcept override { port_->close(); }
+  ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
+    return port_->read(buffer, std::min(timeout, patience_));
+  }
+  bool write(std::span<const std::uint8_t> bytes) override { return port_->write(bytes); }
+  void interrupt() noexcept override { port_->interrupt(); }
+
+ private:
+  std::unique_ptr<BytePort> port_;
+  const Nanoseconds& patience_;
+};
+
+/// The real wire, which tells when something is said.
+class ToldWire final : public sim::TextWire {
+ public:
+  ToldWire(std::unique_ptr<sim::TextWire> wire, bool& has_spoken) : wire_(std::move(wire)), has_spoken_(has_spoken) {}
+
+  std::span<const sim::FaultKind> known_faults() const override { return wire_->known_faults(); }
+  std::vector<int> descriptors() const override { return wire_->descriptors(); }
+  std::string read(std::span<const int> ready) override { return wire_->read(ready); }
+  void write(std::string_view bytes) override {
+    has_spoken_ = true;
+    wire_->write(bytes);
+  }
+  void take_away() override { wire_->take_away(); }
+  void bring_back() override { wire_->bring_back(); }
+  std::string place() const override { return wire_->place(); }
+
+ private:
+  std::unique_ptr<sim::TextWire> wire_;
+  bool& has_spoken_;
+};
+
+/// A wind that stands still.
+class StillWind final : public sim::PlayedWind {
+ public:
+  explicit StillWind(sim::PlayedMoment moment) : moment_(moment) {}
+  sim::PlayedMoment at(double /*time_s*/) override { return moment_; }
+
+ private:
+  sim::PlayedMoment moment_;
+};
+
+/// A driver and a simulator with a real wire between them, in a time that the test makes: the seconds pass as fast as
+/// the machine carries the bytes.
+class TextBench {
+ public:
+  /// What stands between the two: a wire's faults are tried by its `know`.
+  std::unique_ptr<sim::TextWire> told(std::unique_ptr<sim::TextWire> wire) {
+    return std::make_unique<ToldWire>(std::move(wire), has_spoken_);
+  }
+  std::unique_ptr<BytePort> port(const BytePortAddress& address) {
+    return std::make_unique<ImpatientPort>(make_byte_port(address), patience_);
+  }
+
+  void put(std::unique_ptr<sim::TextSimulator> simulator, std::unique_ptr<Sensor> sensor) {
+    simulator_ = std::move(simulator);
+    sensor_ = std::move(sensor);
+  }
+
+  /// Lets both live for so long. The readings and refusals of before are forgotten.
+  void run(double duration_s, std::optional<sim::FaultKind> fault = {}) {
+    sink.readings.clear();
+    sink.refusals.clear();
+    for (double end_s = time_s_ + duration_s; time_s_ < end_s;) step(fault);
+  }
+  /// Lets both live until something holds; false if it does not within `limit_s`.
+  template <class Condition>
+  bool run_until(double limit_s, std::optional<sim::FaultKind> fault, Condition&& holds) {
+    for (const double end_s = time_s_ + limit_s; time_s_ < end_s && !holds();) step(fault);
+    return holds();
+  }
+
+  ManualClock clock;
+  RecordingSink sink;
+
+ private:
+  static constexpr double kStep_s = 0.02;
+
+  void step(std::optional<sim::FaultKind> fault) {
+    time_s_ += kStep_s;
+    clock.advance(from_seconds(kStep_s));
+
+    std::vector<pollfd> waits;
+    for (const int descriptor : simulator_->descriptors()) waits.push_back({descriptor, POLLIN, 0});
+    poll(waits.data(), waits.size(), 0);
+    std::vector<int> ready;
+    for (const pollfd& wait : waits) {
+      if (wait.revents != 0) ready.push_back(wait.fd);
+    }
+    has_spoken_ = false;
+    simulator_->serve(ready, time_s_, fault);
+
+    // What was said is on its way, and arrives in this step also on a machine that has other things to do.
+    patience_ = has_spoken_ ? std::chrono::milliseconds(100) : std::chrono::microseconds(200);
+    sensor_->poll(clock, sink);
+    patience_ = std::chrono::microseconds(200);
+    sensor_->poll(clock, sink);
+  }
+
+  std::unique_ptr<sim::TextSimulator> simulator_;
+  std::unique_ptr<Sensor> sensor_;
+  Nanoseconds patience_ = std::chrono::milliseconds(1);
+  bool has_spoken_ = false;
+  double time_s_ = 0.0;
+};
+
+}  // namespace yuragi
