@@ -32,6 +32,7 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
   if (talk.now() < next_step_) return look_after(talk);
 
   const Result<StationStep, Failure> step = station_->step(talk);
+  if (is_interrupted_) return talk.now();  // whatever the step says, it was cut short
   if (!step) {
     const std::string& why = step.error().message;
     return Failure{name_ + (why.empty() ? " is gone: plug it in again" : " " + why)};
@@ -48,6 +49,11 @@ Result<MonoTime, Failure> HidSensor::look_after(HidTalk& talk) {
   if (message.status == HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};
   if (message.status == HidStatus::kReport) talk.refuse(Refusal::kNotMine);
   return std::min(next_step_, talk.now() + kLookAfterEvery);
+}
+
+void HidSensor::interrupt() noexcept {
+  is_interrupted_ = true;
+  device_->interrupt();
 }
 
 void HidSensor::close() noexcept {

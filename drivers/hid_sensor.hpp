@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -19,7 +20,7 @@ class HidSensor final : public ReopeningSensor {
   HidSensor(std::span<const StationKind> kinds, HidPlace place, const StationTiming& timing, std::uint32_t seed,
             std::unique_ptr<HidDevice> device);
 
-  void interrupt() noexcept override { device_->interrupt(); }
+  void interrupt() noexcept override;
 
  protected:
   Result<MonoTime, Failure> open(const Clock& clock) override;
@@ -36,6 +37,7 @@ class HidSensor final : public ReopeningSensor {
   std::unique_ptr<HidStation> station_;  ///< while the device is open
   std::string name_;                     ///< of the open station and its place
   MonoTime next_step_{};
+  std::atomic<bool> is_interrupted_ = false;
 };
 
 }  // namespace yuragi

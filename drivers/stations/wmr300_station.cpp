@@ -1,5 +1,6 @@
-// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, for as long as it gets a heartbeat
-// every 20 s and each data packet is acknowledged. Packets: drivers/decode/wmr300.hpp. Source:
+// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, once it was told to begin and for as
+// long as it gets a heartbeat every 20 s and each data packet is acknowledged. Packets: drivers/decode/wmr300.hpp.
+// Source:
 // ../shared/sensors.md 2.2; weewx wmr300.py (a console that has fallen silent comes back when the device is opened
 // again).
 #include "drivers/decode/wmr300.hpp"
@@ -14,17 +15,6 @@ constexpr Nanoseconds kWmr300Listen = std::chrono::milliseconds(500);
 constexpr Nanoseconds kWmr300HeartbeatEvery = seconds(20);
 constexpr Nanoseconds kWmr300NoWind = seconds(15);  // five winds that did not come
 constexpr Nanoseconds kWmr300GiveUp = seconds(60);  // of silence; then the device is opened again
-
-/// Is it whole and undamaged, whatever it says? Data packets end with the sum of their bytes, either byte of it first;
-/// the others have none.
-bool is_sound(ByteSpan packet) {
-  constexpr std::size_t kSum = 2;
-  if (!wants_wmr300_acknowledgement(packet)) return packet.size() > 2 && (packet[0] == 'W' || packet[0] == 'A');
-  const std::size_t size = packet[1];
-  if (size < kSum || size > packet.size()) return false;
-  const std::uint16_t sum = sum_16(packet.first(size - kSum));
-  return sum == big_endian_16(packet, size - kSum) || sum == little_endian_16(packet, size - kSum);
-}
 
 class Wmr300Station final : public HidStation {
  public:
@@ -49,19 +39,27 @@ class Wmr300Station final : public HidStation {
   }
 
  private:
-  /// A packet came. False: the device went while it was acknowledged.
+  /// A packet came. False: the device went while it was answered.
   bool take(ByteSpan packet, HidTalk& talk, StationStep& step) {
-    const auto wind = decode_wmr300(packet);
-    if (is_sound(packet)) heard_ = step.next;
+    const bool is_sound = is_sound_wmr300(packet);
+    if (is_sound) heard_ = step.next;
+    if (!wants_wmr300_acknowledgement(packet)) {
+      if (!is_sound) talk.refuse(Refusal::kMalformed);
+      // It says who it is. If no data came since the heartbeat before, it wants to be told to begin.
+      const bool is_idle = step.next - data_ > timing_.paced(kWmr300HeartbeatEvery) / 2;
+      return !is_wmr300_identity(packet) || !is_idle || talk.send(encode_wmr300_begin(packet));
+    }
+
     const auto acknowledgement = encode_wmr300_acknowledgement(packet);
-    const bool is_due = wants_wmr300_acknowledgement(packet);
+    const auto wind = decode_wmr300(packet);
+    if (is_sound) data_ = step.next;
     if (!wind) {
       talk.refuse(wind.error());
     } else if (talk.publish(*wind)) {
       wind_ = step.next;
       step.health = StationHealth::kWell;
     }
-    return !is_due || talk.send(acknowledgement);
+    return talk.send(acknowledgement);
   }
 
   Result<StationStep, Failure> miss_the_wind(HidTalk& talk, StationStep step) {
@@ -81,6 +79,7 @@ class Wmr300Station final : public HidStation {
   StationTiming timing_;
   MonoTime next_heartbeat_{};
   MonoTime heard_{};  ///< the last packet that made sense
+  MonoTime data_{};   ///< the last of them that is no mere answer
   MonoTime wind_{};   ///< the last wind
 };
 

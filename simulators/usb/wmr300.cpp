@@ -1,9 +1,9 @@
 // Oregon Scientific WMR300 (0fde:ca08). Source: weewx wmr300.py (its comment).
 //
-// Interrupt end points of 64 bytes both ways. Says nothing before a heartbeat (a6 91 ca 45 52), and stops 100 s after
-// the last heartbeat or acknowledgement (41 43 4b kind channel). Each heartbeat is answered with who it is (57 4d 52 33
-// 30 30 ...). A packet: its kind, length, five bytes of date and time, channel, ..., the sum of all before, high byte
-// first.
+// Interrupt end points of 64 bytes both ways. Each heartbeat (a6 91 ca 45 52) is answered with who it is (57 4d 52 33
+// 30 30 ...). Sends no data before 73 e5 0a 26 and two bytes of that answer, which it acknowledges, and none 100 s
+// after the last heartbeat or acknowledgement (41 43 4b kind channel). A packet: its kind, length, five bytes of date
+// and time, channel, ..., the sum of all before, high byte first.
 //
 //   every     packet
 //   2.75 s    d4 wind, 54 bytes, big-endian from 8 on: gust 0.1 m/s, its direction, average 0.1 m/s, its direction
@@ -21,6 +21,7 @@ namespace {
 constexpr std::array kWmr300Faults = {FaultKind::kSilence, FaultKind::kFreeze,  FaultKind::kSpike,
                                       FaultKind::kGarbage, FaultKind::kPartial, FaultKind::kBadChecksum};
 constexpr std::array<std::uint8_t, 5> kHeartbeat = {0xA6, 0x91, 0xCA, 0x45, 0x52};
+constexpr std::array<std::uint8_t, 6> kBegin = {0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1};
 constexpr std::array<std::uint8_t, 3> kAcknowledgement = {0x41, 0x43, 0x4B};
 constexpr UsbBytes::size_type kWmr300Report = 64;
 constexpr double kRunsOnFor_s = 100.0;
@@ -51,7 +52,7 @@ class Wmr300 final : public HidModel {
  protected:
   void play() override {
     gust_m_s_ = std::max(gust_m_s_, wind().speed_m_s);
-    const bool speaks = heard_s_ && now_s() < *heard_s_ + paced(kRunsOnFor_s) && !suffers(FaultKind::kSilence);
+    const bool speaks = has_begun_ && now_s() < heard_s_ + paced(kRunsOnFor_s) && !suffers(FaultKind::kSilence);
     for (std::size_t i = 0; i < kPacketKinds.size(); ++i) {
       if (now_s() < next_s_[i]) continue;
       next_s_[i] = std::max(next_s_[i] + paced(kPacketKinds[i].every_s), now_s());
@@ -66,7 +67,10 @@ class Wmr300 final : public HidModel {
     if (begins_with(kHeartbeat)) {
       heard_s_ = now_s();
       if (!suffers(FaultKind::kSilence)) say_packet(who_it_is());
-    } else if (begins_with(kAcknowledgement) && heard_s_) {
+    } else if (begins_with(kBegin)) {
+      has_begun_ = true;
+      if (!suffers(FaultKind::kSilence)) say_packet({0x41, 0x43, 0x4B, 0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1});
+    } else if (begins_with(kAcknowledgement)) {
       heard_s_ = now_s();
     }
     return true;
@@ -114,7 +118,8 @@ class Wmr300 final : public HidModel {
     say(std::move(bytes));
   }
 
-  std::optional<double> heard_s_;  ///< the last word from the host; nothing before the first heartbeat
+  bool has_begun_ = false;
+  double heard_s_ = 0.0;  ///< the last word from the host
   std::array<double, kPacketKinds.size()> next_s_{};
   double gust_m_s_ = 0.0;  ///< since the last wind packet
 };

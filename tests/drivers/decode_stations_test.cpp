@@ -93,6 +93,26 @@ TEST(Wmr300Packet, IsRefusedInGrades) {
   EXPECT_TRUE(is_refused_as(decode_wmr300(wmr300_packet(20, 1201, 90)), Refusal::kImplausible));
 }
 
+TEST(Wmr300Identity, IsAnsweredByItsOwnTwoBytes) {
+  // weewx wmr300.py: 57 ... 88 8b 00 00 and the packet 73 e5 0a 26 88 8b.
+  const auto identity = hex_bytes("57 4d 52 33 30 30 2c 41 30 30 32 2c 88 8b 00 00 2c 2f b5 2c 4b 2c 52 2c");
+  ASSERT_TRUE(is_wmr300_identity(identity));
+  EXPECT_EQ(bytes_from(encode_wmr300_begin(identity)), hex_bytes("73 e5 0a 26 88 8b"));
+  EXPECT_FALSE(is_wmr300_identity(ByteSpan(identity).first(13)));
+  EXPECT_FALSE(is_wmr300_identity(wmr300_packet(20, 10, 90)));
+}
+
+TEST(Wmr300Packet, IsSoundIfItsSumIsRight) {
+  auto packet = wmr300_packet(20, 10, 90);
+  EXPECT_TRUE(is_sound_wmr300(packet));
+  EXPECT_FALSE(is_sound_wmr300(ByteSpan(packet).first(53)));
+  packet[20] = 1;
+  EXPECT_FALSE(is_sound_wmr300(packet));
+  EXPECT_TRUE(is_sound_wmr300(hex_bytes("41 43 4b 73 e5 0a 26 0e c1")));
+  EXPECT_FALSE(is_sound_wmr300(hex_bytes("41 43 4c")));
+  EXPECT_FALSE(is_sound_wmr300({}));
+}
+
 TEST(Wmr300Vectors, OfTheSharedCollectionDecodeAsTheySay) {
   const auto vectors = test::load_byte_vectors(kStationVectors, "WMR300");
   if (vectors.empty()) GTEST_SKIP() << "../shared/data/vectors/hid_vectors.json is not here";

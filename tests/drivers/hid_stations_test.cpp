@@ -134,10 +134,12 @@ TEST_P(EveryStation, RunsAtAnotherPaceWithItsSimulation) {
 TEST_P(EveryStation, GivesUpAWaitThatIsInterrupted) {
   HidBench bench(GetParam().model);
   bench.run_for(60.0);
+  const std::size_t told = bench.sink.links.size();
   bench.sensor.interrupt();
   const MonoTime before = bench.bus.clock.now().mono;
   bench.sensor.poll(bench.bus.clock, bench.sink);
   EXPECT_EQ(bench.bus.clock.now().mono, before) << "it waited all the same";
+  EXPECT_EQ(bench.sink.links.size(), told) << "a shutdown is no trouble of the station";
 }
 
 // --- what single families do
@@ -150,6 +152,16 @@ TEST(Wmr100Station, AsksAgainWhereTheStartReportWasNotHeard) {
   EXPECT_THAT(bench.sink.last_detail(), HasSubstr("says nothing"));
   bench.run_for(30.0);
   EXPECT_GT(bench.readings(), 0U);
+}
+
+TEST(Wmr300Station, TellsAnIdleConsoleToBeginOnce) {
+  HidBench bench("wmr300");
+  bench.run_for(600.0);
+  EXPECT_EQ(std::ranges::count_if(bench.sink.raws,
+                                  [](const RecordingSink::Raw& raw) {
+                                    return raw.direction == RawDirection::kSent && raw.message[0] == 0x73;
+                                  }),
+            1);
 }
 
 TEST(Wmr300Station, SendsAHeartbeatEvery20SecondsAndAcknowledgesEachPacket) {
@@ -285,6 +297,46 @@ TEST_P(EveryStation, NeverTellsAFalseWindAndAlwaysComesBackUnderRandomFaults) {
     EXPECT_GT(bench.readings(), before) << "seed " << seed;
     EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
   }
+}
+
+// --- devices that are none
+
+/// Says anything, always.
+class Babbler final : public sim::UsbDevice {
+ public:
+  Babbler(std::unique_ptr<sim::UsbDevice> shown, std::uint64_t seed) : shown_(std::move(shown)), random_(seed) {}
+
+  const sim::UsbDescriptors& descriptors() const override { return shown_->descriptors(); }
+  std::span<const FaultKind> known_faults() const override { return {}; }
+  void advance(double, const PlayedMoment&, std::optional<FaultKind>) override {}
+  std::optional<sim::UsbBytes> control(const sim::UsbSetup& setup, std::span<const std::uint8_t>) override {
+    if (random_() % 8 == 0) return std::nullopt;
+    return babble(setup.length);
+  }
+  std::optional<sim::UsbBytes> in(std::uint8_t, std::size_t max_size) override {
+    if (random_() % 4 == 0) return std::nullopt;
+    return babble(max_size);
+  }
+  bool out(std::uint8_t, std::span<const std::uint8_t>) override { return random_() % 8 != 0; }
+
+ private:
+  sim::UsbBytes babble(std::size_t max_size) {
+    sim::UsbBytes bytes(1 + random_() % std::max<std::size_t>(1, max_size));
+    std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
+    return bytes;
+  }
+
+  std::unique_ptr<sim::UsbDevice> shown_;
+  std::mt19937_64 random_;
+};
+
+TEST_P(EveryStation, OutlivesADeviceThatSaysAnything) {
+  HidBench bench(std::make_unique<Babbler>(sim::make_hid_station(GetParam().model), 7),
+                 test::kind_of_model(GetParam().model));
+  bench.run_for(1800.0);
+  EXPECT_GT(bench.sink.refusals.size(), 10U);
+  EXPECT_TRUE(std::ranges::all_of(bench.sink.readings, is_plausible));
+  EXPECT_LE(bench.readings(), 2U) << "sums of 8 bits and marks can be met by chance";
 }
 
 // --- WriteClock

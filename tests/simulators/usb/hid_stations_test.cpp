@@ -1,4 +1,6 @@
 // The simulated HID stations, as a USB host sees them. The expected bytes are the examples of the protocols' sources.
+#include "simulators/usb/hid_stations.hpp"
+
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -8,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "simulators/usb/fineoffset.hpp"
-#include "simulators/usb/hid_stations.hpp"
 
 namespace yuragi::sim {
 namespace {
@@ -183,6 +184,7 @@ TEST(SimulatedWmr100, SpoilsItsFramesAsItIsTold) {
 // --- WMR300
 
 const UsbBytes kWmr300HeartbeatPacket = {0xA6, 0x91, 0xCA, 0x45, 0x52};
+const UsbBytes kWmr300BeginPacket = {0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1};
 
 int winds_in(const std::vector<UsbBytes>& reports) {
   return static_cast<int>(std::ranges::count_if(reports, [](const UsbBytes& report) { return report[0] == 0xD4; }));
@@ -193,9 +195,13 @@ TEST(SimulatedWmr300, AnswersTheHeartbeatAndSendsTheWindEvery2750Milliseconds) {
   host.wind = {2.9, 13.0};
   EXPECT_TRUE(host.listen(10.0).empty());
   EXPECT_TRUE(host.device().out(1, kWmr300HeartbeatPacket));
+  EXPECT_EQ(winds_in(host.listen(10.0)), 0) << "not before it is told to begin";
+  EXPECT_TRUE(host.device().out(1, kWmr300HeartbeatPacket));
+  EXPECT_TRUE(host.device().out(1, kWmr300BeginPacket));
   const auto reports = host.listen(27.5);
   ASSERT_FALSE(reports.empty());
   EXPECT_THAT(UsbBytes(reports[0].begin(), reports[0].begin() + 6), ElementsAre('W', 'M', 'R', '3', '0', '0'));
+  EXPECT_THAT(UsbBytes(reports[1].begin(), reports[1].begin() + 4), ElementsAre('A', 'C', 'K', 0x73));
   EXPECT_EQ(winds_in(reports), 10);
 
   const auto wind = std::ranges::find_if(reports, [](const UsbBytes& report) { return report[0] == 0xD4; });
@@ -210,6 +216,7 @@ TEST(SimulatedWmr300, StopsAHundredSecondsAfterTheLastWordOfTheHost) {
   HostOf host("wmr300");
   host.listen(0.1);
   host.device().out(1, kWmr300HeartbeatPacket);
+  host.device().out(1, kWmr300BeginPacket);
   EXPECT_GT(winds_in(host.listen(95.0)), 30);
   host.device().out(1, UsbBytes{'A', 'C', 'K', 0xD4, 1, 0});
   EXPECT_GT(winds_in(host.listen(95.0)), 30) << "an acknowledgement keeps it talking";
