@@ -12,6 +12,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/labjack.hpp"
 #include "drivers/decode/line.hpp"
+#include "drivers/decode/line_assembler.hpp"
 #include "drivers/decode/mcc1208.hpp"
 #include "drivers/decode/potentiometer_vane.hpp"
 #include "drivers/decode/text_fields.hpp"
@@ -81,6 +82,7 @@ struct UnitDecoderOptions {
 struct UnitFormat {
   std::string_view name;
   bool is_text = true;  ///< lines; otherwise bytes, which come as hexadecimal digits
+  LineEnding ending = LineEnding::kNewline;
   std::string_view unit;
   std::string_view devices;
   std::string_view example;  ///< a command line, without `yuragi decode`

@@ -93,6 +93,7 @@ class ModbusUnitDecoder final : public UnitDecoder {
     take_value(profile_.speed, "speed", decode_speed_m_s, reading.wind.speed_m_s);
     if (profile_.direction)
       take_value(*profile_.direction, "direction", decode_direction_deg, reading.wind.direction_deg);
+    if (profile_.gust) take_value(*profile_.gust, "gust", decode_speed_m_s, reading.wind.gust_m_s);
     if (auto& direction_deg = reading.wind.direction_deg; direction_deg) {
       direction_deg = std::fmod(*direction_deg + profile_.north_offset_deg + 360.0, 360.0);
     }

@@ -71,9 +71,12 @@ std::string script_of(const std::string& file, bool is_svg, std::span<const Plot
       data += "e\n";
     }
     if (commands.empty()) continue;
-    script += commands + "\n" + data;
+    script += commands;
+    script += '\n';
+    script += data;
   }
-  return script + "unset multiplot\nunset output\n";
+  script += "unset multiplot\nunset output\n";
+  return script;
 }
 
 /// Runs gnuplot on a script. False: it is not installed, or not content.

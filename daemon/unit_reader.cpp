@@ -63,7 +63,7 @@ void UnitReader::take_hex_line(const Sink& sink) {
       sink({.bytes = *bytes, .request = *request, .text = text, .why = {}});
     } else {
       // The bytes of text end their lines themselves, or with the message.
-      UnitReader lines(Form::kLines);
+      UnitReader lines(Form::kLines, ending_);
       const auto with_digits = [&](ReadUnit unit) {
         unit.text = text;
         sink(unit);

@@ -32,7 +32,7 @@ class UnitReader {
   };
   using Sink = std::function<void(const ReadUnit&)>;
 
-  explicit UnitReader(Form form) : form_(form) {}
+  UnitReader(Form form, LineEnding ending) : form_(form), ending_(ending), lines_(ending) {}
 
   /// Takes the next bytes of the input and tells `sink` of each message that they end.
   void feed(ByteSpan bytes, const Sink& sink);
@@ -46,6 +46,7 @@ class UnitReader {
   void take_hex_line(const Sink& sink);
 
   Form form_;
+  LineEnding ending_;
   LineAssembler lines_;
   std::string hex_line_;
   bool is_overlong_ = false;

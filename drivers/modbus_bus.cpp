@@ -151,6 +151,11 @@ ModbusBus::Answer ModbusBus::ask(ModbusRequest request, const ModbusPatience& pa
   return answer;
 }
 
+std::size_t ModbusBus::waiting_count() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
 void ModbusBus::wake_waiters() noexcept {
   const std::lock_guard lock(mutex_);
   turn_ended_.notify_all();

@@ -63,6 +63,9 @@ class ModbusBus {
   Answer ask(ModbusRequest request, const ModbusPatience& patience, const WakeEvent& wake, const Clock& clock,
              SensorSink& sink);
 
+  /// How many have asked and not been answered yet.
+  std::size_t waiting_count() const;
+
   /// To be called after a wake event was set, so that whoever waits for his turn with it looks at it.
   void wake_waiters() noexcept;
 

@@ -149,8 +149,8 @@ std::optional<double> NmeaSensor::north_direction_deg(const DecodedWind& wind) c
   } else if (wind.reference != WindReference::kNorth) {
     turn_deg = settings_.north_offset_deg;
   }
-  const double direction_deg = std::fmod(*wind.direction_deg + turn_deg + 720.0, 360.0);
-  return direction_deg < 360.0 ? direction_deg : 0.0;
+  const double turned_deg = std::fmod(*wind.direction_deg + turn_deg, 360.0);
+  return wrapped_direction_deg(turned_deg < 0.0 ? turned_deg + 360.0 : turned_deg);
 }
 
 std::string NmeaSensor::name() const {

@@ -11,4 +11,7 @@ config/setup.sh --test
 [ -d ../shared/data ] || echo "note: ../shared/data is not there: the tests that need its recordings will skip."
 
 stage test test_preset test "$@"
+if [ $# -eq 0 ]; then
+  check "a driver against a fault" /usr/bin/python3 tests/support/fault_table.py build/test/results.xml || true
+fi
 finish

@@ -179,7 +179,8 @@ void decode_input(DecodeCommandOptions& options) {
   };
 
   using Form = UnitReader::Form;
-  UnitReader reader(!options.is_hex ? Form::kLines : format.is_text ? Form::kHexLines : Form::kHexFrames);
+  const Form form = !options.is_hex ? Form::kLines : format.is_text ? Form::kHexLines : Form::kHexFrames;
+  UnitReader reader(form, format.ending);
   for (ByteSpan bytes = input.read_some(); !bytes.empty(); bytes = input.read_some()) reader.feed(bytes, message);
   reader.finish(message);
   text = {};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "daemon/exit.hpp"
+#include "engine/base/units.hpp"
 
 namespace yuragi {
 namespace {
@@ -47,7 +48,7 @@ void DecodeCommandOptions::check() {
                       fmt::format("{} means nothing to {}: it is for {}", option->get_name(), name, formats));
     }
   }
-  take_columns();
+  set_line();
 }
 
 CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string& formats) {
@@ -56,23 +57,22 @@ CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string&
   return option;
 }
 
-/// "-,direction,speed": which quantity stands in which column.
-void DecodeCommandOptions::take_columns() {
-  const TextFields names = split_fields(columns_, ',');
-  LineOptions& line = decoder.line;
-  const std::map<std::string_view, LineQuantity*> quantities = {
-      {"speed", &line.speed}, {"direction", &line.direction}, {"gust", &line.gust}};
-  for (const auto& [name, quantity] : quantities) quantity->column.reset();
-  for (std::size_t column = 0; column < names.count; ++column) {
-    if (names[column] == "-") continue;
-    const auto found = quantities.find(names[column]);
-    if (found == quantities.end() || found->second->column) {
-      throw ExitError(kExitUsage, fmt::format("--columns: '{}' does not work in '{}': name speed, direction and gust, "
-                                              "once each at most, in the order of the columns, with - for any other",
-                                              names[column], columns_));
-    }
-    found->second->column = column;
+/// The driver's keys of the same names mean the same: what reads a log here reads the device there.
+void DecodeCommandOptions::set_line() {
+  if (speed_column_ != 0 && (speed_column_ == direction_column_ || speed_column_ == gust_column_)) {
+    throw ExitError(kExitUsage, "--speed-column: another quantity stands in the same column");
   }
+  const auto column_of = [](unsigned number) {
+    return number > 0 ? std::optional<std::size_t>(number - 1) : std::nullopt;
+  };
+  LineOptions& line = decoder.line;
+  line.speed.column = column_of(speed_column_);
+  line.direction.column = column_of(direction_column_);
+  line.gust.column = column_of(gust_column_);
+  line.speed.scale *= metres_per_second_per_unit_;
+  line.speed.offset *= metres_per_second_per_unit_;
+  line.gust.scale = line.speed.scale;
+  line.gust.offset = line.speed.offset;
 }
 
 void DecodeCommandOptions::add_policies(CLI::App& command) {
@@ -106,14 +106,30 @@ void DecodeCommandOptions::add_line_options(CLI::App& command) {
   const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
     return limit(command.add_option(name, value, help)->option_text(type), "line");
   };
-  add("--columns", columns_, "what stands in which column; - for any other (default speed,direction,gust)", "LIST");
-  add("--separator", line.separator, "of columns (default ,); a blank is any number of blanks and tabs", "CHARACTER");
-  add("--speed-key", line.speed.key, "where lines have keys: the speed's (default speed)", "KEY");
-  add("--direction-key", line.direction.key, "the direction's (default direction)", "KEY");
-  add("--gust-key", line.gust.key, "the gust's (default gust)", "KEY");
-  add("--speed-scale", line.speed.scale, "one unit of the speed in m/s: 0.2777778 for km/h (default 1)", "FACTOR")
-      ->check(CLI::PositiveNumber);
-  add("--gust-scale", line.gust.scale, "the same of the gust", "FACTOR")->check(CLI::PositiveNumber);
+  const auto add_words = [&](const char* name, auto& value, const auto& words, const char* help, const char* type) {
+    limit(add_choice(command, name, value, words, help)->option_text(type), "line");
+  };
+  const std::map<std::string, LineFormat> formats = {
+      {"auto", LineFormat::kAuto}, {"columns", LineFormat::kColumns}, {"keys", LineFormat::kKeys}};
+  const std::map<std::string, char> separators = {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", ' '}};
+  const std::map<std::string, double> units = {
+      {"m/s", 1.0}, {"km/h", kMetresPerSecondPerKmh}, {"kn", kMetresPerSecondPerKnot}, {"mph", kMetresPerSecondPerMph}};
+  add_words("--format", line.format, formats, "auto (the default): keys where the line has '=' or ':'",
+            "auto|columns|keys");
+  add_words("--separator", line.separator, separators,
+            "between columns (default comma); blank: any number of blanks and tabs", "comma|semicolon|tab|blank");
+  add("--speed-column", speed_column_, "the first column is 1, 0 is none (default 1)", "N");
+  add("--direction-column", direction_column_, "the same (default 2)", "N");
+  add("--gust-column", gust_column_, "the same (default 0)", "N");
+  add("--speed-key", line.speed.key, "exact (default speed)", "KEY");
+  add("--direction-key", line.direction.key, "exact (default direction)", "KEY");
+  add("--gust-key", line.gust.key, "exact (default gust)", "KEY");
+  add_words("--speed-unit", metres_per_second_per_unit_, units,
+            "of speed and gust, after scale and offset (default m/s)", "m/s|km/h|kn|mph");
+  add("--speed-scale", line.speed.scale, "speed and gust are the number times this (0.1 for tenths) plus the offset",
+      "FACTOR");
+  add("--speed-offset", line.speed.offset, "in the speed's unit (default 0)", "NUMBER");
+  add("--direction-scale", line.direction.scale, "22.5 for points 0 to 15 (default 1)", "FACTOR");
   add("--invalid", line.invalid, "the number that means no value, -999 say", "NUMBER");
 }
 

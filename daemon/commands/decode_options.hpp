@@ -22,7 +22,7 @@ class DecodeCommandOptions {
   void add_to(CLI::App& command);
 
   /// To be called once the command line has been read. Throws ExitError where an option was given that means nothing
-  /// to the format, or where --columns cannot be.
+  /// to the format, or where two quantities stand in one column.
   void check();
 
  private:
@@ -37,9 +37,12 @@ class DecodeCommandOptions {
   void add_line_options(CLI::App& command);
   void add_modbus_options(CLI::App& command);
   void add_counter_options(CLI::App& command);
-  void take_columns();
+  void set_line();
 
-  std::string columns_ = "speed,direction,gust";
+  unsigned speed_column_ = 1;
+  unsigned direction_column_ = 2;
+  unsigned gust_column_ = 0;
+  double metres_per_second_per_unit_ = 1.0;
   std::vector<Limited> limited_;
 };
 

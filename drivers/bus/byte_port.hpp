@@ -27,16 +27,16 @@ inline constexpr std::array<int, 12> kBytePortBauds = {300,   600,   1200,  2400
 struct BytePortAddress {
   BytePortKind kind = BytePortKind::kSerial;
 
-  std::string path;  ///< serial: best by its stable name under /dev/serial/by-id; file: its path
-  int baud = 9600;   ///< one of kBytePortBauds
+  std::string path = {};  ///< serial: best by its stable name under /dev/serial/by-id; file: its path
+  int baud = 9600;        ///< one of kBytePortBauds
   int data_bits = 8;
   char parity = 'N';  ///< N, E or O
   int stop_bits = 1;
 
-  std::string
-      host;  ///< TCP: name or address to connect to; UDP: the local or multicast address to listen at, empty: any
+  /// TCP: name or address to connect to. UDP: the local or multicast address to listen at; empty: any.
+  std::string host = {};
   std::uint16_t port = 10110;
-  std::string sender;  ///< UDP: take datagrams from this address only; empty: from any
+  std::string sender = {};  ///< UDP: take datagrams from this address only; empty: from any
 
   /// File: from its beginning to its end, once. Otherwise from the first line that is appended to it, for ever, also
   /// when it is cut short or another takes its name. A named pipe is always read for ever, whoever writes into it.

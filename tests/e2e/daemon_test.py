@@ -3,6 +3,7 @@
 
 usage: daemon_test.py FOLDER_OF_PROGRAMS FOLDER_OF_SCHEMA_MODULES
 """
+import json
 import os
 import re
 import signal
@@ -223,6 +224,8 @@ port = {port}
             returned = status.wait_for_sensor(
                 lambda sensor: sensor.Health() == LIVE and sensor.Readings() > lost.Readings() + 3, 30.0)
             self.assertLess(returned.AgeS(), 2.0)
+            self.assertGreaterEqual(returned.Reconnects(), lost.Reconnects() + 1)
+            self.assertGreater(returned.Frames(), lost.Frames())
             watcher.end()
 
         # A follower moves at most 0.37 w e a second: w at most 25 rad/s, and readings that differ by up to 8 m/s (turbulence,
@@ -307,6 +310,76 @@ port = {port}
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("no daemon", done.stdout)
         self.assertIn("simulated", done.stdout)
+
+    def free_address(self):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            return "127.0.0.1:%d" % free.getsockname()[1]
+
+    def test_raw_messages_are_shown_as_they_come(self):
+        config = self.modbus_config(self.start_simulator().address())
+        daemon = self.start_daemon("--config", config)
+        shown = run("sensors", "watch", "--raw", "roof", "--listen", daemon.address(), "--duration", "1.5")
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        self.assertIn("daemon at " + daemon.address(), shown.stderr)
+        lines = shown.stdout.splitlines()
+        self.assertGreater(len(lines), 4)
+        # Transaction, protocol 0, length 6, slave 1, function 3, register 0, one of them; and its answer.
+        asked = [line for line in lines if re.match(r"\d\d:\d\d:\d\d\.\d{3} roof +-> .. .. 00 00 00 06 01 03 00 00 00 01 ", line)]
+        answered = [line for line in lines if re.match(r"\d\d:\d\d:\d\d\.\d{3} roof +<- .. .. 00 00 00 05 01 03 02 ", line)]
+        self.assertTrue(asked and answered, shown.stdout)
+
+        unknown = run("sensors", "watch", "--raw", "mast", "--listen", daemon.address(), "--duration", "5")
+        self.assertEqual(unknown.returncode, 64)
+        self.assertIn("there are: roof", unknown.stderr)
+
+    def test_raw_messages_are_what_decode_reads(self):
+        config = self.modbus_config(self.start_simulator().address())
+        for listen in (self.start_daemon("--config", config).address(), self.free_address()):
+            messages = run("sensors", "watch", "--raw", "roof", "--hex", "--listen", listen, "--config", config, "--duration", "1.5")
+            self.assertEqual(messages.returncode, 0, messages.stderr)
+            path = self.file("roof.hex", messages.stdout)
+            decoded = run("decode", "modbus:" + RENKE, path, "--hex", "--refused")
+            self.assertEqual(decoded.returncode, 0, decoded.stderr)
+            readings = [json.loads(line) for line in decoded.stdout.splitlines()]
+            self.assertGreater(len(readings), 4, messages.stdout + messages.stderr)
+            # It may begin between a request and its answer, which then says nothing.
+            self.assertEqual([reading for reading in readings[1:] if "refused" in reading], [])
+            readings = [reading for reading in readings if "refused" not in reading]
+            speeds = [reading["speed_m_s"] for reading in readings if reading["speed_m_s"] is not None]
+            directions = [reading["direction_deg"] for reading in readings if reading["direction_deg"] is not None]
+            self.assertTrue(speeds and directions)
+            self.assertTrue(all(0.0 <= speed < 30.0 for speed in speeds), speeds)
+            self.assertTrue(all(direction % 1.0 == 0.0 for direction in directions), directions)
+
+    def test_a_log_at_the_end_accounts_for_every_sensor(self):
+        config = self.modbus_config(self.start_simulator().address())
+        done = run("run", "--listen", "127.0.0.1:0", "--config", config, "--duration", "2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = re.search(r"sensor roof: (\d+) readings from (\d+) frames, 0 reconnects; refused: nothing", done.stderr)
+        self.assertTrue(told, done.stderr)
+        self.assertGreaterEqual(int(told.group(2)), 2 * int(told.group(1)) - 1, "a speed and a direction make a reading")
+
+    # ---- sensors list, sensors describe ----
+
+    def test_list_looks_and_tells(self):
+        done = run("sensors", "list")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"Nothing is plugged in|\[\[sensor\]\]")
+        self.assertIn("Not looked for: ", done.stdout)
+
+    def test_describe_lists_the_drivers_and_tells_the_keys_of_one(self):
+        names = [line.split()[0] for line in run("sensors", "describe").stdout.splitlines() if line and line[0].isalpha()]
+        self.assertIn("synthetic", names)
+        page = run("sensors", "describe", "--all").stdout
+        for name in names:
+            described = run("sensors", "describe", name)
+            self.assertEqual(described.returncode, 0)
+            self.assertIn(f'driver = "{name}"', described.stdout)
+            self.assertIn(f"\n## {name}\n", page)
+        unknown = run("sensors", "describe", "barometer")
+        self.assertEqual(unknown.returncode, 64)
+        self.assertIn("synthetic", unknown.stderr)
 
     # ---- scenes ----
 

@@ -52,12 +52,14 @@ struct Place {
 Place rest_at(const Scene& scene, std::size_t column, std::size_t row) {
   const GridSkeleton& grid = grid_of(scene);
   const std::size_t at = row * grid.stride() + column;
-  return {grid.rest_x_m[at], grid.rest_y_m[at], grid.rest_z_m[at]};
+  return {static_cast<double>(grid.rest_x_m[at]), static_cast<double>(grid.rest_y_m[at]),
+          static_cast<double>(grid.rest_z_m[at])};
 }
 Place offset_at(const Scene& scene, std::size_t column, std::size_t row) {
   const GridPose& pose = offsets_of(scene);
   const std::size_t at = row * grid_of(scene).stride() + column;
-  return {pose.offset_x_m[at], pose.offset_y_m[at], pose.offset_z_m[at]};
+  return {static_cast<double>(pose.offset_x_m[at]), static_cast<double>(pose.offset_y_m[at]),
+          static_cast<double>(pose.offset_z_m[at])};
 }
 Place place_at(const Scene& scene, std::size_t column, std::size_t row) {
   const Place rest = rest_at(scene, column, row);

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "drivers/bus/byte_port.hpp"
+#include "tests/support/manual_clock.hpp"
+
+namespace yuragi {
+
+/// The far end of a port without a wire: the test says what comes, and sees what is sent.
+struct FarEnd {
+  struct Message {
+    ByteStatus status = ByteStatus::kBytes;
+    std::string bytes;
+    bool is_datagram = false;
+  };
+
+  std::deque<Message> says;
+  std::vector<std::string> heard;
+  bool can_open = true;
+  bool can_write = true;
+  int opened = 0;
+  int closed = 0;
+  /// Called with each request; says() what it likes.
+  std::function<void(const std::string& request)> answer;
+
+  void say(std::string_view text) { says.push_back({ByteStatus::kBytes, std::string(text), false}); }
+};
+
+/// Waiting for nothing moves the clock.
+class ScriptedPort final : public BytePort {
+ public:
+  ScriptedPort(FarEnd& far_end, ManualClock& clock) : far_end_(far_end), clock_(clock) {}
+
+  Result<void, Failure> open() override {
+    if (!far_end_.can_open) return Failure{"cannot open the script: try again"};
+    ++far_end_.opened;
+    return {};
+  }
+  void close() noexcept override { ++far_end_.closed; }
+
+  ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
+    if (far_end_.says.empty()) {
+      clock_.advance(timeout);
+      return {};
+    }
+    FarEnd::Message& message = far_end_.says.front();
+    const std::size_t size = std::min(buffer.size(), message.bytes.size());
+    std::copy_n(message.bytes.begin(), size, buffer.begin());
+    const ByteArrival arrival = {message.status, size, message.is_datagram};
+    message.bytes.erase(0, size);
+    if (message.bytes.empty()) far_end_.says.pop_front();
+    return arrival;
+  }
+
+  bool write(std::span<const std::uint8_t> bytes) override {
+    if (!far_end_.can_write) return false;
+    far_end_.heard.emplace_back(bytes.begin(), bytes.end());
+    if (far_end_.answer) far_end_.answer(far_end_.heard.back());
+    return true;
+  }
+  void interrupt() noexcept override { far_end_.says.push_front({ByteStatus::kInterrupted, "", false}); }
+
+ private:
+  FarEnd& far_end_;
+  ManualClock& clock_;
+};
+
+}  // namespace yuragi
