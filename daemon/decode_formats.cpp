@@ -17,11 +17,6 @@
 namespace yuragi {
 namespace {
 
-UnitDecoder::Outcome outcome_of(const Result<DecodedWind, Refusal>& decoded) {
-  if (!decoded) return UnitRefusal{decoded.error(), {}};
-  return UnitReading{*decoded, {}, {}};
-}
-
 /// A format in which every message stands for itself.
 class StatelessDecoder final : public UnitDecoder {
  public:
@@ -89,6 +84,20 @@ Made make_line(const UnitDecoderOptions& options) {
   return of_lines(decode_line, options.line);
 }
 
+Made make_wmr100(const UnitDecoderOptions& options) {
+  auto stream = std::make_unique<Wmr100Decoder>();
+  if (options.are_reports) return make_wmr100_reports_decoder(std::move(stream));
+  return stream;
+}
+
+Made make_te923(const UnitDecoderOptions& options) {
+  return options.are_reports ? make_te923_reports_decoder() : stateless(decode_te923);
+}
+
+Made make_fineoffset(const UnitDecoderOptions& options) {
+  return options.are_reports ? make_fineoffset_reports_decoder() : stateless(decode_fineoffset_record);
+}
+
 constexpr std::array kUnitFormats = {
     UnitFormat{.name = "nmea",
                .is_text = true,
@@ -126,7 +135,7 @@ constexpr std::array kUnitFormats = {
                .unit = "any part of the stream, without each report's length byte",
                .devices = "Oregon Scientific WMR100, WMR88, WMRS200, RMS300, RMS600",
                .example = "wmr100 --hex stream.hex",
-               .make = [](const UnitDecoderOptions&) -> Made { return std::make_unique<Wmr100Decoder>(); }},
+               .make = make_wmr100},
     UnitFormat{.name = "wmr300",
                .is_text = false,
                .unit = "a packet",
@@ -138,7 +147,7 @@ constexpr std::array kUnitFormats = {
                .unit = "a record of 16 or 20 bytes",
                .devices = "Fine Offset WH1080, WH1090, WH2080, WH3080 and their other names",
                .example = "fineoffset --hex records.hex",
-               .make = [](const UnitDecoderOptions&) { return stateless(decode_fineoffset_record); }},
+               .make = make_fineoffset},
     UnitFormat{.name = "acurite",
                .is_text = false,
                .unit = "report 1, of 10 bytes",
@@ -150,7 +159,7 @@ constexpr std::array kUnitFormats = {
                .unit = "the block of readings, of 34 bytes",
                .devices = "Hideki TE923 (Meade, TFA Nexus, Mebus, IROX)",
                .example = "te923 --hex blocks.hex",
-               .make = [](const UnitDecoderOptions&) { return stateless(decode_te923); }},
+               .make = make_te923},
     UnitFormat{.name = "mcc1208",
                .is_text = false,
                .unit = "a reply: 4 bytes of the counter, 2 of an analogue input",
@@ -172,6 +181,11 @@ constexpr std::array kUnitFormats = {
 };
 
 }  // namespace
+
+UnitDecoder::Outcome outcome_of(const Result<DecodedWind, Refusal>& decoded) {
+  if (!decoded) return UnitRefusal{decoded.error(), {}};
+  return UnitReading{*decoded, {}, {}};
+}
 
 std::span<const UnitFormat> unit_formats() {
   return kUnitFormats;

@@ -13,7 +13,6 @@
 #include "drivers/decode/labjack.hpp"
 #include "drivers/decode/line.hpp"
 #include "drivers/decode/line_assembler.hpp"
-#include "drivers/decode/mcc1208.hpp"
 #include "drivers/decode/potentiometer_vane.hpp"
 #include "drivers/decode/text_fields.hpp"
 
@@ -64,6 +63,7 @@ struct UnitDecoderOptions {
   std::optional<std::uint16_t> umb_device;  ///< umb
   double umb_speed_range_m_s = 75.0;        ///< umb
   LineOptions line;                         ///< line
+  bool are_reports = false;                 ///< wmr100, te923, fineoffset: input reports of 8 bytes, as they came
 
   std::string profile;      ///< modbus: a name, or the path of a .toml file
   int speed_slave = 0;      ///< modbus; 0 takes the profile's
@@ -72,7 +72,6 @@ struct UnitDecoderOptions {
   // mcc1208, labjack. Two counts make a speed only if it is known how long apart they are.
   std::optional<double> interval_s;  ///< from one reply to the next
   CupCalibration cup;                ///< read where there is an interval
-  Mcc1208Range range = Mcc1208Range::kUnipolar5V;
   LabjackInput input = LabjackInput::kLowVoltage;
   std::optional<double> vane_reference_v;  ///< over the vane's track: what is measured is then its wiper
   VaneCalibration vane;
@@ -96,7 +95,13 @@ std::span<const UnitFormat> unit_formats();
 /// The one of this name; nullptr: there is none.
 const UnitFormat* find_unit_format(std::string_view name);
 
+/// What a pure decoder said.
+UnitDecoder::Outcome outcome_of(const Result<DecodedWind, Refusal>& decoded);
+
 /// The decoders that have files of their own, since they know more than one message.
+std::unique_ptr<UnitDecoder> make_wmr100_reports_decoder(std::unique_ptr<UnitDecoder> stream);
+std::unique_ptr<UnitDecoder> make_te923_reports_decoder();
+std::unique_ptr<UnitDecoder> make_fineoffset_reports_decoder();
 std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_mcc1208_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_labjack_unit_decoder(const UnitDecoderOptions& options);

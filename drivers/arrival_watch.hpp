@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <iterator>
 
 #include "engine/base/time.hpp"
 
 namespace yuragi {
 
-/// How often something comes, learnt from the last of its arrivals, and for how long it has not come now.
+/// How often something comes, learnt from the last of its arrivals, and for how long it has not come now. An outage is
+/// not learnt from, unless it happens again and again: then that is how often it comes.
 /// Realtime-safe: yes.
 class ArrivalWatch {
  public:
@@ -20,28 +20,38 @@ class ArrivalWatch {
   }
 
   void arrive(MonoTime now) noexcept {
-    if (has_come_) {
-      pauses_[next_] = now - last_;
-      next_ = (next_ + 1) % pauses_.size();
-      count_ = std::min(count_ + 1, std::ssize(pauses_));
-    }
+    if (has_come_) learn(now - last_);
     last_ = now;
     has_come_ = true;
   }
 
   /// Since the last arrival, or since restart().
   Nanoseconds quiet_for(MonoTime now) const noexcept { return now - last_; }
-  bool has_come_since_restart() const noexcept { return has_come_; }
 
   /// The longest of the last eight pauses between arrivals; zero as long as there was none.
-  Nanoseconds longest_pause() const noexcept {
-    return count_ == 0 ? Nanoseconds::zero() : *std::max_element(pauses_.begin(), pauses_.begin() + count_);
-  }
+  Nanoseconds usual_pause() const noexcept { return *std::ranges::max_element(pauses_); }
 
  private:
-  std::array<Nanoseconds, 8> pauses_{};
-  std::size_t next_ = 0;
-  std::ptrdiff_t count_ = 0;
+  static constexpr std::size_t kKnown = 3;  // pauses that say what is usual
+  static constexpr int kOutage = 5;         // times the usual pause
+  static constexpr int kOutagesInARow = 3;
+
+  void learn(Nanoseconds pause) noexcept {
+    const bool is_outage = count_ >= kKnown && pause > kOutage * usual_pause();
+    outages_ = is_outage ? outages_ + 1 : 0;
+    if (is_outage && outages_ < kOutagesInARow) return;
+    if (is_outage) {
+      pauses_ = {};
+      count_ = 0;
+      outages_ = 0;
+    }
+    pauses_[count_ % pauses_.size()] = pause;
+    ++count_;
+  }
+
+  std::array<Nanoseconds, 8> pauses_{};  // zero where there was none
+  std::size_t count_ = 0;
+  int outages_ = 0;
   MonoTime last_{};
   bool has_come_ = false;
 };

@@ -79,8 +79,8 @@ const std::vector<Parameter>& parameters_of_every_port() {
        .default_value = 0.0,
        .min = 0.0,
        .max = 86400.0,
-       .help = "a device that says nothing for so long is opened again; 0: ten times as long as it usually is silent, "
-               "at least 6 s"},
+       .help = "a device that says nothing for so long is opened again; 0: ten times its usual pause between "
+               "readings, at least 6 s, and twice as long after each time in vain"},
   };
   return kParameters;
 }

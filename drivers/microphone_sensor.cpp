@@ -41,6 +41,7 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const Clock& clock, SensorSink&
       if (now < deadline_) return now;
       break;
     case ByteStatus::kSilence:
+    case ByteStatus::kForeign:
       break;
     case ByteStatus::kInterrupted:
       return Failure{"interrupted"};

@@ -15,7 +15,7 @@
 namespace yuragi {
 
 struct MicrophoneSettings {
-  MicEstimatorOptions estimator;
+  MicEstimatorOptions estimator{};
   bool is_calibrated = false;                            ///< if not, every reading is uncertain
   Nanoseconds start_timeout = std::chrono::seconds(15);  ///< for the worker's first word: sound systems begin slowly
   Nanoseconds sound_timeout = std::chrono::seconds(3);   ///< from block to block, of which there are four a second

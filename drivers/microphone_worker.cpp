@@ -77,7 +77,7 @@ bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, c
     return false;
   };
 
-  const auto device = input.open(options.choice, clock);
+  const auto device = input.open(options.choice, [&clock] { return clock.now().mono; });
   if (!device) return fail(device.error().message);
   const std::string name =
       fmt::format("{} ({}), {} channels at {:g} Hz", device->name, device->host_api, device->channels, device->rate_hz);

@@ -2,14 +2,16 @@
 
 #include <atomic>
 #include <string>
+#include <vector>
 
 #include "drivers/bus/audio_input.hpp"
+#include "drivers/clock.hpp"
 
 namespace yuragi {
 
 /// What the worker process of a microphone is to do.
 struct MicWorkerOptions {
-  AudioChoice choice;
+  AudioChoice choice{};
   double low_hz = 20.0;  ///< the wind's band
   double high_hz = 200.0;
 };

@@ -58,12 +58,13 @@ const std::array kModbusParameters = {
               .min = 0,
               .max = 2,
               .help = "rtu: 0 takes the profile's"},
-    Parameter{.name = "speed_slave",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 247,
-              .help = "id of the slave that measures speed; 0 takes the profile's"},
+    Parameter{
+        .name = "speed_slave",
+        .unit = "",
+        .default_value = std::int64_t{0},
+        .min = 0,
+        .max = 247,
+        .help = "id of the slave that measures speed, and whatever else the profile has there; 0 takes the profile's"},
     Parameter{.name = "direction_slave",
               .unit = "",
               .default_value = std::int64_t{0},
@@ -97,7 +98,7 @@ ModbusProfile profile_of(const ParameterValues& values) {
   }
   if (const std::int64_t bits = values.integer("stop_bits"); bits != 0) profile.stop_bits = static_cast<int>(bits);
   if (const std::int64_t slave = values.integer("speed_slave"); slave != 0) {
-    profile.speed.slave = static_cast<std::uint8_t>(slave);
+    set_slave(profile, static_cast<std::uint8_t>(slave));
   }
   if (const std::int64_t slave = values.integer("direction_slave"); slave != 0) {
     if (!profile.direction)

@@ -45,12 +45,12 @@ std::string address_of(const ModbusLine& line) {
 /// A place in the queue: begins at its end, and is over when this is. The first in the queue has the line.
 class ModbusBus::Turn {
  public:
-  Turn(ModbusBus& bus, const WakeEvent& wake) : bus_(bus) {
+  Turn(ModbusBus& bus, const Interruption& interruption) : bus_(bus) {
     std::unique_lock lock(bus_.mutex_);
     ticket_ = ++bus_.last_ticket_;
     bus_.waiting_.push_back(ticket_);
-    bus_.turn_ended_.wait(lock, [&] { return is_first() || wake.is_set(); });
-    has_line_ = is_first() && !wake.is_set();
+    bus_.turn_ended_.wait(lock, [&] { return is_first() || interruption.is_set(); });
+    has_line_ = is_first() && !interruption.is_set();
   }
   ~Turn() {
     const std::lock_guard lock(bus_.mutex_);
@@ -60,14 +60,14 @@ class ModbusBus::Turn {
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
 
-  /// False: `wake` was set first.
+  /// False: `interruption` was set first.
   bool has_line() const noexcept { return has_line_; }
 
-  /// Waits for what is left of the gap; false: `wake` was set first.
-  bool wait_for_gap(const WakeEvent& wake, MonoTime now) {
+  /// Waits for what is left of the gap; false: `interruption` was set first.
+  bool wait_for_gap(const Interruption& interruption, MonoTime now) {
     std::unique_lock lock(bus_.mutex_);
     if (now >= bus_.free_at_) return true;
-    return !bus_.turn_ended_.wait_for(lock, bus_.free_at_ - now, [&wake] { return wake.is_set(); });
+    return !bus_.turn_ended_.wait_for(lock, bus_.free_at_ - now, [&interruption] { return interruption.is_set(); });
   }
 
   /// The exchange is over.
@@ -107,7 +107,7 @@ void ModbusBus::keep_gap(Nanoseconds min_gap) {
   min_gap_ = std::max(min_gap_, min_gap);
 }
 
-Result<MonoTime, Failure> ModbusBus::open(const WakeEvent& wake, const Clock& clock) {
+Result<MonoTime, Failure> ModbusBus::open(const Interruption& interruption, const Clock& clock) {
   // Mostly it is open, and then nobody has to wait to hear so.
   const auto open_since = [this] {
     const std::lock_guard lock(mutex_);
@@ -115,10 +115,10 @@ Result<MonoTime, Failure> ModbusBus::open(const WakeEvent& wake, const Clock& cl
   };
   if (const auto since = open_since()) return *since;
 
-  const Turn turn(*this, wake);
+  const Turn turn(*this, interruption);
   if (!turn.has_line()) return Failure{"interrupted"};
   if (const auto since = open_since()) return *since;
-  if (const auto opened = connection_->open(wake); !opened) return opened.error();
+  if (const auto opened = connection_->open(interruption); !opened) return opened.error();
   is_unsettled_ = true;
   silent_requests_ = 0;
   const std::lock_guard lock(mutex_);
@@ -131,14 +131,14 @@ MonoTime ModbusBus::ready_at(std::uint8_t unit) const {
   return unit_ready_at_[unit];
 }
 
-ModbusBus::Answer ModbusBus::ask(ModbusRequest request, const ModbusPatience& patience, const WakeEvent& wake,
-                                 const Clock& clock, SensorSink& sink) {
+ModbusBus::Answer ModbusBus::ask(ModbusRequest request, const ModbusPatience& patience,
+                                 const Interruption& interruption, const Clock& clock, SensorSink& sink) {
   using enum ModbusTrouble::Kind;
-  Turn turn(*this, wake);
-  if (!turn.has_line() || !turn.wait_for_gap(wake, clock.now().mono)) return trouble(kInterrupted);
+  Turn turn(*this, interruption);
+  if (!turn.has_line() || !turn.wait_for_gap(interruption, clock.now().mono)) return trouble(kInterrupted);
 
   request.transaction = ++transaction_;
-  const Answer answer = exchange(request, patience, wake, sink);
+  const Answer answer = exchange(request, patience, interruption, sink);
 
   // What was not answered may be yet.
   const MonoTime now = clock.now().mono;
@@ -168,9 +168,9 @@ void ModbusBus::close_line() noexcept {
 }
 
 ModbusBus::Answer ModbusBus::exchange(const ModbusRequest& request, const ModbusPatience& patience,
-                                      const WakeEvent& wake, SensorSink& sink) {
+                                      const Interruption& interruption, SensorSink& sink) {
   if (is_unsettled_) {
-    const std::size_t leftover = connection_->settle(buffer_, patience, wake);
+    const std::size_t leftover = connection_->settle(buffer_, patience, interruption);
     const auto bytes = std::span(buffer_).first(leftover);
     if (leftover > 0) sink.raw(RawDirection::kReceived, bytes);
     // A late answer, as a rule; noise has been counted when it was taken for an answer.
@@ -183,7 +183,7 @@ ModbusBus::Answer ModbusBus::exchange(const ModbusRequest& request, const Modbus
   // Messages of others, such as the late answer to an earlier request, are passed over until the time is up.
   bool heard_others = false;
   for (;;) {
-    const BusMessage message = connection_->receive(buffer_, wake);
+    const BusMessage message = connection_->receive(buffer_, interruption);
     if (message.status != BusStatus::kMessage) return fail(message.status, heard_others, sink);
     const auto bytes = std::span(buffer_).first(message.size);
     sink.raw(RawDirection::kReceived, bytes);

@@ -21,7 +21,7 @@ struct ModbusTrouble {
     kOthersOnly,   ///< others were heard, and not whom we asked
     kRefused,      ///< a message came that is no use: `refusal`
     kLost,         ///< the connection is gone
-    kInterrupted,  ///< the wake event was set
+    kInterrupted,  ///< the interruption event was set
   };
   Kind kind = Kind::kSilence;
   ModbusRefusal refusal;  ///< for kRefused
@@ -34,8 +34,8 @@ struct ModbusTrouble {
 /// serial line nothing tells them apart, so whoever did not answer in time is not asked again before another response
 /// time-out has gone by, and after any trouble nothing is sent before the line has been quiet.
 ///
-/// Thread-safe: yes. Whoever waits, waits for those before him, each for one response time-out at most; his `wake` ends
-/// that.
+/// Thread-safe: yes. Whoever waits, waits for those before him, each for one response time-out at most; his
+/// `interruption` ends that.
 class ModbusBus {
  public:
   using Answer = Result<ModbusRegisters, ModbusTrouble>;
@@ -53,27 +53,27 @@ class ModbusBus {
   void keep_gap(Nanoseconds min_gap);
 
   /// Opens the line if it is not open. Returns when that was, or says why it failed and what to do.
-  Result<MonoTime, Failure> open(const WakeEvent& wake, const Clock& clock);
+  Result<MonoTime, Failure> open(const Interruption& interruption, const Clock& clock);
 
   /// From when on a device may be asked; a time that has passed, mostly.
   MonoTime ready_at(std::uint8_t unit) const;
 
   /// Asks, and waits for the answer. The request's transaction is chosen here. Counts in `sink` what it refuses, and
   /// shows it each message.
-  Answer ask(ModbusRequest request, const ModbusPatience& patience, const WakeEvent& wake, const Clock& clock,
-             SensorSink& sink);
+  Answer ask(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
+             const Clock& clock, SensorSink& sink);
 
   /// How many have asked and not been answered yet.
   std::size_t waiting_count() const;
 
-  /// To be called after a wake event was set, so that whoever waits for his turn with it looks at it.
+  /// To be called after a interruption event was set, so that whoever waits for his turn with it looks at it.
   void wake_waiters() noexcept;
 
  private:
   class Turn;
 
   void close_line() noexcept;
-  Answer exchange(const ModbusRequest& request, const ModbusPatience& patience, const WakeEvent& wake,
+  Answer exchange(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
                   SensorSink& sink);
   ModbusTrouble fail(BusStatus status, bool heard_others, SensorSink& sink);
   ModbusTrouble refuse(const ModbusRefusal& refusal, SensorSink& sink);

@@ -279,4 +279,10 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   return profile;
 }
 
+void set_slave(ModbusProfile& profile, std::uint8_t id) {
+  const std::uint8_t before = std::exchange(profile.speed.slave, id);
+  if (profile.direction && profile.direction->slave == before) profile.direction->slave = id;
+  if (profile.gust && profile.gust->slave == before) profile.gust->slave = id;
+}
+
 }  // namespace yuragi

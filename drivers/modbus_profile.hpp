@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "drivers/decode/modbus_quantity.hpp"
 #include "engine/base/time.hpp"
@@ -46,9 +47,15 @@ struct ModbusProfile {
 /// used in that text only. Keys that no profile has are refused.
 ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file);
 
+/// The device has another id than the profile says: the speed moves there, and whatever else was on the same slave.
+void set_slave(ModbusProfile& profile, std::uint8_t id);
+
 /// Finds and reads a profile: a path, if `name` contains '/' or ends in ".toml"; otherwise NAME.toml in `directory` (if
 /// not empty), $YURAGI_PROFILE_DIR, ../share/yuragi/profiles beside the executable, the source tree.
 /// Throws std::runtime_error as above, or, for a name that is nowhere, one that lists the names that are.
 ModbusProfile load_modbus_profile(const std::string& name, const std::string& directory);
+
+/// The names of all profiles that can be found so, in alphabetical order.
+std::vector<std::string> modbus_profile_names(const std::string& directory);
 
 }  // namespace yuragi

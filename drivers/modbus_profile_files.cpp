@@ -29,8 +29,8 @@ std::vector<fs::path> profile_directories(const std::string& first) {
   return directories;
 }
 
-/// "renke-rs-fsjt-n01, ..." in alphabetical order.
-std::string known_names(const std::vector<fs::path>& directories) {
+/// Their names without ".toml".
+std::set<std::string> names_in(const std::vector<fs::path>& directories) {
   std::set<std::string> names;
   for (const fs::path& directory : directories) {
     std::error_code ignored;
@@ -38,8 +38,13 @@ std::string known_names(const std::vector<fs::path>& directories) {
       if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
     }
   }
+  return names;
+}
+
+/// "renke-rs-fsjt-n01, ..." in alphabetical order.
+std::string known_names(const std::vector<fs::path>& directories) {
   std::string list;
-  for (const std::string& name : names) list.append(list.empty() ? "" : ", ").append(name);
+  for (const std::string& name : names_in(directories)) list.append(list.empty() ? "" : ", ").append(name);
   return list.empty() ? "none" : list;
 }
 
@@ -53,6 +58,11 @@ ModbusProfile read_profile(const fs::path& path) {
 }
 
 }  // namespace
+
+std::vector<std::string> modbus_profile_names(const std::string& directory) {
+  const std::set<std::string> names = names_in(profile_directories(directory));
+  return {names.begin(), names.end()};
+}
 
 ModbusProfile load_modbus_profile(const std::string& name, const std::string& directory) {
   if (name.find('/') != std::string::npos || name.ends_with(".toml")) return read_profile(name);

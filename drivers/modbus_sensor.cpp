@@ -12,14 +12,10 @@ namespace {
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
 constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
 
-// What a gateway says of a slave that does not answer it (MODBUS Application Protocol V1.1b3, section 7).
-constexpr std::uint8_t kGatewayPathUnavailable = 10;
-constexpr std::uint8_t kGatewayTargetSilent = 11;
-
 /// Does a gateway answer for a slave that does not?
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
   return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == Refusal::kException &&
-         (trouble.refusal.exception == kGatewayPathUnavailable || trouble.refusal.exception == kGatewayTargetSilent);
+         is_gateway_silence(trouble.refusal.exception);
 }
 
 /// "without direction and gust", for what this read should have brought.
@@ -58,13 +54,13 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
 }
 
 void ModbusSensor::interrupt() noexcept {
-  wake_.set();
+  interruption_.set();
   bus_->wake_waiters();
   direction_bus_->wake_waiters();
 }
 
 Result<MonoTime, Failure> ModbusSensor::open(const Clock& clock) {
-  const auto opened = bus_->open(wake_, clock);
+  const auto opened = bus_->open(interruption_, clock);
   if (!opened) return opened.error();
   opened_at_ = *opened;
   step_ = 0;
@@ -114,7 +110,7 @@ Result<MonoTime, Failure> ModbusSensor::ask_first(const Clock& clock, SensorSink
 
 void ModbusSensor::ask_more(Read& read, const Clock& clock, SensorSink& sink) {
   // The vane's own line, where it has one, is opened here; without it there is no direction.
-  if (const auto opened = read.bus->open(wake_, clock); !opened) {
+  if (const auto opened = read.bus->open(interruption_, clock); !opened) {
     read.trouble = without(read.what) + ": " + opened.error().message;
     read.not_before = clock.now().mono + read.backoff.next();
     return;
@@ -131,7 +127,7 @@ void ModbusSensor::ask_more(Read& read, const Clock& clock, SensorSink& sink) {
 
 ModbusBus::Answer ModbusSensor::ask(const Read& read, const Clock& clock, SensorSink& sink) {
   const ModbusPatience patience{.response_timeout = profile_.response_timeout, .byte_timeout = profile_.byte_timeout};
-  return read.bus->ask(read.what.request, patience, wake_, clock, sink);
+  return read.bus->ask(read.what.request, patience, interruption_, clock, sink);
 }
 
 MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {

@@ -58,7 +58,7 @@ class ModbusSensor final : public ReopeningSensor {
   const ModbusProfile profile_;
   const std::shared_ptr<ModbusBus> bus_;
   const std::shared_ptr<ModbusBus> direction_bus_;
-  WakeEvent wake_;
+  Interruption interruption_;
   std::vector<Read> reads_;  ///< the first one brings the speed
 
   MonoTime opened_at_{};

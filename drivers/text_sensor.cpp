@@ -24,6 +24,8 @@ constexpr Nanoseconds kPatience = 3s;
 constexpr Nanoseconds kFirstSilence = 120s;
 /// An answer that has not come by then never will.
 constexpr Nanoseconds kLatestAnswer = 2s;
+/// The silence after which a device is opened again doubles so often.
+constexpr int kMostDoublings = 6;
 /// A device that does not answer is asked less often: up to so many times the interval.
 constexpr int kRarestRequest = 8;
 /// So many blocks at most are thrown away at the beginning; a device that says more never ends.
@@ -85,7 +87,7 @@ Result<MonoTime, Failure> TextSensor::open(const Clock& clock) {
   skips_line_ = settings_.doubts_first_line;
   awaits_answer_ = false;
   next_request_ = now;
-  arrivals_.restart(now);
+  last_bytes_ = now;
   readings_.restart(now);
   bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
   refused_ = {};
@@ -132,11 +134,11 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
       return now.mono + kForAges;
     case ByteStatus::kForeign:
       ++foreign_datagrams_;
-      arrivals_.arrive(now.mono);
+      last_bytes_ = now.mono;
       sink.refused(Refusal::kNotMine);
       break;
     case ByteStatus::kSilence:
-      if (arrivals_.quiet_for(now.mono) >= kBurstEnd) {
+      if (now.mono - last_bytes_ >= kBurstEnd) {
         if (const auto held = take_held()) publish(*held, sink);
       }
       break;
@@ -145,10 +147,11 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
       break;
   }
 
-  if (!is_played() && arrivals_.quiet_for(now.mono) >= silence_limit()) {
+  if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
     sink.refused(Refusal::kTimeout);
+    vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
     return Failure{fmt::format("{} has said nothing for {:.0f} s: opened again; check the device's power and cable",
-                               where_, seconds(arrivals_.quiet_for(now.mono)))};
+                               where_, seconds(now.mono - last_bytes_))};
   }
   judge_device(now.mono, sink);
   return now.mono;
@@ -185,8 +188,8 @@ bool TextSensor::take_bytes(const Instant& now, SensorSink& sink) {
   // come in blocks that end anywhere, and datagrams end by themselves.
   const bool flows =
       settings_.address.kind == BytePortKind::kSerial || settings_.address.kind == BytePortKind::kTcpClient;
-  if (flows && arrivals_.quiet_for(now.mono) >= kLineCut) drop_cut_line(sink);
-  arrivals_.arrive(now.mono);
+  if (flows && now.mono - last_bytes_ >= kLineCut) drop_cut_line(sink);
+  last_bytes_ = now.mono;
 
   bool has_published = false;
   while (!rest_.empty() && !has_published) {
@@ -248,6 +251,7 @@ void TextSensor::drop_cut_line(SensorSink& sink) {
 
 void TextSensor::publish(const WindReading& reading, SensorSink& sink) {
   readings_.arrive(reading.time.mono);
+  vain_openings_ = 0;
   bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
   refused_ = {};
   is_well(sink, name() + " at " + where_);
@@ -260,18 +264,20 @@ void TextSensor::refuse(Refusal why, std::string_view line, SensorSink& sink) {
   sink.refused(why);
 }
 
+/// Each opening in vain doubles the limit: a device that is slow at first, or that starts anew whenever it is opened,
+/// has its time at last.
 Nanoseconds TextSensor::silence_limit() const {
   if (settings_.silence_timeout > 0ns) return settings_.silence_timeout;
-  const Nanoseconds usual = arrivals_.longest_pause();
-  return usual > 0ns ? std::max<Nanoseconds>(2 * kPatience, 10 * usual) : kFirstSilence;
+  const Nanoseconds usual = readings_.usual_pause();
+  const Nanoseconds first = usual > 0ns ? std::max<Nanoseconds>(2 * kPatience, 10 * usual) : kFirstSilence;
+  return first * (1 << vain_openings_);
 }
 
 /// Says what is wrong where no reading comes.
 void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
-  if (readings_.quiet_for(now) < std::max<Nanoseconds>(kPatience, 5 * readings_.longest_pause())) return;
-  if (arrivals_.quiet_for(now) >= std::max<Nanoseconds>(kPatience, 5 * arrivals_.longest_pause())) {
-    return is_unwell(sink, silence_trouble());
-  }
+  const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
+  if (readings_.quiet_for(now) < patience) return;
+  if (now - last_bytes_ >= kPatience) return is_unwell(sink, silence_trouble());
   const Refusal why = main_refusal();
   const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;
   if (late_lines_ > 0 || !has_lines) {

@@ -101,8 +101,9 @@ class TextSensor : public ReopeningSensor {
   MonoTime answer_due_{};
   int unanswered_ = 0;
 
-  ArrivalWatch arrivals_;
+  MonoTime last_bytes_{};
   ArrivalWatch readings_;
+  int vain_openings_ = 0;
 
   // What has come since the last reading, to say what is wrong where none comes.
   struct Refused {

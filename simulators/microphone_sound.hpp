@@ -20,11 +20,11 @@ inline constexpr std::size_t kMicrophoneMaxChannels = 4;
 struct MicrophoneOptions {
   std::size_t channels = 1;  ///< 1 to kMicrophoneMaxChannels
   double rate_hz = 48000.0;
-  double exponent = 2.0;            ///< the root mean square grows with the wind to this power
-  double level_at_10_m_s_db = -20;  ///< of the whole wind noise, before it clips
-  double noise_db = -80;            ///< of each microphone's own white noise
-  std::optional<double> voice_db;   ///< somebody speaks; all microphones hear it alike
-  std::optional<double> music_db;   ///< likewise
+  double exponent = 2.0;             ///< the root mean square grows with the wind to this power
+  double level_at_10_m_s_db = -20;   ///< of the whole wind noise, before it clips
+  double noise_db = -80;             ///< of each microphone's own white noise
+  std::optional<double> voice_db{};  ///< somebody speaks; all microphones hear it alike
+  std::optional<double> music_db{};  ///< likewise
   bool has_faces = false;  ///< the microphones face the directions 0, 360 / channels, ... and hear the wind by how it
                            ///< meets them; else they hear it all the same
   std::uint64_t seed = 1;

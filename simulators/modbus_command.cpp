@@ -13,7 +13,7 @@
 namespace yuragi::sim {
 namespace {
 
-struct Options {
+struct ModbusOptions {
   std::string tcp = "127.0.0.1:1502";
   bool is_rtu = false;
   std::string link;
@@ -38,7 +38,7 @@ std::vector<ModbusSlave> slaves_of(std::vector<std::string> devices) {
   return slaves;
 }
 
-void simulate(const Options& options) {
+void simulate_modbus(const ModbusOptions& options) {
   const std::vector<ModbusSlave> slaves = slaves_of(options.devices);
   std::unique_ptr<ModbusPort> port;
   if (options.is_rtu) {
@@ -60,7 +60,7 @@ void simulate(const Options& options) {
 }  // namespace
 
 void add_modbus_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ModbusOptions>();
   CLI::App* command =
       app.add_subcommand("modbus", "Modbus line, over TCP or serial (RTU), with the registers of real wind sensors");
   CLI::Option* tcp = command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one");
@@ -78,7 +78,7 @@ void add_modbus_command(CLI::App& app) {
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   options->common.add_to(*command);
-  command->callback([options] { simulate(*options); });
+  command->callback([options] { simulate_modbus(*options); });
 }
 
 }  // namespace yuragi::sim

@@ -16,45 +16,44 @@
 namespace yuragi::sim {
 namespace {
 
-using Registers = ModbusRegisterBank;
 constexpr double kTenths = 10.0;
 
-double point_of(double direction_deg, int points) {
+double compass_point_of(double direction_deg, int points) {
   return static_cast<double>(std::lround(direction_deg * points / 360.0) % points);
 }
 
 /// Renke RS-FSJT-N01 (and the clones that copy it): 0x0000 speed, 0.1 m/s.
-void measure_cup(const ModbusAir& air, Registers& registers) {
+void measure_cup(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(0x0000, kTenths * air.speed_m_s);
 }
 
 /// Renke RS-FXJT-N01: 0x0000 eight points, 0x0001 degrees.
-void measure_renke_vane(const ModbusAir& air, Registers& registers) {
-  registers.set(0x0000, point_of(air.direction_deg, 8));
+void measure_renke_vane(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(0x0000, compass_point_of(air.direction_deg, 8));
   registers.set(0x0001, air.direction_deg);
 }
 
 /// DFRobot SEN0482 V2: 0x0000 tenths of degrees, 0x0001 sixteen points.
-void measure_sen0482(const ModbusAir& air, Registers& registers) {
+void measure_sen0482(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(0x0000, kTenths * air.direction_deg);
-  registers.set(0x0001, point_of(air.direction_deg, 16));
+  registers.set(0x0001, compass_point_of(air.direction_deg, 16));
 }
 
 /// DFRobot SEN0482 V1: 0x0000 sixteen points.
-void measure_sen0482_v1(const ModbusAir& air, Registers& registers) {
-  registers.set(0x0000, point_of(air.direction_deg, 16));
+void measure_sen0482_v1(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(0x0000, compass_point_of(air.direction_deg, 16));
 }
 
 /// Renke multi-station: 500 speed, 501 Beaufort (left at 0 here), 502 eight points, 503 degrees.
-void measure_multi_station(const ModbusAir& air, Registers& registers) {
+void measure_multi_station(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(500, kTenths * air.speed_m_s);
   registers.set(501, 0.0);
-  registers.set(502, point_of(air.direction_deg, 8));
+  registers.set(502, compass_point_of(air.direction_deg, 8));
   registers.set(503, air.direction_deg);
 }
 
 /// SenseCAP ONE: from 0x0008 direction, from 0x000E speed, each least, most, mean; thousandths.
-void measure_sensecap(const ModbusAir& air, Registers& registers) {
+void measure_sensecap(const ModbusAir& air, ModbusRegisterBank& registers) {
   constexpr double kThousandths = 1000.0;
   for (int i = 0; i < 3; ++i) registers.set_two(0x0008 + 2 * i, kThousandths * air.direction_deg);
   registers.set_two(0x000E, kThousandths * air.lull_m_s);
@@ -63,7 +62,7 @@ void measure_sensecap(const ModbusAir& air, Registers& registers) {
 }
 
 /// Calypso ULP: 200 status; 201 and 202 speed and direction; means of 2 and 10 min; 207 and 208 gust and its direction.
-void measure_calypso(const ModbusAir& air, Registers& registers) {
+void measure_calypso(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(200, 0.0);
   for (int i = 201; i <= 207; i += 2) {
     const double speed_m_s = i == 201 ? air.speed_m_s : i == 207 ? air.gust_m_s : air.mean_m_s;
@@ -73,7 +72,7 @@ void measure_calypso(const ModbusAir& air, Registers& registers) {
 }
 
 /// Lufft UMB: 42 actual, 43 least, 44 most, 45 mean, 46 vectorial mean, 47 fast.
-void measure_lufft(const ModbusAir& air, Registers& registers) {
+void measure_lufft(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(42, kTenths * air.mean_m_s);
   registers.set(43, kTenths * air.lull_m_s);
   registers.set(44, kTenths * air.gust_m_s);
@@ -83,7 +82,7 @@ void measure_lufft(const ModbusAir& air, Registers& registers) {
 }
 
 /// WM80: floats; speed and direction in turn: sample, instant, mean; lull; gust; direction of the mean, of the gust.
-void measure_wm80(const ModbusAir& air, Registers& registers) {
+void measure_wm80(const ModbusAir& air, ModbusRegisterBank& registers) {
   for (int i = 0x0000; i <= 0x0008; i += 4) {
     registers.set_float(i, i == 0x0008 ? air.mean_m_s : air.speed_m_s);
     registers.set_float(i + 2, air.direction_deg);
@@ -95,7 +94,7 @@ void measure_wm80(const ModbusAir& air, Registers& registers) {
 }
 
 /// MaxiMet GMX: 40001 node letter, 40003 DIR, 40005 SPEED, 40007 CDIR, less 40001 each.
-void measure_gmx(const ModbusAir& air, Registers& registers) {
+void measure_gmx(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set_float(0, 'Q');
   registers.set_float(2, air.direction_deg);
   registers.set_float(4, air.speed_m_s);
@@ -103,13 +102,13 @@ void measure_gmx(const ModbusAir& air, Registers& registers) {
 }
 
 /// MetSENS200: 40001 DIR, 40003 SPEED.
-void measure_metsens(const ModbusAir& air, Registers& registers) {
+void measure_metsens(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set_float(0, air.direction_deg);
   registers.set_float(2, air.speed_m_s);
 }
 
 /// Lambrecht: from 30001 speed now, mean, most, least; from 30201 direction likewise.
-void measure_lambrecht(const ModbusAir& air, Registers& registers) {
+void measure_lambrecht(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(30001, kTenths * air.speed_m_s);
   registers.set(30002, kTenths * air.mean_m_s);
   registers.set(30003, kTenths * air.gust_m_s);
@@ -118,7 +117,7 @@ void measure_lambrecht(const ModbusAir& air, Registers& registers) {
 }
 
 /// Thies: 30001 speed now, 30003 mean, 30011 gust; 30203 direction, 30211 that of the gust; two registers each.
-void measure_thies(const ModbusAir& air, Registers& registers) {
+void measure_thies(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set_two(30001, kTenths * air.speed_m_s);
   registers.set_two(30003, kTenths * air.speed_m_s);
   registers.set_two(30011, kTenths * air.gust_m_s);
@@ -143,11 +142,11 @@ constexpr std::array kThies = {ModbusSlave{1, 4, measure_thies}};
 constexpr std::array kVane = {ModbusSlave{1, 3, measure_renke_vane}};
 constexpr std::array kDfrobotVane = {ModbusSlave{2, 3, measure_sen0482}};
 
-struct Device {
+struct DeviceEntry {
   std::string_view name;
   std::span<const ModbusSlave> slaves;
 };
-constexpr std::array<Device, 18> kDevices = {{
+constexpr std::array<DeviceEntry, 18> kModbusDevices = {{
     {"renke-rs-fsjt-rs-fxjt-n01", kRenkePair},
     {"renke-rs-fsjt-n01", kRenkeCup},
     {"renke-rs-fxjt-n01", kVane},
@@ -168,10 +167,10 @@ constexpr std::array<Device, 18> kDevices = {{
     {"generic-rs485-cup", kRenkeCup},
 }};
 
-constexpr int kHighestId = 247;
+constexpr int kHighestSlaveId = 247;
 
 /// 0 for what is no id.
-int id_in(std::string_view text) {
+int slave_id_in(std::string_view text) {
   int id = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
   return error == std::errc{} && end == text.data() + text.size() ? id : 0;
@@ -202,26 +201,26 @@ std::optional<std::uint16_t> ModbusRegisterBank::at(std::uint16_t address) const
 
 std::vector<std::string> modbus_device_names() {
   std::vector<std::string> names;
-  names.reserve(kDevices.size());
-  for (const Device& device : kDevices) names.emplace_back(device.name);
+  names.reserve(kModbusDevices.size());
+  for (const DeviceEntry& device : kModbusDevices) names.emplace_back(device.name);
   return names;
 }
 
 std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id) {
   const std::size_t at = name_and_id.find('@');
   const std::string_view name = name_and_id.substr(0, at);
-  const auto device = std::ranges::find(kDevices, name, &Device::name);
-  if (device == kDevices.end()) {
+  const auto device = std::ranges::find(kModbusDevices, name, &DeviceEntry::name);
+  if (device == kModbusDevices.end()) {
     throw std::runtime_error(
         fmt::format("no simulated Modbus device \"{}\"; known: {}", name, fmt::join(modbus_device_names(), ", ")));
   }
   std::vector<ModbusSlave> slaves(device->slaves.begin(), device->slaves.end());
   if (at == std::string_view::npos) return slaves;
 
-  const int first = id_in(name_and_id.substr(at + 1));
+  const int first = slave_id_in(name_and_id.substr(at + 1));
   const int last = first + static_cast<int>(slaves.size()) - 1;
-  if (first < 1 || last > kHighestId) {
-    throw std::runtime_error(fmt::format("\"{}\" is no slave id; allowed: 1 to {}", name_and_id, kHighestId));
+  if (first < 1 || last > kHighestSlaveId) {
+    throw std::runtime_error(fmt::format("\"{}\" is no slave id; allowed: 1 to {}", name_and_id, kHighestSlaveId));
   }
   for (std::size_t i = 0; i < slaves.size(); ++i) slaves[i].id = static_cast<std::uint8_t>(first + static_cast<int>(i));
   return slaves;

@@ -45,14 +45,14 @@ class SpeedWindow {
 };
 
 /// One device on the simulated line.
-struct Line {
-  ModbusSlave slave;
+struct SimulatedSlave {
+  ModbusSlave model;
   SpeedWindow window;
   ModbusRegisterBank registers;
 };
 
 /// Bytes that wait for their time.
-struct Outgoing {
+struct DueMessage {
   double due_s;
   int client;
   ModbusBytes bytes;
@@ -66,10 +66,10 @@ class ModbusSimulator::State {
       : port_(std::move(port)), wind_(std::move(wind)), options_(options), random_(options.seed) {}
 
   void add(const ModbusSlave& slave) {
-    if (line_of(slave.id) != nullptr) {
+    if (slave_of(slave.id) != nullptr) {
       throw std::runtime_error(fmt::format("two devices with id {}: give one another, as NAME@ID", slave.id));
     }
-    lines_.push_back({slave, {}, {}});
+    slaves_.push_back({slave, {}, {}});
   }
 
   const ModbusPort& port() const { return *port_; }
@@ -79,9 +79,9 @@ class ModbusSimulator::State {
     now_s_ = time_s;
     fault_ = fault;
     moment_ = wind_.at(time_s, fault);
-    for (Line& line : lines_) {
-      line.window.add(time_s, moment_.speed_m_s);
-      line.slave.measure(line.window.air(moment_.direction_deg), line.registers);
+    for (SimulatedSlave& slave : slaves_) {
+      slave.window.add(time_s, moment_.speed_m_s);
+      slave.model.measure(slave.window.air(moment_.direction_deg), slave.registers);
     }
 
     // Gone: nobody is served until the port is back.
@@ -101,40 +101,40 @@ class ModbusSimulator::State {
   }
 
  private:
-  Line* line_of(std::uint8_t id) {
-    const auto found = std::ranges::find(lines_, id, [](const Line& line) { return line.slave.id; });
-    return found != lines_.end() ? &*found : nullptr;
+  SimulatedSlave* slave_of(std::uint8_t id) {
+    const auto found = std::ranges::find(slaves_, id, [](const SimulatedSlave& slave) { return slave.model.id; });
+    return found != slaves_.end() ? &*found : nullptr;
   }
 
   /// What a device answers that is well; a clearing register clears.
-  static ModbusBytes right_answer(Line& line, const ModbusQuestion& question) {
-    if (question.function != line.slave.function) return exception_answer(question.function, kIllegalFunction);
+  static ModbusBytes right_answer(SimulatedSlave& slave, const ModbusQuestion& question) {
+    if (question.function != slave.model.function) return exception_answer(question.function, kIllegalFunction);
     if (question.count < 1 || question.count > kMostRegisters) {
       return exception_answer(question.function, kIllegalValue);
     }
     std::vector<std::uint16_t> values;
     for (unsigned i = 0; i < question.count; ++i) {
-      const auto value = line.registers.at(static_cast<std::uint16_t>(question.address + i));
+      const auto value = slave.registers.at(static_cast<std::uint16_t>(question.address + i));
       if (!value) return exception_answer(question.function, kIllegalAddress);
       values.push_back(*value);
     }
-    const std::uint16_t clearing = line.slave.clearing_register;
-    if (clearing >= question.address && clearing < question.address + question.count) line.window.clear();
+    const std::uint16_t clearing = slave.model.clearing_register;
+    if (clearing >= question.address && clearing < question.address + question.count) slave.window.clear();
     return registers_answer(question.function, values);
   }
 
   void answer(const ModbusPort::Heard& heard) {
     // Where nobody has that id, a gateway says so, and a serial line stays silent.
     const ModbusQuestion& question = heard.question;
-    Line* const line = line_of(question.unit);
-    if (line == nullptr) {
+    SimulatedSlave* const slave = slave_of(question.unit);
+    if (slave == nullptr) {
       if (!port_->is_rtu()) say(heard, exception_answer(question.function, kGatewayTargetSilent), 0.0);
       return;
     }
     const bool is_well = !fault_ || (options_.id && *options_.id != question.unit);
     ++answered_;
-    if (is_well) return say(heard, right_answer(*line, question), 0.0);
-    answer_wrongly(heard, right_answer(*line, question));
+    if (is_well) return say(heard, right_answer(*slave, question), 0.0);
+    answer_wrongly(heard, right_answer(*slave, question));
   }
 
   void answer_wrongly(ModbusPort::Heard heard, const ModbusBytes& right) {
@@ -199,18 +199,18 @@ class ModbusSimulator::State {
   }
 
   void say_what_is_due() {
-    for (const Outgoing& out : outgoing_) {
+    for (const DueMessage& out : outgoing_) {
       if (out.due_s <= now_s_) port_->say(out.client, out.bytes);
     }
-    std::erase_if(outgoing_, [this](const Outgoing& out) { return out.due_s <= now_s_; });
+    std::erase_if(outgoing_, [this](const DueMessage& out) { return out.due_s <= now_s_; });
   }
 
   std::unique_ptr<ModbusPort> port_;
   MeasuredWind wind_;
   ModbusFaultOptions options_;
   std::mt19937_64 random_;
-  std::vector<Line> lines_;
-  std::vector<Outgoing> outgoing_;
+  std::vector<SimulatedSlave> slaves_;
+  std::vector<DueMessage> outgoing_;
 
   double now_s_ = 0.0;
   PlayedMoment moment_;

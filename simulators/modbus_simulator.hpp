@@ -15,8 +15,8 @@ namespace yuragi::sim {
 struct ModbusFaultOptions {
   std::optional<std::uint8_t> id;  ///< the only slave that suffers; the others stay well. Freeze and spike are in the
                                    ///< air, disconnect and unplug on the line: those are all slaves' at once
-  double late_s = 0.8;     ///< how late a late answer is
-  std::uint64_t seed = 1;  ///< of the bytes of the garbage fault
+  double late_s = 0.8;             ///< how late a late answer is
+  std::uint64_t seed = 1;          ///< of the bytes of the garbage fault
 };
 
 /// A bus of Modbus devices with the registers of real ones, over TCP (what a gateway with those devices behind it looks

@@ -16,9 +16,9 @@
 namespace yuragi::sim {
 namespace {
 
-constexpr int kBacklog = 8;
+constexpr int kModbusBacklog = 8;
 
-std::uint16_t port_of(int socket) {
+std::uint16_t listening_port(int socket) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   if (getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
@@ -84,10 +84,10 @@ class TcpPort final : public ModbusPort {
     const std::unique_ptr<modbus_t, void (*)(modbus_t*)> context(
         modbus_new_tcp_pi(host_.c_str(), std::to_string(port_).c_str()), modbus_free);
     if (!context) return false;
-    listener_ = modbus_tcp_pi_listen(context.get(), kBacklog);
+    listener_ = modbus_tcp_pi_listen(context.get(), kModbusBacklog);
     if (listener_ < 0) return false;
     fcntl(listener_, F_SETFL, O_NONBLOCK);
-    port_ = port_of(listener_);
+    port_ = listening_port(listener_);
     return true;
   }
 

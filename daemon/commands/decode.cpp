@@ -2,9 +2,9 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <map>
 #include <memory>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,6 +15,7 @@
 #include "daemon/commands/decode_options.hpp"
 #include "daemon/decode_formats.hpp"
 #include "daemon/exit.hpp"
+#include "daemon/standard_output.hpp"
 #include "daemon/unit_reader.hpp"
 
 namespace yuragi {
@@ -46,10 +47,11 @@ class Input {
 
  private:
   [[noreturn]] void refuse() const {
-    const int why = errno;
-    throw ExitError(kExitNoInput, fmt::format("cannot read {}: {}. Give the name of a file that you may read, or - for "
-                                              "standard input",
-                                              name_, std::strerror(why)));
+    const std::string why = std::generic_category().message(errno);
+    throw ExitError(
+        kExitNoInput,
+        fmt::format("cannot read {}: {}. Give the name of a file that you may read, or - for standard input", name_,
+                    why));
   }
 
   std::string name_;
@@ -119,11 +121,7 @@ class Output {
 
  private:
   static void write(const Json& json) {
-    const std::string line = json.dump(-1, ' ', true) + "\n";  // ASCII: harmless in any terminal
-    const bool is_written = std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0;
-    if (!is_written) {
-      throw ExitError(kExitCannotCreate, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-    }
+    write_at_once(json.dump(-1, ' ', true) + "\n");  // ASCII: harmless in any terminal
   }
 
   bool shows_refused_;

@@ -33,6 +33,7 @@ void DecodeCommandOptions::add_to(CLI::App& command) {
   command.add_flag("--refused", shows_refused, "tell of what is refused too, and why");
   add_policies(command);
   add_line_options(command);
+  add_station_options(command);
   add_modbus_options(command);
   add_counter_options(command);
 }
@@ -133,6 +134,12 @@ void DecodeCommandOptions::add_line_options(CLI::App& command) {
   add("--invalid", line.invalid, "the number that means no value, -999 say", "NUMBER");
 }
 
+void DecodeCommandOptions::add_station_options(CLI::App& command) {
+  limit(command.add_flag("--reports", decoder.are_reports,
+                         "each line is an input report of 8 bytes as it came over USB (sensors watch --raw --hex)"),
+        "wmr100, te923, fineoffset");
+}
+
 void DecodeCommandOptions::add_modbus_options(CLI::App& command) {
   const auto add = [&](const char* name, int& value, const char* help) {
     limit(command.add_option(name, value, help)->check(CLI::Range(1, 247))->option_text("ID"), "modbus");
@@ -157,17 +164,6 @@ void DecodeCommandOptions::add_counter_options(CLI::App& command) {
   add("--vane-reference", decoder.vane_reference_v, "over the vane's track: with it, volts are a direction", "VOLTS")
       ->check(CLI::PositiveNumber);
 
-  const std::map<std::string, Mcc1208Range> ranges = {
-      {"bipolar-20V", Mcc1208Range::kBipolar20V},     {"bipolar-10V", Mcc1208Range::kBipolar10V},
-      {"bipolar-5V", Mcc1208Range::kBipolar5V},       {"bipolar-4V", Mcc1208Range::kBipolar4V},
-      {"bipolar-2.5V", Mcc1208Range::kBipolar2_5V},   {"bipolar-2V", Mcc1208Range::kBipolar2V},
-      {"bipolar-1.25V", Mcc1208Range::kBipolar1_25V}, {"bipolar-1V", Mcc1208Range::kBipolar1V},
-      {"unipolar-5V", Mcc1208Range::kUnipolar5V}};
-  limit(add_choice(command, "--range", decoder.range, ranges,
-                   "of the analogue input: bipolar-20V, -10V, -5V, -4V, -2.5V, -2V, -1.25V, -1V, or unipolar-5V (the "
-                   "default)")
-            ->option_text("RANGE"),
-        "mcc1208");
   const std::map<std::string, LabjackInput> inputs = {{"low-voltage", LabjackInput::kLowVoltage},
                                                       {"high-voltage", LabjackInput::kHighVoltage}};
   limit(add_choice(command, "--input", decoder.input, inputs,

@@ -35,6 +35,7 @@ class DecodeCommandOptions {
   CLI::Option* limit(CLI::Option* option, const std::string& formats);
   void add_policies(CLI::App& command);
   void add_line_options(CLI::App& command);
+  void add_station_options(CLI::App& command);
   void add_modbus_options(CLI::App& command);
   void add_counter_options(CLI::App& command);
   void set_line();

@@ -10,6 +10,7 @@ void add_sensors(CLI::App& app) {
   CLI::App* sensors = app.add_subcommand("sensors", "find sensors, learn how to set them up, see what they say");
   sensors->require_subcommand(1);
   add_sensors_list(*sensors);
+  add_sensors_probe(*sensors);
   add_sensors_describe(*sensors);
   add_sensors_watch(*sensors);
 }

@@ -11,7 +11,11 @@ void add_sensors_list(CLI::App& sensors) {
   command->footer(
       "Each driver looks for its devices; none is opened for longer than it takes to look at it, so that a running\n"
       "daemon is not disturbed. Where a permission is missing, the udev rule or the group that gives it is told.");
-  command->callback([] { fmt::print("{}", device_list(find_devices(driver_table()), driver_table())); });
+  command->callback([] {
+    fmt::print(
+        "{}What answers on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n",
+        device_list(find_devices(driver_table()), driver_table()));
+  });
 }
 
 }  // namespace yuragi

@@ -14,6 +14,7 @@
 #include "daemon/raw_text.hpp"
 #include "daemon/sensor_hub.hpp"
 #include "daemon/sensor_table.hpp"
+#include "daemon/standard_output.hpp"
 #include "daemon/system_clock.hpp"
 #include "daemon/transports/stream_client.hpp"
 
@@ -66,9 +67,8 @@ class TableScreen final : public Screen {
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
     const bool in_place = isatty(STDOUT_FILENO) != 0 && !once_;
-    fmt::print("{}{}\n{}{}", in_place ? kHomeAndClear : "", source, sensor_table(sensors),
-               in_place ? "\nCtrl-C ends this; the daemon goes on.\n" : "\n");
-    std::fflush(stdout);
+    write_at_once(fmt::format("{}{}\n{}{}", in_place ? kHomeAndClear : "", source, sensor_table(sensors),
+                              in_place ? "\nCtrl-C ends this; the daemon goes on.\n" : "\n"));
     return !once_;
   }
 
@@ -104,8 +104,7 @@ class RawScreen final : public Screen {
 
   bool show_message(const wire::RawTrace& trace) override {
     const std::string text = options_.hex ? hex_lines_.line_of(trace) : raw_text(trace);
-    const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-    if (!is_written) throw ExitError(kExitCannotCreate, "cannot write to standard output");
+    write_at_once(text);
     return !options_.once || text.empty();
   }
 

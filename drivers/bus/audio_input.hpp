@@ -3,12 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "drivers/clock.hpp"
 #include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
 
 namespace yuragi {
 
@@ -22,8 +23,8 @@ struct AudioDevice {
 };
 
 struct AudioChoice {
-  std::string device;        ///< a part of the name, in any case; empty: the default input
-  std::string host_api;      ///< likewise; empty: any
+  std::string device{};      ///< a part of the name, in any case; empty: the default input
+  std::string host_api{};    ///< likewise; empty: any
   std::size_t channels = 1;  ///< 1 to kAudioMaxChannels
   double rate_hz = 0.0;      ///< 0: what the device prefers
 };
@@ -48,8 +49,9 @@ class AudioInput {
   /// The devices that were there when the process asked first: PortAudio's list is frozen from then on.
   virtual Result<std::vector<AudioDevice>, Failure> list() = 0;
 
-  /// Opens and starts; what was opened. The failure says what is missing and what there is instead.
-  virtual Result<AudioDevice, Failure> open(const AudioChoice& choice, const Clock& clock) = 0;
+  /// Opens and starts; what was opened. `now` tells the time on the sound system's thread: realtime-safe. The failure
+  /// says what is missing and what there is instead.
+  virtual Result<AudioDevice, Failure> open(const AudioChoice& choice, std::function<MonoTime()> now) = 0;
 
   /// The next piece; false: none has come yet.
   virtual bool take(AudioBlock& block) = 0;
@@ -59,7 +61,7 @@ class AudioInput {
   virtual bool is_running() = 0;
 };
 
-/// The real one, by PortAudio (19). `clock` must outlive the stream, and be realtime-safe.
+/// The real one, by PortAudio (19).
 std::unique_ptr<AudioInput> make_portaudio_input();
 
 }  // namespace yuragi

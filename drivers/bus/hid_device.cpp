@@ -24,8 +24,7 @@
 namespace yuragi {
 
 const char* const kHidPermissionRemedy =
-    "install config/udev/70-yuragi.rules in /etc/udev/rules.d, run `udevadm control --reload`, and plug the device in "
-    "again";
+    "install config/udev/70-yuragi.rules, join the group plugdev, and plug the device in again";
 
 namespace {
 

@@ -79,6 +79,11 @@ LookupAnswer HostLookup::find(Nanoseconds timeout) {
   return answer;
 }
 
+bool HostLookup::is_under_way() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->is_under_way;
+}
+
 void HostLookup::interrupt() noexcept {
   const std::lock_guard lock(state_->mutex);
   state_->is_interrupted = true;

@@ -24,6 +24,9 @@ class HostLookup {
   /// way is waited for, not begun anew.
   Result<std::vector<boost::asio::ip::tcp::endpoint>, Failure> find(Nanoseconds timeout);
 
+  /// Has a look-up been begun that has not ended? After find() failed: it took too long, and can be waited for again.
+  bool is_under_way() const;
+
   /// Ends a find() that waits, and all later ones.
   void interrupt() noexcept;
 

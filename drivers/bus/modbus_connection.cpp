@@ -1,6 +1,6 @@
 // libmodbus 3.1.6 opens and closes, sets up serial ports, sends, and cuts what arrives into messages. What it does not
 // do is done here or in the decoder: over TCP it never checks the unit id, and its raw requests all carry one
-// transaction id; it reports a message of another slave without its length; and nothing can wake it.
+// transaction id; it reports a message of another slave without its length; and nothing can interruption it.
 #include "drivers/bus/modbus_connection.hpp"
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include <cerrno>
 
 #include <modbus/modbus.h>
-#include <poll.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -19,6 +18,10 @@ namespace yuragi {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
+
+/// From the first byte of a message to its last. While libmodbus waits for the rest nothing can interrupt it, so that
+/// this is also the longest that anybody may have to wait at the end. At 1200 bit/s there is time for 50 bytes.
+constexpr Nanoseconds kLongestMessage = std::chrono::milliseconds(500);
 
 struct FreeModbus {
   void operator()(modbus_t* context) const noexcept { modbus_free(context); }
@@ -51,14 +54,14 @@ std::size_t refused_length(std::span<const std::uint8_t> message) {
 
 class LibmodbusConnection final : public ModbusConnection {
  public:
-  explicit LibmodbusConnection(const ModbusLine& line) : line_(line) {}
+  explicit LibmodbusConnection(const ModbusLine& line) : line_(line), host_(line.host, line.port) {}
   ~LibmodbusConnection() override { LibmodbusConnection::close(); }
   LibmodbusConnection(const LibmodbusConnection&) = delete;
   LibmodbusConnection& operator=(const LibmodbusConnection&) = delete;
 
-  Result<void, Failure> open(const WakeEvent& wake) override {
+  Result<void, Failure> open(const Interruption& interruption) override {
     close();
-    if (wake.is_set()) return Failure{"interrupted"};
+    if (interruption.is_set()) return Failure{"interrupted"};
     Context context(is_tcp() ? modbus_new_tcp_pi(line_.host.c_str(), std::to_string(line_.port).c_str())
                              : modbus_new_rtu(line_.device.c_str(), line_.baud, line_.parity, 8, line_.stop_bits));
     if (!context) return Failure{explain(modbus_strerror(errno))};
@@ -66,7 +69,7 @@ class LibmodbusConnection final : public ModbusConnection {
     modbus_set_byte_timeout(context.get(), 0, 0);
 
     if (is_tcp()) {
-      const auto socket = connect_tcp(line_.host, line_.port, line_.connect_timeout, wake);
+      const auto socket = connect_tcp(host_, line_.connect_timeout, interruption);
       if (!socket) return Failure{explain(socket.error().message)};
       modbus_set_socket(context.get(), *socket);
     } else {
@@ -89,10 +92,10 @@ class LibmodbusConnection final : public ModbusConnection {
   }
 
   std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage> buffer, const ModbusPatience& patience,
-                     const WakeEvent& wake) override {
+                     const Interruption& interruption) override {
     if (!context_ || is_tcp()) return 0;
     const Nanoseconds quiet = std::max(patience.byte_timeout, frame_gap(line_));
-    return read_until_quiet(buffer, quiet, SteadyClock::now() + patience.response_timeout, wake);
+    return read_until_quiet(buffer, quiet, SteadyClock::now() + patience.response_timeout, interruption);
   }
 
   bool send(const ModbusRequest& request, const ModbusPatience& patience) override {
@@ -110,17 +113,17 @@ class LibmodbusConnection final : public ModbusConnection {
            modbus_send_raw_request(context_.get(), message.data(), static_cast<int>(message.size())) >= 0;
   }
 
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const WakeEvent& wake) override {
-    // Wait for the first byte here, where `wake` can end it and where silence differs from a message cut off.
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
+    // Wait for the first byte here, where `interruption` can end it and where silence differs from a message cut off.
     if (!context_) return {BusStatus::kLost};
     const Nanoseconds remaining = deadline_ - SteadyClock::now();
-    const bool has_bytes = remaining > Nanoseconds::zero() && wait_for_bytes(remaining, wake);
-    if (wake.is_set()) return {BusStatus::kInterrupted};
+    const bool has_bytes = remaining > Nanoseconds::zero() && wait_for_bytes(remaining, interruption);
+    if (interruption.is_set()) return {BusStatus::kInterrupted};
     if (!has_bytes) return {BusStatus::kSilence};
 
     // Then libmodbus cuts out one message.
     std::ranges::fill(buffer, std::uint8_t{0});
-    set_response_timeout(context_.get(), deadline_ - SteadyClock::now());
+    set_response_timeout(context_.get(), std::min<Nanoseconds>(deadline_ - SteadyClock::now(), kLongestMessage));
     const int size = modbus_receive_confirmation(context_.get(), buffer.data());
     if (size > 0) return {BusStatus::kMessage, static_cast<std::size_t>(size)};
     if (size == 0 || errno == EMBBADCRC) {
@@ -129,7 +132,7 @@ class LibmodbusConnection final : public ModbusConnection {
       const std::size_t framed = std::min(refused_length(buffer), buffer.size());
       const bool is_whole = modbus_crc(buffer.first(framed)) == 0;
       const Nanoseconds quiet = std::max(patience_.byte_timeout, frame_gap(line_));
-      const std::size_t more = is_whole ? 0 : read_until_quiet(buffer.subspan(framed), quiet, deadline_, wake);
+      const std::size_t more = is_whole ? 0 : read_until_quiet(buffer.subspan(framed), quiet, deadline_, interruption);
       return {BusStatus::kMessage, framed + more};
     }
     if (errno == ETIMEDOUT) return {BusStatus::kCutOff};
@@ -147,19 +150,16 @@ class LibmodbusConnection final : public ModbusConnection {
                                 static_cast<std::uint32_t>(time.tv_nsec / 1000));
   }
 
-  /// Is there something to read, or news of the line's end, within `timeout`? `wake` ends the wait.
-  bool wait_for_bytes(Nanoseconds timeout, const WakeEvent& wake) const {
-    std::array<pollfd, 2> waits = {pollfd{modbus_get_socket(context_.get()), POLLIN, 0},
-                                   pollfd{wake.descriptor(), POLLIN, 0}};
-    const timespec time = to_timespec(timeout);
-    return ppoll(waits.data(), waits.size(), &time, nullptr) > 0 && waits[0].revents != 0;
+  /// Is there something to read, or news of the line's end, within `timeout`?
+  bool wait_for_bytes(Nanoseconds timeout, const Interruption& interruption) const {
+    return interruption.wait(modbus_get_socket(context_.get()), WaitFor::kReadable, timeout) == WaitEnd::kReady;
   }
 
   /// Reads until nothing comes for `quiet`, or until `deadline`; returns how much of it is in the buffer.
   std::size_t read_until_quiet(std::span<std::uint8_t> buffer, Nanoseconds quiet, SteadyClock::time_point deadline,
-                               const WakeEvent& wake) const {
+                               const Interruption& interruption) const {
     std::size_t size = 0;
-    while (SteadyClock::now() < deadline && wait_for_bytes(quiet, wake) && !wake.is_set()) {
+    while (SteadyClock::now() < deadline && wait_for_bytes(quiet, interruption)) {
       std::array<std::uint8_t, kModbusMaxMessage> bytes{};
       const ssize_t got = ::read(modbus_get_socket(context_.get()), bytes.data(), bytes.size());
       if (got <= 0) break;
@@ -180,6 +180,7 @@ class LibmodbusConnection final : public ModbusConnection {
   }
 
   ModbusLine line_;
+  HostLookup host_;  // TCP
   ModbusPatience patience_;
   Context context_;
   SteadyClock::time_point deadline_{};

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "drivers/bus/wake_event.hpp"
+#include "drivers/bus/interruption.hpp"
 #include "drivers/decode/modbus.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
@@ -47,7 +47,7 @@ enum class BusStatus : std::uint8_t {
   kSilence,      ///< nothing until the response time-out
   kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
   kGarbled,      ///< bytes that are no message; the line is no longer in step
-  kInterrupted,  ///< somebody set the wake event
+  kInterrupted,  ///< somebody set the interruption event
   kLost,         ///< the connection is gone
 };
 
@@ -57,7 +57,8 @@ struct BusMessage {
 };
 
 /// A connection to the devices on one line, which can be closed and opened again for as long as it lives. Carries bytes
-/// and judges nothing. A test may put another in its place. A `wake` that is set ends whatever waits with it, at once.
+/// and judges nothing. A test may put another in its place. A `interruption` that is set ends whatever waits with it,
+/// at once.
 ///
 /// Thread-safe: no; one thread after the other may use it.
 class ModbusConnection {
@@ -66,7 +67,7 @@ class ModbusConnection {
 
   /// Opens, or says why that failed and what to do. Blocks for the connect time-out at most (and while the system
   /// looks up a host name).
-  virtual Result<void, Failure> open(const WakeEvent& wake) = 0;
+  virtual Result<void, Failure> open(const Interruption& interruption) = 0;
   virtual bool is_open() const noexcept = 0;
   /// Whatever goes wrong while closing is of no interest: the descriptor is gone.
   virtual void close() noexcept = 0;
@@ -74,7 +75,7 @@ class ModbusConnection {
   /// Reads what the line brings until it has been quiet for the byte time-out, or chattering for the response time-out,
   /// and returns how much of it is in `buffer` (the rest is dropped). Over TCP there is nothing to wait for: 0.
   virtual std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage> buffer, const ModbusPatience& patience,
-                             const WakeEvent& wake) = 0;
+                             const Interruption& interruption) = 0;
 
   /// Sends a request and starts its response time-out. On a serial line, what came unasked is discarded first. False:
   /// the connection is gone.
@@ -82,7 +83,7 @@ class ModbusConnection {
 
   /// The next message since, waiting until the response time-out that send() began. Can be called again after a message
   /// that turned out to be another one's.
-  virtual BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const WakeEvent& wake) = 0;
+  virtual BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) = 0;
 };
 
 /// The real one, by libmodbus.

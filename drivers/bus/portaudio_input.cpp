@@ -49,7 +49,7 @@ class PortaudioInput final : public AudioInput {
     return devices;
   }
 
-  Result<AudioDevice, Failure> open(const AudioChoice& choice, const Clock& clock) override {
+  Result<AudioDevice, Failure> open(const AudioChoice& choice, std::function<MonoTime()> now) override {
     if (auto begun = begin(); !begun) return begun.error();
     const auto index = find(choice);
     if (!index) return index.error();
@@ -61,7 +61,7 @@ class PortaudioInput final : public AudioInput {
     device.channels = choice.channels;
     if (choice.rate_hz > 0.0) device.rate_hz = choice.rate_hz;
 
-    clock_ = &clock;
+    now_ = std::move(now);
     channels_ = choice.channels;
     rate_hz_ = device.rate_hz;
     const PaDeviceInfo* info = Pa_GetDeviceInfo(*index);
@@ -148,7 +148,7 @@ class PortaudioInput final : public AudioInput {
     if (!(time.inputBufferAdcTime > 0.0) || !(age_s >= duration_s) || age_s > duration_s + kBelievableLatency_s) {
       age_s = duration_s;
     }
-    const auto now_ns = clock_->now().mono.time_since_epoch().count();
+    const auto now_ns = now_().time_since_epoch().count();
     const double begin_ns = -1e9 * age_s;
 
     // How many frames an overflow took is not said: the worker's clock sees it; here one is counted, so that it is
@@ -174,7 +174,7 @@ class PortaudioInput final : public AudioInput {
 
   bool is_begun_ = false;
   PaStream* stream_ = nullptr;
-  const Clock* clock_ = nullptr;
+  std::function<MonoTime()> now_;
   std::size_t channels_ = 1;
   double rate_hz_ = 0.0;
   SpscRing<AudioBlock> ring_{kWaitingBlocks};

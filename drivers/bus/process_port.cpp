@@ -59,6 +59,7 @@ class ProcessPort final : public BytePort {
 
   Result<void, Failure> open() override {
     close();
+    if (is_interrupted()) return Failure{"interrupted"};
     std::array<int, 2> output = {-1, -1};
     std::array<int, 2> failure = {-1, -1};
     if (wake_ < 0 || pipe2(output.data(), O_CLOEXEC) != 0 || pipe2(failure.data(), O_CLOEXEC) != 0) {
@@ -122,6 +123,11 @@ class ProcessPort final : public BytePort {
   void interrupt() noexcept override { eventfd_write(wake_, 1); }
 
  private:
+  bool is_interrupted() const noexcept {
+    pollfd wait = {wake_, POLLIN, 0};
+    return poll(&wait, 1, 0) > 0;
+  }
+
   std::vector<std::string> command_;
   int wake_;
   int output_ = -1;

@@ -1,77 +1,91 @@
 // libmodbus connects by itself, but nothing can end its waiting; hence this.
 #include "drivers/bus/tcp_connect.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
-#include <cstring>
-#include <memory>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 namespace yuragi {
 namespace {
 
-using ConnectClock = std::chrono::steady_clock;
+using TcpEndpoint = boost::asio::ip::tcp::endpoint;
 
-std::string reason(int error) {
-  return std::generic_category().message(error);
+/// The look-up knows nothing of our interruption: it is looked at this often.
+constexpr Nanoseconds kLookupSlice = std::chrono::milliseconds(50);
+
+Result<std::vector<TcpEndpoint>, Failure> look_up(HostLookup& host, Nanoseconds timeout,
+                                                  const Interruption& interruption) {
+  for (Nanoseconds waited{0};; waited += kLookupSlice) {
+    auto endpoints = host.find(std::min(kLookupSlice, timeout));
+    if (endpoints || !host.is_under_way() || waited >= timeout || interruption.is_set()) return endpoints;
+  }
 }
 
-/// Waits until the connection that was begun is there. 0, or why it is not.
-int finish_connecting(int socket, ConnectClock::time_point deadline, const WakeEvent& wake) {
-  std::array<pollfd, 2> waits = {pollfd{socket, POLLOUT, 0}, pollfd{wake.descriptor(), POLLIN, 0}};
-  const auto left_ms = std::chrono::ceil<std::chrono::milliseconds>(deadline - ConnectClock::now()).count();
-  if (left_ms <= 0 || poll(waits.data(), waits.size(), static_cast<int>(left_ms)) <= 0) return ETIMEDOUT;
-  if (waits[1].revents != 0) return ECANCELED;
+void set_socket_options(int socket) {
+  const auto set = [socket](int level, int option, int value) {
+    setsockopt(socket, level, option, &value, sizeof value);
+  };
+  set(IPPROTO_TCP, TCP_NODELAY, 1);
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 10);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+}
+
+/// 0 as soon as the socket is connected, or why it is not.
+int connect_socket(int socket, const TcpEndpoint& endpoint, Nanoseconds timeout, const Interruption& interruption) {
+  if (::connect(socket, endpoint.data(), static_cast<socklen_t>(endpoint.size())) == 0) return 0;
+  if (errno != EINPROGRESS) return errno;
+  switch (interruption.wait(socket, WaitFor::kWritable, timeout)) {
+    case WaitEnd::kInterrupted:
+      return ECANCELED;
+    case WaitEnd::kTimeout:
+      return ETIMEDOUT;
+    case WaitEnd::kReady:
+      break;
+  }
   int error = 0;
   socklen_t size = sizeof error;
   return getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
 }
 
 /// A socket that is connected to one address, or why there is none.
-std::pair<int, int> connect_to(const addrinfo& address, ConnectClock::time_point deadline, const WakeEvent& wake) {
-  const int socket = ::socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+std::pair<int, int> connected_socket(const TcpEndpoint& endpoint, Nanoseconds timeout,
+                                     const Interruption& interruption) {
+  const int socket = ::socket(endpoint.protocol().family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (socket < 0) return {-1, errno};
-  int error = connect(socket, address.ai_addr, address.ai_addrlen) == 0 ? 0 : errno;
-  if (error == EINPROGRESS) error = finish_connecting(socket, deadline, wake);
-  if (error != 0) {
+  if (const int error = connect_socket(socket, endpoint, timeout, interruption); error != 0) {
     ::close(socket);
     return {-1, error};
   }
-  const int yes = 1;
-  setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  set_socket_options(socket);
   fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) & ~O_NONBLOCK);
   return {socket, 0};
 }
 
 }  // namespace
 
-Result<int, Failure> connect_tcp(const std::string& host, std::uint16_t port, Nanoseconds timeout,
-                                 const WakeEvent& wake) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (const int error = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found); error != 0) {
-    return Failure{gai_strerror(error)};
-  }
-  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, freeaddrinfo);
+Result<int, Failure> connect_tcp(HostLookup& host, Nanoseconds timeout, const Interruption& interruption) {
+  const auto endpoints = look_up(host, timeout, interruption);
+  if (!endpoints) return endpoints.error();
 
-  // A name may have several addresses; the first that answers will do.
-  const auto deadline = ConnectClock::now() + timeout;
+  // The addresses share the time, so that one that swallows everything leaves some to the next.
   int last_error = EADDRNOTAVAIL;
-  for (const addrinfo* address = found; address != nullptr; address = address->ai_next) {
-    const auto [socket, error] = connect_to(*address, deadline, wake);
+  for (const TcpEndpoint& endpoint : *endpoints) {
+    const auto [socket, error] =
+        connected_socket(endpoint, timeout / static_cast<std::int64_t>(endpoints->size()), interruption);
     if (socket >= 0) return socket;
     last_error = error;
     if (error == ECANCELED) break;
   }
-  return Failure{reason(last_error)};
+  return Failure{std::generic_category().message(last_error)};
 }
 
 }  // namespace yuragi

@@ -1,18 +1,16 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-
-#include "drivers/bus/wake_event.hpp"
+#include "drivers/bus/host_lookup.hpp"
+#include "drivers/bus/interruption.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi {
 
-/// Connects to a TCP server, by name or address, and returns the socket, which is the caller's to close: blocking,
-/// small messages at once. Waits for `timeout` at most (and while the system looks up a name), less if `wake` is set.
-/// The failure is the system's reason: "Connection refused".
-Result<int, Failure> connect_tcp(const std::string& host, std::uint16_t port, Nanoseconds timeout,
-                                 const WakeEvent& wake);
+/// Connects to one of a host's addresses and returns the socket, which is the caller's to close: blocking, small
+/// messages at once, and noticing after about 25 s a peer that is gone without a word. Looking up the name and
+/// connecting take `timeout` each at most, less if `interruption` is set. The failure is the reason: "Connection
+/// refused".
+Result<int, Failure> connect_tcp(HostLookup& host, Nanoseconds timeout, const Interruption& interruption);
 
 }  // namespace yuragi

@@ -20,7 +20,7 @@ namespace yuragi {
 struct MicEstimatorOptions {
   MicCalibration calibration = MicPowerLaw{};
   /// Of a calm, dB re full scale; nothing: found while running (MicNoiseFloor). A curve needs none.
-  std::optional<double> noise_floor_db;
+  std::optional<double> noise_floor_db = std::nullopt;
   double noise_memory_s = 3600.0;
   /// Does what all microphones hear alike count as sound, not wind? With one microphone it cannot be told.
   bool ignores_sound = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -69,6 +70,9 @@ class MicFrameReader {
 
   /// Forgets everything, for a new worker.
   void clear();
+
+  /// What has come and is no whole frame yet; after next() has said nothing, no more than one frame.
+  std::size_t waiting_bytes() const noexcept { return waiting_.size(); }
 
  private:
   Result<MicFrame, Refusal> decode(std::uint8_t kind, std::span<const std::uint8_t> payload);

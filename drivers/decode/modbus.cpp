@@ -144,4 +144,10 @@ std::string_view modbus_exception_name(std::uint8_t code) noexcept {
   }
 }
 
+bool is_gateway_silence(std::uint8_t exception) noexcept {
+  constexpr std::uint8_t kPathUnavailable = 10;
+  constexpr std::uint8_t kTargetFailedToRespond = 11;
+  return exception == kPathUnavailable || exception == kTargetFailedToRespond;
+}
+
 }  // namespace yuragi

@@ -78,4 +78,7 @@ std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) noexcept;
 /// "illegal data address" for 2; "unknown exception" for a code that the specification does not have.
 std::string_view modbus_exception_name(std::uint8_t code) noexcept;
 
+/// Is this exception a gateway's word that the slave behind it does not answer?
+bool is_gateway_silence(std::uint8_t exception) noexcept;
+
 }  // namespace yuragi

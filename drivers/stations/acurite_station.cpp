@@ -41,7 +41,7 @@ class AcuriteStation final : public HidStation {
       failures_ = 0;
       last_ = first;
       last_new_ = begin;
-      return StationStep{next, StationHealth::kWell, ""};
+      return StationStep::well(next);
     }
     const Refusal why = wind ? Refusal::kInvalid : wind.error();
     if (why != Refusal::kInvalid) {
@@ -50,8 +50,8 @@ class AcuriteStation final : public HidStation {
     // The console is well, and has no sensor, or old numbers of one.
     failures_ = 0;
     talk.refuse(Refusal::kInvalid);
-    return StationStep{next, StationHealth::kUnwell,
-                       "does not hear its sensors: check their batteries and their distance to the console"};
+    return StationStep::unwell(next,
+                               "does not hear its sensors: check their batteries and their distance to the console");
   }
 
  private:
@@ -75,14 +75,14 @@ class AcuriteStation final : public HidStation {
   /// The report is the one that was published last.
   StationStep wait_for_news(MonoTime next, MonoTime now) {
     failures_ = 0;
-    if (now - last_new_ < timing_.paced(kAcuriteNothingNew)) return {next, StationHealth::kSame, ""};
-    return {next, StationHealth::kUnwell, "says the same again and again: unplug it and plug it in again"};
+    if (now - last_new_ < timing_.paced(kAcuriteNothingNew)) return StationStep::same(next);
+    return StationStep::unwell(next, "says the same again and again: unplug it and plug it in again");
   }
 
   Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
     talk.refuse(why);
     if (++failures_ >= kAcuriteGiveUp) return Failure{trouble};
-    return StationStep{talk.now() + timing_.paced(kAcuriteRetry), StationHealth::kUnwell, trouble};
+    return StationStep::unwell(talk.now() + timing_.paced(kAcuriteRetry), trouble);
   }
 
   StationTiming timing_;

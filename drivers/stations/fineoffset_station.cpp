@@ -4,9 +4,9 @@
 // lockups", polling).
 //
 // So it is read once for each time that it writes. When that is, is looked for at first, by reading a few times in one
-// period of 48 s until the record changes, and looked for again twice a day, since clocks drift. A block counts when it
-// was read twice alike; one that was not was just being written. That a round of reading always begins with the fixed
-// block, and ends with the record, keeps a late answer to one from being taken for the other.
+// period of 48 s until the record changes, and looked for again every six hours, since clocks drift. A block counts
+// when it was read twice alike; one that was not was just being written. That a round of reading always begins with the
+// fixed block, and ends with the record, keeps a late answer to one from being taken for the other.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -23,14 +23,15 @@ using std::chrono::seconds;
 
 constexpr Nanoseconds kFineOffsetEvery = seconds(48);
 constexpr Nanoseconds kFineOffsetMinute = seconds(60);
-constexpr Nanoseconds kFineOffsetMargin = seconds(3);
+constexpr Nanoseconds kFineOffsetMargin = seconds(5);  // 3, and what two quartzes drift apart until the next search
 constexpr Nanoseconds kFineOffsetSearchStep = seconds(6);
-constexpr Nanoseconds kFineOffsetSearchAgain = hours(12);
+constexpr Nanoseconds kFineOffsetSearchAgain = hours(6);
 constexpr Nanoseconds kFineOffsetSearchSoon = hours(1);  // where nothing was found
 constexpr int kFineOffsetSearchSteps = 10;               // a period and a little more: in calm nothing may change
 constexpr Nanoseconds kFineOffsetRetry = seconds(6);
 constexpr Nanoseconds kFineOffsetReport = seconds(1);     // for each of a block's reports
-constexpr int kFineOffsetUnstable = 4;                    // readings of one block, none like the one before
+constexpr Nanoseconds kFineOffsetWriting = seconds(2);    // until a block that was being written is read again
+constexpr int kFineOffsetUnstable = 4;                    // times that a block was not the same twice
 constexpr Nanoseconds kFineOffsetStalled = seconds(240);  // without any change: at the least it counts minutes
 constexpr int kFineOffsetGiveUp = 4;                      // failures in a row; then it is opened again
 constexpr std::size_t kFineOffsetRecord = 16;             // what is alike in both models' records
@@ -48,7 +49,7 @@ class FineOffsetStation final : public HidStation {
 
   Result<StationStep, Failure> step(HidTalk& talk) override {
     const MonoTime now = talk.now();
-    if (const MonoTime clear = keep_away(now); clear > now) return StationStep{clear, StationHealth::kSame, ""};
+    if (const MonoTime clear = keep_away(now); clear > now) return StationStep::same(clear);
 
     // One block, which counts when it is like the one before.
     FineOffsetBytes block{};
@@ -58,13 +59,11 @@ class FineOffsetStation final : public HidStation {
       return fail(talk, status == BlockStatus::kNone ? Refusal::kTimeout : Refusal::kTooShort,
                   "does not answer; a console that has locked up needs its batteries and its cable taken out");
     }
-    if (!last_block_ || *last_block_ != block) {
-      if (last_block_ && ++unstable_ >= kFineOffsetUnstable) {
-        return fail(talk, Refusal::kMalformed, "reads differently each time: check its cable");
-      }
+    if (!last_block_) {
       last_block_ = block;
-      return StationStep{talk.now(), StationHealth::kSame, ""};
+      return StationStep::same(talk.now());
     }
+    if (*last_block_ != block) return wait_for_writing(talk);
     last_block_.reset();
     blocks_.push_back(block);
     return blocks_.size() == 1 ? take_fixed_block(talk) : take_record(talk);
@@ -100,6 +99,15 @@ class FineOffsetStation final : public HidStation {
     return BlockStatus::kRead;
   }
 
+  /// The block was not the same twice: the console is writing to it, and will soon be done; or the cable is bad.
+  Result<StationStep, Failure> wait_for_writing(HidTalk& talk) {
+    last_block_.reset();
+    if (++unstable_ >= kFineOffsetUnstable) {
+      return fail(talk, Refusal::kMalformed, "reads differently each time: check its cable");
+    }
+    return StationStep::same(talk.now() + timing_.paced(kFineOffsetWriting));
+  }
+
   /// Where the current record stands; whichever model's ring the address fits.
   Result<StationStep, Failure> take_fixed_block(HidTalk& talk) {
     auto fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh1080);
@@ -115,14 +123,14 @@ class FineOffsetStation final : public HidStation {
     if (offset + kFineOffsetRecord > kFineOffsetBlock) {
       addresses_.push_back(static_cast<std::uint16_t>(first + kFineOffsetBlock));
     }
-    return StationStep{talk.now(), StationHealth::kSame, ""};
+    return StationStep::same(talk.now());
   }
 
   Result<StationStep, Failure> take_record(HidTalk& talk) {
     if (blocks_.back() == blocks_.front()) {
       return fail(talk, Refusal::kNotMine, "answers another question than the one asked: check its cable");
     }
-    if (blocks_.size() < addresses_.size()) return StationStep{talk.now(), StationHealth::kSame, ""};
+    if (blocks_.size() < addresses_.size()) return StationStep::same(talk.now());
 
     Record record{};
     std::array<std::uint8_t, 2 * kFineOffsetBlock> joined{};
@@ -158,20 +166,21 @@ class FineOffsetStation final : public HidStation {
     const MonoTime next = next_look(now);
     if (now - last_news_ >= timing_.paced(kFineOffsetStalled)) {
       talk.refuse(Refusal::kInvalid);
-      return StationStep{next, StationHealth::kUnwell,
-                         "does not measure any more; a console that has locked up needs its batteries and its cable "
-                         "taken out"};
+      return StationStep::unwell(
+          next,
+          "does not measure any more; a console that has locked up needs its batteries and its cable "
+          "taken out");
     }
-    if (was_looking_only) return StationStep{next, StationHealth::kSame, ""};
+    if (was_looking_only) return StationStep::same(next);
     return publish(record, talk, next);
   }
 
   static StationStep publish(const Record& record, HidTalk& talk, MonoTime next) {
     const auto wind = decode_fineoffset_record(record);
-    if (wind && talk.publish(*wind)) return {next, StationHealth::kWell, ""};
+    if (wind && talk.publish(*wind)) return StationStep::well(next);
     if (!wind) talk.refuse(wind.error());
-    return {next, StationHealth::kUnwell,
-            "has no wind from its sensors: check their batteries and their distance to the console"};
+    return StationStep::unwell(next,
+                               "has no wind from its sensors: check their batteries and their distance to the console");
   }
 
   bool is_searching() const { return search_steps_ < kFineOffsetSearchSteps; }
@@ -204,7 +213,7 @@ class FineOffsetStation final : public HidStation {
     begin_round();
     talk.refuse(why);
     if (++failures_ >= kFineOffsetGiveUp) return Failure{trouble};
-    return StationStep{talk.now() + timing_.paced(kFineOffsetRetry), StationHealth::kUnwell, trouble};
+    return StationStep::unwell(talk.now() + timing_.paced(kFineOffsetRetry), trouble);
   }
 
   StationTiming timing_;

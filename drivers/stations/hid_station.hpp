@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "drivers/bus/hid_device.hpp"
 #include "drivers/stations/hid_talk.hpp"
@@ -23,7 +24,13 @@ enum class StationHealth : std::uint8_t {
 struct StationStep {
   MonoTime next;  ///< when the next step is due
   StationHealth health = StationHealth::kSame;
-  std::string trouble;  ///< for kUnwell: what is wrong, and what to do
+  std::string trouble = {};  ///< for kUnwell: what is wrong, and what to do
+
+  static StationStep same(MonoTime next) { return {next}; }
+  static StationStep well(MonoTime next) { return {next, StationHealth::kWell}; }
+  static StationStep unwell(MonoTime next, std::string trouble) {
+    return {next, StationHealth::kUnwell, std::move(trouble)};
+  }
 };
 
 /// The conversation with one family of stations, from the moment that the device was opened: made anew each time.

@@ -30,7 +30,7 @@ class Te923Station final : public HidStation {
     const auto wind = decode_te923(ByteSpan(block_).first(size_));
     if (wind && talk.publish(*wind)) {
       failures_ = 0;
-      return StationStep{begin + timing_.interval_or(kTe923Every), StationHealth::kWell, ""};
+      return StationStep::well(begin + timing_.interval_or(kTe923Every));
     }
     const Refusal why = wind ? Refusal::kInvalid : wind.error();
     if (why != Refusal::kInvalid) {
@@ -39,8 +39,8 @@ class Te923Station final : public HidStation {
     // The console is well, and has no wind.
     failures_ = 0;
     talk.refuse(Refusal::kInvalid);
-    return StationStep{begin + timing_.interval_or(kTe923Every), StationHealth::kUnwell,
-                       "has lost its anemometer: check its battery and its distance to the console"};
+    return StationStep::unwell(begin + timing_.interval_or(kTe923Every),
+                               "has lost its anemometer: check its battery and its distance to the console");
   }
 
  private:
@@ -65,7 +65,7 @@ class Te923Station final : public HidStation {
   Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
     talk.refuse(why);
     if (++failures_ >= kTe923GiveUp) return Failure{trouble};
-    return StationStep{talk.now() + timing_.paced(kTe923Retry), StationHealth::kUnwell, trouble};
+    return StationStep::unwell(talk.now() + timing_.paced(kTe923Retry), trouble);
   }
 
   StationTiming timing_;

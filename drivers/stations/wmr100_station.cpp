@@ -27,7 +27,7 @@ class Wmr100Station final : public HidStation {
     if (message.status == HidStatus::kLost) return station_is_gone();
     if (message.status != HidStatus::kReport) return bear_silence(talk);
 
-    StationStep step{talk.now(), StationHealth::kSame, ""};
+    StationStep step = StationStep::same(talk.now());
     for (const std::uint8_t byte : wmr100_report_bytes(message.bytes)) {
       if (const auto frame = take_wmr100_byte(stream_, byte)) judge(*frame, talk, step);
     }
@@ -57,14 +57,14 @@ class Wmr100Station final : public HidStation {
   Result<StationStep, Failure> bear_silence(HidTalk& talk) {
     const MonoTime now = talk.now();
     const Nanoseconds silent = now - heard_;
-    if (silent < timing_.paced(kWmr100Silent)) return StationStep{now, StationHealth::kSame, ""};
+    if (silent < timing_.paced(kWmr100Silent)) return StationStep::same(now);
     if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"says nothing, so it is opened again"};
     if (now - started_ >= timing_.paced(kWmr100Restart)) {
       started_ = now;
       talk.refuse(Refusal::kTimeout);
       if (!talk.send(kWmr100Start)) return station_is_gone();
     }
-    return StationStep{now, StationHealth::kUnwell, "says nothing: check the console's power"};
+    return StationStep::unwell(now, "says nothing: check the console's power");
   }
 
   StationTiming timing_;

@@ -32,7 +32,7 @@ class Wmr300Station final : public HidStation {
     const Nanoseconds until_heartbeat = next_heartbeat_ - begin;
     const HidMessage message = talk.read(std::min(kWmr300Listen, until_heartbeat));
     if (message.status == HidStatus::kLost) return station_is_gone();
-    StationStep step{talk.now(), StationHealth::kSame, ""};
+    StationStep step = StationStep::same(talk.now());
     if (message.status == HidStatus::kReport && !take(message.bytes, talk, step)) return station_is_gone();
     if (step.health == StationHealth::kSame) return miss_the_wind(talk, step);
     return step;

@@ -183,19 +183,43 @@ TEST(Wmr300Station, SendsAHeartbeatEvery20SecondsAndAcknowledgesEachPacket) {
   EXPECT_EQ(acknowledgements, packets);
 }
 
+/// A Fine Offset console that counts who comes near its writing, in a wind that changes all the time.
+struct CountedConsole {
+  explicit CountedConsole(const sim::HidModelOptions& options)
+      : CountedConsole(std::make_unique<sim::FineOffset>(sim::FineOffsetRecord::kWh1080, options)) {}
+  explicit CountedConsole(std::unique_ptr<sim::FineOffset> console)
+      : counted(*console), bench(std::move(console), test::kind_of_model("fineoffset")) {
+    bench.bus.wind = [](double time_s) { return PlayedMoment{std::floor(std::fmod(time_s, 997.0)) / 50.0, 0.0}; };
+  }
+
+  /// Which part of the blocks of that time was read near its writing.
+  double part_near_writing(double duration_s) {
+    const int near_before = counted.reads_near_writing();
+    const int before = counted.blocks_read();
+    bench.run_for(duration_s);
+    return static_cast<double>(counted.reads_near_writing() - near_before) / (counted.blocks_read() - before);
+  }
+
+  const sim::FineOffset& counted;
+  HidBench bench;
+};
+
 TEST(FineOffsetStation, KeepsAwayFromTheConsolesWritingOnceItKnowsWhenThatIs) {
-  auto console = std::make_unique<sim::FineOffset>(sim::FineOffsetRecord::kWh1080, sim::HidModelOptions{});
-  const sim::FineOffset& counted = *console;
-  HidBench bench(std::move(console), test::kind_of_model("fineoffset"));
-  bench.bus.wind = [](double time_s) { return PlayedMoment{std::floor(std::fmod(time_s, 997.0)) / 50.0, 0.0}; };
-  bench.run_for(kHour_s);  // it learns
-  const int near_before = counted.reads_near_writing();
-  const int before = counted.blocks_read();
-  bench.run_for(10.0 * kHour_s);
-  const int blocks = counted.blocks_read() - before;
-  EXPECT_GT(blocks, 2000);
-  EXPECT_LT(counted.reads_near_writing() - near_before, blocks / 100) << "by chance it would be one in five";
-  EXPECT_EQ(bench.sink.refusals.size(), 0U);
+  for (double begins_s = 0.0; begins_s < 60.0; begins_s += 7.0) {
+    CountedConsole console(sim::HidModelOptions{});
+    console.bench.bus.begin();
+    console.bench.bus.run_to(console.bench.bus.clock.now().mono + from_seconds(begins_s));
+    console.bench.run_for(kHour_s);  // it learns
+    EXPECT_LT(console.part_near_writing(4.0 * kHour_s), 0.01) << "by chance it would be 0.2; began at " << begins_s;
+    EXPECT_EQ(console.bench.sink.refusals.size(), 0U);
+  }
+}
+
+TEST(FineOffsetStation, KeepsAwayForDaysWhileTheClocksDriftApart) {
+  for (const double pace : {0.99995, 1.00005}) {  // 4 s a day, as quartzes do
+    CountedConsole console(sim::HidModelOptions{.pace = pace});
+    EXPECT_LT(console.part_near_writing(48.0 * kHour_s), 0.02) << pace;
+  }
 }
 
 TEST(FineOffsetStation, ReadsEachMeasurementOnce) {

@@ -33,13 +33,13 @@ class RealClock final : public Clock {
 /// A device that answers when the test lets it, and remembers when it was asked.
 class HeldConnection final : public ModbusConnection {
  public:
-  Result<void, Failure> open(const WakeEvent&) override {
+  Result<void, Failure> open(const Interruption&) override {
     is_open_ = true;
     return {};
   }
   bool is_open() const noexcept override { return is_open_; }
   void close() noexcept override { is_open_ = false; }
-  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const WakeEvent&) override {
+  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const Interruption&) override {
     return 0;
   }
   bool send(const ModbusRequest& request, const ModbusPatience&) override {
@@ -49,10 +49,10 @@ class HeldConnection final : public ModbusConnection {
     changed_.notify_all();
     return true;
   }
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const WakeEvent& wake) override {
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
     std::unique_lock lock(mutex_);
     while (may_answer_ == 0) {
-      if (wake.is_set()) return {BusStatus::kInterrupted};
+      if (interruption.is_set()) return {BusStatus::kInterrupted};
       changed_.wait_for(lock, 5ms);
     }
     --may_answer_;
@@ -100,7 +100,7 @@ ModbusLine line_named(const std::string& host) {
 class ModbusBusTest : public testing::Test {
  protected:
   struct Asker {
-    WakeEvent wake;
+    Interruption interruption;
     RecordingSink sink;
     std::optional<ModbusBus::Answer> answer;
     std::thread thread;
@@ -109,8 +109,8 @@ class ModbusBusTest : public testing::Test {
     auto connection = std::make_unique<HeldConnection>();
     connection_ = connection.get();
     bus_ = std::make_unique<ModbusBus>(line_named("held"), std::move(connection));
-    const WakeEvent wake;
-    EXPECT_TRUE(bus_->open(wake, clock_));
+    const Interruption interruption;
+    EXPECT_TRUE(bus_->open(interruption, clock_));
   }
   ~ModbusBusTest() override {
     for (const auto& asker : askers_) {
@@ -120,13 +120,14 @@ class ModbusBusTest : public testing::Test {
   Asker& ask(std::uint8_t unit) {
     Asker& asker = *askers_.emplace_back(std::make_unique<Asker>());
     asker.thread = std::thread(
-        [this, unit, &asker] { asker.answer = bus_->ask({.unit = unit}, {}, asker.wake, clock_, asker.sink); });
+        [this, unit, &asker] { asker.answer = bus_->ask({.unit = unit}, {}, asker.interruption, clock_, asker.sink); });
     return asker;
   }
   /// Until `count` of them stand in the queue, or have the line.
   void wait_until_waiting(std::size_t count) {
     const auto deadline = std::chrono::steady_clock::now() + 20s;
-    while (bus_->waiting_count() < count && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(1ms);
+    while (bus_->waiting_count() < count && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(1ms);
     ASSERT_EQ(bus_->waiting_count(), count);
   }
 
@@ -171,12 +172,12 @@ TEST_F(ModbusBusTest, EndsTheWaitOfTheOneWhoIsInterruptedAndOfNobodyElse) {
   Asker& third = ask(3);
   wait_until_waiting(3);
 
-  second.wake.set();
+  second.interruption.set();
   bus_->wake_waiters();
   second.thread.join();
   EXPECT_EQ(second.answer->error().kind, Kind::kInterrupted);
 
-  first.wake.set();
+  first.interruption.set();
   first.thread.join();
   EXPECT_EQ(first.answer->error().kind, Kind::kInterrupted);
   connection_->let_answer(1);
@@ -191,7 +192,7 @@ TEST_F(ModbusBusTest, EndsAWaitForTheGapToo) {
   ask(1).thread.join();
   Asker& second = ask(2);
   wait_until_waiting(1);
-  second.wake.set();
+  second.interruption.set();
   bus_->wake_waiters();
   second.thread.join();
   EXPECT_EQ(second.answer->error().kind, Kind::kInterrupted);
@@ -209,14 +210,14 @@ class ModbusBusByHandTest : public testing::Test {
     line.framing = framing;
     line.device = "fake";
     bus_ = std::make_unique<ModbusBus>(line, std::make_unique<FakeConnection>(line_));
-    ASSERT_TRUE(bus_->open(wake_, clock_));
+    ASSERT_TRUE(bus_->open(interruption_, clock_));
   }
-  ModbusBus::Answer ask(std::uint8_t unit) { return bus_->ask({.unit = unit}, {}, wake_, clock_, sink_); }
+  ModbusBus::Answer ask(std::uint8_t unit) { return bus_->ask({.unit = unit}, {}, interruption_, clock_, sink_); }
 
   FakeLine line_;
   BusStatus status_ = BusStatus::kMessage;
   ManualClock clock_;
-  WakeEvent wake_;
+  Interruption interruption_;
   RecordingSink sink_;
   std::unique_ptr<ModbusBus> bus_;
 };
@@ -258,7 +259,7 @@ TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
     ask(1);
     ask(9);
   }
-  ASSERT_TRUE(bus_->open(wake_, clock_));
+  ASSERT_TRUE(bus_->open(interruption_, clock_));
   EXPECT_EQ(line_.opened, 1);
 }
 

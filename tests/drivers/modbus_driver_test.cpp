@@ -2,8 +2,10 @@
 #include <array>
 #include <stdexcept>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 #include "drivers/driver.hpp"
 #include "tests/support/manual_clock.hpp"
@@ -406,6 +408,12 @@ TEST(ModbusDriver, RefusesOptionsThatCannotWork) {
               HasSubstr("no Modbus profile named \"nothing\"; known: "));
   EXPECT_THAT(error_of({{"profile", std::string("renke-rs-fsjt-n01")}, {"direction_slave", std::int64_t{3}}}),
               HasSubstr("direction_slave: "));
+  EXPECT_THAT(error_of({{"direction_device", std::string("/dev/x")}}), HasSubstr("direction_device: is for transport"));
+  EXPECT_THAT(error_of({{"transport", std::string("rtu")},
+                        {"device", std::string("/dev/x")},
+                        {"direction_device", std::string("/dev/y")},
+                        {"profile", std::string("renke-rs-fsjt-n01")}}),
+              HasSubstr("direction_device: profile"));
 }
 
 TEST(ModbusDriver, AsksTheSlavesThatTheOptionsName) {
@@ -423,6 +431,29 @@ TEST(ModbusDriver, AsksTheSlavesThatTheOptionsName) {
   EXPECT_NEAR(bench.sink.readings[0].speed_m_s, 4.2, 1e-9);
   EXPECT_EQ(bench.sink.readings[0].direction_deg, 270.0);
   EXPECT_EQ(strangers, 0);
+}
+
+TEST(ModbusDriver, RefusesTwoSensorsThatWantDifferentSettingsOnOneSerialPort) {
+  const SerialPort port;
+  const ParameterValues::Map cup = {
+      {"transport", std::string("rtu")}, {"device", port.device()}, {"profile", std::string("renke-rs-fsjt-n01")}};
+  const auto first = open_sensor(cup);
+  ParameterValues::Map other = cup;
+  other["baud"] = std::int64_t{9600};
+  EXPECT_THROW(open_sensor(other), std::runtime_error);
+  other["baud"] = std::int64_t{4800};
+  EXPECT_NO_THROW(open_sensor(other));
+}
+
+TEST(ModbusDriver, SaysWhoElseHasThePort) {
+  // Another program is another open file to the system.
+  const SerialPort port;
+  const Descriptor other(open(port.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  ASSERT_EQ(flock(other.get(), LOCK_EX | LOCK_NB), 0);
+  const auto sensor = open_sensor({{"transport", std::string("rtu")}, {"device", port.device()}});
+  Bench bench;
+  bench.poll(*sensor);
+  EXPECT_THAT(bench.sink.last_detail(), HasSubstr("another program reads it"));
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ class ModbusLateAnswerTest : public testing::Test {
     line.framing = ModbusFraming::kRtu;
     line.device = port_.device();
     bus_ = shared_modbus_bus(line);
-    EXPECT_TRUE(bus_->open(wake_, clock_));
+    EXPECT_TRUE(bus_->open(interruption_, clock_));
   }
 
   void say(const Bytes& bytes) { EXPECT_EQ(write(port_.far_end(), bytes.data(), bytes.size()), std::ssize(bytes)); }
@@ -50,7 +50,7 @@ class ModbusLateAnswerTest : public testing::Test {
   }
 
   ModbusBus::Answer ask(Nanoseconds timeout) {
-    return bus_->ask({.unit = 1}, {.response_timeout = timeout, .byte_timeout = 100ms}, wake_, clock_, sink_);
+    return bus_->ask({.unit = 1}, {.response_timeout = timeout, .byte_timeout = 100ms}, interruption_, clock_, sink_);
   }
 
   /// Asks once in vain, which leaves an answer outstanding.
@@ -63,7 +63,7 @@ class ModbusLateAnswerTest : public testing::Test {
 
   SerialPort port_;
   ManualClock clock_;
-  WakeEvent wake_;
+  Interruption interruption_;
   RecordingSink sink_;
   std::shared_ptr<ModbusBus> bus_;
 };
@@ -142,7 +142,7 @@ TEST_F(ModbusLateAnswerTest, DoesNotHoldUpALineThatNeverGetsQuietForLongerThanAT
 }
 
 TEST_F(ModbusLateAnswerTest, CannotKeepAnInterruptedSensorWaiting) {
-  wake_.set();
+  interruption_.set();
   const auto answer = ask(10s);
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().kind, Kind::kInterrupted);

@@ -71,6 +71,7 @@ source = "s"
 revision = "V2"
 transport = "tcp"
 block_read = false
+block_gap = 3
 north_offset_deg = -12.5
 address_base = 40001
 [serial]
@@ -103,6 +104,11 @@ address = 40003
 type = "i16"
 unit = "deg"
 map = "16-point"
+[gust]
+slave = 17
+address = 40007
+type = "u16"
+unit = "km/h"
 )",
                                                      "device.toml");
   EXPECT_EQ(profile.revision, "V2");
@@ -135,6 +141,21 @@ map = "16-point"
   EXPECT_EQ(profile.direction->address, 2);
   EXPECT_EQ(profile.direction->type, RegisterType::kI16);
   EXPECT_EQ(profile.direction->map, DirectionMap::kPoint16);
+  EXPECT_EQ(profile.block_gap, 3);
+  ASSERT_TRUE(profile.gust.has_value());
+  EXPECT_EQ(profile.gust->address, 6);
+  EXPECT_EQ(profile.gust->unit, QuantityUnit::kKmh);
+}
+
+TEST(ModbusProfile, ThatIsMovedToAnotherSlaveTakesAlongWhatWasOnTheSame) {
+  ModbusProfile profile;
+  profile.direction = ModbusQuantity{};
+  profile.direction->slave = 2;
+  profile.gust = ModbusQuantity{};
+  set_slave(profile, 7);
+  EXPECT_EQ(profile.speed.slave, 7);
+  EXPECT_EQ(profile.direction->slave, 2);
+  EXPECT_EQ(profile.gust->slave, 7);
 }
 
 TEST(ModbusProfile, KeepsALiteral30001OnTheWire) {

@@ -372,5 +372,99 @@ TEST_F(ModbusSensorTest, CountsNothingForARequestThatWasInterrupted) {
   EXPECT_TRUE(sink_.readings.empty());
 }
 
+TEST_F(ModbusSensorTest, PublishesAGustThatComesAlongOrByItself) {
+  for (const std::uint16_t address : {std::uint16_t{1}, std::uint16_t{40}}) {
+    ModbusProfile profile = pair_profile();
+    profile.gust = profile.speed;
+    profile.gust->address = address;
+    make(profile);
+    sink_ = {};
+    line_.message = [](const ModbusRequest& request) {
+      std::vector<std::uint16_t> registers(request.count, static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270));
+      if (request.unit == 1 && (request.count == 2 || request.address == 40)) registers.back() = 121;
+      return answer_with(request, registers);
+    };
+    poll_for(1s);
+    ASSERT_FALSE(sink_.readings.empty());
+    EXPECT_DOUBLE_EQ(sink_.readings.back().speed_m_s, 8.6);
+    EXPECT_DOUBLE_EQ(sink_.readings.back().gust_m_s.value(), 12.1);
+    EXPECT_EQ(sink_.readings.back().direction_deg, 270.0);
+    EXPECT_TRUE(sink_.refusals.empty());
+  }
+}
+
+TEST_F(ModbusSensorTest, GoesOnWithoutAGustThatIsNoneAndSaysSo) {
+  ModbusProfile profile = pair_profile();
+  profile.gust = profile.speed;
+  profile.gust->address = 40;
+  profile.gust->max = 5.0;
+  make(profile);
+  poll_for(1s);
+  ASSERT_FALSE(sink_.readings.empty());
+  EXPECT_FALSE(sink_.readings.back().gust_m_s.has_value());
+  EXPECT_EQ(sink_.count(Refusal::kImplausible), std::ssize(sink_.readings));
+  EXPECT_EQ(sink_.last_detail(), "pair at here:502; without gust: it is implausible");
+}
+
+TEST_F(ModbusSensorTest, AsksADeadSpeedSlaveLessAndLessOften) {
+  make(pair_profile());
+  line_.statuses = [](const ModbusRequest&) { return std::deque<BusStatus>{}; };
+  poll_for(60s);
+  EXPECT_GE(line_.requests.size(), 6U);
+  EXPECT_LE(line_.requests.size(), 15U);
+}
+
+TEST_F(ModbusSensorTest, KeepsItsPaceThroughNoiseThatCostsNoTime) {
+  make(pair_profile());
+  line_.message = [](const ModbusRequest& request) {
+    auto bytes = answer_with(request, {86});
+    bytes[7] = 4;  // another function
+    return bytes;
+  };
+  poll_for(10s);
+  EXPECT_GE(sink_.count(Refusal::kMalformed), 20);
+}
+
+TEST_F(ModbusSensorTest, TellsAGatewaysSilentSlaveFromARefusal) {
+  make(pair_profile());
+  line_.message = [](const ModbusRequest& request) {
+    auto bytes = answer_with(request, {});
+    bytes[7] = 0x83;
+    bytes[8] = 11;
+    return bytes;
+  };
+  poll_for(60s);
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("the gateway says that slave 1 at here:502 does not answer"));
+  EXPECT_LE(line_.requests.size(), 15U);
+}
+
+TEST_F(ModbusSensorTest, OpensTheLineAgainThatAnotherSensorHasLost) {
+  ModbusLine where;
+  where.host = "here";
+  auto bus = std::make_shared<ModbusBus>(where, std::make_unique<FakeConnection>(line_));
+  ModbusProfile cup = pair_profile();
+  cup.direction.reset();
+  ModbusSensor one(cup, bus, nullptr, 1);
+  ModbusSensor other(cup, bus, nullptr, 2);
+  RecordingSink other_sink;
+  const auto poll_both = [&] {
+    clock_.advance(250ms);
+    one.poll(clock_, sink_);
+    other.poll(clock_, other_sink);
+  };
+  for (int i = 0; i < 4; ++i) poll_both();
+  EXPECT_EQ(line_.opened, 1);
+
+  bool loses = true;
+  line_.statuses = [&loses](const ModbusRequest&) {
+    return std::deque{std::exchange(loses, false) ? BusStatus::kLost : BusStatus::kMessage};
+  };
+  for (int i = 0; i < 8; ++i) poll_both();
+  EXPECT_EQ(line_.opened, 2);
+  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(other_sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(other_sink.links.size(), 1U) << "nothing was wrong with the other one";
+}
+
 }  // namespace
 }  // namespace yuragi

@@ -92,6 +92,56 @@ TEST_F(TextSensorTest, OpensADeviceAgainAfterTenTimesItsUsualSilence) {
   EXPECT_EQ(sink.last_state(), LinkState::kConnected);
 }
 
+/// It says a few words whenever it starts, which is whenever it is opened, and a reading a minute.
+TEST_F(TextSensorTest, WaitsForAnArduinoThatStartsAnewWheneverItIsOpened) {
+  make_nmea();
+  int started = 0;
+  MonoTime since{};
+  for (const MonoTime end = clock.now().mono + 20min; clock.now().mono < end;) {
+    if (far_end.opened > started) {
+      started = far_end.opened;
+      since = clock.now().mono;
+      far_end.say("# Arduino\r\n# wind station\r\n");
+    }
+    if (clock.now().mono - since >= 60s) {
+      since = clock.now().mono;
+      far_end.say(mwv_line(1.0));
+    }
+    clock.advance_to(sensor->poll(clock, sink));
+  }
+  EXPECT_GE(sink.readings.size(), 15U);
+  EXPECT_LE(far_end.opened, 3);
+}
+
+/// An outage is no pause that is usual for the device.
+TEST_F(TextSensorTest, DoesNotGetUsedToOutages) {
+  make_nmea({{"silence_timeout", 3600.0}});
+  for (int outage = 0; outage < 20; ++outage) {
+    for (int i = 0; i < 5; ++i) hear(mwv_line(1.0));
+    EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+    run(3500ms);
+    EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
+    run(20s);
+  }
+}
+
+/// A device that was quick and is set to be slow.
+TEST_F(TextSensorTest, GetsUsedToASlowerPace) {
+  make_nmea({{"silence_timeout", 3600.0}});
+  for (int i = 0; i < 20; ++i) hear(mwv_line(1.0));
+  for (int i = 0; i < 6; ++i) {
+    run(20s);
+    hear(mwv_line(1.0));
+  }
+  const std::size_t told = sink.links.size();
+  for (int i = 0; i < 6; ++i) {
+    run(20s);
+    hear(mwv_line(1.0));
+  }
+  EXPECT_EQ(sink.links.size(), told);
+  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+}
+
 TEST_F(TextSensorTest, IsPatientWithASlowDevice) {
   make_nmea();
   for (int minute = 0; minute < 20; ++minute) {

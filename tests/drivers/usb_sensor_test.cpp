@@ -177,6 +177,17 @@ TEST(UsbSensor, BeginsANewWindowWhenTheCounterWasReset) {
   EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
 }
 
+TEST(UsbSensor, SetsALabjackUpAgainWhoseCounterAnotherProgramHasTurnedOff) {
+  UsbBench bench("labjack-u3");
+  bench.poll_for(3.0);
+  static_cast<void>(bench.bus.sockets[0].device->out(
+      1, sim::UsbBytes{0x57, 0xF8, 0x03, 0x0B, 0x50, 0x00, 0x01, 0x00, 0x40, 0x00, 0x0F, 0x00}));
+  bench.poll_for(0.3);
+  EXPECT_THAT(bench.sink.refusals, testing::Contains(Refusal::kException));
+  EXPECT_TRUE(bench.poll_for_reading(2.0));
+  EXPECT_EQ(bench.bus.opened, 2);
+}
+
 TEST(UsbSensor, TakesTheSecondCounterOfALabjack) {
   UsbBench bench("labjack-u3");
   bench.settings.wiring.counter = 1;

@@ -31,9 +31,9 @@ LIVE, STALE = 1, 2  # enum SensorHealth
 class Stream:
     """A subscribed client."""
 
-    def __init__(self, address, poses=True, sensors=True):
+    def __init__(self, address, poses=True, sensors=True, raw_sensor=None):
         self.source = pose_client.SocketBytes(address, 10.0)
-        self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py"))
+        self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py", raw_sensor))
         self.messages = pose_client.messages(self.source)
         self.scenes = None
 
@@ -235,6 +235,30 @@ port = {port}
         self.assertLess(watcher.largest_wind_step_m_s, 1.2)
         self.assertLess(watcher.largest_bend_step_rad, 0.35)
 
+    def test_a_probe_finds_the_simulator_and_what_it_prints_is_a_right_configuration(self):
+        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3")
+        done = run("sensors", "probe", "modbus", simulator.address(), "--id", "1-5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("slave 3 at", done.stdout)
+        self.assertIn("fits thies-clima-sensor-us", done.stdout)
+        table = done.stdout[done.stdout.index("[[sensor]]"):]
+        self.assertEqual(run("check-config", self.file("found.toml", table)).returncode, 0)
+
+        nobody = run("sensors", "probe", "modbus", simulator.address(), "--id", "4")
+        self.assertEqual(nobody.returncode, 69)
+        self.assertIn("nobody answers", nobody.stderr)
+        self.assertEqual(run("sensors", "probe", "modbus", simulator.address(), "--id", "0-3").returncode, 64)
+
+    def test_a_probe_of_a_serial_line_can_be_interrupted(self):
+        link = os.path.join(self.folder, "bus")
+        self.start(SIMULATOR, "modbus", "--rtu", "--link", link).wait_for("serving ")
+        probe = self.start(YURAGI, "sensors", "probe", "modbus", link, "--baud", "4800", "--id", "1-247")
+        probe.wait_for("fits renke-rs-fsjt-rs-fxjt-n01")
+        code, lasted_s = probe.end(signal.SIGINT)
+        self.assertEqual(code, 0)
+        self.assertLess(lasted_s, 5.0)
+        self.assertIn("interrupted", probe.text())
+
     # ---- recording ----
 
     def test_kill_9_loses_at_most_the_last_second_of_a_recording(self):
@@ -333,6 +357,20 @@ port = {port}
         self.assertEqual(unknown.returncode, 64)
         self.assertIn("there are: roof", unknown.stderr)
 
+    def test_raw_messages_are_read_by_a_client_that_knows_the_schema_alone(self):
+        daemon = self.start_daemon("--config", self.modbus_config(self.start_simulator().address()))
+        with Stream(daemon.address(), poses=False, raw_sensor="roof") as stream:
+            traces = [stream.next("RawTrace") for _ in range(8)]
+        for before, trace in zip(traces, traces[1:]):
+            self.assertEqual(trace.Sensor(), b"roof")
+            self.assertGreaterEqual(trace.MonoNs(), before.MonoNs())
+            self.assertLess(abs(trace.UtcNs() - time.time_ns()), 60e9)
+            self.assertEqual(trace.Length(), trace.BytesLength())
+            self.assertEqual(trace.Lost(), 0)
+            if trace.Received() and not before.Received():  # an answer has its request's transaction
+                self.assertEqual(trace.BytesAsNumpy()[:2].tolist(), before.BytesAsNumpy()[:2].tolist())
+        self.assertEqual({trace.Received() for trace in traces}, {False, True})
+
     def test_raw_messages_are_what_decode_reads(self):
         config = self.modbus_config(self.start_simulator().address())
         for listen in (self.start_daemon("--config", config).address(), self.free_address()):
@@ -360,7 +398,56 @@ port = {port}
         self.assertTrue(told, done.stderr)
         self.assertGreaterEqual(int(told.group(2)), 2 * int(told.group(1)) - 1, "a speed and a direction make a reading")
 
+    # What USB devices are decoded with, and what the driver calls them: (simulator, device, format, options).
+    USB_DEVICES = (
+        ("hid", "wmr100", "wmr100", ["--reports"]),
+        ("hid", "wmr300", "wmr300", []),
+        ("hid", "fineoffset", "fineoffset", ["--reports"]),
+        ("hid", "acurite", "acurite", []),
+        ("hid", "te923", "te923", ["--reports"]),
+        ("usb", "mcc1208", "mcc1208", ["--slope", "0.1", "--interval", "0.1", "--vane-reference", "5"]),
+        ("usb", "labjack-u3", "labjack", ["--slope", "0.1", "--interval", "0.1", "--input", "high-voltage",
+                                          "--vane-reference", "5"]),
+    )
+
+    def test_raw_messages_of_every_usb_device_are_what_decode_reads(self):
+        watched = []
+        for driver, device, kind, options in self.USB_DEVICES:
+            key = "station" if driver == "hid" else "device"
+            pace = ["--pace", "20"] if driver == "hid" else []
+            config = self.file(device + ".toml", f'[[sensor]]\nname = "roof"\ndriver = "{driver}"\n{key} = "{device}"\n'
+                               + ("pace = 20\n" if pace else ""))
+            watch = self.start(SIMULATOR, driver, "--device", device, *pace, "--speed", "6", "--umockdev", "--", YURAGI,
+                               "sensors", "watch", "--raw", "roof", "--hex", "--duration", "6", "--config", config,
+                               "--listen", self.free_address())
+            watched.append((device, kind, options, watch))
+        for device, kind, options, watch in watched:
+            with self.subTest(device=device):
+                self.assertEqual(watch.process.wait(60), 0, watch.text())
+                lines = [line for line in watch.text().splitlines() if re.fullmatch(r"[0-9a-f |]+", line)]
+                decoded = run("decode", kind, self.file(device + ".hex", "\n".join(lines) + "\n"), "--hex", *options)
+                self.assertEqual(decoded.returncode, 0, decoded.stderr)
+                readings = [json.loads(line) for line in decoded.stdout.splitlines()]
+                speeds = [reading["speed_m_s"] for reading in readings if reading["speed_m_s"] is not None]
+                directions = [reading["direction_deg"] for reading in readings if reading["direction_deg"] is not None]
+                self.assertTrue(speeds and directions, watch.text() + decoded.stderr)
+                self.assertTrue(all(0.0 < speed < 20.0 for speed in speeds), speeds)
+                self.assertTrue(all(200.0 < direction < 280.0 for direction in directions), directions)
+
     # ---- sensors list, sensors describe ----
+
+    def test_list_finds_what_is_plugged_in_and_prints_a_configuration_of_it(self):
+        for driver, devices in (("hid", ("wmr100", "te923")), ("usb", ("mcc1208", "labjack-u3"))):
+            simulated = [word for device in devices for word in ("--device", device)]
+            done = subprocess.run([SIMULATOR, driver, *simulated, "--umockdev", "--", YURAGI, "sensors", "list"],
+                                  capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            toml = "\n".join(line[4:] for line in done.stdout.splitlines() if line.startswith("    "))
+            for device in devices:
+                self.assertIn(f'"{device}"', toml, done.stdout)
+            found = run("check-config", self.file(driver + ".toml", toml))
+            self.assertEqual(found.returncode, 0, found.stderr + toml)
+            self.assertIn(f"sensor {driver}-2 ({driver})", found.stdout)
 
     def test_list_looks_and_tells(self):
         done = run("sensors", "list")

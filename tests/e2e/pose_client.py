@@ -92,17 +92,20 @@ def messages(source):
         yield Message.GetRootAs(body, 0), 4 + size
 
 
-def subscribe_message(poses=True, sensors=False, client="pose_client.py"):
-    """The one message that a client sends: what it wants to see."""
+def subscribe_message(poses=True, sensors=False, client="pose_client.py", raw_sensor=None):
+    """The one message that a client sends: what it wants to see. raw_sensor: the sensor whose raw messages it wants; "": all."""
     from yuragi.stream import Body, Message, Subscribe
 
     builder = flatbuffers.Builder(256)
     name = builder.CreateString(client)
+    traced = builder.CreateString(raw_sensor or "")
     Subscribe.Start(builder)
     Subscribe.AddProtocol(builder, PROTOCOL)
     Subscribe.AddPoses(builder, poses)
     Subscribe.AddSensors(builder, sensors)
     Subscribe.AddClient(builder, name)
+    Subscribe.AddRaw(builder, raw_sensor is not None)
+    Subscribe.AddRawSensor(builder, traced)
     subscribe = Subscribe.End(builder)
     Message.Start(builder)
     Message.AddBodyType(builder, Body.Body.Subscribe)
@@ -132,7 +135,7 @@ def control_message(scene, shown=True, hide_others=False, over_s=2.0):
 
 def body_of(message):
     """The message's body as (name, table), or (None, None) for a kind that this schema does not have."""
-    from yuragi.stream import ControlReply, Frame, Hello, Scenes, Sensors
+    from yuragi.stream import ControlReply, Frame, Hello, RawTrace, Scenes, Sensors
     from yuragi.stream.Body import Body
 
     kinds = {
@@ -141,6 +144,7 @@ def body_of(message):
         Body.Frame: ("Frame", Frame.Frame),
         Body.Sensors: ("Sensors", Sensors.Sensors),
         Body.ControlReply: ("ControlReply", ControlReply.ControlReply),
+        Body.RawTrace: ("RawTrace", RawTrace.RawTrace),
     }
     if message.BodyType() not in kinds:
         return None, None

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "drivers/decode/modbus.hpp"
+#include "drivers/modbus_plan.hpp"
 #include "drivers/modbus_profile.hpp"
 #include "engine/wind/wind_reading.hpp"
 
@@ -45,11 +46,32 @@ void decode_answer(std::span<const std::uint8_t> input) {
   }
 }
 
+/// Whatever a profile says, each of its quantities stands in the answer to the request that is to bring it.
+void check_plan(const ModbusProfile& profile) {
+  for (const bool is_direction_apart : {false, true}) {
+    const auto reads = plan_modbus_reads(profile, is_direction_apart);
+    require(!reads.empty() && reads.front().tells(ModbusMeasure::kSpeed));
+    for (const ModbusRead& read : reads) {
+      require(read.request.count >= 1 && read.request.count <= kModbusMaxRegisters);
+      ModbusRegisters registers;
+      registers.count = read.request.count;
+      for (const ModbusMeasure measure : read.measures) {
+        const ModbusQuantity& quantity = quantity_of(profile, measure);
+        require(quantity.address >= read.request.address);
+        require(quantity.address + register_count(quantity.type) <=
+                read.request.address + std::size_t{read.request.count});
+        require(registers_of(quantity, read.request, registers).size() == register_count(quantity.type));
+      }
+    }
+  }
+}
+
 void read_profile(std::string_view text) {
   try {
     const ModbusProfile profile = parse_modbus_profile(text, "fuzz.toml");
     require(profile.speed.slave >= 1 && profile.speed.slave <= 247);
     require(profile.response_timeout > Nanoseconds::zero());
+    check_plan(profile);
   } catch (const std::runtime_error& error) {
     require(std::string_view(error.what()).starts_with("fuzz.toml:"));
   }

@@ -54,6 +54,9 @@ class ChildProcess {
   }
   void close_input() { in_.reset(); }
 
+  /// A signal that does not end it (SIGSTOP, SIGCONT).
+  void send(int signal_number) const { kill(pid_, signal_number); }
+
   /// What follows `beginning` on the next line that begins so. Throws if the output ends first, or none comes in 20 s.
   std::string line_after(const std::string& beginning) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);

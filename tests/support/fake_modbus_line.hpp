@@ -44,7 +44,7 @@ class FakeConnection final : public ModbusConnection {
  public:
   explicit FakeConnection(FakeLine& line) : line_(line) {}
 
-  Result<void, Failure> open(const WakeEvent&) override {
+  Result<void, Failure> open(const Interruption&) override {
     ++line_.opened;
     if (!line_.can_open) return Failure{"cannot open the fake"};
     is_open_ = true;
@@ -52,7 +52,7 @@ class FakeConnection final : public ModbusConnection {
   }
   bool is_open() const noexcept override { return is_open_; }
   void close() noexcept override { is_open_ = false; }
-  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const WakeEvent&) override {
+  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const Interruption&) override {
     ++line_.settled;
     return 0;
   }
@@ -61,8 +61,8 @@ class FakeConnection final : public ModbusConnection {
     coming_ = line_.statuses(request);
     return true;
   }
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const WakeEvent& wake) override {
-    if (wake.is_set()) return {BusStatus::kInterrupted};
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
+    if (interruption.is_set()) return {BusStatus::kInterrupted};
     if (coming_.empty()) return {BusStatus::kSilence};
     const BusStatus status = coming_.front();
     coming_.pop_front();

@@ -26,6 +26,7 @@ struct Sound {
 
   std::size_t frames() const { return samples.size() / channels; }
   float& at(std::size_t frame, std::size_t channel) { return samples[frame * channels + channel]; }
+  float at(std::size_t frame, std::size_t channel) const { return samples[frame * channels + channel]; }
 };
 
 /// A 16-bit WAV file with a plain header of 44 bytes; nothing where it is missing.

@@ -201,7 +201,7 @@ TEST_F(DecodeCommand, RefusesAnOptionThatMeansNothingToTheFormat) {
   for (const Arguments& arguments : std::vector<Arguments>{{"nmea", "--node", "Q"},
                                                            {"line", "--checksum", "accept"},
                                                            {"acurite", "--hex", "--slope", "1", "--interval", "1"},
-                                                           {"labjack", "--hex", "--range", "bipolar-5V"},
+                                                           {"mcc1208", "--hex", "--input", "high-voltage"},
                                                            {"gill", "--speed-slave", "1"}}) {
     const auto done = run("", arguments);
     EXPECT_EQ(done.code, kExitUsage) << arguments[1];
@@ -299,25 +299,111 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
   EXPECT_TRUE(is_value(labjack["volts"], 1.16934, 1e-4));
 }
 
+TEST_F(DecodeCommand, PutsReportsTogetherAsTheyComeOverUsb) {
+  const auto wmr100 =
+      run("20 00 08 01 00 00 00 00 | 04 ff ff 00 48 00 00 00\n07 0a 0c 16 e0 02 00 20\n02 76 01 11 22 33 44 55\n",
+          {"wmr100", "--hex", "--reports"});
+  ASSERT_EQ(wmr100.objects.size(), 1U) << wmr100.error;
+  EXPECT_EQ(wmr100.objects[0]["speed_m_s"], 4.6);
+  EXPECT_EQ(run("04 ff ff\n", {"wmr100", "--hex", "--reports", "--refused"}).objects.at(0)["refused"], "too short");
+
+  // A block of 34 bytes, seven a report; its header, data, wind, and check byte.
+  std::vector<std::uint8_t> block(34, 0x11);
+  block[0] = 0x5A;
+  const std::vector<std::uint8_t> wind = {0x23, 0x01, 0x87, 0x00, 0x0C};
+  std::ranges::copy(wind, block.begin() + 26);
+  block[33] = 0;
+  for (std::size_t i = 0; i < 33; ++i) block[33] ^= block[i];
+  std::string lines = "05 af 01 00 02 ac 00 00 | ";
+  for (std::size_t at = 0; at < block.size(); at += 7) {
+    const std::size_t count = std::min<std::size_t>(7, block.size() - at);
+    std::vector<std::uint8_t> report(8, 0xEE);
+    report[0] = static_cast<std::uint8_t>(count);
+    std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
+    lines += to_hex(report) + "\n";
+  }
+  const auto te923 = run(lines, {"te923", "--hex", "--reports", "--refused"});
+  ASSERT_EQ(te923.objects.size(), 1U) << te923.text;
+  EXPECT_TRUE(is_value(te923.objects[0].value("speed_m_s", json()), 8.7 * 0.44704, 1e-9));
+  // The next request begins a new block, whatever became of the one before.
+  const auto cut = run(lines.substr(0, lines.find('\n') + 1) + lines, {"te923", "--hex", "--reports", "--refused"});
+  ASSERT_EQ(cut.objects.size(), 2U) << cut.text;
+  EXPECT_EQ(cut.objects[0].value("refused", ""), "too short");
+  EXPECT_TRUE(cut.objects[1].contains("speed_m_s"));
+}
+
+TEST_F(DecodeCommand, FindsTheCurrentRecordInReportsOfTheConsolesMemory) {
+  const auto block = [](const char* request, const std::string& bytes) {
+    std::string lines = std::string(request) + " | ";
+    for (std::size_t at = 0; at < 4; ++at) lines += bytes.substr(at * 24, 23) + "\n";
+    return lines;
+  };
+  // The current record is the second of the block at 0x0120. A record of 16 bytes: 4.7 m/s from 135 degrees.
+  const std::string fixed =
+      "55 aa ff ff ff ff ff ff ff ff ff ff ff ff ff ff 05 20 01 51 11 00 00 00 81 00 00 07 01 00 30 01";
+  const std::string record = "05 2d c8 00 3a 78 00 a4 27 2f 48 00 06 00 00 00";
+  const std::string other = "05 2d c8 00 3a 78 00 a4 27 0a 0a 00 00 00 00 00";
+  const std::string input =
+      block("a1 00 00 20 a1 00 00 20", fixed) + block("a1 01 20 20 a1 01 20 20", other + " " + record);
+  const auto done = run(input, {"fineoffset", "--hex", "--reports", "--refused"});
+  ASSERT_EQ(done.objects.size(), 1U) << done.text;
+  EXPECT_TRUE(is_value(done.objects[0].value("speed_m_s", json()), 4.7, 1e-9));
+  EXPECT_TRUE(is_value(done.objects[0].value("direction_deg", json()), 135.0));
+
+  const auto lost = run(record.substr(0, 23) + "\n", {"fineoffset", "--hex", "--reports", "--refused"});
+  ASSERT_EQ(lost.objects.size(), 1U);
+  EXPECT_EQ(lost.objects[0]["refused"], "malformed") << "of which address?";
+}
+
 // ---- counters ----
 
 TEST_F(DecodeCommand, GivesCountsAndVoltsAndTheirMeaningWhereTheOptionsSayIt) {
-  const auto plain = run("d2 04 00 00\n00 08\n", {"mcc1208", "--hex"});
+  auto plain = run("d2 04 00 00\n00 0c\n", {"mcc1208", "--hex"});
   ASSERT_EQ(plain.objects.size(), 2U);
   EXPECT_EQ(plain.objects[0]["count"], 1234);
   EXPECT_TRUE(plain.objects[0]["speed_m_s"].is_null());
   EXPECT_FALSE(plain.objects[0].contains("volts"));
-  EXPECT_TRUE(is_value(plain.objects[1]["volts"], 2.5, 1e-9));
+  EXPECT_TRUE(is_value(plain.objects[1]["volts"], 5.0, 1e-9));
   EXPECT_TRUE(plain.objects[1]["direction_deg"].is_null());
 
   // 20 pulses in 2 s, of 0.7 m each: 7 m/s. Half of a track of 356 degrees: 178.
-  const auto told = run("d2 04 00 00\ne6 04 00 00\n00 08\n",
-                        {"mcc1208", "--hex", "--slope", "0.7", "--interval", "2", "--vane-reference", "5"});
+  auto told = run("d2 04 00 00\ne6 04 00 00\n00 0c\n",
+                  {"mcc1208", "--hex", "--slope", "0.7", "--interval", "2", "--vane-reference", "10"});
   ASSERT_EQ(told.objects.size(), 3U);
   EXPECT_TRUE(told.objects[0]["speed_m_s"].is_null()) << "one count is no speed";
   EXPECT_TRUE(is_value(told.objects[1]["speed_m_s"], 7.0, 1e-9));
   EXPECT_TRUE(is_value(told.objects[2]["direction_deg"], 178.0, 1e-9));
-  EXPECT_TRUE(is_value(one("00 08\n", {"mcc1208", "--hex", "--range", "bipolar-10V"})["volts"], 0.0));
+}
+
+TEST_F(DecodeCommand, TakesACountersReplyForWhatWasAsked) {
+  // Input 1 is calibrated (slope 1, intercept -10 steps); the same two bytes are no count.
+  auto mcc =
+      run("c0 30 08 01 00 00 08 00 | 00 00 80 3f 00 00 20 c1\n"
+          "c0 10 01 00 01 00 02 00 | 0a 0c\n"
+          "c0 20 00 00 00 00 04 00 | 0a 0c\n"
+          "c0 20 00 00 00 00 04 00 | d2 04 00 00\n",
+          {"mcc1208", "--hex", "--refused"});
+  ASSERT_EQ(mcc.objects.size(), 3U) << mcc.text;
+  EXPECT_TRUE(is_value(mcc.objects[0]["volts"], 5.0, 1e-9)) << mcc.objects[0];
+  EXPECT_EQ(mcc.objects[1]["refused"], "too short");
+  EXPECT_EQ(mcc.objects[2]["count"], 1234);
+
+  // A U3 that was asked for the wiper, the voltage over the track, and Counter1: half of it, so half of the track.
+  const std::vector<std::uint8_t> data = {0, 0, 9, 0x00, 0x40, 0x00, 0x80, 0xD2, 0x04, 0, 0, 0};
+  unsigned sum = 0;
+  for (const std::uint8_t byte : data) sum += byte;
+  std::vector<std::uint8_t> reply = {
+      0, 0xF8, 6, 0, static_cast<std::uint8_t>(sum & 0xFFU), static_cast<std::uint8_t>(sum >> 8U)};
+  unsigned head = 0;
+  for (const std::uint8_t byte : reply) head += byte;
+  while (head > 0xFF) head = (head & 0xFFU) + (head >> 8U);
+  reply[0] = static_cast<std::uint8_t>(head);
+  reply.insert(reply.end(), data.begin(), data.end());
+  const std::string command = "00 f8 05 00 00 00 09 01 00 1f 01 01 1f 37 00 00 | ";
+  json labjack = one(command + to_hex(reply) + "\n", {"labjack", "--hex"});
+  EXPECT_EQ(labjack["count"], 1234);
+  EXPECT_TRUE(is_value(labjack["direction_deg"], 178.0, 0.01)) << labjack;
+  EXPECT_EQ(run(to_hex(reply) + "\n", {"labjack", "--hex"}).objects.size(), 0U) << "what was asked cannot be guessed";
 }
 
 TEST_F(DecodeCommand, BeginsAnewAfterAReplyThatIsNoUse) {
@@ -597,6 +683,13 @@ TEST(DecodeProgram, EndsWithZeroWhateverWasRefusedAndWith66WithoutInput) {
   ChildProcess lost({test::built_path("bin/yuragi"), "decode", "nmea", "/nowhere/none.log"});
   EXPECT_THAT(lost.rest(), HasSubstr("cannot read /nowhere/none.log"));
   EXPECT_EQ(lost.wait(), 66);
+}
+
+TEST(DecodeProgram, SaysSoWhereItsOutputCannotBeWritten) {
+  const std::string program = test::built_path("bin/yuragi");
+  ChildProcess full({"sh", "-c", "echo '$WIMWV,214.8,R,10.0,N,A*1D' | '" + program + "' decode nmea - >/dev/full"});
+  EXPECT_THAT(full.rest(), HasSubstr("cannot write to standard output"));
+  EXPECT_EQ(full.wait(), kExitCannotCreate);
 }
 
 TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {

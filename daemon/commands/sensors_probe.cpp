@@ -1,0 +1,221 @@
+// `yuragi sensors probe modbus`: which Modbus devices are on a line, and what to write into the configuration for them.
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include "daemon/commands/sensors.hpp"
+#include "daemon/exit.hpp"
+#include "drivers/bus/serial_ports.hpp"
+#include "drivers/modbus_probe.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr int kHighestModbusId = 247;
+
+struct ProbeOptions {
+  std::string where;
+  std::vector<int> bauds;
+  std::vector<std::string> parities;
+  std::string ids = "1-16";
+  double timeout_s = 0.2;
+  bool tries_all = false;
+  std::string profile_dir;
+};
+
+/// While it lives, Ctrl-C sets a interruption event instead of ending the program.
+class WakeOnInterrupt {
+ public:
+  WakeOnInterrupt() {
+    target = &interruption_;
+    before_ = std::signal(SIGINT, [](int) {
+      if (Interruption* const interruption = target.load())
+        interruption->set();  // a write(), which a signal handler may do
+    });
+  }
+  ~WakeOnInterrupt() {
+    std::signal(SIGINT, before_);
+    target = nullptr;
+  }
+  WakeOnInterrupt(const WakeOnInterrupt&) = delete;
+  WakeOnInterrupt& operator=(const WakeOnInterrupt&) = delete;
+
+  const Interruption& interruption() const { return interruption_; }
+
+ private:
+  static inline std::atomic<Interruption*> target = nullptr;
+  Interruption interruption_;
+  void (*before_)(int) = nullptr;
+};
+
+[[noreturn]] void refuse_ids(const std::string& text) {
+  throw ExitError(kExitUsage, "--id: \"" + text + "\" is none; allowed: ids from 1 to 247, such as 3, 1-10 or 1,2,17");
+}
+
+/// "1-10,17" as numbers.
+std::vector<std::uint8_t> ids_of(const std::string& text) {
+  const auto number = [&text](std::string_view digits) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const bool is_id = error == std::errc{} && end == digits.data() + digits.size() && value >= 1;
+    if (!is_id || value > kHighestModbusId) refuse_ids(text);
+    return value;
+  };
+  std::vector<std::uint8_t> ids;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::size_t dash = part.find('-');
+    const int first = number(std::string_view(part).substr(0, dash));
+    const int last = dash == std::string::npos ? first : number(std::string_view(part).substr(dash + 1));
+    for (int id = first; id <= last; ++id) ids.push_back(static_cast<std::uint8_t>(id));
+  }
+  if (ids.empty()) refuse_ids(text);
+  return ids;
+}
+
+/// "9600 8N1", or nothing over TCP.
+std::string settings_of(const ModbusLine& line) {
+  if (line.framing == ModbusFraming::kTcp) return "";
+  return fmt::format(", {} 8{}{}", line.baud, line.parity, line.stop_bits);
+}
+
+/// HOST:PORT, or nothing if that is no address.
+std::optional<ModbusLine> tcp_line_of(const std::string& where) {
+  const std::size_t colon = where.rfind(':');
+  if (where.starts_with('/') || colon == std::string::npos || colon == 0) return std::nullopt;
+  ModbusLine line;
+  line.host = where.substr(0, colon);
+  if (line.host.starts_with('[') && line.host.ends_with(']')) line.host = line.host.substr(1, line.host.size() - 2);
+  const std::string_view digits = std::string_view(where).substr(colon + 1);
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), line.port);
+  if (error != std::errc{} || end != digits.data() + digits.size() || line.port == 0) return std::nullopt;
+  return line;
+}
+
+/// The name of a serial port that outlasts a restart, where the system has one.
+std::string stable_name(const std::string& device) {
+  std::error_code ignored;
+  for (const SerialPortInfo& port : find_serial_ports()) {
+    if (std::filesystem::equivalent(port.node, device, ignored)) return port.name;
+  }
+  return device;
+}
+
+ModbusProbePlan plan_of(const ProbeOptions& options) {
+  ModbusProbePlan plan;
+  plan.profiles = shipped_modbus_profiles(options.profile_dir);
+  plan.ids = ids_of(options.ids);
+  plan.response_timeout = from_seconds(options.timeout_s);
+  plan.tries_all_lines = options.tries_all;
+  if (const auto line = tcp_line_of(options.where)) {
+    plan.lines = {*line};
+    return plan;
+  }
+  std::vector<char> parities;
+  for (const std::string& parity : options.parities) {
+    parities.push_back(parity == "none" ? 'N' : parity == "even" ? 'E' : 'O');
+  }
+  plan.lines = likely_modbus_lines(options.where, plan.profiles, options.bauds, parities);
+  return plan;
+}
+
+void show_progress(const ModbusLine& line, std::uint8_t id, double done) {
+  // In place on a terminal; elsewhere a line for each setting of the port.
+  static std::string last;
+  const std::string trying = fmt::format("trying {}{}", describe(line), settings_of(line));
+  if (isatty(STDERR_FILENO) != 0) {
+    fmt::print(stderr, "\r\x1b[K{:3.0f} %  {}, id {}", 100.0 * done, trying, id);
+  } else if (trying != last) {
+    fmt::print(stderr, "{:3.0f} %  {}\n", 100.0 * done, trying);
+  }
+  last = trying;
+  std::fflush(stderr);
+}
+
+void end_progress() {
+  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\x1b[K");
+}
+
+void show_fit(const ModbusHit& hit, const ModbusFit& fit) {
+  if (!fit.speed_m_s) {
+    fmt::print("  may be the vane of {} ({:.0f} degrees): in its table, set direction_slave = {}\n", fit.profile,
+               fit.direction_deg.value_or(0.0), hit.id);
+    return;
+  }
+  fmt::print("  fits {} ({}): {:.1f} m/s", fit.profile, fit.device, *fit.speed_m_s);
+  if (fit.direction_deg) fmt::print(" from {:.0f} degrees", *fit.direction_deg);
+  if (fit.gust_m_s) fmt::print(", gust {:.1f} m/s", *fit.gust_m_s);
+  fmt::print("{}\n", fit.is_at_home ? "" : " (its settings are not the maker's)");
+}
+
+void show_hit(const ModbusHit& hit, const ModbusProbePlan& plan) {
+  end_progress();
+  fmt::print("slave {} at {}{}\n", hit.id, describe(hit.line), settings_of(hit.line));
+  if (hit.fits.empty()) fmt::print("  no profile fits: drivers/profiles/README.md says how to write one\n");
+  for (const ModbusFit& fit : hit.fits) show_fit(hit, fit);
+  if (hit.fits.size() > 1) {
+    fmt::print("  Several devices have these registers: take the one whose name stands on yours.\n");
+  }
+  const auto best = std::ranges::find_if(hit.fits, [](const ModbusFit& fit) { return fit.speed_m_s.has_value(); });
+  if (best != hit.fits.end()) {
+    const auto named = std::ranges::find(plan.profiles, best->profile, &NamedModbusProfile::name);
+    fmt::print("\n{}", sensor_table_for(hit.line, *best, named->profile, stable_name(hit.line.device)));
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+void probe(const ProbeOptions& options) {
+  const ModbusProbePlan plan = plan_of(options);
+  if (plan.lines.empty()) throw ExitError(kExitUsage, "--baud and --parity leave nothing to try");
+  const WakeOnInterrupt interrupt;
+  const auto hits = probe_modbus(
+      plan, show_progress, [&plan](const ModbusHit& hit) { show_hit(hit, plan); }, interrupt.interruption());
+  end_progress();
+  if (interrupt.interruption().is_set()) fmt::print(stderr, "interrupted\n");
+  if (!hits) throw ExitError(kExitUnavailable, hits.error().message);
+  if (*hits > 0) return;
+  throw ExitError(kExitUnavailable,
+                  fmt::format("nobody answers at {}: check power, wiring (swap A and B) and termination, or try more: "
+                              "--id 1-247, --timeout 1, --parity even, --baud 1200",
+                              options.where));
+}
+
+}  // namespace
+
+void add_sensors_probe(CLI::App& sensors) {
+  CLI::App* probe_command = sensors.add_subcommand("probe", "find out what is on a line");
+  probe_command->require_subcommand(1);
+  CLI::App* command = probe_command->add_subcommand("modbus", "which Modbus devices answer, and which profile fits");
+  command->footer(
+      "Tries line settings and slave ids, likely ones first, and prints each device that answers with the lines to\n"
+      "paste into the configuration. It only reads, and no register whose reading changes anything. A running daemon\n"
+      "has the serial port for itself: end it first.\n"
+      "  yuragi sensors probe modbus /dev/ttyUSB0\n"
+      "  yuragi sensors probe modbus 192.168.1.20:502 --id 1-10");
+  auto options = std::make_shared<ProbeOptions>();
+  command->add_option("where", options->where, "serial port, or HOST:PORT of a device or gateway")
+      ->required()
+      ->type_name("PORT|HOST:PORT");
+  command->add_option("--baud", options->bauds, "serial: only these")
+      ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
+      ->delimiter(',');
+  command->add_option("--parity", options->parities, "serial: only these")
+      ->check(CLI::IsMember({"none", "even", "odd"}))
+      ->delimiter(',');
+  command->add_option("--id", options->ids, "slaves to ask: 3, 1-10, 1,2,17")->capture_default_str();
+  command->add_option("--timeout", options->timeout_s, "how long a device may take to answer, s")
+      ->check(CLI::Range(0.02, 10.0))
+      ->capture_default_str();
+  command->add_flag("--all", options->tries_all, "serial: try further settings even after somebody has answered");
+  command->add_option("--profile-dir", options->profile_dir, "a directory to look for profiles in first")
+      ->type_name("FOLDER");
+  command->callback([options] { probe(*options); });
+}
+
+}  // namespace yuragi

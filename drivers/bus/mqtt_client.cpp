@@ -1,0 +1,221 @@
+// libmosquitto 2.0.11, driven by this thread: its own loops can neither be woken nor told how long a connection may
+// take (mosquitto issues 949 and 3051: minutes, where a firewall drops what is sent).
+#include "drivers/bus/mqtt_client.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <deque>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <mosquitto.h>
+#include <poll.h>
+
+#include "drivers/bus/wake_event.hpp"
+
+namespace yuragi {
+namespace {
+
+using MqttClock = std::chrono::steady_clock;
+
+constexpr int kLongestPayload = 65'536;
+constexpr int kAtMostOnce = 0;
+/// The library wants to look at the clock at least so often, to keep the connection alive.
+constexpr Nanoseconds kHousekeeping = std::chrono::milliseconds(500);
+constexpr const char* kTrustedBySystem = "/etc/ssl/certs";
+
+/// The library is set up once, by the first that needs it, and never taken down: other threads may be using it.
+void set_up_library() {
+  static const int result = mosquitto_lib_init();
+  if (result != MOSQ_ERR_SUCCESS) throw std::runtime_error("libmosquitto cannot start");
+}
+
+struct FreeMosquitto {
+  void operator()(mosquitto* client) const noexcept { mosquitto_destroy(client); }
+};
+
+std::string describe(const MqttSubscription& subscription) {
+  return fmt::format("MQTT broker {}:{}", subscription.host, subscription.port);
+}
+
+class MosquittoClient final : public MqttClient {
+ public:
+  explicit MosquittoClient(const MqttSubscription& subscription) : wanted_(subscription) { set_up_library(); }
+  ~MosquittoClient() override { MosquittoClient::disconnect(); }
+  MosquittoClient(const MosquittoClient&) = delete;
+  MosquittoClient& operator=(const MosquittoClient&) = delete;
+
+  Result<void, Failure> connect() override {
+    disconnect();
+    if (const int error = begin_to_connect(); error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
+
+    // The broker has to greet us and to agree to each topic.
+    const auto deadline = MqttClock::now() + wanted_.connect_timeout;
+    while (agreed_topics_ < wanted_.topics.size()) {
+      const Nanoseconds remaining = deadline - MqttClock::now();
+      if (remaining <= Nanoseconds::zero()) {
+        disconnect();
+        return Failure{
+            fmt::format("{} does not answer: check its address, the network, and that it runs", describe(wanted_))};
+      }
+      const int error = turn(std::min(remaining, kHousekeeping));
+      if (wake_.is_set()) return Failure{"interrupted"};
+      if (error != MOSQ_ERR_SUCCESS || !refusal_.empty()) {
+        std::string why = refusal_.empty() ? explain(error) : refusal_;
+        disconnect();
+        return Failure{std::move(why)};
+      }
+    }
+    return {};
+  }
+
+  void disconnect() noexcept override {
+    client_.reset();
+    messages_.clear();
+    agreed_topics_ = 0;
+    refusal_.clear();
+  }
+
+  MqttStatus receive(MqttMessage& message, Nanoseconds timeout) override {
+    if (!client_) return MqttStatus::kLost;
+    const auto deadline = MqttClock::now() + timeout;
+    while (messages_.empty()) {
+      const Nanoseconds remaining = deadline - MqttClock::now();
+      if (remaining <= Nanoseconds::zero()) return MqttStatus::kSilence;
+      if (const int error = turn(std::min(remaining, kHousekeeping)); error != MOSQ_ERR_SUCCESS) {
+        trouble_ = explain(error);
+        return MqttStatus::kLost;
+      }
+      if (wake_.is_set()) return MqttStatus::kInterrupted;
+    }
+    message = std::move(messages_.front());
+    messages_.pop_front();
+    return MqttStatus::kMessage;
+  }
+
+  std::string trouble() const override { return trouble_; }
+  void interrupt() noexcept override { wake_.set(); }
+
+ private:
+  int begin_to_connect() {
+    client_.reset(mosquitto_new(nullptr, true, this));  // a name of the library's choice: two of us may be there
+    if (!client_) return errno == ENOMEM ? MOSQ_ERR_NOMEM : MOSQ_ERR_INVAL;
+    mosquitto_connect_callback_set(client_.get(), &on_connect);
+    mosquitto_subscribe_callback_set(client_.get(), &on_subscribe);
+    mosquitto_message_callback_set(client_.get(), &on_message);
+    if (!wanted_.user.empty()) {
+      mosquitto_username_pw_set(client_.get(), wanted_.user.c_str(),
+                                wanted_.password.empty() ? nullptr : wanted_.password.c_str());
+    }
+    if (wanted_.uses_tls) {
+      const char* const file = wanted_.ca_file.empty() ? nullptr : wanted_.ca_file.c_str();
+      const int error = mosquitto_tls_set(client_.get(), file, file == nullptr ? kTrustedBySystem : nullptr, nullptr,
+                                          nullptr, nullptr);
+      if (error != MOSQ_ERR_SUCCESS) return error;
+    }
+    const auto keep_alive = std::chrono::duration_cast<std::chrono::seconds>(wanted_.keep_alive);
+    return mosquitto_connect_async(client_.get(), wanted_.host.c_str(), wanted_.port,
+                                   static_cast<int>(keep_alive.count()));
+  }
+
+  /// Waits for the connection for at most `timeout`, and does what there is to do.
+  int turn(Nanoseconds timeout) {
+    const int socket = mosquitto_socket(client_.get());
+    if (socket < 0) return MOSQ_ERR_NO_CONN;
+    const bool wants_to_write = mosquitto_want_write(client_.get());
+    std::array<pollfd, 2> waits = {
+        {{socket, static_cast<short>(wants_to_write ? POLLIN | POLLOUT : POLLIN), 0}, {wake_.descriptor(), POLLIN, 0}}};
+    const auto wait_ms = std::max<std::int64_t>(timeout / std::chrono::milliseconds(1), 1);
+    if (poll(waits.data(), waits.size(), static_cast<int>(wait_ms)) < 0 && errno != EINTR) return MOSQ_ERR_ERRNO;
+    if (waits[1].revents != 0) return MOSQ_ERR_SUCCESS;
+    int error = MOSQ_ERR_SUCCESS;
+    if ((waits[0].revents & (POLLIN | POLLERR | POLLHUP)) != 0) error = mosquitto_loop_read(client_.get(), 1);
+    if (error == MOSQ_ERR_SUCCESS && (waits[0].revents & POLLOUT) != 0) error = mosquitto_loop_write(client_.get(), 1);
+    if (error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_misc(client_.get());
+    return error;
+  }
+
+  static MosquittoClient& self_of(void* self) { return *static_cast<MosquittoClient*>(self); }
+
+  static void on_connect(mosquitto* client, void* self, int answer) {
+    MosquittoClient& me = self_of(self);
+    if (answer != 0) {
+      me.refusal_ = fmt::format("{} refuses us ({}): check `user` and `password`", describe(me.wanted_),
+                                mosquitto_connack_string(answer));
+      return;
+    }
+    for (const std::string& topic : me.wanted_.topics) {
+      mosquitto_subscribe(client, nullptr, topic.c_str(), kAtMostOnce);
+    }
+  }
+
+  static void on_subscribe(mosquitto* /*client*/, void* self, int /*id*/, int count, const int* granted) {
+    constexpr int kRefused = 0x80;
+    MosquittoClient& me = self_of(self);
+    for (int i = 0; i < count; ++i) {
+      if (granted[i] >= kRefused) {
+        me.refusal_ =
+            fmt::format("{} does not let us read the topic: give this user the right to it, in the broker's list",
+                        describe(me.wanted_));
+      }
+    }
+    ++me.agreed_topics_;
+  }
+
+  static void on_message(mosquitto* /*client*/, void* self, const mosquitto_message* message) {
+    MqttMessage taken{.topic = message->topic, .payload = {}, .is_retained = message->retain};
+    taken.is_too_long = message->payloadlen > kLongestPayload;
+    const auto* const bytes = static_cast<const std::uint8_t*>(message->payload);
+    if (!taken.is_too_long && message->payloadlen > 0) taken.payload.assign(bytes, bytes + message->payloadlen);
+    self_of(self).messages_.push_back(std::move(taken));
+  }
+
+  std::string explain(int error) const {
+    const std::string broker = describe(wanted_);
+    switch (error) {
+      case MOSQ_ERR_ERRNO:
+        return fmt::format("cannot reach {} ({}): check its address, the network, and that it runs", broker,
+                           std::strerror(errno));
+      case MOSQ_ERR_CONN_LOST:
+        return fmt::format("{} has closed the connection: check that it runs, and that this port is its own", broker);
+      case MOSQ_ERR_EAI:
+        return fmt::format("cannot find {}: check its name, and this machine's name server", broker);
+      case MOSQ_ERR_TLS:
+        return fmt::format(
+            "{} and this machine do not agree on TLS: check `ca_file` ({}), the broker's certificate, and that "
+            "this port speaks TLS",
+            broker, wanted_.ca_file.empty() ? kTrustedBySystem : wanted_.ca_file);
+      case MOSQ_ERR_INVAL:
+        return fmt::format("cannot use the settings for {}: check that `ca_file` is there and can be read", broker);
+      default:
+        return fmt::format("lost {} ({}): check the network, and that it runs", broker, mosquitto_strerror(error));
+    }
+  }
+
+  MqttSubscription wanted_;
+  WakeEvent wake_;
+  std::unique_ptr<mosquitto, FreeMosquitto> client_;
+  std::deque<MqttMessage> messages_;
+  std::size_t agreed_topics_ = 0;
+  std::string refusal_;  ///< by the broker
+  std::string trouble_;
+};
+
+}  // namespace
+
+std::unique_ptr<MqttClient> make_mqtt_client(const MqttSubscription& subscription) {
+  return std::make_unique<MosquittoClient>(subscription);
+}
+
+bool is_mqtt_filter(const std::string& topic) {
+  return mosquitto_sub_topic_check(topic.c_str()) == MOSQ_ERR_SUCCESS;
+}
+
+bool mqtt_topic_matches(const std::string& topic, const std::string& filter) {
+  bool matches = false;
+  return mosquitto_topic_matches_sub(filter.c_str(), topic.c_str(), &matches) == MOSQ_ERR_SUCCESS && matches;
+}
+
+}  // namespace yuragi

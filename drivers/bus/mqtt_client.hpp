@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// A broker, how it lets us in, and what we want of it.
+struct MqttSubscription {
+  std::string host;  ///< a name, an IPv4 or an IPv6 address
+  std::uint16_t port = 1883;
+  std::string user;  ///< empty: it asks for none
+  std::string password;
+  bool uses_tls = false;
+  std::string ca_file;              ///< who vouches for the broker; empty: those that this system trusts
+  std::vector<std::string> topics;  ///< + stands for any one level, # for all that follow
+  Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that says nothing for so long is asked; >= 5 s
+  Nanoseconds connect_timeout = std::chrono::seconds(5);  ///< until it has agreed to everything
+};
+
+struct MqttMessage {
+  std::string topic;
+  std::vector<std::uint8_t> payload;
+  bool is_retained = false;  ///< the broker kept it for whoever comes: nobody knows how old it is
+  bool is_too_long = false;  ///< longer than any message about the wind; `payload` is empty
+};
+
+enum class MqttStatus : std::uint8_t {
+  kMessage,
+  kSilence,      ///< none until the time-out
+  kInterrupted,  ///< interrupt() was called
+  kLost,         ///< the connection is gone; trouble() says why
+};
+
+/// A connection to an MQTT broker, which can be closed and opened again for as long as this lives. A test may put
+/// another in its place.
+///
+/// Thread-safe: interrupt() alone; everything else belongs to one thread.
+class MqttClient {
+ public:
+  virtual ~MqttClient() = default;
+
+  /// Connects and subscribes, or says why that failed and what to do. Blocks for the connect time-out at most (and
+  /// while the system looks up a host name).
+  virtual Result<void, Failure> connect() = 0;
+  virtual void disconnect() noexcept = 0;
+
+  /// The next message, waiting for at most `timeout`.
+  virtual MqttStatus receive(MqttMessage& message, Nanoseconds timeout) = 0;
+
+  /// Why the connection was lost, and what to do.
+  virtual std::string trouble() const = 0;
+
+  /// Ends a connect() or receive() that waits and makes all later ones end at once.
+  virtual void interrupt() noexcept = 0;
+};
+
+/// The real one, by libmosquitto. Throws std::runtime_error where there is no memory or descriptor left for it.
+std::unique_ptr<MqttClient> make_mqtt_client(const MqttSubscription& subscription);
+
+/// Is it a topic that can be subscribed to?
+bool is_mqtt_filter(const std::string& topic);
+
+/// Is `topic` one of those that `filter` stands for?
+bool mqtt_topic_matches(const std::string& topic, const std::string& filter);
+
+}  // namespace yuragi

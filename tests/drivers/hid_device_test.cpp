@@ -1,0 +1,249 @@
+// The real hidapi, with simulated stations in umockdev's testbed: found by id and place, opened, read, refused, lost;
+// and the driver as the daemon opens it.
+#include "drivers/bus/hid_device.hpp"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "simulators/usb/hid_stations.hpp"
+#include "simulators/usb/umockdev_simulator.hpp"
+#include "tests/simulators/usb/steady_wind.hpp"
+#include "tests/support/driver_named.hpp"
+#include "tests/support/recording_sink.hpp"
+#include "tests/support/simulator_thread.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+using sim::FaultKind;
+using testing::HasSubstr;
+
+constexpr std::array kIds = {HidId{0x0FDE, 0xCA01}, HidId{0x24C0, 0x0003}};
+constexpr Nanoseconds kPatience = 20s;
+constexpr double kPace = 20.0;
+
+/// The stations in the sockets 1-1, 1-2 ... of a bus. "echo" is a device that is none.
+std::unique_ptr<SimulatorThread> plug_in(std::initializer_list<std::string_view> names) {
+  std::vector<std::unique_ptr<sim::UsbPort>> ports;
+  for (const std::string_view name : names) {
+    ports.push_back(name == "echo" ? sim::echo_port()
+                                   : std::make_unique<sim::UsbPort>(sim::make_hid_station(name, kPace),
+                                                                    sim::steady_wind(8.6, 225.0)));
+  }
+  return std::make_unique<SimulatorThread>(std::make_unique<sim::UmockdevSimulator>(std::move(ports)));
+}
+
+/// Takes the node away, so that nobody can open it, whoever it is.
+void take_node_away(const std::string& node) {
+  const char* const root = std::getenv("UMOCKDEV_DIR");
+  ASSERT_NE(root, nullptr);
+  std::filesystem::remove(root + node);
+}
+
+/// Does it hold before our patience ends?
+bool soon(const std::function<bool()>& holds) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (std::chrono::steady_clock::now() < deadline) {
+    if (holds()) return true;
+    std::this_thread::sleep_for(2ms);
+  }
+  return false;
+}
+
+class HidDeviceTest : public testing::Test {
+ protected:
+  std::unique_ptr<HidDevice> device_ = make_hid_device();
+  std::array<std::uint8_t, 64> buffer_{};
+
+  std::string failure_of(const HidPlace& place, std::span<const HidId> ids = kIds) {
+    const auto opened = device_->open(ids, place);
+    return opened ? "" : opened.error().message;
+  }
+};
+
+TEST_F(HidDeviceTest, SaysWhatIsMissing) {
+  const auto bus = plug_in({"echo"});
+  EXPECT_THAT(failure_of({}), HasSubstr("no device 0fde:ca01 or 24c0:0003 on USB: plug it in"));
+  EXPECT_TRUE(list_hid_devices(kIds).empty());
+}
+
+TEST_F(HidDeviceTest, ListsWhatIsPluggedInByPort) {
+  const auto bus = plug_in({"acurite", "echo", "wmr100"});
+  const auto listings = list_hid_devices(kIds);
+  ASSERT_EQ(listings.size(), 2U);
+  EXPECT_EQ(listings[0].info.port, "1-1");
+  EXPECT_EQ(listings[0].info.node, "/dev/hidraw0");
+  EXPECT_EQ(listings[0].info.id, kIds[1]);
+  EXPECT_EQ(listings[0].info.serial, "");
+  EXPECT_EQ(listings[0].trouble, "");
+  EXPECT_EQ(listings[1].info.port, "1-3");
+  EXPECT_EQ(listings[1].info.id, kIds[0]);
+}
+
+TEST_F(HidDeviceTest, TellsTwoAlikeApartByPortOrNode) {
+  const auto bus = plug_in({"wmr100", "wmr100"});
+  const std::string failure = failure_of({});
+  EXPECT_THAT(failure, HasSubstr("2 devices fit"));
+  EXPECT_THAT(failure, HasSubstr("1-1 (/dev/hidraw0), 1-2 (/dev/hidraw1)"));
+  for (const std::string path : {"1-2", "/dev/hidraw1"}) {
+    const auto opened = device_->open(kIds, {.serial = "", .path = path});
+    ASSERT_TRUE(opened.has_value()) << opened.error().message;
+    EXPECT_EQ(opened->node, "/dev/hidraw1");
+    EXPECT_EQ(where_is(*opened), "USB port 1-2");
+  }
+  EXPECT_THAT(failure_of({.serial = "", .path = "1-9"}), HasSubstr("at 1-9 on USB: plug it in"));
+  EXPECT_THAT(failure_of({.serial = "", .path = "/dev/null"}), HasSubstr("at /dev/null"));
+}
+
+TEST_F(HidDeviceTest, TellsThemApartBySerialNumber) {
+  const auto bus = plug_in({"echo"});
+  constexpr std::array kEcho = {HidId{sim::EchoDevice::kVendor, sim::EchoDevice::kProduct}};
+  EXPECT_EQ(failure_of({.serial = "E0001", .path = ""}, kEcho), "");
+  EXPECT_THAT(failure_of({.serial = "E0002", .path = ""}, kEcho), HasSubstr("serial number E0002"));
+}
+
+TEST_F(HidDeviceTest, SaysWhatToDoAboutANodeThatItMayNotOpen) {
+  const auto bus = plug_in({"wmr100"});
+  take_node_away("/dev/hidraw0");
+  EXPECT_THAT(failure_of({}), HasSubstr("70-yuragi.rules"));
+  const auto listings = list_hid_devices(kIds);
+  ASSERT_EQ(listings.size(), 1U);
+  EXPECT_NE(listings[0].trouble, "");
+}
+
+TEST_F(HidDeviceTest, SendsAndReadsReportsAndIsSilentWithoutThem) {
+  const auto bus = plug_in({"wmr100"});
+  ASSERT_EQ(failure_of({}), "");
+  EXPECT_EQ(device_->read(buffer_, 0ms).status, HidStatus::kSilence);
+  EXPECT_EQ(device_->read(buffer_, 120ms).status, HidStatus::kSilence) << "it was not told to start";
+  EXPECT_TRUE(device_->write(std::array<std::uint8_t, 9>{0, 0x20, 0x00, 0x08, 0x01, 0, 0, 0, 0}));
+  const HidArrival arrival = device_->read(buffer_, kPatience);
+  ASSERT_EQ(arrival.status, HidStatus::kReport);
+  EXPECT_EQ(arrival.size, 8U);
+}
+
+TEST_F(HidDeviceTest, GetsAnInputReportOrARefusal) {
+  const auto bus = plug_in({"acurite"});
+  ASSERT_EQ(failure_of({}), "");
+  const HidArrival arrival = device_->get_input_report(1, std::span(buffer_).first(10));
+  ASSERT_EQ(arrival.status, HidStatus::kReport);
+  EXPECT_EQ(arrival.size, 10U);
+  EXPECT_EQ(buffer_[0], 1);
+  EXPECT_EQ(device_->get_input_report(9, std::span(buffer_).first(10)).status, HidStatus::kSilence);
+}
+
+TEST_F(HidDeviceTest, SeesADeviceThatIsGone) {
+  const auto bus = plug_in({"acurite"});
+  ASSERT_EQ(failure_of({}), "");
+  bus->set_fault(FaultKind::kUnplug);
+  EXPECT_EQ(device_->read(buffer_, kPatience).status, HidStatus::kLost);
+  EXPECT_EQ(device_->get_input_report(1, buffer_).status, HidStatus::kLost);
+  EXPECT_FALSE(device_->write(std::array<std::uint8_t, 9>{0, 1}));
+  device_->close();
+  EXPECT_EQ(device_->read(buffer_, kPatience).status, HidStatus::kLost);
+  bus->set_fault(std::nullopt);
+  EXPECT_TRUE(soon([this] { return failure_of({}).empty(); }));
+}
+
+TEST_F(HidDeviceTest, EndsAReadThatIsInterruptedFromAnotherThread) {
+  const auto bus = plug_in({"acurite"});
+  ASSERT_EQ(failure_of({}), "");
+  std::atomic<bool> is_reading = false;
+  HidArrival arrival;
+  const auto begin = std::chrono::steady_clock::now();
+  std::thread reader([&] {
+    is_reading = true;
+    arrival = device_->read(buffer_, 60s);
+  });
+  while (!is_reading) std::this_thread::yield();
+  device_->interrupt();
+  reader.join();
+  EXPECT_EQ(arrival.status, HidStatus::kInterrupted);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 30s);
+  EXPECT_EQ(device_->read(buffer_, 60s).status, HidStatus::kInterrupted) << "and all later ones";
+}
+
+// --- the driver
+
+class RealClock final : public Clock {
+ public:
+  Instant now() const noexcept override { return {std::chrono::steady_clock::now(), std::chrono::system_clock::now()}; }
+};
+
+class HidDriverTest : public testing::Test {
+ protected:
+  RealClock clock_;
+  RecordingSink sink_;
+
+  /// Polls whenever the sensor wants to be, until it holds.
+  bool poll_until(Sensor& sensor, const std::function<bool()>& holds) {
+    MonoTime next{};
+    return soon([&] {
+      if (clock_.now().mono >= next) next = sensor.poll(clock_, sink_);
+      return holds();
+    });
+  }
+};
+
+TEST_F(HidDriverTest, FindsAStationAndHowToWriteItDown) {
+  const auto bus = plug_in({"fineoffset", "te923"});
+  take_node_away("/dev/hidraw1");
+  const auto found = driver_named("hid").find();
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].what, "Fine Offset WH1080 or WH3080 (1941:8021) at USB port 1-1");
+  EXPECT_EQ(found[0].settings, "station = \"fineoffset\"\npath = \"1-1\"");
+  EXPECT_EQ(found[0].trouble, "");
+  EXPECT_EQ(found[0].remedy, "");
+  EXPECT_THAT(found[1].trouble, HasSubstr("cannot open /dev/hidraw1"));
+  EXPECT_THAT(found[1].remedy, HasSubstr("70-yuragi.rules"));
+}
+
+TEST_F(HidDriverTest, WaitsForAStationThatIsNotThere) {
+  const auto bus = plug_in({"wmr300"});
+  const auto sensor = driver_named("hid").open(values_for("hid", {{"station", std::string("wmr100")}}));
+  sensor->poll(clock_, sink_);
+  EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("no device 0fde:ca01 on USB"));
+}
+
+TEST_F(HidDriverTest, RefusesAStationThatItDoesNotKnow) {
+  const auto table = driver_named("hid").parameters;
+  EXPECT_FALSE(ParameterValues::resolve(table, {{"station", std::string("wmr200")}}).has_value());
+}
+
+class HidDriverOfEveryStation : public HidDriverTest, public testing::WithParamInterface<std::string_view> {};
+
+std::string suffix_of_station(const testing::TestParamInfo<std::string_view>& parameter) {
+  std::string name(parameter.param);
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Hid, HidDriverOfEveryStation, testing::ValuesIn(sim::hid_station_names()), suffix_of_station);
+
+TEST_P(HidDriverOfEveryStation, ReadsItsWindAndComesBackAfterThePlugWasPulled) {
+  const auto bus = plug_in({"echo", GetParam()});
+  const auto sensor = driver_named("hid").open(values_for("hid", {{"pace", kPace}}));
+  ASSERT_TRUE(poll_until(*sensor, [this] { return sink_.readings.size() >= 2; })) << sink_.last_detail();
+  EXPECT_NEAR(sink_.readings.back().speed_m_s, 8.6, 0.12);
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("at USB port 1-2"));
+
+  bus->set_fault(FaultKind::kUnplug);
+  EXPECT_TRUE(poll_until(*sensor, [this] { return sink_.last_state() == LinkState::kConnecting; }));
+  bus->set_fault(std::nullopt);
+  const std::size_t before = sink_.readings.size();
+  EXPECT_TRUE(poll_until(*sensor, [&] { return sink_.readings.size() > before; })) << sink_.last_detail();
+  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_NEAR(sink_.readings.back().speed_m_s, 8.6, 0.12);
+}
+
+}  // namespace
+}  // namespace yuragi

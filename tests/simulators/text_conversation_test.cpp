@@ -1,0 +1,246 @@
+// Real conversations between separate programs, in real time: the nmea and line drivers with yuragi-sim over a pseudo
+// terminal, TCP and UDP, and with socat, which knows nothing of either.
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/child_process.hpp"
+#include "tests/support/driver_named.hpp"
+#include "tests/support/places.hpp"
+#include "tests/support/real_clock.hpp"
+#include "tests/support/recording_sink.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace yuragi {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+
+/// yuragi-sim with a wind that stands still, once it is where it should be.
+class TextSimulatorProcess {
+ public:
+  TextSimulatorProcess(const std::string& kind, const std::vector<std::string>& options)
+      : process_([&] {
+          std::vector<std::string> command = {
+              test::built_path("bin/yuragi-sim"), kind, "--speed", "7", "--direction", "123", "--turbulence", "0"};
+          command.insert(command.end(), options.begin(), options.end());
+          return command;
+        }()) {
+    const bool sends = std::ranges::find(options, "--udp") != options.end();
+    place_ = process_.line_after(sends ? "sending to " : "listening on ");
+  }
+
+  const std::string& place() const { return place_; }
+  std::int64_t port() const { return std::stoi(place_.substr(place_.rfind(':') + 1)); }
+  ChildProcess& process() { return process_; }
+
+ private:
+  ChildProcess process_;
+  std::string place_;
+};
+
+/// A sensor of the table on the machine's clock.
+class LiveSensor {
+ public:
+  LiveSensor(std::string_view driver, const ParameterValues::Map& given)
+      : sensor_(driver_named(driver).open(values_for(driver, given))) {}
+
+  /// Polls until `holds`; false if that takes longer than anything should.
+  template <class Condition>
+  bool poll_until(Condition&& holds) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!holds() && std::chrono::steady_clock::now() < deadline) {
+      const MonoTime next = sensor_->poll(clock_, sink);
+      // As the daemon does: nothing is due before.
+      if (next > clock_.now().mono) std::this_thread::sleep_until(std::min(next, clock_.now().mono + kLongestSleep));
+    }
+    return holds();
+  }
+  bool poll_for_readings(std::ptrdiff_t count) {
+    sink.readings.clear();
+    return poll_until([&] { return std::ssize(sink.readings) >= count; });
+  }
+  void expect_the_wind() const {
+    ASSERT_FALSE(sink.readings.empty());
+    for (const WindReading& reading : sink.readings) {
+      EXPECT_NEAR(reading.speed_m_s, 7.0, 0.06);
+      ASSERT_TRUE(reading.direction_deg.has_value());
+      EXPECT_NEAR(*reading.direction_deg, 123.0, 0.6);
+    }
+  }
+
+  Sensor& sensor() { return *sensor_; }
+  RecordingSink sink;
+
+ private:
+  static constexpr Nanoseconds kLongestSleep = std::chrono::milliseconds(100);
+  RealClock clock_;
+  std::unique_ptr<Sensor> sensor_;
+};
+
+ParameterValues::Map tcp_to(std::int64_t port) {
+  return {{"transport", std::string("tcp")}, {"host", std::string("127.0.0.1")}, {"port", port}};
+}
+
+TEST(TextConversation, AgreesOnTheWindInEveryFormat) {
+  for (const std::string format : {"mwv", "mwd", "vwr", "vwt", "mda", "xdr", "gill", "gill-uv", "ft", "umb"}) {
+    SCOPED_TRACE(format);
+    const test::TemporaryFolder folder;
+    const std::string link = (folder / "anemometer").string();
+    TextSimulatorProcess simulator("nmea", {"--pty", "--link", link, "--format", format, "--rate", "20"});
+    EXPECT_EQ(simulator.place(), link);
+    LiveSensor live("nmea", {{"device", link},
+                             {"format", std::string(format == "umb" ? "umb" : "auto")},
+                             {"poll_interval", format == "umb" ? 0.1 : 0.0}});
+    ASSERT_TRUE(live.poll_for_readings(3)) << live.sink.last_detail();
+    live.expect_the_wind();
+    EXPECT_TRUE(live.sink.refusals.empty());
+  }
+}
+
+TEST(TextConversation, AgreesOverTcpAndUdp) {
+  TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--format", "mwd,mwv", "--rate", "20"});
+  LiveSensor client("nmea", tcp_to(server.port()));
+  ASSERT_TRUE(client.poll_for_readings(5)) << client.sink.last_detail();
+  client.expect_the_wind();
+  EXPECT_TRUE(client.sink.refusals.empty());
+
+  constexpr std::int64_t kPort = 42730;
+  TextSimulatorProcess talker("nmea", {"--udp", "127.0.0.1:" + std::to_string(kPort), "--rate", "20"});
+  LiveSensor listener("nmea", {{"transport", std::string("udp")}, {"port", kPort}});
+  ASSERT_TRUE(listener.poll_for_readings(5)) << listener.sink.last_detail();
+  listener.expect_the_wind();
+}
+
+TEST(TextConversation, AsksOverTcp) {
+  TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--format", "ft", "--rate", "0"});
+  auto given = tcp_to(server.port());
+  given["format"] = std::string("ft");
+  given["poll_interval"] = 0.1;
+  LiveSensor client("nmea", given);
+  ASSERT_TRUE(client.poll_for_readings(5)) << client.sink.last_detail();
+  client.expect_the_wind();
+}
+
+TEST(TextConversation, AgreesOnLinesOfNumbers) {
+  for (const std::string format : {"csv", "key-value"}) {
+    TextSimulatorProcess simulator("line", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "20"});
+    LiveSensor live("line", tcp_to(simulator.port()));
+    ASSERT_TRUE(live.poll_for_readings(5)) << live.sink.last_detail();
+    live.expect_the_wind();
+    EXPECT_TRUE(live.sink.refusals.empty());
+  }
+}
+
+TEST(TextConversation, ComesBackFromEveryFault) {
+  const test::TemporaryFolder folder;
+  const std::string link = (folder / "anemometer").string();
+  TextSimulatorProcess simulator("nmea", {"--pty", "--link", link, "--rate", "20"});
+  LiveSensor live("nmea", {{"device", link}, {"talker", std::string("WI")}});
+  ASSERT_TRUE(live.poll_for_readings(10));
+
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"silence", "says nothing"}, {"garbage", "but no line: check baud"},
+      {"partial", "check"},        {"bad-checksum", "checksums"},
+      {"wrong-id", "talker"},      {"unplug", "check that it is plugged in"},
+  };
+  for (const auto& [fault, detail] : faults) {
+    SCOPED_TRACE(fault);
+    simulator.process().type(fault + " 600");
+    simulator.process().line_after(fault + " for 600 s");
+    ASSERT_TRUE(live.poll_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
+    EXPECT_TRUE(live.poll_until([&, said = detail] { return live.sink.last_detail().find(said) != std::string::npos; }))
+        << live.sink.last_detail();
+    live.expect_the_wind();  // all that came until then
+
+    simulator.process().type("clear");
+    simulator.process().line_after("no faults");
+    ASSERT_TRUE(live.poll_for_readings(10)) << live.sink.last_detail();
+    live.expect_the_wind();
+    EXPECT_EQ(live.sink.last_state(), LinkState::kConnected);
+  }
+}
+
+TEST(TextConversation, FindsASimulatorAgainThatWasKilled) {
+  const test::TemporaryFolder folder;
+  const std::string link = (folder / "anemometer").string();
+  const std::vector<std::string> options = {"--pty", "--link", link, "--rate", "20"};
+  auto simulator = std::make_unique<TextSimulatorProcess>("line", options);
+  LiveSensor live("line", {{"device", link}, {"delay_after_open", 0.0}});
+  ASSERT_TRUE(live.poll_for_readings(3));
+  simulator->process().end(SIGKILL);
+  EXPECT_TRUE(live.poll_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
+  simulator = std::make_unique<TextSimulatorProcess>("line", options);
+  ASSERT_TRUE(live.poll_for_readings(3)) << live.sink.last_detail();
+  live.expect_the_wind();
+}
+
+/// Whoever shuts the daemon down waits for no device.
+TEST(TextConversation, CanBeInterruptedWhateverItWaitsFor) {
+  const test::TemporaryFolder folder;
+  const std::string link = (folder / "anemometer").string();
+  TextSimulatorProcess mute("nmea", {"--pty", "--link", link, "--rate", "0"});
+  const std::vector<ParameterValues::Map> all = {
+      {{"device", link}},
+      {{"transport", std::string("udp")}, {"port", std::int64_t{42731}}},
+      {{"transport", std::string("tcp")}, {"host", std::string("no-such-host.invalid")}},
+  };
+  for (const auto& given : all) {
+    LiveSensor live("nmea", given);
+    RealClock clock;
+    live.sensor().poll(clock, live.sink);
+    const auto begin = std::chrono::steady_clock::now();
+    live.sensor().interrupt();
+    live.sensor().poll(clock, live.sink);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(150));
+  }
+}
+
+TEST(TextConversation, ListensToSocat) {
+  if (!std::filesystem::exists("/usr/bin/socat")) GTEST_SKIP() << "socat is not installed";
+  // A serial line whose far end socat holds, and which passes on what the test types.
+  const test::TemporaryFolder folder;
+  const std::string link = (folder / "line").string();
+  ChildProcess serial({"/usr/bin/socat", "-u", "STDIN", "PTY,rawer,link=" + link});
+  LiveSensor live("nmea", {{"device", link}});
+  ASSERT_TRUE(live.poll_until([&] {
+    if (std::filesystem::exists(link)) serial.type("$HDMWV,260.1,R,21.5,K,A*07\r");  // a real one, of Sassnitz
+    return !live.sink.readings.empty();
+  }));
+  EXPECT_NEAR(live.sink.readings.back().speed_m_s, 21.5 / 3.6, 1e-9);
+  EXPECT_EQ(live.sink.readings.back().direction_deg, 260.1);
+
+  constexpr std::int64_t kPort = 42732;
+  ChildProcess talker({"/usr/bin/socat", "-u", "STDIN", "UDP4-SENDTO:127.0.0.1:" + std::to_string(kPort)});
+  LiveSensor listener("line", {{"transport", std::string("udp")}, {"port", kPort}});
+  ASSERT_TRUE(listener.poll_until([&] {
+    talker.type("4.2,270");
+    return !listener.sink.readings.empty();
+  }));
+  EXPECT_DOUBLE_EQ(listener.sink.readings.back().speed_m_s, 4.2);
+}
+
+TEST(TextSimulatorProgram, RefusesACommandLineThatItCannotUse) {
+  const auto run = [](std::vector<std::string> command) {
+    command.insert(command.begin(), test::built_path("bin/yuragi-sim"));
+    ChildProcess process(command);
+    const std::string text = process.rest();
+    return std::pair(process.wait(), text);
+  };
+  EXPECT_THAT(run({"nmea"}), testing::Pair(64, HasSubstr("--pty")));
+  EXPECT_THAT(run({"nmea", "--pty", "--tcp", "127.0.0.1:0"}), testing::Pair(64, HasSubstr("Exactly 1 option")));
+  EXPECT_THAT(run({"nmea", "--pty", "--format", "mwx"}), testing::Pair(64, HasSubstr("mwv")));
+  EXPECT_THAT(run({"nmea", "--pty", "--format", "umb,mwv"}), testing::Pair(64, HasSubstr("goes with no other")));
+  EXPECT_THAT(run({"line", "--tcp", "nowhere"}), testing::Pair(64, HasSubstr("allowed: HOST:PORT")));
+  EXPECT_THAT(run({"line", "--udp", "127.0.0.1:9", "--rate", "0"}), testing::Pair(64, HasSubstr("nobody can ask")));
+  EXPECT_THAT(run({"line", "--tcp", "192.0.2.7:0"}), testing::Pair(69, HasSubstr("cannot listen on")));
+  EXPECT_THAT(run({"nmea", "--pty", "--fault", "disconnect@1+2"}), testing::Pair(64, HasSubstr("unplug")));
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "drivers/clock.hpp"
+
+namespace yuragi {
+
+/// The machine's clocks, for conversations with programs that have them too.
+class RealClock final : public Clock {
+ public:
+  Instant now() const noexcept override { return {std::chrono::steady_clock::now(), std::chrono::system_clock::now()}; }
+};
+
+}  // namespace yuragi
