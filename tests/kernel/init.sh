@@ -35,10 +35,15 @@ udevadm trigger
 udevadm settle --timeout=20
 milestone "drivers and udev are up"
 
+# Is a device of that vendor plugged in?
+has_device_of() {
+  grep -qs "$1" /sys/bus/usb/devices/*/idVendor
+}
+
 # Plugs a simulated device in whenever its server offers it and it is not there: a port and a vendor number.
 keep_plugged_in() {
   while :; do
-    grep -qs "$2" /sys/bus/usb/devices/*/idVendor || usbip --tcp-port "$1" attach -r 127.0.0.1 -b 1-1 >>/results/usbip.log 2>&1
+    has_device_of "$2" || usbip --tcp-port "$1" attach -r 127.0.0.1 -b 1-1 >>/results/usbip.log 2>&1
     sleep 0.5
   done
 }

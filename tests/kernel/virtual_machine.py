@@ -106,6 +106,9 @@ class RootFileSystem:
             target = "/usr/lib/x86_64-linux-gnu/" + os.path.basename(path) if home else path
             self.add_file(os.path.realpath(path), target)
 
+    def add_folder(self, folder, without=()):
+        shutil.copytree(folder, self.root / folder.lstrip("/"), ignore=shutil.ignore_patterns(*without))
+
     def add_modules(self, kernel_folder, names):
         """Kernel modules with those that they need."""
         version = next((kernel_folder / "lib/modules").iterdir()).name
