@@ -48,7 +48,9 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const Clock& clock, SensorSink&
     case ByteStatus::kEnd:
     case ByteStatus::kLost:
       if (!trouble_.empty()) return Failure{trouble_};
-      return Failure{"the microphone's worker ended without a word: starting it again"};
+      return Failure{
+          "the microphone's worker ended without a word: starting it again; `yuragi mic-worker --list --verbose` may "
+          "say why"};
   }
   sink.refused(Refusal::kTimeout);
   return Failure{hello_ ? fmt::format("{} has said nothing for {:g} s: starting it again", hello_->device,

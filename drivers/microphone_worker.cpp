@@ -4,8 +4,10 @@
 #include <cerrno>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>

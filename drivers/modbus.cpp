@@ -77,6 +77,13 @@ const std::array kModbusParameters = {
               .min = 0.0,
               .max = 3600.0,
               .help = "from one reading to the next; 0 takes the profile's"},
+    Parameter{.name = "min_gap",
+              .unit = "s",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 10.0,
+              .help = "from an answer to the next request on this line, for adapters that turn around slowly; 0 takes "
+                      "the profile's"},
     Parameter{.name = "response_timeout",
               .unit = "s",
               .default_value = 0.0,
@@ -108,6 +115,7 @@ ModbusProfile profile_of(const ParameterValues& values) {
   if (const double interval_s = values.number("poll_interval"); interval_s > 0.0) {
     profile.poll_interval = from_seconds(interval_s);
   }
+  if (const double gap_s = values.number("min_gap"); gap_s > 0.0) profile.min_gap = from_seconds(gap_s);
   if (const double timeout_s = values.number("response_timeout"); timeout_s > 0.0) {
     profile.response_timeout = from_seconds(timeout_s);
   }

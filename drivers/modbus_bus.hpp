@@ -21,7 +21,7 @@ struct ModbusTrouble {
     kOthersOnly,   ///< others were heard, and not whom we asked
     kRefused,      ///< a message came that is no use: `refusal`
     kLost,         ///< the connection is gone
-    kInterrupted,  ///< the interruption event was set
+    kInterrupted,  ///< the interruption was set
   };
   Kind kind = Kind::kSilence;
   ModbusRefusal refusal;  ///< for kRefused
@@ -30,9 +30,10 @@ struct ModbusTrouble {
 /// One line with Modbus devices: a serial port, or a host and port. All sensors on that line share it, each from a
 /// thread of its own, and are served one after the other in the order in which they asked.
 ///
-/// A late answer of one request is never taken for that of another. Over TCP each request has a number of its own. On a
-/// serial line nothing tells them apart, so whoever did not answer in time is not asked again before another response
-/// time-out has gone by, and after any trouble nothing is sent before the line has been quiet.
+/// A late answer to one request is never taken for that to another. Over TCP each request has a number of its own. On a
+/// serial line nothing tells them apart but the slave's id, so whoever did not answer in time is to be let be for
+/// another response time-out (ready_at()), and after any trouble nothing is sent before the line has been quiet. A
+/// device that is slower than two time-outs needs a longer one.
 ///
 /// Thread-safe: yes. Whoever waits, waits for those before him, each for one response time-out at most; his
 /// `interruption` ends that.
@@ -66,7 +67,7 @@ class ModbusBus {
   /// How many have asked and not been answered yet.
   std::size_t waiting_count() const;
 
-  /// To be called after a interruption event was set, so that whoever waits for his turn with it looks at it.
+  /// To be called after an interruption was set, so that whoever waits for his turn with it looks at it.
   void wake_waiters() noexcept;
 
  private:

@@ -2,19 +2,15 @@
 // gateway, a microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own.
 // What is common has a preset, which single settings change:
 //
-//   preset     topic                 speed              direction        gust            unit   source
-//   tasmota    tele/+/SENSOR         /TX23/Speed/Act    /TX23/Dir/Deg    /TX23/Speed/Max km/h   arendst/Tasmota
-//   tasmota/
-//                                                                                              xsns_35_tx20.ino
-//                                                                                              (Tx2xShow; /TX20 for the
-//                                                                                              older sensor)
-//   rtl_433    rtl_433/+/events      /wind_avg_m_s      /wind_dir_deg    /wind_max_m_s   m/s    merbanan/rtl_433
-//   src/devices/
-//                                                                                              fineoffset_ws80.c
-//   windnerd   (yours)               /wind_instant_speed /wind_instant_dir               m/s    windnerd.net/docs, MQTT
-//   number     (yours, one each)     the payload is the number                           m/s    Home Assistant
-//   mqtt_statestream:
-//                                                                                              homeassistant/sensor/NAME/state
+//   preset     topic               speed                 direction           gust              unit
+//   number     (yours, one each)   the payload is the number                                   m/s
+//   tasmota    tele/+/SENSOR       /TX23/Speed/Act       /TX23/Dir/Deg       /TX23/Speed/Max   km/h
+//   rtl_433    rtl_433/+/events    /wind_avg_m_s         /wind_dir_deg       /wind_max_m_s     m/s
+//   windnerd   (yours)             /wind_instant_speed   /wind_instant_dir                     m/s
+//
+// Sources: Home Assistant's mqtt_statestream publishes numbers on homeassistant/sensor/NAME/state; arendst/Tasmota
+// tasmota/xsns_35_tx20.ino, Tx2xShow (TX20 in place of TX23 for the older sensor; its SpeedUnit is km/h unless it was
+// changed); merbanan/rtl_433 src/devices/fineoffset_ws80.c, as for most wind sensors; windnerd.net/docs, MQTT.
 //
 // A retained message was kept by the broker for whoever comes: nobody knows how old it is, and it is never taken for
 // the wind of now.
@@ -246,7 +242,7 @@ void check_source(std::string_view name, const MqttSource& source) {
   if (!is_json_pointer(source.place.pointer)) {
     throw std::runtime_error(
         fmt::format("{}path: \"{}\" is no JSON pointer; it begins with a slash, as in /TX23/Speed/Act",
-                    name == "" ? "speed_" : name, source.place.pointer));
+                    name.empty() ? "speed_" : name, source.place.pointer));
   }
 }
 

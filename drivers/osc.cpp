@@ -10,7 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "drivers/bus/osc_server.hpp"
+#include "drivers/bus/byte_port.hpp"
+#include "drivers/bus/osc_message.hpp"
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/driver.hpp"
 #include "drivers/reopening_sensor.hpp"
@@ -29,6 +30,14 @@ const std::array kOscParameters = {
               .min = 1,
               .max = 65535,
               .help = "the UDP port that the messages come to"},
+    Parameter{.name = "host",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "listen at this address of this machine only, or at this multicast address; empty: at all"},
+    Parameter{.name = "sender",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "take messages from this address only; empty: from any"},
     Parameter{.name = "address",
               .unit = "",
               .default_value = std::string("/wind"),
@@ -65,7 +74,7 @@ const std::array kOscParameters = {
 };
 
 struct OscSettings {
-  std::uint16_t port = 9000;
+  BytePortAddress port{.kind = BytePortKind::kUdp};
   std::string address;
   std::int64_t speed_argument = 0;
   std::int64_t direction_argument = 1;
@@ -98,16 +107,16 @@ Result<DecodedWind, Refusal> wind_of(const OscMessage& message, const OscSetting
 class OscSensor final : public ReopeningSensor {
  public:
   explicit OscSensor(OscSettings settings)
-      : ReopeningSensor(seed_of("osc" + std::to_string(settings.port))),
+      : ReopeningSensor(seed_of("osc" + std::to_string(settings.port.port))),
         settings_(std::move(settings)),
-        where_(fmt::format("UDP port {}", settings_.port)),
-        server_(make_osc_server(settings_.port)) {}
+        where_(describe(settings_.port)),
+        port_(make_byte_port(settings_.port)) {}
 
-  void interrupt() noexcept override { server_->interrupt(); }
+  void interrupt() noexcept override { port_->interrupt(); }
 
  protected:
   Result<MonoTime, Failure> open(const Clock& clock) override {
-    if (const auto opened = server_->open(); !opened) return opened.error();
+    if (const auto opened = port_->open(); !opened) return opened.error();
     has_heard_ = false;
     heard_at_ = clock.now().mono;
     return heard_at_;
@@ -115,10 +124,12 @@ class OscSensor final : public ReopeningSensor {
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
     if (!has_heard_) is_unwell(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
-    const OscStatus status = server_->receive(datagram_, kOscWait);
+    const ByteArrival arrival = port_->read(buffer_, kOscWait);
     const Instant now = clock.now();
-    if (status == OscStatus::kInterrupted || status == OscStatus::kLost) return Failure{"lost " + where_};
-    if (status == OscStatus::kDatagram) take_datagram(now, sink);
+    if (arrival.status == ByteStatus::kInterrupted) return Failure{"interrupted"};
+    if (arrival.status == ByteStatus::kLost || arrival.status == ByteStatus::kEnd) return Failure{"lost " + where_};
+    if (arrival.status == ByteStatus::kForeign) sink.refused(Refusal::kNotMine);
+    if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
     if (now.mono - heard_at_ >= settings_.silence) {
       has_heard_ = true;  // what is told now is more than that it waits
       is_unwell(sink, fmt::format(
@@ -129,44 +140,43 @@ class OscSensor final : public ReopeningSensor {
     return now.mono;
   }
 
-  void close() noexcept override { server_->close(); }
+  void close() noexcept override { port_->close(); }
 
  private:
-  void take_datagram(Instant now, SensorSink& sink) {
-    sink.raw(RawDirection::kReceived, datagram_.bytes);
-    if (!datagram_.is_well_formed) return sink.refused(Refusal::kMalformed);
-    for (const OscMessage& message : datagram_.messages) {
-      if (!osc_address_matches(message.address, settings_.address)) {
-        sink.refused(Refusal::kNotMine);
-        continue;
-      }
-      const auto wind = wind_of(message, settings_);
-      if (!wind) {
-        sink.refused(wind.error());
-        continue;
-      }
-      has_heard_ = true;
-      heard_at_ = now.mono;
-      is_well(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
-      sink.reading({.time = now,
-                    .speed_m_s = *wind->speed_m_s,
-                    .direction_deg = wind->direction_deg,
-                    .gust_m_s = wind->gust_m_s,
-                    .quality = ReadingQuality::kGood});
-    }
+  void take_datagram(std::span<const std::uint8_t> datagram, Instant now, SensorSink& sink) {
+    sink.raw(RawDirection::kReceived, datagram);
+    const auto messages = decode_osc(datagram);
+    if (!messages) return sink.refused(messages.error());
+    for (const OscMessage& message : *messages) take(message, now, sink);
+  }
+
+  void take(const OscMessage& message, Instant now, SensorSink& sink) {
+    if (!osc_address_matches(message.address, settings_.address)) return sink.refused(Refusal::kNotMine);
+    const auto wind = wind_of(message, settings_);
+    if (!wind) return sink.refused(wind.error());
+    has_heard_ = true;
+    heard_at_ = now.mono;
+    is_well(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
+    sink.reading({.time = now,
+                  .speed_m_s = *wind->speed_m_s,
+                  .direction_deg = wind->direction_deg,
+                  .gust_m_s = wind->gust_m_s,
+                  .quality = ReadingQuality::kGood});
   }
 
   OscSettings settings_;
   std::string where_;
-  std::unique_ptr<OscServer> server_;
-  OscDatagram datagram_;
+  std::unique_ptr<BytePort> port_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(kLargestDatagram);
   bool has_heard_ = false;  // of the wind, since it has the port
   MonoTime heard_at_{};     // or since when it could have
 };
 
 std::unique_ptr<Sensor> open_osc(const ParameterValues& values) {
   OscSettings settings;
-  settings.port = static_cast<std::uint16_t>(values.integer("port"));
+  settings.port.port = static_cast<std::uint16_t>(values.integer("port"));
+  settings.port.host = values.text("host");
+  settings.port.sender = values.text("sender");
   settings.address = values.text("address");
   settings.speed_argument = values.integer("speed_argument");
   settings.direction_argument = values.integer("direction_argument");

@@ -2,16 +2,12 @@
 // any vane that is a potentiometer, sampled up to 100 times a second. The devices' messages stand in
 // drivers/decode/mcc1208.hpp and labjack.hpp, with their sources. How they are wired:
 //
-//   device       USB id      cup (contact to ground)   vane's wiper                         track
-//   mcc1208      09db:00e8   CTR                       CH0 to CH7 IN, -10 to 10 V           ground to +VO (5 V)
-//   labjack-u3   0cd5:0003   FIO4                      AIN0 to AIN3: U3-HV -10 to 10 V,     ground to VS (5 V) on the
-//   U3-HV,
-//                                                      U3-LV 0 to 2.44 V                    to a DAC set to 2.4 V on
-//                                                      the U3-LV
+//   device       USB id      cup    vane's wiper                                      vane's track
+//   mcc1208      09db:00e8   CTR    CH0 to CH7 IN, against ground: -10 to 10 V        ground to +VO (5 V)
+//   labjack-u3   0cd5:0003   FIO4   AIN0 to AIN3: -10 to 10 V, on a U3-LV 0 to 2.4 V  ground to VS (5 V), or less
 //
-// A cup's data sheet gives its line as m/s for each Hz, which is metres for each pulse, and an offset: 0.765 and 0.35
-// m/s for an NRG #40C, say. (Measnet, "Anemometer calibration procedure", version 3, 2020, on how such lines are
-// found.)
+// A cup closes a contact to ground, with a resistor up to 5 V where the pin has none of its own. Its data sheet gives
+// its line as m/s for each Hz, which is metres for each pulse, and an offset: 0.765 and 0.35 m/s for an NRG #40C, say.
 #include <algorithm>
 #include <array>
 #include <stdexcept>

@@ -1,7 +1,7 @@
 // `yuragi mic-worker`: the process that the driver `microphone` keeps PortAudio in. People use its --list.
 #include <atomic>
 #include <csignal>
-#include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 #include <fcntl.h>

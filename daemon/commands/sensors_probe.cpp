@@ -29,7 +29,7 @@ struct ProbeOptions {
   std::string profile_dir;
 };
 
-/// While it lives, Ctrl-C sets a interruption event instead of ending the program.
+/// While it lives, Ctrl-C sets an interruption instead of ending the program.
 class WakeOnInterrupt {
  public:
   WakeOnInterrupt() {

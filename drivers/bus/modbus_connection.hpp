@@ -47,7 +47,7 @@ enum class BusStatus : std::uint8_t {
   kSilence,      ///< nothing until the response time-out
   kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
   kGarbled,      ///< bytes that are no message; the line is no longer in step
-  kInterrupted,  ///< somebody set the interruption event
+  kInterrupted,  ///< somebody set the interruption
   kLost,         ///< the connection is gone
 };
 
@@ -57,7 +57,7 @@ struct BusMessage {
 };
 
 /// A connection to the devices on one line, which can be closed and opened again for as long as it lives. Carries bytes
-/// and judges nothing. A test may put another in its place. A `interruption` that is set ends whatever waits with it,
+/// and judges nothing. A test may put another in its place. An `interruption` that is set ends whatever waits with it,
 /// at once.
 ///
 /// Thread-safe: no; one thread after the other may use it.

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <deque>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <mosquitto.h>
@@ -177,7 +177,7 @@ class MosquittoClient final : public MqttClient {
     switch (error) {
       case MOSQ_ERR_ERRNO:
         return fmt::format("cannot reach {} ({}): check its address, the network, and that it runs", broker,
-                           std::strerror(errno));
+                           std::generic_category().message(errno));
       case MOSQ_ERR_CONN_LOST:
         return fmt::format("{} has closed the connection: check that it runs, and that this port is its own", broker);
       case MOSQ_ERR_EAI:

@@ -2,10 +2,8 @@
 // and its list of devices is frozen until the library is begun anew (issues 447, 750). This wrapper cannot mend that:
 // it runs in a process that may be killed (drivers/microphone_worker.hpp).
 #include <algorithm>
-#include <atomic>
 #include <cctype>
-#include <cmath>
-#include <span>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>

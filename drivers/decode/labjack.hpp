@@ -21,17 +21,16 @@ namespace yuragi {
 //   2      words (2 bytes) from byte 6                            6...   data, filled up to a whole word
 //   b8 b8  the device's whole reply to a command with a wrong sum
 //
-//   command         data out, from 6                              data in, from 6
-//   00 feedback     echo; 01, channel, 31 (AIN against ground);   error, which part, echo; in the command's order: AIN
-//   2
-//                   36, 0 (Counter0) or 37, 0 (Counter1)          bytes, counter 4 bytes, low byte first
-//   08 ConfigU3     20 bytes of 0 change nothing                  error, ...; at 15 the serial number (4 bytes), at 37
-//   the
-//                                                                 version: bits 1 and 4 both set in a U3-HV
-//   0B ConfigIO     mask (1: counters, 4: FIO, 8: EIO), 0, pin    error, 0, the same four as they are now
-//                   offset << 4 | counters, DAC1, FIO, EIO
-//   2D ReadMem      0, block                                      error, 0, four numbers of 8 bytes: 32 bits before the
-//                                                                 point, 32 behind it, low byte first
+//   command        data out, from 6                            data in, from 6
+//   00 feedback    echo; 01, channel, 1f (AIN against          error, which part, echo; in the command's order: AIN
+//                  ground); 36, 00 (Counter0) or 37, 00        2 bytes, counter 4 bytes, low byte first
+//                  (Counter1)
+//   08 ConfigU3    20 bytes of 0 change nothing                error, ...; at 15 the serial number (4 bytes), at 37
+//                                                              the version: bits 1 and 4 are both set in a U3-HV
+//   0B ConfigIO    mask (1: counters, 4: FIO, 8: EIO), 0,      error, 0, the same four as they are now
+//                  pin offset << 4 | counters, DAC1, FIO, EIO
+//   2D ReadMem     0, block                                    error, 0, four numbers of 8 bytes: 32 bits before
+//                                                              the point, 32 behind it, low byte first
 
 /// A command: `bytes` up to `size`.
 struct LabjackCommand {

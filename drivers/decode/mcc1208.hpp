@@ -18,8 +18,7 @@ namespace yuragi {
 //   reset         40 20, wValue 0, wIndex 0           nothing
 //   ADC           C0 10, wValue channel (0 to 7),     2 bytes: 0 to 4095, low byte first; the input against ground,
 //                 wIndex 1                            -10 to 10 V
-//   calibration   C0 30, wValue 0x100 + 8 * channel   8 bytes: slope and intercept of that input, two 32-bit floats,
-//   low
+//   calibration   C0 30, wValue 0x100 + 8 * channel   8 bytes: slope and intercept of that input, 32-bit floats, low
 //                                                     byte first: right code = code * slope + intercept
 
 /// A vendor's control transfer, as libusb_control_transfer() wants its arguments.

@@ -59,6 +59,7 @@ MicEstimator::MicEstimator(const MicEstimatorOptions& options, const MicHello& h
 void MicEstimator::restart() noexcept {
   filled_ = 0;
   last_sample_ = 0;
+  recent_.clear();
   if (direction_) direction_->restart();
 }
 

@@ -21,7 +21,7 @@ struct MicEstimatorOptions {
   MicCalibration calibration = MicPowerLaw{};
   /// Of a calm, dB re full scale; nothing: found while running (MicNoiseFloor). A curve needs none.
   std::optional<double> noise_floor_db = std::nullopt;
-  double noise_memory_s = 3600.0;
+  double noise_memory_s = 86400.0;
   /// Does what all microphones hear alike count as sound, not wind? With one microphone it cannot be told.
   bool ignores_sound = true;
   double window_s = 1.0;            ///< over which level and coherence are taken

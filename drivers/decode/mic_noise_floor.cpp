@@ -6,10 +6,10 @@
 namespace yuragi {
 namespace {
 
-constexpr double kPercentile = 0.05;
+constexpr double kPercentile = 0.02;
 /// How far that percentile lies below the mean of a steady noise: the level of one second scatters by about half a dB.
 constexpr double kBias_db = 0.9;
-constexpr double kBeforeBelief_s = 60.0;
+constexpr double kBeforeBelief_s = 3600.0;
 
 }  // namespace
 
@@ -19,10 +19,11 @@ void MicNoiseFloor::add(double level_db, double duration_s) noexcept {
   const double bin = std::clamp((level_db - kLowest_db) / kBin_db, 0.0, static_cast<double>(kBins - 1));
   weight_s_[static_cast<std::size_t>(bin)] += duration_s;
   total_s_ = total_s_ * keep + duration_s;
+  heard_s_ += duration_s;
 }
 
 std::optional<double> MicNoiseFloor::floor_db() const noexcept {
-  if (total_s_ < std::min(kBeforeBelief_s, 0.5 * memory_s_)) return std::nullopt;
+  if (heard_s_ < std::min(kBeforeBelief_s, 0.5 * memory_s_)) return std::nullopt;
   double below_s = 0.0;
   std::size_t bin = 0;
   while (bin + 1 < kBins && below_s + weight_s_[bin] < kPercentile * total_s_) below_s += weight_s_[bin++];

@@ -10,9 +10,9 @@ namespace yuragi {
 /// (Martin 2001, "Noise power spectral density estimation based on optimal smoothing and minimum statistics"), made of
 /// a histogram that forgets, so that it costs the same for an hour and for a week.
 ///
-/// A wind that never dies down within the memory raises it; that costs little as long as the wind gusts, since a lull
-/// of half the speed has a sixteenth of the power, and nothing where a fixed floor is given instead.
-/// Thread-safe: no. Realtime-safe: yes.
+/// A wind that never dies down raises it: in an hour of wind of 10 % turbulence, the quietest moments have half the
+/// power of the rest, and taking that off would cost a fifth of the speed. So nothing is said in the first hour, and
+/// the memory should hold a night. Thread-safe: no. Realtime-safe: yes.
 class MicNoiseFloor {
  public:
   /// `memory_s`: how long until a level is forgotten to a third.
@@ -21,7 +21,7 @@ class MicNoiseFloor {
   /// Level in dB re full scale, held for `duration_s`.
   void add(double level_db, double duration_s) noexcept;
 
-  /// The floor in dB; nothing until a minute has been heard.
+  /// The floor in dB; nothing until an hour has been heard, or half the memory if that is less.
   std::optional<double> floor_db() const noexcept;
 
  private:
@@ -30,7 +30,8 @@ class MicNoiseFloor {
   static constexpr std::size_t kBins = 640;
 
   double memory_s_;
-  double total_s_ = 0.0;
+  double heard_s_ = 0.0;
+  double total_s_ = 0.0;  ///< what is remembered
   std::array<double, kBins> weight_s_{};
 };
 

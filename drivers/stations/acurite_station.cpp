@@ -10,11 +10,11 @@
 namespace yuragi {
 namespace {
 
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
-constexpr Nanoseconds kAcuriteEvery = seconds(18);
-constexpr Nanoseconds kAcuriteRetry = seconds(6);
-constexpr Nanoseconds kAcuriteNothingNew = seconds(90);
+constexpr Nanoseconds kAcuriteEvery = 18s;
+constexpr Nanoseconds kAcuriteRetry = 6s;
+constexpr Nanoseconds kAcuriteNothingNew = 90s;
 constexpr int kAcuriteGiveUp = 4;  // failures in a row; then it is opened again, which helps some consoles
 
 class AcuriteStation final : public HidStation {

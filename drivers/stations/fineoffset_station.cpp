@@ -18,23 +18,22 @@
 namespace yuragi {
 namespace {
 
-using std::chrono::hours;
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
-constexpr Nanoseconds kFineOffsetEvery = seconds(48);
-constexpr Nanoseconds kFineOffsetMinute = seconds(60);
-constexpr Nanoseconds kFineOffsetMargin = seconds(5);  // 3, and what two quartzes drift apart until the next search
-constexpr Nanoseconds kFineOffsetSearchStep = seconds(6);
-constexpr Nanoseconds kFineOffsetSearchAgain = hours(6);
-constexpr Nanoseconds kFineOffsetSearchSoon = hours(1);  // where nothing was found
-constexpr int kFineOffsetSearchSteps = 10;               // a period and a little more: in calm nothing may change
-constexpr Nanoseconds kFineOffsetRetry = seconds(6);
-constexpr Nanoseconds kFineOffsetReport = seconds(1);     // for each of a block's reports
-constexpr Nanoseconds kFineOffsetWriting = seconds(2);    // until a block that was being written is read again
-constexpr int kFineOffsetUnstable = 4;                    // times that a block was not the same twice
-constexpr Nanoseconds kFineOffsetStalled = seconds(240);  // without any change: at the least it counts minutes
-constexpr int kFineOffsetGiveUp = 4;                      // failures in a row; then it is opened again
-constexpr std::size_t kFineOffsetRecord = 16;             // what is alike in both models' records
+constexpr Nanoseconds kFineOffsetEvery = 48s;
+constexpr Nanoseconds kFineOffsetMinute = 60s;
+constexpr Nanoseconds kFineOffsetMargin = 5s;  // 3, and what two quartzes drift apart until the next search
+constexpr Nanoseconds kFineOffsetSearchStep = 6s;
+constexpr Nanoseconds kFineOffsetSearchAgain = 6h;
+constexpr Nanoseconds kFineOffsetSearchSoon = 1h;  // where nothing was found
+constexpr int kFineOffsetSearchSteps = 10;         // a period and a little more: in calm nothing may change
+constexpr Nanoseconds kFineOffsetRetry = 6s;
+constexpr Nanoseconds kFineOffsetReport = 1s;     // for each of a block's reports
+constexpr Nanoseconds kFineOffsetWriting = 2s;    // until a block that was being written is read again
+constexpr int kFineOffsetUnstable = 4;            // times that a block was not the same twice
+constexpr Nanoseconds kFineOffsetStalled = 240s;  // without any change: at the least it counts minutes
+constexpr int kFineOffsetGiveUp = 4;              // failures in a row; then it is opened again
+constexpr std::size_t kFineOffsetRecord = 16;     // what is alike in both models' records
 
 using FineOffsetBytes = std::array<std::uint8_t, kFineOffsetBlock>;
 

@@ -8,13 +8,13 @@
 namespace yuragi {
 namespace {
 
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
-constexpr Nanoseconds kTe923Every = seconds(33);
-constexpr Nanoseconds kTe923Retry = seconds(5);
-constexpr Nanoseconds kTe923Answer = seconds(3);                       // for the whole block
-constexpr Nanoseconds kTe923Report = std::chrono::milliseconds(1200);  // for its next report
-constexpr int kTe923GiveUp = 4;                                        // failures in a row; then it is opened again
+constexpr Nanoseconds kTe923Every = 33s;
+constexpr Nanoseconds kTe923Retry = 5s;
+constexpr Nanoseconds kTe923Answer = 3s;      // for the whole block
+constexpr Nanoseconds kTe923Report = 1200ms;  // for its next report
+constexpr int kTe923GiveUp = 4;               // failures in a row; then it is opened again
 
 class Te923Station final : public HidStation {
  public:

@@ -6,13 +6,13 @@
 namespace yuragi {
 namespace {
 
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
-constexpr Nanoseconds kWmr100Listen = seconds(1);
-constexpr Nanoseconds kWmr100Silent = seconds(60);   // the clock's frame comes once a minute, the wind's more often
-constexpr Nanoseconds kWmr100Restart = seconds(30);  // from one start report to the next, to a console that is silent
-constexpr Nanoseconds kWmr100GiveUp = seconds(180);  // of silence; then the device is opened again
-constexpr Nanoseconds kWmr100NoWind = seconds(90);   // six winds that did not come
+constexpr Nanoseconds kWmr100Listen = 1s;
+constexpr Nanoseconds kWmr100Silent = 60s;   // the clock's frame comes once a minute, the wind's more often
+constexpr Nanoseconds kWmr100Restart = 30s;  // from one start report to the next, to a console that is silent
+constexpr Nanoseconds kWmr100GiveUp = 180s;  // of silence; then the device is opened again
+constexpr Nanoseconds kWmr100NoWind = 90s;   // six winds that did not come
 
 class Wmr100Station final : public HidStation {
  public:

@@ -9,12 +9,12 @@
 namespace yuragi {
 namespace {
 
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
-constexpr Nanoseconds kWmr300Listen = std::chrono::milliseconds(500);
-constexpr Nanoseconds kWmr300HeartbeatEvery = seconds(20);
-constexpr Nanoseconds kWmr300NoWind = seconds(15);  // five winds that did not come
-constexpr Nanoseconds kWmr300GiveUp = seconds(60);  // of silence; then the device is opened again
+constexpr Nanoseconds kWmr300Listen = 500ms;
+constexpr Nanoseconds kWmr300HeartbeatEvery = 20s;
+constexpr Nanoseconds kWmr300NoWind = 15s;  // five winds that did not come
+constexpr Nanoseconds kWmr300GiveUp = 60s;  // of silence; then the device is opened again
 
 class Wmr300Station final : public HidStation {
  public:

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array kAcuriteFaults = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike, FaultKind::kGarbage,
                                        FaultKind::kPartial};
 constexpr double kReport1Every_s = 18.0;
-constexpr double kKmhPerMetrePerSecond = 3.6;
+constexpr double kMetrePerSecond_kmh = 3.6;
 
 /// The vane's code of each point of the compass, from north on.
 constexpr std::array<std::uint8_t, 16> kCodeOfPoint = {6, 14, 12, 8, 10, 11, 9, 13, 15, 7, 5, 1, 3, 2, 0, 4};
@@ -75,7 +75,7 @@ class Acurite final : public HidModel {
 
  private:
   void measure() {
-    const double speed_kmh = wind().speed_m_s * kKmhPerMetrePerSecond;
+    const double speed_kmh = wind().speed_m_s * kMetrePerSecond_kmh;
     const auto n = speed_kmh < 1.4 ? 0U : static_cast<unsigned>(std::max(1L, std::lround((speed_kmh - 1.0) / 0.8278)));
     const std::uint8_t code = kCodeOfPoint[compass_point(wind().direction_deg)];
     const auto low_bits = static_cast<std::uint8_t>((n & 7U) << 4U);

@@ -9,9 +9,8 @@ namespace yuragi::sim {
 /// What a cup and a vane say that stand in the played wind and are wired to a counter and an analogue input.
 ///
 ///   cup    one pulse for each 0.1 m of wind that has passed
-///   vane   a potentiometer between ground and 5 V; its track begins at north, runs clockwise and covers 356 degrees.
-///   In the
-///          4 degrees without a track a resistor pulls the input to 5.5 V, where no track is
+///   vane   a potentiometer between ground and 5 V, whose track begins at north, runs clockwise and covers 356 degrees;
+///          in the 4 degrees without a track a resistor pulls the input to 5.5 V, where no track is
 ///
 /// Thread-safe: no.
 class CupAndVane {

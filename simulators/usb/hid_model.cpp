@@ -15,11 +15,11 @@ constexpr std::uint8_t kTheEndpoint = 1;
 // bmRequestType and bRequest of the HID class (7.2).
 constexpr std::uint8_t kClassToHost = 0xA1;
 constexpr std::uint8_t kClassToDevice = 0x21;
-constexpr std::uint8_t kGetReport = 0x01;
-constexpr std::uint8_t kSetReport = 0x09;
-constexpr std::uint8_t kSetIdle = 0x0A;
-constexpr unsigned kInputReport = 1;  // high byte of wValue
-constexpr unsigned kOutputReport = 2;
+constexpr std::uint8_t kGetReportRequest = 0x01;
+constexpr std::uint8_t kSetReportRequest = 0x09;
+constexpr std::uint8_t kSetIdleRequest = 0x0A;
+constexpr unsigned kInputType = 1;  // high byte of wValue
+constexpr unsigned kOutputType = 2;
 
 std::uint8_t low_byte(std::size_t number) {
   return static_cast<std::uint8_t>(number & 0xFFU);
@@ -113,11 +113,11 @@ void HidModel::advance(double time_s, const PlayedMoment& wind, std::optional<Fa
 
 std::optional<UsbBytes> HidModel::control(const UsbSetup& setup, std::span<const std::uint8_t> data) {
   const unsigned type = setup.value >> 8U;
-  if (setup.request_type == kClassToDevice && setup.request == kSetIdle) return UsbBytes{};
-  if (setup.request_type == kClassToDevice && setup.request == kSetReport && type == kOutputReport) {
+  if (setup.request_type == kClassToDevice && setup.request == kSetIdleRequest) return UsbBytes{};
+  if (setup.request_type == kClassToDevice && setup.request == kSetReportRequest && type == kOutputType) {
     return take_output(data) ? std::optional(UsbBytes{}) : std::nullopt;
   }
-  if (setup.request_type == kClassToHost && setup.request == kGetReport && type == kInputReport) {
+  if (setup.request_type == kClassToHost && setup.request == kGetReportRequest && type == kInputType) {
     auto report = input_report(low_byte(setup.value));
     if (report && report->size() > setup.length) report->resize(setup.length);
     return report;

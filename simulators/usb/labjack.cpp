@@ -2,8 +2,7 @@
 // come in on bulk end point 1, replies go out on 2. Both begin with sum8, F8, words, command, sum16 (low byte first),
 // and go on with:
 //
-//   00  Feedback   echo, then for each input its type: 01 channel 31 (AIN against ground), 36 0 or 37 0 (Counter0,
-//   Counter1)
+//   00  Feedback   echo, then for each input: 01 channel 1f (AIN against ground), 36 00 (Counter0), 37 00 (Counter1)
 //                  reply: error, which of them, echo, then 2 bytes for an AIN, 4 for a counter
 //   08  ConfigU3   20 bytes; reply: error, ..., from 15 the serial number, 37 the version: 18 is a U3-HV
 //   0B  ConfigIO   mask, 0, timers and counters, DAC1, FIO analogue, EIO analogue; reply: error, 0, the same four
@@ -62,7 +61,8 @@ void seal(UsbBytes& frame) {
 }
 
 bool is_sealed(UsbView frame) {
-  if (frame.size() < kFrameHeader || frame[1] != 0xF8 || frame.size() != kFrameHeader + 2U * frame[2]) return false;
+  if (frame.size() < kFrameHeader || frame[1] != 0xF8 || frame.size() != kFrameHeader + std::size_t{2} * frame[2])
+    return false;
   const std::uint16_t sum = sum_of(frame.subspan(kFrameHeader));
   return frame[4] == (sum & 0xFFU) && frame[5] == sum >> 8U && frame[0] == folded_sum(frame);
 }

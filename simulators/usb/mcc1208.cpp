@@ -1,11 +1,14 @@
 // MCC USB-1208FS-Plus, as wjasper/Linux_Drivers talks to it (USB/mcc-libusb/usb-1208FS-Plus.{h,c} and
-// USB/python/usb_1208FS_Plus.py; J. Jasper, 2014). Vendor requests to the device, numbers low byte first:
+// USB/python/usb_1208FS_Plus.py; W. J. Jasper, 2014 and 2020). Vendor requests to the device, numbers low byte first:
 //
-//   C0 10  wValue mode << 8 | channel, wIndex range   analogue input, 2 bytes, 12 bits; against ground (mode 0) +-10 V
-//   only C0 20                                             event counter, 4 bytes        40 20  set it to 0 C0 30
-//   wValue address                             calibration memory, 768 bytes: from 0x100 on for each of the inputs
-//                                                     against ground two 32-bit floats: code * slope + intercept
-//   C0 44                                             status, 2 bytes               C0 48  serial number, 8 characters
+//   C0 10  wValue mode << 8 | channel    analogue input, 2 bytes, 12 bits; against ground (mode 0) -10 to 10 V only
+//          wIndex range
+//   C0 20                                event counter, 4 bytes
+//   40 20                                sets it to 0
+//   C0 30  wValue address                calibration memory, 768 bytes: from 0x100 on, for each of the inputs against
+//                                        ground, two 32-bit floats: code * slope + intercept
+//   C0 44                                status, 2 bytes
+//   C0 48                                serial number, 8 characters
 #include "simulators/usb/mcc1208.hpp"
 
 #include <algorithm>

@@ -24,7 +24,7 @@ constexpr double kTe923Report_s = 0.01;      // from one report to the next
 constexpr double kTe923SplitReport_s = 0.3;  // with the fault
 constexpr double kTe923LateAnswer_s = 8.0;   // with the fault: longer than 5 s, which hosts wait
 constexpr unsigned kTe923ReadingsAt = 0x020001;
-constexpr double kMphPerMetrePerSecond = 1.0 / 0.44704;
+constexpr double kMetrePerSecond_mph = 1.0 / 0.44704;
 
 std::uint8_t xor_of(std::span<const std::uint8_t> bytes) {
   unsigned all = 0;
@@ -68,7 +68,7 @@ class Te923 final : public HidModel {
 
  private:
   void put_speed(std::size_t at, double speed_m_s) {
-    const auto tenths = static_cast<unsigned>(std::lround(10.0 * speed_m_s * kMphPerMetrePerSecond));
+    const auto tenths = static_cast<unsigned>(std::lround(10.0 * speed_m_s * kMetrePerSecond_mph));
     const auto digit = [tenths](unsigned divisor) { return tenths / divisor % 10U; };
     readings_[at] = static_cast<std::uint8_t>((digit(10) << 4U) | digit(1));
     readings_[at + 1] = static_cast<std::uint8_t>((digit(1000) << 4U) | digit(100));

@@ -135,7 +135,7 @@ TEST(MicEstimatorTest, FindsTheNoiseOfACalmAndTakesItOff) {
     const bool blows = i / 240 % 2 == 1;
     const double power = noise_power * (blows ? 2.0 : 1.0) * std::pow(10.0, scatter(random) / 10.0);
     const auto estimate = *estimator.add(steady_block(hello, i, power));
-    if (!estimate || i < 4 * 240) continue;
+    if (!estimate || i < 4 * 320) continue;
     EXPECT_NEAR(estimate->floor_db, -60.0, 1.0);
     (blows ? wind_m_s : calm_m_s) += estimate->speed_m_s;
     ++(blows ? winds : calms);
@@ -145,6 +145,27 @@ TEST(MicEstimatorTest, FindsTheNoiseOfACalmAndTakesItOff) {
               true_m_s, wind_m_s / winds);
   EXPECT_NEAR(wind_m_s / winds, true_m_s, 0.1 * true_m_s);
   EXPECT_LT(calm_m_s / calms, 0.35 * true_m_s);
+}
+
+TEST(MicEstimatorTest, TakesNoWindForTheNoiseOfACalm) {
+  // An hour of a wind of 10 % turbulence from the first moment on: what the quietest moments have is wind.
+  const MicHello hello = hello_of(1);
+  const MicPowerLaw law{20.0, 2.0};
+  MicEstimator estimator({.calibration = law}, hello);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  double gust = 0.0;
+  double wind_m_s = 0.0;
+  double read_m_s = 0.0;
+  for (std::uint64_t i = 0; i < 4 * 3500; ++i) {
+    gust = 0.95 * gust + std::sqrt(1.0 - 0.95 * 0.95) * normal(random);
+    const double speed_m_s = 6.0 * (1.0 + 0.1 * gust);
+    const auto estimate = *estimator.add(steady_block(hello, i, std::pow(speed_m_s / law.gain_m_s, 4.0)));
+    if (!estimate) continue;
+    wind_m_s += speed_m_s;
+    read_m_s += estimate->speed_m_s;
+  }
+  EXPECT_NEAR(read_m_s / wind_m_s, 1.0, 0.02);
 }
 
 TEST(MicEstimatorTest, AGivenFloorIsUsedAtOnce) {

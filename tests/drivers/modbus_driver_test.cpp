@@ -445,6 +445,19 @@ TEST(ModbusDriver, RefusesTwoSensorsThatWantDifferentSettingsOnOneSerialPort) {
   EXPECT_NO_THROW(open_sensor(other));
 }
 
+TEST(ModbusDriver, KeepsTheGapThatTheInstallationAsksFor) {
+  const ScriptedServer server([](const Bytes& request) { return right_answer(request); });
+  const auto sensor = open_sensor({{"port", std::int64_t{server.port()}}, {"min_gap", 0.3}});
+  Bench bench;
+  for (int i = 0; i < 6; ++i) {
+    bench.poll(*sensor);
+    if (i > 0) {
+      EXPECT_GE(bench.due - bench.clock.now().mono, 300ms);
+    }
+  }
+  EXPECT_GE(bench.sink.readings.size(), 2U);
+}
+
 TEST(ModbusDriver, SaysWhoElseHasThePort) {
   // Another program is another open file to the system.
   const SerialPort port;

@@ -1,11 +1,11 @@
 // The simulated sound by itself, and what the driver's decoder makes of it.
 #include "simulators/microphone_sound.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <optional>
 
 #include <gtest/gtest.h>

@@ -1,0 +1,106 @@
+// liblo 0.31 takes messages apart; its server is of no use here. It would keep the messages of bundles that are meant
+// for later, as many as a stranger sends, and go down into bundles within bundles without end.
+#include "drivers/bus/osc_message.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <type_traits>
+
+#include <lo/lo.h>
+
+namespace yuragi {
+namespace {
+
+using OscBytes = std::span<const std::uint8_t>;
+
+/// "#bundle", a time of 8 bytes, and then elements: their size in 4 bytes, and that many of a message or a bundle.
+constexpr std::array<std::uint8_t, 8> kBundleMark = {'#', 'b', 'u', 'n', 'd', 'l', 'e', 0};
+constexpr std::size_t kBundleHead = 16;
+constexpr std::size_t kElementHead = 4;
+/// Nobody puts bundles into each other deeper than this.
+constexpr int kDeepestBundle = 8;
+
+struct FreeOscMessage {
+  void operator()(lo_message message) const noexcept { lo_message_free(message); }
+};
+using LibloMessage = std::unique_ptr<std::remove_pointer_t<lo_message>, FreeOscMessage>;
+
+/// liblo points to where the argument stands in the datagram, which may be no place for a number of 8 bytes.
+template <class Number>
+double osc_number_at(const void* argument) {
+  Number number{};
+  std::memcpy(&number, argument, sizeof number);
+  return static_cast<double>(number);
+}
+
+std::optional<double> osc_number(char type, const void* argument) {
+  double number = 0.0;
+  switch (type) {
+    case LO_INT32:
+      number = osc_number_at<std::int32_t>(argument);
+      break;
+    case LO_INT64:
+      number = osc_number_at<std::int64_t>(argument);
+      break;
+    case LO_FLOAT:
+      number = osc_number_at<float>(argument);
+      break;
+    case LO_DOUBLE:
+      number = osc_number_at<double>(argument);
+      break;
+    default:
+      return std::nullopt;
+  }
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+/// Appends the message. False: it is none.
+bool take_message(OscBytes bytes, std::vector<OscMessage>& messages) {
+  // liblo turns the numbers round where they stand.
+  std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
+  const LibloMessage message(lo_message_deserialise(copy.data(), copy.size(), nullptr));
+  if (!message) return false;
+  OscMessage& taken = messages.emplace_back();
+  taken.address.assign(copy.begin(), std::ranges::find(copy, std::uint8_t{0}));
+  const char* const types = lo_message_get_types(message.get());
+  lo_arg** const arguments = lo_message_get_argv(message.get());
+  for (int i = 0; i < lo_message_get_argc(message.get()); ++i)
+    taken.numbers.push_back(osc_number(types[i], arguments[i]));
+  return true;
+}
+
+/// Appends what is in it: a message, or a bundle `depth` bundles deep. False: any of it is neither.
+bool take_element(OscBytes bytes, int depth, std::vector<OscMessage>& messages) {
+  const bool is_bundle =
+      bytes.size() >= kBundleMark.size() && std::equal(kBundleMark.begin(), kBundleMark.end(), bytes.begin());
+  if (!is_bundle) return !bytes.empty() && take_message(bytes, messages);
+  if (bytes.size() < kBundleHead || depth >= kDeepestBundle) return false;
+  bytes = bytes.subspan(kBundleHead);
+  while (!bytes.empty()) {
+    if (bytes.size() < kElementHead) return false;
+    const std::size_t size =
+        std::size_t{bytes[0]} << 24U | std::size_t{bytes[1]} << 16U | std::size_t{bytes[2]} << 8U | bytes[3];
+    bytes = bytes.subspan(kElementHead);
+    if (size > bytes.size() || !take_element(bytes.first(size), depth + 1, messages)) return false;
+    bytes = bytes.subspan(size);
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<std::vector<OscMessage>, Refusal> decode_osc(OscBytes datagram) {
+  if (datagram.empty()) return Refusal::kTooShort;
+  std::vector<OscMessage> messages;
+  if (!take_element(datagram, 0, messages)) return Refusal::kMalformed;
+  return messages;
+}
+
+bool osc_address_matches(const std::string& address, const std::string& pattern) {
+  return lo_pattern_match(address.c_str(), pattern.c_str()) != 0;
+}
+
+}  // namespace yuragi
