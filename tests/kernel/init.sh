@@ -31,7 +31,7 @@ ip link set lo up
 for module in virtio_pci virtio_blk usbhid hid-generic vhci-hcd; do modprobe "$module" || echo "no module $module"; done
 modprobe snd-aloop index=0 id=Loopback pcm_substreams=2 || echo "no module snd-aloop"
 /lib/systemd/systemd-udevd --daemon
-udevadm trigger
+udevadm trigger --action=add
 udevadm settle --timeout=20
 milestone "drivers and udev are up"
 

@@ -170,7 +170,7 @@ class KernelTest(unittest.TestCase):
         self.check_it_came_back(readings, gap_s=5.0, wait_s=20.0)
 
     def test_a_counter_is_read_by_libusb_and_comes_back(self):
-        readings = self.readings_of("cup", 100)
+        readings = self.readings_of("cup", 40)
         self.check_wind(readings, 0.05, 0.8, 1.2)
         self.check_direction(readings)
         self.check_it_came_back(readings, gap_s=3.0, wait_s=16.0)
