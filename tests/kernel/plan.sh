@@ -9,8 +9,7 @@ yuragi-sim hid --device wmr300 --usbip 127.0.0.1:3240 $wind <>/run/hid >/results
 yuragi-sim usb --device labjack-u3 --usbip 127.0.0.1:3241 $wind <>/run/usb >/results/usb.log 2>&1 &
 yuragi-sim microphone $wind --out - --format s16 --rate 8000 </dev/null 2>/results/microphone.log |
   aplay -q -D hw:0,0 -t raw -f S16_LE -r 8000 -c 1 >/results/aplay.log 2>&1 &
-keep_plugged_in 3240 0fde &
-keep_plugged_in 3241 0cd5 &
+keep_plugged_in 3240:0fde 3241:0cd5 &
 wait_for 600 has_device_of 0cd5
 wait_for 600 test -c /dev/hidraw0
 milestone "plugged in"
