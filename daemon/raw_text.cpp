@@ -12,7 +12,7 @@ namespace {
 
 /// "20:40:01.123"
 std::string time_of_day(std::int64_t utc_ns) {
-  constexpr std::int64_t kPerDay_ms = 24 * 3600 * 1000;
+  constexpr std::int64_t kPerDay_ms = std::int64_t{24} * 3600 * 1000;
   const std::int64_t utc_ms = utc_ns / 1'000'000;
   const std::int64_t day_ms = ((utc_ms % kPerDay_ms) + kPerDay_ms) % kPerDay_ms;
   return fmt::format("{:02}:{:02}:{:02}.{:03}", day_ms / 3'600'000, day_ms / 60'000 % 60, day_ms / 1000 % 60,

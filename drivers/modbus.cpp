@@ -171,8 +171,8 @@ std::unique_ptr<Sensor> open_modbus(const ParameterValues& values) {
   ModbusProfile profile = profile_of(values);
   const ModbusLine line = line_of(values, profile);
   const std::uint32_t seed = seed_of(describe(line) + profile.name + std::to_string(profile.speed.slave));
-  auto direction_bus = direction_bus_of(values, profile, line);
-  return std::make_unique<ModbusSensor>(std::move(profile), shared_modbus_bus(line), std::move(direction_bus), seed);
+  const auto direction_bus = direction_bus_of(values, profile, line);
+  return std::make_unique<ModbusSensor>(std::move(profile), shared_modbus_bus(line), direction_bus, seed);
 }
 
 /// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.

@@ -35,19 +35,17 @@ bool has_cost_time(const ModbusTrouble& trouble) {
 }  // namespace
 
 ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus,
-                           std::shared_ptr<ModbusBus> direction_bus, std::uint32_t seed)
+                           const std::shared_ptr<ModbusBus>& direction_bus, std::uint32_t seed)
     : ReopeningSensor(seed),
       profile_(std::move(profile)),
       bus_(std::move(bus)),
-      direction_bus_(direction_bus ? std::move(direction_bus) : bus_) {
+      direction_bus_(direction_bus ? direction_bus : bus_) {
   const bool is_direction_apart = direction_bus_ != bus_;
-  for (ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
+  for (const ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
     ModbusBus* const line =
         is_direction_apart && what.tells(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
-    reads_.push_back({.what = std::move(what),
-                      .bus = line,
-                      .backoff = Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed),
-                      .trouble = {}});
+    reads_.push_back(
+        {.what = what, .bus = line, .backoff = Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed), .trouble = {}});
   }
   bus_->keep_gap(profile_.min_gap);
   direction_bus_->keep_gap(profile_.min_gap);
@@ -74,7 +72,7 @@ Result<MonoTime, Failure> ModbusSensor::work(const Clock& clock, SensorSink& sin
   }
   // The line may have been opened anew since, by another sensor or after silence.
   const MonoTime opened_before = opened_at_;
-  const auto begin = open(clock);
+  auto begin = open(clock);
   if (!begin || opened_at_ != opened_before) return begin;
   return ask_first(clock, sink);
 }

@@ -22,7 +22,7 @@ class ModbusSensor final : public ReopeningSensor {
  public:
   /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
   /// differ.
-  ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus, std::shared_ptr<ModbusBus> direction_bus,
+  ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus, const std::shared_ptr<ModbusBus>& direction_bus,
                std::uint32_t seed);
 
   void interrupt() noexcept override;

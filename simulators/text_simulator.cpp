@@ -8,7 +8,7 @@
 namespace yuragi::sim {
 namespace {
 
-constexpr std::size_t kGarbageBytes = 24;
+constexpr std::size_t kTextGarbageBytes = 24;
 constexpr std::size_t kPieces = 3;
 constexpr double kPieceGap_s = 0.03;
 /// An answer that is late comes when nobody should wait any more.
@@ -73,7 +73,7 @@ void TextSimulator::say(double time_s, std::optional<FaultKind> fault) {
 
 void TextSimulator::send(const std::string& message, double time_s, std::optional<FaultKind> fault) {
   if (fault == FaultKind::kGarbage) {
-    std::string noise(kGarbageBytes, '\0');
+    std::string noise(kTextGarbageBytes, '\0');
     std::ranges::generate(noise, [this] { return static_cast<char>(random_()); });
     return send_after(0.0, noise, time_s);
   }

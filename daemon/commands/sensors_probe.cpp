@@ -33,15 +33,15 @@ struct ProbeOptions {
 class WakeOnInterrupt {
  public:
   WakeOnInterrupt() {
-    target = &interruption_;
+    target_ = &interruption_;
     before_ = std::signal(SIGINT, [](int) {
-      if (Interruption* const interruption = target.load())
+      if (Interruption* const interruption = target_.load())
         interruption->set();  // a write(), which a signal handler may do
     });
   }
   ~WakeOnInterrupt() {
     std::signal(SIGINT, before_);
-    target = nullptr;
+    target_ = nullptr;
   }
   WakeOnInterrupt(const WakeOnInterrupt&) = delete;
   WakeOnInterrupt& operator=(const WakeOnInterrupt&) = delete;
@@ -49,7 +49,7 @@ class WakeOnInterrupt {
   const Interruption& interruption() const { return interruption_; }
 
  private:
-  static inline std::atomic<Interruption*> target = nullptr;
+  static inline std::atomic<Interruption*> target_ = nullptr;
   Interruption interruption_;
   void (*before_)(int) = nullptr;
 };

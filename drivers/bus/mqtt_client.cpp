@@ -1,9 +1,9 @@
 // libmosquitto 2.0.11, driven by this thread: its own loops can neither be woken nor told how long a connection may
-// take (mosquitto issues 949 and 3051: minutes, where a firewall drops what is sent).
+// take (mosquitto issues 949 and 3051: minutes, where a firewall drops what is sent). Nor can its look-up of a name be
+// ended, so the name is looked up before.
 #include "drivers/bus/mqtt_client.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <deque>
 #include <stdexcept>
@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 #include <mosquitto.h>
-#include <poll.h>
 
-#include "drivers/bus/wake_event.hpp"
+#include "drivers/bus/host_lookup.hpp"
+#include "drivers/bus/interruption.hpp"
 
 namespace yuragi {
 namespace {
@@ -42,33 +42,28 @@ std::string describe(const MqttSubscription& subscription) {
 
 class MosquittoClient final : public MqttClient {
  public:
-  explicit MosquittoClient(const MqttSubscription& subscription) : wanted_(subscription) { set_up_library(); }
+  explicit MosquittoClient(const MqttSubscription& subscription)
+      : wanted_(subscription), lookup_(subscription.host, subscription.port) {
+    set_up_library();
+  }
   ~MosquittoClient() override { MosquittoClient::disconnect(); }
   MosquittoClient(const MosquittoClient&) = delete;
   MosquittoClient& operator=(const MosquittoClient&) = delete;
 
   Result<void, Failure> connect() override {
     disconnect();
-    if (const int error = begin_to_connect(); error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
+    const auto endpoints = lookup_.find(wanted_.connect_timeout);
+    if (!endpoints) return Failure{describe(wanted_) + ": " + endpoints.error().message};
 
-    // The broker has to greet us and to agree to each topic.
-    const auto deadline = MqttClock::now() + wanted_.connect_timeout;
-    while (agreed_topics_ < wanted_.topics.size()) {
-      const Nanoseconds remaining = deadline - MqttClock::now();
-      if (remaining <= Nanoseconds::zero()) {
-        disconnect();
-        return Failure{
-            fmt::format("{} does not answer: check its address, the network, and that it runs", describe(wanted_))};
-      }
-      const int error = turn(std::min(remaining, kHousekeeping));
-      if (wake_.is_set()) return Failure{"interrupted"};
-      if (error != MOSQ_ERR_SUCCESS || !refusal_.empty()) {
-        std::string why = refusal_.empty() ? explain(error) : refusal_;
-        disconnect();
-        return Failure{std::move(why)};
-      }
+    // Of a name with several addresses each has its turn, until one answers. With TLS the name itself must be given,
+    // since the broker's certificate is for that.
+    const std::string address = (*endpoints)[turn_ % endpoints->size()].address().to_string();
+    auto connected = connect_to(wanted_.uses_tls ? wanted_.host : address);
+    if (!connected) {
+      disconnect();
+      ++turn_;
     }
-    return {};
+    return connected;
   }
 
   void disconnect() noexcept override {
@@ -88,7 +83,7 @@ class MosquittoClient final : public MqttClient {
         trouble_ = explain(error);
         return MqttStatus::kLost;
       }
-      if (wake_.is_set()) return MqttStatus::kInterrupted;
+      if (interruption_.is_set()) return MqttStatus::kInterrupted;
     }
     message = std::move(messages_.front());
     messages_.pop_front();
@@ -96,10 +91,30 @@ class MosquittoClient final : public MqttClient {
   }
 
   std::string trouble() const override { return trouble_; }
-  void interrupt() noexcept override { wake_.set(); }
+  void interrupt() noexcept override {
+    interruption_.set();
+    lookup_.interrupt();
+  }
 
  private:
-  int begin_to_connect() {
+  /// Connects, and waits until the broker has greeted us and agreed to each topic.
+  Result<void, Failure> connect_to(const std::string& host) {
+    if (const int error = begin_to_connect(host); error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
+    const auto deadline = MqttClock::now() + wanted_.connect_timeout;
+    while (agreed_topics_ < wanted_.topics.size()) {
+      const Nanoseconds remaining = deadline - MqttClock::now();
+      if (remaining <= Nanoseconds::zero()) {
+        return Failure{describe(wanted_) + " does not answer: check its address, the network, and that it runs"};
+      }
+      const int error = turn(std::min(remaining, kHousekeeping));
+      if (interruption_.is_set()) return Failure{"interrupted"};
+      if (!refusal_.empty()) return Failure{refusal_};
+      if (error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
+    }
+    return {};
+  }
+
+  int begin_to_connect(const std::string& host) {
     client_.reset(mosquitto_new(nullptr, true, this));  // a name of the library's choice: two of us may be there
     if (!client_) return errno == ENOMEM ? MOSQ_ERR_NOMEM : MOSQ_ERR_INVAL;
     mosquitto_connect_callback_set(client_.get(), &on_connect);
@@ -116,8 +131,7 @@ class MosquittoClient final : public MqttClient {
       if (error != MOSQ_ERR_SUCCESS) return error;
     }
     const auto keep_alive = std::chrono::duration_cast<std::chrono::seconds>(wanted_.keep_alive);
-    return mosquitto_connect_async(client_.get(), wanted_.host.c_str(), wanted_.port,
-                                   static_cast<int>(keep_alive.count()));
+    return mosquitto_connect_async(client_.get(), host.c_str(), wanted_.port, static_cast<int>(keep_alive.count()));
   }
 
   /// Waits for the connection for at most `timeout`, and does what there is to do.
@@ -125,14 +139,11 @@ class MosquittoClient final : public MqttClient {
     const int socket = mosquitto_socket(client_.get());
     if (socket < 0) return MOSQ_ERR_NO_CONN;
     const bool wants_to_write = mosquitto_want_write(client_.get());
-    std::array<pollfd, 2> waits = {
-        {{socket, static_cast<short>(wants_to_write ? POLLIN | POLLOUT : POLLIN), 0}, {wake_.descriptor(), POLLIN, 0}}};
-    const auto wait_ms = std::max<std::int64_t>(timeout / std::chrono::milliseconds(1), 1);
-    if (poll(waits.data(), waits.size(), static_cast<int>(wait_ms)) < 0 && errno != EINTR) return MOSQ_ERR_ERRNO;
-    if (waits[1].revents != 0) return MOSQ_ERR_SUCCESS;
+    const WaitEnd end = interruption_.wait(socket, wants_to_write ? WaitFor::kWritable : WaitFor::kReadable, timeout);
+    if (end == WaitEnd::kInterrupted) return MOSQ_ERR_SUCCESS;
     int error = MOSQ_ERR_SUCCESS;
-    if ((waits[0].revents & (POLLIN | POLLERR | POLLHUP)) != 0) error = mosquitto_loop_read(client_.get(), 1);
-    if (error == MOSQ_ERR_SUCCESS && (waits[0].revents & POLLOUT) != 0) error = mosquitto_loop_write(client_.get(), 1);
+    if (end == WaitEnd::kReady && wants_to_write) error = mosquitto_loop_write(client_.get(), 1);
+    if (end == WaitEnd::kReady && error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_read(client_.get(), 1);
     if (error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_misc(client_.get());
     return error;
   }
@@ -195,7 +206,9 @@ class MosquittoClient final : public MqttClient {
   }
 
   MqttSubscription wanted_;
-  WakeEvent wake_;
+  HostLookup lookup_;
+  std::size_t turn_ = 0;  ///< which of the broker's addresses is tried
+  Interruption interruption_;
   std::unique_ptr<mosquitto, FreeMosquitto> client_;
   std::deque<MqttMessage> messages_;
   std::size_t agreed_topics_ = 0;

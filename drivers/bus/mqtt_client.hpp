@@ -45,8 +45,8 @@ class MqttClient {
  public:
   virtual ~MqttClient() = default;
 
-  /// Connects and subscribes, or says why that failed and what to do. Blocks for the connect time-out at most (and
-  /// while the system looks up a host name).
+  /// Connects and subscribes, or says why that failed and what to do. Blocks for the connect time-out at most, or twice
+  /// that where a host name has to be looked up.
   virtual Result<void, Failure> connect() = 0;
   virtual void disconnect() noexcept = 0;
 

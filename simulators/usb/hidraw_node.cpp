@@ -15,11 +15,11 @@ namespace {
 // Of HID's requests (Device Class Definition for HID 1.11, 7.2).
 constexpr std::uint8_t kClassIn = 0xA1;
 constexpr std::uint8_t kClassOut = 0x21;
-constexpr std::uint8_t kGetReport = 1;
-constexpr std::uint8_t kSetReport = 9;
-constexpr std::uint16_t kInputReport = 1;
-constexpr std::uint16_t kOutputReport = 2;
-constexpr std::uint16_t kFeatureReport = 3;
+constexpr std::uint8_t kHidrawGetReport = 1;
+constexpr std::uint8_t kHidrawSetReport = 9;
+constexpr std::uint16_t kHidrawInputReport = 1;
+constexpr std::uint16_t kHidrawOutputReport = 2;
+constexpr std::uint16_t kHidrawFeatureReport = 3;
 
 constexpr std::uint8_t kInterruptEndpoint = 3;
 constexpr std::size_t kMostReports = 64;       // HIDRAW_BUFFER_SIZE
@@ -113,7 +113,7 @@ void HidrawNode::obey(ProgramCall call) {
     case ProgramCallKind::kWrite: {
       if (host_ == nullptr) return call.fail(ENODEV);
       const ProgramMemory report = call.argument();
-      return set_report(std::move(call), report.bytes(), kOutputReport);
+      return set_report(std::move(call), report.bytes(), kHidrawOutputReport);
     }
   }
 }
@@ -151,13 +151,13 @@ void HidrawNode::obey_ioctl(ProgramCall call) {
       memory.write(0, bytes_of(summary.serial));
       return call.answer(static_cast<long>(std::min(size, summary.serial.size() + 1)));
     case without_size(HIDIOCGFEATURE(0)):
-      return get_report(std::move(call), memory, kFeatureReport);
+      return get_report(std::move(call), memory, kHidrawFeatureReport);
     case without_size(HIDIOCGINPUT(0)):
-      return get_report(std::move(call), memory, kInputReport);
+      return get_report(std::move(call), memory, kHidrawInputReport);
     case without_size(HIDIOCSFEATURE(0)):
-      return set_report(std::move(call), memory.bytes(), kFeatureReport);
+      return set_report(std::move(call), memory.bytes(), kHidrawFeatureReport);
     case without_size(HIDIOCSOUTPUT(0)):
-      return set_report(std::move(call), memory.bytes(), kOutputReport);
+      return set_report(std::move(call), memory.bytes(), kHidrawOutputReport);
     default:
       return call.fail(ENOTTY);
   }
@@ -173,7 +173,7 @@ void HidrawNode::get_report(ProgramCall call, const ProgramMemory& buffer, std::
   UsbTransfer transfer;
   transfer.is_to_host = true;
   transfer.max_size = buffer.bytes().size() - skipped;
-  transfer.setup = {kClassIn, kGetReport, static_cast<std::uint16_t>((type << 8U) | number), 0,
+  transfer.setup = {kClassIn, kHidrawGetReport, static_cast<std::uint16_t>((type << 8U) | number), 0,
                     static_cast<std::uint16_t>(transfer.max_size)};
   const auto kept = std::make_shared<ProgramCall>(std::move(call));
   submit(kept, std::move(transfer), [kept, buffer, skipped](const UsbOutcome& outcome) {
@@ -190,10 +190,10 @@ void HidrawNode::set_report(ProgramCall call, std::span<const std::uint8_t> repo
   if (number == 0) report = report.subspan(1);
   UsbTransfer transfer;
   transfer.data.assign(report.begin(), report.end());
-  if (type == kOutputReport && out_endpoint_ != 0) {
+  if (type == kHidrawOutputReport && out_endpoint_ != 0) {
     transfer.endpoint = out_endpoint_;
   } else {
-    transfer.setup = {kClassOut, kSetReport, static_cast<std::uint16_t>((type << 8U) | number), 0,
+    transfer.setup = {kClassOut, kHidrawSetReport, static_cast<std::uint16_t>((type << 8U) | number), 0,
                       static_cast<std::uint16_t>(report.size())};
   }
   const auto kept = std::make_shared<ProgramCall>(std::move(call));

@@ -40,7 +40,7 @@ double volts_at_zero(unsigned channel) {
   return -10.3 - 0.05 * (channel + 1.0);
 }
 
-std::uint16_t sum_of(UsbView bytes) {
+std::uint16_t labjack_sum_of(UsbView bytes) {
   unsigned sum = 0;
   for (const std::uint8_t byte : bytes) sum += byte;
   return static_cast<std::uint16_t>(sum);
@@ -48,13 +48,13 @@ std::uint16_t sum_of(UsbView bytes) {
 
 /// The sum of what follows the first byte of a header, folded into 8 bits twice.
 std::uint8_t folded_sum(UsbView frame) {
-  unsigned sum = sum_of(frame.subspan(1, kFrameHeader - 1));
+  unsigned sum = labjack_sum_of(frame.subspan(1, kFrameHeader - 1));
   sum = (sum & 0xFFU) + (sum >> 8U);
   return static_cast<std::uint8_t>((sum & 0xFFU) + (sum >> 8U));
 }
 
 void seal(UsbBytes& frame) {
-  const std::uint16_t sum = sum_of(UsbView(frame).subspan(kFrameHeader));
+  const std::uint16_t sum = labjack_sum_of(UsbView(frame).subspan(kFrameHeader));
   frame[4] = static_cast<std::uint8_t>(sum & 0xFFU);
   frame[5] = static_cast<std::uint8_t>(sum >> 8U);
   frame[0] = folded_sum(frame);
@@ -63,7 +63,7 @@ void seal(UsbBytes& frame) {
 bool is_sealed(UsbView frame) {
   if (frame.size() < kFrameHeader || frame[1] != 0xF8 || frame.size() != kFrameHeader + std::size_t{2} * frame[2])
     return false;
-  const std::uint16_t sum = sum_of(frame.subspan(kFrameHeader));
+  const std::uint16_t sum = labjack_sum_of(frame.subspan(kFrameHeader));
   return frame[4] == (sum & 0xFFU) && frame[5] == sum >> 8U && frame[0] == folded_sum(frame);
 }
 

@@ -43,12 +43,12 @@ constexpr std::size_t kBusIdSize = 32;
 constexpr std::size_t kPathSize = 256;
 constexpr std::size_t kTransferHeadSize = 48;
 
-std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
+std::uint16_t usbip_word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]);
 }
 
 std::uint32_t long_at(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return (std::uint32_t{word_at(bytes, at)} << 16U) | word_at(bytes, at + 2);
+  return (std::uint32_t{usbip_word_at(bytes, at)} << 16U) | usbip_word_at(bytes, at + 2);
 }
 
 void put_word(UsbBytes& bytes, std::uint16_t value) {
@@ -96,10 +96,10 @@ UsbBytes answer_head(std::uint16_t code, std::uint32_t status) {
 
 Result<UsbipTaken, Failure> take_question(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kQuestionSize) return UsbipTaken{};
-  if (const std::uint16_t version = word_at(bytes, 0); version != kVersion) {
+  if (const std::uint16_t version = usbip_word_at(bytes, 0); version != kVersion) {
     return Failure{fmt::format("USB/IP of version {:#06x}; only {:#06x} is spoken here", version, kVersion)};
   }
-  switch (const std::uint16_t code = word_at(bytes, 2)) {
+  switch (const std::uint16_t code = usbip_word_at(bytes, 2)) {
     case kAskList:
       return UsbipTaken{UsbipListRequest{}, kQuestionSize};
     case kAskImport: {

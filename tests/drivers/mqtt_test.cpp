@@ -1,4 +1,5 @@
 // The driver as the daemon opens it and runs it, with Debian's own broker and its own publisher.
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <functional>
@@ -6,8 +7,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
 
 #include "drivers/driver.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/mosquitto_broker.hpp"
 #include "tests/support/running_sensor.hpp"
 #include "tests/support/scripted_server.hpp"
@@ -122,6 +126,17 @@ TEST(MqttDriver, ReadsPlainNumbersEachFromATopicOfItsOwn) {
   EXPECT_DOUBLE_EQ(run.last().gust_m_s.value(), 10.0);
 }
 
+TEST(MqttDriver, ReachesABrokerByItsName) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"host", std::string("localhost")}});
+  EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); })) << "whichever of its addresses it has";
+}
+
+TEST(MqttDriver, SaysThatThereIsNoSuchHost) {
+  MqttRun run(1, {{"host", std::string("no-such-host.invalid")}});
+  EXPECT_TRUE(run.says("no-such-host.invalid"));
+}
+
 TEST(MqttDriver, ForgetsADirectionThatIsOldOrNotKnownAnyMore) {
   const MosquittoBroker broker;
   MqttRun run(broker, {{"direction_topic", std::string("garden/direction")}, {"hold", 0.2}});
@@ -232,6 +247,34 @@ TEST(MqttDriver, GivesUpABrokerThatSaysNothing) {
   const ScriptedServer mute([](const ScriptedServer::Bytes&) { return ScriptedServer::Bytes{}; });
   MqttRun run(mute.port(), {});
   EXPECT_TRUE(run.says("does not answer"));
+}
+
+TEST(MqttDriver, ConnectsToABrokerThatIsSlowToTakeUs) {
+  // A listener with no room left: our connection is under way until two others have been taken.
+  const LoopbackPort listener(SOCK_STREAM);
+  ASSERT_EQ(listen(listener.descriptor(), 0), 0);
+  const int any = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  const std::array others = {Descriptor(socket(AF_INET, any, 0)), Descriptor(socket(AF_INET, any, 0))};
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(listener.port());
+  for (const Descriptor& other : others) {
+    connect(other.get(), reinterpret_cast<sockaddr*>(&address), sizeof address);
+  }
+  MqttRun run(listener.port(), {});
+
+  constexpr std::uint8_t kMqttConnect = 0x10;
+  std::uint8_t first_byte = 0;
+  std::vector<Descriptor> taken;
+  const auto deadline = std::chrono::steady_clock::now() + 20s;
+  while (first_byte != kMqttConnect && std::chrono::steady_clock::now() < deadline) {
+    pollfd wait{listener.descriptor(), POLLIN, 0};
+    if (poll(&wait, 1, 100) == 1)
+      taken.emplace_back(accept4(listener.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    for (const Descriptor& client : taken) recv(client.get(), &first_byte, 1, 0);
+  }
+  EXPECT_EQ(first_byte, kMqttConnect);
 }
 
 TEST(MqttDriver, SaysThatThereIsNoBroker) {

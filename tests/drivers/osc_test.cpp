@@ -35,6 +35,18 @@ std::unique_ptr<Sensor> open_osc_sensor(const ParameterValues::Map& given) {
 /// A message of two floats, as any sender makes it.
 const std::string kWindOf5From90 = "/wind\0\0\0,ff\0\x40\xa0\0\0\x42\xb4\0\0"s;
 
+const std::string kPast = "\0\0\0\0\0\0\0\1"s;  // "at once", to be exact
+const std::string kFarFuture = "\xff\0\0\0\0\0\0\1"s;
+
+/// A bundle of one element.
+std::string bundle_of(const std::string& element, const std::string& time = kPast) {
+  const auto size = static_cast<std::uint32_t>(element.size());
+  std::string bundle = "#bundle\0"s;
+  bundle += time;
+  for (const unsigned shift : {24U, 16U, 8U, 0U}) bundle += static_cast<char>(size >> shift);
+  return bundle += element;
+}
+
 /// The driver on a thread of its own, and what is sent to it.
 class OscRun {
  public:
@@ -156,8 +168,8 @@ TEST(OscDriver, HasNoDirectionWhereNoneIsSent) {
 
 TEST(OscDriver, TakesBundlesAtOnceWhateverTheirTime) {
   OscRun run;
-  for (const std::string& time : {"\0\0\0\0\0\0\0\1"s, "\xff\0\0\0\0\0\0\1"s}) {
-    ASSERT_TRUE(run.reads_after([&] { run.send_bytes("#bundle\0"s + time + "\0\0\0\x14"s + kWindOf5From90); }));
+  for (const std::string& time : {kPast, kFarFuture}) {
+    ASSERT_TRUE(run.reads_after([&] { run.send_bytes(bundle_of(kWindOf5From90, time)); }));
     EXPECT_EQ(run.last().speed_m_s, 5.0);
     EXPECT_EQ(run.last().direction_deg, 90.0);
   }
@@ -186,12 +198,7 @@ TEST(OscDriver, StandsAnyDatagram) {
   }
   // Bundles within bundles, as deep as a datagram can hold.
   std::string nested = kWindOf5From90;
-  while (nested.size() < 60'000) {
-    const auto size = static_cast<std::uint32_t>(nested.size());
-    const std::string length = {static_cast<char>(size >> 24U), static_cast<char>(size >> 16U),
-                                static_cast<char>(size >> 8U), static_cast<char>(size)};
-    nested = "#bundle\0\0\0\0\0\0\0\0\1"s + length + nested;
-  }
+  while (nested.size() < 60'000) nested = bundle_of(nested);
   run.send_bytes(nested);
   EXPECT_TRUE(run.reads_wind());
   for (const WindReading& reading : run.all().readings) EXPECT_TRUE(is_plausible(reading));

@@ -14,7 +14,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 
 class UsbSensorTest : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Every, UsbSensorTest, testing::ValuesIn(sim::daq_names()),
