@@ -135,19 +135,20 @@ class KernelTest(unittest.TestCase):
         self.assertAlmostEqual(mean_m_s, SPEED_M_S, delta=tolerance * SPEED_M_S, msg=self.all_logs())
         self.assertGreater(swell_m_s, least_swell * SWELL_M_S)
         self.assertLess(swell_m_s, most_swell * SWELL_M_S)
-        self.assertGreater(speeds_m_s.min(), SPEED_M_S - 2.0 * SWELL_M_S)
-        self.assertLess(speeds_m_s.max(), SPEED_M_S + 2.0 * SWELL_M_S)
+        self.assertGreater(speeds_m_s.min(), SPEED_M_S - 2.5 * SWELL_M_S)
+        self.assertLess(speeds_m_s.max(), SPEED_M_S + 2.5 * SWELL_M_S)
 
     def check_direction(self, readings):
         for reading in readings:
             self.assertAlmostEqual(float(reading["direction_deg"]), DIRECTION_DEG, delta=TURN_DEG + 5.0)
 
     def check_it_came_back(self, readings, gap_s, wait_s):
-        """There is one gap of at least `gap_s`, with readings on both sides, and it is no longer than `wait_s`."""
+        """It was lost once and found again once, and silent for no longer than `wait_s`."""
         times_s = [float(reading["time_s"]) for reading in readings]
-        gaps_s = [later - sooner for sooner, later in zip(times_s, times_s[1:])]
-        self.assertEqual(sum(gap > gap_s for gap in gaps_s), 1, f"{gaps_s}\n{self.all_logs()}")
-        self.assertLess(max(gaps_s), wait_s, self.all_logs())
+        longest_s = max(later - sooner for sooner, later in zip(times_s, times_s[1:]))
+        self.assertGreater(longest_s, gap_s, self.all_logs())
+        self.assertLess(longest_s, wait_s, self.all_logs())
+        self.assertRegex(self.daemon_log, rf"sensor {readings[0]['sensor']}: \d+ readings .* 1 reconnects")
 
     def test_the_kernel_had_the_devices(self):
         kernel = self.text("dmesg.log")
@@ -167,13 +168,13 @@ class KernelTest(unittest.TestCase):
         readings = self.readings_of("station", 6)
         self.check_wind(readings, 0.1, 0.5, 1.3)
         self.check_direction(readings)
-        self.check_it_came_back(readings, gap_s=5.0, wait_s=20.0)
+        self.check_it_came_back(readings, gap_s=5.0, wait_s=30.0)
 
     def test_a_counter_is_read_by_libusb_and_comes_back(self):
         readings = self.readings_of("cup", 40)
         self.check_wind(readings, 0.05, 0.8, 1.2)
         self.check_direction(readings)
-        self.check_it_came_back(readings, gap_s=3.0, wait_s=16.0)
+        self.check_it_came_back(readings, gap_s=3.0, wait_s=25.0)
 
     def test_the_sound_of_wind_is_heard_through_a_sound_card(self):
         readings = self.readings_of("microphone", 30)
