@@ -301,6 +301,37 @@ TEST(MicEstimatorTest, SuspectsAutomaticGainAndNothingElse) {
   EXPECT_TRUE(is_suspected(1.0, 0.25, false)) << "levelled altogether";
 }
 
+/// Two minutes and more of gusts over the hiss of a cheap microphone, and a voice beside it if there is one;
+/// `release_s`: through an amplifier that levels them, as those of conference microphones do, within a tenth of a
+/// second down and slowly up again.
+Sound gusts_through(std::optional<double> release_s, const std::vector<double>& speech = {}) {
+  constexpr double kSlow_hz = 8000.0;
+  Sound sound = test::wind_noise(kSlow_hz, 1, 140.0, 0.05);
+  std::mt19937_64 random(3);
+  std::normal_distribution<float> hiss(0.0F, 1e-3F);
+  double envelope = 0.05;
+  for (std::size_t i = 0; i < sound.frames(); ++i) {
+    const double time_s = static_cast<double>(i) / kSlow_hz;
+    const double gust = 1.0 + 0.5 * std::sin(0.4 * time_s) + 0.3 * std::sin(1.1 * time_s);
+    double sample = gust * gust * static_cast<double>(sound.at(i, 0)) + static_cast<double>(hiss(random));
+    if (!speech.empty()) sample += 0.03 * speech[i % speech.size()];
+    if (release_s) {
+      const double magnitude = std::abs(sample);
+      envelope += (magnitude - envelope) / ((magnitude > envelope ? 0.1 : *release_s) * kSlow_hz);
+      sample *= std::clamp(0.1 / envelope, 0.1, 20.0);
+    }
+    sound.at(i, 0) = static_cast<float>(sample);
+  }
+  return sound;
+}
+
+TEST(MicEstimatorTest, HearsAnAmplifierThatLevelsTheGusts) {
+  const auto is_heard = [](const Sound& sound) { return hear(sound).estimates.back().suspects_automatic_gain; };
+  EXPECT_FALSE(is_heard(gusts_through(std::nullopt)));
+  EXPECT_FALSE(is_heard(gusts_through(std::nullopt, test::voice(8000.0, 8000 * 20)))) << "a voice is no automatic gain";
+  for (const double release_s : {0.3, 1.0, 5.0}) EXPECT_TRUE(is_heard(gusts_through(release_s))) << release_s;
+}
+
 /// Blocks of faces that hear a wind from `direction_deg`, louder on its side.
 std::vector<MicEstimate> turn(const std::vector<double>& faces_deg, const std::vector<double>& wind_from_deg,
                               double effect, double scatter_db = 0.3) {
