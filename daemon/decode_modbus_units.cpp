@@ -115,7 +115,7 @@ class ModbusUnitDecoder final : public UnitDecoder {
 
 std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& options) {
   ModbusProfile profile = load_modbus_profile(options.profile, "");
-  if (options.speed_slave != 0) profile.speed.slave = static_cast<std::uint8_t>(options.speed_slave);
+  if (options.speed_slave != 0) set_slave(profile, static_cast<std::uint8_t>(options.speed_slave));
   if (options.direction_slave != 0) {
     if (!profile.direction) throw std::runtime_error("profile \"" + profile.name + "\" has no direction");
     profile.direction->slave = static_cast<std::uint8_t>(options.direction_slave);

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "engine/math/critically_damped.hpp"
+#include "engine/wind/source_record.hpp"
 #include "engine/wind/synthetic_wind.hpp"
 #include "engine/wind/wind_estimator.hpp"
 
@@ -31,21 +31,11 @@ class FollowingEstimator final : public WindEstimator {
   SourceReport report(std::size_t source) const noexcept override;
 
  private:
-  static constexpr std::size_t kIntervalsKept = 9;
-
   struct Source {
-    std::optional<WindReading> last;
-    WindVector target;                    ///< the last reading as a vector
-    std::optional<double> held_from_deg;  ///< the last direction it gave
-    std::array<double, kIntervalsKept> intervals_s{};
-    std::size_t intervals_seen = 0;
+    SourceRecord record;
     CriticallyDamped u, v, weight;
-
-    double interval_s() const noexcept;
-    void measure_interval(MonoTime time) noexcept;
   };
 
-  double age_s(const Source& source) const noexcept;
   bool is_live(const Source& source) const noexcept;
   const Source* choose() const noexcept;
 
