@@ -197,7 +197,7 @@ TEST_F(SerialBytePortTest, CanBeInterrupted) {
 TEST_F(SerialBytePortTest, GivesUpWritingToAFarEndThatTakesNothing) {
   const auto port = make_byte_port(address_);
   ASSERT_TRUE(port->open().has_value());
-  EXPECT_FALSE(write_text(*port, std::string(1 << 20, 'x')));
+  EXPECT_FALSE(write_text(*port, std::string(std::size_t{1} << 20U, 'x')));
 }
 
 TEST(SerialBytePortTrouble, SaysWhatIsWrongAndWhatToDo) {

@@ -54,7 +54,7 @@ TEST_F(TextSensorTest, KeepsNothingOfALineWithoutEnd) {
   hear(mwv_line(1.0));
   const std::size_t before = mallinfo2().uordblks;
   std::size_t most = before;
-  const std::string block(64 * 1024, '7');
+  const std::string block(std::size_t{64} * 1024, '7');
   for (int i = 0; i < 160; ++i) {
     far_end.say(block);
     while (!far_end.says.empty()) clock.advance_to(sensor->poll(clock, sink));

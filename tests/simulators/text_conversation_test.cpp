@@ -19,7 +19,6 @@
 namespace yuragi {
 namespace {
 
-using testing::AnyOf;
 using testing::HasSubstr;
 
 /// yuragi-sim with a wind that stands still, once it is where it should be.
