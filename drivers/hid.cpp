@@ -44,8 +44,8 @@ const std::array kHidParameters = {
               .default_value = 0.0,
               .min = 0.0,
               .max = 3600.0,
-              .help = "from one question to the next, of fineoffset, acurite and te923; 0 takes the station's own (48, "
-                      "18 and 33 s): asking more often brings nothing new, and a Fine Offset console may lock up"},
+              .help = "from one question to the next, of fineoffset, acurite and te923; 0 takes the station's own: 48, "
+                      "18 and 33 s. Asking more often brings nothing new; a fineoffset may lock up of it, and is not"},
     Parameter{.name = "pace",
               .unit = "",
               .default_value = 1.0,

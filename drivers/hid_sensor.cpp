@@ -33,14 +33,18 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
 
   const Result<StationStep, Failure> step = station_->step(talk);
   if (is_interrupted_) return talk.now();  // whatever the step says, it was cut short
-  if (!step) {
-    const std::string& why = step.error().message;
-    return Failure{name_ + (why.empty() ? " is gone: plug it in again" : " " + why)};
-  }
+  if (!step) return Failure{name_ + " " + (step.error().message.empty() ? why_useless(talk) : step.error().message)};
   if (step->health == StationHealth::kWell) is_well(sink, name_);
   if (step->health == StationHealth::kUnwell) is_unwell(sink, name_ + " " + step->trouble);
   next_step_ = step->next;
   return std::min(next_step_, talk.now() + kLookAfterEvery);
+}
+
+/// The device could not be used. Is it gone, or does it take nothing?
+std::string HidSensor::why_useless(HidTalk& talk) {
+  if (talk.read(Nanoseconds::zero()).status == HidStatus::kLost) return "is gone: plug it in again";
+  talk.refuse(Refusal::kTimeout);
+  return "takes nothing that is sent to it: take out its cable and its batteries, and put them in again";
 }
 
 /// Nothing is due. Is it still there?

@@ -29,6 +29,7 @@ class HidSensor final : public ReopeningSensor {
 
  private:
   Result<MonoTime, Failure> look_after(HidTalk& talk);
+  static std::string why_useless(HidTalk& talk);
 
   std::span<const StationKind> kinds_;
   HidPlace place_;

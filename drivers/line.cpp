@@ -2,13 +2,12 @@
 // say; what lines may look like stands in drivers/decode/line.hpp.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <stdexcept>
 
 #include "drivers/byte_port_parameters.hpp"
 #include "drivers/driver.hpp"
 #include "drivers/line_sensor.hpp"
-#include "engine/base/units.hpp"
+#include "drivers/speed_unit.hpp"
 
 namespace yuragi {
 namespace {
@@ -16,9 +15,6 @@ namespace {
 constexpr std::array<std::string_view, 3> kLineFormats = {"auto", "columns", "keys"};
 constexpr std::array<std::string_view, 4> kLineSeparators = {"comma", "semicolon", "tab", "blank"};
 constexpr std::array<char, 4> kLineSeparatorBytes = {',', ';', '\t', ' '};
-constexpr std::array<std::string_view, 4> kSpeedUnits = {"m/s", "km/h", "kn", "mph"};
-constexpr std::array<double, 4> kMetresPerSecondPerUnit = {1.0, kMetresPerSecondPerKmh, kMetresPerSecondPerKnot,
-                                                           kMetresPerSecondPerMph};
 
 const std::vector<Parameter> kLineParameters = with_byte_port_parameters(
     {
@@ -57,7 +53,7 @@ const std::vector<Parameter> kLineParameters = with_byte_port_parameters(
          .unit = "",
          .default_value = std::string("m/s"),
          .help = "of speed and gust, after scale and offset",
-         .choices = kSpeedUnits},
+         .choices = kSpeedUnitNames},
         {.name = "speed_scale",
          .unit = "",
          .default_value = 1.0,
@@ -80,11 +76,6 @@ const std::vector<Parameter> kLineParameters = with_byte_port_parameters(
     },
     2.0);
 
-template <class Value, std::size_t N>
-Value chosen(const std::array<std::string_view, N>& names, const std::array<Value, N>& values, std::string_view name) {
-  return values[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
-}
-
 /// Columns are counted from 1 by people.
 std::optional<std::size_t> column_of(std::int64_t number) {
   return number > 0 ? std::optional(static_cast<std::size_t>(number - 1)) : std::nullopt;
@@ -101,10 +92,11 @@ std::optional<double> invalid_number_of(const std::string& text) {
 LineOptions line_options_of(const ParameterValues& values) {
   LineOptions line;
   line.format = static_cast<LineFormat>(std::ranges::find(kLineFormats, values.text("format")) - kLineFormats.begin());
-  line.separator = chosen(kLineSeparators, kLineSeparatorBytes, values.text("separator"));
+  const auto separator = std::ranges::find(kLineSeparators, values.text("separator")) - kLineSeparators.begin();
+  line.separator = kLineSeparatorBytes[static_cast<std::size_t>(separator)];
   line.invalid = invalid_number_of(values.text("invalid"));
 
-  const double m_s_per_unit = chosen(kSpeedUnits, kMetresPerSecondPerUnit, values.text("speed_unit"));
+  const double m_s_per_unit = metres_per_second_in(values.text("speed_unit"));
   line.speed = {.column = column_of(values.integer("speed_column")),
                 .key = values.text("speed_key"),
                 .scale = values.number("speed_scale") * m_s_per_unit,

@@ -127,7 +127,8 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
                                .gust_m_s = wind->gust_m_s,
                                .quality = is_uncertain ? ReadingQuality::kUncertain : ReadingQuality::kGood};
   taken_ = source.name;
-  if (verdict == WindChoice::Verdict::kHold) {
+  const bool comes_in_bursts = settings().poll_interval == Nanoseconds::zero();
+  if (verdict == WindChoice::Verdict::kHold && comes_in_bursts) {
     held_ = reading;
     return std::optional<WindReading>();
   }

@@ -147,6 +147,8 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
       break;
   }
 
+  // Only now, when what had come by then has been read.
+  if (awaits_answer_ && now.mono >= answer_due_) give_up_answer(now.mono, sink);
   if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
     sink.refused(Refusal::kTimeout);
     vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
@@ -159,15 +161,7 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
 
 /// False: the port is lost.
 bool TextSensor::ask_if_due(MonoTime now, SensorSink& sink) {
-  if (awaits_answer_ && now >= answer_due_) {
-    // The next request waits until an answer that is merely late has passed: it must not be taken for the next one.
-    awaits_answer_ = false;
-    unanswered_ = std::min(unanswered_ + 1, kRarestRequest);
-    next_request_ = now + std::max<Nanoseconds>(kLatestAnswer, unanswered_ * settings_.poll_interval);
-    refuse(Refusal::kTimeout, "", sink);
-  }
   if (awaits_answer_ || now < next_request_) return true;
-
   drop_cut_line(sink);
   if (!port_->write(bytes_of(settings_.request))) return false;
   sink.raw(RawDirection::kSent, bytes_of(settings_.request));
@@ -175,6 +169,14 @@ bool TextSensor::ask_if_due(MonoTime now, SensorSink& sink) {
   answer_due_ = now + settings_.response_timeout;
   next_request_ = now + settings_.poll_interval;
   return true;
+}
+
+/// The next request waits until an answer that is merely late has passed: it must not be taken for the next one.
+void TextSensor::give_up_answer(MonoTime now, SensorSink& sink) {
+  awaits_answer_ = false;
+  unanswered_ = std::min(unanswered_ + 1, kRarestRequest);
+  next_request_ = now + std::max<Nanoseconds>(kLatestAnswer, unanswered_ * settings_.poll_interval);
+  refuse(Refusal::kTimeout, "", sink);
 }
 
 Nanoseconds TextSensor::longest_read(MonoTime now) const {

@@ -67,6 +67,7 @@ class TextSensor : public ReopeningSensor {
   bool is_asked() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
   bool is_played() const noexcept;
   bool ask_if_due(MonoTime now, SensorSink& sink);
+  void give_up_answer(MonoTime now, SensorSink& sink);
   Nanoseconds longest_read(MonoTime now) const;
 
   /// Makes lines of what has come. Returns whether a reading was published after which a file that is played has to

@@ -11,6 +11,8 @@ namespace {
 
 /// A device that hangs looks like one that is slow: so many rounds in a row without a sample decide.
 constexpr int kRoundsBeforeReopen = 3;
+/// Two counts make a speed only if the time between them is so many times what is not known of it: to within 20 %.
+constexpr int kLeastTimesOfDoubt = 5;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 }  // namespace
@@ -80,16 +82,23 @@ Result<MonoTime, Failure> UsbSensor::work(const Clock& clock, SensorSink& sink) 
     is_started_ = true;
   }
 
+  const MonoTime asked_at = clock.now().mono;
   const auto sample = daq_->sample(*device_, sink);
   const Instant now = clock.now();
   const MonoTime next = std::max(begin + settings_.period, now.mono);
   if (!sample) return suffer(sample.error(), next, sink);
   failures_ = 0;
-  take(*sample, now, sink);
+  take(*sample, asked_at, now, sink);
   return next;
 }
 
-void UsbSensor::take(const DaqSample& sample, Instant now, SensorSink& sink) {
+void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, SensorSink& sink) {
+  // The device has counted at some moment since it was asked. Where bus or scheduler took their time, the count waits
+  // for the next one: a thread that was held up is neither a lull nor a gust.
+  const Nanoseconds doubt = now.mono - asked_at;
+  const bool is_too_vague = kLeastTimesOfDoubt * (doubt + counted_doubt_) > now.mono - counted_at_;
+  if (cup_.last_count && is_too_vague) return;
+  counted_doubt_ = doubt;
   const double elapsed_s = seconds(now.mono - std::exchange(counted_at_, now.mono));
   const auto speed_m_s = advance_cup(cup_, settings_.cup, sample.count, elapsed_s);
 

@@ -59,7 +59,7 @@ class UsbSensor final : public ReopeningSensor {
   std::string name_of_wanted() const;
   Failure wrong_device(const std::string& serial);
   Result<MonoTime, Failure> suffer(const DaqTrouble& trouble, MonoTime again, SensorSink& sink);
-  void take(const DaqSample& sample, Instant now, SensorSink& sink);
+  void take(const DaqSample& sample, MonoTime asked_at, Instant now, SensorSink& sink);
 
   UsbSettings settings_;
   std::unique_ptr<UsbDevice> device_;
@@ -68,10 +68,11 @@ class UsbSensor final : public ReopeningSensor {
   std::unique_ptr<UsbDaq> daq_;
   std::string name_;
   bool is_started_ = false;
-  int failures_ = 0;       // rounds in a row
-  bool is_jumpy_ = false;  // the counter has jumped, and no window has closed well since
-  std::size_t turn_ = 0;   // which of several that fit is tried
-  MonoTime counted_at_{};
+  int failures_ = 0;             // rounds in a row
+  bool is_jumpy_ = false;        // the counter has jumped, and no window has closed well since
+  std::size_t turn_ = 0;         // which of several that fit is tried
+  MonoTime counted_at_{};        // the last count that was taken,
+  Nanoseconds counted_doubt_{};  // which may be so much older
   CupState cup_;
   MeanDirection direction_;
 };

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -77,7 +78,8 @@ void write_microphone_file(const std::string& path, SampleFormat format, const M
   const bool is_stdout = path == "-";
   std::signal(SIGPIPE, SIG_IGN);
   const File opened(is_stdout ? nullptr : std::fopen(path.c_str(), "wb"));
-  if (!is_stdout && !opened) throw std::runtime_error(fmt::format("cannot write {} ({})", path, std::strerror(errno)));
+  if (!is_stdout && !opened)
+    throw std::runtime_error(fmt::format("cannot write {} ({})", path, std::generic_category().message(errno)));
   SampleWriter out(is_stdout ? stdout : opened.get(), format);
 
   const auto frames = static_cast<std::uint64_t>(std::llround(duration_s * options.rate_hz));
@@ -106,10 +108,10 @@ void write_microphone_file(const std::string& path, SampleFormat format, const M
     for (const float sample : samples) out.put(sample);
     if (out.flush()) continue;
     if (is_stdout && errno == EPIPE) return;
-    throw std::runtime_error(fmt::format("cannot write {} ({})", path, std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot write {} ({})", path, std::generic_category().message(errno)));
   }
   if (std::fflush(is_stdout ? stdout : opened.get()) != 0 && !is_stdout) {
-    throw std::runtime_error(fmt::format("cannot write {} ({})", path, std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot write {} ({})", path, std::generic_category().message(errno)));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -113,8 +114,8 @@ MicrophoneSimulator::MicrophoneSimulator(const MicrophoneOptions& options, Micro
   std::signal(SIGPIPE, SIG_IGN);  // a client that goes is not our end
   state_->plug_in();
   if (!state_->outputs.socket.empty() && state_->listener < 0) {
-    throw std::runtime_error(
-        fmt::format("cannot listen on {} ({}): choose another path", state_->outputs.socket, std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot listen on {} ({}): choose another path", state_->outputs.socket,
+                                         std::generic_category().message(errno)));
   }
 }
 

@@ -29,8 +29,8 @@
 namespace yuragi::sim {
 namespace {
 
-constexpr double kKnotsPerMetrePerSecond = 3600.0 / 1852.0;
-constexpr double kKmhPerMetrePerSecond = 3.6;
+constexpr double kKnotsOfAMetrePerSecond = 3600.0 / 1852.0;
+constexpr double kKmhOfAMetrePerSecond = 3.6;
 constexpr double kGillCalm_m_s = 0.05;
 
 /// What differs when the device has a fault.
@@ -65,7 +65,7 @@ std::string mwv(const PlayedMoment& now, const Voice& voice) {
 
 /// The eight fields that end MWD and MDA.
 std::string from_north(const PlayedMoment& now) {
-  return fmt::format("{:.1f},T,,M,{:.2f},N,{:.2f},M", now.direction_deg, now.speed_m_s * kKnotsPerMetrePerSecond,
+  return fmt::format("{:.1f},T,,M,{:.2f},N,{:.2f},M", now.direction_deg, now.speed_m_s * kKnotsOfAMetrePerSecond,
                      now.speed_m_s);
 }
 
@@ -83,7 +83,7 @@ std::string from_bow(std::string_view name, const PlayedMoment& now, const Voice
   return sentence(
       fmt::format("{}{},{:.1f},{},{:.2f},N,{:.2f},M,{:.2f},K", voice.talker, name,
                   is_left ? 360.0 - now.direction_deg : now.direction_deg, is_left ? 'L' : 'R',
-                  now.speed_m_s * kKnotsPerMetrePerSecond, now.speed_m_s, now.speed_m_s * kKmhPerMetrePerSecond),
+                  now.speed_m_s * kKnotsOfAMetrePerSecond, now.speed_m_s, now.speed_m_s * kKmhOfAMetrePerSecond),
       voice);
 }
 std::string vwr(const PlayedMoment& now, const Voice& voice) {

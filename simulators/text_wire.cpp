@@ -21,7 +21,7 @@ using boost::asio::ip::udp;
 
 boost::asio::ip::address address_named(const std::string& host) {
   boost::system::error_code error;
-  const auto address = boost::asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
+  auto address = boost::asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
   if (error) throw std::runtime_error(fmt::format("\"{}\" is no address; allowed: one as in 127.0.0.1", host));
   return address;
 }

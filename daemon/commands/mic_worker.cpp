@@ -56,7 +56,8 @@ void work(const WorkerOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, end_worker);
   std::signal(SIGINT, end_worker);
-  setenv("JACK_NO_START_SERVER", "1", 0);  // looking for inputs must not start a server
+  // Looking for inputs must not start a server. There is one thread yet.
+  setenv("JACK_NO_START_SERVER", "1", 0);  // NOLINT(concurrency-mt-unsafe)
 
   const int output = take_output(options.verbose);
   auto input = make_portaudio_input();

@@ -107,8 +107,7 @@ std::vector<HidInfo> enumerate(std::span<const HidId> ids) {
   const auto is_same_device = [](const HidInfo& left, const HidInfo& right) {
     return left.node == right.node || (!left.port.empty() && left.port == right.port);
   };
-  const auto repeated = std::ranges::unique(found, is_same_device);
-  found.erase(repeated.begin(), repeated.end());
+  found.erase(std::unique(found.begin(), found.end(), is_same_device), found.end());
   return found;
 }
 

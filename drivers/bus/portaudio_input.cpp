@@ -24,7 +24,7 @@ bool contains(std::string_view text, std::string_view part) {
   const auto equal = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
   };
-  return std::ranges::search(text, part, equal).begin() != text.end() || part.empty();
+  return part.empty() || std::search(text.begin(), text.end(), part.begin(), part.end(), equal) != text.end();
 }
 
 class PortaudioInput final : public AudioInput {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -34,7 +34,7 @@ void close_if_open(int& descriptor) noexcept {
   // Signals are as a shell leaves them, whatever the parent blocked.
   sigset_t none;
   sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
+  pthread_sigmask(SIG_SETMASK, &none, nullptr);
   signal(SIGPIPE, SIG_DFL);
 
   const int empty = open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -66,8 +66,8 @@ class ProcessPort final : public BytePort {
       const int error = errno;
       close_if_open(output[0]);
       close_if_open(output[1]);
-      return Failure{
-          fmt::format("no pipe to {} ({}): is the limit of open files too low?", command_[0], std::strerror(error))};
+      return Failure{fmt::format("no pipe to {} ({}): is the limit of open files too low?", command_[0],
+                                 std::generic_category().message(error))};
     }
 
     std::vector<char*> words;
@@ -87,8 +87,8 @@ class ProcessPort final : public BytePort {
     close_if_open(failure[0]);
     if (error == 0) return {};
     close();
-    return Failure{
-        fmt::format("cannot start {} ({}): is it installed, and executable?", command_[0], std::strerror(error))};
+    return Failure{fmt::format("cannot start {} ({}): is it installed, and executable?", command_[0],
+                               std::generic_category().message(error))};
   }
 
   void close() noexcept override {

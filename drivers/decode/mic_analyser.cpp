@@ -54,10 +54,9 @@ MicAnalyser::MicAnalyser(const MicAnalyserOptions& options)
   const double top_hz = std::min(options.high_hz, kUsablePart * options.rate_hz);
   const auto bin_at = [&](double hz) { return static_cast<std::size_t>(std::max(1L, std::lround(hz / bin_hz))); };
   band_edges_.push_back(bin_at(options.low_hz));
-  const double thirds = std::max(1.0, std::round(3.0 * std::log2(top_hz / options.low_hz)));
-  const double bands = std::min(thirds, static_cast<double>(kMicMaxBands));
-  for (double band = 1.0; band <= bands; ++band) {
-    const std::size_t edge = bin_at(options.low_hz * std::pow(top_hz / options.low_hz, band / bands));
+  const double thirds = std::clamp(std::round(3.0 * std::log2(top_hz / options.low_hz)), 1.0, double{kMicMaxBands});
+  for (int band = 1; band <= static_cast<int>(thirds); ++band) {
+    const std::size_t edge = bin_at(options.low_hz * std::pow(top_hz / options.low_hz, band / thirds));
     if (edge > band_edges_.back()) band_edges_.push_back(edge);
   }
   if (band_edges_.size() == 1) band_edges_.push_back(band_edges_.back() + 1);

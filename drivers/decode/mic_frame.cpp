@@ -211,7 +211,7 @@ void MicFrameReader::clear() {
 
 std::optional<MicFrameReader::Item> MicFrameReader::next() {
   // What does not begin with the mark, or with the beginning of one, is no frame: it is skipped up to the next.
-  const auto begins_a_mark = [this](std::deque<std::uint8_t>::iterator at) {
+  const auto begins_a_mark = [this](const std::deque<std::uint8_t>::iterator& at) {
     const auto rest = std::min<std::ptrdiff_t>(waiting_.end() - at, kMark.size());
     return std::equal(at, at + rest, kMark.begin());
   };

@@ -26,7 +26,8 @@ class AcuriteStation final : public HidStation {
     if (last_new_ == MonoTime{}) last_new_ = begin;
     Report first;
     Report second;
-    if (!ask(talk, first) || !ask(talk, second)) return station_is_gone();
+    if (!ask(talk, first)) return station_is_gone();
+    if (first.size != 0 && !ask(talk, second)) return station_is_gone();
     if (first.size == 0 || second.size == 0) {
       return fail(talk, Refusal::kTimeout, "does not answer: set the console's USB mode to 3 or 4");
     }

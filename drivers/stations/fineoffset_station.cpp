@@ -56,7 +56,7 @@ class FineOffsetStation final : public HidStation {
     if (status == BlockStatus::kLost) return station_is_gone();
     if (status != BlockStatus::kRead) {
       return fail(talk, status == BlockStatus::kNone ? Refusal::kTimeout : Refusal::kTooShort,
-                  "does not answer; a console that has locked up needs its batteries and its cable taken out");
+                  "does not answer; one that has locked up needs its batteries and its cable taken out");
     }
     if (!last_block_) {
       last_block_ = block;
@@ -144,33 +144,54 @@ class FineOffsetStation final : public HidStation {
 
   using Record = std::array<std::uint8_t, kFineOffsetRecord>;
 
-  Result<StationStep, Failure> judge(const Record& record, HidTalk& talk) {
-    const MonoTime now = talk.now();
-    const bool is_first = last_look_ == MonoTime{};
-    const bool has_moved = !is_first && position_ != last_position_;
-    // The first byte counts minutes; the rest changes when the console has measured.
-    const bool has_measured = !std::equal(record.begin() + 1, record.end(), last_record_.begin() + 1);
-    const bool is_news = is_first || has_moved || record != last_record_;
-    if (is_news) last_news_ = now;
-    const bool has_counted = !is_first && !has_measured && record[0] != last_record_[0];
-    if (has_moved || has_counted) record_clock_.happened_between(last_look_, now);
-    const bool can_learn = is_searching() && !is_first && !has_moved && has_measured;
-    if (can_learn && sensor_clock_.happened_between(last_look_, now)) end_search(now);
+  /// What a look at the console shows, beside the one before.
+  struct Look {
+    bool is_first = false;
+    bool has_moved = false;     ///< on to the next record
+    bool has_measured = false;  ///< and has written it into the current one
+    bool has_counted = false;   ///< a minute
 
+    bool is_news() const { return is_first || has_moved || has_measured || has_counted; }
+  };
+
+  Look compare(const Record& record) const {
+    if (last_look_ == MonoTime{}) return {.is_first = true};
+    // The first byte counts minutes; the rest changes when the console has measured.
+    return {.is_first = false,
+            .has_moved = position_ != last_position_,
+            .has_measured = !std::equal(record.begin() + 1, record.end(), last_record_.begin() + 1),
+            .has_counted = record[0] != last_record_[0]};
+  }
+
+  /// Learns when the console writes, of what it wrote since the look before.
+  void learn(const Look& look, MonoTime now) {
+    const bool is_turn_of_minute = look.has_moved || (look.has_counted && !look.has_measured);
+    if (is_turn_of_minute) record_clock_.happened_between(last_look_, now);
+    const bool has_measured_alone = look.has_measured && !look.has_moved;
+    if (is_searching() && has_measured_alone && sensor_clock_.happened_between(last_look_, now)) end_search(now);
+  }
+
+  /// The round is complete.
+  StationStep judge(const Record& record, HidTalk& talk) {
+    const MonoTime now = talk.now();
+    const Look look = compare(record);
+    learn(look, now);
     // A look between two of the console's measurements is for its clock alone.
-    const bool was_looking_only = is_searching() && !is_first && !has_measured;
+    const bool is_due = look.is_first || look.has_measured || now - told_ >= timing_.paced(kFineOffsetEvery);
+    const bool was_for_clock = is_searching() && !is_due;
+    if (look.is_news()) last_news_ = now;
     last_record_ = record;
     last_position_ = position_;
     last_look_ = now;
+
     const MonoTime next = next_look(now);
     if (now - last_news_ >= timing_.paced(kFineOffsetStalled)) {
       talk.refuse(Refusal::kInvalid);
       return StationStep::unwell(
-          next,
-          "does not measure any more; a console that has locked up needs its batteries and its cable "
-          "taken out");
+          next, "does not measure any more; one that has locked up needs its batteries and its cable taken out");
     }
-    if (was_looking_only) return StationStep::same(next);
+    if (was_for_clock) return StationStep::same(next);
+    told_ = now;
     return publish(record, talk, next);
   }
 
@@ -202,7 +223,7 @@ class FineOffsetStation final : public HidStation {
     }
     // Once an interval, and soon behind the console's writing, where we know when that is. A look that had to be put
     // off does not put off the next one.
-    const Nanoseconds interval = timing_.interval_or(kFineOffsetEvery);
+    const Nanoseconds interval = std::max(timing_.interval_or(kFineOffsetEvery), timing_.paced(kFineOffsetEvery));
     due_ = std::max(due_, now - interval / 2) + interval;
     if (sensor_clock_.is_known()) due_ = sensor_clock_.behind(due_ - interval / 4);
     return due_;
@@ -233,6 +254,7 @@ class FineOffsetStation final : public HidStation {
 
   int search_steps_ = 0;  ///< looks of the search for the sensor clock
   MonoTime searched_{};   ///< when the last search ended
+  MonoTime told_{};       ///< the last look whose wind was told
   MonoTime last_news_{};  ///< the last look that found any change
   MonoTime due_{};        ///< when the next look should be, if the console does not write just then
   int failures_ = 0;      ///< in a row

@@ -39,7 +39,7 @@ class HidStation {
   virtual ~HidStation() = default;
 
   /// The next piece of the conversation, no longer than the station's own time-out. The failure says why the device
-  /// must be opened again; an empty message: it is gone.
+  /// must be opened again; an empty message: it is gone, or takes nothing.
   virtual Result<StationStep, Failure> step(HidTalk& talk) = 0;
 };
 

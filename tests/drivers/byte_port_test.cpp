@@ -19,6 +19,7 @@
 
 #include "drivers/bus/host_lookup.hpp"
 #include "tests/support/descriptor.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/scripted_server.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -298,14 +299,17 @@ class Talker {
   Descriptor socket_;
 };
 
-constexpr std::uint16_t kUdpTestPort = 42720;
+class UdpBytePort : public testing::Test {
+ protected:
+  const std::uint16_t port_ = free_port(SOCK_DGRAM);
+};
 
-TEST(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
-  const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = kUdpTestPort});
+TEST_F(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
+  const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = port_});
   ASSERT_TRUE(port->open().has_value());
   const Talker talker("127.0.0.1");
   const std::string longest(60000, 'x');
-  for (const std::string& text : {std::string("one"), std::string("two"), longest}) talker.say(text, kUdpTestPort);
+  for (const std::string& text : {std::string("one"), std::string("two"), longest}) talker.say(text, port_);
 
   std::vector<std::uint8_t> buffer(kLargestDatagram);
   for (const std::size_t size : {std::size_t{3}, std::size_t{3}, longest.size()}) {
@@ -317,37 +321,36 @@ TEST(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
   EXPECT_FALSE(write_text(*port, "x"));
 }
 
-TEST(UdpBytePort, TakesOnlyTheSenderThatItIsTold) {
-  const auto port =
-      make_byte_port({.kind = BytePortKind::kUdp, .host = "", .port = kUdpTestPort, .sender = "127.0.0.2"});
+TEST_F(UdpBytePort, TakesOnlyTheSenderThatItIsTold) {
+  const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "", .port = port_, .sender = "127.0.0.2"});
   ASSERT_TRUE(port->open().has_value());
   const Talker wanted("127.0.0.2");
   const Talker other("127.0.0.1");
   std::vector<std::uint8_t> buffer(kLargestDatagram);
-  other.say("other", kUdpTestPort);
+  other.say("other", port_);
   EXPECT_EQ(port->read(buffer, 5s).status, ByteStatus::kForeign);
-  wanted.say("wanted", kUdpTestPort);
+  wanted.say("wanted", port_);
   const ByteArrival arrival = port->read(buffer, 5s);
   EXPECT_EQ(arrival.status, ByteStatus::kBytes);
   EXPECT_EQ(arrival.size, 6U);
 }
 
-TEST(UdpBytePort, SaysWhatIsWrongAndWhatToDo) {
-  const auto first = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = kUdpTestPort});
+TEST_F(UdpBytePort, SaysWhatIsWrongAndWhatToDo) {
+  const auto first = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = port_});
   ASSERT_TRUE(first->open().has_value());
   const auto open = [](BytePortAddress address) {
     address.kind = BytePortKind::kUdp;
     const auto opened = make_byte_port(address)->open();
     return opened ? std::string("opened") : opened.error().message;
   };
-  EXPECT_THAT(open({.host = "127.0.0.1", .port = kUdpTestPort}), HasSubstr("another program listens there"));
-  EXPECT_THAT(open({.host = "192.0.2.7", .port = kUdpTestPort}), HasSubstr("this machine does not have that address"));
-  EXPECT_THAT(open({.host = "nowhere", .port = kUdpTestPort}), HasSubstr("is no address of this machine"));
-  EXPECT_THAT(open({.port = kUdpTestPort, .sender = "nobody"}), HasSubstr("is no address"));
+  EXPECT_THAT(open({.host = "127.0.0.1", .port = port_}), HasSubstr("another program listens there"));
+  EXPECT_THAT(open({.host = "192.0.2.7", .port = port_}), HasSubstr("this machine does not have that address"));
+  EXPECT_THAT(open({.host = "nowhere", .port = port_}), HasSubstr("is no address of this machine"));
+  EXPECT_THAT(open({.port = port_, .sender = "nobody"}), HasSubstr("is no address"));
 }
 
-TEST(UdpBytePort, CanBeInterrupted) {
-  const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = kUdpTestPort});
+TEST_F(UdpBytePort, CanBeInterrupted) {
+  const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = port_});
   ASSERT_TRUE(port->open().has_value());
   expect_interrupt_ends_read(*port);
 }

@@ -233,6 +233,16 @@ TEST(FineOffsetStation, ReadsEachMeasurementOnce) {
   EXPECT_NEAR(static_cast<double>(bench.readings()), 2.0 * kHour_s / 48.0, 4.0);
 }
 
+TEST(FineOffsetStation, IsNotAskedMoreOftenThanItMeasures) {
+  const auto readings_at = [](Nanoseconds interval) {
+    HidBench bench("fineoffset", {.pace = 1.0, .poll_interval = interval});
+    bench.run_for(kHour_s);
+    return static_cast<double>(bench.readings());
+  };
+  EXPECT_NEAR(readings_at(std::chrono::seconds(5)), kHour_s / 48.0, 4.0);
+  EXPECT_NEAR(readings_at(std::chrono::seconds(240)), kHour_s / 240.0, 3.0);
+}
+
 TEST(FineOffsetStation, SaysSoWhenTheConsoleDoesNotMeasureAnyMore) {
   /// A console that has locked up: it answers, and its memory never changes.
   class Stuck final : public sim::UsbDevice {

@@ -6,6 +6,7 @@
 #include "drivers/line_sensor.hpp"
 #include "simulators/line_device.hpp"
 #include "tests/support/driver_named.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/text_bench.hpp"
 
@@ -25,7 +26,7 @@ class LineFault : public testing::Test {
     bench_.put(nullptr, nullptr);  // the name of the port is free again
     auto carried = wire == Wire::kPty   ? sim::make_pty_wire((folder_ / "arduino").string())
                    : wire == Wire::kTcp ? sim::make_tcp_wire("127.0.0.1", 0)
-                                        : sim::make_udp_wire("127.0.0.1", kUdpPort);
+                                        : sim::make_udp_wire("127.0.0.1", udp_port_);
     const std::string place = carried->place();
     if (wire == Wire::kPty) {
       given["device"] = (folder_ / "arduino").string();
@@ -62,7 +63,7 @@ class LineFault : public testing::Test {
     expect_only_the_wind();
   }
 
-  static constexpr std::uint16_t kUdpPort = 42711;
+  const std::uint16_t udp_port_ = free_port(SOCK_DGRAM);
   test::TemporaryFolder folder_;
   TextBench bench_;
 };

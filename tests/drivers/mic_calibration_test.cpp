@@ -86,15 +86,16 @@ TEST(MicCalibration, NeverFallsWhateverThePairs) {
   std::uniform_real_distribution<double> level_db(-70.0, -10.0);
   std::uniform_real_distribution<double> speed_m_s(0.0, 12.0);
   for (int round = 0; round < 50; ++round) {
-    std::vector<MicLevelAndSpeed> pairs;
-    for (int i = 0; i < 12; ++i) pairs.push_back({level_db(random), speed_m_s(random)});
+    std::vector<MicLevelAndSpeed> pairs(12);
+    for (auto& pair : pairs) pair = {level_db(random), speed_m_s(random)};
     const auto curve = fit_mic_curve(pairs);
     const auto best = fit_mic_calibration(pairs);
     ASSERT_TRUE(curve);
     ASSERT_TRUE(best);
     for (const MicCalibration& calibration : {MicCalibration(*curve), best->calibration}) {
       double last_m_s = 0.0;
-      for (double db = -90.0; db < 0.0; db += 0.5) {
+      for (int step = 0; step < 180; ++step) {
+        const double db = -90.0 + 0.5 * step;
         const double now_m_s = mic_speed_m_s(calibration, std::pow(10.0, db / 10.0), 0.0);
         EXPECT_GE(now_m_s, last_m_s);
         EXPECT_LE(now_m_s, 120.0);

@@ -104,7 +104,7 @@ TEST(MicEstimatorTest, AGustIsTheStrongestThreeSecondsOfTenMinutes) {
   const auto power = [&](double speed_m_s) { return std::pow(speed_m_s / law.gain_m_s, 4.0); };
   std::optional<MicEstimate> last;
   // 3 m/s, a gust of 9 m/s for five seconds in the second minute, 3 m/s again.
-  for (std::uint64_t i = 0; i < 4 * 780; ++i) {
+  for (std::uint64_t i = 0; i < 3120; ++i) {
     const double time_s = 0.25 * static_cast<double>(i);
     const bool blows = time_s >= 100.0 && time_s < 105.0;
     last = *estimator.add(steady_block(hello, i, power(blows ? 9.0 : 3.0)));
@@ -131,11 +131,11 @@ TEST(MicEstimatorTest, FindsTheNoiseOfACalmAndTakesItOff) {
   double wind_m_s = 0.0;
   int calms = 0;
   int winds = 0;
-  for (std::uint64_t i = 0; i < 4 * 600; ++i) {
+  for (std::uint64_t i = 0; i < 2400; ++i) {
     const bool blows = i / 240 % 2 == 1;
     const double power = noise_power * (blows ? 2.0 : 1.0) * std::pow(10.0, scatter(random) / 10.0);
     const auto estimate = *estimator.add(steady_block(hello, i, power));
-    if (!estimate || i < 4 * 320) continue;
+    if (!estimate || i < 1280) continue;
     EXPECT_NEAR(estimate->floor_db, -60.0, 1.0);
     (blows ? wind_m_s : calm_m_s) += estimate->speed_m_s;
     ++(blows ? winds : calms);
@@ -157,7 +157,7 @@ TEST(MicEstimatorTest, TakesNoWindForTheNoiseOfACalm) {
   double gust = 0.0;
   double wind_m_s = 0.0;
   double read_m_s = 0.0;
-  for (std::uint64_t i = 0; i < 4 * 3500; ++i) {
+  for (std::uint64_t i = 0; i < 14000; ++i) {
     gust = 0.95 * gust + std::sqrt(1.0 - 0.95 * 0.95) * normal(random);
     const double speed_m_s = 6.0 * (1.0 + 0.1 * gust);
     const auto estimate = *estimator.add(steady_block(hello, i, std::pow(speed_m_s / law.gain_m_s, 4.0)));
@@ -181,7 +181,8 @@ TEST(MicEstimatorTest, ClippingRaisesTheReadingAndNeverLowersIt) {
   // The same wind, recorded louder and louder into the same converter.
   double last_m_s = 0.0;
   double unclipped_m_s = 0.0;
-  for (double rms = 0.02; rms < 3.0; rms *= 1.35) {
+  for (int step = 0; step < 17; ++step) {
+    const double rms = 0.02 * std::pow(1.35, step);
     Sound sound = test::wind_noise(kRate_hz, 1, 20.0, rms, 7);
     const double true_m_s = hear(sound, {.noise_floor_db = -120.0}).mean_speed_m_s();
     for (float& sample : sound.samples) sample = std::clamp(sample, -1.0F, 1.0F);
@@ -301,6 +302,37 @@ TEST(MicEstimatorTest, SuspectsAutomaticGainAndNothingElse) {
   EXPECT_TRUE(is_suspected(1.0, 0.25, false)) << "levelled altogether";
 }
 
+/// Two minutes and more of gusts over the hiss of a cheap microphone, and a voice beside it if there is one;
+/// `release_s`: through an amplifier that levels them, as those of conference microphones do, within a tenth of a
+/// second down and slowly up again.
+Sound gusts_through(std::optional<double> release_s, const std::vector<double>& speech = {}) {
+  constexpr double kSlow_hz = 8000.0;
+  Sound sound = test::wind_noise(kSlow_hz, 1, 140.0, 0.05);
+  std::mt19937_64 random(3);
+  std::normal_distribution<float> hiss(0.0F, 1e-3F);
+  double envelope = 0.05;
+  for (std::size_t i = 0; i < sound.frames(); ++i) {
+    const double time_s = static_cast<double>(i) / kSlow_hz;
+    const double gust = 1.0 + 0.5 * std::sin(0.4 * time_s) + 0.3 * std::sin(1.1 * time_s);
+    double sample = gust * gust * static_cast<double>(sound.at(i, 0)) + static_cast<double>(hiss(random));
+    if (!speech.empty()) sample += 0.03 * speech[i % speech.size()];
+    if (release_s) {
+      const double magnitude = std::abs(sample);
+      envelope += (magnitude - envelope) / ((magnitude > envelope ? 0.1 : *release_s) * kSlow_hz);
+      sample *= std::clamp(0.1 / envelope, 0.1, 20.0);
+    }
+    sound.at(i, 0) = static_cast<float>(sample);
+  }
+  return sound;
+}
+
+TEST(MicEstimatorTest, HearsAnAmplifierThatLevelsTheGusts) {
+  const auto is_heard = [](const Sound& sound) { return hear(sound).estimates.back().suspects_automatic_gain; };
+  EXPECT_FALSE(is_heard(gusts_through(std::nullopt)));
+  EXPECT_FALSE(is_heard(gusts_through(std::nullopt, test::voice(8000.0, 160000)))) << "a voice is no automatic gain";
+  for (const double release_s : {0.3, 1.0, 5.0}) EXPECT_TRUE(is_heard(gusts_through(release_s))) << release_s;
+}
+
 /// Blocks of faces that hear a wind from `direction_deg`, louder on its side.
 std::vector<MicEstimate> turn(const std::vector<double>& faces_deg, const std::vector<double>& wind_from_deg,
                               double effect, double scatter_db = 0.3) {
@@ -334,7 +366,8 @@ TEST(MicEstimatorTest, TellsEveryDirectionFromThreeFacesAndFromFour) {
   for (const std::vector<double>& faces_deg :
        {std::vector{0.0, 120.0, 240.0}, std::vector{0.0, 90.0, 180.0, 270.0}, std::vector{20.0, 130.0, 260.0}}) {
     double worst_deg = 0.0;
-    for (double direction_deg = 0.0; direction_deg < 360.0; direction_deg += 10.0) {
+    for (int step = 0; step < 36; ++step) {
+      const double direction_deg = 10.0 * step;
       const auto estimates = turn(faces_deg, std::vector<double>(120, direction_deg), 0.3);
       ASSERT_TRUE(estimates.back().direction_deg) << direction_deg;
       worst_deg = std::max(worst_deg, turned_apart_deg(*estimates.back().direction_deg, direction_deg));

@@ -137,7 +137,8 @@ TEST_F(MicRecording, AgreesWithTheCupOnWindowsThatItWasNotCalibratedOn) {
 TEST_F(MicRecording, GrowsFromBinToBinOfTheCup) {
   const Windows windows = windows_of(sound_, calibrate(is_odd).calibration);
   double last_m_s = -1.0;
-  for (double low_m_s = 0.0; low_m_s < 8.0; low_m_s += 1.0) {
+  for (int bin = 0; bin < 8; ++bin) {
+    const double low_m_s = bin;
     double sum = 0.0;
     int count = 0;
     for (std::size_t i = 0; i < windows.size(); ++i) {

@@ -233,6 +233,18 @@ TEST_F(NmeaSensorTest, AsksADeviceThatOnlyAnswers) {
   EXPECT_EQ(far_end.heard.front(), sentence("02,WV?") + "\r\n");
 }
 
+/// The machine was busy, and nobody read for a while: what is there then is the answer all the same.
+TEST_F(NmeaSensorTest, TakesAnAnswerThatWaitedToBeRead) {
+  make_nmea({{"format", std::string("umb")}});
+  far_end.answer = [this](const std::string&) {
+    far_end.say(said("WIMWV,230.6,R,003.4,N,A"));
+    clock.advance(800ms);
+  };
+  run(10s);
+  EXPECT_GE(sink.readings.size(), 9U);
+  EXPECT_TRUE(sink.refusals.empty());
+}
+
 TEST_F(NmeaSensorTest, AsksADeadDeviceLessOften) {
   make_nmea({{"format", std::string("umb")}, {"poll_interval", 0.2}, {"silence_timeout", 3600.0}});
   run(60s);

@@ -36,7 +36,7 @@ class ProcessPortTest : public testing::Test {
  protected:
   /// A program of this text, which leaves its number in the file "pid".
   std::string script(const std::string& text) {
-    const std::string path = folder_ / "script";
+    std::string path = folder_ / "script";
     std::ofstream(path) << "#!/bin/sh\necho $$ > " << (folder_ / "pid").string() << ".new\nmv "
                         << (folder_ / "pid").string() << ".new " << (folder_ / "pid").string() << "\n"
                         << text << "\n";
@@ -172,7 +172,7 @@ class MicrophoneWatchdog : public ProcessPortTest {
     MonoTime next{};
     comes_true([&] {
       if (clock_.now().mono >= next) next = sensor.poll(clock_, sink_);
-      return sink_.links.size() >= 1 && failures() >= attempts;
+      return !sink_.links.empty() && failures() >= attempts;
     });
     EXPECT_GE(failures(), attempts);
     return sink_.last_detail();

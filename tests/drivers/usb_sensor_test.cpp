@@ -86,6 +86,30 @@ TEST_P(UsbSensorTest, SamplesAtItsRate) {
   EXPECT_NEAR(static_cast<double>(bench.sink.readings.size()), 33.0, 2.0) << "windows of at least 50 ms, 20 ms apart";
 }
 
+TEST_P(UsbSensorTest, MakesNoGustOfAThreadThatIsHeldUp) {
+  UsbBench bench(GetParam());
+  bench.poll_for(3.0);
+  bench.sink.readings.clear();
+  for (int round = 0; round < 20; ++round) {
+    bench.bus.transfer_time = std::chrono::milliseconds(40);
+    bench.poll();
+    bench.bus.transfer_time = {};
+    bench.poll_for(0.7);
+  }
+  EXPECT_GE(bench.sink.readings.size(), 60U);
+  for (const WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+}
+
+TEST_P(UsbSensorTest, ReadsASlowBusLessOften) {
+  UsbBench bench(GetParam());
+  bench.bus.transfer_time = std::chrono::milliseconds(30);
+  bench.poll_for(3.0);
+  bench.sink.readings.clear();
+  bench.poll_for(20.0);
+  EXPECT_GE(bench.sink.readings.size(), 20U);
+  for (const WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+}
+
 TEST_P(UsbSensorTest, ShowsEveryMessageBothWays) {
   UsbBench bench(GetParam());
   bench.poll_for(1.0);

@@ -10,6 +10,7 @@
 
 #include "tests/support/child_process.hpp"
 #include "tests/support/driver_named.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/real_clock.hpp"
 #include "tests/support/recording_sink.hpp"
@@ -110,9 +111,9 @@ TEST(TextConversation, AgreesOverTcpAndUdp) {
   client.expect_the_wind();
   EXPECT_TRUE(client.sink.refusals.empty());
 
-  constexpr std::int64_t kPort = 42730;
-  TextSimulatorProcess talker("nmea", {"--udp", "127.0.0.1:" + std::to_string(kPort), "--rate", "20"});
-  LiveSensor listener("nmea", {{"transport", std::string("udp")}, {"port", kPort}});
+  const std::int64_t udp_port = free_port(SOCK_DGRAM);
+  TextSimulatorProcess talker("nmea", {"--udp", "127.0.0.1:" + std::to_string(udp_port), "--rate", "20"});
+  LiveSensor listener("nmea", {{"transport", std::string("udp")}, {"port", udp_port}});
   ASSERT_TRUE(listener.poll_for_readings(5)) << listener.sink.last_detail();
   listener.expect_the_wind();
 }
@@ -187,7 +188,7 @@ TEST(TextConversation, CanBeInterruptedWhateverItWaitsFor) {
   TextSimulatorProcess mute("nmea", {"--pty", "--link", link, "--rate", "0"});
   const std::vector<ParameterValues::Map> all = {
       {{"device", link}},
-      {{"transport", std::string("udp")}, {"port", std::int64_t{42731}}},
+      {{"transport", std::string("udp")}, {"port", std::int64_t{free_port(SOCK_DGRAM)}}},
       {{"transport", std::string("tcp")}, {"host", std::string("no-such-host.invalid")}},
   };
   for (const auto& given : all) {
@@ -215,14 +216,30 @@ TEST(TextConversation, ListensToSocat) {
   EXPECT_NEAR(live.sink.readings.back().speed_m_s, 21.5 / 3.6, 1e-9);
   EXPECT_EQ(live.sink.readings.back().direction_deg, 260.1);
 
-  constexpr std::int64_t kPort = 42732;
-  ChildProcess talker({"/usr/bin/socat", "-u", "STDIN", "UDP4-SENDTO:127.0.0.1:" + std::to_string(kPort)});
-  LiveSensor listener("line", {{"transport", std::string("udp")}, {"port", kPort}});
+  const std::int64_t udp_port = free_port(SOCK_DGRAM);
+  ChildProcess talker({"/usr/bin/socat", "-u", "STDIN", "UDP4-SENDTO:127.0.0.1:" + std::to_string(udp_port)});
+  LiveSensor listener("line", {{"transport", std::string("udp")}, {"port", udp_port}});
   ASSERT_TRUE(listener.poll_until([&] {
     talker.type("4.2,270");
     return !listener.sink.readings.empty();
   }));
   EXPECT_DOUBLE_EQ(listener.sink.readings.back().speed_m_s, 4.2);
+}
+
+/// What a library that has nothing to do with us makes of the simulator's sentences.
+TEST(TextConversation, IsUnderstoodByPynmea2) {
+  ChildProcess library({"/usr/bin/python3", "-c", "import pynmea2"});
+  if (library.wait() != 0) GTEST_SKIP() << "python3-nmea2 is not installed";
+  TextSimulatorProcess simulator("nmea", {"--tcp", "127.0.0.1:0", "--format", "mwv,mwd,vwr,vwt,mda,xdr"});
+  ChildProcess reader({"/usr/bin/python3", test::source_path("tests/simulators/nmea2_reader.py"),
+                       std::to_string(simulator.port()), "6"});
+  EXPECT_EQ(reader.line_after("MWV "), "123.0 R 7.00 M A");
+  EXPECT_EQ(reader.line_after("MWD "), "123.0 13.61 7.00");
+  EXPECT_EQ(reader.line_after("VWR "), "123.0 R 13.61 7.0 25.2");
+  EXPECT_EQ(reader.line_after("VWT "), "123.0 R 13.61 7.00 25.20");
+  EXPECT_EQ(reader.line_after("MDA "), "123.0 13.61 7.00");
+  EXPECT_EQ(reader.line_after("XDR "), "A:118:D:0 A:123:D:1 A:128:D:2 S:6.3:M:0 S:7.0:M:1 S:7.7:M:2");
+  EXPECT_EQ(reader.wait(), 0);
 }
 
 TEST(TextSimulatorProgram, RefusesACommandLineThatItCannotUse) {

@@ -157,7 +157,7 @@ int connect_to(const char* path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (std::strlen(path) >= sizeof address.sun_path) return -ENAMETOOLONG;
-  std::strcpy(address.sun_path, path);
+  std::memcpy(address.sun_path, path, std::strlen(path));
   const int socket_fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (socket_fd < 0) return -errno;
   if (connect(socket_fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {

@@ -24,8 +24,7 @@ class MicrophoneRig {
   explicit MicrophoneRig(const std::string& cards) {
     // PortAudio 19.6.0 aborts where no PCM is called "default".
     std::ofstream(folder_ / "asound.conf") << "pcm.default { type null }\n" << cards;
-    setenv("ALSA_CONFIG_PATH", (folder_ / "asound.conf").c_str(), 1);
-    setenv("JACK_NO_START_SERVER", "1", 1);
+    setenv("ALSA_CONFIG_PATH", (folder_ / "asound.conf").c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread yet
   }
 
   void open(ParameterValues::Map given) {

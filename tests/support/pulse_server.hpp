@@ -44,7 +44,7 @@ class PulseServer {
     for (const char* part : {"home", "run", "state"}) std::filesystem::create_directories(folder / part);
     std::filesystem::permissions(folder / "run", std::filesystem::perms::owner_all);
     const auto in = [&](const char* name, const char* part) { return name + ("=" + (folder / part).string()); };
-    const char* path = std::getenv("PATH");
+    const char* path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe)
     return {"env",
             "-i",
             "PATH=" + std::string(path != nullptr ? path : "/usr/bin:/bin"),

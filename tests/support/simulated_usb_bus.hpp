@@ -29,6 +29,7 @@ struct SimulatedUsbBus {
   std::optional<sim::FaultKind> fault;  ///< of every device
   bool is_permitted = true;
   bool has_arrived = false;
+  Nanoseconds transfer_time{0};  ///< each transfer takes so long; what it brings is from its beginning
   int opened = 0;
   int transfers = 0;
   bool is_interrupted = false;
@@ -103,6 +104,7 @@ class SimulatedUsbDevice final : public UsbDevice {
   bool begin() {
     ++bus_.transfers;
     bus_.advance();
+    bus_.clock.advance(bus_.transfer_time);
     return open_ != nullptr && !bus_.is_unplugged();
   }
   UsbTransfer time_out(Nanoseconds timeout) {

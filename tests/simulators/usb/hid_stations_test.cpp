@@ -60,7 +60,7 @@ UsbBytes stream_of(const std::vector<UsbBytes>& reports) {
 }
 
 bool holds(const UsbBytes& stream, const UsbBytes& wanted) {
-  return !std::ranges::search(stream, wanted).empty();
+  return std::search(stream.begin(), stream.end(), wanted.begin(), wanted.end()) != stream.end();
 }
 
 // --- all of them
