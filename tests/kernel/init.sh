@@ -1,6 +1,6 @@
 #!/bin/sh
 # The first program of the emulated machine: loads the drivers, plugs in what is simulated, runs the daemon, writes the
-# results to the disk and switches the machine off. /plan.sh says what to do; every line with ### is a milestone.
+# results to the disk and switches the machine off. What happens there stands in plan.sh; a line with ### is a milestone.
 export PATH=/bin:/sbin:/usr/bin:/usr/sbin
 mount -t proc proc /proc
 mount -t sysfs sys /sys
@@ -25,15 +25,6 @@ wait_for() {
   milestone "gave up waiting for: $*"
   return 1
 }
-
-milestone "the kernel is up"
-ip link set lo up
-for module in virtio_pci virtio_blk usbhid hid-generic vhci-hcd; do modprobe "$module" || echo "no module $module"; done
-modprobe snd-aloop index=0 id=Loopback pcm_substreams=2 || echo "no module snd-aloop"
-/lib/systemd/systemd-udevd --daemon
-udevadm trigger --action=add
-udevadm settle --timeout=20
-milestone "drivers and udev are up"
 
 # Is a device of that vendor plugged in?
 has_device_of() {
@@ -51,32 +42,6 @@ keep_plugged_in() {
   done
 }
 
-. /plan.sh says what to do; every line with ### is a milestone.
-export PATH=/bin:/sbin:/usr/bin:/usr/sbin
-mount -t proc proc /proc
-mount -t sysfs sys /sys
-mount -t devtmpfs dev /dev
-mkdir -p /results /dev/shm /run/udev
-exec >/results/console.log 2>&1
-
-milestone() {
-  echo "### $(cut -d' ' -f1 /proc/uptime) s: $*"
-  echo "### $(cut -d' ' -f1 /proc/uptime) s: $*" >/dev/console
-}
-
-# Waits for a condition, for at most so many tenths of a second.
-wait_for() {
-  tenths=$1
-  shift
-  while [ "$tenths" -gt 0 ]; do
-    "$@" && return 0
-    sleep 0.1
-    tenths=$((tenths - 1))
-  done
-  milestone "gave up waiting for: $*"
-  return 1
-}
-
 milestone "the kernel is up"
 ip link set lo up
 for module in virtio_pci virtio_blk usbhid hid-generic vhci-hcd; do modprobe "$module" || echo "no module $module"; done
@@ -86,20 +51,8 @@ udevadm trigger --action=add
 udevadm settle --timeout=20
 milestone "drivers and udev are up"
 
-# Is a device of that vendor plugged in?
-has_device_of() {
-  grep -qs "$1" /sys/bus/usb/devices/*/idVendor
-}
-
-# Plugs a simulated device in whenever its server offers it and it is not there: a port and a vendor number.
-keep_plugged_in() {
-  while :; do
-    has_device_of "$2" || usbip --tcp-port "$1" attach -r 127.0.0.1 -b 1-1 >>/results/usbip.log 2>&1
-    sleep 0.5
-  done
-}
-
 . /plan.sh
+run_plan
 
 milestone "writing the results"
 dmesg >/results/dmesg.log

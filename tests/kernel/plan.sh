@@ -3,32 +3,34 @@
 #   a LabJack U3 by USB/IP  -> usbfs     -> /dev/bus/usb/001/... -> libusb    -> the daemon
 #   the sound of wind       -> snd-aloop -> /dev/snd/pcmC0D1c    -> PortAudio -> the daemon
 # They play the same wind. The first two are unplugged and plugged in again while the daemon runs.
-wind="--wind /wind.windlog"
-mkfifo /run/hid /run/usb # what is typed there goes wrong
-yuragi-sim hid --device wmr300 --usbip 127.0.0.1:3240 $wind <>/run/hid >/results/hid.log 2>&1 &
-yuragi-sim usb --device labjack-u3 --usbip 127.0.0.1:3241 $wind <>/run/usb >/results/usb.log 2>&1 &
-yuragi-sim microphone $wind --out - --format s16 --rate 8000 </dev/null 2>/results/microphone.log |
-  aplay -q -D hw:0,0 -t raw -f S16_LE -r 8000 -c 1 >/results/aplay.log 2>&1 &
-keep_plugged_in 3240:0fde 3241:0cd5 &
-wait_for 600 has_device_of 0cd5
-wait_for 600 test -c /dev/hidraw0
-milestone "plugged in"
-ls -l /dev/hidraw* /dev/snd
+run_plan() {
+  wind="--wind /wind.windlog"
+  mkfifo /run/hid /run/usb # what is typed there goes wrong
+  yuragi-sim hid --device wmr300 --usbip 127.0.0.1:3240 $wind <>/run/hid >/results/hid.log 2>&1 &
+  yuragi-sim usb --device labjack-u3 --usbip 127.0.0.1:3241 $wind <>/run/usb >/results/usb.log 2>&1 &
+  yuragi-sim microphone $wind --out - --format s16 --rate 8000 </dev/null 2>/results/microphone.log |
+    aplay -q -D hw:0,0 -t raw -f S16_LE -r 8000 -c 1 >/results/aplay.log 2>&1 &
+  keep_plugged_in 3240:0fde 3241:0cd5 &
+  wait_for 600 has_device_of 0cd5
+  wait_for 600 test -c /dev/hidraw0
+  milestone "plugged in"
+  ls -l /dev/hidraw* /dev/snd
 
-# As an ordinary user, who may open what config/udev lets the group plugdev open, and sound cards.
-chmod 777 /results
-su -s /bin/sh wind -c 'id; exec yuragi run --config /wall.toml --record /results/wall.windlog --duration 50 --verbose' \
-  >/results/daemon.log 2>&1 &
-daemon=$!
+  # As an ordinary user, who may open what config/udev lets the group plugdev open, and sound cards.
+  chmod 777 /results
+  su -s /bin/sh wind -c 'id; exec yuragi run --config /wall.toml --record /results/wall.windlog --duration 50 --verbose' \
+    >/results/daemon.log 2>&1 &
+  daemon=$!
 
-wait_for 200 grep -q "sensor cup: connected" /results/daemon.log
-wait_for 200 grep -q "sensor station: connected" /results/daemon.log
-sleep 8
-milestone "unplugging the counter"
-echo "unplug 4" >/run/usb
-sleep 6
-milestone "unplugging the station"
-echo "unplug 5" >/run/hid
-wait $daemon
-milestone "the daemon has ended with $?"
-usbip port >/results/ports.log 2>&1
+  wait_for 200 grep -q "sensor cup: connected" /results/daemon.log
+  wait_for 200 grep -q "sensor station: connected" /results/daemon.log
+  sleep 8
+  milestone "unplugging the counter"
+  echo "unplug 4" >/run/usb
+  sleep 6
+  milestone "unplugging the station"
+  echo "unplug 5" >/run/hid
+  wait $daemon
+  milestone "the daemon has ended with $?"
+  usbip port >/results/ports.log 2>&1
+}
