@@ -85,6 +85,49 @@ const std::array kWindParameters = {
               .help = "a sensor that is silent for this many of its own intervals is stale"},
 };
 
+const std::array kCalibrationParameters = {
+    Parameter{.name = "gain",
+              .unit = "",
+              .default_value = 1.0,
+              .min = 0.01,
+              .max = 100.0,
+              .help = "the speed is multiplied by this"},
+    Parameter{.name = "offset",
+              .unit = "m/s",
+              .default_value = 0.0,
+              .min = -20.0,
+              .max = 20.0,
+              .help = "and this is added, but for a calm"},
+    Parameter{.name = "curve",
+              .unit = "m/s",
+              .default_value = std::string(""),
+              .help = "then points measured:true, \"0:0 5:5.2 12:12.9\"; empty: none"},
+    Parameter{.name = "north_offset",
+              .unit = "deg",
+              .default_value = 0.0,
+              .min = -360.0,
+              .max = 360.0,
+              .help = "clockwise: where the sensor's mark points instead of to north"},
+    Parameter{.name = "height",
+              .unit = "m",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 1000.0,
+              .help = "of the sensor above the ground; 0: the wind is taken as it is measured"},
+    Parameter{.name = "scene_height",
+              .unit = "m",
+              .default_value = 10.0,
+              .min = 0.1,
+              .max = 1000.0,
+              .help = "the height whose wind moves the scenes"},
+    Parameter{.name = "roughness",
+              .unit = "m",
+              .default_value = 0.03,
+              .min = 0.0001,
+              .max = 5.0,
+              .help = "of the ground around: 0.0002 water, 0.03 meadow, 0.5 suburb, 1 city"},
+};
+
 const std::array kCommonSceneParameters = {
     Parameter{.name = "x",
               .unit = "m",
@@ -120,6 +163,7 @@ const std::array kConfigTables = {
 };
 
 constexpr std::string_view kNameKey = "name";
+constexpr std::string_view kCalibrationKey = "calibration";
 
 /// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
 std::vector<Parameter> parameters_of(const DriverDescription& driver) {
@@ -150,14 +194,17 @@ class ConfigReader {
     check_top_level(root);
     const ParameterValues general = read_top_level(root);
     config.seed = static_cast<std::uint64_t>(general.integer("seed"));
-    config.stream = read_table(root, "stream", kStreamParameters);
+    config.stream = read_table(root, "", "stream", kStreamParameters);
     check_listen(root, config.stream);
-    config.animation = read_table(root, "animation", kAnimationParameters);
-    config.wind = read_table(root, "wind", kWindParameters);
+    config.animation = read_table(root, "", "animation", kAnimationParameters);
+    config.wind = read_table(root, "", "wind", kWindParameters);
 
     for_each_entry(root, "sensor", "driver", driver_table(),
-                   [&](const auto& name, auto* driver, const auto& values, const auto& origin) {
-                     config.sensors.push_back({name, driver, values, origin});
+                   [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {
+                     const ParameterValues calibration =
+                         read_table(entry, "sensor.", kCalibrationKey, kCalibrationParameters);
+                     check_curve(entry, calibration);
+                     config.sensors.push_back({name, driver, values, calibration, place(entry.source())});
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
                    [&](const auto& name, auto* kind, const auto& values, const auto&) {
@@ -212,12 +259,21 @@ class ConfigReader {
   }
 
   /// A table that is there once, or not at all.
-  ParameterValues read_table(const toml::table& root, std::string_view name, std::span<const Parameter> parameters) {
+  ParameterValues read_table(const toml::table& around, const std::string& prefix, std::string_view name,
+                             std::span<const Parameter> parameters) {
     static const toml::table kNothing;
-    const toml::node* node = root.get(name);
+    const toml::node* node = around.get(name);
     const toml::table* table = node != nullptr ? node->as_table() : nullptr;
     // By pointer: a copy of a TOML table forgets its lines and columns.
-    return read_values(table != nullptr ? *table : kNothing, std::string(name) + ".", parameters, {});
+    return read_values(table != nullptr ? *table : kNothing, prefix + std::string(name) + ".", parameters, {});
+  }
+
+  void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
+    if (const toml::node* node = sensor.get(kCalibrationKey); node != nullptr && !node->is_table()) {
+      mistake(node->source(), "sensor.calibration", "is a value; write it as a table, [sensor.calibration]");
+    } else if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
+      mistake(sensor[kCalibrationKey]["curve"].node()->source(), "sensor.calibration.curve", curve.error().message);
+    }
   }
 
   void check_listen(const toml::table& root, const ParameterValues& stream) {
@@ -268,8 +324,10 @@ class ConfigReader {
         mistake(entry->source(), prefix + "name",
                 "\"" + name + "\" is there twice; give each " + std::string(list) + " a name");
       }
-      const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), {kNameKey, kind_key});
-      use(name, description, values, place(entry->source()));
+      std::set<std::string_view> aside = {kNameKey, kind_key};
+      if (list == "sensor") aside.insert(kCalibrationKey);
+      const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), aside);
+      use(name, description, values, *entry);
     }
   }
 
@@ -331,13 +389,35 @@ std::span<const Parameter> common_scene_parameters() {
   return kCommonSceneParameters;
 }
 
+std::span<const Parameter> calibration_parameters() {
+  return kCalibrationParameters;
+}
+
+ParameterValues no_calibration() {
+  return defaults_of(kCalibrationParameters);
+}
+
+Calibration calibration_of(const SensorConfig& sensor) {
+  const ParameterValues& values = sensor.calibration;
+  auto curve = parse_calibration_curve(values.text("curve"));
+  if (!curve) throw ConfigError(sensor.origin + ": sensor.calibration.curve: " + curve.error().message);
+  Calibration calibration{.gain = values.number("gain"),
+                          .offset_m_s = values.number("offset"),
+                          .curve = std::move(*curve),
+                          .north_offset_deg = values.number("north_offset")};
+  if (const double height_m = values.number("height"); height_m > 0.0) {
+    calibration.height_factor = height_factor(height_m, values.number("scene_height"), values.number("roughness"));
+  }
+  return calibration;
+}
+
 Config default_config() {
   Config config;
   config.stream = defaults_of(kStreamParameters);
   config.animation = defaults_of(kAnimationParameters);
   config.wind = defaults_of(kWindParameters);
   const auto* synthetic = find_by_name(driver_table(), "synthetic");
-  config.sensors.push_back({"synthetic", synthetic, defaults_of(parameters_of(*synthetic)), {}});
+  config.sensors.push_back({"synthetic", synthetic, defaults_of(parameters_of(*synthetic)), no_calibration(), {}});
   const auto* grass = find_by_name(scene_table(), "grass");
   config.scenes.push_back({"grass", grass, defaults_of(parameters_of(*grass))});
   return config;
@@ -390,8 +470,10 @@ std::string to_toml(const Config& config) {
     if (!root.contains(list)) root.insert(list, toml::array{});
     root[list].as_array()->push_back(std::move(entry));
   };
-  for (const SensorConfig& sensor : config.sensors)
+  for (const SensorConfig& sensor : config.sensors) {
     append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
+    root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.calibration));
+  }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
 
   std::ostringstream out;

@@ -12,6 +12,7 @@
 #include "drivers/driver.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/scenes/scene.hpp"
+#include "engine/wind/calibration.hpp"
 
 namespace yuragi {
 
@@ -20,7 +21,8 @@ struct SensorConfig {
   std::string name;
   const DriverDescription* driver = nullptr;
   ParameterValues values;
-  std::string origin;  ///< `file:line:column` of its entry; empty for the built-in default
+  ParameterValues calibration;  ///< calibration_parameters()
+  std::string origin;           ///< `file:line:column` of its entry; empty for the built-in default
 };
 
 struct SceneConfig {
@@ -50,6 +52,14 @@ std::span<const ConfigTable> config_tables();
 
 /// What a scene of any kind may hold besides: where it stands, its gain, whether it is shown.
 std::span<const Parameter> common_scene_parameters();
+
+/// What the table [sensor.calibration] of a sensor may hold.
+std::span<const Parameter> calibration_parameters();
+
+ParameterValues no_calibration();
+
+/// What a sensor's calibration says. Throws ConfigError for a curve that is none.
+Calibration calibration_of(const SensorConfig& sensor);
 
 /// What is wrong with a configuration, one line for each mistake: `file:line:column: key: what is wrong; what is
 /// allowed`.

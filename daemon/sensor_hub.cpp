@@ -43,6 +43,7 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, Listener listener
   for (std::size_t index = 0; index < sensors.size(); ++index) {
     Channel channel;
     channel.config = config.sensors[index];
+    channel.calibration = calibration_of(channel.config);
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }
@@ -54,7 +55,7 @@ const WindState& SensorHub::advance() {
     channel.runner->drain([&](const WindReading& reading) {
       ++channel.readings;
       if (listener_) listener_(index, reading);
-      estimator_->accept(index, reading);
+      estimator_->accept(index, channel.calibration.applied_to(reading));
     });
   }
   wind_ = estimator_->advance(clock_.now().mono);

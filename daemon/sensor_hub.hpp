@@ -46,6 +46,7 @@ class SensorHub {
  private:
   struct Channel {
     SensorConfig config;
+    Calibration calibration;
     std::unique_ptr<SensorRunner> runner;
     std::uint64_t readings = 0;
     SourceHealth logged_health = SourceHealth::kSilent;

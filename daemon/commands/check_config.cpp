@@ -47,6 +47,10 @@ void describe_everything() {
     fmt::print("\n[[sensor]]  # driver = \"{}\": {}\n", driver->name, driver->summary);
     print_parameters(driver->parameters);
   }
+  fmt::print(
+      "\n[sensor.calibration]  # below a [[sensor]] of any kind: from what it says to the wind; recordings keep what "
+      "it says\n");
+  print_parameters(calibration_parameters());
   fmt::print("\n[[scene]]  # of any kind: where it stands, and how it is seen\n");
   print_parameters(common_scene_parameters());
   for (const SceneDescription* scene : scene_table()) {

@@ -45,7 +45,7 @@ SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
                                      {"sensor", options.playback.sensor}};
     auto values = ParameterValues::resolve(driver->parameters, given);
     if (!values) throw ExitError(kExitUsage, values.error().name + ": " + values.error().message);
-    return {options.file.stem().string(), driver, *values, {}};
+    return {options.file.stem().string(), driver, *values, no_calibration(), {}};
   }
   throw std::logic_error("no windlog driver");
 }

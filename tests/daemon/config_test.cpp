@@ -77,6 +77,38 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
               HasSubstr("\"synthetic\" is there twice"));
 }
 
+TEST(Config, ASensorOfAnyDriverHasACalibration) {
+  const Config config = parse_config(R"(
+[[sensor]]
+driver = "synthetic"
+[sensor.calibration]
+gain = 1.05
+curve = "0:0 5:5.5"
+height = 2
+[[sensor]]
+driver = "synthetic"
+name = "other"
+)",
+                                     "wall.toml");
+  const Calibration calibration = calibration_of(config.sensors[0]);
+  EXPECT_EQ(calibration.gain, 1.05);
+  EXPECT_EQ(calibration.curve.size(), 2U);
+  EXPECT_EQ(calibration.height_factor, height_factor(2.0, 10.0, 0.03));
+  EXPECT_EQ(calibration_of(config.sensors[1]).gain, 1.0);
+  EXPECT_EQ(calibration_of(config.sensors[1]).height_factor, 1.0);
+  EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
+
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ngain = 0\n"),
+              StartsWith("wall.toml:4:8: sensor.calibration.gain: is 0; allowed: number from 0.01 to 100"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ncurve = \"5\"\n"),
+              StartsWith("wall.toml:4:9: sensor.calibration.curve: \"5\" is no curve; allowed:"));
+  EXPECT_THAT(mistakes_of(sensor + "calibration = 3\n"),
+              StartsWith("wall.toml:3:15: sensor.calibration: is a value; write it as a table"));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\n[scene.calibration]\ngain = 2\n"),
+              HasSubstr("scene.calibration: takes one value"));
+}
+
 TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
   const Config config = parse_config(
       "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades_across = 50\n"
@@ -148,6 +180,7 @@ TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
   };
   for (const ConfigTable& table : config_tables()) check(table.name, table.parameters);
   check("scene", common_scene_parameters());
+  check("sensor.calibration", calibration_parameters());
   for (const DriverDescription* driver : driver_table()) check(driver->name, driver->parameters);
   for (const SceneDescription* scene : scene_table()) check(scene->name, scene->parameters);
 }

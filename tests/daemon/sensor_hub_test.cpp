@@ -57,7 +57,7 @@ class SensorHubTest : public ::testing::Test {
   SensorHubTest() {
     script = &script_;
     config_ = default_config();
-    config_.sensors = {{"roof", &kScriptedDriver, {}, "wall.toml:3:1"}};
+    config_.sensors = {{"roof", &kScriptedDriver, {}, no_calibration(), "wall.toml:3:1"}};
   }
 
   HandClock clock_;
@@ -71,6 +71,20 @@ WindReading reading_at(const Clock& clock, double speed_m_s) {
   reading.speed_m_s = speed_m_s;
   reading.direction_deg = 90.0;
   return reading;
+}
+
+TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid) {
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) { sink.reading(reading_at(clock, 6.0)); };
+  config_.sensors[0].calibration.set("gain", 1.5);
+  config_.sensors[0].calibration.set("north_offset", 180.0);
+  std::vector<double> heard;
+  SensorHub hub(config_, clock_, [&](std::size_t, const WindReading& reading) { heard.push_back(reading.speed_m_s); });
+  script_.polled.get_future().wait();
+  hub.advance();
+  clock_.advance(5.0);
+  EXPECT_NEAR(hub.advance().wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
+  EXPECT_EQ(heard, std::vector{6.0});
+  EXPECT_EQ(hub.status()[0].speed_m_s, 9.0);
 }
 
 TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
@@ -251,7 +265,7 @@ TEST(SensorHub, ASensorThatCannotBeMadeIsAMistakeAtItsPlaceInTheFile) {
       .parameters = {},
       .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { throw std::runtime_error("no such profile"); }};
   try {
-    open_sensor({"roof", &refusing, {}, "wall.toml:3:1"});
+    open_sensor({"roof", &refusing, {}, no_calibration(), "wall.toml:3:1"});
     FAIL() << "it was made";
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(), "wall.toml:3:1: sensor: no such profile");

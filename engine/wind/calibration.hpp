@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "engine/base/result.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+/// One point of a calibration curve: where the sensor says `measured_m_s`, the wind blows at `true_m_s`.
+struct CalibrationPoint {
+  double measured_m_s = 0.0;
+  double true_m_s = 0.0;
+};
+
+/// From what a sensor says to the wind at the scene's height: speed * gain + offset, then the curve, then the change of
+/// the wind with height; direction + north offset. By itself it changes nothing.
+///
+/// A reading of 0 stays 0: a cup that stands still says nothing of its offset. The gust goes the same way as the speed.
+/// Thread-safe: yes. Realtime-safe: applied_to() is.
+struct Calibration {
+  double gain = 1.0;
+  double offset_m_s = 0.0;
+  std::vector<CalibrationPoint> curve{};  ///< as parse_calibration_curve() makes it; beyond its ends, on in a line
+  double north_offset_deg = 0.0;          ///< clockwise; where the sensor's mark points instead of to north
+  double height_factor = 1.0;             ///< height_factor(): from the sensor's height to the scene's
+
+  WindReading applied_to(const WindReading& reading) const noexcept;
+};
+
+/// Points "measured:true" in m/s, separated by blanks: "0:0 5:5.2 12:12.9". At least two, both numbers rising from each
+/// to the next. An empty text is no curve. The failure says what is allowed.
+Result<std::vector<CalibrationPoint>, Failure> parse_calibration_curve(std::string_view text);
+
+/// How much stronger the wind is at `to_m` than at `from_m` above the ground, by the logarithmic profile over ground of
+/// this roughness; heights at or below it count as ten times it. Above 0. Thread-safe and realtime-safe: yes.
+double height_factor(double from_m, double to_m, double roughness_m) noexcept;
+
+}  // namespace yuragi
