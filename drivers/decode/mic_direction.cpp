@@ -38,7 +38,7 @@ std::array<double, 3> solve_three(const Matrix3& m, const std::array<double, 3>&
 
 }  // namespace
 
-MicDirection::MicDirection(std::vector<double> faces_deg, double smoothing_s) : smoothing_s_(smoothing_s) {
+MicDirection::MicDirection(const std::vector<double>& faces_deg, double smoothing_s) : smoothing_s_(smoothing_s) {
   if (faces_deg.size() < 3 || faces_deg.size() > kMicMaxChannels) {
     throw std::invalid_argument("a direction needs three or four microphones that face different ways");
   }

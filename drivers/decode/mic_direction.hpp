@@ -18,7 +18,7 @@ class MicDirection {
  public:
   /// Where each microphone faces, degrees clockwise from north: three at least, not all within one half circle's line.
   /// Throws std::invalid_argument where a cosine cannot be fitted to them.
-  MicDirection(std::vector<double> faces_deg, double smoothing_s);
+  MicDirection(const std::vector<double>& faces_deg, double smoothing_s);
 
   /// The speeds that the faces hear, for `duration_s`. Nothing in a calm.
   std::optional<MicDirectionEstimate> add(std::span<const double> speeds_m_s, double duration_s) noexcept;
