@@ -1,0 +1,90 @@
+#include "daemon/offline_wind.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace yuragi {
+namespace {
+
+/// Readings as the estimator is to hear them: each with its log time, less those of the gaps, and averaged where a
+/// slower sensor is asked for.
+class HeardReadings {
+ public:
+  HeardReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
+      : playback_(playback), options_(options) {}
+
+  std::optional<WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
+
+ private:
+  std::optional<WindReading> next_single() {
+    while (auto played = playback_.next()) {
+      if (is_in_gap(played->log_time_s)) continue;
+      WindReading reading = played->reading;
+      reading.time.mono = MonoTime(from_seconds(played->log_time_s));
+      return reading;
+    }
+    return std::nullopt;
+  }
+
+  /// The mean over one block of time; blocks in which nothing was said are passed over.
+  std::optional<WindReading> next_mean() {
+    const double interval_s = *options_.sensor_interval_s;
+    if (!held_) held_ = next_single();
+    if (!held_) return std::nullopt;
+    const double block = std::floor(seconds(held_->time.mono.time_since_epoch()) / interval_s);
+    const MonoTime end(from_seconds((block + 1.0) * interval_s));
+
+    WindVector sum{};
+    double speed_sum_m_s = 0.0;
+    double gust_m_s = 0.0;
+    std::size_t count = 0;
+    std::size_t directed = 0;
+    for (; held_ && held_->time.mono < end; held_ = next_single(), ++count) {
+      speed_sum_m_s += held_->speed_m_s;
+      gust_m_s = std::max(gust_m_s, held_->gust_m_s.value_or(held_->speed_m_s));
+      if (!held_->direction_deg) continue;
+      sum = sum + wind_from(held_->speed_m_s, *held_->direction_deg);
+      ++directed;
+    }
+    const bool has_direction = directed == count;
+    const WindVector mean = (1.0 / static_cast<double>(count)) * sum;
+    WindReading reading;
+    reading.time.mono = end;
+    reading.speed_m_s = has_direction ? speed_of(mean) : speed_sum_m_s / static_cast<double>(count);
+    if (has_direction) reading.direction_deg = direction_from_deg(mean);
+    reading.gust_m_s = gust_m_s;
+    return reading;
+  }
+
+  bool is_in_gap(double time_s) const {
+    return std::ranges::any_of(options_.gaps,
+                               [time_s](const OfflineGap& gap) { return time_s >= gap.from_s && time_s < gap.to_s; });
+  }
+
+  WindlogPlayback& playback_;
+  const OfflineWindOptions& options_;
+  std::optional<WindReading> held_;
+};
+
+}  // namespace
+
+OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimator, const OfflineWindOptions& options,
+                              const std::function<void(double time_s, const WindState&)>& use) {
+  OfflineWindResult result;
+  HeardReadings readings(playback, options);
+  std::optional<WindReading> next = readings.next();
+  // The last reading is heard by the tick at its time or after it, which is the last.
+  for (bool goes_on = next.has_value(); goes_on; ++result.states) {
+    const double time_s = static_cast<double>(result.states) / options.rate_hz;
+    const MonoTime now(from_seconds(time_s));
+    for (; next && next->time.mono <= now; next = readings.next()) {
+      if (estimator.accept(0, *next)) ++result.readings;
+    }
+    goes_on = next.has_value();
+    use(time_s, estimator.advance(now));
+    result.duration_s = time_s;
+  }
+  return result;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "drivers/windlog/windlog_playback.hpp"
+#include "engine/wind/wind_estimator.hpp"
+
+namespace yuragi {
+
+/// A stretch of log time, from `from_s` on and before `to_s`, in which nothing is heard of the sensor.
+struct OfflineGap {
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
+struct OfflineWindOptions {
+  double rate_hz = 60.0;  ///< states a second of log time
+  /// The sensor as a slower one: its readings are vector means over so long, heard at their end.
+  std::optional<double> sensor_interval_s{};
+  std::vector<OfflineGap> gaps{};
+};
+
+struct OfflineWindResult {
+  std::uint64_t readings = 0;  ///< that the estimator heard
+  std::uint64_t states = 0;
+  double duration_s = 0.0;  ///< of log time
+};
+
+/// Runs an estimator with one source over a recording, as fast as it can: it hears each reading at its own log time,
+/// and `use` is told the state of each tick, from log time 0 to the last reading. Throws what the playback throws.
+OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimator, const OfflineWindOptions& options,
+                              const std::function<void(double time_s, const WindState&)>& use);
+
+}  // namespace yuragi

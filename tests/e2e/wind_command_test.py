@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""`yuragi wind`: the daemon's wind over a recording, checked from outside.
+
+usage: wind_command_test.py YURAGI
+"""
+import csv
+import io
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+YURAGI = sys.argv.pop(1)
+
+
+def yuragi(*arguments):
+    return subprocess.run([YURAGI, *map(str, arguments)], capture_output=True, text=True)
+
+
+class WindCommand(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.log = pathlib.Path(cls.folder.name, "hill.windlog")
+        lines = ["time_s,speed_m_s,direction_deg"]
+        lines += [f"{i},{6 + math.sin(0.3 * i):.3f},{(350 + 10 * math.sin(0.1 * i)) % 360:.2f}" for i in range(300)]
+        table = cls.log.with_suffix(".csv")
+        table.write_text("\n".join(lines) + "\n", encoding="ascii")
+        assert yuragi("import", table, "-o", cls.log).returncode == 0
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def wind(self, *arguments):
+        run = yuragi("wind", self.log, "-o", "-", *arguments)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        rows = list(csv.DictReader(io.StringIO(run.stdout)))
+        return [{key: value if key == "state" else float(value) for key, value in row.items()} for row in rows], run.stderr
+
+    def test_has_a_state_a_tick_up_to_the_last_reading(self):
+        rows, told = self.wind("--rate", 20)
+        self.assertEqual(len(rows), 299 * 20 + 1)
+        self.assertEqual(rows[0]["time_s"], 0.0)
+        self.assertAlmostEqual(rows[-1]["time_s"], 299.0)
+        self.assertIn("from 300 readings", told)
+        for row in rows:
+            self.assertAlmostEqual(math.hypot(row["u_m_s"], row["v_m_s"]), row["speed_m_s"], places=4)
+            self.assertTrue(0.0 <= row["trust"] <= 1.0)
+
+    def test_follows_the_sensor_and_passes_through_north(self):
+        rows, _ = self.wind()
+        live = [row for row in rows if row["time_s"] > 60.0]
+        self.assertTrue(all(row["state"] == "live" for row in live))
+        mean = sum(row["speed_m_s"] for row in live) / len(live)
+        self.assertAlmostEqual(mean, 6.0, delta=0.3)
+        north = [row["direction_deg"] for row in live if 90.0 < row["direction_deg"] < 270.0]
+        self.assertEqual(north, [])
+
+    def test_says_the_same_again_and_something_else_with_another_seed(self):
+        self.assertEqual(self.wind("--seed", 5), self.wind("--seed", 5))
+        self.assertNotEqual(self.wind("--seed", 5)[0], self.wind("--seed", 6)[0])
+
+    def test_plays_a_slower_sensor(self):
+        _, told = self.wind("--sensor-interval", 14)
+        self.assertIn("from 22 readings", told)  # 300 s make 21.4 blocks; the last is heard at its end
+
+    def test_leaves_out_a_gap_and_returns(self):
+        rows, _ = self.wind("--gap", "100,200")
+        trust = {round(row["time_s"], 3): row["trust"] for row in rows}
+        self.assertGreater(trust[99.0], 0.9)
+        self.assertLess(trust[190.0], 0.5)
+        self.assertGreater(trust[240.0], 0.9)
+        steps = [math.hypot(b["u_m_s"] - a["u_m_s"], b["v_m_s"] - a["v_m_s"]) for a, b in zip(rows, rows[1:])]
+        self.assertLess(max(steps), 0.5)
+
+    def test_writes_a_file_and_keeps_one_that_is_there(self):
+        file = self.log.with_name("out.csv")
+        self.assertEqual(yuragi("wind", self.log, "-o", file).returncode, 0)
+        self.assertTrue(file.read_text(encoding="ascii").startswith("time_s,u_m_s,v_m_s,speed_m_s,direction_deg,trust,state\n"))
+        self.assertEqual(yuragi("wind", self.log, "-o", file).returncode, 73)
+        self.assertEqual(yuragi("wind", self.log, "-o", file, "--force").returncode, 0)
+
+    def test_says_what_is_wrong(self):
+        for arguments, code, text in (
+            (["/no/such.windlog", "-o", "-"], 66, "no such recording"),
+            ([self.log, "-o", "-", "--gap", "9,3"], 64, "allowed: FROM,TO"),
+            ([self.log, "-o", "-", "--rate", "0"], 64, "--rate"),
+            ([self.log, "-o", "/no/such/folder/a.csv"], 73, "/no/such/folder"),
+        ):
+            run = yuragi("wind", *arguments)
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertIn(text, run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
