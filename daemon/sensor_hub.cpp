@@ -118,6 +118,7 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
     status.frames = channel.runner->frame_count();
     status.reconnects = channel.runner->reconnect_count();
+    status.replayed = channel.config.driver->plays_recordings;
     all.push_back(std::move(status));
   }
   return all;

@@ -13,14 +13,23 @@
 namespace yuragi {
 namespace {
 
-std::string_view wind_source(const WindState& wind) {
-  switch (wind.source) {
+/// Does a recording speak, and nothing else?
+bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
+  const auto is_live = [](const wire::SensorStatus& sensor) {
+    return static_cast<SourceHealth>(sensor.health) == SourceHealth::kLive;
+  };
+  return std::ranges::any_of(sensors, is_live) &&
+         std::ranges::none_of(sensors, [&](const auto& sensor) { return is_live(sensor) && !sensor.replayed; });
+}
+
+std::string_view wind_source(const wire::Sensors& sensors) {
+  switch (sensors.wind.source) {
     case WindSource::kDefault:
       return "default wind: no sensor speaks";
     case WindSource::kHandover:
       return "handing over";
     case WindSource::kLive:
-      return "live";
+      return is_replayed(sensors.sensors) ? "REPLAY of a recording" : "live";
   }
   return "?";
 }
@@ -29,7 +38,7 @@ std::string_view wind_source(const WindState& wind) {
 std::string_view state_of(const wire::SensorStatus& sensor) {
   switch (static_cast<SourceHealth>(sensor.health)) {
     case SourceHealth::kLive:
-      return sensor.simulated ? "simulated" : "live";
+      return sensor.replayed ? "REPLAY" : sensor.simulated ? "simulated" : "live";
     case SourceHealth::kStale:
       return "STALE";
     case SourceHealth::kSilent:
@@ -80,9 +89,9 @@ std::string refusal_text(const wire::SensorStatus& sensor) {
 
 std::string sensor_table(const wire::Sensors& sensors) {
   const WindVector wind = sensors.wind.wind;
-  std::string table = fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n\n", speed_of(wind),
-                                  direction_text(direction_from_deg(wind)), wind_source(sensors.wind), sensors.clients,
-                                  sensors.late_ticks);
+  std::string table =
+      fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n\n", speed_of(wind),
+                  direction_text(direction_from_deg(wind)), wind_source(sensors), sensors.clients, sensors.late_ticks);
   const auto out = std::back_inserter(table);
   const auto row = [&](const auto&... cells) {
     fmt::format_to(out, "{:<14.14} {:<10.10} {:<10} {:>6} {:>7} {:>6} {:>7} {:>7} {:>9} {:>9} {:>5}\n", cells...);

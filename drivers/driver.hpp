@@ -22,6 +22,8 @@ struct DriverDescription {
   /// What is plugged in that this driver could read; nullptr where there is nothing to plug in. Opens nothing for
   /// longer than it takes to look at it.
   std::vector<FoundDevice> (*find)() = nullptr;
+  /// It plays what was recorded: nobody may take it for the wind of now.
+  bool plays_recordings = false;
 };
 
 /// Every driver (generated).

@@ -140,6 +140,7 @@ extern const DriverDescription kWindlogDriver;
 const DriverDescription kWindlogDriver{.name = "windlog",
                                        .summary = "a recorded wind, played again",
                                        .parameters = kWindlogParameters,
-                                       .open = open_windlog};
+                                       .open = open_windlog,
+                                       .plays_recordings = true};
 
 }  // namespace yuragi

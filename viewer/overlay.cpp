@@ -100,13 +100,14 @@ void draw_compass(const WindState& wind, double heading_deg, float radius) {
   list->AddTriangleFilled(tip, beside(26.0, radius * 0.30F), beside(-26.0, radius * 0.30F), kArrow);
 }
 
-/// Does every sensor that speaks only pretend?
-bool is_simulated(const wire::Sensors* sensors) {
+/// Is this true of every sensor that speaks, and does one?
+template <class Property>
+bool is_true_of_all_that_speak(const wire::Sensors* sensors, Property property) {
   if (sensors == nullptr) return false;
   const auto is_live = [](const wire::SensorStatus& sensor) { return sensor.health == kHealthLive; };
-  const auto is_real = [&](const wire::SensorStatus& sensor) { return is_live(sensor) && !sensor.simulated; };
+  const auto differs = [&](const wire::SensorStatus& sensor) { return is_live(sensor) && !(sensor.*property); };
   return std::any_of(sensors->sensors.begin(), sensors->sensors.end(), is_live) &&
-         std::none_of(sensors->sensors.begin(), sensors->sensors.end(), is_real);
+         std::none_of(sensors->sensors.begin(), sensors->sensors.end(), differs);
 }
 
 void write_wind(const OverlayFacts& facts, float scale) {
@@ -120,7 +121,12 @@ void write_wind(const OverlayFacts& facts, float scale) {
   write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, point_of_compass(direction_deg)));
   switch (facts.wind.source) {
     case WindSource::kLive:
-      write(kGood, is_simulated(facts.sensors) ? "live, simulated sensor" : "live sensor");
+      if (is_true_of_all_that_speak(facts.sensors, &wire::SensorStatus::replayed)) {
+        write(kWarn, "REPLAY of a recording");
+      } else {
+        const bool is_simulated = is_true_of_all_that_speak(facts.sensors, &wire::SensorStatus::simulated);
+        write(kGood, is_simulated ? "live, simulated sensor" : "live sensor");
+      }
       break;
     case WindSource::kHandover:
       write(kWarn, fmt::format("handing over, {:.0f} % live", 100.0 * facts.wind.live_weight));
@@ -138,6 +144,7 @@ void write_sensor(const wire::SensorStatus& sensor) {
   std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, health);
   if (sensor.speed_m_s) text += fmt::format(", {:.1f} m/s", *sensor.speed_m_s);
   if (sensor.direction_deg) text += fmt::format(" from {:.0f}\u00b0", *sensor.direction_deg);
+  if (sensor.replayed) text += ", REPLAY";
   if (sensor.simulated) text += ", simulated";
   write(is_live ? kGood : kWarn, text);
 }

@@ -99,6 +99,7 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   to.readings = from.readings();
   to.frames = from.frames();
   to.reconnects = from.reconnects();
+  to.replayed = from.replayed();
   const std::size_t reasons = from.refused() == nullptr ? 0 : from.refused()->size();
   if (reasons > kMaxRefusalReasons) return false;
   for (std::size_t i = 0; i < reasons; ++i) {

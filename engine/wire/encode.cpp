@@ -126,6 +126,7 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   table.add_refused(refused_vector);
   table.add_frames(sensor.frames);
   table.add_reconnects(sensor.reconnects);
+  table.add_replayed(sensor.replayed);
   return table.Finish();
 }
 

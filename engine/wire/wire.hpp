@@ -100,6 +100,7 @@ struct SensorStatus {
   std::vector<std::pair<std::string, std::uint64_t>> refused;
   std::uint64_t frames = 0;      ///< messages from the device, of use or not
   std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
+  bool replayed = false;         ///< a recording that is played again
 };
 
 struct Sensors {

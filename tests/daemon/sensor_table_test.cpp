@@ -51,6 +51,26 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   EXPECT_THAT(table, HasSubstr("connecting")) << "a sensor that never spoke shows what its link does";
 }
 
+TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
+  wire::SensorStatus log;
+  log.name = "storm";
+  log.driver = "windlog";
+  log.link = 1;
+  log.health = 1;
+  log.replayed = true;
+  log.readings = 3;
+  wire::Sensors sensors{
+      {log},
+      {.time = {}, .wind = {5.0, 0.0}, .source = WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.0},
+      0,
+      0};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("(REPLAY of a recording)"));
+  EXPECT_THAT(sensor_table(sensors), ContainsRegex("storm +windlog +REPLAY"));
+  log.replayed = false;
+  sensors.sensors.push_back(log);
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("(live)")) << "a real one speaks beside it";
+}
+
 TEST(SensorTable, ShowsFramesAndReconnects) {
   wire::SensorStatus sensor;
   sensor.name = "roof";

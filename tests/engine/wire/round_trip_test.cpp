@@ -212,6 +212,8 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.refused, samples::sensors().sensors[0].refused);
   EXPECT_EQ(gauge.frames, 1250u);
   EXPECT_EQ(gauge.reconnects, 2u);
+  EXPECT_TRUE(gauge.replayed);
+  EXPECT_FALSE(sensors.sensors[1].replayed);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
   EXPECT_EQ(sensors.late_ticks, 5u);

@@ -237,6 +237,7 @@ inline wire::Sensors sensors() {
   gauge.refused = {{"timeout", 3}, {"exception", 1}};
   gauge.frames = 1250;
   gauge.reconnects = 2;
+  gauge.replayed = true;
   return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2};
 }
 
