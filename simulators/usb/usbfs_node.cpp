@@ -76,7 +76,7 @@ void UsbfsNode::submit(ProgramCall call) {
   Urb urb;
   urb.memory = call.argument().pointed_to(0, sizeof(usbdevfs_urb));
   if (urb.memory.bytes().size() < sizeof(usbdevfs_urb)) return call.fail(EFAULT);
-  usbdevfs_urb head{};
+  usbdevfs_urb head;  // its last member has no size: it cannot be initialised in standard C++
   std::memcpy(&head, urb.memory.bytes().data(), sizeof head);
   if (head.buffer_length < 0 || head.buffer_length > kLongestBuffer) return call.fail(EINVAL);
   const auto length = static_cast<std::size_t>(head.buffer_length);
