@@ -9,7 +9,7 @@ namespace {
 constexpr double kRobustDeviations = 5.0;
 constexpr double kDeviationPerMad = 1.4826;
 /// Below this nothing is told from a calm.
-constexpr double kCalm_m_s = 0.3;
+constexpr double kNoWind_m_s = 0.3;
 constexpr double kStill_m_s = 0.05;
 /// The turbulence that a sensor's steps are compared with, and how much longer a coarse one may repeat itself.
 constexpr double kLittleTurbulence = 0.1;
@@ -110,7 +110,7 @@ bool ReadingJudge::is_frozen(const WindReading& reading, double time_s) noexcept
     return false;
   }
   ++same_count_;
-  if (reading.speed_m_s < kCalm_m_s) return false;
+  if (reading.speed_m_s < kNoWind_m_s) return false;
 
   // Steps as large as the turbulence: the same number for a while is no wonder.
   const bool is_coarse = resolution_m_s_ > kLittleTurbulence * reading.speed_m_s;
