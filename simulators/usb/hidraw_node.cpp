@@ -93,10 +93,13 @@ void HidrawNode::hand_out_reports() {
   while (!reports_.empty() && !readers_.empty()) {
     ProgramCall reader = std::move(readers_.front());
     readers_.pop_front();
-    const ProgramMemory buffer = reader.argument();
-    buffer.write(0, reports_.front());
-    reader.answer(static_cast<long>(std::min(buffer.bytes().size(), reports_.front().size())));
+    const UsbBytes report = std::move(reports_.front());
     reports_.pop_front();
+    // Before the answer: whoever has it may ask at once whether there is more, and read if there seems to be.
+    readiness_.set_ready(!reports_.empty());
+    const ProgramMemory buffer = reader.argument();
+    buffer.write(0, report);
+    reader.answer(static_cast<long>(std::min(buffer.bytes().size(), report.size())));
   }
   readiness_.set_ready(host_ == nullptr || !reports_.empty());
 }
