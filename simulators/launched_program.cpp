@@ -23,6 +23,7 @@ constexpr int kPatience_ms = 2000;
 LaunchedProgram::LaunchedProgram(const std::vector<std::string>& command, Simulator& simulator)
     : simulator_(simulator) {
   std::vector<char*> words;
+  words.reserve(command.size() + 1);
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   const pid_t parent = getpid();

@@ -28,8 +28,9 @@ constexpr std::array<std::uint8_t, 16> kCodeOfPoint = {6, 14, 12, 8, 10, 11, 9, 
 UsbBytes acurite_report_descriptor() {
   UsbBytes bytes = {0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08};
   const std::array<std::uint8_t, 3> sizes = {9, 24, 32};
-  for (std::uint8_t id = 1; id <= sizes.size(); ++id) {
-    const UsbBytes report = {0x85, id, 0x95, sizes[id - 1U], 0x09, 0x01, 0x81, 0x02};
+  std::uint8_t id = 0;
+  for (const std::uint8_t size : sizes) {
+    const UsbBytes report = {0x85, ++id, 0x95, size, 0x09, 0x01, 0x81, 0x02};
     bytes.insert(bytes.end(), report.begin(), report.end());
   }
   bytes.push_back(0xC0);

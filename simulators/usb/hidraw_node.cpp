@@ -206,7 +206,7 @@ void HidrawNode::set_report(ProgramCall call, std::span<const std::uint8_t> repo
   });
 }
 
-void HidrawNode::submit(std::shared_ptr<ProgramCall> call, UsbTransfer transfer, UsbHost::Then then) {
+void HidrawNode::submit(const std::shared_ptr<ProgramCall>& call, UsbTransfer transfer, UsbHost::Then then) {
   const std::uint64_t number = host_->submit(std::move(transfer), std::move(then));
   pending_.push_back({number, time_s_ + kTimeout_s, call});
 }

@@ -29,7 +29,7 @@ class HidrawNode final : public EmulatedNode {
   void get_report(ProgramCall call, const ProgramMemory& buffer, std::uint16_t type);
   void set_report(ProgramCall call, std::span<const std::uint8_t> report, std::uint16_t type);
   /// Submits it; whoever waits in `call` waits for kTimeout_s at most.
-  void submit(std::shared_ptr<ProgramCall> call, UsbTransfer transfer, UsbHost::Then then);
+  void submit(const std::shared_ptr<ProgramCall>& call, UsbTransfer transfer, UsbHost::Then then);
   void give_up_late_ones();
   void read_reports();
   void hand_out_reports();

@@ -7,9 +7,11 @@
 #include <span>
 
 // GObject's own types, so that its headers stay in the source files.
+// NOLINTBEGIN(bugprone-reserved-identifier): the names are GObject's
 struct _UMockdevIoctlBase;
 struct _UMockdevIoctlClient;
 struct _UMockdevIoctlData;
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace yuragi::sim {
 

@@ -2,12 +2,12 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ void throw_if(GError* error, const std::string& what) {
 }  // namespace
 
 bool is_in_umockdev() noexcept {
-  const char* const preloaded = std::getenv("LD_PRELOAD");
+  const char* const preloaded = std::getenv("LD_PRELOAD");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   return preloaded != nullptr && std::string_view(preloaded).find("libumockdev-preload") != std::string_view::npos;
 }
 
@@ -42,11 +42,12 @@ void restart_in_umockdev() {
     begin = end + 1;
   }
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   execvp(arguments[0], arguments.data());
-  throw std::runtime_error(
-      fmt::format("cannot start umockdev-wrapper ({}): install the package umockdev", std::strerror(errno)));
+  throw std::runtime_error(fmt::format("cannot start umockdev-wrapper ({}): install the package umockdev",
+                                       std::generic_category().message(errno)));
 }
 
 UmockdevTestbed::UmockdevTestbed() {

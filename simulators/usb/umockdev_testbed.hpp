@@ -5,7 +5,7 @@
 
 #include "simulators/usb/umockdev_calls.hpp"
 
-struct _UMockdevTestbed;
+struct _UMockdevTestbed;  // NOLINT(bugprone-reserved-identifier): the name is GObject's
 
 namespace yuragi::sim {
 

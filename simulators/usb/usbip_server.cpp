@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
 /// A host that lets so much lie unread is gone, or hostile.
-constexpr std::size_t kMostUnread = 1024 * 1024;
+constexpr std::size_t kMostUnread = std::size_t{1024} * 1024;
 constexpr std::size_t kMostClients = 64;
 
 }  // namespace
@@ -78,7 +78,7 @@ struct UsbipServer::State {
     for (;;) {
       const std::size_t size = client.socket.read_some(asio::buffer(block), error);
       client.in.insert(client.in.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(size));
-      if (error || client.in.size() > 2 * kUsbipLongestTransfer) break;
+      if (error || client.in.size() > std::size_t{2} * kUsbipLongestTransfer) break;
     }
     if (error && error != asio::error::would_block) client.is_gone = true;
   }

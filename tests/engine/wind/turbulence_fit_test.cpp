@@ -58,7 +58,8 @@ TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
   // 64 samples make one reading; 4096 readings of 1 s; L / U = 12 s; TI 0.3 at 7 m/s.
   constexpr std::size_t kSamples = std::size_t{1} << 18U;
   constexpr std::size_t kPerReading = 64;
-  constexpr double kDuration_s = static_cast<double>(kSamples / kPerReading);
+  constexpr std::size_t kReadings = kSamples / kPerReading;
+  constexpr auto kDuration_s = static_cast<double>(kReadings);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const NoiseTile1 noise =
         make_noise_1d({.size = kSamples, .seed = seed, .integral_scale = 12.0 / kDuration_s}).value();
