@@ -44,7 +44,7 @@ std::unique_ptr<SimulatorThread> plug_in(std::initializer_list<std::string_view>
 
 /// Takes the node away, so that nobody can open it, whoever it is.
 void take_node_away(const std::string& node) {
-  const char* const root = std::getenv("UMOCKDEV_DIR");
+  const char* const root = std::getenv("UMOCKDEV_DIR");  // NOLINT(concurrency-mt-unsafe): set before any thread
   ASSERT_NE(root, nullptr);
   std::filesystem::remove(root + node);
 }

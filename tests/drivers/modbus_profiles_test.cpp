@@ -15,8 +15,6 @@
 namespace yuragi {
 namespace {
 
-using testing::HasSubstr;
-
 /// What a device has in its registers, as the wire counts them.
 using DeviceRegisters = std::map<int, std::uint16_t>;
 

@@ -260,7 +260,7 @@ TEST(MqttDriver, ConnectsToABrokerThatIsSlowToTakeUs) {
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   address.sin_port = htons(listener.port());
   for (const Descriptor& other : others) {
-    connect(other.get(), reinterpret_cast<sockaddr*>(&address), sizeof address);
+    static_cast<void>(connect(other.get(), reinterpret_cast<sockaddr*>(&address), sizeof address));
   }
   MqttRun run(listener.port(), {});
 
