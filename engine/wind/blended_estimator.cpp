@@ -187,6 +187,13 @@ void BlendedEstimator::follow(Source& source, bool is_chosen, double dt_s) noexc
     source.trust[band].step(target, kTrustRate_rad_s, dt_s);
   }
   source.mean_trust.step(std::exp(-late_s / settings_.mean_memory_s), kTrustRate_rad_s, dt_s);
+
+  // What the rest of the tick asks for again and again, for every octave of the noise.
+  source.interval_s = interval_s;
+  source.mean_share = source.weight.value * source.mean_trust.value;
+  for (std::size_t band = 0; band < kBands; ++band) {
+    source.shares[band] = source.weight.value * source.trust[band].value;
+  }
 }
 
 BlendedEstimator::Heard BlendedEstimator::hear() const noexcept {
@@ -195,15 +202,13 @@ BlendedEstimator::Heard BlendedEstimator::hear() const noexcept {
   double knowable = 0.0;
   for (const Source& source : sources_) {
     if (!source.record.has_spoken()) continue;
-    const double weight = source.weight.value;
-    const double mean_weight = weight * source.mean_trust.value;
-    heard.mean = heard.mean + mean_weight * source.follower.mean();
-    heard.weight += mean_weight;
-    heard.speed_m_s += mean_weight * source.speed_m_s;
+    heard.mean = heard.mean + source.mean_share * source.follower.mean();
+    heard.weight += source.mean_share;
+    heard.speed_m_s += source.mean_share * source.speed_m_s;
     for (std::size_t band = 0; band < kBands; ++band) {
-      heard.wind = heard.wind + weight * source.trust[band].value * source.follower.band(band);
-      known += weight * source.trust[band].value;
-      knowable += weight * full_trust(OctaveFollower::centre_hz(band), source.record.expected_interval_s());
+      heard.wind = heard.wind + source.shares[band] * source.follower.band(band);
+      known += source.shares[band];
+      knowable += source.weight.value * full_trust(OctaveFollower::centre_hz(band), source.interval_s);
     }
   }
   heard.weight = std::clamp(heard.weight, 0.0, 1.0);
@@ -219,12 +224,9 @@ double BlendedEstimator::power_heard(double frequency_hz) const noexcept {
   std::complex<double> sum = 0.0;
   for (const Source& source : sources_) {
     if (!source.record.has_spoken() || source.weight.value <= 0.0) continue;
-    std::array<double, kBands> weights{};
-    for (std::size_t band = 0; band < kBands; ++band) weights[band] = source.weight.value * source.trust[band].value;
-    const double mean_weight = source.weight.value * source.mean_trust.value;
     // A reading is a mean over its interval, and is held for as long.
-    const double averaged = sinc(frequency_hz * source.record.expected_interval_s());
-    sum += averaged * averaged * OctaveFollower::response(frequency_hz, mean_weight, weights);
+    const double averaged = sinc(frequency_hz * source.interval_s);
+    sum += averaged * averaged * OctaveFollower::response(frequency_hz, source.mean_share, source.shares);
   }
   return std::clamp(std::norm(sum), 0.0, 1.0);
 }
@@ -258,10 +260,9 @@ WindVector BlendedEstimator::gusts(const Heard& heard) const noexcept {
     double variance_along = (1.0 - heard.weight) * climate_along_[i];
     double variance_across = (1.0 - heard.weight) * climate_across_[i];
     for (const Source& source : sources_) {
-      const double weight = source.weight.value * source.mean_trust.value;
-      if (!source.record.has_spoken() || weight <= 0.0) continue;
-      variance_along += weight * source.along.shares[i] * source.along.fit.correction(centre_hz);
-      variance_across += weight * source.across.shares[i] * source.across.fit.correction(centre_hz);
+      if (!source.record.has_spoken() || source.mean_share <= 0.0) continue;
+      variance_along += source.mean_share * source.along.shares[i] * source.along.fit.correction(centre_hz);
+      variance_across += source.mean_share * source.across.shares[i] * source.across.fit.correction(centre_hz);
     }
     along += std::sqrt(missing * scale * variance_along) * static_cast<double>(noise.along[i]);
     across += std::sqrt(missing * scale * variance_across) * static_cast<double>(noise.across[i]);

@@ -65,7 +65,10 @@ class BlendedEstimator final : public WindEstimator {
     OctaveFollower follower;
     std::array<CriticallyDamped, kBands> trust{};  ///< in each band, at most what its interval allows
     CriticallyDamped mean_trust, weight;
-    double speed_m_s = 0.0;  ///< slow mean of its speeds
+    std::array<double, kBands> shares{};  ///< weight times trust, as of this tick; in each band
+    double mean_share = 0.0;              ///< the same of the mean
+    double interval_s = 0.0;              ///< expected, as of this tick
+    double speed_m_s = 0.0;               ///< slow mean of its speeds
     Component along, across;
     std::vector<WindVector> history;  ///< a ring of the last readings
     std::size_t history_size = 0;     ///< those without a gap up to the last
