@@ -5,6 +5,7 @@ passed=0
 failed=0
 skipped=0
 stage_times=()
+complaints=()
 
 # Nothing here asks a question: no test may wait for a keyboard.
 exec </dev/null
@@ -31,18 +32,20 @@ check() {
   shift
   "$@" && return
   echo "FAILED: $what" >&2
+  complaints+=("FAILED: $what")
   add 0 1 0
   return 1
 }
 
-# count_results FILE: "PASSED FAILED SKIPPED" of CTest's JUnit file. CTest also calls skipped what could not be started
-# (a missing program, a failed fixture): that is a failure here.
+# count_results FILE: "PASSED FAILED SKIPPED" of CTest's JUnit file, then the name of each test that failed and its
+# last words. CTest also calls skipped what could not be started (a missing program, a failed fixture): that is a failure here.
 count_results() {
   /usr/bin/python3 - "$1" <<'PYTHON'
 import sys
 import xml.etree.ElementTree
 
 counts = [0, 0, 0]
+failures = []
 for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
     reason = case.find("skipped")
     asked_to_skip = reason is not None and reason.get("message", "").startswith("SKIP_")
@@ -52,19 +55,25 @@ for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
         counts[2] += 1
     else:
         counts[1] += 1
+        failures.append("FAILED: " + case.get("name"))
+        failures += ["    " + line for line in case.findtext("system-out", "").splitlines()[-30:]]
 print(*counts)
+print(*failures[:200], sep="\n")
 PYTHON
 }
 
 # collect WHAT RESULTS STATUS: adds up CTest's results, given its exit code.
 collect() {
-  local what=$1 results=$2 status=$3 counts failed_before=$failed
+  local what=$1 results=$2 status=$3 counts line failed_before=$failed
   if ! counts=$(count_results "$results"); then
     check "$what left no results" false
     return
   fi
-  # shellcheck disable=SC2086  # three words
-  add $counts
+  while IFS= read -r line; do
+    [ -z "$line" ] || complaints+=("$line")
+  done < <(tail -n +2 <<<"$counts")
+  # shellcheck disable=SC2046  # three words
+  add $(head -n 1 <<<"$counts")
   # A complaint that stands in no test's result: no test matched, say.
   if [ "$status" -ne 0 ] && [ "$failed" -eq "$failed_before" ]; then
     check "$what ended with exit code $status" false
@@ -82,7 +91,8 @@ test_preset() {
   collect "ctest of $preset" "$results" "$status"
 }
 
-# finish: the times where there were several stages, and the closing line. Fails if anything failed or nothing ran.
+# finish: the times where there were several stages, what failed, and the closing line. Fails if anything failed or
+# nothing ran.
 finish() {
   local line="$passed passed, $failed failed"
   [ "$skipped" -eq 0 ] || line+=", $skipped skipped"
@@ -90,6 +100,7 @@ finish() {
     printf '%s\n' "${stage_times[@]}"
     printf '%-16s %5d s\n' total "$SECONDS"
   fi
+  [ ${#complaints[@]} -eq 0 ] || printf '%s\n' "${complaints[@]}"
   [ "$((passed + failed))" -gt 0 ] || echo "no test ran" >&2
   echo "$line"
   [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
