@@ -23,7 +23,7 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   Animation animation(config);
   Config one_source = config;
   one_source.sensors.resize(1);
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source);
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, make_gust_noise(config));
 
   const double rate_hz = config.animation.number("rate");
   const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);

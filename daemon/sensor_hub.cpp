@@ -5,7 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/sensor_table.hpp"
-#include "engine/wind/following_estimator.hpp"
+#include "engine/wind/blended_estimator.hpp"
 
 namespace yuragi {
 namespace {
@@ -24,19 +24,25 @@ std::string_view name_of(SourceHealth health) {
 
 }  // namespace
 
-std::unique_ptr<WindEstimator> make_estimator(const Config& config) {
-  const FollowingEstimatorSettings settings{
-      .default_wind = {.mean_speed_m_s = config.wind.number("default_speed"),
-                       .mean_direction_deg = config.wind.number("default_direction"),
-                       .turbulence_intensity = config.wind.number("default_turbulence"),
-                       .seed = config.seed},
-      .handover_s = config.wind.number("handover"),
-      .stale_intervals = config.wind.number("stale_intervals")};
-  return std::make_unique<FollowingEstimator>(config.sensors.size(), settings);
+std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
+  return std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed});
 }
 
-SensorHub::SensorHub(const Config& config, const Clock& clock, Listener listener)
-    : clock_(clock), listener_(std::move(listener)), estimator_(make_estimator(config)) {
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
+  const BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
+                                           .mean_direction_deg = config.wind.number("default_direction"),
+                                           .turbulence_intensity = config.wind.number("default_turbulence"),
+                                           .seed = config.seed},
+                               .length_m = config.wind.number("default_length"),
+                               .handover_s = config.wind.number("handover"),
+                               .stale_intervals = config.wind.number("stale_intervals"),
+                               .rate_hz = config.animation.number("rate")};
+  return std::make_unique<BlendedEstimator>(config.sensors.size(), settings, std::move(noise));
+}
+
+SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
+                     Listener listener)
+    : clock_(clock), listener_(std::move(listener)), estimator_(make_estimator(config, std::move(noise))) {
   // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
   std::vector<std::unique_ptr<Sensor>> sensors;
   for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));

@@ -19,14 +19,16 @@ class SensorHub {
   /// Sees each plausible reading, before calibration; the recorder listens here.
   using Listener = std::function<void(std::size_t sensor, const WindReading&)>;
 
-  /// Opens and starts every sensor. Throws ConfigError where one cannot be made of its values.
-  SensorHub(const Config& config, const Clock& clock, Listener listener = {});
+  /// Opens and starts every sensor. `noise`: of the gusts. Throws ConfigError where a sensor cannot be made of its
+  /// values.
+  SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise, Listener listener = {});
 
   /// Takes in what has arrived and says what the wind is now. Logs each change of a sensor's state once.
   const WindState& advance();
 
   /// The wind as of the last advance().
   const WindState& wind() const noexcept { return wind_; }
+  const GroundWind& ground() const noexcept { return estimator_->ground(); }
 
   /// How each sensor does, for the stream and for `sensors watch`.
   std::vector<wire::SensorStatus> status() const;
@@ -63,7 +65,10 @@ class SensorHub {
   WindState wind_;
 };
 
+/// The pattern of gusts of an installation: the estimator and the scenes share it. Set-up work of about 0.1 s.
+std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
+
 /// The estimator that a configuration asks for, with one source for each of its sensors.
-std::unique_ptr<WindEstimator> make_estimator(const Config& config);
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise);
 
 }  // namespace yuragi

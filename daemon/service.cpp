@@ -38,7 +38,7 @@ class Service::Io {
         director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
-        hub_(config, clock_, listener()) {
+        hub_(config, clock_, make_gust_noise(config), listener()) {
     if (animation_) {
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));

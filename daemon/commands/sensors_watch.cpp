@@ -135,7 +135,7 @@ void watch_daemon(StreamClient client, const std::string& address, const Deadlin
 
 void watch_devices(const Config& config, const std::string& why, const Deadline& deadline, Screen& screen) {
   const SystemClock clock;
-  SensorHub hub(config, clock);
+  SensorHub hub(config, clock, make_gust_noise(config));
   const wire::Subscribe wish = screen.wish();
   hub.trace(
       [&](std::string_view sensor) { return wish.raw && (wish.raw_sensor.empty() || wish.raw_sensor == sensor); });

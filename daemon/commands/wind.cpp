@@ -101,7 +101,7 @@ class Table {
 
 void write_wind(const WindOptions& options, const Config& config, std::FILE* out) {
   WindlogPlayback playback(options.file, options.playback);
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(config);
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, make_gust_noise(config));
   Table table(out);
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto told_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);

@@ -5,6 +5,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace yuragi {
 namespace {
@@ -43,10 +44,6 @@ double full_trust(double centre_hz, double interval_s) noexcept {
   return 1.0 / (1.0 + ratio * ratio);
 }
 
-WindVector turned(WindVector unit, double along, double across) noexcept {
-  return {along * unit.u_m_s - across * unit.v_m_s, along * unit.v_m_s + across * unit.u_m_s};
-}
-
 }  // namespace
 
 BlendedEstimator::Source::Source(const BlendSettings& settings, const Shares& along_shares, const Shares& across_shares)
@@ -59,13 +56,15 @@ BlendedEstimator::Source::Source(const BlendSettings& settings, const Shares& al
              across_shares},
       history(std::size_t{2} << (TurbulenceFit::kScales - 1)) {}
 
-BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings& settings)
+BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings& settings,
+                                   std::shared_ptr<const GustNoise> noise)
     : settings_(settings),
       climate_(wind_from(settings.climate.mean_speed_m_s, settings.climate.mean_direction_deg)),
-      noise_({.seed = settings.climate.seed}),
+      noise_(std::move(noise)),
       climate_along_(shares_of(settings.climate.turbulence_intensity, settings.length_m)),
-      climate_across_(shares_of(kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)),
-      ahead_(wind_from(1.0, settings.climate.mean_direction_deg)) {
+      climate_across_(shares_of(kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)) {
+  ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
+  ground_.gusts.carried = noise_->begin(settings.climate.seed);
   sources_.reserve(source_count);
   for (std::size_t i = 0; i < source_count; ++i) sources_.emplace_back(settings, climate_along_, climate_across_);
 }
@@ -113,6 +112,7 @@ void BlendedEstimator::learn(Source& source) noexcept {
 /// The differences between the mean of the last 2^s readings and that of as many before, along the wind and across it.
 void BlendedEstimator::measure_scales(Source& source) noexcept {
   const double speed_m_s = std::max(source.speed_m_s, kLeastSpeed_m_s);
+  const WindVector ahead = ground_.gusts.ahead;
   const std::size_t size = source.history.size();
   const auto reading = [&](std::size_t back) { return source.history[(source.next + size - 1 - back) % size]; };
   WindVector newer{};  // the sum of the last 2^s readings
@@ -124,8 +124,8 @@ void BlendedEstimator::measure_scales(Source& source) noexcept {
     WindVector older{};
     for (std::size_t back = count; back < 2 * count; ++back) older = older + reading(back);
     const WindVector difference = 1.0 / (static_cast<double>(count) * speed_m_s) * (newer - older);
-    source.along.fit.add(scale, difference.u_m_s * ahead_.u_m_s + difference.v_m_s * ahead_.v_m_s);
-    source.across.fit.add(scale, difference.v_m_s * ahead_.u_m_s - difference.u_m_s * ahead_.v_m_s);
+    source.along.fit.add(scale, difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s);
+    source.across.fit.add(scale, difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s);
   }
 }
 
@@ -142,7 +142,7 @@ BlendedEstimator::Shares BlendedEstimator::shares_of(double intensity, double le
   };
 
   Shares shares{};
-  const auto& octaves = noise_.octaves();
+  const auto& octaves = noise_->octaves();
   for (std::size_t which = 0; which < 2; ++which) {
     const std::size_t way = which * GustNoise::kWayOctaves;
     const std::size_t tile = 2 * GustNoise::kWayOctaves + which * GustNoise::kTileOctaves;
@@ -233,30 +233,28 @@ double BlendedEstimator::power_heard(double frequency_hz) const noexcept {
 
 /// The mean wind carries the gusts, and says where ahead is.
 void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
+  WindVector& ahead = ground_.gusts.ahead;
   const double speed_m_s = speed_of(heard.mean);
   if (speed_m_s > 0.0) {
     const double calm = std::clamp(speed_m_s / kCalm_m_s, 0.0, 1.0);
     const double part = -std::expm1(-2.0 * std::numbers::pi * kTurnRate_hz * calm * calm * dt_s);
-    const WindVector wanted = ahead_ + part * ((1.0 / speed_m_s) * heard.mean - ahead_);
+    const WindVector wanted = ahead + part * ((1.0 / speed_m_s) * heard.mean - ahead);
     // A wind that turned right round has no way between: it waits until it has one.
-    if (const double length = speed_of(wanted); length > 1e-3) ahead_ = (1.0 / length) * wanted;
+    if (const double length = speed_of(wanted); length > 1e-3) ahead = (1.0 / length) * wanted;
   }
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
-  noise_.carry(carried_, advection_m_s_ * ahead_.u_m_s, -advection_m_s_ * ahead_.v_m_s, dt_s);
+  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s);
 }
 
-WindVector BlendedEstimator::gusts(const Heard& heard) const noexcept {
-  const GustNoise::Values noise = noise_.at(carried_, 0.0, 0.0);
+/// How strong each octave of the noise is: what the sensors leave of it.
+void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
   const double scale = heard.speed_m_s * heard.speed_m_s;
-  double along = 0.0;
-  double across = 0.0;
   for (std::size_t i = 0; i < kOctaves; ++i) {
-    const GustNoise::Octave& octave = noise_.octaves()[i];
+    const GustNoise::Octave& octave = noise_->octaves()[i];
     const double centre_hz = std::numbers::sqrt2 * octave.from_rad_m * advection_m_s_ / (2.0 * std::numbers::pi);
     // What would jitter from one picture to the next is left out, by and by over the octave before.
     const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / centre_hz), 0.0, 1.0);
     const double missing = (1.0 - power_heard(centre_hz)) * shown;
-    if (missing <= 0.0) continue;
     double variance_along = (1.0 - heard.weight) * climate_along_[i];
     double variance_across = (1.0 - heard.weight) * climate_across_[i];
     for (const Source& source : sources_) {
@@ -264,10 +262,9 @@ WindVector BlendedEstimator::gusts(const Heard& heard) const noexcept {
       variance_along += source.mean_share * source.along.shares[i] * source.along.fit.correction(centre_hz);
       variance_across += source.mean_share * source.across.shares[i] * source.across.fit.correction(centre_hz);
     }
-    along += std::sqrt(missing * scale * variance_along) * static_cast<double>(noise.along[i]);
-    across += std::sqrt(missing * scale * variance_across) * static_cast<double>(noise.across[i]);
+    ground_.gusts.along_m_s[i] = static_cast<float>(std::sqrt(missing * scale * variance_along));
+    ground_.gusts.across_m_s[i] = static_cast<float>(std::sqrt(missing * scale * variance_across));
   }
-  return turned(ahead_, along, across);
 }
 
 WindState BlendedEstimator::advance(MonoTime now) noexcept {
@@ -285,7 +282,9 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   }
   const Heard heard = hear();
   carry_gusts(heard, dt_s);
-  state_.wind = heard.wind + gusts(heard);
+  weigh_gusts(heard);
+  ground_.everywhere = heard.wind + noise_->everywhere(ground_.gusts);
+  state_.wind = ground_.at(*noise_, 0.0, 0.0);
   if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {
     state_.wind = (kMaxPlausibleSpeed_m_s / speed_m_s) * state_.wind;
   }

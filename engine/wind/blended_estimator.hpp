@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "engine/math/critically_damped.hpp"
@@ -36,11 +37,13 @@ struct BlendSettings {
 /// Source: method of the wind model (`wind.md` 2 of the specification), Taylor 1938 (frozen turbulence).
 class BlendedEstimator final : public WindEstimator {
  public:
-  /// Allocates (about 30 MB of noise) and throws what GustNoise throws.
-  BlendedEstimator(std::size_t source_count, const BlendSettings& settings);
+  /// `noise`: shared with whoever wants to know the wind at other places. The climate's seed says where on it the gusts
+  /// begin. Allocates.
+  BlendedEstimator(std::size_t source_count, const BlendSettings& settings, std::shared_ptr<const GustNoise> noise);
 
   bool accept(std::size_t source, const WindReading& reading) noexcept override;
   WindState advance(MonoTime now) noexcept override;
+  const GroundWind& ground() const noexcept override { return ground_; }
   SourceReport report(std::size_t source) const noexcept override;
 
   /// The turbulence that is fitted at the moment, along the wind.
@@ -91,17 +94,16 @@ class BlendedEstimator final : public WindEstimator {
   void follow(Source& source, bool is_chosen, double dt_s) noexcept;
   Heard hear() const noexcept;
   void carry_gusts(const Heard& heard, double dt_s) noexcept;
-  WindVector gusts(const Heard& heard) const noexcept;
+  void weigh_gusts(const Heard& heard) noexcept;
   double power_heard(double frequency_hz) const noexcept;
   Shares shares_of(double intensity, double length_m) const noexcept;
 
   BlendSettings settings_;
   WindVector climate_;
-  GustNoise noise_;
-  GustNoise::Carried carried_;
+  std::shared_ptr<const GustNoise> noise_;
   Shares climate_along_, climate_across_;
   std::vector<Source> sources_;
-  WindVector ahead_;  ///< unit vector: where the mean wind blows, held in calm
+  GroundWind ground_;
   double advection_m_s_ = 0.0;
   WindState state_;
   bool has_begun_ = false;

@@ -33,6 +33,11 @@ std::uint32_t phase_of(double part) noexcept {
   return static_cast<std::uint32_t>(part * 4294967296.0);
 }
 
+/// `along` and `across` of a unit vector, in the world.
+WindVector turned(WindVector unit, double along, double across) noexcept {
+  return {along * unit.u_m_s - across * unit.v_m_s, along * unit.v_m_s + across * unit.u_m_s};
+}
+
 NoiseTile2 tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
   const double cycles = std::ldexp(1.0, static_cast<int>(octave));
   NoiseTile2 tile =
@@ -92,6 +97,20 @@ GustNoise::Component GustNoise::make_component(const GustNoiseSettings& settings
   return component;
 }
 
+GustNoise::Carried GustNoise::begin(std::uint64_t seed) const noexcept {
+  const RandomStream random(seed, stream_id("where gusts begin"));
+  const auto [east, south] = random.uniform_pair(0);
+  const auto [first, second] = random.uniform_pair(1);
+  Carried carried;
+  carried.first.x.add(east * periods_m_[0], periods_m_[0]);
+  carried.first.z.add(south * periods_m_[0], periods_m_[0]);
+  carried.second.x.add(first * periods_m_[1], periods_m_[1]);
+  carried.second.z.add(second * periods_m_[1], periods_m_[1]);
+  carried.way_first.add(first * kTilesPerWay * periods_m_[0], kTilesPerWay * periods_m_[0]);
+  carried.way_second.add(south * kTilesPerWay * periods_m_[1], kTilesPerWay * periods_m_[1]);
+  return carried;
+}
+
 void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, double dt_s) const noexcept {
   const double c = std::cos(kTurn_rad);
   const double s = std::sin(kTurn_rad);
@@ -104,16 +123,47 @@ void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, doubl
   carried.way_second.add(way_m, kTilesPerWay * periods_m_[1]);
 }
 
-GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m) const noexcept {
+std::array<TorusPhase, 2> GustNoise::tile_phases(const Carried& carried, double east_m, double south_m) const noexcept {
   // A field that has moved by X is read at x - X.
   const double c = std::cos(kTurn_rad);
   const double s = std::sin(kTurn_rad);
-  const TorusPhase first =
-      TorusPhase{torus_phase(east_m, periods_m_[0]), torus_phase(south_m, periods_m_[0])} - carried.first.phase();
-  const TorusPhase second = TorusPhase{torus_phase(c * east_m + s * south_m, periods_m_[1]),
-                                       torus_phase(c * south_m - s * east_m, periods_m_[1])} -
-                            carried.second.phase();
+  const TorusPhase first{torus_phase(east_m, periods_m_[0]), torus_phase(south_m, periods_m_[0])};
+  const TorusPhase second{torus_phase(c * east_m + s * south_m, periods_m_[1]),
+                          torus_phase(c * south_m - s * east_m, periods_m_[1])};
+  return {first - carried.first.phase(), second - carried.second.phase()};
+}
+
+GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m) const noexcept {
+  const auto [first, second] = tile_phases(carried, east_m, south_m);
   return {read(along_, first, second, carried), read(across_, first, second, carried)};
+}
+
+WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
+  double along = 0.0;
+  double across = 0.0;
+  for (std::size_t which = 0; which < 2; ++which) {
+    const std::uint32_t phase = which == 0 ? moment.carried.way_first.phase() : moment.carried.way_second.phase();
+    for (std::size_t i = 0; i < kWayOctaves; ++i) {
+      const std::size_t octave = which * kWayOctaves + i;
+      along += static_cast<double>(moment.along_m_s[octave] * read_noise(along_.ways[which][i], phase));
+      across += static_cast<double>(moment.across_m_s[octave] * read_noise(across_.ways[which][i], phase));
+    }
+  }
+  return turned(moment.ahead, along, across);
+}
+
+WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
+  const std::array<TorusPhase, 2> phases = tile_phases(moment.carried, east_m, south_m);
+  double along = 0.0;
+  double across = 0.0;
+  for (std::size_t which = 0; which < 2; ++which) {
+    for (std::size_t i = 0; i < kTileOctaves; ++i) {
+      const std::size_t octave = 2 * kWayOctaves + which * kTileOctaves + i;
+      along += static_cast<double>(moment.along_m_s[octave] * read_noise(along_.tiles[which][i], phases[which]));
+      across += static_cast<double>(moment.across_m_s[octave] * read_noise(across_.tiles[which][i], phases[which]));
+    }
+  }
+  return turned(moment.ahead, along, across);
 }
 
 std::array<float, GustNoise::kOctaves> GustNoise::read(const Component& component, TorusPhase first, TorusPhase second,

@@ -7,6 +7,7 @@
 
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/torus.hpp"
+#include "engine/wind/wind_vector.hpp"
 
 namespace yuragi {
 
@@ -50,6 +51,9 @@ class GustNoise {
     TorusOffset first, second;
     TorusTravel way_first, way_second;
   };
+  /// A place to begin at; far from that of another seed.
+  Carried begin(std::uint64_t seed) const noexcept;
+
   /// The wind (east and south, m/s) carries the pattern on for dt_s.
   void carry(Carried& carried, double east_m_s, double south_m_s, double dt_s) const noexcept;
 
@@ -60,6 +64,18 @@ class GustNoise {
   };
   Values at(const Carried& carried, double east_m, double south_m) const noexcept;
 
+  /// The pattern at a moment: how far it has been carried, which way its `along` points, and how strong each octave is
+  /// (its standard deviation).
+  struct Moment {
+    Carried carried;
+    WindVector ahead{0.0, 1.0};  ///< unit vector downwind; `across` is to the left of it
+    std::array<float, kOctaves> along_m_s{}, across_m_s{};
+  };
+  /// The gusts that all places have alike: the octaves of the way.
+  WindVector everywhere(const Moment& moment) const noexcept;
+  /// The gusts of a place alone: the octaves of the tiles (metres east and south of the middle of the scene).
+  WindVector local(const Moment& moment, double east_m, double south_m) const noexcept;
+
  private:
   /// One component of the wind: the octaves of both tiles and of both ways.
   struct Component {
@@ -68,6 +84,7 @@ class GustNoise {
   };
 
   static Component make_component(const GustNoiseSettings& settings, std::uint64_t seed);
+  std::array<TorusPhase, 2> tile_phases(const Carried& carried, double east_m, double south_m) const noexcept;
   std::array<float, kOctaves> read(const Component& component, TorusPhase first, TorusPhase second,
                                    const Carried& carried) const noexcept;
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "engine/wind/ground_wind.hpp"
 #include "engine/wind/wind_reading.hpp"
 #include "engine/wind/wind_state.hpp"
 
@@ -35,8 +36,11 @@ class WindEstimator {
   /// answered with false.
   virtual bool accept(std::size_t source, const WindReading& reading) noexcept = 0;
 
-  /// Goes on to `now` and says what the wind is.
+  /// Goes on to `now` and says what the wind is in the middle of the scene.
   virtual WindState advance(MonoTime now) noexcept = 0;
+
+  /// The same wind over the ground, as of the last advance().
+  virtual const GroundWind& ground() const noexcept = 0;
 
   /// How `source` does, as of the last advance().
   virtual SourceReport report(std::size_t source) const noexcept = 0;

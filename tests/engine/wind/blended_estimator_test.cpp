@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <random>
 #include <utility>
@@ -20,10 +21,12 @@ constexpr double kBlendTick_s = 1.0 / 60.0;
 class Blend {
  public:
   explicit Blend(std::uint64_t seed = 1, std::size_t sources = 1)
-      : estimator_(
-            sources,
-            {.climate = {
-                 .mean_speed_m_s = 4.0, .mean_direction_deg = 180.0, .turbulence_intensity = 0.2, .seed = seed}}) {}
+      : estimator_(sources,
+                   {.climate = {.mean_speed_m_s = 4.0,
+                                .mean_direction_deg = 180.0,
+                                .turbulence_intensity = 0.2,
+                                .seed = seed}},
+                   noise()) {}
 
   MonoTime now() const { return now_; }
   WindState state() const { return state_; }
@@ -51,6 +54,11 @@ class Blend {
   double take_largest_step_m_s() { return std::exchange(largest_step_m_s_, 0.0); }
 
  private:
+  static std::shared_ptr<const GustNoise> noise() {
+    static const auto shared = std::make_shared<const GustNoise>(GustNoiseSettings{});
+    return shared;
+  }
+
   BlendedEstimator estimator_;
   MonoTime now_{std::chrono::hours(1)};
   WindState state_;
@@ -121,24 +129,30 @@ TEST(BlendedEstimator, PassesThroughNorthAndNotThroughSouth) {
 }
 
 TEST(BlendedEstimator, ALossAndAReturnMoveItNoMoreThanItMovesAnyway) {
-  Blend blend(3);
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> gust(0.0, 1.5);
-  const auto speak_for = [&](int readings) {
-    for (int i = 0; i < readings; ++i) {
-      blend.read(std::max(0.0, 9.0 + gust(random)), 200.0);
-      blend.run_for(1.0);
-    }
-  };
-  speak_for(10);
-  blend.take_largest_step_m_s();
-  speak_for(300);
-  const double usual_m_s = blend.take_largest_step_m_s();
-  blend.run_for(100.0);  // silence
-  EXPECT_EQ(blend.estimator().report(0).health, SourceHealth::kStale);
-  EXPECT_LT(blend.state().live_weight, 0.9);
-  speak_for(30);
-  EXPECT_LE(blend.take_largest_step_m_s(), usual_m_s);
+  double usual_m_s = 0.0;
+  double unusual_m_s = 0.0;
+  constexpr int kSeeds = 4;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Blend blend(seed);
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> gust(0.0, 1.5);
+    const auto speak_for = [&](int readings) {
+      for (int i = 0; i < readings; ++i) {
+        blend.read(std::max(0.0, 9.0 + gust(random)), 200.0);
+        blend.run_for(1.0);
+      }
+    };
+    speak_for(10);
+    blend.take_largest_step_m_s();
+    speak_for(200);
+    usual_m_s += blend.take_largest_step_m_s() / kSeeds;
+    blend.run_for(100.0);  // silence
+    EXPECT_EQ(blend.estimator().report(0).health, SourceHealth::kStale);
+    EXPECT_LT(blend.state().live_weight, 0.9);
+    speak_for(100);
+    unusual_m_s += blend.take_largest_step_m_s() / kSeeds;
+  }
+  EXPECT_LE(unusual_m_s, usual_m_s);
 }
 
 TEST(BlendedEstimator, GoesOnMovingWhileTheSensorIsSilent) {
