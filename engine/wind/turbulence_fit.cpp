@@ -109,9 +109,13 @@ double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexc
   return sum;
 }
 
+/// A wind without any turbulence has no logarithm.
+constexpr double kLeastIntensity = 1e-4;
+
 TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s) : prior_(prior), memory_s_(memory_s) {
   haar_table();  // made now, not on the way
-  turbulence_ = {prior.intensity, 8.0};
+  prior_.intensity = std::max(prior.intensity, kLeastIntensity);
+  turbulence_ = {prior_.intensity, 8.0};
 }
 
 void TurbulenceFit::add(std::size_t scale, double difference) noexcept {

@@ -135,10 +135,12 @@ TEST(BlendedEstimator, ALossAndAReturnMoveItNoMoreThanItMovesAnyway) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     Blend blend(seed);
     std::mt19937_64 random(seed);
-    std::normal_distribution<double> gust(0.0, 1.5);
+    std::normal_distribution<double> normal;
+    double gust_m_s = 0.0;  // that lasts for about 8 s
     const auto speak_for = [&](int readings) {
       for (int i = 0; i < readings; ++i) {
-        blend.read(std::max(0.0, 9.0 + gust(random)), 200.0);
+        gust_m_s = 0.88 * gust_m_s + 0.47 * 1.5 * normal(random);
+        blend.read(std::max(0.0, 9.0 + gust_m_s), 200.0);
         blend.run_for(1.0);
       }
     };

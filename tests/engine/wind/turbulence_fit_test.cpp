@@ -54,6 +54,16 @@ void feed(TurbulenceFit& fit, const std::vector<double>& values, double speed_m_
   }
 }
 
+TEST(TurbulenceFit, APriorWithoutTurbulenceIsFinite) {
+  TurbulenceFit fit({.intensity = 0.0}, 600.0);
+  fit.add(0, 0.0);
+  fit.fit(1.0, 5.0);
+  EXPECT_TRUE(std::isfinite(fit.turbulence().intensity));
+  EXPECT_LT(fit.turbulence().intensity, 0.01);
+  EXPECT_TRUE(std::isfinite(fit.turbulence().time_scale_s));
+  EXPECT_TRUE(std::isfinite(fit.correction(1.0)));
+}
+
 TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
   // 64 samples make one reading; 4096 readings of 1 s; L / U = 12 s; TI 0.3 at 7 m/s.
   constexpr std::size_t kSamples = std::size_t{1} << 18U;
