@@ -68,8 +68,8 @@ NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
 GustNoise::GustNoise(const GustNoiseSettings& settings)
     : periods_m_{settings.period_m, std::numbers::phi * settings.period_m},
       evolves_(settings.evolves),
-      along_(make_component(settings, settings.seed ^ stream_id("gusts along the wind"))),
-      across_(make_component(settings, settings.seed ^ stream_id("gusts across the wind"))) {
+      along_(make_octaves(settings, settings.seed ^ stream_id("gusts along the wind"))),
+      across_(make_octaves(settings, settings.seed ^ stream_id("gusts across the wind"))) {
   // The octaves of the way, then those of the tiles. The first tile's and the second's overlap, and share.
   constexpr double kTurn = 2.0 * std::numbers::pi;
   std::size_t next = 0;
@@ -87,8 +87,8 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
   }
 }
 
-GustNoise::Component GustNoise::make_component(const GustNoiseSettings& settings, std::uint64_t seed) {
-  Component component;
+GustNoise::Octaves GustNoise::make_octaves(const GustNoiseSettings& settings, std::uint64_t seed) {
+  Octaves component;
   for (std::size_t which = 0; which < 2; ++which) {
     for (std::size_t octave = 0; octave < kTileOctaves; ++octave) {
       const NoiseSpec spec = tile_octave(octave, settings.samples, seed + 100 * which + octave);
@@ -147,18 +147,17 @@ void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, doubl
   }
 }
 
-std::array<TorusPhase, 2> GustNoise::tile_phases(const Carried& carried, double east_m, double south_m) const noexcept {
-  // A field that has moved by X is read at x - X.
+TorusPhase GustNoise::place_on(std::size_t which, double east_m, double south_m) const noexcept {
+  if (which == 0) return {torus_phase(east_m, periods_m_[0]), torus_phase(south_m, periods_m_[0])};
   const double c = std::cos(kTurn_rad);
   const double s = std::sin(kTurn_rad);
-  const TorusPhase first{torus_phase(east_m, periods_m_[0]), torus_phase(south_m, periods_m_[0])};
-  const TorusPhase second{torus_phase(c * east_m + s * south_m, periods_m_[1]),
-                          torus_phase(c * south_m - s * east_m, periods_m_[1])};
-  return {first - carried.first.phase(), second - carried.second.phase()};
+  return {torus_phase(c * east_m + s * south_m, periods_m_[1]), torus_phase(c * south_m - s * east_m, periods_m_[1])};
 }
 
 GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m) const noexcept {
-  const auto [first, second] = tile_phases(carried, east_m, south_m);
+  // A field that has moved by X is read at x - X.
+  const TorusPhase first = place_on(0, east_m, south_m) - carried.first.phase();
+  const TorusPhase second = place_on(1, east_m, south_m) - carried.second.phase();
   return {read(along_, first, second, carried), read(across_, first, second, carried)};
 }
 
@@ -176,22 +175,42 @@ WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
   return turned(moment.ahead, along, across);
 }
 
-WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
-  const std::array<TorusPhase, 2> phases = tile_phases(moment.carried, east_m, south_m);
-  const Turned& eddies = moment.carried.turned;
-  double along = 0.0;
-  double across = 0.0;
+std::size_t GustNoise::layers(const Moment& moment, Component component,
+                              std::span<Layer, kMaxLayers> out) const noexcept {
+  const bool is_along = component == Component::kAlong;
+  const Octaves& octaves = is_along ? along_ : across_;
+  const auto& weights_m_s = is_along ? moment.along_m_s : moment.across_m_s;
+  const std::array<TorusPhase, 2> offsets = {moment.carried.first.phase(), moment.carried.second.phase()};
+  std::size_t count = 0;
   for (std::size_t which = 0; which < 2; ++which) {
     for (std::size_t i = 0; i < kTileOctaves; ++i) {
-      const std::size_t octave = 2 * kWayOctaves + which * kTileOctaves + i;
-      along += static_cast<double>(moment.along_m_s[octave] * read_tile(along_, which, i, phases[which], eddies));
-      across += static_cast<double>(moment.across_m_s[octave] * read_tile(across_, which, i, phases[which], eddies));
+      const float weight_m_s = weights_m_s[2 * kWayOctaves + which * kTileOctaves + i];
+      if (weight_m_s == 0.0F) continue;
+      const std::size_t turn = which * kTileOctaves + i;
+      out[count++] = {&octaves.tiles[which][i], which, offsets[which], moment.carried.turned.cosine[turn] * weight_m_s};
+      if (!evolves_) continue;
+      out[count++] = {&octaves.quarters[which][i], which, offsets[which],
+                      moment.carried.turned.sine[turn] * weight_m_s};
     }
   }
-  return turned(moment.ahead, along, across);
+  return count;
 }
 
-std::array<float, GustNoise::kOctaves> GustNoise::read(const Component& component, TorusPhase first, TorusPhase second,
+WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
+  const std::array<TorusPhase, 2> places = {place_on(0, east_m, south_m), place_on(1, east_m, south_m)};
+  const auto sum_of = [&](Component component) {
+    std::array<Layer, kMaxLayers> all;
+    const std::size_t count = layers(moment, component, all);
+    float sum = 0.0F;
+    for (const Layer& layer : std::span(all).first(count)) {
+      sum += layer.weight_m_s * read_noise(*layer.tile, places[layer.which] - layer.offset);
+    }
+    return static_cast<double>(sum);
+  };
+  return turned(moment.ahead, sum_of(Component::kAlong), sum_of(Component::kAcross));
+}
+
+std::array<float, GustNoise::kOctaves> GustNoise::read(const Octaves& component, TorusPhase first, TorusPhase second,
                                                        const Carried& carried) const noexcept {
   std::array<float, kOctaves> values{};
   std::size_t next = 0;
@@ -203,7 +222,7 @@ std::array<float, GustNoise::kOctaves> GustNoise::read(const Component& componen
 }
 
 /// An octave of a tile at a place, its eddies as far turned as they are.
-float GustNoise::read_tile(const Component& component, std::size_t which, std::size_t octave, TorusPhase place,
+float GustNoise::read_tile(const Octaves& component, std::size_t which, std::size_t octave, TorusPhase place,
                            const Turned& turned) noexcept {
   const float first = read_noise(component.tiles[which][octave], place);
   if (component.quarters[which].empty()) return first;

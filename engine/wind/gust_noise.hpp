@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/noise/noise_tile.hpp"
@@ -96,25 +97,41 @@ class GustNoise {
   /// The gusts of a place alone: the octaves of the tiles (metres east and south of the middle of the scene).
   WindVector local(const Moment& moment, double east_m, double south_m) const noexcept;
 
+  /// The same as layers, to be read at many places at once and added up: a tile, how far it has been carried, and its
+  /// weight in m/s. A place is read at place_on(layer.which, ...) - offset. An octave that evolves has two layers.
+  struct Layer {
+    const NoiseTile2* tile = nullptr;
+    std::size_t which = 0;  ///< on the first tile's torus, or on the second's
+    TorusPhase offset;
+    float weight_m_s = 0.0F;
+  };
+  enum class Component : std::uint8_t { kAlong, kAcross };
+  static constexpr std::size_t kMaxLayers = 4 * kTileOctaves;  ///< half as many if nothing evolves
+
+  /// Writes those that have a weight; how many they are.
+  std::size_t layers(const Moment& moment, Component component, std::span<Layer, kMaxLayers> out) const noexcept;
+
+  /// A place on the torus of a tile.
+  TorusPhase place_on(std::size_t which, double east_m, double south_m) const noexcept;
+
  private:
   /// One component of the wind: the octaves of both tiles and of both ways.
-  struct Component {
+  struct Octaves {
     std::array<std::vector<NoiseTile2>, 2> tiles;
     std::array<std::vector<NoiseTile2>, 2> quarters;  ///< the same, a quarter turn on; none if nothing evolves
     std::array<std::vector<NoiseTile1>, 2> ways;
   };
 
-  static Component make_component(const GustNoiseSettings& settings, std::uint64_t seed);
-  static float read_tile(const Component& component, std::size_t which, std::size_t octave, TorusPhase place,
+  static Octaves make_octaves(const GustNoiseSettings& settings, std::uint64_t seed);
+  static float read_tile(const Octaves& component, std::size_t which, std::size_t octave, TorusPhase place,
                          const Turned& turned) noexcept;
-  std::array<TorusPhase, 2> tile_phases(const Carried& carried, double east_m, double south_m) const noexcept;
-  std::array<float, kOctaves> read(const Component& component, TorusPhase first, TorusPhase second,
+  std::array<float, kOctaves> read(const Octaves& component, TorusPhase first, TorusPhase second,
                                    const Carried& carried) const noexcept;
 
   std::array<double, 2> periods_m_;  ///< of the tiles
   std::array<Octave, kOctaves> octaves_{};
   bool evolves_;
-  Component along_, across_;
+  Octaves along_, across_;
 };
 
 /// How fast eddies turn over in a wind of standard deviation `sigma_m_s` (along it) and integral length scale
