@@ -17,6 +17,9 @@ constexpr double kTilesPerWay = static_cast<double>(std::size_t{1} << GustNoise:
 constexpr std::size_t kWaySamples = std::size_t{4} << GustNoise::kWayOctaves;
 constexpr double kBeta = 5.0 / 3.0;
 
+/// An octave weaker than this moves nothing, and is not read.
+constexpr float kNothing_m_s = 1e-4F;
+
 /// What reading between samples leaves of an octave's standard deviation, measured at places at random.
 template <class Tile, class PlaceAt>
 double read_deviation(const Tile& tile, PlaceAt place_at) {
@@ -185,7 +188,7 @@ std::size_t GustNoise::layers(const Moment& moment, Component component,
   for (std::size_t which = 0; which < 2; ++which) {
     for (std::size_t i = 0; i < kTileOctaves; ++i) {
       const float weight_m_s = weights_m_s[2 * kWayOctaves + which * kTileOctaves + i];
-      if (weight_m_s == 0.0F) continue;
+      if (weight_m_s < kNothing_m_s) continue;
       const std::size_t turn = which * kTileOctaves + i;
       out[count++] = {&octaves.tiles[which][i], which, offsets[which], moment.carried.turned.cosine[turn] * weight_m_s};
       if (!evolves_) continue;
