@@ -50,7 +50,7 @@ class GroundWindField final : public WindField {
 
 /// Places in rows: sample (i, j, k) stands i - count_x / 2 (rounded down) steps east of the middle, j up from the
 /// ground, and k - count_z / 2 south.
-struct WindGrid {
+struct FieldGrid {
   std::size_t count_x = 1, count_y = 1, count_z = 1;
   double spacing_m = 1.0;
 
@@ -60,6 +60,6 @@ struct WindGrid {
 
 /// The field on a grid: all u, then all v, then (of a field of three dimensions) all w; within each z is the slowest
 /// axis, then y, then x. `out` holds field.dims() times grid.size() values.
-void sample_field(const WindField& field, const WindGrid& grid, std::span<float> out) noexcept;
+void sample_field(const WindField& field, const FieldGrid& grid, std::span<float> out) noexcept;
 
 }  // namespace yuragi
