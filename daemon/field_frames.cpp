@@ -29,10 +29,9 @@ void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const
 }
 
 void make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback_options,
-                          const Config& config, bool evolves, const FieldGrid& grid, const FieldFrames& frames,
-                          const UseField& use) {
+                          const Config& config, const FieldGrid& grid, const FieldFrames& frames, const UseField& use) {
   WindlogPlayback playback(recording, playback_options);
-  const auto noise = std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed, .evolves = evolves});
+  const std::shared_ptr<const GustNoise> noise = make_gust_noise(config);
   const std::unique_ptr<WindEstimator> estimator = make_estimator(config, noise);
   const GroundWindField field(estimator->ground(), *noise);
 

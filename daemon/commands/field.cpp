@@ -59,7 +59,7 @@ struct FieldOptions {
   std::optional<std::size_t> tile;
   FieldFrames frames;
   bool is_frozen = false;
-  bool is_evolving = false;  ///< said so; it is so without
+  bool is_evolving = false;  ///< as it is without, unless a configuration says otherwise
   std::optional<std::uint64_t> seed;
   std::optional<std::filesystem::path> recording;
   PlaybackOptions playback;
@@ -267,12 +267,13 @@ void run_field(FieldOptions options) {
     Config config = options.config_file ? load_config(*options.config_file) : default_config();
     config.sensors.resize(1);
     if (options.seed) config.seed = *options.seed;
+    if (options.is_frozen || options.is_evolving) config.wind.set("evolving", options.is_evolving);
     description["wind"] = {{"recording", options.recording->filename().string()},
-                           {"evolves", options.wind.evolves},
+                           {"evolves", config.wind.flag("evolving")},
                            {"seed", config.seed}};
     title = fmt::format("Wind over the ground, {:g} s after the start of {}", options.frames.first_s,
                         options.recording->filename().string());
-    make_recorded_frames(*options.recording, options.playback, config, options.wind.evolves, grid, options.frames, use);
+    make_recorded_frames(*options.recording, options.playback, config, grid, options.frames, use);
   } else {
     options.wind.samples = tile_of(options, grid);
     options.wind.seed = options.seed.value_or(options.wind.seed);

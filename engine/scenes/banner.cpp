@@ -120,7 +120,7 @@ class Banner final : public Scene {
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         arm_(turned(setup.placement, 1.0, 0.0)),
         own_swell_(setup.gusts ? 0.0 : 0.4),
-        wind_(setup),
+        wind_(setup.placement, setup.gusts),
         noise_(values, setup.seed ^ stream_id("banner noise"), edge.x_m, edge.z_m, setup.row),
         flutter_(edge.stride(), 0.0F),
         from_pole_(edge.stride(), 0.0F),

@@ -137,7 +137,7 @@ class Curtain final : public Scene {
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         along_(turned(setup.placement, 1.0, 0.0)),
         own_swell_(setup.gusts ? 0.0 : 0.3),
-        wind_(setup),
+        wind_(setup.placement, setup.gusts),
         noise_(values, setup.seed ^ stream_id("curtain noise"), edge.x_m, edge.z_m, setup.row),
         flutter_(edge.stride(), 0.0F),
         cloth_(curtain_spec(values), edge, setup.row) {}

@@ -145,7 +145,7 @@ class Flag final : public Scene {
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         rest_east_(edge.lean_east),
         rest_south_(edge.lean_south),
-        wind_(setup),
+        wind_(setup.placement, setup.gusts),
         noise_(values, setup.seed ^ stream_id("flag noise"), heights_on_noise(edge, -kAlongNoiseZ),
                heights_on_noise(edge, kAlongNoiseX), setup.row),
         flutter_(edge.stride(), 0.0F),

@@ -177,7 +177,7 @@ class Flame final : public Scene {
         flicker_(values.number("flicker")),
         largest_lean_(std::tan(values.number("max_lean") * kRadPerDeg)),
         half_speed_m_s_(values.number("half_speed")),
-        wind_(setup),
+        wind_(setup.placement, setup.gusts),
         noise_(flame_layers(values, body.around_m, setup.seed), body.across_m, body.up_m),
         values_(body.across_m.size(), 0.0F),
         along_(body.across_m.size(), 0.0F),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/scenes/scene.hpp"
 
@@ -19,8 +20,8 @@ void settle(CriticallyDamped& follower) noexcept {
 
 }  // namespace
 
-SceneWind::SceneWind(const SceneSetup& setup)
-    : gusts_(setup.gusts), place_x_m_(setup.placement.x_m), place_z_m_(setup.placement.z_m) {}
+SceneWind::SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts)
+    : gusts_(std::move(gusts)), place_x_m_(placement.x_m), place_z_m_(placement.z_m) {}
 
 WindVector SceneWind::cut(WindVector wind) noexcept {
   const double speed_m_s = std::sqrt(wind.u_m_s * wind.u_m_s + wind.v_m_s * wind.v_m_s);
@@ -28,7 +29,8 @@ WindVector SceneWind::cut(WindVector wind) noexcept {
 }
 
 void SceneWind::step(const GroundWind& wind, double dt_s) noexcept {
-  const WindVector here = cut(gusts_ ? wind.at(*gusts_, place_x_m_, place_z_m_) : wind.everywhere);
+  const WindVector here =
+      cut(gusts_ ? wind.at(*gusts_, place_x_m_, place_z_m_) : wind.smooth_at(place_x_m_, place_z_m_));
   east_.step(here.u_m_s, kOmega_rad_s, dt_s);
   south_.step(-here.v_m_s, kOmega_rad_s, dt_s);
   settle(east_);

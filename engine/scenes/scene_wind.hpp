@@ -7,7 +7,7 @@
 
 namespace yuragi {
 
-struct SceneSetup;
+struct ScenePlacement;
 
 /// The wind as a scene feels it: what is too strong is cut to kStrongestSceneWind_m_s, and a step becomes a quick
 /// swell, so that no input whatever makes a scene jump. It lags by 2 / kOmega_rad_s = 0.1 s.
@@ -20,10 +20,8 @@ class SceneWind {
  public:
   static constexpr double kOmega_rad_s = 20.0;
 
-  /// What all places have alike.
-  SceneWind() = default;
-  /// The wind where the scene stands: with the gusts of that place, if the setup has any.
-  explicit SceneWind(const SceneSetup& setup);
+  /// The wind in the place of a scene; with its gusts, where they are given.
+  explicit SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts = nullptr);
 
   /// Goes on by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
   void step(const GroundWind& wind, double dt_s) noexcept;
@@ -39,7 +37,7 @@ class SceneWind {
 
  private:
   std::shared_ptr<const GustNoise> gusts_;
-  double place_x_m_ = 0.0, place_z_m_ = 0.0;
+  double place_x_m_, place_z_m_;
   CriticallyDamped east_, south_;
 };
 

@@ -47,7 +47,7 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
                        std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup)
     : row_(setup.row),
       spec_(spec),
-      wind_(setup),
+      wind_(setup.placement, setup.gusts),
       flexibility_(std::move(flexibility)),
       oscillators_(flexibility_.size()),
       largest_flexibility_(largest_of(flexibility_)),

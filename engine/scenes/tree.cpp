@@ -242,7 +242,7 @@ class Tree final : public Scene {
   double hybrid_, natural_hz_, damping_ratio_;
   double leaf_lean_rad_, leaf_flutter_rad_, half_flutter_speed_m_s_;
 
-  SceneWind wind_;       ///< what all branches have alike
+  SceneWind wind_;       ///< without the gusts, which differ from branch to branch
   SceneWind leaf_wind_;  ///< in the tree's middle
   CarriedNoise noise_, leaf_noise_;
   std::optional<WindGrid> outside_;  ///< the wind at each branch, where it brings its gusts; noise_ is not read then
@@ -266,7 +266,8 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
       leaf_lean_rad_(values.number("leaf_lean") * kRadPerDeg),
       leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg),
       half_flutter_speed_m_s_(values.number("half_flutter_speed")),
-      leaf_wind_(setup),
+      wind_(setup.placement),
+      leaf_wind_(setup.placement, setup.gusts),
       noise_(tree_wind_noise(values, setup.seed)),
       leaf_noise_(leaf_noise(setup.seed)),
       levers_m_(tree_levers_m(tree)) {

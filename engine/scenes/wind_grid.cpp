@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/operators/sample_job.hpp"
-#include "engine/scenes/scene_wind.hpp"
+#include "engine/scenes/scene.hpp"
 
 namespace yuragi {
 namespace {
@@ -20,11 +20,16 @@ constexpr float kCalm_m_s = 1e-12F;
 /// The standard deviation of a usual wind, as a part of its speed.
 constexpr double kUsualTurbulence = 0.2;
 
+ScenePlacement first_of(std::span<const float> x_m, std::span<const float> z_m) {
+  if (x_m.empty()) return {};
+  return {.x_m = static_cast<double>(x_m.front()), .z_m = static_cast<double>(z_m.front())};
+}
+
 }  // namespace
 
 WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m,
                    SimdRow row, double finest_cell_m)
-    : gusts_(std::move(gusts)), row_(row), east_m_s_(x_m.size()), south_m_s_(x_m.size()) {
+    : gusts_(std::move(gusts)), row_(row), east_m_s_(x_m.size()), south_m_s_(x_m.size()), smooth_(first_of(x_m, z_m)) {
   // A square over all places, a power of two of nodes a side; the last column and row are beyond every place, so that
   // none reads where the torus closes.
   const auto [west, east] = std::minmax_element(x_m.begin(), x_m.end());
@@ -41,6 +46,8 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
   for (std::size_t i = 0; i < nodes * nodes; ++i) {
     const double node_x_m = first_x_m + cell_m * static_cast<double>(i % nodes);
     const double node_z_m = first_z_m + cell_m * static_cast<double>(i / nodes);
+    node_x_m_.push_back(node_x_m);
+    node_z_m_.push_back(node_z_m);
     for (std::size_t which = 0; which < 2; ++which) {
       const TorusPhase phase = gusts_->place_on(which, node_x_m, node_z_m);
       node_x_[which].push_back(phase.x);
@@ -80,7 +87,7 @@ void WindGrid::read_octaves(const GroundWind& wind, GustNoise::Component compone
 }
 
 void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
-  everywhere_.step(wind, dt_s);
+  smooth_.step(wind, dt_s);
 
   // The gusts at each node, along the mean wind and to the left of it, turned into the world.
   read_octaves(wind, GustNoise::Component::kAlong, east_.target);
@@ -90,7 +97,7 @@ void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
     const auto along = static_cast<double>(east_.target[i]);
     const auto across = static_cast<double>(south_.target[i]);
     const WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
-    const WindVector here = SceneWind::cut(wind.everywhere + gust);
+    const WindVector here = SceneWind::cut(wind.smooth_at(node_x_m_[i], node_z_m_[i]) + gust);
     east_.target[i] = static_cast<float>(here.u_m_s);
     south_.target[i] = static_cast<float>(-here.v_m_s);
   }
@@ -134,14 +141,14 @@ void WindGrid::sample_gusts(std::size_t first, std::span<float> out, float limit
   const std::span<float> east_m_s = std::span(east_m_s_).first(out.size());
   const std::span<float> south_m_s = std::span(south_m_s_).first(out.size());
   sample(first, east_m_s, south_m_s);
-  const double speed_m_s = everywhere_.speed_m_s();
+  const double speed_m_s = smooth_.speed_m_s();
   if (speed_m_s < static_cast<double>(kCalm_m_s)) {
     std::ranges::fill(out, 0.0F);
     return;
   }
   const double per_square = 1.0 / (kUsualTurbulence * speed_m_s * speed_m_s);
-  const auto from_east = static_cast<float>(everywhere_.east_m_s() * per_square);
-  const auto from_south = static_cast<float>(everywhere_.south_m_s() * per_square);
+  const auto from_east = static_cast<float>(smooth_.east_m_s() * per_square);
+  const auto from_south = static_cast<float>(smooth_.south_m_s() * per_square);
   constexpr auto kMean = static_cast<float>(1.0 / kUsualTurbulence);
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = std::clamp(east_m_s[i] * from_east + south_m_s[i] * from_south - kMean, -limit, limit);

@@ -35,8 +35,8 @@ class WindGrid {
   /// The wind at as many places as the outputs have, from place `first` on.
   void sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept;
 
-  /// How much stronger the wind is at each place, from place `first` on, than everywhere, in fifths of that: a noise of
-  /// variance 1 or less where the turbulence intensity is 0.2. From -limit to limit; 0 in calm.
+  /// How much stronger its gusts make the wind at each place, from place `first` on, in fifths of the wind without
+  /// them: a noise of variance 1 or less where the turbulence intensity is 0.2. From -limit to limit; 0 in calm.
   void sample_gusts(std::size_t first, std::span<float> out, float limit) noexcept;
 
  private:
@@ -52,11 +52,12 @@ class WindGrid {
 
   std::shared_ptr<const GustNoise> gusts_;
   SimdRow row_;
+  std::vector<double> node_x_m_, node_z_m_;
   std::array<std::vector<std::uint32_t>, 2> node_x_, node_z_;  ///< on the tiles' tori
   std::vector<std::uint32_t> place_x_, place_z_;               ///< on the grid's
   std::vector<float> east_m_s_, south_m_s_;                    ///< of the places, for sample_gusts()
   Component east_, south_;
-  SceneWind everywhere_;
+  SceneWind smooth_;  ///< without gusts, in the first place
 };
 
 }  // namespace yuragi
