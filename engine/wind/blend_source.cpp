@@ -7,8 +7,9 @@
 namespace yuragi {
 namespace {
 
-/// A sensor's word is taken below this over its interval.
-constexpr double kCrossoverTimesInterval = 0.25;
+/// The weight of a band is a half at this over the sensor's interval. What its averaging, its being held and the
+/// breadth of the bands leave of it has half the power at 0.25 over the interval: there sensor and noise cross.
+constexpr double kHalfTrustTimesInterval = 0.5;
 /// A reading is late after so many of its intervals; until then what is known is not yet old.
 constexpr double kLateAfterIntervals = 1.5;
 /// A gap of so many intervals separates what the fit may compare.
@@ -29,10 +30,10 @@ double sinc(double x) noexcept {
   return std::abs(angle) < 1e-6 ? 1.0 : std::sin(angle) / angle;
 }
 
-/// The weight of a band while a source speaks as it should: in power a quarter at the crossover.
-double trust_below(double crossover_hz, double frequency_hz) noexcept {
-  const double ratio = frequency_hz / crossover_hz;
-  return 1.0 / (1.0 + ratio * ratio);
+/// The weight of a band while a source that tells of so long a time at once speaks as it should.
+double full_trust_at(double frequency_hz, double interval_s) noexcept {
+  const double ratio = frequency_hz * interval_s / kHalfTrustTimesInterval;
+  return 1.0 / (1.0 + ratio * ratio * ratio * ratio);
 }
 
 /// A mean over `averaging_s`, held for `interval_s`: what both leave of a wave, and how much later it is.
@@ -41,11 +42,11 @@ std::complex<double> averaged_and_held(double frequency_hz, double averaging_s, 
   return std::polar(1.0, -std::numbers::pi * frequency_hz * (averaging_s + interval_s)) * passed;
 }
 
-BandWeights full_trust_of(double crossover_hz) noexcept {
+BandWeights full_trust_of(double interval_s) noexcept {
   BandWeights trust{};
   trust[0] = 1.0;
   for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-    trust[1 + band] = trust_below(crossover_hz, OctaveFollower::centre_hz(band));
+    trust[1 + band] = full_trust_at(OctaveFollower::centre_hz(band), interval_s);
   }
   return trust;
 }
@@ -109,15 +110,19 @@ double BlendSource::averaging_s() const noexcept {
   return settings_.averaging_s > 0.0 ? settings_.averaging_s : record_.expected_interval_s();
 }
 
-double BlendSource::crossover_hz() const noexcept {
-  return kCrossoverTimesInterval / std::max(record_.expected_interval_s(), averaging_s());
+double BlendSource::slowness_s() const noexcept {
+  return std::max(record_.expected_interval_s(), averaging_s());
+}
+
+double BlendSource::trust_at(double frequency_hz) const noexcept {
+  return full_trust_at(frequency_hz, slowness_s());
 }
 
 /// When the interval has changed.
 void BlendSource::set_full_trust() noexcept {
   if (record_.expected_interval_s() == interval_s_) return;
   interval_s_ = record_.expected_interval_s();
-  full_trust_ = full_trust_of(crossover_hz());
+  full_trust_ = full_trust_of(slowness_s());
   passed_[0] = 1.0;
   for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
     passed_[1 + band] = std::abs(averaged_and_held(OctaveFollower::centre_hz(band), averaging_s(), interval_s_));
@@ -205,8 +210,7 @@ SourceResponse BlendSource::response(double frequency_hz, const OctaveFollower::
 }
 
 double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept {
-  const double crossover_hz = kCrossoverTimesInterval / std::max(interval_s, averaging_s);
-  const BandWeights trust = full_trust_of(crossover_hz);
+  const BandWeights trust = full_trust_of(std::max(interval_s, averaging_s));
   // The slope of the phase, over a hundredth of the frequency on either side.
   const double below_hz = 0.99 * frequency_hz;
   const double above_hz = 1.01 * frequency_hz;

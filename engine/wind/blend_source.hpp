@@ -60,8 +60,8 @@ class BlendSource {
   /// its vane and the bands leave. `response`: of the follower at this frequency.
   SourceResponse response(double frequency_hz, const OctaveFollower::Response& response,
                           const BandWeights& weights) const noexcept;
-  /// Half of its power is believed here.
-  double crossover_hz() const noexcept;
+  /// How far a wave of this frequency is believed while it speaks on time.
+  double trust_at(double frequency_hz) const noexcept;
 
   const Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
   const GustVariances& along() const noexcept { return along_.variances; }
@@ -77,6 +77,7 @@ class BlendSource {
   };
 
   double averaging_s() const noexcept;
+  double slowness_s() const noexcept;
   void set_full_trust() noexcept;
   void learn(double advection_m_s) noexcept;
   void measure_scales(WindVector ahead) noexcept;

@@ -226,7 +226,7 @@ BlendedEstimator::Power BlendedEstimator::power_heard(double frequency_hz) noexc
   return {std::clamp(power.along, 0.0, 1.0), std::clamp(power.across, 0.0, 1.0)};
 }
 
-/// The mean wind carries the gusts, and says where ahead is.
+/// The mean wind carries the gusts, and says where ahead is; their eddies turn over as the turbulence does.
 void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   WindVector& ahead = ground_.gusts.ahead;
   const double speed_m_s = speed_of(heard.mean);
@@ -236,7 +236,11 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
     ahead = turned_toward(ahead, (1.0 / speed_m_s) * heard.mean, part);
   }
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
-  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s);
+  const Turbulence now = turbulence();
+  const double turnover_m23_s = eddy_turnover_m23_s(now.intensity * heard.speed_m_s,
+                                                    now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s));
+  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
+                turnover_m23_s);
 }
 
 /// How much a source's turbulence counts at a frequency, over the square of the mean speed: its part of the mean; above
@@ -246,8 +250,7 @@ double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, 
   double unknown = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     gusts += choice_.gusts(i);
-    const double ratio = frequency_hz / sources_[i].crossover_hz();
-    unknown += shares_[i].middle[0] * ratio * ratio / (1.0 + ratio * ratio);
+    unknown += shares_[i].middle[0] * (1.0 - sources_[i].trust_at(frequency_hz));
   }
   const double own = shares_[index].middle[0];
   if (gusts < kLeastShare) return own;
@@ -266,7 +269,10 @@ void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
     const double frequency_hz = centre_hz(noise_->octaves()[i], advection_m_s_);
     // What would jitter from one picture to the next is left out, by and by over the octave before.
     const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / frequency_hz), 0.0, 1.0);
-    const Power heard_here = power_heard(frequency_hz);
+    // Waves of a plane that run aslant pass more slowly than their length tells: what a tile's octave brings is lower
+    // by about half an octave, and that is where it would come on top of what the sensors say.
+    const bool is_way = i < 2 * GustNoise::kWayOctaves;
+    const Power known = power_heard(is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2);
     double variance_along = (1.0 - heard.weight) * climate_along_[i];
     double variance_across = (1.0 - heard.weight) * climate_across_[i];
     for (std::size_t index = 0; index < sources_.size(); ++index) {
@@ -275,8 +281,8 @@ void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
       variance_along += share * sources_[index].along()[i];
       variance_across += share * sources_[index].across()[i];
     }
-    const double along = shown * (1.0 - heard_here.along) * scale * std::max(variance_along, 0.0);
-    const double across = shown * (1.0 - heard_here.across) * scale * std::max(variance_across, 0.0);
+    const double along = shown * (1.0 - known.along) * scale * std::max(variance_along, 0.0);
+    const double across = shown * (1.0 - known.across) * scale * std::max(variance_across, 0.0);
     ground_.gusts.along_m_s[i] = static_cast<float>(std::sqrt(along));
     ground_.gusts.across_m_s[i] = static_cast<float>(std::sqrt(across));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/wind/gust_noise.hpp"
+#include "engine/wind/wind_state.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi {
@@ -41,6 +42,12 @@ struct GroundWind {
   WindVector at(const GustNoise& noise, double east_m, double south_m) const noexcept {
     return smooth_at(east_m, south_m) + noise.local(gusts, east_m, south_m);
   }
+};
+
+/// The wind that moves the scenes: what it is in the middle, for people to see, and over the ground.
+struct DrivingWind {
+  WindState state;
+  GroundWind ground;
 };
 
 /// A wind that is stronger by a factor, blowing as far.
