@@ -231,7 +231,7 @@ double BlendedEstimator::power_heard(double frequency_hz) const noexcept {
   return std::clamp(std::norm(sum), 0.0, 1.0);
 }
 
-/// The mean wind carries the gusts, and says where ahead is.
+/// The mean wind carries the gusts, and says where ahead is; their eddies turn over as the turbulence does.
 void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   WindVector& ahead = ground_.gusts.ahead;
   const double speed_m_s = speed_of(heard.mean);
@@ -243,7 +243,11 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
     if (const double length = speed_of(wanted); length > 1e-3) ahead = (1.0 / length) * wanted;
   }
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
-  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s);
+  const Turbulence now = turbulence();
+  const double turnover_m23_s = eddy_turnover_m23_s(now.intensity * heard.speed_m_s,
+                                                    now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s));
+  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
+                turnover_m23_s);
 }
 
 /// How strong each octave of the noise is: what the sensors leave of it.
