@@ -28,6 +28,11 @@ constexpr double kTurnRate_hz = 0.1;
 /// Standard deviation across the wind over that along it, where nobody measured it (IEC 61400-1, normal turbulence).
 constexpr double kAcrossPerAlong = 0.8;
 constexpr double kFitEvery_s = 1.0;
+/// How fast the strength of the gusts follows what it should be.
+constexpr double kStrengthMemory_s = 1.0;
+/// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
+/// machine: the wind goes on from where it was, and only the readings' ages are what they are.
+constexpr double kLongestStep_ticks = 2.0;
 /// A gap of so many intervals separates what the fit may compare.
 constexpr double kGapIntervals = 3.0;
 /// A critically damped step has done 91 % of its way after 4 time constants.
@@ -251,7 +256,9 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
 }
 
 /// How strong each octave of the noise is: what the sensors leave of it.
-void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
+void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
+  // A new fit, or another interval of a sensor, is a step that nobody shall see.
+  const auto part = static_cast<float>(-std::expm1(-dt_s / kStrengthMemory_s));
   const double scale = heard.speed_m_s * heard.speed_m_s;
   for (std::size_t i = 0; i < kOctaves; ++i) {
     const GustNoise::Octave& octave = noise_->octaves()[i];
@@ -269,18 +276,24 @@ void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
       variance_along += source.mean_share * source.along.shares[i] * source.along.fit.correction(centre_hz);
       variance_across += source.mean_share * source.across.shares[i] * source.across.fit.correction(centre_hz);
     }
-    ground_.gusts.along_m_s[i] = static_cast<float>(std::sqrt(missing * scale * variance_along));
-    ground_.gusts.across_m_s[i] = static_cast<float>(std::sqrt(missing * scale * variance_across));
+    const auto approach = [part](float& strength_m_s, double variance) {
+      strength_m_s += part * (static_cast<float>(std::sqrt(variance)) - strength_m_s);
+    };
+    approach(ground_.gusts.along_m_s[i], missing * scale * variance_along);
+    approach(ground_.gusts.across_m_s[i], missing * scale * variance_across);
   }
 }
 
 WindState BlendedEstimator::advance(MonoTime now) noexcept {
-  if (!has_begun_) {
+  const bool is_first = !has_begun_;
+  if (is_first) {
     has_begun_ = true;
     state_.time = now;
   }
   if (now < state_.time) return state_;
-  const double dt_s = seconds(now - state_.time);
+  const double passed_s = seconds(now - state_.time);
+  const double dt_s = std::min(passed_s, kLongestStep_ticks * std::max(1.0 / settings_.rate_hz, last_step_s_));
+  last_step_s_ = passed_s;
   state_.time = now;
 
   const Source* chosen = choose();
@@ -289,7 +302,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   }
   const Heard heard = hear();
   carry_gusts(heard, dt_s);
-  weigh_gusts(heard);
+  weigh_gusts(heard, is_first ? std::numeric_limits<double>::infinity() : dt_s);
   ground_.everywhere = heard.wind + noise_->everywhere(ground_.gusts);
   state_.wind = ground_.at(*noise_, 0.0, 0.0);
   if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {

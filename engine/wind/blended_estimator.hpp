@@ -95,7 +95,7 @@ class BlendedEstimator final : public WindEstimator {
   void follow(Source& source, bool is_chosen, double dt_s) noexcept;
   Heard hear() const noexcept;
   void carry_gusts(const Heard& heard, double dt_s) noexcept;
-  void weigh_gusts(const Heard& heard) noexcept;
+  void weigh_gusts(const Heard& heard, double dt_s) noexcept;
   double power_heard(double frequency_hz) const noexcept;
   Shares shares_of(double intensity, double length_m) const noexcept;
 
@@ -107,6 +107,7 @@ class BlendedEstimator final : public WindEstimator {
   GroundWind ground_;
   double advection_m_s_ = 0.0;
   WindState state_;
+  double last_step_s_ = 0.0;
   bool has_begun_ = false;
 };
 
