@@ -32,7 +32,7 @@ std::string passed_over_text(const ChangeGate& gate) {
 }  // namespace
 
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
-  return std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed});
+  return std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
 }
 
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
