@@ -473,15 +473,16 @@ ParameterValues default_judge() {
   return defaults_of(kJudgeParameters);
 }
 
-JudgeSettings judge_settings_of(const SensorConfig& sensor) {
-  const ParameterValues& values = sensor.judge;
+std::optional<JudgeSettings> judge_settings_of(const SensorConfig& sensor) {
   constexpr double kAlonePatience = 6.0;
-  return {.max_speed_m_s = values.number("max_speed"),
-          .slew_m_s2 = values.number("slew"),
-          .least_spike_m_s = values.number("spike"),
-          .frozen_s = values.number("frozen"),
-          .seized_s = values.number("seized"),
-          .seized_alone_s = kAlonePatience * values.number("seized")};
+  const ParameterValues& values = sensor.judge;
+  if (!values.flag("enabled")) return std::nullopt;
+  return JudgeSettings{.max_speed_m_s = values.number("max_speed"),
+                       .slew_m_s2 = values.number("slew"),
+                       .least_spike_m_s = values.number("spike"),
+                       .frozen_s = values.number("frozen"),
+                       .seized_s = values.number("seized"),
+                       .seized_alone_s = kAlonePatience * values.number("seized")};
 }
 
 Calibration calibration_of(const SensorConfig& sensor) {

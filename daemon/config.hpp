@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -67,8 +68,8 @@ ParameterValues no_calibration();
 /// What a sensor's calibration says. Throws ConfigError for a curve that is none.
 Calibration calibration_of(const SensorConfig& sensor);
 
-/// How strictly a sensor's readings are judged.
-JudgeSettings judge_settings_of(const SensorConfig& sensor);
+/// How strictly a sensor's readings are judged; nothing where they are not.
+std::optional<JudgeSettings> judge_settings_of(const SensorConfig& sensor);
 
 /// What is wrong with a configuration, one line for each mistake: `file:line:column: key: what is wrong; what is
 /// allowed`.

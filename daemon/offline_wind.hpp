@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/windlog/windlog_playback.hpp"
+#include "engine/wind/reading_judge.hpp"
 #include "engine/wind/wind_estimator.hpp"
 
 namespace yuragi {
@@ -21,10 +22,13 @@ struct OfflineWindOptions {
   /// The sensor as a slower one: its readings are vector means over so long, heard at their end.
   std::optional<double> sensor_interval_s{};
   std::vector<OfflineGap> gaps{};
+  /// What is believed of the readings, as in the daemon; empty: everything.
+  std::optional<JudgeSettings> judge{};
 };
 
 struct OfflineWindResult {
   std::uint64_t readings = 0;  ///< that the estimator heard
+  std::uint64_t withheld = 0;  ///< that were not believed
   std::uint64_t states = 0;
   double duration_s = 0.0;  ///< of log time
 };

@@ -32,7 +32,8 @@ std::string passed_over_text(const ChangeGate& gate) {
 }  // namespace
 
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
-  return std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
+  return std::make_shared<const GustNoise>(
+      GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
 }
 
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
@@ -62,8 +63,9 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     Channel channel;
     channel.config = config.sensors[index];
     channel.calibration = calibration_of(channel.config);
-    channel.judge = ReadingJudge(judge_settings_of(channel.config));
-    channel.is_judged = channel.config.judge.flag("enabled");
+    const std::optional<JudgeSettings> judged_by = judge_settings_of(channel.config);
+    channel.is_judged = judged_by.has_value();
+    channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
     channel.is_compared = channel.is_judged && channel.config.judge.flag("compare");
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
