@@ -25,8 +25,6 @@ constexpr double kLeastAdvection_m_s = 0.3;
 /// Below this the wind's direction is no direction: what it was is held, the more the calmer it is.
 constexpr double kCalm_m_s = 0.5;
 constexpr double kTurnRate_hz = 0.1;
-/// Standard deviation across the wind over that along it, where nobody measured it (IEC 61400-1, normal turbulence).
-constexpr double kAcrossPerAlong = 0.8;
 constexpr double kFitEvery_s = 1.0;
 /// A gap of so many intervals separates what the fit may compare.
 constexpr double kGapIntervals = 3.0;
@@ -46,7 +44,8 @@ double full_trust(double centre_hz, double interval_s) noexcept {
 
 }  // namespace
 
-BlendedEstimator::Source::Source(const BlendSettings& settings, const Shares& along_shares, const Shares& across_shares)
+BlendedEstimator::Source::Source(const BlendSettings& settings, const GustShares& along_shares,
+                                 const GustShares& across_shares)
     : along{TurbulenceFit({.intensity = settings.climate.turbulence_intensity, .length_m = settings.length_m},
                           settings.fit_memory_s),
             along_shares},
@@ -61,8 +60,9 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
     : settings_(settings),
       climate_(wind_from(settings.climate.mean_speed_m_s, settings.climate.mean_direction_deg)),
       noise_(std::move(noise)),
-      climate_along_(shares_of(settings.climate.turbulence_intensity, settings.length_m)),
-      climate_across_(shares_of(kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)) {
+      climate_along_(gust_shares(*noise_, settings.climate.turbulence_intensity, settings.length_m)),
+      climate_across_(
+          gust_shares(*noise_, kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)) {
   ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
   ground_.gusts.carried = noise_->begin(settings.climate.seed);
   sources_.reserve(source_count);
@@ -105,7 +105,7 @@ void BlendedEstimator::learn(Source& source) noexcept {
   for (Component* component : {&source.along, &source.across}) {
     component->fit.fit(interval_s, speed_m_s);
     const Turbulence turbulence = component->fit.turbulence();
-    component->shares = shares_of(turbulence.intensity, turbulence.time_scale_s * speed_m_s);
+    component->shares = gust_shares(*noise_, turbulence.intensity, turbulence.time_scale_s * speed_m_s);
   }
 }
 
@@ -127,39 +127,6 @@ void BlendedEstimator::measure_scales(Source& source) noexcept {
     source.along.fit.add(scale, difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s);
     source.across.fit.add(scale, difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s);
   }
-}
-
-/// The part of the squared mean speed that each octave of the noise has for its variance.
-BlendedEstimator::Shares BlendedEstimator::shares_of(double intensity, double length_m) const noexcept {
-  // On the ground, in two dimensions: what is left of von Karman's variance above |k|.
-  const auto above = [length_m](double rad_m) {
-    const double reduced = 1.339 * length_m * rad_m;
-    return std::pow(1.0 + reduced * reduced, -1.0 / 3.0);
-  };
-  // Along the way, in one: at a wind of 1 m/s a wavenumber k is a frequency k / 2 pi.
-  const auto along_way = [length_m](double from_rad_m, double to_rad_m) {
-    return von_karman_share(from_rad_m / (2.0 * std::numbers::pi), to_rad_m / (2.0 * std::numbers::pi), length_m);
-  };
-
-  Shares shares{};
-  const auto& octaves = noise_->octaves();
-  for (std::size_t which = 0; which < 2; ++which) {
-    const std::size_t way = which * GustNoise::kWayOctaves;
-    const std::size_t tile = 2 * GustNoise::kWayOctaves + which * GustNoise::kTileOctaves;
-    // What is too long for the tiles is the way's. Its first octave stands for all that is longer, too.
-    const double longest_rad_m = octaves[tile].from_rad_m;
-    const double scale = (1.0 - above(longest_rad_m)) / along_way(0.0, longest_rad_m);
-    for (std::size_t i = 0; i < GustNoise::kWayOctaves; ++i) {
-      const GustNoise::Octave& octave = octaves[way + i];
-      shares[way + i] = scale * along_way(i == 0 ? 0.0 : octave.from_rad_m, octave.to_rad_m);
-    }
-    for (std::size_t i = 0; i < GustNoise::kTileOctaves; ++i) {
-      const GustNoise::Octave& octave = octaves[tile + i];
-      shares[tile + i] = above(octave.from_rad_m) - above(octave.to_rad_m);
-    }
-  }
-  for (std::size_t i = 0; i < kOctaves; ++i) shares[i] *= octaves[i].share * intensity * intensity;
-  return shares;
 }
 
 BlendedEstimator::Source* BlendedEstimator::choose() noexcept {

@@ -6,6 +6,7 @@
 
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/gust_noise.hpp"
+#include "engine/wind/gust_shares.hpp"
 #include "engine/wind/octave_follower.hpp"
 #include "engine/wind/source_record.hpp"
 #include "engine/wind/synthetic_wind.hpp"
@@ -53,17 +54,16 @@ class BlendedEstimator final : public WindEstimator {
  private:
   static constexpr std::size_t kBands = OctaveFollower::kBands;
   static constexpr std::size_t kOctaves = GustNoise::kOctaves;
-  using Shares = std::array<double, kOctaves>;
 
   /// One component of a source's wind: its turbulence, and the variance of each octave of the noise over the square of
   /// the mean speed.
   struct Component {
     TurbulenceFit fit;
-    Shares shares;
+    GustShares shares;
   };
 
   struct Source {
-    Source(const BlendSettings& settings, const Shares& along_shares, const Shares& across_shares);
+    Source(const BlendSettings& settings, const GustShares& along_shares, const GustShares& across_shares);
 
     SourceRecord record;
     OctaveFollower follower;
@@ -97,12 +97,11 @@ class BlendedEstimator final : public WindEstimator {
   void carry_gusts(const Heard& heard, double dt_s) noexcept;
   void weigh_gusts(const Heard& heard) noexcept;
   double power_heard(double frequency_hz) const noexcept;
-  Shares shares_of(double intensity, double length_m) const noexcept;
 
   BlendSettings settings_;
   WindVector climate_;
   std::shared_ptr<const GustNoise> noise_;
-  Shares climate_along_, climate_across_;
+  GustShares climate_along_, climate_across_;
   std::vector<Source> sources_;
   GroundWind ground_;
   double advection_m_s_ = 0.0;
