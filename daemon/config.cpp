@@ -182,7 +182,8 @@ const std::array kJudgeParameters = {
     Parameter{.name = "compare",
               .unit = "",
               .default_value = true,
-              .help = "its mean over 5 min is compared with the other sensors'; where three or more speak, one that "
+              .help = "its mean over 5 min is compared with the other sensors' (a microphone's never is); where three "
+                      "or more speak, one that "
                       "differs from most by more than 3 times and 3 m/s for 10 min is not believed"},
 };
 

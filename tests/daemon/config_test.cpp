@@ -181,6 +181,38 @@ TEST(Config, AFileThatIsNotThereIsAMistakeOfTheConfiguration) {
   EXPECT_THROW(load_config("/"), ConfigError);
 }
 
+TEST(Config, ASensorsJudgeHasLimitsOfItsOwnAndDefaults) {
+  const Config config = parse_config(
+      "[[sensor]]\ndriver = \"synthetic\"\n[sensor.judge]\nfrozen = 120\nseized = 600\n"
+      "[[sensor]]\nname = \"free\"\ndriver = \"synthetic\"\n[sensor.judge]\nenabled = false\n"
+      "[[sensor]]\nname = \"usual\"\ndriver = \"synthetic\"\n",
+      "wall.toml");
+  const auto strict = judge_settings_of(config.sensors[0]);
+  ASSERT_TRUE(strict.has_value());
+  EXPECT_EQ(strict->frozen_s, 120.0);
+  EXPECT_EQ(strict->seized_s, 600.0);
+  EXPECT_EQ(strict->seized_alone_s, 3600.0);
+  EXPECT_FALSE(judge_settings_of(config.sensors[1]).has_value());
+  const auto usual = judge_settings_of(config.sensors[2]);
+  ASSERT_TRUE(usual.has_value());
+  const JudgeSettings defaults;
+  EXPECT_EQ(usual->max_speed_m_s, defaults.max_speed_m_s);
+  EXPECT_EQ(usual->slew_m_s2, defaults.slew_m_s2);
+  EXPECT_EQ(usual->least_spike_m_s, defaults.least_spike_m_s);
+  EXPECT_EQ(usual->frozen_s, defaults.frozen_s);
+  EXPECT_EQ(usual->seized_s, defaults.seized_s);
+  EXPECT_EQ(usual->seized_alone_s, defaults.seized_alone_s);
+}
+
+TEST(Config, MistakesOfAJudgeAreToldAtTheirPlaces) {
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  EXPECT_THAT(mistakes_of(sensor + "judge = true\n"),
+              HasSubstr("wall.toml:3:9: sensor.judge: is a value; write it as a table"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfrozen = 0\n"),
+              HasSubstr("wall.toml:4:10: sensor.judge.frozen: is 0"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfreeze = 10\n"), HasSubstr("sensor.judge.freeze"));
+}
+
 TEST(Config, WrittenOutAndReadAgainItIsTheSame) {
   const Config config = parse_config("seed = 5\n[[sensor]]\ndriver = \"synthetic\"\nspeed = 2.25\n", "wall.toml");
   const std::string written = to_toml(config);
