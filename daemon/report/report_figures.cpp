@@ -281,7 +281,7 @@ std::string Figures::spectrum() {
   if (numbers.power_law) {
     // Drawn above the measured curve, so that both can be seen.
     const PowerLawFit& fit = *numbers.power_law;
-    PlotCurve curve{.title = fmt::format("slope -{:.2f} (drawn twice as high)", fit.beta),
+    PlotCurve curve{.title = fmt::format("f to the power of {:.2f}, drawn twice as high", -fit.beta),
                     .style = PlotStyle::kLine,
                     .x = {},
                     .y = {},

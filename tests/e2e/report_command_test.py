@@ -273,9 +273,14 @@ class ReportCommand(unittest.TestCase):
             if table is None:
                 self.skipTest("../shared/data is not there")
             text, numbers = self.report(self.imported(table))
-            self.check_page(text)
+            page, _ = self.check_page(text)
             self.assertEqual(numbers["readings"], 18000)
-            self.assertIn("18000", text)
+            self.assertIn("18000 in 1 session", page.text)
+            # What it offers for a configuration is one.
+            offered = re.search(r"<pre>(\[wind\].*?)</pre>", text, re.S)
+            wall = self.folder / "wall.toml"
+            wall.write_text(offered.group(1), encoding="ascii")
+            self.assertEqual(yuragi("check-config", wall).returncode, 0)
 
     def test_a_month_is_a_small_page_with_hours_in_local_time(self):
         # A wind that blows from noon to six, UTC, once in ten minutes; one gust that a mean would lose.
