@@ -48,18 +48,18 @@ void add_tiles(PageWriter& page, const SensorNumbers& sensor) {
 
 void add_series(PageWriter& page, const SensorFigures& figures) {
   if (figures.series.empty()) return;
+  std::string keys;
+  for (std::size_t i = 0; i < kSensorStates; ++i) {
+    keys += fmt::format("<span class=\"item\"><span class=\"key\" style=\"background:{}\"></span>{}</span> ",
+                        kStateColors[i], kSensorStateNames[i]);
+  }
   page.add("<h3>Speed, direction and state</h3>\n");
   page.figure(
       figures.series,
-      "Each column of the picture shows the lowest, mean and highest of its readings: no extreme is lost. Pale points: "
-      "single directions; dark ones: means. Grey "
-      "behind the curves: the sensor was silent; a blank: it was not believed.");
-  page.add("<p class=\"keys quiet\">");
-  for (std::size_t i = 0; i < kSensorStates; ++i) {
-    page.add("<span class=\"item\"><span class=\"key\" style=\"background:{}\"></span>{}</span> ", kStateColors[i],
-             kSensorStateNames[i]);
-  }
-  page.add("</p>\n");
+      fmt::format("<span class=\"keys\">{}</span><br>Each column of the picture shows the lowest, mean and "
+                  "highest of its readings: no extreme is lost. Pale points: single directions; dark ones: means. "
+                  "Grey behind the curves: the sensor was silent; a blank: it was not believed.",
+                  keys));
 }
 
 void add_rose_and_distribution(PageWriter& page, const SensorNumbers& sensor, const SensorFigures& figures) {
@@ -114,8 +114,8 @@ void add_octaves(PageWriter& page, const SpectrumNumbers& spectrum) {
 /// Why a slope may be smaller than that of turbulence.
 std::string_view slope_remark(const SpectrumNumbers& spectrum) {
   // Three times above the bend von Karman's has come to 1.5.
-  const bool is_bent =
-      spectrum.von_karman && spectrum.power_law->from_hz < 3.0 * 0.146 / spectrum.von_karman->time_scale_s;
+  const bool is_bent = spectrum.von_karman && spectrum.power_law->beta < 1.5 &&
+                       spectrum.power_law->from_hz < 3.0 * 0.146 / spectrum.von_karman->time_scale_s;
   return is_bent ? "; these frequencies are near the bend of the spectrum, where it is flatter" : "";
 }
 

@@ -141,6 +141,7 @@ class ReportCommand(unittest.TestCase):
         self.assertEqual(len(figures), 6, "all four of one; of the other, slow and without direction, two")
         for words in ("How strong it was", "Where the wind came from", "Octave by octave", "Gaps", "frozen", "Simulated."):
             self.assertIn(words, page.text)
+        self.assertIn("stale for 5 min 1 s, from 2018-07-20 14:09:59 UTC", page.text, "what the mouse is told")
         self.assertLess(len(text), 1_500_000)
 
     def test_a_hostile_name_is_only_a_name(self):
