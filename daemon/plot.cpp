@@ -16,7 +16,6 @@
 namespace yuragi {
 namespace {
 
-
 std::string_view style_of(PlotStyle style) {
   switch (style) {
     case PlotStyle::kLine:
