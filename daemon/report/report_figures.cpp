@@ -79,14 +79,14 @@ class Figures {
     panel.is_x_time = true;
     panel.x_range = {{axis_s(recording_.begin_s) - margin_s, axis_s(recording_.end_s) + margin_s}};
     // Silences stand behind the curves.
-    for (const auto& [from_s, to_s] : stretches(SensorState::kStale, SensorState::kStale)) {
+    for (const auto& [from_s, to_s] : stretches(RecordedState::kStale, RecordedState::kStale)) {
       panel.spans.push_back({.from = from_s, .to = to_s, .color = "#dddddd"});
     }
     return panel;
   }
 
   /// Where, on the axis, the gravest state of the bins is one of these.
-  std::vector<std::pair<double, double>> stretches(SensorState first, SensorState last) const {
+  std::vector<std::pair<double, double>> stretches(RecordedState first, RecordedState last) const {
     std::vector<std::pair<double, double>> found;
     const double bin_s = recording_.duration_s() / static_cast<double>(kTimeBins);
     bool is_open = false;
@@ -124,7 +124,7 @@ std::string Figures::event_titles(int height_px) const {
         "<rect x=\"{:.1f}\" y=\"0\" width=\"{:.1f}\" height=\"{}\" fill=\"transparent\"><title>{} for {}, from "
         "{}</title></rect>\n",
         from_px, std::max(event.length_s() * px_per_s, kLeastWidth_px), height_px,
-        kSensorStateNames[static_cast<std::size_t>(event.state)], duration_text(event.length_s()),
+        kRecordedStateNames[static_cast<std::size_t>(event.state)], duration_text(event.length_s()),
         utc_text(recording_.utc_at(event.from_s)));
   }
   return titles;
@@ -204,11 +204,11 @@ PlotPanel Figures::state_panel() const {
   PlotPanel panel = time_panel();
   panel.spans = {{.from = panel.x_range->first,
                   .to = panel.x_range->second,
-                  .color = std::string(kStateColors[static_cast<std::size_t>(SensorState::kLive)])}};
-  for (std::size_t i = 1; i < kSensorStates; ++i) {
-    const auto state = static_cast<SensorState>(i);
+                  .color = std::string(kRecordedStateColors[static_cast<std::size_t>(RecordedState::kLive)])}};
+  for (std::size_t i = 1; i < kRecordedStates; ++i) {
+    const auto state = static_cast<RecordedState>(i);
     for (const auto& [from_s, to_s] : stretches(state, state)) {
-      panel.spans.push_back({.from = from_s, .to = to_s, .color = std::string(kStateColors[i])});
+      panel.spans.push_back({.from = from_s, .to = to_s, .color = std::string(kRecordedStateColors[i])});
     }
   }
   panel.x_label = "UTC";
