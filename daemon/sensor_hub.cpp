@@ -103,7 +103,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
     return;
   }
   if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
-  channel.said.take(reading, default_direction_deg_);
+  channel.said.take(reading);
 
   // What a simulation makes up may be as steady as it likes.
   const bool is_judged = channel.is_judged && reading.quality != ReadingQuality::kSimulated;
