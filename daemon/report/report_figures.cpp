@@ -162,7 +162,7 @@ PlotPanel Figures::speed_panel() const {
 
   PlotPanel panel = time_panel();
   panel.y_label = "speed, m/s";
-  panel.y_range = {{0.0, 1.15 * highest_m_s}};
+  panel.y_range = {{0.0, 1.3 * highest_m_s}};
   panel.height_px = 360;
   if (has_band) {
     mean.title = "mean";

@@ -199,7 +199,7 @@ std::string_view meaning_of(RecordedState state) {
     case RecordedState::kLive:
       return "heard, and credible";
     case RecordedState::kStale:
-      return "silent: cable, power, radio?";
+      return "silent, or nobody recorded: cable, power, radio?";
     case RecordedState::kSpike:
       return "a reading far from all others was held back";
     case RecordedState::kImplausible:

@@ -329,6 +329,9 @@ class ReportCommand(unittest.TestCase):
         self.assertGreaterEqual(numbers["begin_s"], 100.0)
         self.assertLess(numbers["end_s"], 200.0)
         self.assertEqual(numbers["sensors"][0]["readings"], 7)
+        # An option takes one name, not the file that follows.
+        run = yuragi("report", "--sensor", "mast", log, "-o", self.folder / "mast.html")
+        self.assertEqual(run.returncode, 0, run.stderr)
 
     def test_says_what_is_wrong(self):
         log = self.record(self.faulty())
