@@ -93,6 +93,12 @@ const std::array kWindParameters = {
               .min = 2.0,
               .max = 100.0,
               .help = "a sensor that is silent for this many of its own intervals is stale"},
+    Parameter{.name = "return_after",
+              .unit = "s",
+              .default_value = 10.0,
+              .min = 0.0,
+              .max = 3600.0,
+              .help = "a sensor that was stale gets the word back after speaking for so long; twice as long each time"},
 };
 
 const std::array kCalibrationParameters = {
@@ -174,6 +180,7 @@ const std::array kConfigTables = {
 
 constexpr std::string_view kNameKey = "name";
 constexpr std::string_view kCalibrationKey = "calibration";
+constexpr std::string_view kBlendKey = "blend";
 
 /// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
 std::vector<Parameter> parameters_of(const DriverDescription& driver) {
@@ -215,6 +222,7 @@ class ConfigReader {
                          read_table(entry, "sensor.", kCalibrationKey, kCalibrationParameters);
                      check_curve(entry, calibration);
                      config.sensors.push_back({name, driver, values, calibration, place(entry.source())});
+                     config.sensors.back().blend = read_sensor_table(entry, kBlendKey, sensor_blend_parameters());
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
                    [&](const auto& name, auto* kind, const auto& values, const auto&) {
@@ -278,6 +286,16 @@ class ConfigReader {
     return read_values(table != nullptr ? *table : kNothing, prefix + std::string(name) + ".", parameters, {});
   }
 
+  /// A table below a [[sensor]].
+  ParameterValues read_sensor_table(const toml::table& sensor, std::string_view name,
+                                    std::span<const Parameter> parameters) {
+    if (const toml::node* node = sensor.get(name); node != nullptr && !node->is_table()) {
+      const std::string key = "sensor." + std::string(name);
+      mistake(node->source(), key, "is a value; write it as a table, [" + key + "]");
+    }
+    return read_table(sensor, "sensor.", name, parameters);
+  }
+
   void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
     if (const toml::node* node = sensor.get(kCalibrationKey); node != nullptr && !node->is_table()) {
       mistake(node->source(), "sensor.calibration", "is a value; write it as a table, [sensor.calibration]");
@@ -335,7 +353,7 @@ class ConfigReader {
                 "\"" + name + "\" is there twice; give each " + std::string(list) + " a name");
       }
       std::set<std::string_view> aside = {kNameKey, kind_key};
-      if (list == "sensor") aside.insert(kCalibrationKey);
+      if (list == "sensor") aside.insert({kCalibrationKey, kBlendKey});
       const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), aside);
       use(name, description, values, *entry);
     }
@@ -483,6 +501,7 @@ std::string to_toml(const Config& config) {
   for (const SensorConfig& sensor : config.sensors) {
     append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
     root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.calibration));
+    root["sensor"].as_array()->back().as_table()->insert(kBlendKey, to_table(sensor.blend));
   }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
 

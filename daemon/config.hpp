@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/sensor_blend.hpp"
 #include "drivers/driver.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/scenes/scene.hpp"
@@ -21,8 +22,9 @@ struct SensorConfig {
   std::string name;
   const DriverDescription* driver = nullptr;
   ParameterValues values;
-  ParameterValues calibration;  ///< calibration_parameters()
-  std::string origin;           ///< `file:line:column` of its entry; empty for the built-in default
+  ParameterValues calibration;                     ///< calibration_parameters()
+  std::string origin;                              ///< `file:line:column` of its entry; empty for the built-in default
+  ParameterValues blend = default_sensor_blend();  ///< sensor_blend_parameters()
 };
 
 struct SceneConfig {
