@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "drivers/windlog/windlog_playback.hpp"
+#include "engine/wind/reading_judge.hpp"
 #include "engine/wind/wind_estimator.hpp"
 
 namespace yuragi {
@@ -21,16 +23,21 @@ struct OfflineWindOptions {
   /// The sensor as a slower one: its readings are vector means over so long, heard at their end.
   std::optional<double> sensor_interval_s{};
   std::vector<OfflineGap> gaps{};
+  double until_s = std::numeric_limits<double>::infinity();  ///< no tick after this, and nothing is read beyond it
+  /// What is believed of the readings, as in the daemon; empty: everything.
+  std::optional<JudgeSettings> judge{};
 };
 
 struct OfflineWindResult {
   std::uint64_t readings = 0;  ///< that the estimator heard
+  std::uint64_t withheld = 0;  ///< that were not believed
   std::uint64_t states = 0;
   double duration_s = 0.0;  ///< of log time
 };
 
 /// Runs an estimator with one source over a recording, as fast as it can: it hears each reading at its own log time,
-/// and `use` is told the state of each tick, from log time 0 to the last reading. Throws what the playback throws.
+/// and `use` is told the state of each tick, from log time 0 to the last reading or `until_s`. Throws what the playback
+/// throws.
 OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimator, const OfflineWindOptions& options,
                               const std::function<void(double time_s, const WindState&)>& use);
 

@@ -213,6 +213,7 @@ TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
   check("scene", common_scene_parameters());
   check("sensor.calibration", calibration_parameters());
   check("sensor.blend", sensor_blend_parameters());
+  check("sensor.judge", judge_parameters());
   for (const DriverDescription* driver : driver_table()) check(driver->name, driver->parameters);
   for (const SceneDescription* scene : scene_table()) check(scene->name, scene->parameters);
 }
