@@ -70,6 +70,9 @@ class BlendRun {
     }
   }
 
+  /// Time goes by without anyone asking for the wind.
+  void halt_for(MonoTime::duration duration) { now_ += duration; }
+
   double take_largest_step_m_s() { return std::exchange(largest_step_m_s_, 0.0); }
 
  private:
