@@ -42,14 +42,16 @@ std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
 }
 
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
-  const BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
-                                           .mean_direction_deg = config.wind.number("default_direction"),
-                                           .turbulence_intensity = config.wind.number("default_turbulence"),
-                                           .seed = config.seed},
-                               .length_m = config.wind.number("default_length"),
-                               .handover_s = config.wind.number("handover"),
-                               .stale_intervals = config.wind.number("stale_intervals"),
-                               .rate_hz = config.animation.number("rate")};
+  BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
+                                     .mean_direction_deg = config.wind.number("default_direction"),
+                                     .turbulence_intensity = config.wind.number("default_turbulence"),
+                                     .seed = config.seed},
+                         .length_m = config.wind.number("default_length"),
+                         .handover_s = config.wind.number("handover"),
+                         .stale_intervals = config.wind.number("stale_intervals"),
+                         .return_after_s = config.wind.number("return_after"),
+                         .rate_hz = config.animation.number("rate")};
+  for (const SensorConfig& sensor : config.sensors) settings.sources.push_back(blend_source_of(sensor.blend));
   return std::make_unique<BlendedEstimator>(config.sensors.size(), settings, std::move(noise));
 }
 
