@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -19,11 +18,6 @@ constexpr double kLeastAdvection_m_s = 0.3;
 /// Below this the wind's direction is no direction: what it was is held, the more the calmer it is.
 constexpr double kCalm_m_s = 0.5;
 constexpr double kTurnRate_hz = 0.1;
-/// How fast the strength of the gusts follows what it should be.
-constexpr double kStrengthMemory_s = 1.0;
-/// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
-/// machine: the wind goes on from where it was, and only the readings' ages are what they are.
-constexpr double kLongestStep_ticks = 2.0;
 constexpr double kAcrossPerAlongOfClimate = 0.8;  // IEC 61400-1, normal turbulence
 /// How fast two sensors disagree with their distance over the length of a gust (Davenport 1961: 10 to 16 sideways).
 constexpr double kCoherenceDecay = 10.0;
@@ -31,6 +25,11 @@ constexpr double kCoherenceDecay = 10.0;
 constexpr double kIntervalsOfAGust = 3.0;
 /// Less than this is nothing.
 constexpr double kLeastShare = 1e-9;
+/// How fast the strength of the gusts follows what it should be.
+constexpr double kStrengthMemory_s = 1.0;
+/// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
+/// machine: the wind goes on from where it was, and only the readings' ages are what they are.
+constexpr double kLongestStep_ticks = 2.0;
 
 double dot(WindVector a, WindVector b) noexcept {
   return a.u_m_s * b.u_m_s + a.v_m_s * b.v_m_s;
@@ -270,7 +269,7 @@ double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, 
 
 /// How strong each octave of the noise is: what the sensors leave of it.
 void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
-  // Another interval of a sensor is a step that nobody shall see.
+  // A new fit, or another interval of a sensor, is a step that nobody shall see.
   const auto part = static_cast<float>(-std::expm1(-dt_s / kStrengthMemory_s));
   const double scale = heard.speed_m_s * heard.speed_m_s;
   for (std::size_t i = 0; i < kOctaves; ++i) {
@@ -290,10 +289,10 @@ void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
       variance_across += share * sources_[index].across()[i];
     }
     const auto approach = [part](float& strength_m_s, double variance) {
-      strength_m_s += part * (static_cast<float>(std::sqrt(variance)) - strength_m_s);
+      strength_m_s += part * (static_cast<float>(std::sqrt(std::max(variance, 0.0))) - strength_m_s);
     };
-    approach(ground_.gusts.along_m_s[i], shown * (1.0 - known.along) * scale * std::max(variance_along, 0.0));
-    approach(ground_.gusts.across_m_s[i], shown * (1.0 - known.across) * scale * std::max(variance_across, 0.0));
+    approach(ground_.gusts.along_m_s[i], shown * (1.0 - known.along) * scale * variance_along);
+    approach(ground_.gusts.across_m_s[i], shown * (1.0 - known.across) * scale * variance_across);
   }
 }
 

@@ -101,7 +101,7 @@ class BlendedEstimator final : public WindEstimator {
   GroundWind ground_;
   double advection_m_s_ = 0.0;
   WindState state_;
-  double last_step_s_ = 0.0;
+  double last_step_s_ = 0.0;  ///< the time that passed from the last tick but one to the last
   bool has_begun_ = false;
 
   // Made anew in each tick; for each source.
