@@ -5,7 +5,7 @@
 
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/ground_wind.hpp"
-#include "engine/wind/gust_shares.hpp"
+#include "engine/wind/gust_variances.hpp"
 #include "engine/wind/soft_ceiling.hpp"
 #include "engine/wind/speed_memory.hpp"
 #include "engine/wind/wind_state.hpp"
@@ -87,7 +87,7 @@ class WindShaping {
 
   WindShapingSettings settings_;
   std::shared_ptr<const GustNoise> noise_;
-  GustShares along_, across_;  ///< of the breeze
+  GustVariances along_, across_;  ///< of the breeze
   SpeedMemory memory_;
   double live_s_ = 0.0;   ///< for how long the wind has been a sensor's
   double heard_s_ = 0.0;  ///< time since the memory was told

@@ -1,4 +1,4 @@
-#include "engine/wind/gust_shares.hpp"
+#include "engine/wind/gust_variances.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -7,9 +7,11 @@
 
 namespace yuragi {
 
-GustShares gust_shares(const GustNoise& noise, double intensity, double length_m) noexcept {
-  constexpr std::size_t kWay = GustNoise::kWayOctaves;
-  constexpr std::size_t kTile = GustNoise::kTileOctaves;
+double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept {
+  return std::numbers::sqrt2 * octave.from_rad_m * advection_m_s / (2.0 * std::numbers::pi);
+}
+
+GustVariances gust_variances(const GustNoise& noise, double intensity, double length_m) noexcept {
   // On the ground, in two dimensions: what is left of von Karman's variance above |k|.
   const auto above = [length_m](double rad_m) {
     const double reduced = 1.339 * length_m * rad_m;
@@ -20,19 +22,19 @@ GustShares gust_shares(const GustNoise& noise, double intensity, double length_m
     return von_karman_share(from_rad_m / (2.0 * std::numbers::pi), to_rad_m / (2.0 * std::numbers::pi), length_m);
   };
 
-  GustShares shares{};
+  GustVariances shares{};
   const auto& octaves = noise.octaves();
   for (std::size_t which = 0; which < 2; ++which) {
-    const std::size_t way = which * kWay;
-    const std::size_t tile = 2 * kWay + which * kTile;
+    const std::size_t way = which * GustNoise::kWayOctaves;
+    const std::size_t tile = 2 * GustNoise::kWayOctaves + which * GustNoise::kTileOctaves;
     // What is too long for the tiles is the way's. Its first octave stands for all that is longer, too.
     const double longest_rad_m = octaves[tile].from_rad_m;
     const double scale = (1.0 - above(longest_rad_m)) / along_way(0.0, longest_rad_m);
-    for (std::size_t i = 0; i < kWay; ++i) {
+    for (std::size_t i = 0; i < GustNoise::kWayOctaves; ++i) {
       const GustNoise::Octave& octave = octaves[way + i];
       shares[way + i] = scale * along_way(i == 0 ? 0.0 : octave.from_rad_m, octave.to_rad_m);
     }
-    for (std::size_t i = 0; i < kTile; ++i) {
+    for (std::size_t i = 0; i < GustNoise::kTileOctaves; ++i) {
       const GustNoise::Octave& octave = octaves[tile + i];
       shares[tile + i] = above(octave.from_rad_m) - above(octave.to_rad_m);
     }
