@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "daemon/transports/address.hpp"
+#include "drivers/speed_unit.hpp"
 
 namespace yuragi {
 namespace {
@@ -92,12 +93,17 @@ const std::array kWindParameters = {
 };
 
 const std::array kCalibrationParameters = {
+    Parameter{.name = "unit",
+              .unit = "",
+              .default_value = std::string("m/s"),
+              .help = "what the sensor's numbers really are, where its driver takes them for m/s",
+              .choices = kSpeedUnitNames},
     Parameter{.name = "gain",
               .unit = "",
               .default_value = 1.0,
               .min = 0.01,
               .max = 100.0,
-              .help = "the speed is multiplied by this"},
+              .help = "the speed in m/s is multiplied by this"},
     Parameter{.name = "offset",
               .unit = "m/s",
               .default_value = 0.0,
@@ -407,7 +413,8 @@ Calibration calibration_of(const SensorConfig& sensor) {
   const ParameterValues& values = sensor.calibration;
   auto curve = parse_calibration_curve(values.text("curve"));
   if (!curve) throw ConfigError(sensor.origin + ": sensor.calibration.curve: " + curve.error().message);
-  Calibration calibration{.gain = values.number("gain"),
+  Calibration calibration{.unit_m_s = metres_per_second_in(values.text("unit")),
+                          .gain = values.number("gain"),
                           .offset_m_s = values.number("offset"),
                           .curve = std::move(*curve),
                           .north_offset_deg = values.number("north_offset")};

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -51,6 +52,7 @@ class SensorHub {
     Calibration calibration;
     std::unique_ptr<SensorRunner> runner;
     std::uint64_t readings = 0;
+    std::optional<WindReading> last_raw;  // before calibration
     SourceHealth logged_health = SourceHealth::kSilent;
     std::uint64_t logged_link_reports = 0;
     LinkState logged_link = LinkState::kConnecting;

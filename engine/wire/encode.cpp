@@ -127,6 +127,8 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   table.add_frames(sensor.frames);
   table.add_reconnects(sensor.reconnects);
   table.add_replayed(sensor.replayed);
+  if (sensor.raw_speed_m_s) table.add_raw_speed_m_s(*sensor.raw_speed_m_s);
+  if (sensor.raw_direction_deg) table.add_raw_direction_deg(*sensor.raw_direction_deg);
   return table.Finish();
 }
 

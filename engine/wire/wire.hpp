@@ -98,9 +98,11 @@ struct SensorStatus {
   double interval_s = 0.0;
   std::uint64_t readings = 0;
   std::vector<std::pair<std::string, std::uint64_t>> refused;
-  std::uint64_t frames = 0;      ///< messages from the device, of use or not
-  std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
-  bool replayed = false;         ///< a recording that is played again
+  std::uint64_t frames = 0;             ///< messages from the device, of use or not
+  std::uint64_t reconnects = 0;         ///< how often the device was found again after it had been lost
+  bool replayed = false;                ///< a recording that is played again
+  std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
+  std::optional<double> raw_direction_deg;
 };
 
 struct Sensors {

@@ -214,6 +214,9 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.reconnects, 2u);
   EXPECT_TRUE(gauge.replayed);
   EXPECT_FALSE(sensors.sensors[1].replayed);
+  EXPECT_EQ(gauge.raw_speed_m_s, 0.5);
+  EXPECT_EQ(gauge.raw_direction_deg, 349.5);
+  EXPECT_EQ(sensors.sensors[1].raw_speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
   EXPECT_EQ(sensors.late_ticks, 5u);

@@ -238,6 +238,8 @@ inline wire::Sensors sensors() {
   gauge.frames = 1250;
   gauge.reconnects = 2;
   gauge.replayed = true;
+  gauge.raw_speed_m_s = 0.5;
+  gauge.raw_direction_deg = 349.5;
   return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2};
 }
 
