@@ -449,15 +449,16 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
   return ConfigReader(source_name).read(root);
 }
 
-Config load_config(const std::filesystem::path& file) {
+std::string read_config_text(const std::filesystem::path& file) {
   std::ifstream input(file, std::ios::binary);
-  std::string text;
-  if (input.is_open() && !std::filesystem::is_directory(file)) {
-    text.assign(std::istreambuf_iterator<char>(input), {});
-  } else {
+  if (!input.is_open() || std::filesystem::is_directory(file)) {
     throw ConfigError(file.string() + ":1:1: file: cannot be read; check its path and permissions");
   }
-  return parse_config(text, file.string());
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+Config load_config(const std::filesystem::path& file) {
+  return parse_config(read_config_text(file), file.string());
 }
 
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor) {
@@ -498,6 +499,22 @@ std::string to_toml(const ParameterValues& values) {
   std::ostringstream out;
   out << to_table(values);
   return out.str();
+}
+
+Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters) {
+  try {
+    ParameterValues::Map given;
+    for (const auto& [key, node] : toml::parse(toml_text)) {
+      const std::optional<ParameterValue> value = to_parameter_value(node);
+      if (!value) return Failure{std::string(key.str()) + ": takes one value: true, a number or a text"};
+      given.emplace(key.str(), *value);
+    }
+    auto values = ParameterValues::resolve(parameters, given);
+    if (!values) return Failure{values.error().name + ": " + values.error().message};
+    return std::move(*values);
+  } catch (const toml::parse_error& error) {
+    return Failure{"TOML: " + std::string(error.description())};
+  }
 }
 
 }  // namespace yuragi

@@ -27,6 +27,7 @@ constexpr double kLeastGain = 0.2;
 constexpr double kMostGain = 5.0;
 constexpr double kLeastRSquared = 0.8;
 constexpr double kBin_m_s = 1.0;
+constexpr double kReach_m_s = 10.0;  // how far beyond the last bin the last point stands
 constexpr std::size_t kFewestInBin = 3;
 constexpr std::size_t kFewestBins = 3;
 
@@ -106,6 +107,32 @@ void measure_fit(std::span<const CalibrationPoint> pairs, const TruthOf& truth_o
   residual_m_s = std::sqrt(unexplained / count);
 }
 
+/// The line of least squares: about the means, so that nothing large is subtracted from something large. The sensor has
+/// said at least two things.
+LineFit least_squares(std::span<const CalibrationPoint> pairs) {
+  const auto count = static_cast<double>(pairs.size());
+  CalibrationPoint mean;
+  for (const CalibrationPoint& pair : pairs) {
+    mean.measured_m_s += pair.measured_m_s / count;
+    mean.true_m_s += pair.true_m_s / count;
+  }
+  double products = 0.0;
+  double squares = 0.0;
+  for (const CalibrationPoint& pair : pairs) {
+    products += (pair.measured_m_s - mean.measured_m_s) * (pair.true_m_s - mean.true_m_s);
+    squares += (pair.measured_m_s - mean.measured_m_s) * (pair.measured_m_s - mean.measured_m_s);
+  }
+  LineFit fit{.count = pairs.size(), .gain = products / squares};
+  fit.offset_m_s = mean.true_m_s - fit.gain * mean.measured_m_s;
+  return fit;
+}
+
+/// How steep some of the pairs are: no less than half of the whole, and no more than twice, whatever their scatter.
+double gain_of_part(std::span<const CalibrationPoint> part, double whole_gain) {
+  const double gain = part.size() >= 2 ? least_squares(part).gain : whole_gain;
+  return std::isfinite(gain) ? std::clamp(gain, 0.5 * whole_gain, 2.0 * whole_gain) : whole_gain;
+}
+
 /// Pairs that are averaged together.
 struct Bin {
   double measured_m_s = 0.0;  // sums
@@ -125,6 +152,24 @@ struct Bin {
 /// Does b lie behind a, far enough that the line between them means something, and above it?
 bool rises(const Bin& a, const Bin& b) {
   return b.mean().measured_m_s - a.mean().measured_m_s >= 0.25 * kBin_m_s && b.mean().true_m_s > a.mean().true_m_s;
+}
+
+/// A point at either end, since a curve goes on as its last two points say, and two bins may say anything: as steeply
+/// as the slower half of the pairs down to 0, and as the faster half up.
+void extend(std::vector<CalibrationPoint>& curve, std::vector<CalibrationPoint>& pairs, double whole_gain) {
+  std::ranges::sort(pairs, {}, &CalibrationPoint::measured_m_s);
+  const std::size_t half = pairs.size() / 2;
+  const double low_gain = gain_of_part(std::span(pairs).first(half), whole_gain);
+  const double high_gain = gain_of_part(std::span(pairs).subspan(half), whole_gain);
+
+  const CalibrationPoint first = curve.front();
+  const double at_zero_m_s = first.true_m_s - low_gain * first.measured_m_s;
+  const CalibrationPoint low = at_zero_m_s >= 0.0
+                                   ? CalibrationPoint{0.0, at_zero_m_s}
+                                   : CalibrationPoint{first.measured_m_s - first.true_m_s / low_gain, 0.0};
+  if (first.measured_m_s - low.measured_m_s >= 0.25 * kBin_m_s) curve.insert(curve.begin(), low);
+  const CalibrationPoint last = curve.back();
+  curve.push_back({last.measured_m_s + kReach_m_s, last.true_m_s + high_gain * kReach_m_s});
 }
 
 }  // namespace
@@ -207,6 +252,24 @@ Result<DirectionMean, Failure> measure_turn(std::span<const double> turns_deg) {
   return mean;
 }
 
+std::vector<double> pair_turns(std::span<const TimedDirection> said, std::span<const TimedDirection> truth,
+                               double block_s) {
+  struct Block {
+    std::vector<double> said_deg, true_deg;
+  };
+  std::map<std::int64_t, Block> blocks;
+  const auto number_of = [block_s](double time_s) { return static_cast<std::int64_t>(std::floor(time_s / block_s)); };
+  for (const TimedDirection& one : said) blocks[number_of(one.time_s)].said_deg.push_back(one.direction_deg);
+  for (const TimedDirection& one : truth) blocks[number_of(one.time_s)].true_deg.push_back(one.direction_deg);
+  std::vector<double> turns_deg;
+  for (const auto& [number, block] : blocks) {
+    if (block.said_deg.empty() || block.true_deg.empty()) continue;
+    turns_deg.push_back(
+        signed_degrees(direction_mean(block.true_deg).mean_deg - direction_mean(block.said_deg).mean_deg));
+  }
+  return turns_deg;
+}
+
 double signed_degrees(double angle_deg) noexcept {
   const double turned_deg = std::remainder(angle_deg, 360.0);
   return turned_deg <= -180.0 ? 180.0 : turned_deg;
@@ -216,21 +279,7 @@ Result<LineFit, Failure> fit_line(std::span<const CalibrationPoint> pairs) {
   const std::vector<CalibrationPoint> some = windy(pairs);
   if (auto enough = check_span(some); !enough) return enough.error();
 
-  // About the means, so that nothing large is subtracted from something large.
-  const auto count = static_cast<double>(some.size());
-  CalibrationPoint mean;
-  for (const CalibrationPoint& pair : some) {
-    mean.measured_m_s += pair.measured_m_s / count;
-    mean.true_m_s += pair.true_m_s / count;
-  }
-  double products = 0.0;
-  double squares = 0.0;
-  for (const CalibrationPoint& pair : some) {
-    products += (pair.measured_m_s - mean.measured_m_s) * (pair.true_m_s - mean.true_m_s);
-    squares += (pair.measured_m_s - mean.measured_m_s) * (pair.measured_m_s - mean.measured_m_s);
-  }
-  LineFit fit{.count = some.size(), .gain = products / squares};
-  fit.offset_m_s = mean.true_m_s - fit.gain * mean.measured_m_s;
+  LineFit fit = least_squares(some);
   measure_fit(
       some, [&fit](double said_m_s) { return fit.gain * said_m_s + fit.offset_m_s; }, fit.r_squared, fit.residual_m_s);
   if (auto agrees = check_r_squared(fit.r_squared); !agrees) return agrees.error();
@@ -253,8 +302,9 @@ Result<LineFit, Failure> fit_line_from_zero(double zero_m_s, const CalibrationPo
 }
 
 Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs) {
-  const std::vector<CalibrationPoint> some = windy(pairs);
-  if (auto line = fit_line(some); !line) return line.error();
+  std::vector<CalibrationPoint> some = windy(pairs);
+  const auto line = fit_line(some);
+  if (!line) return line.error();
 
   std::map<std::int64_t, Bin> by_speed;
   for (const CalibrationPoint& pair : some) {
@@ -277,9 +327,8 @@ Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs) {
                    ": measure longer, or take a line (leave out --curve)"};
   }
   CurveFit fit;
-  for (const Bin& bin : bins) {
-    fit.curve.push_back({bin.mean().measured_m_s, std::max(0.0, bin.mean().true_m_s)});
-  }
+  for (const Bin& bin : bins) fit.curve.push_back(bin.mean());
+  extend(fit.curve, some, line->gain);
   const Calibration calibration{.curve = fit.curve};
   measure_fit(
       some,

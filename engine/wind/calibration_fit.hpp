@@ -48,6 +48,17 @@ Result<DirectionMean, Failure> measure_held_vane(std::span<const double> said_de
 /// than 20, and vanes that do not turn together.
 Result<DirectionMean, Failure> measure_turn(std::span<const double> turns_deg);
 
+/// A direction at a time, s; the origin is the caller's.
+struct TimedDirection {
+  double time_s = 0.0;
+  double direction_deg = 0.0;
+};
+
+/// Two vanes side by side: the turn from the mean of the one to the mean of the other in each block of `block_s` in
+/// which both spoke, degrees in (-180, 180].
+std::vector<double> pair_turns(std::span<const TimedDirection> said, std::span<const TimedDirection> truth,
+                               double block_s);
+
 /// The same angle in (-180, 180].
 double signed_degrees(double angle_deg) noexcept;
 
@@ -79,7 +90,8 @@ struct CurveFit {
   double residual_m_s = 0.0;
 };
 
-/// Bins of 1 m/s with at least 3 pairs each. Refuses as fit_line() does, and fewer than 3 bins.
+/// Bins of 1 m/s with at least 3 pairs each; a point beyond either end goes on as steeply as that half of the pairs.
+/// Refuses as fit_line() does, and fewer than 3 bins.
 Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs);
 
 /// A speed at a time, s; the origin is the caller's.

@@ -76,6 +76,17 @@ TEST(CalibrationFit, TwoVanesInOneWindGiveTheTurnBetweenThem) {
   EXPECT_FALSE(measure_turn(around(-12.0, 1.0, 19)));
 }
 
+TEST(CalibrationFit, TwoVanesAreComparedWhereBothSpoke) {
+  std::vector<TimedDirection> said;
+  std::vector<TimedDirection> truth;
+  for (int i = 0; i < 200; ++i) said.push_back({0.5 * i, i % 2 == 0 ? 350.0 : 352.0});
+  for (int i = 0; i < 3; ++i) truth.push_back({10.0 * i + 5.0, 11.0});
+  truth.push_back({500.0, 200.0});
+  const std::vector<double> turns_deg = pair_turns(said, truth, 10.0);
+  ASSERT_EQ(turns_deg.size(), 3U);
+  for (const double turn_deg : turns_deg) EXPECT_NEAR(turn_deg, 20.0, 1e-9);
+}
+
 TEST(CalibrationFit, AnAngleHasOneSignedForm) {
   EXPECT_EQ(signed_degrees(190.0), -170.0);
   EXPECT_EQ(signed_degrees(-190.0), 170.0);
@@ -165,6 +176,14 @@ TEST(CalibrationFit, BinsFollowASensorThatIsNotStraight) {
     EXPECT_GT(curve->curve[i].measured_m_s, curve->curve[i - 1].measured_m_s);
     EXPECT_GT(curve->curve[i].true_m_s, curve->curve[i - 1].true_m_s);
   }
+  // Beyond the fastest wind that there was (10.45 m/s) it goes on as there, not as the whole or as two bins say.
+  const Calibration calibration{.curve = curve->curve};
+  WindReading storm;
+  storm.speed_m_s = 18.0;
+  const double steepness = 0.8 + 0.08 * 8.0;
+  EXPECT_NEAR(calibration.applied_to(storm).speed_m_s, 0.3 + 0.8 * 10.45 + 0.04 * 10.45 * 10.45 + 7.55 * steepness,
+              0.6);
+  EXPECT_NEAR(calibration.curve.front().true_m_s, 0.3, 0.3);
 }
 
 TEST(CalibrationFit, ACurveRisesWhateverTheScatter) {
