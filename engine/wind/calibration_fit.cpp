@@ -1,9 +1,10 @@
 #include "engine/wind/calibration_fit.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -33,9 +34,9 @@ constexpr std::size_t kFewestBins = 3;
 
 /// A number as a sentence wants it.
 std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3).ptr;
+  return {text.data(), end};
 }
 
 double mean_of(std::span<const double> values) {
