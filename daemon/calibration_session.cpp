@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,22 @@ Stretch parse_part(const std::string& text) {
 
 std::string key_of(const ConfigChange& change) {
   return change.table.empty() ? change.key : change.table + "." + change.key;
+}
+
+/// The parameters of a driver that a recording was made with other values of, but for a microphone's own calibration,
+/// which is taken out of what it said.
+std::set<std::string> settings_that_differ(const SensorConfig& sensor, const HeardSensor& heard) {
+  const bool is_microphone = sensor.driver->name == std::string_view("microphone");
+  std::set<std::string> keys;
+  for (const std::string& text : heard.settings) {
+    const auto values = parse_values(text, sensor.driver->parameters);
+    if (!values) return {"which this version does not understand: " + values.error().message};
+    for (const auto& [key, value] : values->all()) {
+      const bool is_undone = is_microphone && (key == "gain" || key == "exponent" || key == "curve");
+      if (!is_undone && value != sensor.values.all().at(key)) keys.insert(key);
+    }
+  }
+  return keys;
 }
 
 /// What a sensor says of itself while it is listened to.
@@ -98,6 +115,18 @@ Heard CalibrationSession::hear(const std::string& hands) {
   Heard heard = source_->hear(stretch, [this](double elapsed_s, const Heard& so_far) {
     dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
   });
+  beware(heard);
+  return heard;
+}
+
+void CalibrationSession::beware(const Heard& heard) const {
+  for (std::size_t index = 0; index < heard.size(); ++index) {
+    const SensorConfig& one = index == 0 ? sensor() : *reference();
+    if (const auto keys = settings_that_differ(one, heard[index]); !keys.empty()) {
+      dialog_.say(fmt::format("Beware: when this was recorded, the driver of \"{}\" had other settings than now: {}.",
+                              one.name, fmt::join(keys, ", ")));
+    }
+  }
   const auto is_simulated = [](const TimedReading& one) { return one.reading.quality == ReadingQuality::kSimulated; };
   for (const HeardSensor& one : heard) {
     if (std::ranges::any_of(one.readings, is_simulated)) {
@@ -105,7 +134,6 @@ Heard CalibrationSession::hear(const std::string& hands) {
       break;
     }
   }
-  return heard;
 }
 
 std::string CalibrationSession::progress_line(double elapsed_s, const Heard& heard) const {

@@ -57,6 +57,7 @@ class CalibrationSession {
  private:
   void open_source();
   std::size_t find(const std::string& name) const;
+  void beware(const Heard& heard) const;  ///< says what may be wrong with readings for a calibration
   ParameterValue value_now(const ConfigChange& change) const;
   std::string progress_line(double elapsed_s, const Heard& heard) const;
 

@@ -34,7 +34,9 @@ class TextPlaces {
     return offset;
   }
   /// Of a line, counted from 1; behind the last one the text's end.
-  std::size_t line_start(std::size_t line) const { return line <= starts_.size() ? starts_[line - 1] : text_.size(); }
+  std::size_t line_start(std::size_t line) const {
+    return line == 0 ? 0 : line <= starts_.size() ? starts_[line - 1] : text_.size();
+  }
   std::size_t line_count() const { return starts_.size(); }
 
   /// A line without its end and without blanks around.

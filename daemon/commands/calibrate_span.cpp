@@ -100,9 +100,10 @@ void check_options(const SpanOptions& options) {
   }
 }
 
-/// Speeds to show the effect at: those that were measured, from the slowest to the fastest.
+/// Speeds to show the effect at: those that were measured, from the slowest to the fastest, and what a storm would say.
 std::vector<double> shown_speeds(const std::vector<CalibrationPoint>& pairs) {
   const auto [low, high] = std::ranges::minmax(pairs, {}, &CalibrationPoint::measured_m_s);
+  if (pairs.size() == 1) return {0.5 * low.measured_m_s, low.measured_m_s, 2.0 * low.measured_m_s};
   return {low.measured_m_s, 0.5 * (low.measured_m_s + high.measured_m_s), high.measured_m_s, 15.0};
 }
 

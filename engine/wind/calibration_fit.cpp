@@ -152,7 +152,8 @@ struct Bin {
 
 /// Does b lie behind a, far enough that the line between them means something, and above it?
 bool rises(const Bin& a, const Bin& b) {
-  return b.mean().measured_m_s - a.mean().measured_m_s >= 0.25 * kBin_m_s && b.mean().true_m_s > a.mean().true_m_s;
+  return b.mean().measured_m_s - a.mean().measured_m_s >= 0.25 * kBin_m_s &&
+         b.mean().true_m_s - a.mean().true_m_s >= 0.01 * kBin_m_s;
 }
 
 /// A point at either end, since a curve goes on as its last two points say, and two bins may say anything: as steeply

@@ -316,6 +316,17 @@ driver = "modbus"
         self.yuragi("calibrate", "span", "--config", config, "--listen", daemon.address(), "--speed", 10, "--for", 2, "--yes")
         self.assertAlmostEqual(self.value("gain"), 10.0 / (8.0 + 2.0 / 3.0), delta=0.01)
 
+    def test_a_recording_of_the_daemon_holds_what_the_sensor_itself_said(self):
+        entry = self.modbus_entry(self.start_simulator(8, 350), "[sensor.calibration]\ngain = 1.5\noffset = 1.0\n")
+        config = self.file("wall.toml", entry)
+        log = self.path("day.windlog")
+        self.yuragi("record", log, "--config", config, "--listen", "127.0.0.1:0", "--duration", "3")
+        self.file("wall.toml", entry.replace("poll_interval = 0.1", "poll_interval = 0.5"))
+        told = self.yuragi("calibrate", "span", "--config", config, "--speed", 10, "--recording", log, "--yes")
+        self.assertRegex(told, r"At 10 m/s it says 8\.\d+ m/s")
+        self.assertIn('the driver of "roof" had other settings than now: poll_interval', told)
+        self.assertAlmostEqual(self.value("gain"), 10.0 / (8.0 + 2.0 / 3.0), delta=0.01)
+
     def test_a_person_is_led_through_it(self):
         config = self.file("wall.toml", self.modbus_entry(self.start_simulator(8, 350)))
         for answer, written in (("", False), ("y", True)):

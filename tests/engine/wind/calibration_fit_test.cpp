@@ -201,7 +201,9 @@ TEST(CalibrationFit, ACurveRisesWhateverTheScatter) {
     ++made;
     for (std::size_t i = 1; i < fit->curve.size(); ++i) {
       ASSERT_GT(fit->curve[i].measured_m_s, fit->curve[i - 1].measured_m_s + 0.2);
-      ASSERT_GT(fit->curve[i].true_m_s, fit->curve[i - 1].true_m_s);
+      ASSERT_GT(fit->curve[i].true_m_s, fit->curve[i - 1].true_m_s + 0.005);
+      ASSERT_GE(fit->curve[i - 1].true_m_s, 0.0);
+      ASSERT_GE(fit->curve[i - 1].measured_m_s, 0.0);
     }
   }
   EXPECT_GT(made, 100);
