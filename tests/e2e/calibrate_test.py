@@ -157,6 +157,14 @@ gain = 1.0          # from the institute
         self.assertAlmostEqual(float(re.search(r"gain = (\S+)", roof).group(1)), 1.08, delta=0.01)
         self.assertAlmostEqual(float(re.search(r"offset = (\S+)", roof).group(1)), 0.3, delta=0.06)
 
+    def test_sensors_at_two_heights_are_compared_at_one(self):
+        lower = math.log(2.0 / 0.03) / math.log(10.0 / 0.03)  # the wind at 2 m over that at 10 m
+        log = self.field(lambda true: lower * true / 1.1)
+        config = self.file("wall.toml", self.TWO_SENSORS.replace('"modbus"\n\n', '"modbus"\ncalibration.height = 2\n\n') + "height = 10\n")
+        self.yuragi("calibrate", "span", "--config", config, "--sensor", "roof", "--reference", "mast", "--recording", log, "--yes")
+        roof = self.read("wall.toml").split('name = "mast"', maxsplit=1)[0]
+        self.assertAlmostEqual(float(re.search(r"calibration\.gain = (\S+)", roof).group(1)), 1.1, delta=0.01)
+
     def test_north_against_another_vane(self):
         log = self.field(lambda true: true, turn_deg=-25.0)
         config = self.file("wall.toml", self.TWO_SENSORS)
@@ -301,15 +309,15 @@ driver = "modbus"
         told = self.yuragi("calibrate", "span", "--config", config, "--listen", NOBODY, "--speed", 8.8, "--for", 2, "--yes")
         self.assertIn("the devices themselves", told)
         self.assertAlmostEqual(self.value("gain"), 1.1, delta=0.01)
-        told = self.yuragi("calibrate", "north", "--config", config, "--listen", NOBODY, "--bearing", 10, "--for", 2, "--yes")
+        told = self.yuragi("calibrate", "north", "--config", config, "--listen", NOBODY, "--bearing", 10, "--for", 6, "--yes")
         self.assertAlmostEqual(self.value("north_offset"), 20.0, delta=1.0)
-        self.assertIn("is no zero error", self.yuragi("calibrate", "zero", "--config", config, "--listen", NOBODY, "--for", 3, "--yes", code=65))
+        self.assertIn("is no zero error", self.yuragi("calibrate", "zero", "--config", config, "--listen", NOBODY, "--for", 6, "--yes", code=65))
 
     def test_the_daemon_that_has_the_device_is_asked_and_what_it_calibrated_is_undone(self):
         old = "[sensor.calibration]\ngain = 1.5\noffset = 1.0\nnorth_offset = 90\n"
         config = self.file("wall.toml", self.modbus_entry(self.start_simulator(8, 350), old))
         daemon = self.start(YURAGI, "run", "--config", config, "--listen", "127.0.0.1:0")
-        told = self.yuragi("calibrate", "north", "--config", config, "--listen", daemon.address(), "--bearing", 10, "--for", 4, "--yes")
+        told = self.yuragi("calibrate", "north", "--config", config, "--listen", daemon.address(), "--bearing", 10, "--for", 6, "--yes")
         self.assertIn("from the running daemon at", told)
         self.assertAlmostEqual(self.value("north_offset"), 20.0, delta=1.0)
         # The line through its zero (-2/3 m/s) and (8, 10): 10 / 8.667.
@@ -326,6 +334,14 @@ driver = "modbus"
         self.assertRegex(told, r"At 10 m/s it says 8\.\d+ m/s")
         self.assertIn('the driver of "roof" had other settings than now: poll_interval', told)
         self.assertAlmostEqual(self.value("gain"), 10.0 / (8.0 + 2.0 / 3.0), delta=0.01)
+
+    def test_a_daemon_that_has_the_microphone_must_be_ended_first(self):
+        config = self.file("wall.toml", '[[sensor]]\ndriver = "microphone"\nworker = "/bin/false"\n')
+        daemon = self.start(YURAGI, "run", "--config", config, "--listen", "127.0.0.1:0")
+        told = self.yuragi("calibrate", "microphone", "--config", config, "--speed", 3, "--speed", 9, "--listen", daemon.address(),
+                           "--yes", code=69)
+        self.assertIn("end it for the calibration", told)
+        self.assertIn("has no zero", self.yuragi("calibrate", "zero", "--config", config, "--yes", code=64))
 
     def test_a_person_is_led_through_it(self):
         config = self.file("wall.toml", self.modbus_entry(self.start_simulator(8, 350)))
