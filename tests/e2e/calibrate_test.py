@@ -348,7 +348,7 @@ driver = "modbus"
         for answer, written in (("", False), ("y", True)):
             controller, terminal = pty.openpty()
             self.addCleanup(os.close, controller)
-            led = subprocess.Popen([YURAGI, "calibrate", "north", "--config", config, "--listen", NOBODY, "--for", "2"],
+            led = subprocess.Popen([YURAGI, "calibrate", "north", "--config", config, "--listen", NOBODY, "--for", "4"],
                                    stdin=terminal, stdout=terminal, stderr=terminal)
             os.close(terminal)
             self.addCleanup(led.wait)
@@ -376,7 +376,7 @@ driver = "modbus"
             wait_for("Enter when it is so")
             type_line("")
             wait_for("Write this to")
-            self.assertIn("of 2 s", shown)
+            self.assertIn("of 4 s", shown)
             self.assertIn("from 350 deg", shown)
             type_line(answer)
             wait_for("is written" if written else "Nothing was written.")
