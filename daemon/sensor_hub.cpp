@@ -84,6 +84,7 @@ const WindState& SensorHub::advance() {
     Channel& channel = channels_[index];
     channel.runner->drain([&](const WindReading& reading) {
       ++channel.readings;
+      channel.last_raw = reading;
       if (listener_) listener_(index, reading);
       take(index, reading);
     });
@@ -206,6 +207,10 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
       status.direction_deg = report.last->direction_deg;
       status.gust_m_s = report.last->gust_m_s;
       status.simulated = report.last->quality == ReadingQuality::kSimulated;
+    }
+    if (channel.last_raw) {
+      status.raw_speed_m_s = channel.last_raw->speed_m_s;
+      status.raw_direction_deg = channel.last_raw->direction_deg;
     }
     status.age_s = report.age_s;
     status.interval_s = report.interval_s;

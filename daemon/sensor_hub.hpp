@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -72,6 +73,7 @@ class SensorHub {
     std::uint64_t link_reports = 0;
     ChangeGate link_gate{kNothingTold};
     ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
+    std::optional<WindReading> last_raw;  ///< before calibration
   };
 
   void take(std::size_t index, const WindReading& reading);

@@ -115,7 +115,8 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
          read_text(from.name(), to.name) && read_text(from.driver(), to.driver) &&
          read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
          read(from.speed_m_s(), to.speed_m_s) && read(from.direction_deg(), to.direction_deg) &&
-         read(from.gust_m_s(), to.gust_m_s);
+         read(from.gust_m_s(), to.gust_m_s) && read(from.raw_speed_m_s(), to.raw_speed_m_s) &&
+         read(from.raw_direction_deg(), to.raw_direction_deg);
 }
 
 /// A server that does not know of it sends none: then nothing is at work.

@@ -131,6 +131,8 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   table.add_replayed(sensor.replayed);
   table.add_state(static_cast<fb::SensorState>(sensor.state));
   table.add_state_reason(state_reason);
+  if (sensor.raw_speed_m_s) table.add_raw_speed_m_s(*sensor.raw_speed_m_s);
+  if (sensor.raw_direction_deg) table.add_raw_direction_deg(*sensor.raw_direction_deg);
   return table.Finish();
 }
 

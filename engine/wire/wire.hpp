@@ -103,7 +103,9 @@ struct SensorStatus {
   std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
   bool replayed = false;         ///< a recording that is played again
   SensorState state = SensorState::kConnecting;
-  std::string state_reason;  ///< why, and what to do about it
+  std::string state_reason;             ///< why, and what to do about it
+  std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
+  std::optional<double> raw_direction_deg;
 };
 
 /// What makes the wind that moves the scenes another than the real one (engine/wind/wind_shaping.hpp).

@@ -99,6 +99,9 @@ name = "other"
   EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
 
   const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  const Config in_km_h = parse_config(sensor + "[sensor.calibration]\nunit = \"km/h\"\n", "wall.toml");
+  EXPECT_EQ(calibration_of(in_km_h.sensors[0]).unit_m_s, 1.0 / 3.6);
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\nunit = \"km\"\n"), HasSubstr("sensor.calibration.unit: is"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ngain = 0\n"),
               StartsWith("wall.toml:4:8: sensor.calibration.gain: is 0; allowed: number from 0.01 to 100"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ncurve = \"5\"\n"),
@@ -249,6 +252,17 @@ TEST(Config, WrittenOutAndReadAgainItIsTheSame) {
   const std::string written = to_toml(config);
   EXPECT_EQ(to_toml(parse_config(written, "again.toml")), written);
   EXPECT_THAT(written, HasSubstr("speed = 2.25"));
+}
+
+TEST(Config, TheValuesOfOneTableAreReadBack) {
+  const Config config = parse_config("[[sensor]]\ndriver = \"synthetic\"\nspeed = 2.25\n", "wall.toml");
+  const SensorConfig& sensor = config.sensors[0];
+  const auto again = parse_values(to_toml(sensor.values), sensor.driver->parameters);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->all(), sensor.values.all());
+  EXPECT_THAT(parse_values("speed = -1", sensor.driver->parameters).error().message, HasSubstr("speed: is -1"));
+  EXPECT_THAT(parse_values("speed = [1]", sensor.driver->parameters).error().message, HasSubstr("takes one value"));
+  EXPECT_THAT(parse_values("speed =", sensor.driver->parameters).error().message, HasSubstr("TOML"));
 }
 
 TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {

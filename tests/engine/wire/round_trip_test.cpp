@@ -217,6 +217,9 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.state_reason, "the same 3.42 m/s 61 times");
   EXPECT_EQ(sensors.sensors[1].state, SensorState::kConnecting);
   EXPECT_FALSE(sensors.sensors[1].replayed);
+  EXPECT_EQ(gauge.raw_speed_m_s, 0.5);
+  EXPECT_EQ(gauge.raw_direction_deg, 349.5);
+  EXPECT_EQ(sensors.sensors[1].raw_speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
   EXPECT_EQ(sensors.late_ticks, 5u);

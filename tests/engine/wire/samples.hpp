@@ -240,6 +240,8 @@ inline wire::Sensors sensors() {
   gauge.replayed = true;
   gauge.state = SensorState::kFrozen;
   gauge.state_reason = "the same 3.42 m/s 61 times";
+  gauge.raw_speed_m_s = 0.5;
+  gauge.raw_direction_deg = 349.5;
   const wire::Shaping shaping{.site_gain = 1.75,
                               .floor_gain = 2.5,
                               .breeze_m_s = 0.25,
