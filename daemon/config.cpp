@@ -89,6 +89,16 @@ const std::array kWindParameters = {
               .min = 2.0,
               .max = 100.0,
               .help = "a sensor that is silent for this many of its own intervals is stale"},
+    Parameter{.name = "fallback_recording",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "a .windlog that is played while every sensor is silent; empty: the default wind blows then"},
+    Parameter{.name = "fallback_after",
+              .unit = "s",
+              .default_value = 60.0,
+              .min = 1.0,
+              .max = 86400.0,
+              .help = "how long every sensor must have been silent for that"},
 };
 
 const std::array kCalibrationParameters = {
@@ -204,6 +214,9 @@ class ConfigReader {
     check_listen(root, config.stream);
     config.animation = read_table(root, "", "animation", kAnimationParameters);
     config.wind = read_table(root, "", "wind", kWindParameters);
+    if (const toml::node* node = root["wind"]["fallback_recording"].node()) {
+      config.fallback_origin = place(node->source());
+    }
 
     for_each_entry(root, "sensor", "driver", driver_table(),
                    [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {

@@ -17,12 +17,13 @@ std::uint64_t hash_poses(std::uint64_t hash, std::span<const Pose* const> poses)
 }  // namespace
 
 LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
-                                  const PlaybackOptions& options, double duration_s,
+                                  const PlayerOptions& options, double duration_s,
                                   const std::function<void(double)>& progress) {
-  WindlogPlayback playback(recording, options);
+  WindlogPlayer player(recording, options, Instant{});
   Animation animation(config);
   Config one_source = config;
   one_source.sensors.resize(1);
+  one_source.wind.set("fallback_recording", std::string{});
   const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, make_gust_noise(config));
 
   const double rate_hz = config.animation.number("rate");
@@ -30,20 +31,18 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   LockstepResult result;
   std::uint64_t followed_ticks = 0;
 
-  std::optional<PlayedReading> next = playback.next();
-  for (std::uint64_t tick = 0; next.has_value(); ++tick) {
+  for (std::uint64_t tick = 0; !player.is_finished(); ++tick) {
     const double now_s = static_cast<double>(tick) / rate_hz;
     if (duration_s > 0.0 && now_s >= duration_s) break;
 
     // Readings that are due by this tick, at their own log time.
-    for (; next && next->log_time_s <= now_s; next = playback.next()) {
-      WindReading reading = next->reading;
-      reading.time.mono = MonoTime(from_seconds(next->log_time_s));
-      if (!estimator->accept(0, reading)) continue;
+    const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
+    player.play(now, [&](const WindReading& reading) {
+      if (!estimator->accept(0, reading)) return;
       ++result.readings;
       result.reading_mean_m_s += reading.speed_m_s;
       result.reading_max_m_s = std::max(result.reading_max_m_s, reading.speed_m_s);
-    }
+    });
 
     const WindState state = estimator->advance(MonoTime(from_seconds(now_s)));
     animation.step(state.wind, 1.0 / rate_hz);

@@ -37,12 +37,16 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
                                .handover_s = config.wind.number("handover"),
                                .stale_intervals = config.wind.number("stale_intervals"),
                                .rate_hz = config.animation.number("rate")};
-  return std::make_unique<BlendedEstimator>(config.sensors.size(), settings, std::move(noise));
+  const std::size_t source_count = config.sensors.size() + (has_fallback(config) ? 1 : 0);
+  return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
 }
 
 SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
                      Listener listener)
-    : clock_(clock), listener_(std::move(listener)), estimator_(make_estimator(config, std::move(noise))) {
+    : clock_(clock),
+      listener_(std::move(listener)),
+      estimator_(make_estimator(config, std::move(noise))),
+      fallback_(config, clock) {
   // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
   std::vector<std::unique_ptr<Sensor>> sensors;
   for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
@@ -59,11 +63,15 @@ const WindState& SensorHub::advance() {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     Channel& channel = channels_[index];
     channel.runner->drain([&](const WindReading& reading) {
-      ++channel.readings;
-      if (listener_) listener_(index, reading);
+      if (!reading.is_held) {
+        ++channel.readings;
+        if (listener_) listener_(index, reading);
+      }
       estimator_->accept(index, channel.calibration.applied_to(reading));
     });
   }
+  fallback_.advance(is_any_live(),
+                    [this](const WindReading& reading) { estimator_->accept(channels_.size(), reading); });
   wind_ = estimator_->advance(clock_.now().mono);
   for (std::size_t index = 0; index < channels_.size(); ++index) log_changes(index);
   return wind_;
@@ -127,7 +135,25 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     status.replayed = channel.config.driver->plays_recordings;
     all.push_back(std::move(status));
   }
+  if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
   return all;
+}
+
+bool SensorHub::is_any_live() const {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    if (estimator_->report(index).health == SourceHealth::kLive) return true;
+  }
+  return false;
+}
+
+std::vector<NamedPlayer> SensorHub::players() {
+  std::vector<NamedPlayer> players;
+  for (const Channel& channel : channels_) {
+    SensorRunner& runner = *channel.runner;
+    if (runner.player() == nullptr) continue;
+    players.push_back({channel.config.name, runner.player(), [&runner] { runner.wake(); }});
+  }
+  return players;
 }
 
 void SensorHub::trace(const std::function<bool(std::string_view)>& is_wanted) {

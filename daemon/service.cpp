@@ -12,6 +12,7 @@
 
 #include "daemon/animation.hpp"
 #include "daemon/animation_loop.hpp"
+#include "daemon/player_director.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/scene_director.hpp"
 #include "daemon/sensor_hub.hpp"
@@ -38,7 +39,8 @@ class Service::Io {
         director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
-        hub_(config, clock_, make_gust_noise(config), listener()) {
+        hub_(config, clock_, make_gust_noise(config), listener()),
+        players_(config.stream.text("control"), hub_.players()) {
     if (animation_) {
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
@@ -92,12 +94,16 @@ class Service::Io {
     if (animation_) {
       settings.scenes = animation_->describe();
       refuse_what_no_client_takes(settings.scenes);
-      settings.on_control = [this](const wire::Control& wish, bool is_local) {
-        return director_.answer(wish, is_local);
-      };
     }
+    settings.on_control = [this](const wire::Control& wish, bool is_local) { return answer(wish, is_local); };
     settings.max_clients = static_cast<std::size_t>(config.stream.integer("max_clients"));
     return settings;
+  }
+
+  wire::ControlReply answer(const wire::Control& wish, bool is_local) {
+    if (wish.player) return players_.answer(*wish.player, is_local);
+    if (animation_) return director_.answer(wish, is_local);
+    return {.done = false, .message = "there are no scenes here", .scenes = {}};
   }
 
   std::unique_ptr<Recorder> make_recorder(const Config& config, const std::filesystem::path& file) const;
@@ -178,6 +184,7 @@ class Service::Io {
   TcpStream stream_;
   std::unique_ptr<Recorder> recorder_;
   SensorHub hub_;
+  PlayerDirector players_;
   Latest<WindState> wind_;
   std::unique_ptr<AnimationLoop> loop_;
 };

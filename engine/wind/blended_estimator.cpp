@@ -75,6 +75,10 @@ bool BlendedEstimator::accept(std::size_t index, const WindReading& reading) noe
   const bool is_first = !source.record.has_spoken();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - source.record.last()->time.mono);
   if (gap_s < 0.0) return false;  // older than what is known
+  if (reading.is_held && !is_first) {
+    source.record.hold(reading.time);
+    return true;
+  }
   const double expected_s = source.record.expected_interval_s();
   source.record.take(reading, settings_.climate.mean_direction_deg);
   if (is_first) {
