@@ -123,6 +123,26 @@ TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
   EXPECT_NEAR(status[0].age_s, 10.0, 1e-3);
 }
 
+TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
+  config_.wind.set("default_turbulence", 0.0);
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+    WindReading reading = reading_at(clock, 6.0);
+    for (int i = 0; i < 100; ++i) {
+      sink.reading(reading);
+      reading.time.mono += std::chrono::milliseconds(100);
+      reading.is_held = true;
+    }
+  };
+  int heard = 0;
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { ++heard; });
+  script_.polled.get_future().wait();
+  wind_after_a_while(hub, clock_);
+  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(hub.status()[0].readings, 1U);
+  EXPECT_EQ(hub.status()[0].health, static_cast<std::uint8_t>(SourceHealth::kLive)) << "10 s after it was first said";
+  EXPECT_LT(hub.status()[0].age_s, 0.2);
+}
+
 TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
   script_.first_poll = [](const Clock& clock, SensorSink& sink) {
     sink.refused(Refusal::kTimeout);
