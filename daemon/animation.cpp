@@ -4,7 +4,8 @@
 
 namespace yuragi {
 
-Animation::Animation(const Config& config) : pool_(static_cast<std::size_t>(config.animation.integer("threads"))) {
+Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts)
+    : pool_(static_cast<std::size_t>(config.animation.integer("threads"))) {
   for (const SceneConfig& scene : config.scenes) {
     const ScenePlacement placement{.x_m = scene.values.number("x"),
                                    .y_m = scene.values.number("y"),
@@ -12,7 +13,8 @@ Animation::Animation(const Config& config) : pool_(static_cast<std::size_t>(conf
                                    .heading_deg = scene.values.number("heading")};
     names_.push_back(scene.name);
     kinds_.emplace_back(scene.kind->name);
-    scenes_.push_back(scene.kind->make(scene.values, {.seed = config.seed + scenes_.size(), .placement = placement}));
+    scenes_.push_back(
+        scene.kind->make(scene.values, {.seed = config.seed + scenes_.size(), .placement = placement, .gusts = gusts}));
     gains_.push_back(scene.values.number("gain"));
     fades_.emplace_back(scene.values.flag("shown"));
     skeletons_.push_back(&scenes_.back()->skeleton());
@@ -23,7 +25,7 @@ Animation::Animation(const Config& config) : pool_(static_cast<std::size_t>(conf
   largest_frame_bytes_ = encoder_.encode({}, skeletons_, poses_).size();
 }
 
-void Animation::step(WindVector wind, double dt_s) noexcept {
+void Animation::step(const GroundWind& wind, double dt_s) noexcept {
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     fades_[i].advance(dt_s);
     opacities_[i] = fades_[i].opacity();

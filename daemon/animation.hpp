@@ -29,10 +29,11 @@ struct SceneCue {
 /// pool's threads (WorkerPool). Poses do not depend on how many there are.
 class Animation {
  public:
-  explicit Animation(const Config& config);
+  /// `gusts`: of the wind that step() will be given.
+  Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts);
 
   /// Moves every scene that is seen on by dt_s under `wind`, and every fade.
-  void step(WindVector wind, double dt_s) noexcept;
+  void step(const GroundWind& wind, double dt_s) noexcept;
 
   /// Begins a fade. A scene that is not there is no scene to show: nothing happens.
   void cue(const SceneCue& cue) noexcept;

@@ -31,7 +31,7 @@ constexpr std::size_t kWaitingCues = 64;
 
 }  // namespace
 
-AnimationLoop::AnimationLoop(Animation& animation, Latest<WindState>& wind, const Clock& clock, double rate_hz)
+AnimationLoop::AnimationLoop(Animation& animation, Latest<DrivingWind>& wind, const Clock& clock, double rate_hz)
     : animation_(animation),
       wind_(wind),
       clock_(clock),
@@ -75,16 +75,16 @@ void AnimationLoop::run(const std::stop_token& stop) {
 void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   // Skipped ticks are made up for in one longer step, so that motion keeps its speed; a long halt is not.
   wind_.refresh();
-  const WindState& wind = wind_.value();
+  const DrivingWind& wind = wind_.value();
   const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
   cues_.drain([this](const SceneCue& cue) { animation_.cue(cue); });
-  animation_.step(wind.wind, dt_s);
+  animation_.step(wind.ground, dt_s);
 
   const wire::FrameInfo info{.sequence = sequence_++,
                              .tick = tick.number,
                              .time_s = static_cast<double>(tick.number) / rate_hz_,
                              .utc_ns = clock_.now().utc.time_since_epoch().count(),
-                             .wind = wind};
+                             .wind = wind.state};
   const std::span<const std::uint8_t> frame = animation_.encode(info);
   frames_.writable().assign(frame.begin(), frame.end());
   frames_.publish();

@@ -29,7 +29,7 @@ class AnimationLoop {
  public:
   /// `wind` must outlive the loop; its writer is the I/O thread. The clock must be the machine's: the loop sleeps on
   /// CLOCK_MONOTONIC.
-  AnimationLoop(Animation& animation, Latest<WindState>& wind, const Clock& clock, double rate_hz);
+  AnimationLoop(Animation& animation, Latest<DrivingWind>& wind, const Clock& clock, double rate_hz);
   ~AnimationLoop();
 
   AnimationLoop(const AnimationLoop&) = delete;
@@ -54,7 +54,7 @@ class AnimationLoop {
   void tick(const TickSchedule::Tick& tick);
 
   Animation& animation_;
-  Latest<WindState>& wind_;
+  Latest<DrivingWind>& wind_;
   const Clock& clock_;
   double rate_hz_;
   std::uint64_t sequence_ = 0;

@@ -20,11 +20,12 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
                                   const PlayerOptions& options, double duration_s,
                                   const std::function<void(double)>& progress) {
   WindlogPlayer player(recording, options, Instant{});
-  Animation animation(config);
+  const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
+  Animation animation(config, gusts);
   Config one_source = config;
   one_source.sensors.resize(1);
   one_source.wind.set("fallback_recording", std::string{});
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, make_gust_noise(config));
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts);
 
   const double rate_hz = config.animation.number("rate");
   const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
@@ -45,7 +46,7 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
     });
 
     const WindState state = estimator->advance(MonoTime(from_seconds(now_s)));
-    animation.step(state.wind, 1.0 / rate_hz);
+    animation.step(estimator->ground(), 1.0 / rate_hz);
     result.pose_hash = hash_poses(result.pose_hash, animation.poses());
     ++result.ticks;
     if (state.source == WindSource::kLive) {

@@ -35,11 +35,12 @@ class Service::Io {
   Io(const Config& config, const ServiceOptions& options)
       : options_(options),
         rate_hz_(config.animation.number("rate")),
-        animation_(options.with_scenes ? std::make_unique<Animation>(config) : nullptr),
+        gusts_(make_gust_noise(config)),
+        animation_(options.with_scenes ? std::make_unique<Animation>(config, gusts_) : nullptr),
         director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
-        hub_(config, clock_, make_gust_noise(config), listener()),
+        hub_(config, clock_, gusts_, listener()),
         players_(config.stream.text("control"), hub_.players()) {
     if (animation_) {
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
@@ -115,7 +116,8 @@ class Service::Io {
 
   /// Takes in readings and lets the wind go on, at the animation's pace.
   void step_wind() {
-    wind_.publish(hub_.advance());
+    const WindState& state = hub_.advance();
+    wind_.publish({state, hub_.ground()});
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     if (options_.end_with_recordings && hub_.is_finished()) return end("the recording is over");
@@ -179,13 +181,14 @@ class Service::Io {
   std::uint64_t frames_made_ = 0;
 
   // In this order: a second daemon stops at the address that is taken, before it touches the recording or a sensor.
+  std::shared_ptr<const GustNoise> gusts_;
   std::unique_ptr<Animation> animation_;
   SceneDirector director_;
   TcpStream stream_;
   std::unique_ptr<Recorder> recorder_;
   SensorHub hub_;
   PlayerDirector players_;
-  Latest<WindState> wind_;
+  Latest<DrivingWind> wind_;
   std::unique_ptr<AnimationLoop> loop_;
 };
 

@@ -28,25 +28,14 @@ EvolvingNoise::EvolvingNoise(const NoiseSpec& spec, double turn_rad_s, SimdRow r
   tile_.values.resize(spec.size * spec.size);
   fill_spectrum(fft_, spec);
 
-  const RandomStream signs(spec.seed, stream_id("evolving noise signs"));
+  const std::vector<std::int8_t> signs = turning_signs(fft_, spec.seed);
   const std::size_t columns = fft_.row_modes();
-  const std::size_t half = spec.size / 2;
   for (std::size_t i = 0; i < fft_.spectrum().size(); ++i) {
     first_re_.push_back(fft_.spectrum()[i].real());
     first_im_.push_back(fft_.spectrum()[i].imag());
-
-    // In the first and the middle column a mode and its mirror image, which is its conjugate, turn opposite ways; one
-    // that is its own mirror image stands still.
-    const std::size_t x = i % columns;
-    const SpectrumRow line = spectrum_row(i / columns, spec.size, 2);
-    const bool mirrored_here = x == 0 || x == half;
-    if (mirrored_here && line.mirror <= line.index) {
-      turns_per_s_.push_back(line.mirror == line.index ? 0.0 : -turns_per_s_[line.mirror * columns + x]);
-      continue;
-    }
-    const double sign = signs.uniform(i) < 0.5 ? -1.0 : 1.0;
-    const double k = std::hypot(static_cast<double>(x), static_cast<double>(line.wave_z));
-    turns_per_s_.push_back(sign * turn_rad_s * std::cbrt(k * k) / (2.0 * std::numbers::pi));
+    const auto wave_z = static_cast<double>(spectrum_row(i / columns, spec.size, 2).wave_z);
+    const double k = std::hypot(static_cast<double>(i % columns), wave_z);
+    turns_per_s_.push_back(signs[i] * turn_rad_s * std::cbrt(k * k) / (2.0 * std::numbers::pi));
   }
   phase_.assign(fft_.spectrum().size(), 0);
 

@@ -98,6 +98,26 @@ void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
   }
 }
 
+std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed) {
+  const RandomStream random(seed, stream_id("evolving noise signs"));
+  const std::size_t columns = fft.row_modes();
+  const std::size_t half = fft.size() / 2;
+  const std::size_t rows = fft.dims() == 1 ? 1 : fft.dims() == 2 ? fft.size() : fft.size() * fft.size();
+  std::vector<std::int8_t> signs(rows * columns);
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    // In the first and the middle column a mode's mirror image, its conjugate, stands in the same column.
+    const std::size_t x = i % columns;
+    const SpectrumRow row = spectrum_row(i / columns, fft.size(), fft.dims());
+    const bool mirrored_here = x == 0 || x == half;
+    if (mirrored_here && row.mirror <= row.index) {
+      signs[i] = row.mirror == row.index ? std::int8_t{0} : static_cast<std::int8_t>(-signs[row.mirror * columns + x]);
+    } else {
+      signs[i] = random.uniform(i) < 0.5 ? std::int8_t{-1} : std::int8_t{1};
+    }
+  }
+  return signs;
+}
+
 Standard standard_of(std::span<const double> samples) noexcept {
   const auto count = static_cast<double>(samples.size());
   double sum = 0.0;

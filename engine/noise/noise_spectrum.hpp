@@ -25,6 +25,10 @@ std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept;
 /// Fills the half spectrum of a transform of 1 to 3 dimensions with the random modes of a checked spec, Hermitian.
 void fill_spectrum(RealFft& fft, const NoiseSpec& spec);
 
+/// Which way each mode of the half spectrum turns, where eddies turn over: 1 or -1 at random, s_-k = -s_k, and 0 for
+/// the modes that are their own mirror images, which must stay real.
+std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed);
+
 /// What brings samples to mean 0 and variance 1.
 struct Standard {
   double mean = 0.0;

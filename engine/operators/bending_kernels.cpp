@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "engine/base/kernel.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
@@ -25,8 +27,26 @@ void bend(const BendingKernelArguments& in) noexcept {
   }
 }
 
+void bend_locally(const LocalBendingKernelArguments& in) noexcept {
+  const LocalBendingKernelArguments arguments = in;
+  const float* const wind_east = arguments.wind_east_m_s;
+  const float* const wind_south = arguments.wind_south_m_s;
+  const float* const flexibility = arguments.flexibility;
+  float* const __restrict east = arguments.out_east_rad;
+  float* const __restrict south = arguments.out_south_rad;
+  for (std::size_t i = 0; i < arguments.count; ++i) {
+    const float per_m_s = arguments.half_bends_per_m_s * flexibility[i];
+    const float blowing = per_m_s * std::sqrt(wind_east[i] * wind_east[i] + wind_south[i] * wind_south[i]);
+    const float s = blowing < kLargest ? blowing : kLargest;
+    // s^2 / (1 + s^2) over the speed: no division by a speed that may be 0.
+    const float bend_per_m_s = arguments.max_bend_rad * per_m_s * (s / (1.0F + s * s));
+    east[i] = bend_per_m_s * wind_east[i];
+    south[i] = bend_per_m_s * wind_south[i];
+  }
+}
+
 }  // namespace
 
-const BendingKernels YURAGI_ROW_NAME(bending_kernels) = {bend};
+const BendingKernels YURAGI_ROW_NAME(bending_kernels) = {bend, bend_locally};
 
 }  // namespace yuragi

@@ -20,7 +20,7 @@ struct SampleKernelLayer {
 struct SampleKernelArguments {
   std::size_t count = 0;
   std::size_t layer_count = 0;
-  SampleKernelLayer layers[4] = {};
+  SampleKernelLayer layers[32] = {};
   float scale = 0.0F;
   float bias = 0.0F;
   float low = 0.0F;
@@ -35,6 +35,17 @@ struct BendingKernelArguments {
   float wind_in_half_bends = 0.0F;  ///< wind speed / half-bend speed
   float bend_east_rad = 0.0F;       ///< the largest bend, toward where the wind blows
   float bend_south_rad = 0.0F;
+  float* out_east_rad = nullptr;
+  float* out_south_rad = nullptr;
+};
+
+struct LocalBendingKernelArguments {
+  std::size_t count = 0;
+  const float* wind_east_m_s = nullptr;
+  const float* wind_south_m_s = nullptr;
+  const float* flexibility = nullptr;
+  float half_bends_per_m_s = 0.0F;
+  float max_bend_rad = 0.0F;
   float* out_east_rad = nullptr;
   float* out_south_rad = nullptr;
 };
@@ -60,6 +71,7 @@ extern const SampleKernels sample_kernels_x86_64_v4;
 
 struct BendingKernels {
   void (*bend)(const BendingKernelArguments&) noexcept;
+  void (*bend_locally)(const LocalBendingKernelArguments&) noexcept;
 };
 extern const BendingKernels bending_kernels_x86_64;
 extern const BendingKernels bending_kernels_x86_64_v3;

@@ -25,11 +25,12 @@ struct NoiseLayer {
 /// out = clamp(bias + scale * sum of weight * noise(place - offset), low, high) (Chiba, section 2-2 (2)).
 ///
 /// One layer is the paper's; two tiles of different size and direction keep a repeat from being seen (method, decision
-/// 7). One value out for each place (one a strand: what bends as a whole is read once). Owns nothing; `out` overlaps no
-/// input. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits, and
-/// layers are added in their order. Cost: about 2 ns a place and layer.
+/// 7); octaves by themselves, added up, are a noise whose spectrum the moment decides. One value out for each place
+/// (one a strand: what bends as a whole is read once). Owns nothing; `out` overlaps no input. Thread-safe: jobs with
+/// different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits, and layers are added in their
+/// order. Cost: about 2 ns a place and layer.
 struct SampleJob {
-  static constexpr std::size_t kMaxLayers = 4;
+  static constexpr std::size_t kMaxLayers = 32;
 
   std::span<const NoiseLayer> layers;
   float scale = 1.0F;

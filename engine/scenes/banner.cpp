@@ -78,7 +78,7 @@ class Banner final : public Scene {
   const Pose& pose() const noexcept override { return cloth_.pose(); }
   double largest_joint_step_m(double dt_s) const noexcept override { return cloth_.largest_joint_step_m(dt_s); }
 
-  void shift(WindVector wind, double dt_s) noexcept override {
+  void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
   }
@@ -93,7 +93,7 @@ class Banner final : public Scene {
     const double across = (wind_.south_m_s() * arm_.east - wind_.east_m_s() * arm_.south) * per_speed;
 
     // It gives way across itself, more the farther from the pole.
-    const double swell = 0.6 + 0.4 * static_cast<double>(noise_.swell());
+    const double swell = 0.6 + own_swell_ * static_cast<double>(noise_.swell());
     const auto sway_across = static_cast<float>(max_sway_ * swell * across);
     const auto wave_across = static_cast<float>(max_wave_ * strength);
     const auto across_east = static_cast<float>(-arm_.south);
@@ -119,6 +119,8 @@ class Banner final : public Scene {
         max_sway_(lean_of_deg(values.number("max_sway"))),
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         arm_(turned(setup.placement, 1.0, 0.0)),
+        own_swell_(setup.gusts ? 0.0 : 0.4),
+        wind_(setup.placement, setup.gusts),
         noise_(values, setup.seed ^ stream_id("banner noise"), edge.x_m, edge.z_m, setup.row),
         flutter_(edge.stride(), 0.0F),
         from_pole_(edge.stride(), 0.0F),
@@ -133,6 +135,7 @@ class Banner final : public Scene {
   double max_wave_;
   Turned arm_;  ///< where the cross-arm points to
 
+  double own_swell_;  ///< how much the whole of it swells by itself; gusts from outside are swell enough
   SceneWind wind_;
   ClothNoise noise_;
   std::vector<float> flutter_;    ///< each column's noise

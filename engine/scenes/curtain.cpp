@@ -92,7 +92,7 @@ class Curtain final : public Scene {
   const Pose& pose() const noexcept override { return cloth_.pose(); }
   double largest_joint_step_m(double dt_s) const noexcept override { return cloth_.largest_joint_step_m(dt_s); }
 
-  void shift(WindVector wind, double dt_s) noexcept override {
+  void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
   }
@@ -107,7 +107,7 @@ class Curtain final : public Scene {
     const double per_speed = speed_m_s > 0.0 ? strength / speed_m_s : 0.0;
     const double along = (wind_.east_m_s() * along_.east + wind_.south_m_s() * along_.south) * per_speed;
     const double across = (wind_.south_m_s() * along_.east - wind_.east_m_s() * along_.south) * per_speed;
-    const double swell = 0.7 + 0.3 * static_cast<double>(noise_.swell());
+    const double swell = 0.7 + own_swell_ * static_cast<double>(noise_.swell());
     const double sway_along = swell * max_sway_ * give_sideways_ * along;
     const double sway_across = swell * max_sway_ * across;
     const auto sway_east = static_cast<float>(sway_along * along_.east - sway_across * along_.south);
@@ -136,6 +136,8 @@ class Curtain final : public Scene {
         max_sway_(lean_of_deg(values.number("max_sway"))),
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         along_(turned(setup.placement, 1.0, 0.0)),
+        own_swell_(setup.gusts ? 0.0 : 0.3),
+        wind_(setup.placement, setup.gusts),
         noise_(values, setup.seed ^ stream_id("curtain noise"), edge.x_m, edge.z_m, setup.row),
         flutter_(edge.stride(), 0.0F),
         cloth_(curtain_spec(values), edge, setup.row) {}
@@ -146,6 +148,7 @@ class Curtain final : public Scene {
   double max_wave_;
   Turned along_;  ///< the curtain's own direction, from the first column to the last
 
+  double own_swell_;  ///< how much the whole of it swells by itself; gusts from outside are swell enough
   SceneWind wind_;
   ClothNoise noise_;
   std::vector<float> flutter_;  ///< each column's noise

@@ -100,7 +100,7 @@ class Flag final : public Scene {
   const Pose& pose() const noexcept override { return cloth_.pose(); }
   double largest_joint_step_m(double dt_s) const noexcept override { return cloth_.largest_joint_step_m(dt_s); }
 
-  void shift(WindVector wind, double dt_s) noexcept override {
+  void shift(const GroundWind& wind, double dt_s) noexcept override {
     // A flag stands along the wind, so the noise goes along it as the wind does.
     wind_.step(wind, dt_s);
     const double speed_m_s = wind_.speed_m_s();
@@ -145,6 +145,7 @@ class Flag final : public Scene {
         max_wave_(lean_of_deg(values.number("max_flutter"))),
         rest_east_(edge.lean_east),
         rest_south_(edge.lean_south),
+        wind_(setup.placement, setup.gusts),
         noise_(values, setup.seed ^ stream_id("flag noise"), heights_on_noise(edge, -kAlongNoiseZ),
                heights_on_noise(edge, kAlongNoiseX), setup.row),
         flutter_(edge.stride(), 0.0F),

@@ -112,7 +112,7 @@ class Flame final : public Scene {
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
 
-  void shift(WindVector wind, double dt_s) noexcept override {
+  void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     kindled_.step(1.0, kKindle_rad_s, dt_s);
     const double speed_m_s = wind_.speed_m_s();
@@ -177,6 +177,7 @@ class Flame final : public Scene {
         flicker_(values.number("flicker")),
         largest_lean_(std::tan(values.number("max_lean") * kRadPerDeg)),
         half_speed_m_s_(values.number("half_speed")),
+        wind_(setup.placement, setup.gusts),
         noise_(flame_layers(values, body.around_m, setup.seed), body.across_m, body.up_m),
         values_(body.across_m.size(), 0.0F),
         along_(body.across_m.size(), 0.0F),

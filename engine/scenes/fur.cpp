@@ -23,6 +23,7 @@ constexpr StrandSwaySpec kFurSway = {.max_bend_rad = 0.9,
                                      .natural_hz = 4.0,
                                      .damping_ratio = 0.35,
                                      .carry = 0.06,
+                                     .has_own_gusts = true,
                                      .noise = {.period_m = 16.0, .beta = 2.5}};
 
 std::vector<Parameter> fur_parameters() {
@@ -64,7 +65,7 @@ Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
 std::unique_ptr<Scene> make_fur(const ParameterValues& values, const SceneSetup& setup) {
   Coat coat = placed_coat(values, setup);
   return std::make_unique<StrandSway>(coat.skeleton, coat.place_x_m, coat.place_z_m, std::move(coat.flexibility),
-                                      strand_sway_spec(values, setup.seed ^ stream_id("wind in the fur")), setup.row);
+                                      strand_sway_spec(values, setup.seed ^ stream_id("wind in the fur")), setup);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ std::unique_ptr<Scene> make_grass(const ParameterValues& values, const SceneSetu
   Meadow meadow = placed_meadow(values, setup);
   return std::make_unique<StrandSway>(
       meadow.skeleton, meadow.skeleton.root_x_m, meadow.skeleton.root_z_m, std::move(meadow.flexibility),
-      strand_sway_spec(values, setup.seed ^ stream_id("grass wind on the ground")), setup.row);
+      strand_sway_spec(values, setup.seed ^ stream_id("grass wind on the ground")), setup);
 }
 
 }  // namespace

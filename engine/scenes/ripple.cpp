@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "engine/math/critically_damped.hpp"
@@ -14,6 +15,7 @@
 #include "engine/scenes/placement.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
+#include "engine/scenes/wind_grid.hpp"
 
 // Ripples on water (Chiba, section 2-2: displacement): a surface whose points shifted noise moves along their normals.
 //
@@ -56,6 +58,9 @@ constexpr double kSlow_m_s = 0.5;
 
 /// What is left of an amplitude that has died away: it moves nothing, and is not worth a denormal number.
 constexpr double kFlat = 1e-12;
+
+/// Beyond it gusts from outside roughen the water no more, in standard deviations of a usual wind.
+constexpr float kLargestGust = 3.0F;
 
 const std::array kRippleParameters = {
     Parameter{"columns", "", std::int64_t{200}, 2, 1000, "points from west to east"},
@@ -121,7 +126,7 @@ class Ripple final : public Scene {
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
 
-  void shift(WindVector wind, double dt_s) noexcept override {
+  void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     const double east_m_s = wind_.east_m_s();
     const double south_m_s = wind_.south_m_s();
@@ -136,11 +141,17 @@ class Ripple final : public Scene {
                    way * (sine * east_m_s + kCrossingCos * south_m_s));
     }
     gusts_.shift(east_m_s, south_m_s, dt_s);
+    if (outside_) outside_->step(wind, dt_s);
   }
 
   void sample() noexcept override {
     waves_.sample(row_, noise_);
-    gusts_.sample(gust_places_, row_, share_, static_cast<float>(gustiness_), 1.0F, 0.0F);
+    if (!outside_) {
+      gusts_.sample(gust_places_, row_, share_, static_cast<float>(gustiness_), 1.0F, 0.0F);
+      return;
+    }
+    outside_->sample_gusts(0, share_, kLargestGust);
+    for (float& share : share_) share = std::max(1.0F + static_cast<float>(gustiness_) * share, 0.0F);
   }
 
   void project(double dt_s) noexcept override {
@@ -161,12 +172,15 @@ class Ripple final : public Scene {
   /// waves by what goes past at their own speed. Each times the others at their largest.
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double largest_wave = std::max(waves_.highest(), -waves_.lowest());
-    const double largest_share = 1.0 + gustiness_ * std::max(gusts_.highest(), 0.0);
+    const double largest_gust = outside_ ? static_cast<double>(kLargestGust) : std::max(gusts_.highest(), 0.0);
+    const double largest_share = 1.0 + gustiness_ * largest_gust;
     double wave_step = 0.0;
     for (std::size_t i = 0; i < 2; ++i) {
       wave_step += waves_.largest_change(i, wave_speed_m_s_[i] * dt_s, wave_speed_m_s_[i] * dt_s);
     }
-    const double gust_step = gusts_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
+    const double gust_step =
+        outside_ ? 2.0 * largest_gust
+                 : gusts_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
     const double share_step = std::min(gustiness_ * gust_step, largest_share);
     const double amplitude_step = std::min(kBuildUp_rad_s * dt_s / std::numbers::e, 1.0);
     return height_m_ *
@@ -179,6 +193,7 @@ class Ripple final : public Scene {
         height_m_(values.number("height")),
         half_speed_m_s_(values.number("half_speed")),
         gustiness_(values.number("gustiness")),
+        wind_(setup.placement),
         waves_(wave_layers(values, setup.seed), water.rest_x_m, water.rest_z_m),
         gusts_({.has_two_tiles = false, .seed = setup.seed ^ stream_id("ripple gusts")}),
         gust_places_(gusts_.places(water.rest_x_m, water.rest_z_m)),
@@ -186,6 +201,9 @@ class Ripple final : public Scene {
         share_(water.rest_x_m.size(), 0.0F),
         skeleton_(std::move(water)),
         pose_(rest_pose(skeleton_)) {
+    const SurfaceSkeleton& surface = *std::get_if<SurfaceSkeleton>(&skeleton_);
+    if (setup.gusts) outside_.emplace(setup.gusts, surface.rest_x_m, surface.rest_z_m, setup.row);
+
     // On deep water a wave's speed is sqrt(g length / 2 pi).
     const double length_m = values.number("wave_length");
     wave_speed_m_s_ = {std::sqrt(kGravity_m_s2 * length_m / (2.0 * std::numbers::pi)),
@@ -201,7 +219,8 @@ class Ripple final : public Scene {
   SceneWind wind_;
   CriticallyDamped amplitude_m_;
   LayeredNoise waves_;
-  CarriedNoise gusts_;
+  CarriedNoise gusts_;               ///< of its own
+  std::optional<WindGrid> outside_;  ///< and those of the wind outside, where there are any
   CarriedPlaces gust_places_;
   std::vector<float> noise_, share_;  ///< a point each
   Skeleton skeleton_;

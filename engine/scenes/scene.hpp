@@ -9,7 +9,7 @@
 #include "engine/base/part.hpp"
 #include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
-#include "engine/wind/wind_vector.hpp"
+#include "engine/wind/ground_wind.hpp"
 
 namespace yuragi {
 
@@ -26,16 +26,16 @@ class Scene {
   virtual ~Scene() = default;
 
   /// Goes on by dt_s (above 0) under `wind` (finite).
-  void tick(WindVector wind, double dt_s) noexcept {
+  void tick(const GroundWind& wind, double dt_s) noexcept {
     shift(wind, dt_s);
     sample();
     project(dt_s);
   }
 
   // The three steps of a tick, in this order; by themselves for who measures them, or shares them out.
-  virtual void shift(WindVector wind, double dt_s) noexcept = 0;  ///< the wind carries the noise on
-  virtual void sample() noexcept = 0;                             ///< each element reads it
-  virtual void project(double dt_s) noexcept = 0;                 ///< and is moved: the pose
+  virtual void shift(const GroundWind& wind, double dt_s) noexcept = 0;  ///< the wind carries the noise on
+  virtual void sample() noexcept = 0;                                    ///< each element reads it
+  virtual void project(double dt_s) noexcept = 0;                        ///< and is moved: the pose
 
   // The same in parts that different threads may run at the same time: all parts of sample, then all of project. The
   // pose is the same, bit for bit. What is not worth sharing out does all in its first part.
@@ -70,6 +70,9 @@ struct SceneSetup {
   std::uint64_t seed = 0;  ///< everything random in the model and its noises comes from it
   ScenePlacement placement = {};
   SimdRow row = best_simd_row();
+  /// The gusts of the wind that the scene will be given, shared with all other scenes and with whoever makes the wind.
+  /// Without, the wind is the same everywhere, and what differs from place to place is the scene's own noise.
+  std::shared_ptr<const GustNoise> gusts = nullptr;
 };
 
 /// A kind of scene: one constant `kXScene` in its own file, listed in engine/scenes/CMakeLists.txt.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/scenes/scene.hpp"
 
@@ -19,11 +20,19 @@ void settle(CriticallyDamped& follower) noexcept {
 
 }  // namespace
 
-void SceneWind::step(WindVector wind, double dt_s) noexcept {
+SceneWind::SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts)
+    : gusts_(std::move(gusts)), place_x_m_(placement.x_m), place_z_m_(placement.z_m) {}
+
+WindVector SceneWind::cut(WindVector wind) noexcept {
   const double speed_m_s = std::sqrt(wind.u_m_s * wind.u_m_s + wind.v_m_s * wind.v_m_s);
-  const double cut = speed_m_s > kStrongestSceneWind_m_s ? kStrongestSceneWind_m_s / speed_m_s : 1.0;
-  east_.step(cut * wind.u_m_s, kOmega_rad_s, dt_s);
-  south_.step(-cut * wind.v_m_s, kOmega_rad_s, dt_s);
+  return speed_m_s > kStrongestSceneWind_m_s ? (kStrongestSceneWind_m_s / speed_m_s) * wind : wind;
+}
+
+void SceneWind::step(const GroundWind& wind, double dt_s) noexcept {
+  const WindVector here =
+      cut(gusts_ ? wind.at(*gusts_, place_x_m_, place_z_m_) : wind.smooth_at(place_x_m_, place_z_m_));
+  east_.step(here.u_m_s, kOmega_rad_s, dt_s);
+  south_.step(-here.v_m_s, kOmega_rad_s, dt_s);
   settle(east_);
   settle(south_);
 }

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <memory>
+
 #include "engine/math/critically_damped.hpp"
-#include "engine/wind/wind_vector.hpp"
+#include "engine/wind/ground_wind.hpp"
 
 namespace yuragi {
+
+struct ScenePlacement;
 
 /// The wind as a scene feels it: what is too strong is cut to kStrongestSceneWind_m_s, and a step becomes a quick
 /// swell, so that no input whatever makes a scene jump. It lags by 2 / kOmega_rad_s = 0.1 s.
@@ -16,8 +20,11 @@ class SceneWind {
  public:
   static constexpr double kOmega_rad_s = 20.0;
 
+  /// The wind in the place of a scene; with its gusts, where they are given.
+  explicit SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts = nullptr);
+
   /// Goes on by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
-  void step(WindVector wind, double dt_s) noexcept;
+  void step(const GroundWind& wind, double dt_s) noexcept;
 
   double east_m_s() const noexcept { return east_.value; }
   double south_m_s() const noexcept { return south_.value; }
@@ -25,7 +32,12 @@ class SceneWind {
 
   static double largest_step_m_s(double dt_s) noexcept;
 
+  /// A wind that is too strong for any scene is cut to kStrongestSceneWind_m_s.
+  static WindVector cut(WindVector wind) noexcept;
+
  private:
+  std::shared_ptr<const GustNoise> gusts_;
+  double place_x_m_, place_z_m_;
   CriticallyDamped east_, south_;
 };
 

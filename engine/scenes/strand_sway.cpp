@@ -10,11 +10,13 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/operators/bending_job.hpp"
+#include "engine/operators/local_bending_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi {
 namespace {
 
+constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
 constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
 
 double largest_of(std::span<const float> values) {
@@ -23,33 +25,49 @@ double largest_of(std::span<const float> values) {
 
 }  // namespace
 
+StrandSway::OwnGusts::OwnGusts(const StrandSwaySpec& spec, std::span<const float> place_x_m,
+                               std::span<const float> place_z_m)
+    : noise(spec.noise),
+      places(noise.places(place_x_m, place_z_m)),
+      along(make_noise_2d({.size = spec.noise.samples,
+                           .beta = spec.noise.beta,
+                           .meaning = spec.noise.meaning,
+                           .seed = spec.noise.seed ^ stream_id("along the wind")})
+                .value()),
+      largest_along(largest_of(along.values)),
+      steepest_along_per_m(steepest_slope(along, spec.noise.period_m)),
+      strength(place_x_m.size(), 0.0F) {}
+
+StrandSway::OutsideGusts::OutsideGusts(const StrandSkeleton& strands, const SceneSetup& setup)
+    : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row),
+      east_m_s(strands.padded_count(), 0.0F),
+      south_m_s(strands.padded_count(), 0.0F) {}
+
 StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
-                       std::vector<float> flexibility, const StrandSwaySpec& spec, SimdRow row)
-    : row_(row),
+                       std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup)
+    : row_(setup.row),
       spec_(spec),
-      noise_(spec.noise),
-      along_(make_noise_2d({.size = spec.noise.samples,
-                            .beta = spec.noise.beta,
-                            .meaning = spec.noise.meaning,
-                            .seed = spec.noise.seed ^ stream_id("along the wind")})
-                 .value()),
-      places_(noise_.places(place_x_m, place_z_m)),
+      wind_(setup.placement, setup.gusts),
       flexibility_(std::move(flexibility)),
-      strength_(flexibility_.size(), 0.0F),
       oscillators_(flexibility_.size()),
       largest_flexibility_(largest_of(flexibility_)),
       lever_m_(largest_of(strands.link_length_m) * (static_cast<double>(strands.links_per_strand) + 1.0) / 2.0),
       skeleton_(std::move(strands)),
       pose_(rest_pose(skeleton_)) {
-  steepest_along_per_m_ = steepest_slope(along_, spec_.noise.period_m);
-  largest_along_ = largest_of(along_.values);
+  if (setup.gusts) spec_.gust_strength = 0.0;
+  if (setup.gusts && !spec.has_own_gusts) {
+    outside_.emplace(*std::get_if<StrandSkeleton>(&skeleton_), setup);
+  } else {
+    own_.emplace(spec, place_x_m, place_z_m);
+  }
 }
 
-void StrandSway::shift(WindVector wind, double dt_s) noexcept {
-  // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
+void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
   wind_.step(wind, dt_s);
-  noise_.shift(spec_.carry * wind_.east_m_s(), spec_.carry * wind_.south_m_s(), dt_s);
-  way_.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
+  if (outside_) return outside_->grid.step(wind, dt_s);
+  // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
+  own_->noise.shift(spec_.carry * wind_.east_m_s(), spec_.carry * wind_.south_m_s(), dt_s);
+  own_->way.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
 }
 
 template <class Value>
@@ -60,31 +78,50 @@ std::span<Value> StrandSway::of_part(Part part, std::span<Value> values) const n
 }
 
 void StrandSway::sample_part(Part part) noexcept {
+  if (outside_) {
+    // The wind at each strand.
+    const std::span<float> east_m_s = of_part(part, std::span(outside_->east_m_s));
+    const auto first = static_cast<std::size_t>(east_m_s.data() - outside_->east_m_s.data());
+    return outside_->grid.sample(first, east_m_s, of_part(part, std::span(outside_->south_m_s)));
+  }
   // How strong the wind is at each strand, as a factor.
-  const std::span<float> strength = of_part(part, std::span(strength_));
-  const auto first = static_cast<std::size_t>(strength.data() - strength_.data());
-  noise_.sample(places_, row_, strength, static_cast<float>(spec_.turbulence), 1.0F, 0.0F,
-                std::numeric_limits<float>::infinity(), first);
+  const std::span<float> strength = of_part(part, std::span(own_->strength));
+  const auto first = static_cast<std::size_t>(strength.data() - own_->strength.data());
+  own_->noise.sample(own_->places, row_, strength, static_cast<float>(spec_.turbulence), 1.0F, 0.0F,
+                     std::numeric_limits<float>::infinity(), first);
 }
 
 void StrandSway::project_part(Part part, double dt_s) noexcept {
   StrandPose& pose = *std::get_if<StrandPose>(&pose_);
+  const std::span<const float> flexibility = of_part(part, std::span<const float>(flexibility_));
   const std::span<float> bend_east_rad = of_part(part, std::span(pose.bend_east_rad));
   const std::span<float> bend_south_rad = of_part(part, std::span(pose.bend_south_rad));
 
-  // Wind-speed times theta bends the strand toward where the wind blows.
-  const double along = static_cast<double>(read_noise(along_, way_.phase()));
-  const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
-  BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
-             .wind_south_m_s = wind_speed * wind_.south_m_s(),
-             .strength = of_part(part, std::span<const float>(strength_)),
-             .flexibility = of_part(part, std::span<const float>(flexibility_)),
-             .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
-             .max_bend_rad = spec_.max_bend_rad,
-             .row = row_,
-             .bend_east_rad = bend_east_rad,
-             .bend_south_rad = bend_south_rad}
-      .run();
+  // The wind bends the strand toward where it blows.
+  if (outside_) {
+    LocalBendingJob{.wind_east_m_s = of_part(part, std::span<const float>(outside_->east_m_s)),
+                    .wind_south_m_s = of_part(part, std::span<const float>(outside_->south_m_s)),
+                    .flexibility = flexibility,
+                    .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
+                    .max_bend_rad = spec_.max_bend_rad,
+                    .row = row_,
+                    .bend_east_rad = bend_east_rad,
+                    .bend_south_rad = bend_south_rad}
+        .run();
+  } else {
+    const double along = static_cast<double>(read_noise(own_->along, own_->way.phase()));
+    const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
+    BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
+               .wind_south_m_s = wind_speed * wind_.south_m_s(),
+               .strength = of_part(part, std::span<const float>(own_->strength)),
+               .flexibility = flexibility,
+               .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
+               .max_bend_rad = spec_.max_bend_rad,
+               .row = row_,
+               .bend_east_rad = bend_east_rad,
+               .bend_south_rad = bend_south_rad}
+        .run();
+  }
 
   // And the strand, a damped oscillator, follows, overshoots, and sways on.
   OscillatorJob{.step = OscillatorStep::exact(spec_.natural_hz, spec_.damping_ratio, dt_s),
@@ -97,22 +134,24 @@ void StrandSway::project_part(Part part, double dt_s) noexcept {
       .run();
 }
 
+/// The largest change in a tick of wind * gust * strength, m/s.
+double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
+  const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
+  if (outside_) return wind_step_m_s;
+  const double largest_strength = 1.0 + spec_.turbulence * std::max(own_->noise.highest(), 0.0);
+  const double largest_gust = 1.0 + spec_.gust_strength * own_->largest_along;
+  const double carried_m_s = spec_.carry * kStrongestSceneWind_m_s;
+  const double from_wind = wind_step_m_s * largest_gust * largest_strength;
+  const double from_strength = kStrongestSceneWind_m_s * largest_gust * spec_.turbulence *
+                               own_->noise.largest_change(carried_m_s, spec_.carry * wind_step_m_s, dt_s);
+  const double from_gust = kStrongestSceneWind_m_s * largest_strength * spec_.gust_strength *
+                           own_->steepest_along_per_m * carried_m_s * dt_s;
+  return from_wind + from_strength + from_gust;
+}
+
 double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
   const double steepest = 3.0 * std::numbers::sqrt3 / 8.0;
-  const double largest_strength = 1.0 + spec_.turbulence * std::max(noise_.highest(), 0.0);
-  const double largest_gust = 1.0 + spec_.gust_strength * largest_along_;
-  const double carried_m_s = spec_.carry * kStrongestSceneWind_m_s;
-  const double carried_step_m_s = spec_.carry * SceneWind::largest_step_m_s(dt_s);
-
-  // The largest change in a tick of s = wind * gust * strength * flexibility / half-bend speed.
-  const double per_m_s = largest_flexibility_ / spec_.half_bend_speed_m_s;
-  const double from_wind = SceneWind::largest_step_m_s(dt_s) * largest_gust * largest_strength;
-  const double from_strength = kStrongestSceneWind_m_s * largest_gust * spec_.turbulence *
-                               noise_.largest_change(carried_m_s, carried_step_m_s, dt_s);
-  const double from_gust =
-      kStrongestSceneWind_m_s * largest_strength * spec_.gust_strength * steepest_along_per_m_ * carried_m_s * dt_s;
-  const double s = per_m_s * (from_wind + from_strength + from_gust);
-
+  const double s = largest_flexibility_ / spec_.half_bend_speed_m_s * largest_bend_input_step(dt_s);
   const double bend_rad = std::min(spec_.max_bend_rad * steepest * s, 2.0 * spec_.max_bend_rad);
   const double swaying_rad =
       std::min(OscillatorStep::largest_gain(spec_.damping_ratio) * bend_rad,
@@ -125,10 +164,17 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
   return {
       {"max_bend", "deg", defaults.max_bend_rad / kRadPerDeg, 0, 170, "how far the strongest wind bends a tip"},
       {"half_bend_speed", "m/s", defaults.half_bend_speed_m_s, 0.1, 60, "the wind that bends a tip half as far"},
+      {"gusts",
+       "",
+       std::string(kGusts[defaults.has_own_gusts ? 1 : 0]),
+       {},
+       {},
+       "outside: as the wind outside has them, passing over all scenes; own: a noise of the scene's own",
+       kGusts},
       {"turbulence", "", defaults.turbulence, 0, 2,
-       "how much the wind differs from place to place: its standard deviation, as a part of it"},
+       "own gusts: how much the wind differs from place to place: its standard deviation, as a part of it"},
       {"gust_strength", "", defaults.gust_strength, 0, 2,
-       "how much it swells and dies away along its path, in the same measure"},
+       "own gusts: how much it swells along its path, in the same measure; a wind with gusts swells enough"},
       {"hybrid", "", defaults.hybrid, 0, 1,
        "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
       {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20, "how fast a strand sways by itself"},
@@ -150,6 +196,7 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
 }
 
 StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t seed) {
+  const bool has_own_gusts = values.text("gusts") == "own";
   const bool is_radial = values.text("beta_meaning") == "radial";
   return {.max_bend_rad = values.number("max_bend") * kRadPerDeg,
           .half_bend_speed_m_s = values.number("half_bend_speed"),
@@ -159,6 +206,7 @@ StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t see
           .natural_hz = values.number("natural_frequency"),
           .damping_ratio = values.number("damping"),
           .carry = values.number("carry"),
+          .has_own_gusts = has_own_gusts,
           .noise = {.period_m = values.number("tile_period"),
                     .beta = values.number("beta"),
                     .meaning = is_radial ? BetaMeaning::kRadial : BetaMeaning::kTransect,

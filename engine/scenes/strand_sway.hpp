@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "engine/scenes/carried_noise.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
+#include "engine/scenes/wind_grid.hpp"
 
 namespace yuragi {
 
@@ -20,12 +22,13 @@ namespace yuragi {
 struct StrandSwaySpec {
   double max_bend_rad = 1.4;
   double half_bend_speed_m_s = 7.0;
-  double turbulence = 0.4;      ///< how much the wind differs from place to place, as a part of it
-  double gust_strength = 0.2;   ///< how much it swells along its way, in the same measure
+  double turbulence = 0.4;      ///< own gusts: how much the wind differs from place to place, as a part of it
+  double gust_strength = 0.2;   ///< own gusts: how much it swells along its way, in the same measure
   double hybrid = 0.6;          ///< 0: the noise alone; 1: each strand a damped oscillator
   double natural_hz = 2.0;      ///< of the oscillators
   double damping_ratio = 0.2;   ///< above 0, below 1
   double carry = 1.0;           ///< the noise goes with this part of the wind's speed: in a coat the air is slower
+  bool has_own_gusts = false;   ///< and not those of the wind outside, where the setup has these
   CarriedNoiseSpec noise = {};  ///< the wind on the ground
 };
 
@@ -37,29 +40,32 @@ struct StrandSwaySpec {
 ///   project  a 1-D noise (LineCut) gives Wind-speed, the strength along the wind; both bend    BendingJob
 ///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
 ///
+/// Where the wind brings gusts of its own (SceneSetup::gusts), these are the wind on the ground, and the scene adds
+/// none: each strand reads the wind where it stands (WindGrid), and is bent by it (LocalBendingJob).
+///
 /// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: a tick.
 class StrandSway final : public Scene {
  public:
-  /// `place_x_m` and `place_z_m`: where each strand reads the noise; `flexibility`: of each. All have
+  /// `place_x_m` and `place_z_m`: where each strand reads its own noise; `flexibility`: of each. All have
   /// strands.padded_count() elements.
   StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
-             std::vector<float> flexibility, const StrandSwaySpec& spec, SimdRow row);
+             std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup);
 
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
 
-  void shift(WindVector wind, double dt_s) noexcept override;
+  void shift(const GroundWind& wind, double dt_s) noexcept override;
   void sample() noexcept override { sample_part({}); }
   void project(double dt_s) noexcept override { project_part({}, dt_s); }
   void sample_part(Part part) noexcept override;
   void project_part(Part part, double dt_s) noexcept override;
 
   /// With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
-  /// toward the wind: its slope over s is at most 3 sqrt(3)/8 max, so in a tick it changes by at most that times the
-  /// largest changes of wind, strength and noise at their largest other factors, and never by more than from one
-  /// extreme to the other. An oscillator moves by at most its largest gain times that, and by at most what its largest
-  /// rate gives for a bend that never exceeds max. A joint moves by at most half the strand's length (and a link) times
-  /// that, since link i of n turns by i/n of the bend.
+  /// toward the wind: its slope over s, as a vector, is at most 3 sqrt(3)/8 max, so in a tick it changes by at most
+  /// that times the largest changes of wind, strength and noise at their largest other factors (of the wind alone,
+  /// where the gusts are in it), and never by more than from one extreme to the other. An oscillator moves by at most
+  /// its largest gain times that, and by at most what its largest rate gives for a bend that never exceeds max. A joint
+  /// moves by at most half the strand's length (and a link) times that, since link i of n turns by i/n of the bend.
   double largest_joint_step_m(double dt_s) const noexcept override;
 
  private:
@@ -67,17 +73,35 @@ class StrandSway final : public Scene {
   template <class Value>
   std::span<Value> of_part(Part part, std::span<Value> values) const noexcept;
 
+  /// The scene's own gusts.
+  struct OwnGusts {
+    OwnGusts(const StrandSwaySpec& spec, std::span<const float> place_x_m, std::span<const float> place_z_m);
+
+    CarriedNoise noise;
+    CarriedPlaces places;
+    NoiseTile2 along;  ///< Wind-speed, the strength along the wind's way: a line through a noise
+    LineCut way;
+    double largest_along = 0.0, steepest_along_per_m = 0.0;
+    std::vector<float> strength;  ///< of the wind, as a factor; of each strand
+  };
+
+  /// Those of the wind outside.
+  struct OutsideGusts {
+    OutsideGusts(const StrandSkeleton& strands, const SceneSetup& setup);
+
+    WindGrid grid;
+    std::vector<float> east_m_s, south_m_s;  ///< each strand's wind
+  };
+
+  double largest_bend_input_step(double dt_s) const noexcept;
+
   SimdRow row_;
   StrandSwaySpec spec_;
   SceneWind wind_;
-  CarriedNoise noise_;
-  NoiseTile2 along_;  ///< Wind-speed, the strength along the wind's way: a line through a noise
-  LineCut way_;
-  double largest_along_ = 0.0, steepest_along_per_m_ = 0.0;
+  std::optional<OwnGusts> own_;  ///< one of the two
+  std::optional<OutsideGusts> outside_;
 
-  CarriedPlaces places_;
   std::vector<float> flexibility_;
-  std::vector<float> strength_;
   Oscillators oscillators_;
   double largest_flexibility_ = 0.0, lever_m_ = 0.0;
   Skeleton skeleton_;

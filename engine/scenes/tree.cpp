@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "engine/scenes/scene_wind.hpp"
 #include "engine/scenes/tree_model.hpp"
 #include "engine/scenes/tree_species.hpp"
+#include "engine/scenes/wind_grid.hpp"
 
 // A tree in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine for
 // fluctuation phenomena" (Iwate University), section 3.3 and figures 12 and 13:
@@ -51,7 +53,8 @@ const std::array kTreeParameters = {
     Parameter{"max_tilt", "deg", 45.0, 0, 120, "how far the strongest wind bends the thinnest twig"},
     Parameter{"max_swing", "deg", 45.0, 0, 120, "and how far sideways"},
     Parameter{"half_tilt_speed", "m/s", 10.0, 0.1, 60, "the wind that wood answers half to"},
-    Parameter{"turbulence", "", 0.5, 0, 2, "how much the wind differs from branch to branch: its standard deviation"},
+    Parameter{"turbulence", "", 0.5, 0, 2,
+              "how much branches answer to its gusts: in a wind of turbulence intensity 0.2, the standard deviation"},
     Parameter{"hybrid", "", 0.7, 0, 1, "0: wood follows the noise alone; 1: each branch is a damped oscillator"},
     Parameter{"natural_frequency", "Hz", 0.5, 0.05, 5,
               "how fast the trunk sways by itself; limbs twice, twigs 4 times"},
@@ -85,6 +88,9 @@ constexpr double kSplitWidth = 1.0;
 
 /// Beyond it the noise is cut, in standard deviations.
 constexpr double kLargestNoise = 3.0;
+
+/// Gusts that differ within less than this move a crown as one.
+constexpr double kCrownCell_m = 1.0;
 
 // The noise that leaves read. It goes with the wind, but never as fast as 2.6 m/s, up to which 60 ticks a second show
 // its finest waves, of 18 cm (14 a second), and one layer of it is read. Its period is that of a crown, and it is
@@ -135,6 +141,7 @@ struct Wood {
   std::size_t level = 0;
   double natural_hz = 1.0;
   CarriedPlaces places;               ///< of the middle of each branch
+  std::size_t first_on_grid = 0;      ///< the same on the grid of the wind outside
   std::vector<float> side_x, side_z;  ///< the same from the tree's middle, in its radii
   std::vector<float> gain;
   double largest_gain = 0.0;
@@ -174,9 +181,11 @@ class Tree final : public Scene {
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
 
-  void shift(WindVector wind, double dt_s) noexcept override {
+  void shift(const GroundWind& wind, double dt_s) noexcept override {
     // The wind carries both noises on.
     wind_.step(wind, dt_s);
+    leaf_wind_.step(wind, dt_s);
+    if (outside_) outside_->step(wind, dt_s);
     noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
     const double slowed = kLargestLeafNoiseSpeed_m_s / (kLargestLeafNoiseSpeed_m_s + wind_.speed_m_s());
     leaf_noise_.shift(slowed * wind_.east_m_s(), slowed * wind_.south_m_s(), dt_s);
@@ -191,8 +200,8 @@ class Tree final : public Scene {
   void project(double dt_s) noexcept override {
     auto& levels = std::get_if<TreePose>(&pose_)->levels;
     for (Wood& wood : wood_) project_wood(wood, dt_s, levels[wood.level]);
-    FlutterJob{.wind_east_m_s = wind_.east_m_s(),
-               .wind_south_m_s = wind_.south_m_s(),
+    FlutterJob{.wind_east_m_s = leaf_wind_.east_m_s(),
+               .wind_south_m_s = leaf_wind_.south_m_s(),
                .noise = leaves_.noise,
                .along = leaves_.along,
                .across = leaves_.across,
@@ -215,7 +224,11 @@ class Tree final : public Scene {
  private:
   Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup);
 
-  void add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest_m, const ScenePlacement& placement);
+  /// Where branches are on the ground, x and z.
+  using Places = std::array<std::vector<float>, 2>;
+
+  void add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest_m, const ScenePlacement& placement,
+                Places& all_m);
   void add_leaves(const TreeLevel& level, std::uint64_t seed);
   void sample_wood(Wood& wood) noexcept;
   void project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept;
@@ -229,8 +242,10 @@ class Tree final : public Scene {
   double hybrid_, natural_hz_, damping_ratio_;
   double leaf_lean_rad_, leaf_flutter_rad_, half_flutter_speed_m_s_;
 
-  SceneWind wind_;
+  SceneWind wind_;       ///< without the gusts, which differ from branch to branch
+  SceneWind leaf_wind_;  ///< in the tree's middle
   CarriedNoise noise_, leaf_noise_;
+  std::optional<WindGrid> outside_;  ///< the wind at each branch, where it brings its gusts; noise_ is not read then
   std::array<Wood, kLeaves> wood_;
   Foliage leaves_;
   std::array<double, kMaxTreeLevels> levers_m_;
@@ -251,6 +266,8 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
       leaf_lean_rad_(values.number("leaf_lean") * kRadPerDeg),
       leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg),
       half_flutter_speed_m_s_(values.number("half_flutter_speed")),
+      wind_(setup.placement),
+      leaf_wind_(setup.placement, setup.gusts),
       noise_(tree_wind_noise(values, setup.seed)),
       leaf_noise_(leaf_noise(setup.seed)),
       levers_m_(tree_levers_m(tree)) {
@@ -258,9 +275,11 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
   const TreeLevel& twigs = tree.levels[kTwigs];
   const auto last_twig = twigs.base_radius_m.begin() + static_cast<std::ptrdiff_t>(twigs.strands.strand_count);
   const float thinnest_m = *std::min_element(twigs.base_radius_m.begin(), last_twig);
+  Places places_m;
   for (std::size_t level = 0; level < kLeaves; ++level) {
-    add_wood(tree, level, static_cast<double>(thinnest_m), setup.placement);
+    add_wood(tree, level, static_cast<double>(thinnest_m), setup.placement, places_m);
   }
+  if (setup.gusts) outside_.emplace(setup.gusts, places_m[0], places_m[1], setup.row, kCrownCell_m);
 
   // Places from the tree's middle, in its radii.
   float radius_m = 1e-3F;
@@ -280,7 +299,8 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
   pose_ = rest_pose(skeleton_);
 }
 
-void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest_m, const ScenePlacement& placement) {
+void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest_m, const ScenePlacement& placement,
+                    Places& all_m) {
   const StrandSkeleton& strands = tree.levels[level].strands;
   const std::size_t count = strands.padded_count();
   Wood& wood = wood_[level];
@@ -303,6 +323,9 @@ void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest
     wood.largest_gain = std::max(wood.largest_gain, gain);
   }
   wood.places = noise_.places(x_m, z_m);
+  wood.first_on_grid = all_m[0].size();
+  all_m[0].insert(all_m[0].end(), x_m.begin(), x_m.end());
+  all_m[1].insert(all_m[1].end(), z_m.begin(), z_m.end());
   for (auto* array : {&wood.distance, &wood.noise, &wood.vertical, &wood.horizontal}) array->assign(count, 0.0F);
   wood.oscillators = Oscillators(count);
 }
@@ -337,7 +360,12 @@ void Tree::sample_wood(Wood& wood) noexcept {
       .run();
 
   const auto largest = static_cast<float>(kLargestNoise * turbulence_);
-  noise_.sample(wood.places, row_, wood.noise, static_cast<float>(turbulence_), 0.0F, -largest, largest);
+  if (outside_) {
+    outside_->sample_gusts(wood.first_on_grid, wood.noise, static_cast<float>(kLargestNoise));
+    for (float& noise : wood.noise) noise *= static_cast<float>(turbulence_);
+  } else {
+    noise_.sample(wood.places, row_, wood.noise, static_cast<float>(turbulence_), 0.0F, -largest, largest);
+  }
   SplitJob{.noise = wood.noise,
            .ramp = wood.distance,
            .threshold = kThreshold * turbulence_,
@@ -390,7 +418,8 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
   const double ds = SceneWind::largest_step_m_s(dt_s) / half_tilt_speed_m_s_;
   const double largest_noise = kLargestNoise * turbulence_;
   const double dn =
-      turbulence_ * noise_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
+      outside_ ? 2.0 * largest_noise
+               : turbulence_ * noise_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
   const double dd = 0.5 * ds;  // with W in it
 
   // The parts along the wind and across it: how far they may change, and how large they may be.

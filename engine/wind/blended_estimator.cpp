@@ -10,8 +10,9 @@
 namespace yuragi {
 namespace {
 
-/// A sensor's word is taken below this over its interval.
-constexpr double kCrossoverTimesInterval = 0.25;
+/// The weight of a band is a half at this over the sensor's interval. What its averaging, its being held and the
+/// breadth of the bands leave of it has half the power at 0.25 over the interval: there sensor and noise cross.
+constexpr double kHalfTrustTimesInterval = 0.5;
 /// A reading is late after so many of its intervals; until then what is known is not yet old.
 constexpr double kLateAfterIntervals = 1.5;
 /// Trust goes where it should within about 4.75 s: what comes back is believed by and by.
@@ -37,11 +38,10 @@ double sinc(double x) noexcept {
   return std::abs(angle) < 1e-6 ? 1.0 : std::sin(angle) / angle;
 }
 
-/// The weight of a band while a source speaks as it should: in power half at the crossover.
+/// The weight of a band while a source speaks as it should.
 double full_trust(double centre_hz, double interval_s) noexcept {
-  const double crossover_hz = kCrossoverTimesInterval / interval_s;
-  const double ratio = centre_hz / crossover_hz;
-  return 1.0 / (1.0 + ratio * ratio);
+  const double ratio = centre_hz * interval_s / kHalfTrustTimesInterval;
+  return 1.0 / (1.0 + ratio * ratio * ratio * ratio);
 }
 
 }  // namespace
@@ -235,7 +235,7 @@ double BlendedEstimator::power_heard(double frequency_hz) const noexcept {
   return std::clamp(std::norm(sum), 0.0, 1.0);
 }
 
-/// The mean wind carries the gusts, and says where ahead is.
+/// The mean wind carries the gusts, and says where ahead is; their eddies turn over as the turbulence does.
 void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   WindVector& ahead = ground_.gusts.ahead;
   const double speed_m_s = speed_of(heard.mean);
@@ -247,7 +247,11 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
     if (const double length = speed_of(wanted); length > 1e-3) ahead = (1.0 / length) * wanted;
   }
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
-  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s);
+  const Turbulence now = turbulence();
+  const double turnover_m23_s = eddy_turnover_m23_s(now.intensity * heard.speed_m_s,
+                                                    now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s));
+  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
+                turnover_m23_s);
 }
 
 /// How strong each octave of the noise is: what the sensors leave of it.
@@ -258,7 +262,10 @@ void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
     const double centre_hz = std::numbers::sqrt2 * octave.from_rad_m * advection_m_s_ / (2.0 * std::numbers::pi);
     // What would jitter from one picture to the next is left out, by and by over the octave before.
     const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / centre_hz), 0.0, 1.0);
-    const double missing = (1.0 - power_heard(centre_hz)) * shown;
+    // Waves of a plane that run aslant pass more slowly than their length tells: what a tile's octave brings is lower
+    // by about half an octave, and that is where it would come on top of what the sensors say.
+    const double heard_hz = i < 2 * GustNoise::kWayOctaves ? centre_hz : centre_hz / std::numbers::sqrt2;
+    const double missing = (1.0 - power_heard(heard_hz)) * shown;
     double variance_along = (1.0 - heard.weight) * climate_along_[i];
     double variance_across = (1.0 - heard.weight) * climate_across_[i];
     for (const Source& source : sources_) {

@@ -27,14 +27,15 @@ struct BlendSettings {
 /// The wind that moves things: the live signal where the sensors know, noise of the same spectrum where they do not,
 /// counted once.
 ///
-/// In each octave band of frequency the sensor's word has a weight a: 1 far below the crossover of about 0.2 / its
-/// interval, 0 far above, less the longer it is silent. The noise has the rest *in power*, sqrt(1 - |a A|^2), A being
-/// what the sensor's own averaging and the holding of its readings leave of that band, and the strength that von
-/// Karman's spectrum has there; its turbulence intensity and length are fitted to the readings of the past, and go
-/// back to the climate's while nothing is known. The noise is read from a pattern that the mean wind carries over the
-/// ground (GustNoise) at the sensor's place, along the wind and across it. A mean that nobody measures fades into the
-/// climate's. Everything is made of vectors; weights slew by critically damped filters, so nothing jumps.
-/// Source: method of the wind model (`wind.md` 2 of the specification), Taylor 1938 (frozen turbulence).
+/// In each octave band of frequency the sensor's word has a weight a: 1 far below the crossover of 0.25 / its interval
+/// (where sensor and noise have the same power), 0 far above, less the longer it is silent. The noise has the rest *in
+/// power*, sqrt(1 - |a A|^2), A being what the sensor's own averaging and the holding of its readings leave of that
+/// band, and the strength that von Karman's spectrum has there; its turbulence intensity and length are fitted to the
+/// readings of the past, and go back to the climate's while nothing is known. The noise is read from a pattern that the
+/// mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and across it. A mean that
+/// nobody measures fades into the climate's. Everything is made of vectors; weights slew by critically damped filters,
+/// so nothing jumps. Source: method of the wind model (`wind.md` 2 of the specification), Taylor 1938 (frozen
+/// turbulence).
 class BlendedEstimator final : public WindEstimator {
  public:
   /// `noise`: shared with whoever wants to know the wind at other places. The climate's seed says where on it the gusts

@@ -17,9 +17,16 @@ const SceneDescription& scene_named(std::string_view kind) {
 
 }  // namespace
 
-Workload::Workload(std::string_view kind, const ParameterValues::Map& given, SimdRow row) {
+Workload::Workload(std::string_view kind, const ParameterValues::Map& given, SimdRow row, bool has_gusts) {
+  if (has_gusts) {
+    gusts_ = std::make_shared<const GustNoise>(GustNoiseSettings{.evolves = true});
+    wind_.gusts.ahead = (1.0 / speed_of(kBreeze)) * kBreeze;
+    wind_.gusts.along_m_s.fill(0.3F);
+    wind_.gusts.across_m_s.fill(0.3F);
+  }
   const SceneDescription& description = scene_named(kind);
-  scene_ = description.make(ParameterValues::resolve(description.parameters, given).value(), {.seed = 1, .row = row});
+  scene_ = description.make(ParameterValues::resolve(description.parameters, given).value(),
+                            {.seed = 1, .row = row, .gusts = gusts_});
   kinematics_ = std::make_unique<Kinematics>(scene_->skeleton(), row);
   nodes_ = node_count(scene_->skeleton());
   for (int i = 0; i < 60; ++i) frame();  // it moves when it is measured

@@ -17,15 +17,19 @@ class Workload {
  public:
   static constexpr WindVector kBreeze = {6.0, 3.0};
 
-  /// `kind` is in scene_table(); `given` are parameters that differ from the defaults.
-  Workload(std::string_view kind, const ParameterValues::Map& given, SimdRow row);
+  /// `kind` is in scene_table(); `given` are parameters that differ from the defaults. With gusts from outside the
+  /// breeze has all octaves that a tile holds.
+  Workload(std::string_view kind, const ParameterValues::Map& given, SimdRow row, bool has_gusts = false);
 
   std::size_t nodes() const { return nodes_; }
   Scene& scene() { return *scene_; }
   Kinematics& kinematics() { return *kinematics_; }
 
   // One frame's parts. Projection goes as far as joint positions.
-  void shift() { scene_->shift(kBreeze, kBenchTick_s); }
+  void shift() {
+    if (gusts_) gusts_->carry(wind_.gusts.carried, kBreeze.u_m_s, -kBreeze.v_m_s, kBenchTick_s, kTurnover_m23_s);
+    scene_->shift(wind_, kBenchTick_s);
+  }
   void sample() { scene_->sample(); }
   void project() {
     scene_->project(kBenchTick_s);
@@ -44,6 +48,10 @@ class Workload {
   void store_only();
 
  private:
+  static constexpr double kTurnover_m23_s = 0.3;
+
+  std::shared_ptr<const GustNoise> gusts_;
+  GroundWind wind_ = kBreeze;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<Kinematics> kinematics_;
   std::size_t nodes_ = 0;

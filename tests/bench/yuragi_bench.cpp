@@ -38,6 +38,7 @@ struct Case {
   ParameterValues::Map given;
   std::optional<PaperRow> paper = std::nullopt;
   bool has_plain = false;
+  bool has_gusts = false;  ///< from outside
 };
 
 ParameterValues::Map meadow(std::int64_t across, std::int64_t deep) {
@@ -57,6 +58,8 @@ std::vector<Case> all_cases() {
       {"banner", "banner", {}},
       {"ripple", "ripple", {}},
       {"flame", "flame", {}},
+      {"grass, gusts", "grass", {}, kPaperGrass, false, true},
+      {"tree, gusts", "tree", {}, kPaperTree, false, true},
       {"grass 10,000", "grass", meadow(50, 20)},
       {"grass 1,000,000", "grass", meadow(400, 250)},
   };
@@ -173,7 +176,7 @@ int run(int argc, char** argv) {
   std::vector<TableRow> rows;
   for (const Case& one : all_cases()) {
     ParameterValues::Map given = one.given;
-    Workload& workload = *workloads.emplace_back(std::make_unique<Workload>(one.kind, given, row));
+    Workload& workload = *workloads.emplace_back(std::make_unique<Workload>(one.kind, given, row, one.has_gusts));
     rows.push_back({one.name, workload.nodes(), one.paper});
     add(one.name + "/floor", [&workload] { workload.store_only(); });
     add(one.name + "/shifting", [&workload] { workload.shift(); });

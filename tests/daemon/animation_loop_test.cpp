@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "daemon/sensor_hub.hpp"
 #include "daemon/system_clock.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
@@ -70,8 +71,8 @@ class AnimationLoopTest : public ::testing::Test {
   }
 
   SystemClock clock_;
-  Latest<WindState> wind_;
-  Animation animation_{default_config()};
+  Latest<DrivingWind> wind_;
+  Animation animation_{default_config(), make_gust_noise(default_config())};
   AnimationLoop loop_{animation_, wind_, clock_, 240.0};
 };
 
@@ -79,7 +80,7 @@ TEST_F(AnimationLoopTest, MakesFrameAfterFrameThatShowTheNewestWind) {
   WindState blowing;
   blowing.wind = {7.0, 0.0};
   blowing.source = WindSource::kLive;
-  wind_.publish(blowing);
+  wind_.publish({blowing, blowing.wind});
   loop_.start();
 
   wire::Frame previous = next_frame();

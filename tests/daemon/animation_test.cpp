@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/sensor_hub.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/pose_hash.hpp"
 
@@ -20,6 +21,10 @@ Config installation(const std::string& first, const std::string& second) {
                       "test.toml");
 }
 
+Animation animation_of(const Config& config) {
+  return {config, make_gust_noise(config)};
+}
+
 wire::Frame shown_by(Animation& animation) {
   return std::get<wire::Frame>(wire::decode(animation.encode({}).subspan(wire::kSizePrefixBytes)).value());
 }
@@ -33,8 +38,8 @@ float largest(const Pose& pose) {
 }
 
 TEST(AnimationTest, ASceneStandsWhereTheConfigurationSays) {
-  const Animation here(installation("", "shown = false"));
-  const Animation there(installation("x = 30\ny = 2\nz = -4\n", "heading = 90"));
+  const Animation here = animation_of(installation("", "shown = false"));
+  const Animation there = animation_of(installation("x = 30\ny = 2\nz = -4\n", "heading = 90"));
   const auto& a = std::get<StrandSkeleton>(*here.skeletons()[0]);
   const auto& b = std::get<StrandSkeleton>(*there.skeletons()[0]);
   EXPECT_NEAR(b.root_x_m[7], a.root_x_m[7] + 30.0F, 1e-4);
@@ -50,8 +55,8 @@ TEST(AnimationTest, ASceneStandsWhereTheConfigurationSays) {
 }
 
 TEST(AnimationTest, GainIsAFactorOnTheWindThatASceneFeels) {
-  Animation one(installation("gain = 2", "gain = 0"));
-  Animation other(installation("", ""));
+  Animation one = animation_of(installation("gain = 2", "gain = 0"));
+  Animation other = animation_of(installation("", ""));
   for (int tick = 0; tick < 90; ++tick) {
     one.step(kBreeze, kTick_s);
     other.step(2.0 * kBreeze, kTick_s);
@@ -65,8 +70,8 @@ TEST(AnimationTest, PosesDoNotDependOnHowManyThreadsShareATick) {
   const auto hash_with = [](std::int64_t threads) {
     Config config = installation("", "");
     config.animation.set("threads", threads);
-    Animation animation(config);
-    for (int tick = 0; tick < 30; ++tick) animation.step({6.0, 2.0}, 1.0 / 60.0);
+    Animation animation = animation_of(config);
+    for (int tick = 0; tick < 30; ++tick) animation.step(WindVector{6.0, 2.0}, 1.0 / 60.0);
     std::uint64_t hash = kPoseHashSeed;
     for (const Pose* pose : animation.poses()) hash = pose_hash(hash, *pose);
     return hash;
@@ -75,7 +80,8 @@ TEST(AnimationTest, PosesDoNotDependOnHowManyThreadsShareATick) {
 }
 
 TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
-  Animation animation(installation("", "shown = false"));
+  const Config config = installation("", "shown = false");
+  Animation animation = animation_of(config);
   for (int tick = 0; tick < 60; ++tick) animation.step(kBreeze, kTick_s);
   EXPECT_GT(largest(*animation.poses()[0]), 0.0F);
   EXPECT_EQ(largest(*animation.poses()[1]), 0.0F);
@@ -88,7 +94,8 @@ TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
 }
 
 TEST(AnimationTest, ACrossFadeTakesItsTimeAndNeverJumps) {
-  Animation animation(installation("", "shown = false"));
+  const Config config = installation("", "shown = false");
+  Animation animation = animation_of(config);
   animation.step(kBreeze, kTick_s);
   animation.cue({.scene = 1, .shown = true, .hide_others = true, .over_s = 2.0});
   std::vector<float> before(animation.opacities().begin(), animation.opacities().end());
@@ -109,7 +116,8 @@ TEST(AnimationTest, ACrossFadeTakesItsTimeAndNeverJumps) {
 }
 
 TEST(AnimationTest, AFadeThatIsTurnedRoundGoesOnFromWhereItIs) {
-  Animation animation(installation("", ""));
+  const Config config = installation("", "");
+  Animation animation = animation_of(config);
   animation.cue({.scene = 0, .shown = false, .over_s = 1.0});
   for (int tick = 0; tick < 24; ++tick) animation.step(kBreeze, kTick_s);
   const float midway = animation.opacities()[0];
@@ -124,7 +132,8 @@ TEST(AnimationTest, AFadeThatIsTurnedRoundGoesOnFromWhereItIs) {
 }
 
 TEST(AnimationTest, AFadeOfNoTimeIsDoneAtTheNextTickAndASceneThatIsNotThereIsIgnored) {
-  Animation animation(installation("", ""));
+  const Config config = installation("", "");
+  Animation animation = animation_of(config);
   animation.cue({.scene = 7, .shown = true, .hide_others = true, .over_s = 0.0});
   animation.cue({.scene = 1, .shown = false, .over_s = 0.0});
   animation.step(kBreeze, kTick_s);

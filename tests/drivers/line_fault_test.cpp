@@ -5,10 +5,7 @@
 
 #include "drivers/line_sensor.hpp"
 #include "simulators/line_device.hpp"
-#include "tests/support/driver_named.hpp"
-#include "tests/support/free_port.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_bench.hpp"
+#include "tests/support/text_fault_bench.hpp"
 
 namespace yuragi {
 namespace {
@@ -18,54 +15,24 @@ using testing::HasSubstr;
 
 constexpr sim::PlayedMoment kLineWind = {.speed_m_s = 7.25, .direction_deg = 123.5};
 
-class LineFault : public testing::Test {
+class LineFault : public TextFaultBench {
  protected:
-  enum class Wire { kPty, kTcp, kUdp };
+  LineFault() : TextFaultBench("line", kLineWind) {}
 
   void put(Wire wire, const std::string& format, double rate_hz, ParameterValues::Map given = {}) {
-    bench_.put(nullptr, nullptr);  // the name of the port is free again
-    auto carried = wire == Wire::kPty   ? sim::make_pty_wire((folder_ / "arduino").string())
-                   : wire == Wire::kTcp ? sim::make_tcp_wire("127.0.0.1", 0)
-                                        : sim::make_udp_wire("127.0.0.1", udp_port_);
-    const std::string place = carried->place();
-    if (wire == Wire::kPty) {
-      given["device"] = (folder_ / "arduino").string();
-    } else {
-      given["transport"] = std::string(wire == Wire::kTcp ? "tcp" : "udp");
-      given["host"] = std::string("127.0.0.1");
-      given["port"] = std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))};
-    }
-    const LineSensorSettings settings = line_sensor_settings_of(values_for("line", given));
-    bench_.put(
-        std::make_unique<sim::TextSimulator>(sim::make_line_device(format), bench_.told(std::move(carried)), rate_hz,
-                                             sim::MeasuredWind(std::make_unique<StillWind>(kLineWind)), 1),
-        std::make_unique<LineSensor>(settings, bench_.port(settings.text.address)));
+    connect(wire, sim::make_line_device(format), rate_hz, std::move(given),
+            [](const ParameterValues& values, TextBench& bench) {
+              const LineSensorSettings settings = line_sensor_settings_of(values);
+              return std::make_unique<LineSensor>(settings, bench.port(settings.text.address));
+            });
   }
-
-  bool is_live(double limit_s = 20.0) {
-    bench_.sink.readings.clear();
-    return bench_.run_until(limit_s, {}, [this] {
-      return !bench_.sink.readings.empty() && bench_.sink.last_state() == LinkState::kConnected;
-    });
-  }
-  /// Every reading that came is the wind, to the last digit: a cut number is nearly right.
-  void expect_only_the_wind() {
+  /// To the last digit: a cut number is nearly right.
+  void expect_only_the_wind() override {
     for (const WindReading& reading : bench_.sink.readings) {
       EXPECT_EQ(reading.speed_m_s, kLineWind.speed_m_s);
       EXPECT_EQ(reading.direction_deg, kLineWind.direction_deg);
     }
   }
-  void expect_return() {
-    ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
-    bench_.run(2.0);
-    EXPECT_GE(bench_.sink.readings.size(), 5U);
-    EXPECT_TRUE(bench_.sink.refusals.empty());
-    expect_only_the_wind();
-  }
-
-  const std::uint16_t udp_port_ = free_port(SOCK_DGRAM);
-  test::TemporaryFolder folder_;
-  TextBench bench_;
 };
 
 TEST_F(LineFault, Silence) {
@@ -170,9 +137,7 @@ TEST_F(LineFault, Late) {
 TEST_F(LineFault, Disconnect) {
   put(Wire::kTcp, "csv", 4.0);
   ASSERT_TRUE(is_live());
-  bench_.run(5.0, FaultKind::kDisconnect);
-  EXPECT_TRUE(bench_.sink.readings.empty());
-  EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+  expect_silence(FaultKind::kDisconnect, 5.0);
   EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("cannot connect to 127.0.0.1:"));
   expect_return();
 }
@@ -181,9 +146,7 @@ TEST_F(LineFault, Unplug) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp, Wire::kUdp}) {
     put(wire, "csv", 4.0);
     ASSERT_TRUE(is_live());
-    bench_.run(6.0, FaultKind::kUnplug);
-    EXPECT_TRUE(bench_.sink.readings.empty());
-    EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+    expect_silence(FaultKind::kUnplug, 6.0);
     expect_return();
   }
 }

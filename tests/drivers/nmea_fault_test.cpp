@@ -4,10 +4,7 @@
 
 #include "drivers/nmea_sensor.hpp"
 #include "simulators/nmea_device.hpp"
-#include "tests/support/driver_named.hpp"
-#include "tests/support/free_port.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_bench.hpp"
+#include "tests/support/text_fault_bench.hpp"
 
 namespace yuragi {
 namespace {
@@ -17,54 +14,24 @@ using testing::HasSubstr;
 
 constexpr sim::PlayedMoment kWind = {.speed_m_s = 7.0, .direction_deg = 123.0};
 
-class NmeaFault : public testing::Test {
+class NmeaFault : public TextFaultBench {
  protected:
-  enum class Wire { kPty, kTcp, kUdp };
+  NmeaFault() : TextFaultBench("nmea", kWind) {}
 
   void put(Wire wire, const std::vector<std::string>& formats, double rate_hz, ParameterValues::Map given = {}) {
-    bench_.put(nullptr, nullptr);  // the name of the port is free again
-    auto carried = wire == Wire::kPty   ? sim::make_pty_wire((folder_ / "anemometer").string())
-                   : wire == Wire::kTcp ? sim::make_tcp_wire("127.0.0.1", 0)
-                                        : sim::make_udp_wire("127.0.0.1", udp_port_);
-    const std::string place = carried->place();
-    if (wire == Wire::kPty) {
-      given["device"] = (folder_ / "anemometer").string();
-    } else {
-      given["transport"] = std::string(wire == Wire::kTcp ? "tcp" : "udp");
-      given["host"] = std::string("127.0.0.1");
-      given["port"] = std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))};
-    }
-    const NmeaSensorSettings settings = nmea_sensor_settings_of(values_for("nmea", given));
-    bench_.put(std::make_unique<sim::TextSimulator>(sim::make_nmea_device(formats), bench_.told(std::move(carried)),
-                                                    rate_hz, sim::MeasuredWind(std::make_unique<StillWind>(kWind)), 1),
-               std::make_unique<NmeaSensor>(settings, bench_.port(settings.text.address)));
+    connect(wire, sim::make_nmea_device(formats), rate_hz, std::move(given),
+            [](const ParameterValues& values, TextBench& bench) {
+              const NmeaSensorSettings settings = nmea_sensor_settings_of(values);
+              return std::make_unique<NmeaSensor>(settings, bench.port(settings.text.address));
+            });
   }
-
-  bool is_live(double limit_s = 15.0) {
-    bench_.sink.readings.clear();
-    return bench_.run_until(limit_s, {}, [this] {
-      return !bench_.sink.readings.empty() && bench_.sink.last_state() == LinkState::kConnected;
-    });
-  }
-  /// Every reading that came is the wind.
-  void expect_only_the_wind() {
+  void expect_only_the_wind() override {
     for (const WindReading& reading : bench_.sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, kWind.speed_m_s, 0.06);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_NEAR(*reading.direction_deg, kWind.direction_deg, 0.6);
     }
   }
-  void expect_return() {
-    ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
-    bench_.run(2.0);
-    EXPECT_GE(bench_.sink.readings.size(), 5U);
-    EXPECT_TRUE(bench_.sink.refusals.empty());
-    expect_only_the_wind();
-  }
-
-  const std::uint16_t udp_port_ = free_port(SOCK_DGRAM);
-  test::TemporaryFolder folder_;
-  TextBench bench_;
 };
 
 TEST_F(NmeaFault, Silence) {
@@ -196,9 +163,7 @@ TEST_F(NmeaFault, Late) {
 TEST_F(NmeaFault, Disconnect) {
   put(Wire::kTcp, {"mwv"}, 4.0);
   ASSERT_TRUE(is_live());
-  bench_.run(5.0, FaultKind::kDisconnect);
-  EXPECT_TRUE(bench_.sink.readings.empty());
-  EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+  expect_silence(FaultKind::kDisconnect, 5.0);
   EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("cannot connect to 127.0.0.1:"));
   expect_return();
 }
@@ -207,9 +172,7 @@ TEST_F(NmeaFault, Unplug) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp, Wire::kUdp}) {
     put(wire, {"mwv"}, 4.0);
     ASSERT_TRUE(is_live());
-    bench_.run(6.0, FaultKind::kUnplug);
-    EXPECT_TRUE(bench_.sink.readings.empty());
-    EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+    expect_silence(FaultKind::kUnplug, 6.0);
     if (wire == Wire::kPty) {
       EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("check that it is plugged in"));
     }

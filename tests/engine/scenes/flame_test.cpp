@@ -178,8 +178,8 @@ TEST(FlameTest, APanelDoesNotMoveAndFeelsOnlyTheWindAlongIt) {
   const auto calm = flame("texture");
   for (int tick = 0; tick < 200; ++tick) {
     scene->tick(scripted_wind(static_cast<std::uint64_t>(tick)), kFlameTick_s);
-    across->tick({0.0, 20.0}, kFlameTick_s);
-    calm->tick({}, kFlameTick_s);
+    across->tick(WindVector{0.0, 20.0}, kFlameTick_s);
+    calm->tick(WindVector{}, kFlameTick_s);
     for (const float moved_m : flame_pose_of(*scene).displacement_m) ASSERT_EQ(moved_m, 0.0F);
   }
   EXPECT_EQ(pose_hash(0, across->pose()), pose_hash(0, calm->pose()));
@@ -247,7 +247,7 @@ TEST(FlameTest, HeatGoesOnWithoutAJumpWhateverTheWindDoes) {
     float largest = 0.0F;
     std::vector<float> before = flame_pose_of(*scene).heat;
     for (int tick = 0; tick < 4 * ticks_per_s; ++tick) {
-      scene->tick({tick * 4 / ticks_per_s % 2 == 0 ? 40.0 : -40.0, 5.0}, 1.0 / ticks_per_s);
+      scene->tick(WindVector{tick * 4 / ticks_per_s % 2 == 0 ? 40.0 : -40.0, 5.0}, 1.0 / ticks_per_s);
       const std::vector<float>& now = flame_pose_of(*scene).heat;
       for (std::size_t i = 0; i < now.size(); ++i) largest = std::max(largest, std::abs(now[i] - before[i]));
       before = now;

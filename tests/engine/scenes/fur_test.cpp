@@ -69,7 +69,7 @@ TEST(FurTest, LinksKeepTheirLengthTo1e5) {
   const auto& skeleton = std::get<StrandSkeleton>(scene->skeleton());
   JointPositions joints(skeleton);
   for (const double speed_m_s : {0.0, 5.0, 40.0}) {
-    for (int tick = 0; tick < 30; ++tick) scene->tick({speed_m_s, -0.5 * speed_m_s}, 1.0 / 60.0);
+    for (int tick = 0; tick < 30; ++tick) scene->tick(WindVector{speed_m_s, -0.5 * speed_m_s}, 1.0 / 60.0);
     ASSERT_EQ(
         (StrandKinematicsJob{.skeleton = &skeleton, .pose = &std::get<StrandPose>(scene->pose()), .joints = &joints}
              .run()),
@@ -95,7 +95,7 @@ TEST(FurTest, IsStrokedMoreByMoreWindUntilItLiesFlat) {
     const auto scene = fur({{"hairs_along", std::int64_t{40}}, {"hairs_around", std::int64_t{32}}});
     double mean_rad = 0.0;
     for (int tick = 0; tick < 900; ++tick) {
-      scene->tick({speed_m_s, 0.0}, 1.0 / 60.0);
+      scene->tick(WindVector{speed_m_s, 0.0}, 1.0 / 60.0);
       const auto& pose = std::get<StrandPose>(scene->pose());
       if (tick >= 300) {
         for (std::size_t i = 0; i < 1280; ++i)

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@
 #include "engine/pose/strand_kinematics.hpp"
 #include "engine/scenes/scene.hpp"
 #include "tests/support/bits.hpp"
+#include "tests/support/gusty_wind.hpp"
 #include "tests/support/scripted_wind.hpp"
 
 namespace yuragi {
@@ -276,6 +278,63 @@ TEST(GrassTest, AMillionNodesWork) {
   run(*scene, toward(1.0, 10.0), 3);
   const JointPositions joints = joints_of(*scene);
   for (const float coordinate : joints.data()) ASSERT_TRUE(std::isfinite(coordinate));
+}
+
+/// A long, thin meadow along x in a gusty west wind; the bend toward east of each of its rows of blades, tick by tick.
+std::vector<std::vector<double>> rows_in_gusts(double wind_m_s, int ticks) {
+  const auto values = ParameterValues::resolve(kGrassScene.parameters, {{"blades_across", std::int64_t{16}},
+                                                                        {"blades_deep", std::int64_t{4}},
+                                                                        {"width", 24.0},
+                                                                        {"depth", 1.0},
+                                                                        {"hybrid", 0.0}})
+                          .value();
+  const auto scene = kGrassScene.make(values, {.seed = 1, .gusts = shared_gusts()});
+  const StrandSkeleton& skeleton = skeleton_of(*scene);
+  GustyWind wind({wind_m_s, 0.0}, 0.35F);
+  std::vector<std::vector<double>> rows(2);
+  for (int tick = 0; tick < ticks; ++tick) {
+    scene->tick(wind.step(kTick_s), kTick_s);
+    std::array<double, 2> sums{};
+    for (std::size_t i = 0; i < skeleton.strand_count; ++i) {
+      const double x_m = static_cast<double>(skeleton.root_x_m[i]);
+      if (std::abs(x_m + 9.0) < 1.5) sums[0] += bend_rad(pose_of(*scene), i);
+      if (std::abs(x_m - 9.0) < 1.5) sums[1] += bend_rad(pose_of(*scene), i);
+    }
+    for (std::size_t row = 0; row < 2; ++row) rows[row].push_back(sums[row]);
+  }
+  return rows;
+}
+
+/// The correlation of `a` with `b`, which comes `lag` ticks later.
+double correlation(const std::vector<double>& a, const std::vector<double>& b, std::size_t lag) {
+  const std::size_t count = a.size() - lag;
+  double mean_a = 0.0;
+  double mean_b = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    mean_a += a[i] / static_cast<double>(count);
+    mean_b += b[i + lag] / static_cast<double>(count);
+  }
+  double both = 0.0;
+  double squares_a = 0.0;
+  double squares_b = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    both += (a[i] - mean_a) * (b[i + lag] - mean_b);
+    squares_a += (a[i] - mean_a) * (a[i] - mean_a);
+    squares_b += (b[i + lag] - mean_b) * (b[i + lag] - mean_b);
+  }
+  return both / std::sqrt(squares_a * squares_b);
+}
+
+TEST(GrassTest, AGustFromOutsideTravelsOverTheMeadowAsFastAsTheWind) {
+  const double wind_m_s = 6.0;
+  const auto rows = rows_in_gusts(wind_m_s, 60 * 120);
+  std::size_t best = 0;
+  for (std::size_t lag = 0; lag < 60 * 8; ++lag) {
+    if (correlation(rows[0], rows[1], lag) > correlation(rows[0], rows[1], best)) best = lag;
+  }
+  EXPECT_NEAR(kTick_s * static_cast<double>(best), 18.0 / wind_m_s, 0.3);
+  EXPECT_GT(correlation(rows[0], rows[1], best), 0.8);
+  EXPECT_LT(correlation(rows[0], rows[1], 0), 0.6) << "rows 18 m apart feel other gusts at the same moment";
 }
 
 }  // namespace

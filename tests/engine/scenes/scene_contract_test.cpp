@@ -13,6 +13,7 @@
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/pose_hash.hpp"
 #include "engine/scenes/scene.hpp"
+#include "tests/support/gusty_wind.hpp"
 #include "tests/support/scripted_wind.hpp"
 
 namespace yuragi {
@@ -49,6 +50,18 @@ WindVector nasty_wind(std::uint64_t tick) {
   }
 }
 constexpr std::uint64_t kNastyTicks = 420;
+
+/// The same with gusts as nasty.
+GroundWind nasty_gusts(std::uint64_t tick) {
+  const RandomStream random(3, stream_id("nasty gusts"));
+  GroundWind wind(nasty_wind(tick));
+  for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
+    wind.gusts.along_m_s[i] = static_cast<float>(10.0 * random.uniform(64 * (tick / 7) + i));
+    wind.gusts.across_m_s[i] = static_cast<float>(10.0 * random.uniform(64 * (tick / 7) + 32 + i));
+  }
+  wind.gusts.carried = shared_gusts()->begin(tick / 3);  // and torn from place to place
+  return wind;
+}
 
 std::vector<JointPosition> all_joints(const Kinematics& kinematics, std::size_t count) {
   std::vector<JointPosition> joints;
@@ -88,13 +101,13 @@ TEST_P(SceneContract, ItsPoseFitsItsSkeletonAndBeginsAtRest) {
   const auto scene = make(*GetParam());
   EXPECT_GT(node_count(scene->skeleton()), 0U);
   EXPECT_TRUE(fits(scene->pose(), scene->skeleton()));
-  scene->tick({3.0, 1.0}, kContractTick_s);
+  scene->tick(WindVector{3.0, 1.0}, kContractTick_s);
   EXPECT_TRUE(fits(scene->pose(), scene->skeleton()));
 }
 
 TEST_P(SceneContract, CalmIsTheRestPoseUnlessItSaysThatItMovesInCalmAirToo) {
   const auto scene = make(*GetParam());
-  for (int tick = 0; tick < 120; ++tick) scene->tick({}, kContractTick_s);
+  for (int tick = 0; tick < 120; ++tick) scene->tick(WindVector{}, kContractTick_s);
   const Pose rest = rest_pose(scene->skeleton());
   Kinematics at_rest(scene->skeleton());
   Kinematics in_calm(scene->skeleton());
@@ -103,9 +116,11 @@ TEST_P(SceneContract, CalmIsTheRestPoseUnlessItSaysThatItMovesInCalmAirToo) {
   EXPECT_EQ(in_calm.hash(0) == at_rest.hash(0), GetParam()->is_still_in_calm);
 }
 
+/// Both kinds of wind: one that is the same everywhere, and one that brings its gusts.
 TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
-  for (const double dt_s : {kContractTick_s, 1.0 / 144.0}) {
-    const auto scene = make(*GetParam());
+  for (const bool has_gusts : {false, true}) {
+    const double dt_s = has_gusts ? 1.0 / 144.0 : kContractTick_s;
+    const auto scene = make(*GetParam(), {.seed = 1, .gusts = has_gusts ? shared_gusts() : nullptr});
     const double bound_m = scene->largest_joint_step_m(dt_s);
     ASSERT_TRUE(std::isfinite(bound_m));
     Kinematics kinematics(scene->skeleton());
@@ -114,7 +129,7 @@ TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
     std::vector<JointPosition> before = all_joints(kinematics, count);
     double largest_m = 0.0;
     for (std::uint64_t tick = 0; tick < kNastyTicks; ++tick) {
-      scene->tick(nasty_wind(tick), dt_s);
+      scene->tick(has_gusts ? nasty_gusts(tick) : GroundWind(nasty_wind(tick)), dt_s);
       ASSERT_TRUE(kinematics.run(scene->pose()));
       std::vector<JointPosition> now = all_joints(kinematics, count);
       const double step_m = largest_step_m(before, now);
@@ -123,9 +138,20 @@ TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
       before = std::move(now);
     }
     EXPECT_GT(largest_m, 1e-3 * bound_m) << "the bound of " << bound_m << " m says nothing";
-    std::printf("%s at %.0f Hz: %.4f m a tick at most, bound %.4f m\n", std::string(GetParam()->name).c_str(),
-                1.0 / dt_s, largest_m, bound_m);
+    std::printf("%s at %.0f Hz%s: %.4f m a tick at most, bound %.4f m\n", std::string(GetParam()->name).c_str(),
+                1.0 / dt_s, has_gusts ? " with gusts" : "", largest_m, bound_m);
   }
+}
+
+TEST_P(SceneContract, CalmWithGustsThatHaveNoStrengthIsTheRestPose) {
+  const auto scene = make(*GetParam(), {.seed = 1, .gusts = shared_gusts()});
+  for (int tick = 0; tick < 60; ++tick) scene->tick(WindVector{}, kContractTick_s);
+  const Pose rest = rest_pose(scene->skeleton());
+  Kinematics at_rest(scene->skeleton());
+  Kinematics in_calm(scene->skeleton());
+  ASSERT_TRUE(at_rest.run(rest));
+  ASSERT_TRUE(in_calm.run(scene->pose()));
+  EXPECT_EQ(in_calm.hash(0) == at_rest.hash(0), GetParam()->is_still_in_calm);
 }
 
 TEST_P(SceneContract, TheSameSeedAndWindGiveTheSameBitsAndAnotherSeedOthers) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "engine/noise/noise_tile.hpp"
+#include "engine/noise/spectral_noise.hpp"
+
+namespace yuragi {
+
+/// A noise whose eddies turn over, all at one rate, without a transform at run time: the field
+///
+///     cos(a) first + sin(a) quarter
+///
+/// is `first` with the phase of each mode turned by s_k a, F_k exp(-i s_k a). The sign s_k is random, and s_-k = -s_k,
+/// so that the field does not drift. Mean and variance stay 0 and 1 whatever a is.
+struct TurningNoise2 {
+  NoiseTile2 first;    ///< make_noise_2d(spec), bit for bit
+  NoiseTile2 quarter;  ///< of modes -i s_k F_k: a quarter turn on
+};
+
+/// Makes both. For a band of wavenumbers, an octave or so: an eddy's rate goes as |k|^(2/3), and here there is one for
+/// all (EvolvingNoise has one for each mode, and pays a transform a frame). Waves of two samples along an axis cannot
+/// turn: spec.to_cycles is at most half the size, else they are missing in `quarter`. Set-up work; allocates.
+/// Thread-safe: yes. Realtime-safe: no. Fails as make_noise_2d(). Source: wind.md 1 (non-frozen turbulence).
+Result<TurningNoise2, NoiseError> make_turning_noise_2d(const NoiseSpec& spec);
+
+}  // namespace yuragi

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/base/simd_row.hpp"
+#include "engine/noise/noise_tile.hpp"
+#include "engine/noise/torus.hpp"
+#include "engine/scenes/scene_wind.hpp"
+#include "engine/wind/ground_wind.hpp"
+
+namespace yuragi {
+
+/// The wind at each place of a scene: a grid over the scene whose nodes each feel the wind as SceneWind does (cut to
+/// kStrongestSceneWind_m_s, smoothed by 0.1 s), gusts of the place included; places between nodes read it bilinearly.
+///
+/// So a place's wind is never stronger than kStrongestSceneWind_m_s, and changes in a tick by at most
+/// SceneWind::largest_step_m_s, whatever comes in. Nodes are half a metre apart, as the gusts' own samples are, in
+/// scenes of up to 31 m; larger ones have 64 nodes a side. Allocates when it is made, never afterwards. Thread-safe:
+/// sampling, yes. Realtime-safe: all but construction. Cost: about 2 ns a node and octave of the gusts (14 us for a
+/// meadow of 7 m), and 4 ns a place.
+class WindGrid {
+ public:
+  /// Places: metres east and south of the middle of all scenes, as many of x as of z.
+  /// `finest_cell_m`: nodes are not nearer to each other.
+  WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m, SimdRow row,
+           double finest_cell_m = 0.5);
+
+  /// Goes on by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
+  void step(const GroundWind& wind, double dt_s) noexcept;
+
+  /// The wind at as many places as the outputs have, from place `first` on.
+  void sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept;
+
+  /// How much stronger its gusts make the wind at each place, from place `first` on, in fifths of the wind without
+  /// them: a noise of variance 1 or less where the turbulence intensity is 0.2. From -limit to limit; 0 in calm.
+  void sample_gusts(std::size_t first, std::span<float> out, float limit) noexcept;
+
+ private:
+  /// One component of the wind at the nodes: toward where it goes, and how quickly it does.
+  struct Component {
+    NoiseTile2 value;
+    std::vector<float> target, rate_per_s;
+  };
+
+  void read_octaves(const GroundWind& wind, GustNoise::Component component, std::span<float> out) const noexcept;
+  void follow(Component& component, double dt_s) noexcept;
+  void read(const Component& component, std::size_t first, std::span<float> out) const noexcept;
+
+  std::shared_ptr<const GustNoise> gusts_;
+  SimdRow row_;
+  std::vector<double> node_x_m_, node_z_m_;
+  std::array<std::vector<std::uint32_t>, 2> node_x_, node_z_;  ///< on the tiles' tori
+  std::vector<std::uint32_t> place_x_, place_z_;               ///< on the grid's
+  std::vector<float> east_m_s_, south_m_s_;                    ///< of the places, for sample_gusts()
+  Component east_, south_;
+  SceneWind smooth_;  ///< without gusts, in the first place
+};
+
+}  // namespace yuragi

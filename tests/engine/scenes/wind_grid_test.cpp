@@ -1,0 +1,136 @@
+#include "engine/scenes/wind_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/math/philox.hpp"
+#include "engine/scenes/scene.hpp"
+#include "tests/support/gusty_wind.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kGridTick_s = 1.0 / 60.0;
+
+/// Places in a square of this side, with one in each corner.
+struct Places {
+  explicit Places(double side_m, std::size_t count = 203) {
+    const RandomStream random(4, stream_id("wind grid test"));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [x, z] = random.uniform_pair(i);
+      x_m.push_back(static_cast<float>(side_m * (i < 4 ? static_cast<double>(i % 2) : x) - 20.0));
+      z_m.push_back(static_cast<float>(side_m * (i < 4 ? static_cast<double>(i / 2) : z) + 5.0));
+    }
+    east_m_s.resize(count);
+    south_m_s.resize(count);
+  }
+
+  std::vector<float> x_m, z_m, east_m_s, south_m_s;
+};
+
+TEST(WindGrid, EachPlaceFeelsTheWindOfThatPlace) {
+  // Gusts that stand still: the grid has all the time to follow. Between nodes it reads a straight line, as the gusts'
+  // own tiles do, so that they differ by the bend of the shortest waves alone.
+  for (const double side_m : {0.0, 3.0, 7.0, 28.0}) {
+    Places places(side_m);
+    WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
+    const GustyWind gusty({6.0, -2.0}, 0.5F);
+    for (int tick = 0; tick < 240; ++tick) grid.step(gusty.wind(), kGridTick_s);
+    grid.sample(0, places.east_m_s, places.south_m_s);
+    double squares = 0.0;
+    double scatter = 0.0;
+    for (std::size_t i = 0; i < places.x_m.size(); ++i) {
+      const WindVector there =
+          gusty.wind().at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
+      squares += std::pow(static_cast<double>(places.east_m_s[i]) - there.u_m_s, 2) +
+                 std::pow(-static_cast<double>(places.south_m_s[i]) - there.v_m_s, 2);
+      scatter += std::pow(there.u_m_s - 6.0, 2) + std::pow(there.v_m_s + 2.0, 2);
+    }
+    EXPECT_GT(scatter, 0.5 * static_cast<double>(places.x_m.size()));
+    EXPECT_LT(squares, 0.01 * scatter) << side_m << " m";
+  }
+}
+
+TEST(WindGrid, PlacesOfALargeSceneHaveTheVarianceOfTheGusts) {
+  Places places(200.0, 2000);
+  GustyWind gusty({6.0, 0.0}, 0.5F);
+  double variance = 0.0;
+  constexpr int kMoments = 40;
+  for (int moment = 0; moment < kMoments; ++moment) {
+    WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
+    grid.step(gusty.step(37.0), 10.0);
+    grid.sample(0, places.east_m_s, places.south_m_s);
+    for (const float east_m_s : places.east_m_s) {
+      variance += std::pow(static_cast<double>(east_m_s) - 6.0, 2) / 2000.0 / kMoments;
+    }
+  }
+  // Nodes are 3.2 m apart: of the waves shorter than two of them, 2 octaves of 7, half is left between nodes.
+  const double of_gusts = 0.25 * 2.0 * static_cast<double>(GustNoise::kTileOctaves);
+  EXPECT_GT(variance, 0.7 * of_gusts);
+  EXPECT_LT(variance, 1.05 * of_gusts);
+}
+
+TEST(WindGrid, CalmIsCalmBitForBitAndComesAgain) {
+  Places places(7.0);
+  WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
+  const auto is_calm = [&] {
+    grid.sample(0, places.east_m_s, places.south_m_s);
+    const auto is_zero = [](float value) { return value == 0.0F; };
+    return std::ranges::all_of(places.east_m_s, is_zero) && std::ranges::all_of(places.south_m_s, is_zero);
+  };
+  grid.step(WindVector{}, kGridTick_s);
+  EXPECT_TRUE(is_calm());
+  for (int tick = 0; tick < 60; ++tick) grid.step(WindVector{3.0, 4.0}, kGridTick_s);
+  EXPECT_FALSE(is_calm());
+  for (int tick = 0; tick < 600; ++tick) grid.step(WindVector{}, kGridTick_s);
+  EXPECT_TRUE(is_calm());
+}
+
+TEST(WindGrid, IsNeverTooStrongAndNeverTooQuickWhateverComesIn) {
+  Places places(7.0);
+  WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
+  const RandomStream random(8, stream_id("hostile gusts"));
+  const double bound_m_s = SceneWind::largest_step_m_s(kGridTick_s);
+  std::vector<float> east_before(places.x_m.size()), south_before(places.x_m.size());
+  double largest_m_s = 0.0;
+  for (std::uint64_t tick = 0; tick < 300; ++tick) {
+    GroundWind wind(WindVector{200.0 * (random.uniform(4 * tick) - 0.5), 200.0 * (random.uniform(4 * tick + 1) - 0.5)});
+    wind.gusts.along_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 2)));
+    wind.gusts.across_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 3)));
+    wind.gusts.carried = shared_gusts()->begin(tick);
+    grid.step(wind, kGridTick_s);
+    grid.sample(0, places.east_m_s, places.south_m_s);
+    for (std::size_t i = 0; i < places.x_m.size(); ++i) {
+      const double speed_m_s = static_cast<double>(std::hypot(places.east_m_s[i], places.south_m_s[i]));
+      ASSERT_LE(speed_m_s, kStrongestSceneWind_m_s * (1.0 + 1e-5));
+      const double step_m_s =
+          static_cast<double>(std::hypot(places.east_m_s[i] - east_before[i], places.south_m_s[i] - south_before[i]));
+      ASSERT_LE(step_m_s, bound_m_s * (1.0 + 1e-5));
+      largest_m_s = std::max(largest_m_s, step_m_s);
+    }
+    east_before = places.east_m_s;
+    south_before = places.south_m_s;
+  }
+  EXPECT_GT(largest_m_s, 0.05 * bound_m_s);
+}
+
+TEST(WindGrid, GustsAreInFifthsOfTheWind) {
+  Places places(7.0);
+  WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
+  const GustyWind gusty({3.0, 4.0}, 0.4F);
+  for (int tick = 0; tick < 240; ++tick) grid.step(gusty.wind(), kGridTick_s);
+  grid.sample(0, places.east_m_s, places.south_m_s);
+  std::vector<float> gusts(places.x_m.size() - 3);
+  grid.sample_gusts(3, gusts, 3.0F);
+  for (std::size_t i = 0; i < gusts.size(); ++i) {
+    const double along_m_s =
+        0.6 * static_cast<double>(places.east_m_s[i + 3]) - 0.8 * static_cast<double>(places.south_m_s[i + 3]);
+    EXPECT_NEAR(gusts[i], std::clamp(along_m_s - 5.0, -3.0, 3.0), 1e-3);  // a fifth of 5 m/s is 1
+  }
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/wind/gust_noise.hpp"
+#include "tests/proof/band_power.hpp"
+#include "tests/proof/sonic_record.hpp"
+
+namespace yuragi::proof {
+
+/// A blade of grass: metres east and south of the middle of the scene.
+struct Blade {
+  double east_m = 0.0;
+  double south_m = 0.0;
+};
+/// A corner of a meadow of 7 m, and two that are farther from the sensor than any wall is wide.
+inline constexpr std::array<Blade, 3> kBlades = {{{3.0, -3.0}, {-20.0, 5.0}, {60.0, 25.0}}};
+
+inline constexpr double kTick_hz = 60.0;
+/// What the issue asks of the spectrum reaches from here to there; above, the noise is compared with its own model.
+inline constexpr double kFromHz = 0.003;
+inline constexpr double kToHz = 0.6;
+inline constexpr double kTopHz = 5.0;
+
+/// The wind of one place against the record, mean of the seeds.
+struct PlaceComparison {
+  double variance = 0.0;        ///< over the record's
+  double mean_speed = 0.0;      ///< over the record's
+  std::vector<double> density;  ///< m^2/s^2/Hz, of u and v together, in bins of step_hz
+  std::vector<double> octaves;  ///< dB over the record, from kFromHz to kToHz
+  std::vector<double> above;    ///< the same of the octaves above
+};
+
+/// What a sensor of one interval makes of a record, against all that the record has.
+struct BlendComparison {
+  double interval_s = 0.0;
+  int seeds = 0;
+  double from_s = 0.0, to_s = 0.0;  ///< of the record: its start is the estimator's
+  WindMoments record;
+
+  double step_hz = 0.0;
+  std::vector<double> record_density, sensor_density;
+  std::vector<double> sensor_octaves;  ///< dB: the readings alone, held
+
+  std::vector<Band> octaves, above;
+  PlaceComparison signal;
+  std::array<PlaceComparison, kBlades.size()> blades;
+
+  std::vector<double> synthetic_density, model_density;  ///< from kToHz on: of the noise; and what it should be
+  std::vector<double> synthetic_above;                   ///< dB of the noise over its model, in the octaves `above`
+  std::vector<double> model_above;                       ///< m^2/s^2 in the octaves `above`
+
+  double coherent_to_hz = 0.0;  ///< a third of the crossover
+  double coherence = 0.0;       ///< of the wind and the readings held: mean from kFromHz to coherent_to_hz
+  double least_coherence = 0.0;
+};
+
+/// Runs the estimator of the daemon at 60 Hz over the record as a sensor of this interval would have told it, once for
+/// each seed from 1 on, and compares. The first max(30, 3 intervals) seconds are not compared.
+BlendComparison compare_blend(const SonicRecord& record, double interval_s, int seeds,
+                              const std::shared_ptr<const GustNoise>& noise);
+
+}  // namespace yuragi::proof

@@ -1,0 +1,219 @@
+// yuragi-blend-proof: the wind that moves the wall is the wind outside. Two recordings of a sonic anemometer are made
+// into what slow sensors would have said; the daemon's estimator makes wind of it again, 60 times a second; and that is
+// compared with all that the recordings have. Prints tables, and ends with 1 where a bound does not hold.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "daemon/plot.hpp"
+#include "tests/proof/blend_comparison.hpp"
+
+namespace yuragi::proof {
+namespace {
+
+/// ctest's word for a test that has not what it needs.
+constexpr int kSkipped = 77;
+constexpr double kNoiseBound_db = 1.0;
+constexpr double kLeastCoherence = 0.9;
+/// An octave in which the tiles have hardly a wave says nothing about them: this part of the noise above kToHz.
+constexpr double kLeastShare = 0.02;
+
+/// What is asked of a sensor's interval.
+struct Bounds {
+  double octave_db;
+  double least_variance, most_variance;
+  double mean_speed;
+};
+constexpr Bounds kQuick = {1.5, 0.85, 1.1, 0.01};
+constexpr Bounds kSlow = {4.0, 0.7, 1.3, 0.03};
+constexpr double kLeastBladeVariance = 0.85;
+constexpr double kMostBladeVariance = 1.15;
+/// From this interval on a sensor is slow.
+constexpr double kSlow_s = 5.0;
+
+/// Tells what holds and what does not.
+class Verdict {
+ public:
+  void check(bool holds, const std::string& what) {
+    fmt::print("  {}  {}\n", holds ? "holds" : "FAILS", what);
+    if (!holds) ++failures_;
+  }
+  int failures() const { return failures_; }
+
+ private:
+  int failures_ = 0;
+};
+
+double furthest(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+std::string name_of(Band band) {
+  return fmt::format("{:.3g} - {:.3g}", band.from_hz, band.to_hz);
+}
+
+/// The table, as Markdown.
+void print_table(const SonicRecord& record, const BlendComparison& blend) {
+  fmt::print("\n### Record {}, a sensor of {:g} s, {} seeds\n\n", record.name, blend.interval_s, blend.seeds);
+  fmt::print("Record: {:.0f} to {:.0f} s, mean speed {:.2f} m/s, variance (u + v) {:.2f} m^2/s^2\n\n", blend.from_s,
+             blend.to_s, blend.record.mean_speed_m_s, blend.record.variance_m2_s2);
+  const auto& blades = blend.blades;
+  fmt::print("| | readings alone | wind | blade 1 | blade 2 | blade 3 | noise to its model |\n");
+  fmt::print("| --- | --- | --- | --- | --- | --- | --- |\n");
+  fmt::print("| variance / record | | {:.3f} | {:.3f} | {:.3f} | {:.3f} | |\n", blend.signal.variance,
+             blades[0].variance, blades[1].variance, blades[2].variance);
+  fmt::print("| mean speed / record | | {:.4f} | {:.4f} | {:.4f} | {:.4f} | |\n", blend.signal.mean_speed,
+             blades[0].mean_speed, blades[1].mean_speed, blades[2].mean_speed);
+  for (std::size_t i = 0; i < blend.octaves.size(); ++i) {
+    fmt::print("| {} Hz | {:+.1f} dB | {:+.2f} dB | {:+.2f} dB | {:+.2f} dB | {:+.2f} dB | |\n",
+               name_of(blend.octaves[i]), blend.sensor_octaves[i], blend.signal.octaves[i], blades[0].octaves[i],
+               blades[1].octaves[i], blades[2].octaves[i]);
+  }
+  for (std::size_t i = 0; i < blend.above.size(); ++i) {
+    fmt::print("| {} Hz | | {:+.2f} dB | {:+.2f} dB | {:+.2f} dB | {:+.2f} dB | {:+.2f} dB |\n",
+               name_of(blend.above[i]), blend.signal.above[i], blades[0].above[i], blades[1].above[i],
+               blades[2].above[i], blend.synthetic_above[i]);
+  }
+  fmt::print("\n");
+}
+
+void judge(const BlendComparison& blend, Verdict& verdict) {
+  const Bounds& bounds = blend.interval_s < kSlow_s ? kQuick : kSlow;
+  const auto is_within = [](double value, double least, double most) { return value >= least && value <= most; };
+  verdict.check(furthest(blend.signal.octaves) <= bounds.octave_db,
+                fmt::format("octaves from {:g} to {:g} Hz within {:g} dB: {:.2f}", kFromHz, kToHz, bounds.octave_db,
+                            furthest(blend.signal.octaves)));
+  verdict.check(is_within(blend.signal.variance, bounds.least_variance, bounds.most_variance),
+                fmt::format("variance {:g} to {:g} of the record's: {:.3f}", bounds.least_variance,
+                            bounds.most_variance, blend.signal.variance));
+  verdict.check(std::abs(blend.signal.mean_speed - 1.0) <= bounds.mean_speed,
+                fmt::format("mean speed within {:g} %: {:+.2f}", 100.0 * bounds.mean_speed,
+                            100.0 * (blend.signal.mean_speed - 1.0)));
+  verdict.check(
+      blend.coherence > kLeastCoherence,
+      fmt::format("coherence with the sensor from {:g} to {:.3g} Hz above {:g}: {:.3f} (least of a bin {:.3f})",
+                  kFromHz, blend.coherent_to_hz, kLeastCoherence, blend.coherence, blend.least_coherence));
+  double all = 0.0;
+  for (const double power : blend.model_above) all += power;
+  for (std::size_t i = 0; i < blend.above.size(); ++i) {
+    if (blend.model_above[i] < kLeastShare * all) continue;
+    verdict.check(std::abs(blend.synthetic_above[i]) <= kNoiseBound_db,
+                  fmt::format("noise at {} Hz within {:g} dB of its model: {:+.2f}", name_of(blend.above[i]),
+                              kNoiseBound_db, blend.synthetic_above[i]));
+  }
+  for (std::size_t i = 0; i < kBlades.size(); ++i) {
+    const PlaceComparison& blade = blend.blades[i];
+    verdict.check(furthest(blade.octaves) <= bounds.octave_db &&
+                      is_within(blade.variance, kLeastBladeVariance, kMostBladeVariance),
+                  fmt::format("blade {} ({:g} m east, {:g} m south): octaves within {:g} dB: {:.2f}; variance {:g} to "
+                              "{:g}: {:.3f}",
+                              i + 1, kBlades[i].east_m, kBlades[i].south_m, bounds.octave_db, furthest(blade.octaves),
+                              kLeastBladeVariance, kMostBladeVariance, blade.variance));
+  }
+}
+
+/// A spectrum thinned to a few points a decade, each the mean of its bins.
+PlotCurve curve_of(const std::string& title, const std::vector<double>& density, double step_hz, double from_hz) {
+  PlotCurve curve{.title = title, .x = {}, .y = {}};
+  constexpr double kRatio = 1.12;
+  for (double low_hz = from_hz; low_hz < kTopHz; low_hz *= kRatio) {
+    double sum = 0.0;
+    int bins = 0;
+    for (std::size_t k = 1; k < density.size(); ++k) {
+      const double frequency_hz = static_cast<double>(k) * step_hz;
+      if (frequency_hz < low_hz || frequency_hz >= low_hz * kRatio) continue;
+      sum += density[k];
+      ++bins;
+    }
+    if (bins == 0 || sum <= 0.0) continue;
+    curve.x.push_back(low_hz * std::sqrt(kRatio));
+    curve.y.push_back(sum / bins);
+  }
+  return curve;
+}
+
+PlotPanel panel_of(const SonicRecord& record, const BlendComparison& blend) {
+  const double from_hz = 1.0 / 1080.0;
+  PlotPanel panel{.title = fmt::format("record {}, a sensor of {:g} s, mean of {} seeds", record.name, blend.interval_s,
+                                       blend.seeds),
+                  .x_label = "frequency, Hz",
+                  .y_label = "S, m^2/s^2/Hz (u + v)",
+                  .is_x_log = true,
+                  .is_y_log = true,
+                  .curves = {}};
+  panel.curves.push_back(curve_of("record, 10 Hz", blend.record_density, blend.step_hz, from_hz));
+  // What is held has no power at the multiples of its rate: its deepest notches would set the scale.
+  PlotCurve sensor = curve_of("readings alone", blend.sensor_density, blend.step_hz, from_hz);
+  for (double& value : sensor.y) value = value < 1e-3 ? std::nan("") : value;
+  panel.curves.push_back(std::move(sensor));
+  panel.curves.push_back(curve_of("wind of yuragi", blend.signal.density, blend.step_hz, from_hz));
+  panel.curves.push_back(curve_of("at a blade 65 m away", blend.blades[2].density, blend.step_hz, from_hz));
+  panel.curves.push_back(curve_of("model of its noise", blend.model_density, blend.step_hz, kToHz));
+  return panel;
+}
+
+struct Options {
+  std::vector<int> records = {0, 1};
+  std::vector<double> intervals_s = {1.0, 14.0};
+  int seeds = 32;
+  std::string plot;
+};
+
+int prove(const Options& options) {
+  if (!options.plot.empty()) check_plot_name(options.plot);
+  const auto noise = std::make_shared<const GustNoise>(GustNoiseSettings{});
+  Verdict verdict;
+  std::vector<PlotPanel> panels;
+  for (const int number : options.records) {
+    const std::optional<SonicRecord> record = load_sonic(number);
+    if (!record) {
+      fmt::print("skipped: ../shared/data/sonic, the recordings that this compares with, is not here\n");
+      return kSkipped;
+    }
+    for (const double interval_s : options.intervals_s) {
+      const BlendComparison blend = compare_blend(*record, interval_s, options.seeds, noise);
+      print_table(*record, blend);
+      judge(blend, verdict);
+      panels.push_back(panel_of(*record, blend));
+      std::fflush(stdout);
+    }
+  }
+  if (!options.plot.empty()) draw_plot(options.plot, panels);
+  fmt::print("\n{}\n",
+             verdict.failures() == 0 ? "everything holds" : fmt::format("{} do not hold", verdict.failures()));
+  return verdict.failures() == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace yuragi::proof
+
+int main(int argc, char** argv) {
+  yuragi::proof::Options options;
+  CLI::App app("Compares the blended wind with the recordings that it was made from");
+  app.footer(
+      "Example: yuragi-blend-proof --record 1 --interval 14 --plot blend.png\nEnds with 1 where a bound does not "
+      "hold, and with 77 where ../shared/data/sonic is not there.");
+  app.add_option("--record", options.records, "which recordings: 0 (13:30), 1 (14:00)")->check(CLI::Range(0, 1));
+  app.add_option("--interval", options.intervals_s, "how often the sensors speak, s")->check(CLI::Range(0.1, 60.0));
+  app.add_option("--seeds", options.seeds, "how many winds of noise")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--plot", options.plot, "draws the spectra")->type_name("FILE.png|svg");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return yuragi::proof::prove(options);
+  } catch (const std::exception& error) {
+    std::cerr << "yuragi-blend-proof: " << error.what() << '\n';
+    return 1;
+  }
+}

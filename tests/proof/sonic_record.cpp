@@ -1,0 +1,56 @@
+#include "tests/proof/sonic_record.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+
+#include "tests/support/places.hpp"
+
+namespace yuragi::proof {
+namespace {
+
+constexpr std::array<const char*, 2> kNames = {"20180720T133000", "20180720T140000"};
+
+}  // namespace
+
+std::optional<SonicRecord> load_sonic(int number) {
+  const std::string name = kNames.at(static_cast<std::size_t>(number));
+  const std::string file = test::source_path("../shared/data/sonic/finse_csat3_10hz_" + name + ".csv");
+  std::ifstream in(file);
+  if (!in) return std::nullopt;
+
+  // time,u,v,w,temperature at equal steps of 0.1 s, below a comment and the names of the columns.
+  SonicRecord record{.name = name, .samples = {}};
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with('#') || line.starts_with("timestamp")) continue;
+    const std::size_t comma = line.find(',');
+    WindVector wind;
+    if (comma == std::string::npos || std::sscanf(line.c_str() + comma, ",%lf,%lf", &wind.u_m_s, &wind.v_m_s) != 2) {
+      throw std::runtime_error(file + ": \"" + line + "\" is not time,u,v,...");
+    }
+    record.samples.push_back(wind);
+  }
+  if (record.samples.size() < 10000) throw std::runtime_error(file + ": ends too soon");
+  return record;
+}
+
+std::vector<WindReading> block_means(const SonicRecord& record, double interval_s) {
+  const auto per_block = static_cast<std::size_t>(std::lround(interval_s * record.rate_hz));
+  std::vector<WindReading> readings;
+  for (std::size_t end = per_block; end <= record.samples.size(); end += per_block) {
+    WindVector sum{};
+    for (std::size_t i = end - per_block; i < end; ++i) sum = sum + record.samples[i];
+    const WindVector mean = (1.0 / static_cast<double>(per_block)) * sum;
+    WindReading reading;
+    reading.time.mono = MonoTime(from_seconds(static_cast<double>(end) / record.rate_hz));
+    reading.speed_m_s = speed_of(mean);
+    reading.direction_deg = direction_from_deg(mean);
+    readings.push_back(reading);
+  }
+  return readings;
+}
+
+}  // namespace yuragi::proof

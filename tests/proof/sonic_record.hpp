@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/wind/wind_reading.hpp"
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi::proof {
+
+/// A stretch of real wind, measured by a sonic anemometer at equal steps of time.
+struct SonicRecord {
+  std::string name;
+  double rate_hz = 10.0;
+  std::vector<WindVector> samples;  ///< as the file has them: u, v
+
+  double duration_s() const { return static_cast<double>(samples.size()) / rate_hz; }
+};
+
+/// The two recordings of ../shared/data/sonic, by their number 0 or 1 (20 July 2018, 13:30 and 14:00, Finse; CSAT3, 10
+/// Hz). Empty where the folder is not there. Throws std::runtime_error for a file that cannot be read.
+std::optional<SonicRecord> load_sonic(int number);
+
+/// What a slower sensor would have said: vector means over blocks of `interval_s`, each heard at the end of its block.
+/// Their times begin at 0 with the record. A block that is not full at the end is left out.
+std::vector<WindReading> block_means(const SonicRecord& record, double interval_s);
+
+}  // namespace yuragi::proof
