@@ -25,7 +25,8 @@ std::string_view name_of(SourceHealth health) {
 }  // namespace
 
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
-  return std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
+  return std::make_shared<const GustNoise>(
+      GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
 }
 
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {

@@ -213,7 +213,8 @@ TEST(HostileBytes, WishesForPlayersOutOfBoundsAreRefused) {
 
   ControlReply reply;
   for (const double position_s : {-1.0, std::nan(""), 1e300}) {
-    reply.players = {{.position_s = position_s}};
+    reply.players.assign(1, {});
+    reply.players[0].position_s = position_s;
     EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent) << position_s;
   }
   reply.players.assign(kMaxSensors + 1, {});
