@@ -80,7 +80,7 @@ OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimato
     for (; next && next->time.mono <= now; next = readings.next()) {
       if (estimator.accept(0, *next)) ++result.readings;
     }
-    goes_on = next.has_value();
+    goes_on = next.has_value() && time_s + 1.0 / options.rate_hz <= options.until_s;
     use(time_s, estimator.advance(now));
     result.duration_s = time_s;
   }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct OfflineWindOptions {
   /// The sensor as a slower one: its readings are vector means over so long, heard at their end.
   std::optional<double> sensor_interval_s{};
   std::vector<OfflineGap> gaps{};
+  double until_s = std::numeric_limits<double>::infinity();  ///< no tick after this, and nothing is read beyond it
 };
 
 struct OfflineWindResult {
@@ -30,7 +32,8 @@ struct OfflineWindResult {
 };
 
 /// Runs an estimator with one source over a recording, as fast as it can: it hears each reading at its own log time,
-/// and `use` is told the state of each tick, from log time 0 to the last reading. Throws what the playback throws.
+/// and `use` is told the state of each tick, from log time 0 to the last reading or `until_s`. Throws what the playback
+/// throws.
 OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimator, const OfflineWindOptions& options,
                               const std::function<void(double time_s, const WindState&)>& use);
 

@@ -1,6 +1,7 @@
 #include "daemon/sensor_hub.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <spdlog/spdlog.h>
 
@@ -30,15 +31,20 @@ std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
 }
 
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
-  const BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
-                                           .mean_direction_deg = config.wind.number("default_direction"),
-                                           .turbulence_intensity = config.wind.number("default_turbulence"),
-                                           .seed = config.seed},
-                               .length_m = config.wind.number("default_length"),
-                               .handover_s = config.wind.number("handover"),
-                               .stale_intervals = config.wind.number("stale_intervals"),
-                               .rate_hz = config.animation.number("rate")};
-  const std::size_t source_count = config.sensors.size() + (has_fallback(config) ? 1 : 0);
+  BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
+                                     .mean_direction_deg = config.wind.number("default_direction"),
+                                     .turbulence_intensity = config.wind.number("default_turbulence"),
+                                     .seed = config.seed},
+                         .length_m = config.wind.number("default_length"),
+                         .handover_s = config.wind.number("handover"),
+                         .stale_intervals = config.wind.number("stale_intervals"),
+                         .rate_hz = config.animation.number("rate")};
+  // Behind all sensors, whatever their priorities.
+  std::size_t source_count = config.sensors.size();
+  if (has_fallback(config)) {
+    settings.sources.resize(source_count++);
+    settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
+  }
   return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
 }
 

@@ -23,25 +23,6 @@ static_assert(std::endian::native == std::endian::little, "values are written as
   throw ExitError(kExitCannotCreate, fmt::format("cannot write {}: {}", file.string(), reason));
 }
 
-/// Magic, version, length, and the description padded with spaces so that the values start at a multiple of 64.
-std::string header_of(std::span<const std::size_t> shape) {
-  std::string description = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
-  for (const std::size_t length : shape) description += fmt::format("{},", length);
-  description += "), }";
-
-  constexpr std::size_t kPreamble = 10;
-  constexpr std::size_t kAlignment = 64;
-  const std::size_t unpadded = kPreamble + description.size() + 1;
-  description.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
-  description += '\n';
-
-  const auto length = static_cast<std::uint16_t>(description.size());
-  std::string header("\x93NUMPY\x01\x00", 8);
-  header += static_cast<char>(length & 0xffU);
-  header += static_cast<char>(length >> 8U);
-  return header + description;
-}
-
 /// A file beside the wanted one, which is removed unless it has taken the wanted one's name.
 class PartialFile {
  public:
@@ -84,6 +65,25 @@ class PartialFile {
 
 }  // namespace
 
+std::string npy_header(std::span<const std::size_t> shape) {
+  // Magic, version, length, and the description padded with spaces so that the values start at a multiple of 64.
+  std::string description = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
+  for (const std::size_t length : shape) description += fmt::format("{},", length);
+  description += "), }";
+
+  constexpr std::size_t kPreamble = 10;
+  constexpr std::size_t kAlignment = 64;
+  const std::size_t unpadded = kPreamble + description.size() + 1;
+  description.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
+  description += '\n';
+
+  const auto length = static_cast<std::uint16_t>(description.size());
+  std::string header("\x93NUMPY\x01\x00", 8);
+  header += static_cast<char>(length & 0xffU);
+  header += static_cast<char>(length >> 8U);
+  return header + description;
+}
+
 void write_npy(const std::filesystem::path& file, std::span<const std::size_t> shape, std::span<const float> values) {
   std::size_t count = 1;
   for (const std::size_t length : shape) count *= length;
@@ -98,7 +98,7 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   const auto target = std::filesystem::exists(status) ? std::filesystem::canonical(file) : file;
 
   PartialFile partial(target);
-  const std::string header = header_of(shape);
+  const std::string header = npy_header(shape);
   partial.write(header.data(), header.size());
   partial.write(values.data(), values.size_bytes());
   partial.commit();

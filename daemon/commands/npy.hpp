@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace yuragi {
 
@@ -14,5 +15,9 @@ namespace yuragi {
 /// ExitError(kExitCannotCreate) when it cannot be written, or when something that is no regular file has its name.
 /// Source: NEP 1, "A simple file format for NumPy arrays".
 void write_npy(const std::filesystem::path& file, std::span<const std::size_t> shape, std::span<const float> values);
+
+/// How such a file begins, for whoever writes the values piece by piece: what follows are they, as they stand in
+/// memory.
+std::string npy_header(std::span<const std::size_t> shape);
 
 }  // namespace yuragi

@@ -20,11 +20,11 @@ std::uint64_t address_of(std::int64_t wave_x, std::int64_t wave_z, std::int64_t 
          (static_cast<std::uint64_t>(wave_y) << 48U);
 }
 
+}  // namespace
+
 std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept {
   return static_cast<std::int64_t>(index) - static_cast<std::int64_t>(index > size / 2 ? size : 0);
 }
-
-}  // namespace
 
 RandomStream noise_stream(int dims, std::uint64_t seed) noexcept {
   constexpr std::array kStreams = {stream_id("spectral noise 1-D"), stream_id("spectral noise 2-D"),
@@ -59,10 +59,9 @@ SpectrumRow spectrum_row(std::size_t index, std::size_t size, int dims) noexcept
           .wave_y = signed_wave(y, size)};
 }
 
-void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
-  const RandomStream random = noise_stream(fft.dims(), spec.seed);
-  const double exponent = mode_exponent(fft.dims(), spec.beta, spec.meaning);
-  const double corner = spec.integral_scale > 0.0 ? kCornerPerScale / spec.integral_scale : 0.0;
+void fill_modes(RealFft& fft, std::uint64_t seed,
+                const std::function<double(std::int64_t, std::int64_t, std::int64_t)>& amplitude) {
+  const RandomStream random = noise_stream(fft.dims(), seed);
   const std::span<Mode> spectrum = fft.spectrum();
   const std::size_t half = fft.size() / 2;
   const std::size_t columns = fft.row_modes();
@@ -73,15 +72,6 @@ void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
       const auto wave_x = static_cast<std::int64_t>(x);
       Mode& mode = spectrum[index * columns + x];
 
-      // The constant mode is the mean: 0. Waves outside the band are left out.
-      const auto k_squared = static_cast<double>(wave_x * wave_x + row.wave_z * row.wave_z + row.wave_y * row.wave_y);
-      const bool is_wanted =
-          k_squared >= spec.from_cycles * spec.from_cycles && k_squared < spec.to_cycles * spec.to_cycles;
-      if (k_squared == 0.0 || !is_wanted) {
-        mode = 0.0;
-        continue;
-      }
-
       // In the first and the middle column a mode's mirror image stands in the same column: the second of the two
       // is the conjugate of the first, which this loop has already set.
       const bool mirrored_here = x == 0 || x == half;
@@ -89,13 +79,28 @@ void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
         mode = std::conj(spectrum[row.mirror * columns + x]);
         continue;
       }
-
+      const double deviation = amplitude(wave_x, row.wave_z, row.wave_y);
+      if (deviation == 0.0) {
+        mode = 0.0;
+        continue;
+      }
       const auto [re, im] = random.normal_pair(address_of(wave_x, row.wave_z, row.wave_y));
-      const double amplitude = std::pow(corner * corner + k_squared, -0.25 * exponent);
       const bool self_mirrored = mirrored_here && row.mirror == index;
-      mode = self_mirrored ? Mode(amplitude * std::numbers::sqrt2 * re, 0.0) : Mode(amplitude * re, amplitude * im);
+      mode = self_mirrored ? Mode(deviation * std::numbers::sqrt2 * re, 0.0) : Mode(deviation * re, deviation * im);
     }
   }
+}
+
+void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
+  const double exponent = mode_exponent(fft.dims(), spec.beta, spec.meaning);
+  const double corner = spec.integral_scale > 0.0 ? kCornerPerScale / spec.integral_scale : 0.0;
+  fill_modes(fft, spec.seed, [&](std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) {
+    // The constant mode is the mean: 0. Waves outside the band are left out.
+    const auto k_squared = static_cast<double>(wave_x * wave_x + wave_z * wave_z + wave_y * wave_y);
+    const bool is_wanted =
+        k_squared >= spec.from_cycles * spec.from_cycles && k_squared < spec.to_cycles * spec.to_cycles;
+    return k_squared == 0.0 || !is_wanted ? 0.0 : std::pow(corner * corner + k_squared, -0.25 * exponent);
+  });
 }
 
 std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed) {

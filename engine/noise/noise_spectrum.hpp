@@ -3,6 +3,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,6 +25,14 @@ std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept;
 
 /// Fills the half spectrum of a transform of 1 to 3 dimensions with the random modes of a checked spec, Hermitian.
 void fill_spectrum(RealFft& fft, const NoiseSpec& spec);
+
+/// The same for modes of any amplitude: `amplitude(wave_x, wave_z, wave_y)` is the standard deviation of a mode's real
+/// part, and of its imaginary part. It is asked once for each mode that is drawn.
+void fill_modes(RealFft& fft, std::uint64_t seed,
+                const std::function<double(std::int64_t, std::int64_t, std::int64_t)>& amplitude);
+
+/// The wave number that index `index` stands for on an axis of `size` samples: negative above its half.
+std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept;
 
 /// Which way each mode of the half spectrum turns, where eddies turn over: 1 or -1 at random, s_-k = -s_k, and 0 for
 /// the modes that are their own mirror images, which must stay real.

@@ -1,0 +1,113 @@
+#include "engine/noise/moving_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "engine/noise/noise_spectrum.hpp"
+
+namespace yuragi {
+namespace {
+
+/// exp(-2 pi i k X) of each wave number of an axis, in the spectrum's order.
+std::vector<std::complex<double>> carried_waves(std::size_t size, double carried) {
+  const double part = carried - std::nearbyint(carried);  // whole periods change nothing
+  std::vector<std::complex<double>> waves(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    waves[i] = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(signed_wave(i, size)) * part);
+  }
+  return waves;
+}
+
+/// Between which samples a place is, in periods, on an axis of so many.
+struct Between {
+  std::size_t first, second;
+  double fraction;
+};
+Between samples_at(double place, std::size_t size) noexcept {
+  const double sample = (place - std::floor(place)) * static_cast<double>(size);
+  const double whole = std::floor(sample);
+  const std::size_t first = static_cast<std::size_t>(whole) % size;  // a place just below 0 can round up to the end
+  return {first, (first + 1) % size, sample - whole};
+}
+
+}  // namespace
+
+MovingNoise::MovingNoise(int dims, std::size_t size, std::span<const MovingField> fields) : fft_(dims, size) {
+  if (dims != 2 && dims != 3) throw std::invalid_argument("a moving noise has two dimensions or three");
+  if (check_noise(dims, {.size = size})) throw std::invalid_argument(std::string(explain(NoiseError::kSizeNotAllowed)));
+  if (fields.empty()) throw std::invalid_argument("a moving noise has a field at least");
+
+  // All fields turn alike: their modes are independent of each other all the same.
+  const std::vector<std::int8_t> signs = turning_signs(fft_, fields[0].seed);
+  turns_.reserve(signs.size());
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    const auto x = static_cast<double>(i % fft_.row_modes());
+    const SpectrumRow row = spectrum_row(i / fft_.row_modes(), size, dims);
+    const double k = std::hypot(x, static_cast<double>(row.wave_z), static_cast<double>(row.wave_y));
+    turns_.push_back(signs[i] * std::cbrt(k * k));
+  }
+  for (const MovingField& field : fields) fields_.push_back(make_field(field));
+  move_to({0.0, 0.0, 0.0}, 0.0);
+}
+
+MovingNoise::Field MovingNoise::make_field(const MovingField& wanted) {
+  Field field;
+  const auto half = static_cast<std::int64_t>(size() / 2);
+  const auto power_of = [&](std::int64_t x, std::int64_t z, std::int64_t y) {
+    const bool is_left_out = x == half || std::abs(z) == half || std::abs(y) == half || (x == 0 && z == 0 && y == 0);
+    if (is_left_out) return 0.0;
+    const double power = wanted.power(static_cast<double>(x), static_cast<double>(z), static_cast<double>(y));
+    field.variance += 2.0 * power;  // each mode that is drawn stands for its mirror image as well
+    return power;
+  };
+  fill_modes(fft_, wanted.seed, [&](std::int64_t x, std::int64_t z, std::int64_t y) {
+    return std::sqrt(0.5 * power_of(x, z, y));  // of the real part and of the imaginary part
+  });
+  field.modes.reserve(fft_.spectrum().size());
+  for (const std::complex<double> mode : fft_.spectrum()) field.modes.emplace_back(mode);
+  field.samples.resize(fft_.samples().size());
+  return field;
+}
+
+void MovingNoise::move_to(std::array<double, 3> carried, double turn_rad) noexcept {
+  const std::vector<std::complex<double>> along_x = carried_waves(size(), carried[0]);
+  const std::vector<std::complex<double>> along_z = carried_waves(size(), carried[1]);
+  const std::vector<std::complex<double>> along_y = carried_waves(size(), dims() == 3 ? carried[2] : 0.0);
+  const std::size_t columns = fft_.row_modes();
+  for (Field& field : fields_) {
+    // Turn the phase of each mode, then transform.
+    for (std::size_t i = 0; i < field.modes.size(); ++i) {
+      const std::size_t x = i % columns;
+      const std::size_t z = i / columns % size();
+      const std::size_t y = i / columns / size();
+      std::complex<double> mode = std::complex<double>(field.modes[i]) * along_x[x] * along_z[z] * along_y[y];
+      if (turn_rad != 0.0) mode *= std::polar(1.0, -turn_rad * turns_[i]);
+      fft_.spectrum()[i] = mode;
+    }
+    fft_.inverse();
+    std::ranges::transform(fft_.samples(), field.samples.begin(), [](double v) { return static_cast<float>(v); });
+  }
+}
+
+double MovingNoise::read(std::size_t index, std::array<double, 3> place) const noexcept {
+  const std::vector<float>& samples = fields_[index].samples;
+  const Between x = samples_at(place[0], size());
+  const Between z = samples_at(place[1], size());
+  const auto level = [&](std::size_t y) {
+    const auto row = [&](std::size_t row_z) {
+      const std::size_t first = (y * size() + row_z) * size();
+      return std::lerp(static_cast<double>(samples[first + x.first]), static_cast<double>(samples[first + x.second]),
+                       x.fraction);
+    };
+    return std::lerp(row(z.first), row(z.second), z.fraction);
+  };
+  if (dims() == 2) return level(0);
+  const Between y = samples_at(place[2], size());
+  return std::lerp(level(y.first), level(y.second), y.fraction);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/fft/real_fft.hpp"
+
+namespace yuragi {
+
+/// What share of the variance a wave of the full spectrum has: its wave numbers in cycles an edge (z is 0 and below
+/// as well as above, and so are the others), the answer 0 or above and even, the same at k and -k.
+using WavePower = std::function<double(double cycles_x, double cycles_z, double cycles_y)>;
+
+/// One of the fields of a MovingNoise.
+struct MovingField {
+  WavePower power;
+  std::uint64_t seed = 0;
+};
+
+/// Several periodic noises of any spectrum on one square or cube, carried together to any place, with their eddies
+/// turned as far as is wanted: each mode is
+///
+///     F_k exp(-i (k . X + s_k turn |k|^(2/3))),
+///
+/// X how far all of it has been carried, s_k a random sign with s_-k = -s_k (no drift), |k| in cycles an edge. One
+/// inverse transform a field and moment: no place is interpolated by being carried, and time may go either way.
+///
+/// A field is Gaussian, of mean 0; its variance is, on average over seeds, the sum of its powers. Waves with two
+/// samples on an axis are left out, since they cannot be carried by a part of a sample, and so is the constant one.
+/// Same settings, same bits. Owns its modes and samples: 12 bytes a sample and field, and 24 a sample besides.
+/// Thread-safe: reading, yes. Realtime-safe: no; 256 x 256 takes a few milliseconds a field, 128 x 128 x 128 a tenth of
+/// a second. Source: Taylor 1938 (k . X), wind.md 1 (turning).
+class MovingNoise {
+ public:
+  /// `dims` 2 or 3, `size` a power of two that make_noise_2d or make_noise_3d allows. Throws std::invalid_argument,
+  /// std::bad_alloc. All fields stand at X = 0, turn = 0.
+  MovingNoise(int dims, std::size_t size, std::span<const MovingField> fields);
+
+  /// How far all fields are carried, in periods along x, z and y, and how far their eddies turned, rad for the waves
+  /// as long as an edge.
+  void move_to(std::array<double, 3> carried, double turn_rad) noexcept;
+
+  /// The samples of a field, as a NoiseTile2 or NoiseTile3 lays them out. move_to() changes them.
+  std::span<const float> samples(std::size_t field) const noexcept { return fields_[field].samples; }
+
+  /// The noise at a place in periods along x, z and y (finite), linear between samples. In two dimensions y is nothing.
+  double read(std::size_t field, std::array<double, 3> place) const noexcept;
+
+  int dims() const noexcept { return fft_.dims(); }
+  std::size_t size() const noexcept { return fft_.size(); }
+  /// Of a field, on average over seeds.
+  double variance(std::size_t field) const noexcept { return fields_[field].variance; }
+
+ private:
+  struct Field {
+    std::vector<std::complex<float>> modes;  ///< of the half spectrum, at X = 0 and turn = 0
+    std::vector<float> samples;
+    double variance = 0.0;
+  };
+  Field make_field(const MovingField& field);
+
+  RealFft fft_;
+  std::vector<double> turns_;  ///< s_k |k|^(2/3) of each mode
+  std::vector<Field> fields_;
+};
+
+}  // namespace yuragi
