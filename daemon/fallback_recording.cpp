@@ -121,6 +121,8 @@ std::optional<wire::SensorStatus> FallbackRecording::status(const SourceReport& 
   status.interval_s = report.interval_s;
   status.readings = readings_;
   status.replayed = true;
+  status.state = report.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
+  status.state_reason = status.detail;
   return status;
 }
 

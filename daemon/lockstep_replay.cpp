@@ -31,6 +31,8 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
   LockstepResult result;
   std::uint64_t followed_ticks = 0;
+  const std::optional<JudgeSettings> judged_by = judge_settings_of(one_source.sensors[0]);
+  ReadingJudge judge(judged_by.value_or(JudgeSettings{}));
 
   for (std::uint64_t tick = 0; !player.is_finished(); ++tick) {
     const double now_s = static_cast<double>(tick) / rate_hz;
@@ -39,6 +41,8 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
     // Readings that are due by this tick, at their own log time.
     const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
     player.play(now, [&](const WindReading& reading) {
+      // As the daemon would: what is not believed moves nothing.
+      if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) return;
       if (!estimator->accept(0, reading)) return;
       ++result.readings;
       result.reading_mean_m_s += reading.speed_m_s;

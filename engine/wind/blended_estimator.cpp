@@ -25,6 +25,11 @@ constexpr double kCoherenceDecay = 10.0;
 constexpr double kIntervalsOfAGust = 3.0;
 /// Less than this is nothing.
 constexpr double kLeastShare = 1e-9;
+/// How fast the strength of the gusts follows what it should be.
+constexpr double kStrengthMemory_s = 1.0;
+/// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
+/// machine: the wind goes on from where it was, and only the readings' ages are what they are.
+constexpr double kLongestStep_ticks = 2.0;
 
 double dot(WindVector a, WindVector b) noexcept {
   return a.u_m_s * b.u_m_s + a.v_m_s * b.v_m_s;
@@ -263,7 +268,9 @@ double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, 
 }
 
 /// How strong each octave of the noise is: what the sensors leave of it.
-void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
+void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
+  // A new fit, or another interval of a sensor, is a step that nobody shall see.
+  const auto part = static_cast<float>(-std::expm1(-dt_s / kStrengthMemory_s));
   const double scale = heard.speed_m_s * heard.speed_m_s;
   for (std::size_t i = 0; i < kOctaves; ++i) {
     const double frequency_hz = centre_hz(noise_->octaves()[i], advection_m_s_);
@@ -281,20 +288,24 @@ void BlendedEstimator::weigh_gusts(const Heard& heard) noexcept {
       variance_along += share * sources_[index].along()[i];
       variance_across += share * sources_[index].across()[i];
     }
-    const double along = shown * (1.0 - known.along) * scale * std::max(variance_along, 0.0);
-    const double across = shown * (1.0 - known.across) * scale * std::max(variance_across, 0.0);
-    ground_.gusts.along_m_s[i] = static_cast<float>(std::sqrt(along));
-    ground_.gusts.across_m_s[i] = static_cast<float>(std::sqrt(across));
+    const auto approach = [part](float& strength_m_s, double variance) {
+      strength_m_s += part * (static_cast<float>(std::sqrt(std::max(variance, 0.0))) - strength_m_s);
+    };
+    approach(ground_.gusts.along_m_s[i], shown * (1.0 - known.along) * scale * variance_along);
+    approach(ground_.gusts.across_m_s[i], shown * (1.0 - known.across) * scale * variance_across);
   }
 }
 
 WindState BlendedEstimator::advance(MonoTime now) noexcept {
-  if (!has_begun_) {
+  const bool is_first = !has_begun_;
+  if (is_first) {
     has_begun_ = true;
     state_.time = now;
   }
   if (now < state_.time) return state_;
-  const double dt_s = seconds(now - state_.time);
+  const double passed_s = seconds(now - state_.time);
+  const double dt_s = std::min(passed_s, kLongestStep_ticks * std::max(1.0 / settings_.rate_hz, last_step_s_));
+  last_step_s_ = passed_s;
   state_.time = now;
 
   // Who has the word, and what each says.
@@ -312,7 +323,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   // The wind: what is heard, and the gusts for the rest.
   const Heard heard = hear();
   carry_gusts(heard, dt_s);
-  weigh_gusts(heard);
+  weigh_gusts(heard, is_first ? std::numeric_limits<double>::infinity() : dt_s);
   ground_.everywhere = heard.wind + noise_->everywhere(ground_.gusts);
   state_.wind = ground_.at(*noise_, 0.0, 0.0);
   if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {

@@ -87,7 +87,7 @@ class BlendedEstimator final : public WindEstimator {
   double newest_age_s() const noexcept;
   WindVector said(std::size_t source, std::size_t level) const noexcept;
   void carry_gusts(const Heard& heard, double dt_s) noexcept;
-  void weigh_gusts(const Heard& heard) noexcept;
+  void weigh_gusts(const Heard& heard, double dt_s) noexcept;
   Power power_heard(double frequency_hz) noexcept;
   double variance_share(std::size_t source, double frequency_hz, const Heard& heard) const noexcept;
 
@@ -101,6 +101,7 @@ class BlendedEstimator final : public WindEstimator {
   GroundWind ground_;
   double advection_m_s_ = 0.0;
   WindState state_;
+  double last_step_s_ = 0.0;  ///< the time that passed from the last tick but one to the last
   bool has_begun_ = false;
 
   // Made anew in each tick; for each source.
