@@ -30,6 +30,7 @@ SensorState state_of(ReadingFault fault) {
     case ReadingFault::kNone:
       return SensorState::kLive;
     case ReadingFault::kSpike:
+    case ReadingFault::kImplausible:
       return SensorState::kSpike;
     case ReadingFault::kFrozen:
       return SensorState::kFrozen;
@@ -127,7 +128,7 @@ void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   }
   numbers_.last_s = time_s;
   numbers_.last = reading.time.utc;
-  record_.take(heard, 0.0);
+  record_.take(heard);
   ++numbers_.readings;
   ++numbers_.quality.at(static_cast<std::size_t>(reading.quality));
 
