@@ -43,7 +43,10 @@ FallbackRecording::FallbackRecording(const Config& config, const Clock& clock) :
   if (!has_fallback(config)) return;
   const std::string recorded = check_fallback(config);
   const auto same = std::ranges::find(config.sensors, recorded, &SensorConfig::name);
-  if (same != config.sensors.end()) calibration_ = calibration_of(*same);
+  if (same != config.sensors.end()) {
+    calibration_ = calibration_of(*same);
+    judged_by_ = judge_settings_of(*same);
+  }
   sensor_ = fallback_sensor(config);
   file_ = config.wind.text("fallback_recording");
   after_ = from_seconds(config.wind.number("fallback_after"));
@@ -59,9 +62,11 @@ void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
   if (!silent_since_) silent_since_ = now;
   if (!runner_ && now - *silent_since_ >= after_ && now >= retry_at_) start(now);
   if (!runner_) return;
-  runner_->drain([&](const WindReading& reading) {
+  runner_->drain([&](const WindReading& said) {
     ++readings_;
-    use(calibration_.applied_to(reading));
+    const WindReading reading = calibration_.applied_to(said);
+    const bool is_judged = judged_by_ && reading.quality != ReadingQuality::kSimulated;
+    if (!is_judged || judge_.judge(reading)) use(reading);
   });
   log_changes();
 }
@@ -69,6 +74,7 @@ void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
 void FallbackRecording::start(MonoTime now) {
   try {
     runner_ = std::make_unique<SensorRunner>(open_sensor(*sensor_), clock_);
+    judge_ = ReadingJudge(judged_by_.value_or(JudgeSettings{}));
     readings_ = 0;
     logged_link_reports_ = 0;
   } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 
 #include "daemon/config.hpp"
 #include "daemon/sensor_runner.hpp"
+#include "engine/wind/reading_judge.hpp"
 #include "engine/wind/wind_estimator.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -17,7 +18,8 @@ namespace yuragi {
 /// all sensors, so that its wind comes and goes without a jump; it is never recorded, and marked as replayed wherever
 /// it is seen. Where it cannot be read any more the default wind blows, and that is logged once.
 ///
-/// Its readings get the calibration of the configured sensor of the same name as the recorded one, if there is such.
+/// A recording holds what a sensor said: its readings are calibrated and judged as those of the configured sensor of
+/// the same name as the recorded one, if there is such; else they are judged as any.
 /// Belongs to the I/O thread; the file is read on a thread of its own.
 class FallbackRecording {
  public:
@@ -40,6 +42,8 @@ class FallbackRecording {
   const Clock& clock_;
   std::optional<SensorConfig> sensor_;  ///< nothing: none is configured
   Calibration calibration_;
+  std::optional<JudgeSettings> judged_by_{JudgeSettings{}};  ///< nothing: all is believed
+  ReadingJudge judge_;
   std::string file_;
   Nanoseconds after_{0};
 

@@ -25,7 +25,7 @@ struct PlayerCommandOptions {
   wire::PlayerWish wish = {};
 };
 
-wire::ControlReply ask(const PlayerCommandOptions& options, const wire::PlayerWish& wish) {
+wire::ControlReply ask_players(const PlayerCommandOptions& options, const wire::PlayerWish& wish) {
   return ask_daemon(options.connect, "player", {.scene = "", .player = wish});
 }
 
@@ -36,7 +36,7 @@ std::string clock_text(double time_s) {
   return fmt::format("{}:{:02}:{:02}.{}", whole_s / 3600, whole_s / 60 % 60, whole_s % 60, tenths % 10);
 }
 
-std::string state_text(const wire::PlayerState& player) {
+std::string player_text(const wire::PlayerState& player) {
   if (!player.is_open) return fmt::format("{}: {} cannot be read at present\n", player.sensor, player.file);
   const char* doing = player.is_finished ? "finished" : player.is_paused ? "paused" : "playing";
   const std::time_t recorded =
@@ -48,7 +48,7 @@ std::string state_text(const wire::PlayerState& player) {
 }
 
 void print_states(const std::vector<wire::PlayerState>& players) {
-  for (const wire::PlayerState& player : players) fmt::print("{}", state_text(player));
+  for (const wire::PlayerState& player : players) fmt::print("{}", player_text(player));
 }
 
 /// Waits until each player has done what `given` says, and answers how they are then.
@@ -56,7 +56,7 @@ std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& optio
                                                const std::vector<wire::PlayerState>& given) {
   const auto deadline = std::chrono::steady_clock::now() + kOrderTimeout;
   while (true) {
-    const wire::ControlReply reply = ask(options, {.sensor = options.wish.sensor});
+    const wire::ControlReply reply = ask_players(options, {.sensor = options.wish.sensor});
     const bool is_done = std::ranges::equal(
         reply.players, given, [](const auto& now, const auto& then) { return now.orders_done >= then.order; });
     if (is_done) return reply.players;
@@ -69,13 +69,13 @@ std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& optio
 }
 
 void tell_status(const PlayerCommandOptions& options) {
-  const wire::ControlReply reply = ask(options, options.wish);
+  const wire::ControlReply reply = ask_players(options, options.wish);
   if (!reply.done) throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, reply.message);
   print_states(reply.players);
 }
 
 void give_order(const PlayerCommandOptions& options) {
-  const wire::ControlReply reply = ask(options, options.wish);
+  const wire::ControlReply reply = ask_players(options, options.wish);
   if (!reply.done) {
     const std::string message = reply.message.empty() ? "this daemon has no players" : reply.message;
     throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, message);

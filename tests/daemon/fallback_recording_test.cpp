@@ -85,7 +85,7 @@ class FallbackRecordingTest : public ::testing::Test {
     for (int tick = 0; tick < 120 * 60; ++tick) {
       if (condition()) return true;
       clock_.advance(from_seconds(1.0 / 60.0));
-      std::this_thread::sleep_for(500us);
+      std::this_thread::sleep_for(1ms);
       const WindVector wind = hub.advance().wind;
       if (tick > 0 || has_ticked_) largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(wind - last_));
       last_ = wind;
@@ -140,6 +140,17 @@ TEST_F(FallbackRecordingTest, GetsTheCalibrationOfTheSensorThatWasRecorded) {
   SensorHub hub(config_, clock_, make_gust_noise(config_));
   ASSERT_TRUE(tick_until(hub, [&] { return plays(hub); }));
   EXPECT_EQ(hub.status().at(2).speed_m_s, 8.0);
+}
+
+TEST_F(FallbackRecordingTest, ASpikeThatWasRecordedMovesNothing) {
+  std::vector<WindReading> readings;
+  for (int i = 0; i < 1500; ++i) readings.push_back(test::reading_at(20 * i, i % 40 == 39 ? 60.0 : 4.0));
+  std::filesystem::remove(file());
+  write_session(file(), readings, "mast");
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  ASSERT_TRUE(tick_until(hub, [&] { return plays(hub) && hub.status()[2].readings > 400; }));
+  EXPECT_LT(hub.status()[2].speed_m_s, 5.0);
+  EXPECT_LT(largest_step_m_s_, 0.8);
 }
 
 TEST_F(FallbackRecordingTest, ThatVanishedGivesWayToTheDefaultWind) {
