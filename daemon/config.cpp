@@ -101,6 +101,16 @@ const std::array kWindParameters = {
               .min = 0.0,
               .max = 3600.0,
               .help = "a sensor that was stale gets the word back after speaking for so long; twice as long each time"},
+    Parameter{.name = "fallback_recording",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "a .windlog that is played while every sensor is silent; empty: the default wind blows then"},
+    Parameter{.name = "fallback_after",
+              .unit = "s",
+              .default_value = 60.0,
+              .min = 1.0,
+              .max = 86400.0,
+              .help = "how long every sensor must have been silent for that"},
 };
 
 const std::array kCalibrationParameters = {
@@ -275,6 +285,9 @@ class ConfigReader {
     config.wind = read_table(root, "", "wind", kWindParameters);
     config.shaping = read_table(root, "", "shaping", shaping_parameters());
     check_shaping(root, config.shaping);
+    if (const toml::node* node = root["wind"]["fallback_recording"].node()) {
+      config.fallback_origin = place(node->source());
+    }
 
     for_each_entry(root, "sensor", "driver", driver_table(),
                    [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {

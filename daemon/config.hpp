@@ -48,6 +48,7 @@ struct Config {
   ParameterValues animation;          ///< kAnimationParameters
   ParameterValues wind;               ///< kWindParameters
   ParameterValues shaping;            ///< shaping_parameters()
+  std::string fallback_origin;        ///< `file:line:column` of wind.fallback_recording; empty where it is not set
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
 };
