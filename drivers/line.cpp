@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "drivers/byte_port_parameters.hpp"
 #include "drivers/driver.hpp"
@@ -16,65 +18,71 @@ constexpr std::array<std::string_view, 3> kLineFormats = {"auto", "columns", "ke
 constexpr std::array<std::string_view, 4> kLineSeparators = {"comma", "semicolon", "tab", "blank"};
 constexpr std::array<char, 4> kLineSeparatorBytes = {',', ';', '\t', ' '};
 
-const std::vector<Parameter> kLineParameters = with_byte_port_parameters(
-    {
-        {.name = "format",
-         .unit = "",
-         .default_value = std::string("auto"),
-         .help = "columns: 4.2,270; keys: speed=4.2 direction=270; auto: keys where the line has '=' or ':'",
-         .choices = kLineFormats},
-        {.name = "separator",
-         .unit = "",
-         .default_value = std::string("comma"),
-         .help = "between columns; blank: any number of blanks and tabs",
-         .choices = kLineSeparators},
-        {.name = "speed_column",
-         .unit = "",
-         .default_value = std::int64_t{1},
-         .min = 0,
-         .max = static_cast<double>(kMaxTextFields),
-         .help = "the first column is 1; 0: none"},
-        {.name = "direction_column",
-         .unit = "",
-         .default_value = std::int64_t{2},
-         .min = 0,
-         .max = static_cast<double>(kMaxTextFields),
-         .help = "0: none"},
-        {.name = "gust_column",
-         .unit = "",
-         .default_value = std::int64_t{0},
-         .min = 0,
-         .max = static_cast<double>(kMaxTextFields),
-         .help = "0: none"},
-        {.name = "speed_key", .unit = "", .default_value = std::string("speed"), .help = "exact; empty: none"},
-        {.name = "direction_key", .unit = "", .default_value = std::string("direction"), .help = "exact; empty: none"},
-        {.name = "gust_key", .unit = "", .default_value = std::string("gust"), .help = "exact; empty: none"},
-        {.name = "speed_unit",
-         .unit = "",
-         .default_value = std::string("m/s"),
-         .help = "of speed and gust, after scale and offset",
-         .choices = kSpeedUnitNames},
-        {.name = "speed_scale",
-         .unit = "",
-         .default_value = 1.0,
-         .help = "speed and gust are the number times this (0.1 for tenths) plus speed_offset"},
-        {.name = "speed_offset", .unit = "", .default_value = 0.0, .help = "in the speed's unit"},
-        {.name = "direction_scale",
-         .unit = "",
-         .default_value = 1.0,
-         .help = "the direction in degrees is the number times this (22.5 for points 0 to 15)"},
-        {.name = "north_offset",
-         .unit = "deg",
-         .default_value = 0.0,
-         .min = -360.0,
-         .max = 360.0,
-         .help = "where the vane's own mark points, clockwise from north"},
-        {.name = "invalid",
-         .unit = "",
-         .default_value = std::string(""),
-         .help = "the number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},
-    },
-    2.0);
+/// How a line is read.
+const std::array kLineReading = {
+    Parameter{.name = "format",
+              .unit = "",
+              .default_value = std::string("auto"),
+              .help = "columns: 4.2,270; keys: speed=4.2 direction=270; auto: keys where the line has '=' or ':'",
+              .choices = kLineFormats},
+    Parameter{.name = "separator",
+              .unit = "",
+              .default_value = std::string("comma"),
+              .help = "between columns; blank: any number of blanks and tabs",
+              .choices = kLineSeparators},
+    Parameter{.name = "speed_column",
+              .unit = "",
+              .default_value = std::int64_t{1},
+              .min = 0,
+              .max = static_cast<double>(kMaxTextFields),
+              .help = "the first column is 1; 0: none"},
+    Parameter{.name = "direction_column",
+              .unit = "",
+              .default_value = std::int64_t{2},
+              .min = 0,
+              .max = static_cast<double>(kMaxTextFields),
+              .help = "0: none"},
+    Parameter{.name = "gust_column",
+              .unit = "",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = static_cast<double>(kMaxTextFields),
+              .help = "0: none"},
+    Parameter{.name = "speed_key", .unit = "", .default_value = std::string("speed"), .help = "exact; empty: none"},
+    Parameter{
+        .name = "direction_key", .unit = "", .default_value = std::string("direction"), .help = "exact; empty: none"},
+    Parameter{.name = "gust_key", .unit = "", .default_value = std::string("gust"), .help = "exact; empty: none"},
+    Parameter{.name = "speed_unit",
+              .unit = "",
+              .default_value = std::string("m/s"),
+              .help = "of speed and gust, after scale and offset",
+              .choices = kSpeedUnitNames},
+    Parameter{.name = "speed_scale",
+              .unit = "",
+              .default_value = 1.0,
+              .help = "speed and gust are the number times this (0.1 for tenths) plus speed_offset"},
+    Parameter{.name = "speed_offset", .unit = "", .default_value = 0.0, .help = "in the speed's unit"},
+    Parameter{.name = "direction_scale",
+              .unit = "",
+              .default_value = 1.0,
+              .help = "the direction in degrees is the number times this (22.5 for points 0 to 15)"},
+    Parameter{.name = "invalid",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},
+};
+
+std::vector<Parameter> line_driver_parameters() {
+  std::vector<Parameter> own(kLineReading.begin(), kLineReading.end());
+  own.push_back({.name = "north_offset",
+                 .unit = "deg",
+                 .default_value = 0.0,
+                 .min = -360.0,
+                 .max = 360.0,
+                 .help = "where the vane's own mark points, clockwise from north"});
+  return with_byte_port_parameters(std::move(own), 2.0);
+}
+const std::vector<Parameter> kLineParameters = line_driver_parameters();
 
 /// Columns are counted from 1 by people.
 std::optional<std::size_t> column_of(std::int64_t number) {
@@ -87,6 +95,12 @@ std::optional<double> invalid_number_of(const std::string& text) {
   if (!number || !*number)
     throw std::runtime_error("invalid: \"" + text + "\" is no number; allowed: one as in \"-999\"");
   return *number;
+}
+
+}  // namespace
+
+std::span<const Parameter> line_reading_parameters() {
+  return kLineReading;
 }
 
 LineOptions line_options_of(const ParameterValues& values) {
@@ -115,8 +129,6 @@ LineOptions line_options_of(const ParameterValues& values) {
   }
   return line;
 }
-
-}  // namespace
 
 LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   LineSensorSettings settings;

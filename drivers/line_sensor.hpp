@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,12 @@ struct LineSensorSettings {
   LineOptions line;
   double north_offset_deg = 0.0;  ///< what to add to each direction
 };
+
+/// The parameters that say how a line is read: the driver's first ones, and what `yuragi decode line` can be told.
+std::span<const Parameter> line_reading_parameters();
+
+/// Their values. Throws std::runtime_error, `name: what is wrong`, where they cannot work together.
+LineOptions line_options_of(const ParameterValues& values);
 
 /// The values of kLineDriver's parameters. Throws std::runtime_error where they cannot work together.
 LineSensorSettings line_sensor_settings_of(const ParameterValues& values);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "daemon/exit.hpp"
-#include "engine/base/units.hpp"
+#include "drivers/line_sensor.hpp"
 
 namespace yuragi {
 namespace {
@@ -19,6 +22,12 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value
       .add_option_function<std::string>(
           name, [&value, words](const std::string& word) { value = words.at(word); }, help)
       ->check(CLI::IsMember(words));
+}
+
+/// A parameter's name as an option.
+std::string option_of(std::string name) {
+  std::ranges::replace(name, '_', '-');
+  return "--" + name;
 }
 
 }  // namespace
@@ -58,22 +67,19 @@ CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string&
   return option;
 }
 
-/// The driver's keys of the same names mean the same: what reads a log here reads the device there.
+/// The driver's own parameters, checked by the driver: what reads a log here reads the device there.
 void DecodeCommandOptions::set_line() {
-  if (speed_column_ != 0 && (speed_column_ == direction_column_ || speed_column_ == gust_column_)) {
-    throw ExitError(kExitUsage, "--speed-column: another quantity stands in the same column");
+  const auto values = ParameterValues::resolve(line_reading_parameters(), given_for_line_);
+  if (!values) {
+    throw ExitError(kExitUsage, fmt::format("{}: {}", option_of(values.error().name), values.error().message));
   }
-  const auto column_of = [](unsigned number) {
-    return number > 0 ? std::optional<std::size_t>(number - 1) : std::nullopt;
-  };
-  LineOptions& line = decoder.line;
-  line.speed.column = column_of(speed_column_);
-  line.direction.column = column_of(direction_column_);
-  line.gust.column = column_of(gust_column_);
-  line.speed.scale *= metres_per_second_per_unit_;
-  line.speed.offset *= metres_per_second_per_unit_;
-  line.gust.scale = line.speed.scale;
-  line.gust.offset = line.speed.offset;
+  try {
+    decoder.line = line_options_of(*values);
+  } catch (const std::runtime_error& error) {
+    const std::string said = error.what();
+    const std::size_t colon = std::min(said.find(':'), said.size());
+    throw ExitError(kExitUsage, option_of(said.substr(0, colon)) + said.substr(colon));
+  }
 }
 
 void DecodeCommandOptions::add_policies(CLI::App& command) {
@@ -103,35 +109,18 @@ void DecodeCommandOptions::add_policies(CLI::App& command) {
 }
 
 void DecodeCommandOptions::add_line_options(CLI::App& command) {
-  LineOptions& line = decoder.line;
-  const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
-    return limit(command.add_option(name, value, help)->option_text(type), "line");
-  };
-  const auto add_words = [&](const char* name, auto& value, const auto& words, const char* help, const char* type) {
-    limit(add_choice(command, name, value, words, help)->option_text(type), "line");
-  };
-  const std::map<std::string, LineFormat> formats = {
-      {"auto", LineFormat::kAuto}, {"columns", LineFormat::kColumns}, {"keys", LineFormat::kKeys}};
-  const std::map<std::string, char> separators = {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", ' '}};
-  const std::map<std::string, double> units = {
-      {"m/s", 1.0}, {"km/h", kMetresPerSecondPerKmh}, {"kn", kMetresPerSecondPerKnot}, {"mph", kMetresPerSecondPerMph}};
-  add_words("--format", line.format, formats, "auto (the default): keys where the line has '=' or ':'",
-            "auto|columns|keys");
-  add_words("--separator", line.separator, separators,
-            "between columns (default comma); blank: any number of blanks and tabs", "comma|semicolon|tab|blank");
-  add("--speed-column", speed_column_, "the first column is 1, 0 is none (default 1)", "N");
-  add("--direction-column", direction_column_, "the same (default 2)", "N");
-  add("--gust-column", gust_column_, "the same (default 0)", "N");
-  add("--speed-key", line.speed.key, "exact (default speed)", "KEY");
-  add("--direction-key", line.direction.key, "exact (default direction)", "KEY");
-  add("--gust-key", line.gust.key, "exact (default gust)", "KEY");
-  add_words("--speed-unit", metres_per_second_per_unit_, units,
-            "of speed and gust, after scale and offset (default m/s)", "m/s|km/h|kn|mph");
-  add("--speed-scale", line.speed.scale, "speed and gust are the number times this (0.1 for tenths) plus the offset",
-      "FACTOR");
-  add("--speed-offset", line.speed.offset, "in the speed's unit (default 0)", "NUMBER");
-  add("--direction-scale", line.direction.scale, "22.5 for points 0 to 15 (default 1)", "FACTOR");
-  add("--invalid", line.invalid, "the number that means no value, -999 say", "NUMBER");
+  for (const Parameter& parameter : line_reading_parameters()) {
+    const std::string name(parameter.name);
+    const std::string help = fmt::format("{} ({})", parameter.help, describe_allowed(parameter));
+    std::visit(
+        [&](const auto& default_value) {
+          using Value = std::decay_t<decltype(default_value)>;
+          const auto take = [this, name](const Value& value) { given_for_line_[name] = value; };
+          const char* type = std::is_same_v<Value, std::string> ? "TEXT" : "NUMBER";
+          limit(command.add_option_function<Value>(option_of(name), take, help)->option_text(type), "line");
+        },
+        parameter.default_value);
+  }
 }
 
 void DecodeCommandOptions::add_station_options(CLI::App& command) {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/decode_formats.hpp"
+#include "engine/base/parameter.hpp"
 
 namespace yuragi {
 
@@ -40,10 +41,7 @@ class DecodeCommandOptions {
   void add_counter_options(CLI::App& command);
   void set_line();
 
-  unsigned speed_column_ = 1;
-  unsigned direction_column_ = 2;
-  unsigned gust_column_ = 0;
-  double metres_per_second_per_unit_ = 1.0;
+  ParameterValues::Map given_for_line_;
   std::vector<Limited> limited_;
 };
 

@@ -43,15 +43,17 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
   const double cell_m = std::max(extent_m / static_cast<double>(nodes - 2), finest_cell_m);
   const double period_m = cell_m * static_cast<double>(nodes);
 
-  for (std::size_t i = 0; i < nodes * nodes; ++i) {
-    const double node_x_m = first_x_m + cell_m * static_cast<double>(i % nodes);
-    const double node_z_m = first_z_m + cell_m * static_cast<double>(i / nodes);
-    node_x_m_.push_back(node_x_m);
-    node_z_m_.push_back(node_z_m);
-    for (std::size_t which = 0; which < 2; ++which) {
-      const TorusPhase phase = gusts_->place_on(which, node_x_m, node_z_m);
-      node_x_[which].push_back(phase.x);
-      node_z_[which].push_back(phase.z);
+  for (std::size_t row = 0; row < nodes; ++row) {
+    for (std::size_t column = 0; column < nodes; ++column) {
+      const double node_x_m = first_x_m + cell_m * static_cast<double>(column);
+      const double node_z_m = first_z_m + cell_m * static_cast<double>(row);
+      node_x_m_.push_back(node_x_m);
+      node_z_m_.push_back(node_z_m);
+      for (std::size_t which = 0; which < 2; ++which) {
+        const TorusPhase phase = gusts_->place_on(which, node_x_m, node_z_m);
+        node_x_[which].push_back(phase.x);
+        node_z_[which].push_back(phase.z);
+      }
     }
   }
   for (std::size_t i = 0; i < x_m.size(); ++i) {

@@ -4,25 +4,15 @@
 #include <memory>
 #include <vector>
 
-#include "engine/math/critically_damped.hpp"
+#include "engine/wind/blend_settings.hpp"
+#include "engine/wind/blend_source.hpp"
 #include "engine/wind/gust_noise.hpp"
-#include "engine/wind/octave_follower.hpp"
-#include "engine/wind/source_record.hpp"
-#include "engine/wind/synthetic_wind.hpp"
-#include "engine/wind/turbulence_fit.hpp"
+#include "engine/wind/gust_variances.hpp"
+#include "engine/wind/source_choice.hpp"
+#include "engine/wind/wall_plane.hpp"
 #include "engine/wind/wind_estimator.hpp"
 
 namespace yuragi {
-
-struct BlendSettings {
-  SyntheticWindSettings climate;  ///< the wind where nobody measures: mean, direction, turbulence intensity, seed
-  double length_m = 57.0;         ///< how far its gusts reach: the integral length scale
-  double handover_s = 3.0;        ///< about how long the way from one source to another takes
-  double stale_intervals = 5.0;   ///< silent for this many of its own intervals: stale
-  double fit_memory_s = 600.0;    ///< how long the fit of the turbulence remembers
-  double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
-  double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
-};
 
 /// The wind that moves things: the live signal where the sensors know, noise of the same spectrum where they do not,
 /// counted once.
@@ -34,8 +24,22 @@ struct BlendSettings {
 /// readings of the past, and go back to the climate's while nothing is known. The noise is read from a pattern that the
 /// mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and across it. A mean that
 /// nobody measures fades into the climate's. Everything is made of vectors; weights slew by critically damped filters,
-/// so nothing jumps. Source: method of the wind model (`wind.md` 2 of the specification), Taylor 1938 (frozen
-/// turbulence).
+/// so nothing jumps.
+///
+/// Several sources: SourceChoice says who has the word. Those who share it share each band by weight times trust, so
+/// that a slow one rules the mean and a fast one the gusts; a relative one gives the gusts that they leave, scaled to
+/// theirs. Where they stand at several places, the wind is a plane through what they say (WallPlane), as steep in each
+/// band as their coherence at that distance allows; what they do not have alike, the noise fills. Across the wind a
+/// source without a vane knows nothing, and one of few points only what is slow.
+///
+/// Delay: blend_group_delay_s(); the part that comes from the sensor is late by half its averaging, half its hold, and
+/// the bands' own: for block means every T together T times
+///
+///     f T          0.005  0.01   0.02   0.05   0.1    0.2
+///     delay / T    ?
+///
+/// Source: method of the wind model (`wind.md` 2 of the specification), Taylor 1938 (frozen turbulence), Davenport 1961
+/// (coherence).
 class BlendedEstimator final : public WindEstimator {
  public:
   /// `noise`: shared with whoever wants to know the wind at other places. The climate's seed says where on it the gusts
@@ -53,31 +57,12 @@ class BlendedEstimator final : public WindEstimator {
  private:
   static constexpr std::size_t kBands = OctaveFollower::kBands;
   static constexpr std::size_t kOctaves = GustNoise::kOctaves;
-  using Shares = std::array<double, kOctaves>;
 
-  /// One component of a source's wind: its turbulence, and the variance of each octave of the noise over the square of
-  /// the mean speed.
-  struct Component {
-    TurbulenceFit fit;
-    Shares shares;
-  };
-
-  struct Source {
-    Source(const BlendSettings& settings, const Shares& along_shares, const Shares& across_shares);
-
-    SourceRecord record;
-    OctaveFollower follower;
-    std::array<CriticallyDamped, kBands> trust{};  ///< in each band, at most what its interval allows
-    CriticallyDamped mean_trust, weight;
-    std::array<double, kBands> shares{};  ///< weight times trust, as of this tick; in each band
-    double mean_share = 0.0;              ///< the same of the mean
-    double interval_s = 0.0;              ///< expected, as of this tick
-    double speed_m_s = 0.0;               ///< slow mean of its speeds
-    Component along, across;
-    std::vector<WindVector> history;  ///< a ring of the last readings
-    std::size_t history_size = 0;     ///< those without a gap up to the last
-    std::size_t next = 0;
-    double fitted_s = 0.0;  ///< time since the last fit
+  /// What a source has of the wind at the moment, in the mean (0) and in each band (1 + band).
+  struct Share {
+    BandWeights word{};    ///< as one who has the word
+    BandWeights middle{};  ///< in the middle of the scene, with what a relative source fills
+    BandWeights per_m_east{}, per_m_south{};
   };
 
   /// What all sources together say, and how far it is to be believed.
@@ -88,26 +73,42 @@ class BlendedEstimator final : public WindEstimator {
     double speed_m_s = 0.0;  ///< slow mean
     double trust = 0.0;      ///< of the bands that can be known: 1 while the sensors speak
   };
+  /// The part of the power at a frequency that comes from the sensors.
+  struct Power {
+    double along = 0.0, across = 0.0;
+  };
 
-  void learn(Source& source) noexcept;
-  void measure_scales(Source& source) noexcept;
-  Source* choose() noexcept;
-  void follow(Source& source, bool is_chosen, double dt_s) noexcept;
-  Heard hear() const noexcept;
+  bool is_direction_live(std::size_t besides) const noexcept;
+  void share_out() noexcept;
+  void share_level(std::size_t level) noexcept;
+  void learn_scales(double dt_s) noexcept;
+  Heard hear() noexcept;
+  double trust() const noexcept;
+  double newest_age_s() const noexcept;
+  WindVector said(std::size_t source, std::size_t level) const noexcept;
   void carry_gusts(const Heard& heard, double dt_s) noexcept;
-  void weigh_gusts(const Heard& heard) noexcept;
-  double power_heard(double frequency_hz) const noexcept;
-  Shares shares_of(double intensity, double length_m) const noexcept;
+  void weigh_gusts(const Heard& heard, double dt_s) noexcept;
+  Power power_heard(double frequency_hz) noexcept;
+  double variance_share(std::size_t source, double frequency_hz, const Heard& heard) const noexcept;
 
   BlendSettings settings_;
   WindVector climate_;
   std::shared_ptr<const GustNoise> noise_;
-  Shares climate_along_, climate_across_;
-  std::vector<Source> sources_;
+  GustVariances climate_along_, climate_across_;
+  std::vector<BlendSource> sources_;
+  SourceChoice choice_;
+  WallPlane plane_;
   GroundWind ground_;
   double advection_m_s_ = 0.0;
   WindState state_;
+  double last_step_s_ = 0.0;  ///< the time that passed from the last tick but one to the last
   bool has_begun_ = false;
+
+  // Made anew in each tick; for each source.
+  std::vector<Share> shares_;
+  std::vector<double> level_shares_;
+  std::vector<PlaceWeights> place_weights_;
+  std::vector<SourceResponse> responses_;
 };
 
 }  // namespace yuragi

@@ -28,32 +28,49 @@ class OctaveFollower {
   /// Begins with this, as if it had been there for ever.
   void begin(WindVector value) noexcept { passed_.fill(value); }
 
-  /// Goes on by dt_s with `held`.
-  void step(WindVector held, double dt_s) noexcept {
-    for (std::size_t i = 0; i <= kBands; ++i) {
-      const double part = -std::expm1(-2.0 * std::numbers::pi * edge_hz(i) * dt_s);
-      passed_[i] = passed_[i] + part * (held - passed_[i]);
-    }
+  /// How far each low pass goes toward its input within a step: the same for all followers.
+  using Parts = std::array<double, kBands + 1>;
+  static Parts parts(double dt_s) noexcept {
+    Parts parts{};
+    for (std::size_t i = 0; i <= kBands; ++i) parts[i] = -std::expm1(-2.0 * std::numbers::pi * edge_hz(i) * dt_s);
+    return parts;
+  }
+
+  /// Goes on by that with `held`.
+  void step(WindVector held, const Parts& parts) noexcept {
+    for (std::size_t i = 0; i <= kBands; ++i) passed_[i] = passed_[i] + parts[i] * (held - passed_[i]);
   }
 
   WindVector mean() const noexcept { return passed_[0]; }
   WindVector band(std::size_t band) const noexcept { return passed_[band + 1] - passed_[band]; }
 
-  /// What the mean, weighted, and the bands, weighted, together pass of a wave of this frequency: magnitude and phase.
-  static std::complex<double> response(double frequency_hz, double mean_weight,
-                                       const std::array<double, kBands>& band_weights) noexcept {
-    const auto low_pass = [frequency_hz](std::size_t i) {
-      return 1.0 / std::complex<double>(1.0, frequency_hz / edge_hz(i));
-    };
-    std::complex<double> before = low_pass(0);
-    std::complex<double> sum = mean_weight * before;
-    for (std::size_t band = 0; band < kBands; ++band) {
-      const std::complex<double> after = low_pass(band + 1);
-      sum += band_weights[band] * (after - before);
-      before = after;
+  /// What the mean (0) and each band (1 + band) pass of a wave of one frequency: magnitude and phase.
+  struct Response {
+    std::array<double, kBands + 1> real, imaginary;
+    explicit Response(double frequency_hz) noexcept {
+      double before_real = 0.0;
+      double before_imaginary = 0.0;
+      for (std::size_t i = 0; i <= kBands; ++i) {
+        const double ratio = frequency_hz / edge_hz(i);
+        const double low_pass_real = 1.0 / (1.0 + ratio * ratio);
+        const double low_pass_imaginary = -ratio * low_pass_real;
+        real[i] = low_pass_real - before_real;
+        imaginary[i] = low_pass_imaginary - before_imaginary;
+        before_real = low_pass_real;
+        before_imaginary = low_pass_imaginary;
+      }
     }
-    return sum;
-  }
+    /// The sum, each with its weight.
+    std::complex<double> weighted(const std::array<double, kBands + 1>& weights) const noexcept {
+      double sum_real = 0.0;
+      double sum_imaginary = 0.0;
+      for (std::size_t i = 0; i <= kBands; ++i) {
+        sum_real += weights[i] * real[i];
+        sum_imaginary += weights[i] * imaginary[i];
+      }
+      return {sum_real, sum_imaginary};
+    }
+  };
 
  private:
   std::array<WindVector, kBands + 1> passed_{};  ///< what each low pass lets through

@@ -9,36 +9,29 @@
 
 namespace yuragi {
 
-/// What an estimator remembers of one source: its last reading, as a vector too, and how often it speaks.
+/// What an estimator remembers of one source: its last reading, and how often it speaks.
 /// Thread-safe: no. Realtime-safe: yes.
 class SourceRecord {
  public:
-  /// Takes a plausible reading. One without a direction blows from where the source last said, or from `usual_deg`.
-  void take(const WindReading& reading, double usual_deg) noexcept {
-    if (reading.direction_deg) held_from_deg_ = reading.direction_deg;
-    wind_ = wind_from(reading.speed_m_s, held_from_deg_.value_or(usual_deg));
+  /// Takes a plausible reading, not older than the last.
+  void take(const WindReading& reading) noexcept {
     if (last_) {
-      const double interval = seconds(reading.time.mono - last_->time.mono);
-      if (interval > 0.0) intervals_s_[intervals_seen_++ % kIntervalsKept] = interval;
+      const double interval_s = seconds(reading.time.mono - last_->time.mono);
+      if (interval_s > 0.0) {
+        intervals_s_[intervals_seen_++ % kIntervalsKept] = interval_s;
+        interval_s_ = median_interval_s();
+      }
     }
     last_ = reading;
   }
 
   bool has_spoken() const noexcept { return last_.has_value(); }
   const std::optional<WindReading>& last() const noexcept { return last_; }
-  WindVector wind() const noexcept { return wind_; }
 
   /// The median of the last intervals; 0 before the second reading.
-  double interval_s() const noexcept {
-    const std::size_t count = std::min(intervals_seen_, kIntervalsKept);
-    if (count == 0) return 0.0;
-    auto sorted = intervals_s_;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(count));
-    return *middle;
-  }
+  double interval_s() const noexcept { return interval_s_; }
   /// The same, with a guess for a source that has spoken once.
-  double expected_interval_s() const noexcept { return intervals_seen_ > 0 ? interval_s() : kAssumedInterval_s; }
+  double expected_interval_s() const noexcept { return interval_s_ > 0.0 ? interval_s_ : kAssumedInterval_s; }
 
   /// Of the last reading; 0 before the first.
   double age_s(MonoTime now) const noexcept { return last_ ? std::max(0.0, seconds(now - last_->time.mono)) : 0.0; }
@@ -61,9 +54,16 @@ class SourceRecord {
   static constexpr double kAssumedInterval_s = 2.0;
   static constexpr double kMinStaleAfter_s = 1.0;
 
+  double median_interval_s() const noexcept {
+    const std::size_t count = std::min(intervals_seen_, kIntervalsKept);
+    auto sorted = intervals_s_;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(count));
+    return *middle;
+  }
+
   std::optional<WindReading> last_;
-  WindVector wind_;
-  std::optional<double> held_from_deg_;
+  double interval_s_ = 0.0;
   std::array<double, kIntervalsKept> intervals_s_{};
   std::size_t intervals_seen_ = 0;
 };

@@ -21,8 +21,11 @@ struct Places {
     const RandomStream random(4, stream_id("wind grid test"));
     for (std::size_t i = 0; i < count; ++i) {
       const auto [x, z] = random.uniform_pair(i);
-      x_m.push_back(static_cast<float>(side_m * (i < 4 ? static_cast<double>(i % 2) : x) - 20.0));
-      z_m.push_back(static_cast<float>(side_m * (i < 4 ? static_cast<double>(i / 2) : z) + 5.0));
+      const bool is_corner = i < 4;
+      const double corner_x = i % 2 == 0 ? 0.0 : 1.0;
+      const double corner_z = i < 2 ? 0.0 : 1.0;
+      x_m.push_back(static_cast<float>(side_m * (is_corner ? corner_x : x) - 20.0));
+      z_m.push_back(static_cast<float>(side_m * (is_corner ? corner_z : z) + 5.0));
     }
     east_m_s.resize(count);
     south_m_s.resize(count);

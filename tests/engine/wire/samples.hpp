@@ -238,6 +238,8 @@ inline wire::Sensors sensors() {
   gauge.frames = 1250;
   gauge.reconnects = 2;
   gauge.replayed = true;
+  gauge.state = SensorState::kFrozen;
+  gauge.state_reason = "the same 3.42 m/s 61 times";
   return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2};
 }
 

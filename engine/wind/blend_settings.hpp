@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/wind/synthetic_wind.hpp"
+
+namespace yuragi {
+
+/// What an installation knows of one source of a blend.
+struct BlendSourceSettings {
+  /// Only how its readings rise and fall is believed, neither their scale nor their mean (a microphone): it gives the
+  /// gusts that are too quick for the absolute sources. Alone it is taken as it is.
+  bool is_relative = false;
+  int priority = 0;                 ///< lower first; equal ones share; 0: its place among the sources, from 1
+  double weight = 1.0;              ///< among those of the same priority; above 0
+  double east_m = 0.0;              ///< where it stands, from the middle of the scene
+  double south_m = 0.0;             ///< (a relative one is taken to stand in the middle)
+  double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
+  double direction_step_deg = 0.0;  ///< its vane knows only every so many degrees; 0: found out
+};
+
+struct BlendSettings {
+  SyntheticWindSettings climate;  ///< the wind where nobody measures: mean, direction, turbulence intensity, seed
+  double length_m = 57.0;         ///< how far its gusts reach: the integral length scale
+  double handover_s = 3.0;        ///< about how long the way from one source to another takes
+  double stale_intervals = 5.0;   ///< silent for this many of its own intervals: stale
+  double return_after_s = 10.0;   ///< a source that failed is trusted again after so long; longer if it often fails
+  double fit_memory_s = 600.0;    ///< how long the fit of the turbulence remembers
+  double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
+  double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
+  std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults
+};
+
+}  // namespace yuragi

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <complex>
+#include <vector>
+
+#include "engine/math/critically_damped.hpp"
+#include "engine/wind/blend_settings.hpp"
+#include "engine/wind/direction_keeper.hpp"
+#include "engine/wind/gust_variances.hpp"
+#include "engine/wind/octave_follower.hpp"
+#include "engine/wind/relative_scale.hpp"
+#include "engine/wind/source_record.hpp"
+#include "engine/wind/turbulence_fit.hpp"
+
+namespace yuragi {
+
+/// A number for the mean (0) and each octave band (1 + band) of a source.
+using BandWeights = std::array<double, OctaveFollower::kBands + 1>;
+
+/// A complex response along the wind and across it.
+struct SourceResponse {
+  std::complex<double> along, across;
+};
+
+/// One source of a blend: what it says, taken apart into octave bands, how far each is to be believed, and the
+/// turbulence that its readings show. Thread-safe: no. Realtime-safe after construction: yes.
+class BlendSource {
+ public:
+  BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings, const GustNoise& noise);
+
+  /// What a source without a vane needs to know, and the fit.
+  struct Around {
+    WindVector ahead{0.0, 1.0};      ///< unit vector downwind
+    bool is_direction_live = false;  ///< another source measures it
+    double advection_m_s = 1.0;      ///< how fast gusts pass
+  };
+
+  /// Takes a reading; false for one that is impossible or older than what is known.
+  bool accept(const WindReading& reading, const Around& around) noexcept;
+
+  /// Goes on to `now`. Only when it has spoken.
+  void step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept;
+
+  const SourceRecord& record() const noexcept { return record_; }
+  bool has_vane() const noexcept { return direction_.has_vane(); }
+  bool is_coarse() const noexcept { return direction_.is_coarse(); }
+
+  WindVector mean() const noexcept { return follower_.mean(); }
+  WindVector band(std::size_t band) const noexcept { return follower_.band(band); }
+  double speed_m_s() const noexcept { return speed_m_s_; }  ///< slow mean of its speeds
+
+  /// How far the mean and each band are believed, 0 to 1, slewed; and how far they would be if it spoke on time.
+  const BandWeights& trust() const noexcept { return trust_; }
+  const BandWeights& full_trust() const noexcept { return full_trust_; }
+  /// What its averaging and the holding of its readings leave of a wave in the middle of each band.
+  const BandWeights& passed() const noexcept { return passed_; }
+
+  /// What is in its bands, weighted so, of a wave of the real wind: what its averaging, the holding of its readings,
+  /// its vane and the bands leave. `response`: of the follower at this frequency.
+  SourceResponse response(double frequency_hz, const OctaveFollower::Response& response,
+                          const BandWeights& weights) const noexcept;
+  /// How far a wave of this frequency is believed while it speaks on time.
+  double trust_at(double frequency_hz) const noexcept;
+
+  const Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
+  const GustVariances& along() const noexcept { return along_.variances; }
+  const GustVariances& across() const noexcept { return across_.variances; }
+
+  RelativeScale scale;  ///< of a relative source
+
+ private:
+  /// One component of its wind. The variances follow those of the fit within a second or two.
+  struct Component {
+    TurbulenceFit fit;
+    GustVariances wanted, variances;
+  };
+
+  double averaging_s() const noexcept;
+  double slowness_s() const noexcept;
+  void set_full_trust() noexcept;
+  void learn(double advection_m_s) noexcept;
+  void measure_scales(WindVector ahead) noexcept;
+  void fit(double interval_s, double advection_m_s) noexcept;
+
+  BlendSourceSettings settings_;
+  double mean_memory_s_;
+  const GustNoise* noise_;
+
+  SourceRecord record_;
+  DirectionKeeper direction_;
+  WindVector wind_;  ///< that is held
+  OctaveFollower follower_;
+  std::array<CriticallyDamped, OctaveFollower::kBands + 1> trusts_{};
+  CriticallyDamped vane_trust_;
+  double vane_memory_s_ = 0.0;  ///< follows that of the direction
+  BandWeights trust_{}, full_trust_{}, passed_{};
+  double interval_s_ = 0.0;  ///< that the full trust is made for
+  double speed_m_s_ = 0.0;
+
+  Component along_, across_;
+  Turbulence turbulence_;
+  std::vector<WindVector> history_;  ///< a ring of the last readings, each a mean of its own stretch of time
+  std::size_t history_size_ = 0;     ///< those without a gap up to the last
+  std::size_t next_ = 0;
+  std::size_t since_kept_ = 0;  ///< readings
+  double fitted_s_ = 0.0;       ///< time since the last fit
+};
+
+/// The group delay of the blend, s: how much later than the wind the part of it at this frequency is that comes from a
+/// source which speaks every `interval_s`, each time the mean over `averaging_s`. Pure.
+double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept;
+
+}  // namespace yuragi

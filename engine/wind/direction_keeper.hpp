@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+
+#include "engine/wind/wind_reading.hpp"
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi {
+
+/// Which way the wind of a source blows, as a unit vector: what its vane says, as far as that can be believed.
+///
+/// A reading without a direction has the last one, or another that is offered. In a calm (below 0.5 m/s) a vane points
+/// anywhere: the direction is held, the more the calmer it is. A vane of 8 or 16 points leaps: its directions are
+/// smoothed up to the frequency at which the stairs tell less than the turbulence has. All turns are the shorter way
+/// round. Thread-safe: no. Realtime-safe: yes.
+class DirectionKeeper {
+ public:
+  /// `step_deg`: of the vane; 0: found out from how its readings differ.
+  explicit DirectionKeeper(double step_deg) : given_step_deg_(step_deg) {}
+
+  /// Takes what a reading says, `dt_s` after the one before. `otherwise` is the direction for a source that never said
+  /// any, and, where `otherwise_is_live`, for every reading without one. A unit vector, downwind.
+  WindVector take(const WindReading& reading, double dt_s, WindVector otherwise, bool otherwise_is_live) noexcept;
+
+  /// Did the last reading have a direction?
+  bool has_vane() const noexcept { return has_vane_; }
+
+  /// The step of the vane, degrees; 0: a fine one, or too little seen.
+  double step_deg() const noexcept;
+  bool is_coarse() const noexcept { return step_deg() >= kCoarse_deg; }
+
+  /// The time constant of the smoothing; 0 for a fine vane.
+  double memory_s() const noexcept { return memory_s_; }
+
+  /// Sets it from the turbulence, to where the stairs' own noise, step^2 / 12 (Bennett 1948) spread evenly
+  /// over all frequencies that readings every `interval_s` can have, is as strong as the swing of the direction in von
+  /// Karman's inertial range, of deviation `swing_rad` and time scale `time_scale_s`.
+  void expect(double swing_rad, double time_scale_s, double interval_s) noexcept;
+
+ private:
+  static constexpr double kCoarse_deg = 15.0;
+
+  void note_step(double direction_deg) noexcept;
+
+  double given_step_deg_;
+  WindVector toward_{0.0, 1.0};
+  bool is_known_ = false;
+  bool has_vane_ = false;
+  double memory_s_ = 0.0;
+
+  double last_deg_ = -1.0;
+  std::size_t turns_of_16_ = 0;  ///< turns in a row that were whole steps of 1/16
+  std::size_t turns_of_8_ = 0;
+  bool was_fine_ = false;  ///< has made others
+};
+
+/// A unit vector turned toward another by a part (0 to 1) of the angle between them, the shorter way round.
+WindVector turned_toward(WindVector unit, WindVector other, double part) noexcept;
+
+}  // namespace yuragi

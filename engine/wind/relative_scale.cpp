@@ -1,0 +1,48 @@
+#include "engine/wind/relative_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace yuragi {
+namespace {
+
+constexpr double kLeastGain = 0.05;
+constexpr double kMostGain = 20.0;
+/// The mean speeds are believed in full when far more time than this is behind them.
+constexpr double kTimeToBelieve_s = 15.0;
+/// And the gusts when far more of them than these are.
+constexpr double kGustsToBelieve = 4.0;
+/// In less wind than this a ratio says nothing.
+constexpr double kLeastSum = 1e-6;
+
+double log_ratio(double above, double below) noexcept {
+  return std::clamp(std::log(above / below), std::log(kLeastGain), std::log(kMostGain));
+}
+
+}  // namespace
+
+void RelativeScale::learn(const Pair& pair, double dt_s) noexcept {
+  if (!(dt_s > 0.0)) return;
+  const double kept = std::exp(-dt_s / memory_s_);
+  const double added_s = memory_s_ * (1.0 - kept);
+  weight_s_ = kept * weight_s_ + added_s;
+  speed_ = kept * speed_ + added_s * pair.speed_m_s;
+  relative_speed_ = kept * relative_speed_ + added_s * pair.relative_speed_m_s;
+  square_ = kept * square_ + added_s * pair.gust_m_s * pair.gust_m_s;
+  relative_square_ = kept * relative_square_ + added_s * pair.relative_gust_m_s * pair.relative_gust_m_s;
+  gusts_seen_ = kept * gusts_seen_ + added_s / pair.independent_after_s;
+
+  double log_mean = 0.0;
+  if (speed_ > kLeastSum && relative_speed_ > kLeastSum) {
+    log_mean = weight_s_ / (weight_s_ + kTimeToBelieve_s) * log_ratio(speed_, relative_speed_);
+  }
+  double log_gust = log_mean;
+  if (square_ > kLeastSum && relative_square_ > kLeastSum) {
+    const double belief = gusts_seen_ / (gusts_seen_ + kGustsToBelieve);
+    log_gust += belief * (log_ratio(std::sqrt(square_), std::sqrt(relative_square_)) - log_mean);
+  }
+  mean_gain_ = std::exp(log_mean);
+  gust_gain_ = std::exp(log_gust);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,39 @@
+#pragma once
+
+namespace yuragi {
+
+/// How many times stronger than it says the wind of a relative source is: a slow regression against what the absolute
+/// sources say of the same time.
+///
+/// The gusts' gain comes from the deviations of both in the bands that both know, the mean's from the mean speeds;
+/// where little is known of the deviations, the gusts have the mean's gain, and where nothing is known both are 1.
+/// Everything fades with `memory_s`; with no absolute source what is known is kept. Thread-safe: no. Realtime-safe:
+/// yes.
+class RelativeScale {
+ public:
+  explicit RelativeScale(double memory_s) : memory_s_(memory_s) {}
+
+  /// What both say at a moment.
+  struct Pair {
+    double speed_m_s = 0.0;  ///< slow mean, absolute
+    double relative_speed_m_s = 0.0;
+    double gust_m_s = 0.0;  ///< in the bands that both know, less the mean, absolute
+    double relative_gust_m_s = 0.0;
+    double independent_after_s = 0.0;  ///< from one gust to the next that tells something new; above 0
+  };
+  void learn(const Pair& pair, double dt_s) noexcept;
+
+  /// Of the mean, and of the gusts: 0.05 to 20.
+  double mean_gain() const noexcept { return mean_gain_; }
+  double gust_gain() const noexcept { return gust_gain_; }
+
+ private:
+  double memory_s_;
+  double weight_s_ = 0.0;  ///< of the sums: time, which fades
+  double speed_ = 0.0, relative_speed_ = 0.0;
+  double square_ = 0.0, relative_square_ = 0.0;
+  double gusts_seen_ = 0.0;  ///< independent ones
+  double mean_gain_ = 1.0, gust_gain_ = 1.0;
+};
+
+}  // namespace yuragi

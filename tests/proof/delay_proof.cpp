@@ -1,0 +1,220 @@
+// How long the wind outside takes to move the wall, octave by octave: derived from the filters on the way, and measured
+// with waves through the estimator and a real grass scene.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "engine/scenes/scene.hpp"
+#include "engine/scenes/scene_wind.hpp"
+#include "engine/wind/blended_estimator.hpp"
+#include "tests/proof/heard_wind.hpp"
+
+namespace yuragi::proof {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kDelayTick_s = 1.0 / 60.0;
+constexpr double kMeanSpeed_m_s = 8.0;
+constexpr double kWave_m_s = 0.01;
+/// Measured and derived delays agree within a quarter of a tick and this part of them.
+constexpr double kTolerance = 0.02;
+/// Grass as it comes: the oscillators of a blade.
+constexpr double kNatural_hz = 2.0;
+constexpr double kDampingRatio = 0.2;
+constexpr double kHybrid = 0.6;
+
+double turn_rad_s(double frequency_hz) {
+  return 2.0 * std::numbers::pi * frequency_hz;
+}
+
+// What each part of the way passes of a wave exp(i w t).
+
+Complex ahead_by(double time_s, double frequency_hz) {
+  return std::polar(1.0, turn_rad_s(frequency_hz) * time_s);
+}
+
+/// A block mean over the interval, heard at its end.
+Complex averaged(double frequency_hz, double interval_s) {
+  const Complex turn(0.0, turn_rad_s(frequency_hz) * interval_s);
+  return (1.0 - std::exp(-turn)) / turn;
+}
+
+/// From the reading to the wind: it is held for an interval, and what the bands pass of that, each as far as it is
+/// trusted, adds up. A tick takes what is there at its end, as if it had been there from its begin on.
+Complex heard(double frequency_hz, double interval_s) {
+  std::array<double, OctaveFollower::kBands> weights{};
+  for (std::size_t band = 0; band < weights.size(); ++band) {
+    weights[band] = 1.0 / (1.0 + std::pow(OctaveFollower::centre_hz(band) * interval_s / 0.5, 4.0));
+  }
+  return averaged(frequency_hz, interval_s) * OctaveFollower::response(frequency_hz, 1.0, weights) *
+         ahead_by(kDelayTick_s, frequency_hz);
+}
+
+/// From the wind to a blade's bend: SceneWind, and the part of it that is an oscillator. Both are stepped exactly, with
+/// the wind at the end of the tick: half a tick ahead of it.
+Complex bent(double frequency_hz, double /*interval_s*/) {
+  const Complex scene = 1.0 / std::pow(Complex(1.0, turn_rad_s(frequency_hz) / SceneWind::kOmega_rad_s), 2.0);
+  const double ratio = frequency_hz / kNatural_hz;
+  const Complex oscillator = 1.0 / Complex(1.0 - ratio * ratio, 2.0 * kDampingRatio * ratio);
+  const Complex early = ahead_by(0.5 * kDelayTick_s, frequency_hz);
+  return scene * early * ((1.0 - kHybrid) + kHybrid * oscillator * early);
+}
+
+/// Two waves near each other: what lies between their phases is the delay of a gust made of them.
+struct Pair {
+  double low_hz = 0.0, high_hz = 0.0;
+  double centre_hz() const { return 0.5 * (low_hz + high_hz); }
+};
+
+double group_delay_s(Complex at_low, Complex at_high, const Pair& pair) {
+  return -std::arg(at_high / at_low) / turn_rad_s(pair.high_hz - pair.low_hz);
+}
+
+double derived_s(Complex (*pass)(double, double), const Pair& pair, double interval_s) {
+  return group_delay_s(pass(pair.low_hz, interval_s), pass(pair.high_hz, interval_s), pair);
+}
+
+/// What a signal has of a wave, from the sums over whole numbers of its periods.
+struct Tone {
+  double frequency_hz = 0.0;
+  Complex wind{}, pose{};
+
+  void add(double time_s, double wind_m_s, double pose_rad) {
+    const Complex turn = std::polar(1.0, -turn_rad_s(frequency_hz) * time_s);
+    wind += wind_m_s * turn;
+    pose += pose_rad * turn;
+  }
+};
+
+/// A wind from south of constant mean with waves, and what becomes of it.
+class Passage {
+ public:
+  Passage(double interval_s, double lowest_hz, double highest_hz)
+      : interval_s_(interval_s), window_s_(interval_s * std::ceil(20.0 / lowest_hz / interval_s)) {
+    // About 5 % to both sides of each octave's middle. Odd numbers of periods in the window, of which no sum,
+    // difference or double is odd: what bending makes of two waves falls beside all others.
+    for (double centre_hz = lowest_hz; centre_hz <= highest_hz * 1.001; centre_hz *= 2.0) {
+      const double cycles = 2.0 * std::round(0.5 * centre_hz * window_s_);
+      const double aside = 2.0 * std::round(0.025 * cycles) + 1.0;
+      pairs_.push_back({(cycles - aside) / window_s_, (cycles + aside) / window_s_});
+      tones_.push_back({.frequency_hz = pairs_.back().low_hz});
+      tones_.push_back({.frequency_hz = pairs_.back().high_hz});
+    }
+  }
+
+  void run() {
+    BlendedEstimator estimator(1, {}, shared_noise());
+    const std::unique_ptr<Scene> grass = make_grass();
+    const auto settle = static_cast<int>(std::lround(kSettle_s / kDelayTick_s));
+    const auto last = settle + static_cast<int>(std::lround(window_s_ / kDelayTick_s));
+    int told = 0;
+    for (int tick = 0; tick < last; ++tick) {
+      const double time_s = tick * kDelayTick_s;
+      for (; told * interval_s_ <= time_s + 1e-9; ++told) {
+        WindReading reading;
+        reading.time.mono = MonoTime(from_seconds(told * interval_s_));
+        reading.speed_m_s = block_mean_m_s(told * interval_s_);
+        reading.direction_deg = 180.0;
+        estimator.accept(0, reading);
+      }
+      estimator.advance(MonoTime(from_seconds(time_s)));
+      // What is known of the wind goes to the scene; the noise, which is known too, is left out.
+      const WindVector known = estimator.ground().everywhere - shared_noise()->everywhere(estimator.ground().gusts);
+      grass->tick(known, kDelayTick_s);
+      if (tick < settle) continue;
+      const double bend_rad = mean_bend_rad(*grass);
+      for (Tone& tone : tones_) tone.add(time_s, known.v_m_s, bend_rad);
+    }
+  }
+
+  double interval_s() const { return interval_s_; }
+  const std::vector<Pair>& pairs() const { return pairs_; }
+  double wind_delay_s(std::size_t pair) const {
+    return group_delay_s(tones_[2 * pair].wind, tones_[2 * pair + 1].wind, pairs_[pair]);
+  }
+  double pose_delay_s(std::size_t pair) const {
+    return group_delay_s(tones_[2 * pair].pose, tones_[2 * pair + 1].pose, pairs_[pair]);
+  }
+
+ private:
+  static constexpr double kSettle_s = 600.0;
+
+  /// The waves are cosines.
+  double block_mean_m_s(double end_s) const {
+    double speed_m_s = kMeanSpeed_m_s;
+    for (const Tone& tone : tones_) {
+      const Complex wave = std::polar(kWave_m_s, turn_rad_s(tone.frequency_hz) * end_s);
+      speed_m_s += std::real(wave * averaged(tone.frequency_hz, interval_s_));
+    }
+    return speed_m_s;
+  }
+
+  static std::unique_ptr<Scene> make_grass() {
+    const auto is_grass = [](const SceneDescription* kind) { return kind->name == std::string_view("grass"); };
+    const SceneDescription& kind = **std::ranges::find_if(scene_table(), is_grass);
+    const ParameterValues::Map small = {{"blades_across", std::int64_t{8}}, {"blades_deep", std::int64_t{8}}};
+    return kind.make(ParameterValues::resolve(kind.parameters, small).value(), {.gusts = shared_noise()});
+  }
+
+  /// Toward north, where the wind goes.
+  static double mean_bend_rad(const Scene& scene) {
+    const std::vector<float>& south_rad = std::get<StrandPose>(scene.pose()).bend_south_rad;
+    return -std::accumulate(south_rad.begin(), south_rad.end(), 0.0) / static_cast<double>(south_rad.size());
+  }
+
+  double interval_s_, window_s_;
+  std::vector<Pair> pairs_;
+  std::vector<Tone> tones_;
+};
+
+void expect_as_derived(Passage& passage) {
+  passage.run();
+  const double interval_s = passage.interval_s();
+  fmt::print(
+      "| sensor of {:g} s: octave about, Hz | wind to reading, s | reading to wind, s: derived | measured | wind "
+      "to pose: derived | measured | all, measured |\n| --- | --- | --- | --- | --- | --- | --- |\n",
+      interval_s);
+  for (std::size_t i = 0; i < passage.pairs().size(); ++i) {
+    const Pair& pair = passage.pairs()[i];
+    // The wave is cosine in the wind outside: what is measured of it counts from there.
+    const double reading_s = derived_s(averaged, pair, interval_s);
+    const double heard_s = derived_s(heard, pair, interval_s);
+    const double bent_s = derived_s(bent, pair, interval_s);
+    const double heard_measured_s = passage.wind_delay_s(i) - reading_s;
+    const double bent_measured_s = passage.pose_delay_s(i) - passage.wind_delay_s(i);
+    fmt::print("| {:.4g} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n", pair.centre_hz(), reading_s,
+               heard_s, heard_measured_s, bent_s, bent_measured_s, passage.pose_delay_s(i));
+    EXPECT_NEAR(heard_measured_s, heard_s, 0.25 * kDelayTick_s + kTolerance * heard_s) << pair.centre_hz() << " Hz";
+    EXPECT_NEAR(bent_measured_s, bent_s, 0.25 * kDelayTick_s + kTolerance * bent_s) << pair.centre_hz() << " Hz";
+  }
+}
+
+TEST(DelayOfTheWind, IsAsDerivedForASensorOf100Milliseconds) {
+  Passage passage(0.1, 0.0125, 1.6);
+  expect_as_derived(passage);
+}
+
+TEST(DelayOfTheWind, IsAsDerivedForASensorOfASecond) {
+  Passage passage(1.0, 0.00625, 0.4);
+  expect_as_derived(passage);
+}
+
+TEST(DelayOfTheWind, IsAsDerivedForASensorOf14Seconds) {
+  Passage passage(14.0, 0.00375, 0.03);
+  expect_as_derived(passage);
+}
+
+}  // namespace
+}  // namespace yuragi::proof

@@ -1,0 +1,39 @@
+#include "tests/proof/heard_wind.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace yuragi::proof {
+namespace {
+
+constexpr double kHeardTick_s = 1.0 / 60.0;
+
+}  // namespace
+
+std::shared_ptr<const GustNoise> shared_noise() {
+  static const auto noise = std::make_shared<const GustNoise>(GustNoiseSettings{});
+  return noise;
+}
+
+std::vector<WindVector> wind_of(HeardWind& heard, const std::vector<WindReading>& readings, double from_s,
+                                double to_s) {
+  std::vector<WindVector> winds;
+  const MonoTime from(from_seconds(from_s));
+  auto next =
+      std::ranges::lower_bound(readings, from, {}, [](const WindReading& reading) { return reading.time.mono; });
+  const auto ticks = static_cast<int>(std::lround((to_s - from_s) / kHeardTick_s));
+  for (int tick = 0; tick < ticks; ++tick) {
+    const MonoTime now = from + from_seconds(tick * kHeardTick_s);
+    for (; next != readings.end() && next->time.mono <= now; ++next) heard.tell(*next);
+    winds.push_back(heard.advance(now));
+  }
+  return winds;
+}
+
+double largest_step_m_s(const std::vector<WindVector>& winds) {
+  double largest = 0.0;
+  for (std::size_t i = 1; i < winds.size(); ++i) largest = std::max(largest, speed_of(winds[i] - winds[i - 1]));
+  return largest;
+}
+
+}  // namespace yuragi::proof
