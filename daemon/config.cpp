@@ -94,6 +94,12 @@ const std::array kWindParameters = {
               .min = 2.0,
               .max = 100.0,
               .help = "a sensor that is silent for this many of its own intervals is stale"},
+    Parameter{.name = "return_after",
+              .unit = "s",
+              .default_value = 10.0,
+              .min = 0.0,
+              .max = 3600.0,
+              .help = "a sensor that was stale gets the word back after speaking for so long; twice as long each time"},
 };
 
 const std::array kCalibrationParameters = {
@@ -182,7 +188,8 @@ const std::array kJudgeParameters = {
     Parameter{.name = "compare",
               .unit = "",
               .default_value = true,
-              .help = "its mean over 5 min is compared with the other sensors'; where three or more speak, one that "
+              .help = "its mean over 5 min is compared with the other sensors' (a microphone's never is); where three "
+                      "or more speak, one that "
                       "differs from most by more than 3 times and 3 m/s for 10 min is not believed"},
 };
 
@@ -224,6 +231,7 @@ const std::array kConfigTables = {
 
 constexpr std::string_view kNameKey = "name";
 constexpr std::string_view kCalibrationKey = "calibration";
+constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
 
 /// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
@@ -271,6 +279,8 @@ class ConfigReader {
                      check_is_table(entry, kJudgeKey);
                      const ParameterValues judge = read_table(entry, "sensor.", kJudgeKey, kJudgeParameters);
                      config.sensors.push_back({name, driver, values, calibration, place(entry.source()), judge});
+                     check_is_table(entry, kBlendKey);
+                     config.sensors.back().blend = read_table(entry, "sensor.", kBlendKey, sensor_blend_parameters());
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
                    [&](const auto& name, auto* kind, const auto& values, const auto&) {
@@ -408,6 +418,7 @@ class ConfigReader {
       std::set<std::string_view> aside = {kNameKey, kind_key};
       if (list == "sensor") aside.insert(kCalibrationKey);
       if (list == "sensor") aside.insert(kJudgeKey);
+      if (list == "sensor") aside.insert(kBlendKey);
       const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), aside);
       use(name, description, values, *entry);
     }
@@ -578,6 +589,7 @@ std::string to_toml(const Config& config) {
     append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
     root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.calibration));
     root["sensor"].as_array()->back().as_table()->insert(kJudgeKey, to_table(sensor.judge));
+    root["sensor"].as_array()->back().as_table()->insert(kBlendKey, to_table(sensor.blend));
   }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
 

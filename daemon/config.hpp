@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/sensor_blend.hpp"
 #include "drivers/driver.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/scenes/scene.hpp"
@@ -27,9 +28,10 @@ struct SensorConfig {
   std::string name;
   const DriverDescription* driver = nullptr;
   ParameterValues values;
-  ParameterValues calibration;              ///< calibration_parameters()
-  std::string origin;                       ///< `file:line:column` of its entry; empty for the built-in default
-  ParameterValues judge = default_judge();  ///< judge_parameters()
+  ParameterValues calibration;                     ///< calibration_parameters()
+  std::string origin;                              ///< `file:line:column` of its entry; empty for the built-in default
+  ParameterValues judge = default_judge();         ///< judge_parameters()
+  ParameterValues blend = default_sensor_blend();  ///< sensor_blend_parameters()
 };
 
 struct SceneConfig {

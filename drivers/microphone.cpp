@@ -208,6 +208,7 @@ const DriverDescription kMicrophoneDriver{.name = "microphone",
                                           .summary = "one to four bare microphones, by PortAudio",
                                           .parameters = kMicrophoneParameters,
                                           .open = open_microphone,
-                                          .find = find_plugged_microphones};
+                                          .find = find_plugged_microphones,
+                                          .is_relative = true};
 
 }  // namespace yuragi
