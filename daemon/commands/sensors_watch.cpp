@@ -191,6 +191,11 @@ void add_sensors_watch(CLI::App& sensors) {
       "The table: m/s, gust and from (degrees) as the sensor says them; age of the last reading; the interval "
       "measured\n"
       "between two; frames (messages from the device), readings among them, and how often the device came again.\n"
+      "The state: what is live, simulated or a REPLAY makes the wind. What is connecting, STALE (silent), "
+      "DISCONNECTED,\n"
+      "FROZEN (says the same again and again), SEIZED (stands still where a wind blows) or IMPLAUSIBLE does not; "
+      "below\n"
+      "it stands why, and what to do about it.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();
