@@ -2,16 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "daemon/duration_text.hpp"
+
 namespace yuragi {
 namespace {
-
-/// A duration as a person says it: "12.3 s", "45 min", "3.5 h", "12 days".
-std::string lasting_text(double duration_s) {
-  if (duration_s < 120.0) return fmt::format("{:.1f} s", duration_s);
-  if (duration_s < 7200.0) return fmt::format("{:.0f} min", duration_s / 60.0);
-  if (duration_s < 2.0 * 86400.0) return fmt::format("{:.1f} h", duration_s / 3600.0);
-  return fmt::format("{:.0f} days", duration_s / 86400.0);
-}
 
 std::string connecting_text(const SensorEvidence& evidence) {
   if (evidence.link == LinkState::kConnected) {
@@ -22,7 +16,7 @@ std::string connecting_text(const SensorEvidence& evidence) {
 
 std::string live_text(const SensorEvidence& evidence) {
   std::string text = evidence.said.interval_s > 0.0
-                         ? fmt::format("a reading every {}", lasting_text(evidence.said.interval_s))
+                         ? fmt::format("a reading every {}", duration_text(evidence.said.interval_s))
                          : std::string("its first reading has come");
   if (evidence.vote == Vote::kDisputed && evidence.others_m_s) {
     text += fmt::format(
@@ -34,23 +28,23 @@ std::string live_text(const SensorEvidence& evidence) {
 }
 
 std::string stale_text(const SensorEvidence& evidence) {
-  const std::string silence = "no reading for " + lasting_text(evidence.said.age_s);
+  const std::string silence = "no reading for " + duration_text(evidence.said.age_s);
   if (evidence.said.interval_s <= 0.0) return silence;
   return fmt::format("{}; it used to speak every {}. Is the station on, and in reach of its sensor?", silence,
-                     lasting_text(evidence.said.interval_s));
+                     duration_text(evidence.said.interval_s));
 }
 
 std::string frozen_text(const SensorEvidence& evidence) {
   return fmt::format(
       "the same {:.2f} m/s {} times in {}. Its electronics hang, or ice holds it: look at it, and switch it off and on",
-      evidence.said.last ? evidence.said.last->speed_m_s : 0.0, evidence.same_count, lasting_text(evidence.same_for_s));
+      evidence.said.last ? evidence.said.last->speed_m_s : 0.0, evidence.same_count, duration_text(evidence.same_for_s));
 }
 
 std::string seized_text(const SensorEvidence& evidence) {
   const std::string others =
       evidence.others_m_s ? fmt::format("while the others say {:.1f} m/s", *evidence.others_m_s) : "after a windy day";
   return fmt::format("no wind for {}, {}. See whether it turns freely: ice, dirt or a worn bearing holds it",
-                     lasting_text(evidence.still_for_s), others);
+                     duration_text(evidence.still_for_s), others);
 }
 
 std::string implausible_text(const SensorEvidence& evidence) {
