@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -71,11 +72,13 @@ class SensorHub {
     std::unique_ptr<SensorRunner> runner;
     SourceRecord said;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
-    std::uint64_t impossible = 0;  ///< readings that were refused for what they said
-    LinkReport link;               ///< as of its last report
+    std::uint64_t not_believed = 0;  ///< plausible readings that were kept from the wind
+    std::uint64_t impossible = 0;    ///< readings that were refused for what they said
+    LinkReport link;                 ///< as of its last report
     std::uint64_t link_reports = 0;
     ChangeGate link_gate{kNothingTold};
     ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
+    std::optional<WindReading> last_raw;  ///< before calibration
   };
 
   void take(std::size_t index, const WindReading& reading);

@@ -53,6 +53,8 @@ void describe_everything() {
       "\n[sensor.calibration]  # below a [[sensor]] of any kind: from what it says to the wind; recordings keep what "
       "it says\n");
   print_parameters(calibration_parameters());
+  fmt::print("\n[sensor.blend]  # below a [[sensor]] of any kind: its part among several\n");
+  print_parameters(sensor_blend_parameters());
   fmt::print("\n[sensor.judge]  # below a [[sensor]] of any kind: which of its readings are believed\n");
   print_parameters(judge_parameters());
   fmt::print("\n[[scene]]  # of any kind: where it stands, and how it is seen\n");

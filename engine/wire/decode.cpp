@@ -115,7 +115,25 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
          read_text(from.name(), to.name) && read_text(from.driver(), to.driver) &&
          read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
          read(from.speed_m_s(), to.speed_m_s) && read(from.direction_deg(), to.direction_deg) &&
-         read(from.gust_m_s(), to.gust_m_s);
+         read(from.gust_m_s(), to.gust_m_s) && read(from.raw_speed_m_s(), to.raw_speed_m_s) &&
+         read(from.raw_direction_deg(), to.raw_direction_deg);
+}
+
+/// A server that does not know of it sends none: then nothing is at work.
+bool read(const fb::Shaping* from, Shaping& to) {
+  if (from == nullptr) return true;
+  constexpr double kMaxGain = 1e3;
+  const auto take = [](float value, double max, double& into) {
+    into = static_cast<double>(value);
+    return is_within(into, 0.0, max);
+  };
+  return take(from->site_gain(), kMaxGain, to.site_gain) && take(from->floor_gain(), kMaxGain, to.floor_gain) &&
+         take(from->breeze_m_s(), kMaxWind_m_s, to.breeze_m_s) && take(from->opening(), 1.0, to.opening) &&
+         take(from->ceiling_gain(), 1.0, to.ceiling_gain) && take(from->mean_m_s(), kMaxWind_m_s, to.mean_m_s) &&
+         take(from->shaped_mean_m_s(), kMaxWind_m_s, to.shaped_mean_m_s) &&
+         take(from->site_median_m_s(), kMaxWind_m_s, to.site_median_m_s) &&
+         take(from->site_strong_m_s(), kMaxWind_m_s, to.site_strong_m_s) &&
+         take(from->site_known_s(), kMaxDuration_s, to.site_known_s) && read_text(from->text(), to.text);
 }
 
 bool read(const fb::Sensors& from, Sensors& to) {
@@ -125,7 +143,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
     if (!read(*from.sensors()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.sensors.emplace_back())) return false;
   to.late_ticks = from.late_ticks();
   to.clients = from.clients();
-  return true;
+  return read(from.shaping(), to.shaping);
 }
 
 bool read(const fb::PlayerWish& from, PlayerWish& to) {

@@ -106,14 +106,32 @@ struct SensorStatus {
   std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
   bool replayed = false;         ///< a recording that is played again
   SensorState state = SensorState::kConnecting;
-  std::string state_reason;  ///< why, and what to do about it
+  std::string state_reason;             ///< why, and what to do about it
+  std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
+  std::optional<double> raw_direction_deg;
+};
+
+/// What makes the wind that moves the scenes another than the real one (engine/wind/wind_shaping.hpp).
+struct Shaping {
+  double site_gain = 1.0;
+  double floor_gain = 1.0;
+  double breeze_m_s = 0.0;
+  double opening = 1.0;
+  double ceiling_gain = 1.0;
+  double mean_m_s = 0.0;
+  double shaped_mean_m_s = 0.0;
+  double site_median_m_s = 0.0;
+  double site_strong_m_s = 0.0;
+  double site_known_s = 0.0;
+  std::string text;  ///< all that is at work, for a person to read; empty: nothing
 };
 
 struct Sensors {
   std::vector<SensorStatus> sensors;
-  WindState wind;
+  WindState wind;  ///< the real one; that of the frames is shaped
   std::uint64_t late_ticks = 0;
   std::uint32_t clients = 0;
+  Shaping shaping = {};
 };
 
 enum class PlayerAction : std::uint8_t { kTell, kPause, kResume, kStep, kSeek, kRate };

@@ -95,6 +95,8 @@ TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid
   EXPECT_NEAR(wind_after_a_while(hub, clock_).wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
   EXPECT_EQ(heard, std::vector{6.0});
   EXPECT_EQ(hub.status()[0].speed_m_s, 9.0);
+  EXPECT_EQ(hub.status()[0].raw_speed_m_s, 6.0);
+  EXPECT_EQ(hub.status()[0].raw_direction_deg, 90.0);
 }
 
 TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {

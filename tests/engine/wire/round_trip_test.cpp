@@ -247,6 +247,9 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.state_reason, "the same 3.42 m/s 61 times");
   EXPECT_EQ(sensors.sensors[1].state, SensorState::kConnecting);
   EXPECT_FALSE(sensors.sensors[1].replayed);
+  EXPECT_EQ(gauge.raw_speed_m_s, 0.5);
+  EXPECT_EQ(gauge.raw_direction_deg, 349.5);
+  EXPECT_EQ(sensors.sensors[1].raw_speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
   EXPECT_EQ(sensors.late_ticks, 5u);
@@ -259,6 +262,21 @@ TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
     sensors.sensors[0].state = static_cast<SensorState>(number);
     EXPECT_EQ(decoded<Sensors>(encode(sensors)).sensors[0].state, sensors.sensors[0].state) << number;
   }
+}
+
+TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
+  const Shaping shaping = decoded<Sensors>(encode(samples::sensors())).shaping;
+  EXPECT_EQ(shaping.site_gain, 1.75);
+  EXPECT_EQ(shaping.floor_gain, 2.5);
+  EXPECT_EQ(shaping.breeze_m_s, 0.25);
+  EXPECT_EQ(shaping.opening, 0.5);
+  EXPECT_EQ(shaping.ceiling_gain, 0.875);
+  EXPECT_EQ(shaping.mean_m_s, 0.75);
+  EXPECT_EQ(shaping.shaped_mean_m_s, 1.5);
+  EXPECT_EQ(shaping.site_median_m_s, 1.25);
+  EXPECT_EQ(shaping.site_strong_m_s, 3.5);
+  EXPECT_EQ(shaping.site_known_s, 86400.0);
+  EXPECT_EQ(shaping.text, "floor: raised 0.8 to 1.5 m/s");
 }
 
 TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {
