@@ -139,6 +139,53 @@ const std::array kCalibrationParameters = {
               .help = "of the ground around: 0.0002 water, 0.03 meadow, 0.5 suburb, 1 city"},
 };
 
+const std::array kJudgeParameters = {
+    Parameter{.name = "enabled",
+              .unit = "",
+              .default_value = true,
+              .help =
+                  "readings that are not believable are kept from the wind (never from a recording); false: all are "
+                  "taken; simulated ones always are"},
+    Parameter{.name = "max_speed",
+              .unit = "m/s",
+              .default_value = kMaxPlausibleSpeed_m_s,
+              .min = 1.0,
+              .max = kMaxPlausibleSpeed_m_s,
+              .help = "faster than this is out of the sensor's range"},
+    Parameter{.name = "spike",
+              .unit = "m/s",
+              .default_value = 4.0,
+              .min = 0.1,
+              .max = 100.0,
+              .help = "what differs from the last readings by less than this and half the wind is no spike"},
+    Parameter{.name = "slew",
+              .unit = "m/s^2",
+              .default_value = 5.0,
+              .min = 0.01,
+              .max = 1000.0,
+              .help = "a larger step is believed once it has lasted for as long as it takes at this rate"},
+    Parameter{.name = "frozen",
+              .unit = "s",
+              .default_value = 30.0,
+              .min = 1.0,
+              .max = 86400.0,
+              .help =
+                  "exactly the same for so long, and 20 times, is frozen; a sensor that repeats itself by nature, or "
+                  "never said anything else, has longer"},
+    Parameter{.name = "seized",
+              .unit = "s",
+              .default_value = 7200.0,
+              .min = 60.0,
+              .max = 864000.0,
+              .help = "standing still for so long while the other sensors have more than 3 m/s is seized; one that is "
+                      "alone has six times as long, after a windy day"},
+    Parameter{.name = "compare",
+              .unit = "",
+              .default_value = true,
+              .help = "its mean over 5 min is compared with the other sensors'; where three or more speak, one that "
+                      "differs from most by more than 3 times and 3 m/s for 10 min is not believed"},
+};
+
 const std::array kCommonSceneParameters = {
     Parameter{.name = "x",
               .unit = "m",
@@ -177,6 +224,7 @@ const std::array kConfigTables = {
 
 constexpr std::string_view kNameKey = "name";
 constexpr std::string_view kCalibrationKey = "calibration";
+constexpr std::string_view kJudgeKey = "judge";
 
 /// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
 std::vector<Parameter> parameters_of(const DriverDescription& driver) {
@@ -219,7 +267,9 @@ class ConfigReader {
                      const ParameterValues calibration =
                          read_table(entry, "sensor.", kCalibrationKey, kCalibrationParameters);
                      check_curve(entry, calibration);
-                     config.sensors.push_back({name, driver, values, calibration, place(entry.source())});
+                     check_is_table(entry, kJudgeKey);
+                     const ParameterValues judge = read_table(entry, "sensor.", kJudgeKey, kJudgeParameters);
+                     config.sensors.push_back({name, driver, values, calibration, place(entry.source()), judge});
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
                    [&](const auto& name, auto* kind, const auto& values, const auto&) {
@@ -293,6 +343,13 @@ class ConfigReader {
     }
   }
 
+  void check_is_table(const toml::table& sensor, std::string_view key) {
+    if (const toml::node* node = sensor.get(key); node != nullptr && !node->is_table()) {
+      const std::string path = "sensor." + std::string(key);
+      mistake(node->source(), path, "is a value; write it as a table, [" + path + "]");
+    }
+  }
+
   void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
     if (const toml::node* node = sensor.get(kCalibrationKey); node != nullptr && !node->is_table()) {
       mistake(node->source(), "sensor.calibration", "is a value; write it as a table, [sensor.calibration]");
@@ -351,6 +408,7 @@ class ConfigReader {
       }
       std::set<std::string_view> aside = {kNameKey, kind_key};
       if (list == "sensor") aside.insert(kCalibrationKey);
+      if (list == "sensor") aside.insert(kJudgeKey);
       const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), aside);
       use(name, description, values, *entry);
     }
@@ -420,6 +478,26 @@ std::span<const Parameter> calibration_parameters() {
 
 ParameterValues no_calibration() {
   return defaults_of(kCalibrationParameters);
+}
+
+std::span<const Parameter> judge_parameters() {
+  return kJudgeParameters;
+}
+
+ParameterValues default_judge() {
+  return defaults_of(kJudgeParameters);
+}
+
+std::optional<JudgeSettings> judge_settings_of(const SensorConfig& sensor) {
+  constexpr double kAlonePatience = 6.0;
+  const ParameterValues& values = sensor.judge;
+  if (!values.flag("enabled")) return std::nullopt;
+  return JudgeSettings{.max_speed_m_s = values.number("max_speed"),
+                       .slew_m_s2 = values.number("slew"),
+                       .least_spike_m_s = values.number("spike"),
+                       .frozen_s = values.number("frozen"),
+                       .seized_s = values.number("seized"),
+                       .seized_alone_s = kAlonePatience * values.number("seized")};
 }
 
 Calibration calibration_of(const SensorConfig& sensor) {
@@ -500,6 +578,7 @@ std::string to_toml(const Config& config) {
   for (const SensorConfig& sensor : config.sensors) {
     append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
     root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.calibration));
+    root["sensor"].as_array()->back().as_table()->insert(kJudgeKey, to_table(sensor.judge));
   }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
 

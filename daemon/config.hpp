@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -13,16 +14,22 @@
 #include "engine/base/parameter.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/wind/calibration.hpp"
+#include "engine/wind/reading_judge.hpp"
 
 namespace yuragi {
+
+/// What the table [sensor.judge] of a sensor may hold, and its defaults.
+std::span<const Parameter> judge_parameters();
+ParameterValues default_judge();
 
 /// A sensor or a scene of an installation: which kind, how it is called, and its own parameters.
 struct SensorConfig {
   std::string name;
   const DriverDescription* driver = nullptr;
   ParameterValues values;
-  ParameterValues calibration;  ///< calibration_parameters()
-  std::string origin;           ///< `file:line:column` of its entry; empty for the built-in default
+  ParameterValues calibration;              ///< calibration_parameters()
+  std::string origin;                       ///< `file:line:column` of its entry; empty for the built-in default
+  ParameterValues judge = default_judge();  ///< judge_parameters()
 };
 
 struct SceneConfig {
@@ -61,6 +68,9 @@ ParameterValues no_calibration();
 
 /// What a sensor's calibration says. Throws ConfigError for a curve that is none.
 Calibration calibration_of(const SensorConfig& sensor);
+
+/// How strictly a sensor's readings are judged; nothing where they are not.
+std::optional<JudgeSettings> judge_settings_of(const SensorConfig& sensor);
 
 /// What is wrong with a configuration, one line for each mistake: `file:line:column: key: what is wrong; what is
 /// allowed`.

@@ -26,13 +26,14 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   Config one_source = config;
   one_source.sensors.resize(1);
   const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts);
-
   WindShaping shaping(shaping_settings(config), gusts);
 
   const double rate_hz = config.animation.number("rate");
   const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
   LockstepResult result;
   std::uint64_t followed_ticks = 0;
+  const std::optional<JudgeSettings> judged_by = judge_settings_of(one_source.sensors[0]);
+  ReadingJudge judge(judged_by.value_or(JudgeSettings{}));
 
   std::optional<PlayedReading> next = playback.next();
   for (std::uint64_t tick = 0; next.has_value(); ++tick) {
@@ -43,6 +44,8 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
     for (; next && next->log_time_s <= now_s; next = playback.next()) {
       WindReading reading = next->reading;
       reading.time.mono = MonoTime(from_seconds(next->log_time_s));
+      // As the daemon would: what is not believed moves nothing.
+      if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) continue;
       if (!estimator->accept(0, reading)) continue;
       ++result.readings;
       result.reading_mean_m_s += reading.speed_m_s;

@@ -73,12 +73,20 @@ OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimato
   OfflineWindResult result;
   HeardReadings readings(playback, options);
   std::optional<WindReading> next = readings.next();
+  ReadingJudge judge(options.judge.value_or(JudgeSettings{}));
+  const auto is_believed = [&](const WindReading& reading) {
+    return !options.judge || reading.quality == ReadingQuality::kSimulated || judge.judge(reading);
+  };
   // The last reading is heard by the tick at its time or after it, which is the last.
   for (bool goes_on = next.has_value(); goes_on; ++result.states) {
     const double time_s = static_cast<double>(result.states) / options.rate_hz;
     const MonoTime now(from_seconds(time_s));
     for (; next && next->time.mono <= now; next = readings.next()) {
-      if (estimator.accept(0, *next)) ++result.readings;
+      if (!is_believed(*next)) {
+        ++result.withheld;
+      } else if (estimator.accept(0, *next)) {
+        ++result.readings;
+      }
     }
     goes_on = next.has_value() && time_s + 1.0 / options.rate_hz <= options.until_s;
     use(time_s, estimator.advance(now));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/windlog/windlog_playback.hpp"
+#include "engine/wind/reading_judge.hpp"
 #include "engine/wind/wind_estimator.hpp"
 
 namespace yuragi {
@@ -23,10 +24,13 @@ struct OfflineWindOptions {
   std::optional<double> sensor_interval_s{};
   std::vector<OfflineGap> gaps{};
   double until_s = std::numeric_limits<double>::infinity();  ///< no tick after this, and nothing is read beyond it
+  /// What is believed of the readings, as in the daemon; empty: everything.
+  std::optional<JudgeSettings> judge{};
 };
 
 struct OfflineWindResult {
   std::uint64_t readings = 0;  ///< that the estimator heard
+  std::uint64_t withheld = 0;  ///< that were not believed
   std::uint64_t states = 0;
   double duration_s = 0.0;  ///< of log time
 };

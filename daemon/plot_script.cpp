@@ -43,8 +43,9 @@ std::string plot_text(std::string_view text) {
 }
 
 std::string plot_output(const std::string& file, bool is_svg, int width_px, int height_px) {
-  return fmt::format("set terminal {} size {},{} {}\nset output {}\n", is_svg ? "svg" : "pngcairo", width_px, height_px,
-                     is_svg ? "dynamic background 'white'" : "background 'white'", plot_text(file));
+  return fmt::format("set encoding utf8\nset terminal {} size {},{} {}\nset output {}\n", is_svg ? "svg" : "pngcairo",
+                     width_px, height_px, is_svg ? "dynamic background 'white'" : "background 'white'",
+                     plot_text(file));
 }
 
 void draw_script(const std::string& file,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "daemon/sensor_table.hpp"
@@ -10,16 +11,22 @@
 namespace yuragi {
 namespace {
 
-std::string_view name_of(SourceHealth health) {
-  switch (health) {
-    case SourceHealth::kSilent:
-      return "silent";
-    case SourceHealth::kLive:
-      return "live";
-    case SourceHealth::kStale:
-      return "stale";
-  }
-  return "?";
+/// What a log line is about: a state, and whether the others differ.
+std::uint32_t key_of(SensorState state, Vote vote) {
+  constexpr std::uint32_t kDisputedBit = 1U << 8U;
+  return static_cast<std::uint32_t>(state) | (vote == Vote::kDisputed ? kDisputedBit : 0U);
+}
+SensorState state_in(std::uint32_t key) {
+  return static_cast<SensorState>(key & 0xFFU);
+}
+
+bool is_trouble(SensorState state) {
+  return !is_believed(state) && state != SensorState::kConnecting;
+}
+
+std::string passed_over_text(const ChangeGate& gate) {
+  if (gate.passed_over() == 0) return {};
+  return fmt::format("; {} changes in between did not last", gate.passed_over());
 }
 
 }  // namespace
@@ -43,7 +50,12 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
 
 SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
                      Listener listener)
-    : clock_(clock), listener_(std::move(listener)), estimator_(make_estimator(config, std::move(noise))) {
+    : clock_(clock),
+      listener_(std::move(listener)),
+      estimator_(make_estimator(config, std::move(noise))),
+      stale_intervals_(config.wind.number("stale_intervals")),
+      default_direction_deg_(config.wind.number("default_direction")),
+      vote_(config.sensors.size()) {
   // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
   std::vector<std::unique_ptr<Sensor>> sensors;
   for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
@@ -51,6 +63,10 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     Channel channel;
     channel.config = config.sensors[index];
     channel.calibration = calibration_of(channel.config);
+    const std::optional<JudgeSettings> judged_by = judge_settings_of(channel.config);
+    channel.is_judged = judged_by.has_value();
+    channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
+    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare");
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }
@@ -62,36 +78,99 @@ const WindState& SensorHub::advance() {
     channel.runner->drain([&](const WindReading& reading) {
       ++channel.readings;
       if (listener_) listener_(index, reading);
-      estimator_->accept(index, channel.calibration.applied_to(reading));
+      take(index, reading);
     });
+    judge_refusals(channel);
   }
-  wind_ = estimator_->advance(clock_.now().mono);
-  for (std::size_t index = 0; index < channels_.size(); ++index) log_changes(index);
+  const MonoTime now = clock_.now().mono;
+  compare(now);
+  wind_ = estimator_->advance(now);
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    log_link(channels_[index], now);
+    log_state(index, now);
+  }
   return wind_;
 }
 
-void SensorHub::log_changes(std::size_t index) {
+/// A reading as it was said: what it comes to, and whether it is to be believed.
+void SensorHub::take(std::size_t index, const WindReading& said) {
   Channel& channel = channels_[index];
-
-  // The link: a change of its state is news; one more failed attempt is not.
-  if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.logged_link_reports) {
-    const LinkReport link = channel.runner->link();
-    if (link.state != channel.logged_link || channel.logged_link_reports == 0) {
-      spdlog::info("sensor {}: {}: {}", channel.config.name, name_of(link.state), link.detail);
-    } else {
-      spdlog::debug("sensor {}: {}: {}", channel.config.name, name_of(link.state), link.detail);
-    }
-    channel.logged_link_reports = reports;
-    channel.logged_link = link.state;
+  WindReading reading = channel.calibration.applied_to(said);
+  // Nothing was said in the future: such a reading would make all that follow late ones.
+  reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
+  if (!is_plausible(reading)) {
+    if (channel.is_judged) channel.judge.count_impossible(1);
+    return;
   }
+  if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
+  channel.said.take(reading, default_direction_deg_);
 
-  const SourceReport report = estimator_->report(index);
-  if (report.health != channel.logged_health) {
-    spdlog::info("sensor {}: {} (was {}); last reading {:.1f} s ago, interval {:.3g} s; {} frames, {} reconnects",
-                 channel.config.name, name_of(report.health), name_of(channel.logged_health), report.age_s,
-                 report.interval_s, channel.runner->frame_count(), channel.runner->reconnect_count());
-    channel.logged_health = report.health;
+  // What a simulation makes up may be as steady as it likes.
+  const bool is_judged = channel.is_judged && reading.quality != ReadingQuality::kSimulated;
+  if (is_judged && !channel.judge.judge(reading, vote_.others_m_s(index))) return;
+  vote_.hear(index, reading.time.mono, reading.speed_m_s);
+  if (vote_.vote_on(index) != Vote::kOutvoted) estimator_->accept(index, reading);
+}
+
+/// Readings that were refused before they came to the hub speak against the sensor, too.
+void SensorHub::judge_refusals(Channel& channel) const {
+  const std::uint64_t impossible = channel.runner->refused_count(Refusal::kImplausible);
+  if (channel.is_judged) channel.judge.count_impossible(impossible - channel.impossible);
+  channel.impossible = impossible;
+}
+
+/// Lets those be compared that measure the wind of now, and are well.
+void SensorHub::compare(MonoTime now) {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    const Channel& channel = channels_[index];
+    const SourceReport said = channel.said.report(now, stale_intervals_);
+    const bool is_measured =
+        !channel.config.driver->plays_recordings && said.last && said.last->quality != ReadingQuality::kSimulated;
+    const bool is_well = said.health == SourceHealth::kLive && channel.judge.fault() <= ReadingFault::kSpike;
+    vote_.seat(index, channel.is_compared && is_measured && is_well);
   }
+  vote_.advance(now);
+}
+
+SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
+  const Channel& channel = channels_[index];
+  return {.link = channel.link.state,
+          .link_detail = channel.link.detail,
+          .said = channel.said.report(now, stale_intervals_),
+          .is_replay = channel.config.driver->plays_recordings,
+          .fault = channel.judge.fault(),
+          .vote = vote_.vote_on(index),
+          .same_count = channel.judge.same_count(),
+          .same_for_s = channel.judge.same_for_s(),
+          .still_for_s = channel.judge.still_for_s(),
+          .bad_share = channel.judge.bad_share(),
+          .mean_m_s = vote_.mean_m_s(index),
+          .others_m_s = vote_.others_m_s(index)};
+}
+
+/// The link: a change of its state is news; one more failed attempt is not.
+void SensorHub::log_link(Channel& channel, MonoTime now) const {
+  if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.link_reports) {
+    channel.link = channel.runner->link();
+    channel.link_reports = reports;
+    spdlog::debug("sensor {}: {}: {}", channel.config.name, name_of(channel.link.state), channel.link.detail);
+  }
+  if (channel.link_reports == 0 || !channel.link_gate.offer(static_cast<std::uint32_t>(channel.link.state), now))
+    return;
+  spdlog::info("sensor {}: {}: {}{}", channel.config.name, name_of(channel.link.state), channel.link.detail,
+               passed_over_text(channel.link_gate));
+}
+
+void SensorHub::log_state(std::size_t index, MonoTime now) {
+  Channel& channel = channels_[index];
+  const SensorEvidence evidence = evidence_of(index, now);
+  const SensorState state = state_of(evidence);
+  const SensorState before = state_in(channel.state_gate.told());
+  if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
+  const auto level = is_trouble(state) || evidence.vote == Vote::kDisputed ? spdlog::level::warn : spdlog::level::info;
+  spdlog::log(level, "sensor {}: {}: {} (was {}{}; {} readings, {} frames, {} reconnects)", channel.config.name,
+              name_of(state), reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
+              channel.readings, channel.runner->frame_count(), channel.runner->reconnect_count());
 }
 
 std::vector<wire::SensorStatus> SensorHub::status() const {
@@ -99,7 +178,10 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     const Channel& channel = channels_[index];
     const LinkReport link = channel.runner->link();
-    const SourceReport report = estimator_->report(index);
+    SensorEvidence evidence = evidence_of(index, clock_.now().mono);
+    evidence.link = link.state;
+    evidence.link_detail = link.detail;
+    const SourceReport& report = evidence.said;
 
     wire::SensorStatus status;
     status.name = channel.config.name;
@@ -126,6 +208,8 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     status.frames = channel.runner->frame_count();
     status.reconnects = channel.runner->reconnect_count();
     status.replayed = channel.config.driver->plays_recordings;
+    status.state = state_of(evidence);
+    status.state_reason = reason_of(status.state, evidence);
     all.push_back(std::move(status));
   }
   return all;

@@ -5,8 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/change_gate.hpp"
 #include "daemon/config.hpp"
+#include "daemon/sensor_diagnosis.hpp"
 #include "daemon/sensor_runner.hpp"
+#include "engine/wind/reading_judge.hpp"
+#include "engine/wind/sensor_vote.hpp"
+#include "engine/wind/source_record.hpp"
 #include "engine/wind/wind_estimator.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -14,6 +19,10 @@ namespace yuragi {
 
 /// All sensors of an installation, and the estimator that makes one wind of what they say. Belongs to the I/O thread;
 /// each sensor runs on a thread of its own.
+///
+/// Each sensor's readings are calibrated, judged by themselves (ReadingJudge) and compared with the other sensors'
+/// (SensorVote). What is not believed is kept from the estimator, for which the sensor has then fallen silent: it hands
+/// over at its own pace, as for any silence. The listener hears everything, before all that.
 class SensorHub {
  public:
   /// Sees each plausible reading, before calibration; the recorder listens here.
@@ -46,21 +55,37 @@ class SensorHub {
   bool is_finished() const;
 
  private:
+  static constexpr std::uint32_t kNothingTold = ~0U;
+
   struct Channel {
     SensorConfig config;
     Calibration calibration;
+    ReadingJudge judge;
+    bool is_judged = true;
+    bool is_compared = true;
     std::unique_ptr<SensorRunner> runner;
+    SourceRecord said;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
-    SourceHealth logged_health = SourceHealth::kSilent;
-    std::uint64_t logged_link_reports = 0;
-    LinkState logged_link = LinkState::kConnecting;
+    std::uint64_t impossible = 0;  ///< readings that were refused for what they said
+    LinkReport link;               ///< as of its last report
+    std::uint64_t link_reports = 0;
+    ChangeGate link_gate{kNothingTold};
+    ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
   };
 
-  void log_changes(std::size_t index);
+  void take(std::size_t index, const WindReading& reading);
+  void judge_refusals(Channel& channel) const;
+  void compare(MonoTime now);
+  SensorEvidence evidence_of(std::size_t index, MonoTime now) const;
+  void log_link(Channel& channel, MonoTime now) const;
+  void log_state(std::size_t index, MonoTime now);
 
   const Clock& clock_;
   Listener listener_;
   std::unique_ptr<WindEstimator> estimator_;
+  double stale_intervals_;
+  double default_direction_deg_;
+  SensorVote vote_;
   std::vector<Channel> channels_;
   WindState wind_;
 };

@@ -8,18 +8,15 @@
 #include <fmt/format.h>
 
 #include "drivers/sensor.hpp"
-#include "engine/wind/wind_estimator.hpp"
 
 namespace yuragi {
 namespace {
 
 /// Does a recording speak, and nothing else?
 bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
-  const auto is_live = [](const wire::SensorStatus& sensor) {
-    return static_cast<SourceHealth>(sensor.health) == SourceHealth::kLive;
-  };
-  return std::ranges::any_of(sensors, is_live) &&
-         std::ranges::none_of(sensors, [&](const auto& sensor) { return is_live(sensor) && !sensor.replayed; });
+  const auto speaks = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
+  return std::ranges::any_of(sensors, speaks) &&
+         std::ranges::none_of(sensors, [&](const auto& sensor) { return speaks(sensor) && !sensor.replayed; });
 }
 
 std::string_view wind_source(const wire::Sensors& sensors) {
@@ -34,17 +31,13 @@ std::string_view wind_source(const wire::Sensors& sensors) {
   return "?";
 }
 
-/// One word for link and health together: what a person wants to know first.
-std::string_view state_of(const wire::SensorStatus& sensor) {
-  switch (static_cast<SourceHealth>(sensor.health)) {
-    case SourceHealth::kLive:
-      return sensor.replayed ? "REPLAY" : sensor.simulated ? "simulated" : "live";
-    case SourceHealth::kStale:
-      return "STALE";
-    case SourceHealth::kSilent:
-      break;
-  }
-  return name_of(static_cast<LinkState>(sensor.link));
+/// In capitals where somebody should look, or could take it for the wind of now.
+std::string state_text(SensorState state) {
+  std::string text(name_of(state));
+  const bool is_quiet =
+      state == SensorState::kLive || state == SensorState::kSimulated || state == SensorState::kConnecting;
+  if (!is_quiet) std::ranges::transform(text, text.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
+  return state == SensorState::kReplayed ? "REPLAY" : text;
 }
 
 std::string direction_text(double direction_deg) {
@@ -96,16 +89,19 @@ std::string sensor_table(const wire::Sensors& sensors) {
   table += '\n';
   const auto out = std::back_inserter(table);
   const auto row = [&](const auto&... cells) {
-    fmt::format_to(out, "{:<14.14} {:<10.10} {:<10} {:>6} {:>7} {:>6} {:>7} {:>7} {:>9} {:>9} {:>5}\n", cells...);
+    fmt::format_to(out, "{:<12.12} {:<10.10} {:<12} {:>6} {:>7} {:>6} {:>7} {:>7} {:>9} {:>9} {:>5}\n", cells...);
   };
   row("sensor", "driver", "state", "m/s", "from", "gust", "age s", "every s", "frames", "readings", "again");
   for (const wire::SensorStatus& sensor : sensors.sensors) {
-    row(sensor.name, sensor.driver, state_of(sensor), optional_text(sensor.speed_m_s, "{:.2f}"),
+    row(sensor.name, sensor.driver, state_text(sensor.state), optional_text(sensor.speed_m_s, "{:.2f}"),
         sensor.direction_deg ? direction_text(*sensor.direction_deg) : "-", optional_text(sensor.gust_m_s, "{:.2f}"),
         sensor.readings > 0 ? fmt::format("{:.1f}", sensor.age_s) : "-",
         sensor.interval_s > 0.0 ? fmt::format("{:.2f}", sensor.interval_s) : "-", sensor.frames, sensor.readings,
         sensor.reconnects);
-    if (!sensor.detail.empty()) {
+    if (!sensor.state_reason.empty()) {
+      table += wrapped(fmt::format("{}: {}", name_of(sensor.state), sensor.state_reason));
+    }
+    if (!sensor.detail.empty() && sensor.detail != sensor.state_reason) {
       table += wrapped(fmt::format("{}: {}", name_of(static_cast<LinkState>(sensor.link)), sensor.detail));
     }
     if (!sensor.refused.empty()) table += wrapped("refused: " + refusal_text(sensor));

@@ -23,8 +23,7 @@ const ImVec4 kDim(0.98F, 0.97F, 0.94F, 0.36F);
 const ImVec4 kGood(0.62F, 0.90F, 0.52F, 1.0F);
 const ImVec4 kWarn(1.0F, 0.78F, 0.36F, 1.0F);
 
-constexpr std::array kHealth = {"silent", "live", "stale"};  // as wire.hpp numbers them
-constexpr std::uint8_t kHealthLive = 1;
+constexpr float kReasonWidthInLetters = 24.0F;
 
 constexpr double kArrowFullSpeed_m_s = 12.0;  // as long as the compass is wide
 
@@ -104,7 +103,7 @@ void draw_compass(const WindState& wind, double heading_deg, float radius) {
 template <class Property>
 bool is_true_of_all_that_speak(const wire::Sensors* sensors, Property property) {
   if (sensors == nullptr) return false;
-  const auto is_live = [](const wire::SensorStatus& sensor) { return sensor.health == kHealthLive; };
+  const auto is_live = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
   const auto differs = [&](const wire::SensorStatus& sensor) { return is_live(sensor) && !(sensor.*property); };
   return std::any_of(sensors->sensors.begin(), sensors->sensors.end(), is_live) &&
          std::none_of(sensors->sensors.begin(), sensors->sensors.end(), differs);
@@ -138,15 +137,18 @@ void write_wind(const OverlayFacts& facts, float scale) {
   ImGui::EndGroup();
 }
 
+/// A line for a sensor, and under it what is wrong and what to do about it.
 void write_sensor(const wire::SensorStatus& sensor) {
-  const bool is_live = sensor.health == kHealthLive;
-  const char* const health = sensor.health < kHealth.size() ? kHealth[sensor.health] : "unknown";
-  std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, health);
+  const bool is_well = is_believed(sensor.state);
+  std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, name_of(sensor.state));
   if (sensor.speed_m_s) text += fmt::format(", {:.1f} m/s", *sensor.speed_m_s);
   if (sensor.direction_deg) text += fmt::format(" from {:.0f}\u00b0", *sensor.direction_deg);
-  if (sensor.replayed) text += ", REPLAY";
-  if (sensor.simulated) text += ", simulated";
-  write(is_live ? kGood : kWarn, text);
+  if (sensor.replayed && sensor.state != SensorState::kReplayed) text += ", REPLAY";
+  write(sensor.state == SensorState::kReplayed || !is_well ? kWarn : kGood, text);
+  if (is_well || sensor.state_reason.empty()) return;
+  ImGui::PushTextWrapPos(kReasonWidthInLetters * ImGui::GetFontSize());
+  write(kQuiet, sensor.state_reason);
+  ImGui::PopTextWrapPos();
 }
 
 /// Why the wind of the picture is not the one outside, a line for each reason.

@@ -51,6 +51,8 @@ void describe_everything() {
       "\n[sensor.calibration]  # below a [[sensor]] of any kind: from what it says to the wind; recordings keep what "
       "it says\n");
   print_parameters(calibration_parameters());
+  fmt::print("\n[sensor.judge]  # below a [[sensor]] of any kind: which of its readings are believed\n");
+  print_parameters(judge_parameters());
   fmt::print("\n[[scene]]  # of any kind: where it stands, and how it is seen\n");
   print_parameters(common_scene_parameters());
   for (const SceneDescription* scene : scene_table()) {

@@ -31,6 +31,9 @@ constexpr const char* kWindFooter =
     "direction_deg (where it comes from), trust (0: all default wind, 1: all sensor), state (default, handover, "
     "live).\n"
     "\n"
+    "Readings that the daemon would not believe (spikes, a value that is frozen) are left out here, too; a --config\n"
+    "with [sensor.judge] enabled = false takes them all.\n"
+    "\n"
     "--sensor-interval plays a slower sensor: vector means over so many seconds, heard at their end. --gap leaves out\n"
     "what was said from one second on and before another; it can be given again. The same recording, options and seed\n"
     "give the same table. The wind is the real one; --shaped writes the one that moves the scenes (opening hours are\n"
@@ -120,9 +123,9 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
       });
   table.end(options.output);
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
-  fmt::print(stderr, "{}: {} states of {:.1f} s, from {} readings\n",
+  fmt::print(stderr, "{}: {} states of {:.1f} s, from {} readings{}\n",
              options.output == "-" ? "standard output" : options.output, result.states, result.duration_s,
-             result.readings);
+             result.readings, result.withheld > 0 ? fmt::format("; {} were not believed", result.withheld) : "");
 }
 
 void run_wind(WindOptions options) {
@@ -133,6 +136,7 @@ void run_wind(WindOptions options) {
   Config config = options.config_file ? load_config(*options.config_file) : default_config();
   config.sensors.resize(1);
   if (options.seed) config.seed = *options.seed;
+  options.offline.judge = judge_settings_of(config.sensors[0]);
 
   if (options.output == "-") return write_wind(options, config, stdout);
   OutputFile output(options.output, options.force);

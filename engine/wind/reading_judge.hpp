@@ -14,18 +14,22 @@ namespace yuragi {
 /// What is wrong with what a sensor says, seen from the readings alone.
 enum class ReadingFault : std::uint8_t {
   kNone,
-  kSpike,   ///< far from all that came before, and not said again
-  kFrozen,  ///< exactly the same again and again, while a wind that is no calm never is
-  kSeized,  ///< nothing for hours where a wind blows
+  kSpike,        ///< far from all that came before, and not said again
+  kImplausible,  ///< out of range, or a spike, again and again
+  kFrozen,       ///< exactly the same again and again, while a wind that is no calm never is
+  kSeized,       ///< nothing for hours where a wind blows
 };
-inline constexpr std::array<std::string_view, 4> kReadingFaultNames = {"none", "spike", "frozen", "seized"};
+inline constexpr std::array<std::string_view, 5> kReadingFaultNames = {"none", "spike", "implausible", "frozen",
+                                                                       "seized"};
 
 struct JudgeSettings {
+  /// Faster than this is out of the sensor's range.
+  double max_speed_m_s = kMaxPlausibleSpeed_m_s;
   /// A step is believed when it has been said again for as long as a wind of this acceleration would take to make it.
   double slew_m_s2 = 5.0;
   /// What differs by less than this and half the wind is no spike.
   double least_spike_m_s = 4.0;
-  /// The same for so many readings, and for so long, is frozen.
+  /// The same for so many readings, and for so long, is frozen; longer where the sensor is one that repeats itself.
   std::size_t frozen_readings = 20;
   double frozen_s = 30.0;
   /// A calm for so long is a seizure where the other sensors say that it is windy; alone, a calm for so long where the
@@ -39,33 +43,54 @@ struct JudgeSettings {
 ///
 /// Spikes: a reading is suspect if it is further than 5 robust standard deviations (1.4826 times the median of the
 /// distances from the median of the last 7), and further than `least_spike_m_s` and half the wind, from that median
-/// (Hampel 1974, "The influence curve and its role in robust estimation"). A suspect is held back; if what follows
-/// says the same for long enough it was a step, and is believed from then on; otherwise it was a spike, and is not.
-/// Frozen: bit for bit the same speed and direction, above a calm; a sensor whose resolution is coarse for the wind's
-/// turbulence may repeat itself ten times as long. Thread-safe: no. Realtime-safe: yes.
+/// (Hampel 1974, "The influence curve and its role in robust estimation"); further than twice that, it is suspect
+/// whatever the deviation. A suspect is held back; if what follows says the same for long enough, or 20 times, it was a
+/// step, and is believed from then on; otherwise it was a spike, and is not.
+/// Implausible: three of ten of its last 20 or so readings were spikes or out of range, until one of twenty is.
+/// Frozen: bit for bit the same speed, direction and gust, above a calm, and ten times longer than the sensor usually
+/// stays with a value: one that is asked more often than it measures, or whose resolution is coarse for the wind's
+/// turbulence, repeats itself by nature. One that never said anything else has twenty times the time: it may be a
+/// simulator whose wind is steady.
+/// Thread-safe: no. Realtime-safe: yes.
 class ReadingJudge {
  public:
   explicit ReadingJudge(const JudgeSettings& settings = {}) : settings_(settings) {}
 
-  /// Is it to be believed? Readings come in the order of their times. `windy_m_s`: what the other sensors say of the
-  /// wind, where there are any.
+  /// Is it to be believed? Readings come in the order of their times; one that is late is not believed. `others_m_s`:
+  /// what the other sensors say of the wind, where there are any.
   bool judge(const WindReading& reading, std::optional<double> others_m_s = {}) noexcept;
 
-  /// What is wrong at the moment: kFrozen or kSeized for as long as it lasts, kSpike while a suspect is held back.
+  /// Tells of readings that were refused before they came here, since what they said was impossible.
+  void count_impossible(std::uint64_t readings) noexcept;
+
+  /// What is wrong at the moment: kImplausible, kFrozen or kSeized for as long as it lasts, kSpike while a suspect is
+  /// held back.
   ReadingFault fault() const noexcept { return fault_; }
 
   /// Readings that turned out to be spikes.
   std::uint64_t spikes() const noexcept { return spikes_; }
 
+  /// For the fault's reason: how often and for how long it has said the same; for how long it has stood still; which
+  /// part of its last readings were spikes or out of range.
+  std::size_t same_count() const noexcept { return same_count_; }
+  double same_for_s() const noexcept { return same_ ? last_s_ - same_since_s_ : 0.0; }
+  double still_for_s() const noexcept { return still_s_; }
+  double bad_share() const noexcept { return bad_share_; }
+
  private:
   static constexpr std::size_t kWindow = 7;
 
+  ReadingFault fault_of(const WindReading& reading, double time_s, std::optional<double> others_m_s) noexcept;
+  bool is_spike(WindVector wind, double time_s) noexcept;
   bool is_suspect(WindVector wind) const noexcept;
-  WindVector middle() const noexcept;
   bool is_confirmed(double time_s) const noexcept;
+  void dismiss_suspicion() noexcept;
+  WindVector middle() const noexcept;
   void believe(WindVector wind) noexcept;
+  void count(bool is_bad) noexcept;
   bool is_frozen(const WindReading& reading, double time_s) noexcept;
-  bool is_seized(const WindReading& reading, double time_s, std::optional<double> others_m_s) noexcept;
+  double frozen_patience() const noexcept;
+  bool is_seized(double speed_m_s, double time_s, std::optional<double> others_m_s) noexcept;
 
   JudgeSettings settings_;
   std::array<WindVector, kWindow> window_{};
@@ -79,13 +104,21 @@ class ReadingJudge {
   };
   std::optional<Suspicion> suspicion_;
 
+  double bad_share_ = 0.0;
+  bool is_implausible_ = false;
+
   std::optional<WindReading> same_;  ///< what is repeated
   double same_since_s_ = 0.0;
   std::size_t same_count_ = 0;
-  double resolution_m_s_ = 0.0;  ///< the smallest step seen; 0: none yet
+  double resolution_m_s_ = 0.0;        ///< the smallest step seen; 0: none yet
+  std::optional<double> usual_run_s_;  ///< how long it stays with a value; empty: it never left one
 
-  std::optional<double> calm_since_s_;
-  double usual_m_s_ = 0.0;  ///< mean speed of the last day in which it moved
+  bool is_still_ = false;
+  bool is_seized_ = false;
+  double still_s_ = 0.0;        ///< how long it has stood still
+  double windy_still_s_ = 0.0;  ///< and of this, while the others had wind
+  double usual_m_s_ = 0.0;      ///< mean speed of the last day in which it moved
+
   double last_s_ = 0.0;
   bool has_begun_ = false;
 

@@ -90,7 +90,9 @@ bool read(const flatbuffers::Optional<double>& from, std::optional<double>& to) 
 }
 
 bool read(const fb::Sensor& from, SensorStatus& to) {
-  if (from.link() > fb::LinkState_MAX || from.health() > fb::SensorHealth_MAX) return false;
+  if (from.link() > fb::LinkState_MAX || from.health() > fb::SensorHealth_MAX || from.state() > fb::SensorState_MAX) {
+    return false;
+  }
   to.link = static_cast<std::uint8_t>(from.link());
   to.health = static_cast<std::uint8_t>(from.health());
   to.simulated = from.simulated();
@@ -100,6 +102,7 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   to.frames = from.frames();
   to.reconnects = from.reconnects();
   to.replayed = from.replayed();
+  to.state = static_cast<SensorState>(from.state());
   const std::size_t reasons = from.refused() == nullptr ? 0 : from.refused()->size();
   if (reasons > kMaxRefusalReasons) return false;
   for (std::size_t i = 0; i < reasons; ++i) {
@@ -110,8 +113,9 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   }
   return is_within(to.age_s, 0.0, kMaxDuration_s) && is_within(to.interval_s, 0.0, kMaxDuration_s) &&
          read_text(from.name(), to.name) && read_text(from.driver(), to.driver) &&
-         read_text(from.detail(), to.detail) && read(from.speed_m_s(), to.speed_m_s) &&
-         read(from.direction_deg(), to.direction_deg) && read(from.gust_m_s(), to.gust_m_s);
+         read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
+         read(from.speed_m_s(), to.speed_m_s) && read(from.direction_deg(), to.direction_deg) &&
+         read(from.gust_m_s(), to.gust_m_s);
 }
 
 /// A server that does not know of it sends none: then nothing is at work.

@@ -99,6 +99,7 @@ fb::Skeleton kind_of(const Skeleton& skeleton) {
   return static_cast<fb::Skeleton>(skeleton.index() + fb::Skeleton_MIN + 1);
 }
 static_assert(fb::Skeleton_MAX == std::variant_size_v<Skeleton>);
+static_assert(fb::SensorState_MAX + 1 == kSensorStateNames.size(), "the states of sensor_state.hpp, in the same order");
 
 flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus& sensor) {
   std::vector<flatbuffers::Offset<fb::Counter>> refused;
@@ -109,6 +110,7 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   const auto name = add_text(builder, sensor.name);
   const auto driver = add_text(builder, sensor.driver);
   const auto detail = add_text(builder, sensor.detail);
+  const auto state_reason = add_text(builder, sensor.state_reason);
 
   fb::SensorBuilder table(builder);
   table.add_name(name);
@@ -127,6 +129,8 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   table.add_frames(sensor.frames);
   table.add_reconnects(sensor.reconnects);
   table.add_replayed(sensor.replayed);
+  table.add_state(static_cast<fb::SensorState>(sensor.state));
+  table.add_state_reason(state_reason);
   return table.Finish();
 }
 

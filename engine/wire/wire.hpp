@@ -15,6 +15,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 #include "engine/pose/skeleton.hpp"
+#include "engine/wind/sensor_state.hpp"
 #include "engine/wind/wind_state.hpp"
 
 // The stream's messages as plain values, and their FlatBuffers form (pose.fbs, which is the public description).
@@ -101,6 +102,8 @@ struct SensorStatus {
   std::uint64_t frames = 0;      ///< messages from the device, of use or not
   std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
   bool replayed = false;         ///< a recording that is played again
+  SensorState state = SensorState::kConnecting;
+  std::string state_reason;  ///< why, and what to do about it
 };
 
 /// What makes the wind that moves the scenes another than the real one (engine/wind/wind_shaping.hpp).

@@ -199,6 +199,7 @@ TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
   for (const ConfigTable& table : config_tables()) check(table.name, table.parameters);
   check("scene", common_scene_parameters());
   check("sensor.calibration", calibration_parameters());
+  check("sensor.judge", judge_parameters());
   for (const DriverDescription* driver : driver_table()) check(driver->name, driver->parameters);
   for (const SceneDescription* scene : scene_table()) check(scene->name, scene->parameters);
 }

@@ -26,6 +26,8 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   live.driver = "modbus";
   live.link = 1;
   live.health = 1;
+  live.state = SensorState::kLive;
+  live.state_reason = "a reading every 0.5 s";
   live.detail = "answers at 10.0.0.5:502";
   live.speed_m_s = 8.6;
   live.direction_deg = 90.0;
@@ -49,6 +51,7 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   EXPECT_THAT(table, HasSubstr(" 90 E"));
   EXPECT_THAT(table, HasSubstr("timeout 3, exception 1"));
   EXPECT_THAT(table, HasSubstr("connected: answers at 10.0.0.5:502"));
+  EXPECT_THAT(table, HasSubstr("live: a reading every 0.5 s"));
   EXPECT_THAT(table, HasSubstr("connecting")) << "a sensor that never spoke shows what its link does";
 }
 
@@ -59,6 +62,7 @@ TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   log.link = 1;
   log.health = 1;
   log.replayed = true;
+  log.state = SensorState::kReplayed;
   log.readings = 3;
   wire::Sensors sensors{
       {log},
@@ -68,6 +72,7 @@ TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   EXPECT_THAT(sensor_table(sensors), HasSubstr("(REPLAY of a recording)"));
   EXPECT_THAT(sensor_table(sensors), ContainsRegex("storm +windlog +REPLAY"));
   log.replayed = false;
+  log.state = SensorState::kLive;
   sensors.sensors.push_back(log);
   EXPECT_THAT(sensor_table(sensors), HasSubstr("(live)")) << "a real one speaks beside it";
 }
@@ -93,6 +98,9 @@ TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
   sensor.name = "a sensor with a name that is long";
   sensor.driver = "a driver with a long name";
   sensor.health = 1;
+  sensor.state = SensorState::kDisconnected;
+  sensor.state_reason =
+      "a reason of many words, which goes on and on and on, until it is longer than any line may be here";
   sensor.detail =
       "slave 1 at /dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A50285BI-if00-port0 does not answer within 0.5 s: check "
       "its "
@@ -116,6 +124,7 @@ TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
     if (!line.empty()) words += line.substr(line.find_first_not_of(' ')) + " ";
   }
   EXPECT_THAT(words, HasSubstr(sensor.detail));
+  EXPECT_THAT(words, HasSubstr(sensor.state_reason));
   EXPECT_THAT(words, HasSubstr("bad checksum 123456789, exception 123456789"));
 }
 
@@ -123,8 +132,35 @@ TEST(SensorTable, AStaleSensorCannotBeTakenForALiveOne) {
   wire::SensorStatus stale;
   stale.name = "roof";
   stale.health = 2;
+  stale.state = SensorState::kStale;
   stale.speed_m_s = 3.0;
   EXPECT_THAT(sensor_table({{stale}, {}, 0, 0}), HasSubstr("STALE"));
+}
+
+TEST(SensorTable, EachStateIsShownAndTroubleInCapitals) {
+  for (std::size_t number = 0; number < kSensorStateNames.size(); ++number) {
+    wire::SensorStatus sensor;
+    sensor.name = "roof";
+    sensor.driver = "hid";
+    sensor.state = static_cast<SensorState>(number);
+    sensor.state_reason = "for a reason";
+    const std::string table = sensor_table({{sensor}, {}, 0, 0});
+    EXPECT_THAT(table, HasSubstr(std::string(kSensorStateNames[number]) + ": for a reason"));
+  }
+  wire::SensorStatus frozen;
+  frozen.name = "roof";
+  frozen.driver = "hid";
+  frozen.state = SensorState::kFrozen;
+  EXPECT_THAT(sensor_table({{frozen}, {}, 0, 0}), ContainsRegex("roof +hid +FROZEN"));
+}
+
+TEST(SensorTable, AReasonThatIsTheLinksOwnIsToldOnce) {
+  wire::SensorStatus lost;
+  lost.name = "roof";
+  lost.state = SensorState::kDisconnected;
+  lost.state_reason = lost.detail = "/dev/ttyUSB0 has gone";
+  const std::string table = sensor_table({{lost}, {}, 0, 0});
+  EXPECT_EQ(table.find("has gone"), table.rfind("has gone")) << table;
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ SIMULATOR = os.path.join(BIN, "yuragi-sim")
 RENKE = "renke-rs-fsjt-rs-fxjt-n01"
 
 LIVE, STALE = 1, 2  # enum SensorHealth
+STATE_LIVE, STATE_FROZEN = 1, 3  # enum SensorState
 
 
 class Stream:
@@ -235,6 +236,28 @@ port = {port}
         self.assertLess(watcher.largest_wind_step_m_s, 1.2)
         self.assertLess(watcher.largest_bend_step_rad, 0.35)
 
+    def test_a_frozen_sensor_is_told_in_stream_watch_and_log_and_is_believed_again_when_it_moves(self):
+        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--profile", RENKE, "--speed", "8",
+                               "--fault", "freeze@8+12")
+        config = self.modbus_config(simulator.address())
+        with open(config, "a", encoding="utf-8") as out:
+            out.write("poll_interval = 0.1\n[sensor.judge]\nfrozen = 2\n")
+        daemon = self.start_daemon("--config", config)
+        with Stream(daemon.address(), poses=False) as status:
+            live = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_LIVE, 30.0)
+            self.assertIn(b"reading", live.StateReason())
+            frozen = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_FROZEN, 30.0)
+            self.assertEqual(frozen.Health(), LIVE, "it speaks")
+            self.assertRegex(frozen.StateReason().decode(), r"the same \d+\.\d\d m/s \d+ times in ")
+            shown = run("sensors", "watch", "--once", "--listen", daemon.address())
+            self.assertRegex(shown.stdout, r"roof +modbus +FROZEN")
+            self.assertIn("frozen: the same", shown.stdout)
+            status.wait_for_sensor(lambda sensor: sensor.State() == STATE_LIVE, 40.0)
+        self.assertEqual(daemon.end(signal.SIGINT)[0], 0)
+        told = [line for line in daemon.text().splitlines() if "sensor roof: frozen: the same" in line]
+        self.assertEqual(len(told), 1, daemon.text())
+        self.assertIn("warning", told[0])
+
     def test_a_probe_finds_the_simulator_and_what_it_prints_is_a_right_configuration(self):
         simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3")
         done = run("sensors", "probe", "modbus", simulator.address(), "--id", "1-5")
@@ -363,7 +386,7 @@ turbulence = 0
         done = run("sensors", "watch", "--listen", address, "--once")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("no daemon", done.stdout)
-        self.assertIn("simulated", done.stdout)
+        self.assertIn("simulated: a simulation: made up, not measured", done.stdout)
 
     def free_address(self):
         with socket.socket() as free:

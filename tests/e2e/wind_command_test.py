@@ -50,6 +50,30 @@ class WindCommand(unittest.TestCase):
             self.assertAlmostEqual(math.hypot(row["u_m_s"], row["v_m_s"]), row["speed_m_s"], places=4)
             self.assertTrue(0.0 <= row["trust"] <= 1.0)
 
+    def test_what_the_daemon_would_not_believe_moves_nothing(self):
+        table = self.log.with_name("bad.csv")
+        lines = ["time_s,speed_m_s,direction_deg"]
+        speeds = [6 + math.sin(0.3 * i) for i in range(400)]
+        for spike in (100, 160, 161, 170):
+            speeds[spike] = 60.0
+        speeds[200:320] = [7.25] * 120  # frozen
+        lines += [f"{i},{speed:.3f},250" for i, speed in enumerate(speeds)]
+        table.write_text("\n".join(lines) + "\n", encoding="ascii")
+        bad = table.with_suffix(".windlog")
+        self.assertEqual(yuragi("import", table, "-o", bad).returncode, 0)
+        everything = table.with_suffix(".toml")
+        everything.write_text('[[sensor]]\ndriver = "synthetic"\n[sensor.judge]\nenabled = false\n', encoding="ascii")
+
+        judged = yuragi("wind", bad, "-o", "-", "--rate", 20)
+        self.assertIn("; 94 were not believed", judged.stderr)
+        rows = list(csv.DictReader(io.StringIO(judged.stdout)))
+        self.assertLess(max(float(row["speed_m_s"]) for row in rows), 15.0)
+        self.assertIn("default", {row["state"] for row in rows if 300 < float(row["time_s"]) < 320})
+        raw = yuragi("wind", bad, "-o", "-", "--rate", 20, "--config", everything)
+        self.assertIn("from 400 readings\n", raw.stderr)
+        rows = list(csv.DictReader(io.StringIO(raw.stdout)))
+        self.assertGreater(max(float(row["speed_m_s"]) for row in rows), 25.0)
+
     def test_follows_the_sensor_and_passes_through_north(self):
         rows, _ = self.wind()
         live = [row for row in rows if row["time_s"] > 60.0]

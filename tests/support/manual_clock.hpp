@@ -16,6 +16,8 @@ class ManualClock final : public Clock {
   void advance_to(MonoTime moment) {
     if (moment > now_.mono) advance(moment - now_.mono);
   }
+  /// The machine's clock is set: no time passes.
+  void set_utc(UtcTime utc) { now_.utc = utc; }
 
  private:
   /// Neither zero, so that a time that was never set is seen.

@@ -213,6 +213,9 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.frames, 1250u);
   EXPECT_EQ(gauge.reconnects, 2u);
   EXPECT_TRUE(gauge.replayed);
+  EXPECT_EQ(gauge.state, SensorState::kFrozen);
+  EXPECT_EQ(gauge.state_reason, "the same 3.42 m/s 61 times");
+  EXPECT_EQ(sensors.sensors[1].state, SensorState::kConnecting);
   EXPECT_FALSE(sensors.sensors[1].replayed);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
@@ -233,6 +236,14 @@ TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   EXPECT_EQ(shaping.site_strong_m_s, 3.5);
   EXPECT_EQ(shaping.site_known_s, 86400.0);
   EXPECT_EQ(shaping.text, "floor: raised 0.8 to 1.5 m/s");
+}
+
+TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
+  Sensors sensors = samples::sensors();
+  for (std::size_t number = 0; number < kSensorStateNames.size(); ++number) {
+    sensors.sensors[0].state = static_cast<SensorState>(number);
+    EXPECT_EQ(decoded<Sensors>(encode(sensors)).sensors[0].state, sensors.sensors[0].state) << number;
+  }
 }
 
 TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {

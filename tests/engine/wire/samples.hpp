@@ -238,6 +238,8 @@ inline wire::Sensors sensors() {
   gauge.frames = 1250;
   gauge.reconnects = 2;
   gauge.replayed = true;
+  gauge.state = SensorState::kFrozen;
+  gauge.state_reason = "the same 3.42 m/s 61 times";
   const wire::Shaping shaping{.site_gain = 1.75,
                               .floor_gain = 2.5,
                               .breeze_m_s = 0.25,

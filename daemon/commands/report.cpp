@@ -1,0 +1,152 @@
+// `yuragi report`: a recording becomes a page that a person reads.
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/config.hpp"
+#include "daemon/exit.hpp"
+#include "daemon/output_file.hpp"
+#include "daemon/report/measure_recording.hpp"
+#include "daemon/report/report_figures.hpp"
+#include "daemon/report/report_json.hpp"
+#include "daemon/report/report_page.hpp"
+#include "daemon/report/report_text.hpp"
+#include "drivers/windlog/log_moment.hpp"
+
+namespace yuragi {
+
+extern const Command kReportCommand;
+
+namespace {
+
+constexpr const char* kReportFooter =
+    "Writes one HTML file that needs nothing else: what the recording is, speed, gust and direction over time, wind\n"
+    "rose, distribution, spectrum with its slope and the fitted von Karman's (U, TI, L), gaps, and how each sensor "
+    "did.\n"
+    "U, TI and L may go into the configuration: [wind] default_speed, default_turbulence, default_length.\n"
+    "Hours of the day are local time, in the zone of this machine (TZ).\n"
+    "\n"
+    "Examples:\n"
+    "  yuragi report mast.windlog -o mast.html\n"
+    "  yuragi report mast.windlog -o july.html --from 2018-07-01 --to 2018-08-01 --sensor roof --json july.json\n"
+    "Then open mast.html in any browser, or print it.";
+
+struct ReportOptions {
+  std::string input;
+  std::string output;
+  std::string json;
+  std::string from;
+  std::string to;
+  std::vector<std::string> sensors;
+  std::optional<std::filesystem::path> config_file;
+  bool force = false;
+};
+
+/// The log time of --from or --to; the end if it is after that.
+Nanoseconds moment_of(WindlogReader& reader, const std::string& option, const std::string& text) {
+  const auto moment = parse_log_moment(text);
+  if (!moment) throw ExitError(kExitUsage, option + ": " + moment.error().message);
+  const auto log_time = log_time_of(reader, *moment);
+  if (!log_time) throw ExitError(kExitDataError, log_time.error().message);
+  return log_time->value_or(Nanoseconds::max());
+}
+
+void write_text(const OutputFile& output, const std::string& name, const std::string& text) {
+  std::ofstream file(output.working_path(), std::ios::binary);
+  file << text;
+  file.close();
+  if (!file)
+    throw ExitError(kExitCannotCreate, name + ": cannot be written; is there room, and may this user write there?");
+}
+
+/// A word about how far it is, where somebody watches and it takes long.
+class Told {
+ public:
+  void tell(const std::string& text) {
+    if (!is_watched_ || std::chrono::steady_clock::now() - began_ < std::chrono::seconds(1)) return;
+    fmt::print(stderr, "\r\x1b[K{}", text);
+    has_told_ = true;
+  }
+  ~Told() {
+    if (has_told_) fmt::print(stderr, "\r\x1b[K");
+  }
+
+ private:
+  bool is_watched_ = isatty(STDERR_FILENO) != 0;
+  bool has_told_ = false;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+void run_report(const ReportOptions& options) {
+  auto reader = WindlogReader::open(options.input);
+  if (!reader) {
+    const bool is_there = std::filesystem::exists(options.input);
+    throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
+  }
+  if (!options.json.empty() && options.json == options.output) {
+    throw ExitError(kExitUsage, "--json: is the page's own name; name another file");
+  }
+  // Before hours of work.
+  OutputFile page_file(options.output, options.force);
+  std::optional<OutputFile> json_file;
+  if (!options.json.empty()) json_file.emplace(options.json, options.force);
+
+  const Config config = options.config_file ? load_config(*options.config_file) : default_config();
+  ReportSettings settings;
+  settings.sensors = options.sensors;
+  settings.stale_intervals = config.wind.number("stale_intervals");
+  settings.utc_offset = local_offset;
+  if (!options.from.empty()) settings.range.from = moment_of(*reader, "--from", options.from);
+  if (!options.to.empty()) settings.range.to = moment_of(*reader, "--to", options.to);
+
+  // The numbers, the figures, the page.
+  Told told;
+  const auto numbers = measure_recording(*reader, settings, [&told](std::uint64_t readings) {
+    told.tell(fmt::format("{} readings (each is read twice)", readings));
+  });
+  if (!numbers) throw ExitError(kExitDataError, options.input + ": " + numbers.error().message);
+  const std::string source = std::filesystem::path(options.input).filename();
+  std::vector<SensorFigures> figures;
+  for (const SensorNumbers& sensor : numbers->sensors) {
+    told.tell(fmt::format("figures {} of {}", figures.size() + 1, numbers->sensors.size()));
+    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path(), figures.size()));
+  }
+  write_text(page_file, options.output, report_page(*numbers, figures, source));
+  if (json_file) {
+    write_text(*json_file, options.json, report_json(*numbers, source));
+    json_file->commit();
+  }
+  page_file.commit();
+  fmt::print(stderr, "{}: {} readings of {} {}\n", options.output, numbers->readings, numbers->sensors.size(),
+             numbers->sensors.size() == 1 ? "sensor" : "sensors");
+}
+
+void add_report(CLI::App& app) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App* command = app.add_subcommand("report", "Make a page (HTML) about a recording");
+  command->footer(kReportFooter);
+  command->add_option("file", options->input, "the recording")->required()->type_name("FILE.windlog");
+  command->add_option("-o,--output", options->output, "the page to write")->required()->type_name("FILE.html");
+  command->add_option("--sensor", options->sensors, "only this sensor; can be given again")->type_name("NAME");
+  command->add_option("--from", options->from, "begin here: seconds, or a moment such as 2018-07-20T14:05:00Z")
+      ->type_name("T");
+  command->add_option("--to", options->to, "end before this, written likewise")->type_name("T");
+  command->add_option("--json", options->json, "write the same numbers for machines, too")->type_name("FILE.json");
+  command->add_option("--config", options->config_file, "the stale_intervals of its [wind]")->type_name("FILE.toml");
+  command->add_flag("--force", options->force, "overwrite the output");
+  command->callback([options] { run_report(*options); });
+}
+
+}  // namespace
+
+const Command kReportCommand{add_report};
+
+}  // namespace yuragi

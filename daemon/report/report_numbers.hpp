@@ -1,0 +1,206 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/time.hpp"
+
+// All that a report says of a recording, as numbers: plain values, without drawing or text. Times `..._s` are log time
+// (windlog_reader.hpp) since the recording's first reading. Speeds are as recorded, before calibration. All statistics
+// but counts are of the readings that ReadingJudge believes.
+
+namespace yuragi {
+
+/// How a sensor did at one moment, the gravest last.
+enum class SensorState : std::uint8_t {
+  kLive,
+  kStale,   ///< silent for several of its own intervals, as the daemon judges (SourceRecord)
+  kSpike,   ///< from here on ReadingFault: a reading is held back
+  kFrozen,  ///< exactly the same value again and again
+  kSeized,  ///< no wind for hours on a windy day
+};
+inline constexpr std::array<std::string_view, 5> kSensorStateNames = {"live", "stale", "spike", "frozen", "seized"};
+inline constexpr std::size_t kSensorStates = kSensorStateNames.size();
+
+/// A stretch in which a sensor was not live. Of a silence it is all the time from one reading to the next.
+struct StateEvent {
+  SensorState state = SensorState::kStale;
+  double from_s = 0.0;
+  double to_s = 0.0;
+
+  double length_s() const { return to_s - from_s; }
+};
+
+/// How often, and for how long in all.
+struct StateTotal {
+  std::uint64_t count = 0;
+  double time_s = 0.0;
+  double longest_s = 0.0;
+};
+
+/// What fell into one column of the time series; a recording of any length has kTimeBins of them.
+struct TimeBin {
+  std::uint64_t count = 0;  ///< believed readings
+  double time_sum_s = 0.0;
+  double speed_sum_m_s = 0.0;
+  double min_m_s = 0.0;
+  double max_m_s = 0.0;
+  std::uint64_t directed = 0;  ///< readings with a direction
+  double u_sum_m_s = 0.0;
+  double v_sum_m_s = 0.0;
+  std::optional<double> gust_m_s;  ///< the strongest that the sensor told, or 3 s mean
+  SensorState gravest = SensorState::kLive;
+  bool follows_silence = false;  ///< the sensor was stale before it: no line leads here
+
+  double time_s() const { return time_sum_s / static_cast<double>(count); }
+  double mean_m_s() const { return speed_sum_m_s / static_cast<double>(count); }
+};
+inline constexpr std::size_t kTimeBins = 1000;
+
+/// A reading's direction, for the scatter of directions.
+struct DirectionPoint {
+  double time_s = 0.0;
+  double direction_deg = 0.0;
+};
+
+inline constexpr std::size_t kRoseSectors = 16;
+/// Lower edges of the rose's speed classes; below the first is a calm (wind.md: about 0.5 m/s).
+inline constexpr std::array<double, 6> kRoseClasses_m_s = {0.5, 2.0, 4.0, 6.0, 8.0, 11.0};
+
+/// Where the wind came from: shares of the readings with a direction.
+struct WindRose {
+  std::uint64_t count = 0;  ///< readings with a direction
+  double calm_share = 0.0;
+  /// [sector][class]; sector 0 is centred on north, the others follow clockwise. All of them and the calm make 1.
+  std::array<std::array<double, kRoseClasses_m_s.size()>, kRoseSectors> share{};
+};
+
+/// How often which speed blew.
+struct SpeedDistribution {
+  double class_m_s = 0.5;     ///< width of a class; the first begins at 0
+  std::vector<double> share;  ///< up to the last class that has any
+  /// Weibull's shape k and scale c by the method of moments, k = (sd / mean)^-1.086 (Justus, Hargraves, Mikhail and
+  /// Graber 1978, Methods for estimating wind speed frequency distributions). Nothing where the wind did not vary.
+  std::optional<double> weibull_shape;
+  std::optional<double> weibull_scale_m_s;
+  double p10_m_s = 0.0, p50_m_s = 0.0, p90_m_s = 0.0, p99_m_s = 0.0;  ///< to within 0.05 m/s
+};
+
+/// The wind of one hour of the day, in local time.
+struct HourOfDay {
+  std::uint64_t count = 0;
+  double mean_m_s = 0.0;
+  double p10_m_s = 0.0, p90_m_s = 0.0;
+};
+
+/// One octave of a spectrum.
+struct OctaveBand {
+  double from_hz = 0.0, to_hz = 0.0;
+  double variance_m2_s2 = 0.0;         ///< of the spectrum's lines within
+  std::optional<double> fitted_m2_s2;  ///< the fitted von Karman's over the same lines
+  bool is_in_fit = false;
+};
+
+/// von Karman's spectrum as fitted to the octaves, by least squares of their logarithms.
+struct VonKarmanFit {
+  double speed_m_s = 0.0;     ///< U: root mean square of the segments' mean speeds
+  double intensity = 0.0;     ///< TI = sigma / U
+  double time_scale_s = 0.0;  ///< T = L / U
+  /// L. Nothing where the octaves do not hold the bend of the spectrum, so that any larger or smaller L fits as well.
+  std::optional<double> length_m;
+  double rms_db = 0.0;  ///< what remains between the octaves and the fit
+  double from_hz = 0.0, to_hz = 0.0;
+
+  double sigma_m_s() const { return intensity * speed_m_s; }
+};
+
+/// Power that falls as f^-beta, by least squares in log-log over the spectrum's lines.
+struct PowerLawFit {
+  double beta = 0.0;
+  double log_level = 0.0;  ///< ln S at 1 Hz
+  double from_hz = 0.0, to_hz = 0.0;
+};
+
+/// The spectrum of the wind along its mean direction, or of the speed where a reading has no direction. Welch's method:
+/// Hann windows overlapping by half, each turned into its own mean wind and detrended (Welch 1967, The use of fast
+/// Fourier transform for the estimation of power spectra). One-sided; its integral is the variance.
+struct SpectrumNumbers {
+  bool is_of_speed = false;
+  std::size_t segment_readings = 0;
+  std::uint64_t segments = 0;
+  double step_s = 0.0;                   ///< between samples
+  std::vector<double> density_m2_s2_hz;  ///< at k / (segment_readings step_s), from k = 0
+
+  std::vector<OctaveBand> octaves;
+  std::optional<PowerLawFit> power_law;
+  std::optional<VonKarmanFit> von_karman;
+
+  double frequency_hz(std::size_t line) const {
+    return static_cast<double>(line) / (static_cast<double>(segment_readings) * step_s);
+  }
+};
+
+/// Gusts and turbulence of blocks of 10 minutes, the meteorologist's measure.
+struct BlockNumbers {
+  std::uint64_t blocks = 0;                    ///< whole ones in a wind of at least 1 m/s
+  std::optional<double> turbulence_intensity;  ///< mean of sd / mean
+  std::optional<double> gust_factor;           ///< mean of highest 3 s mean / mean; where the interval is at most 1.5 s
+};
+
+struct SensorNumbers {
+  std::string name;
+  std::string driver;
+  std::uint64_t readings = 0;
+  std::uint64_t believed = 0;
+  std::uint64_t spikes = 0;                ///< readings that turned out to be one
+  std::array<std::uint64_t, 3> quality{};  ///< readings by ReadingQuality
+  std::uint64_t directed = 0;              ///< believed readings with a direction
+  double first_s = 0.0, last_s = 0.0;
+  UtcTime first{}, last{};
+  double interval_s = 0.0;  ///< the median; 0 for fewer than two readings
+  double mean_m_s = 0.0, deviation_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
+  double max_at_s = 0.0;
+  std::optional<double> told_gust_m_s;    ///< the strongest gust that the sensor itself told
+  std::optional<double> gust_3s_m_s;      ///< the highest mean over 3 s, where the interval is at most 1.5 s
+  std::optional<double> direction_deg;    ///< of the mean vector
+  std::optional<double> steadiness;       ///< length of the mean vector over the mean speed, 0 to 1
+  std::optional<double> integral_time_s;  ///< of the speed: its autocorrelation, integrated to its first zero
+
+  std::array<StateTotal, kSensorStates> states{};
+  std::vector<StateEvent> events;  ///< of each state the longest kMaxEvents, by time
+  static constexpr std::size_t kMaxEvents = 100;
+
+  std::vector<TimeBin> bins;  ///< kTimeBins over the whole recording
+  std::vector<DirectionPoint> directions;
+  WindRose rose;
+  SpeedDistribution distribution;
+  std::optional<std::array<HourOfDay, 24>> diurnal;  ///< where there is more than a day
+  BlockNumbers blocks;
+  std::optional<SpectrumNumbers> spectrum;
+  std::string why_no_spectrum;  ///< for a person
+};
+
+/// The recording, or the part of it that was asked for.
+struct RecordingNumbers {
+  std::uint64_t readings = 0;
+  std::uint64_t skipped = 0;         ///< rows that cannot be readings
+  std::size_t sessions = 0;          ///< of the whole file
+  double begin_s = 0.0;              ///< of the first reading, log time
+  double end_s = 0.0;                ///< of the last one
+  UtcTime first{}, last{};           ///< as its clock said; `first` is at begin_s
+  std::uint64_t clock_sets = 0;      ///< how often the recorder's clock was set by more than 2 s
+  double largest_clock_set_s = 0.0;  ///< its sign: forward is above 0
+  double stale_intervals = 0.0;      ///< the rule for silence
+  std::vector<SensorNumbers> sensors;
+
+  /// The moment of a log time, if the clock had not been set in between.
+  UtcTime utc_at(double time_s) const { return first + from_seconds(time_s - begin_s); }
+  double duration_s() const { return end_s - begin_s; }
+};
+
+}  // namespace yuragi

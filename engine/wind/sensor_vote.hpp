@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// What the other sensors say of one.
+enum class Vote : std::uint8_t {
+  kNone,      ///< there is nothing to say, or nobody to say it
+  kDisputed,  ///< they differ, and nobody can tell who is right
+  kOutvoted,  ///< most of them agree, and this one does not
+};
+
+struct VoteSettings {
+  /// What is compared are the mean speeds of so long.
+  double memory_s = 300.0;
+  /// Two means agree as long as neither is above this many times the other and so much more: sensors stand at
+  /// different places, and a courtyard has half the wind of a roof.
+  double factor = 3.0;
+  double offset_m_s = 3.0;
+  /// For how long one must differ before it is outvoted, and agree before it is heard again.
+  double patience_s = 600.0;
+};
+
+/// Compares the sensors of an installation by their slow mean speeds.
+///
+/// Three or more can vote: where more than half of them agree with the median of all, one that does not agree with it,
+/// for as long as `patience_s`, is outvoted; it must agree for as long to be heard again, and while there is no such
+/// majority it stays as it is. Where there is none (two sensors, or each says something else) those that differ are
+/// disputed, which condemns nobody. A sensor takes part once it has been heard for `memory_s` without a longer silence.
+/// Thread-safe: no. Realtime-safe after construction: yes.
+class SensorVote {
+ public:
+  explicit SensorVote(std::size_t sensor_count, const VoteSettings& settings = {});
+
+  /// Takes a reading of a sensor, at its own time, calibrated. One that is earlier than the last changes nothing.
+  void hear(std::size_t sensor, MonoTime time, double speed_m_s) noexcept;
+
+  /// Says whether a sensor can be compared at the moment: it speaks, of the wind of now, and is not frozen.
+  void seat(std::size_t sensor, bool takes_part) noexcept { voters_[sensor].is_seated = takes_part; }
+
+  /// Goes on to `now`. Counts votes about once a second.
+  void advance(MonoTime now) noexcept;
+
+  Vote vote_on(std::size_t sensor) const noexcept;
+
+  /// Its mean speed, and the median of those of the others that can be compared; nothing where there is none.
+  double mean_m_s(std::size_t sensor) const noexcept { return voters_[sensor].mean_m_s; }
+  std::optional<double> others_m_s(std::size_t sensor) const noexcept { return voters_[sensor].others_m_s; }
+
+ private:
+  struct Voter {
+    bool is_seated = false;
+    std::optional<MonoTime> last;
+    double heard_s = 0.0;
+    double mean_m_s = 0.0;
+    std::optional<double> others_m_s;
+    double outvoted_s = 0.0;  ///< time of contradiction, less time of agreement
+    double disputed_s = 0.0;
+    bool is_outvoted = false;
+    bool is_disputed = false;
+  };
+
+  bool can_be_compared(const Voter& voter) const noexcept;
+  bool agree(double a_m_s, double b_m_s) const noexcept;
+  std::optional<double> majority_m_s() noexcept;
+  double median_without(const Voter* left_out) noexcept;
+
+  VoteSettings settings_;
+  std::vector<Voter> voters_;
+  std::vector<double> means_m_s_;  ///< room for a median
+  std::optional<MonoTime> counted_;
+};
+
+}  // namespace yuragi
