@@ -4,13 +4,9 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+#include "daemon/report/report_text.hpp"
 
-std::string duration_text(double duration_s) {
-  if (duration_s >= 2.0 * 86400.0) return fmt::format("{:.1f} days", duration_s / 86400.0);
-  if (duration_s >= 3600.0) return fmt::format("{:.1f} h", duration_s / 3600.0);
-  return fmt::format("{:.0f} min", duration_s / 60.0);
-}
+namespace yuragi {
 
 bool is_raised(const WindShapingReport& report, double share) {
   return report.shaped_mean_m_s - report.site_gain * report.mean_m_s > share * report.shaped_mean_m_s;

