@@ -266,6 +266,7 @@ class ConfigReader {
                    [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {
                      const ParameterValues calibration =
                          read_table(entry, "sensor.", kCalibrationKey, kCalibrationParameters);
+                     check_is_table(entry, kCalibrationKey);
                      check_curve(entry, calibration);
                      check_is_table(entry, kJudgeKey);
                      const ParameterValues judge = read_table(entry, "sensor.", kJudgeKey, kJudgeParameters);
@@ -333,6 +334,13 @@ class ConfigReader {
     return read_values(table != nullptr ? *table : kNothing, prefix + std::string(name) + ".", parameters, {});
   }
 
+  void check_is_table(const toml::table& sensor, std::string_view key) {
+    if (const toml::node* node = sensor.get(key); node != nullptr && !node->is_table()) {
+      const std::string path = "sensor." + std::string(key);
+      mistake(node->source(), path, "is a value; write it as a table, [" + path + "]");
+    }
+  }
+
   void check_shaping(const toml::table& root, const ParameterValues& shaping) {
     // A mistake that a default takes part in stands at the table.
     for (const ParameterError& error : shaping_mistakes(shaping)) {
@@ -343,17 +351,8 @@ class ConfigReader {
     }
   }
 
-  void check_is_table(const toml::table& sensor, std::string_view key) {
-    if (const toml::node* node = sensor.get(key); node != nullptr && !node->is_table()) {
-      const std::string path = "sensor." + std::string(key);
-      mistake(node->source(), path, "is a value; write it as a table, [" + path + "]");
-    }
-  }
-
   void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
-    if (const toml::node* node = sensor.get(kCalibrationKey); node != nullptr && !node->is_table()) {
-      mistake(node->source(), "sensor.calibration", "is a value; write it as a table, [sensor.calibration]");
-    } else if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
+    if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
       mistake(sensor[kCalibrationKey]["curve"].node()->source(), "sensor.calibration.curve", curve.error().message);
     }
   }

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/report/report_text.hpp"
+#include "daemon/duration_text.hpp"
 
 namespace yuragi {
 

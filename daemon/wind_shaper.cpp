@@ -5,7 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "daemon/report/report_text.hpp"
+#include "daemon/duration_text.hpp"
 #include "daemon/shaping_config.hpp"
 
 namespace yuragi {

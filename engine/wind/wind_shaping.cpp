@@ -24,8 +24,6 @@ constexpr double kKnownAfter_s = 6.0 * 3600.0;
 constexpr double kKnownShare = 0.25;
 constexpr double kMedian = 0.50;
 constexpr double kStrong = 0.95;
-/// Standard deviation across the wind over that along it, in the breeze (IEC 61400-1, normal turbulence).
-constexpr double kAcrossPerAlongOfBreeze = 0.8;
 /// Slower than anything that a sensor tells from calm.
 constexpr double kLeastMedian_m_s = 0.05;
 
@@ -42,7 +40,7 @@ WindShaping::WindShaping(const WindShapingSettings& settings, std::shared_ptr<co
     : settings_(settings),
       noise_(std::move(noise)),
       along_(gust_variances(*noise_, settings.turbulence_intensity, settings.length_m)),
-      across_(gust_variances(*noise_, kAcrossPerAlongOfBreeze * settings.turbulence_intensity, settings.length_m)),
+      across_(gust_variances(*noise_, kAcrossPerAlong * settings.turbulence_intensity, settings.length_m)),
       memory_(settings.site_memory_s) {}
 
 void WindShaping::shape(DrivingWind& wind, bool is_open) noexcept {

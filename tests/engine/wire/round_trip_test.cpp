@@ -223,6 +223,14 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(sensors.clients, 2u);
 }
 
+TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
+  Sensors sensors = samples::sensors();
+  for (std::size_t number = 0; number < kSensorStateNames.size(); ++number) {
+    sensors.sensors[0].state = static_cast<SensorState>(number);
+    EXPECT_EQ(decoded<Sensors>(encode(sensors)).sensors[0].state, sensors.sensors[0].state) << number;
+  }
+}
+
 TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   const Shaping shaping = decoded<Sensors>(encode(samples::sensors())).shaping;
   EXPECT_EQ(shaping.site_gain, 1.75);
@@ -236,14 +244,6 @@ TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   EXPECT_EQ(shaping.site_strong_m_s, 3.5);
   EXPECT_EQ(shaping.site_known_s, 86400.0);
   EXPECT_EQ(shaping.text, "floor: raised 0.8 to 1.5 m/s");
-}
-
-TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
-  Sensors sensors = samples::sensors();
-  for (std::size_t number = 0; number < kSensorStateNames.size(); ++number) {
-    sensors.sensors[0].state = static_cast<SensorState>(number);
-    EXPECT_EQ(decoded<Sensors>(encode(sensors)).sensors[0].state, sensors.sensors[0].state) << number;
-  }
 }
 
 TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {
