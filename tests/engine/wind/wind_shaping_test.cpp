@@ -365,7 +365,6 @@ TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings
     last_real = real;
     last_shaped = shaped;
   }
-              weakest_mean_m_s);
   EXPECT_GT(weakest_mean_m_s, 1.9) << "a calm is raised";
   // The floor's gain, and gusts that pass at up to its speed; in a storm no gain is above 1, and others of the same
   // gusts pass.
