@@ -56,7 +56,6 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
       listener_(std::move(listener)),
       estimator_(make_estimator(config, std::move(noise))),
       stale_intervals_(config.wind.number("stale_intervals")),
-      default_direction_deg_(config.wind.number("default_direction")),
       vote_(config.sensors.size()) {
   // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
   std::vector<std::unique_ptr<Sensor>> sensors;
@@ -68,7 +67,9 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     const std::optional<JudgeSettings> judged_by = judge_settings_of(channel.config);
     channel.is_judged = judged_by.has_value();
     channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
-    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare");
+    // A sensor whose scale is not to be believed is no witness.
+    channel.is_compared =
+        channel.is_judged && channel.config.judge.flag("compare") && !blend_source_of(channel.config.blend).is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }
@@ -105,7 +106,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
     return;
   }
   if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
-  channel.said.take(reading, default_direction_deg_);
+  channel.said.take(reading);
 
   // What a simulation makes up may be as steady as it likes.
   const bool is_judged = channel.is_judged && reading.quality != ReadingQuality::kSimulated;

@@ -84,7 +84,6 @@ class SensorHub {
   Listener listener_;
   std::unique_ptr<WindEstimator> estimator_;
   double stale_intervals_;
-  double default_direction_deg_;
   SensorVote vote_;
   std::vector<Channel> channels_;
   WindState wind_;

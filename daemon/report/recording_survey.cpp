@@ -27,7 +27,7 @@ class Surveyor {
 
     // A run goes on while the sensor keeps to the pace of its last readings.
     reading.time.mono = MonoTime(log_time);
-    record_.take(reading, 0.0);
+    record_.take(reading);
     if (interval_s > kBridgedIntervals * record_.interval_s()) {
       longest_run_ = std::max(longest_run_, last_ - run_begin_);
       run_begin_ = log_time;

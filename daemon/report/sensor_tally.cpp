@@ -127,7 +127,7 @@ void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   }
   numbers_.last_s = time_s;
   numbers_.last = reading.time.utc;
-  record_.take(heard, 0.0);
+  record_.take(heard);
   ++numbers_.readings;
   ++numbers_.quality.at(static_cast<std::size_t>(reading.quality));
 
