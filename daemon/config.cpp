@@ -9,6 +9,7 @@
 
 #include <toml++/toml.h>
 
+#include "daemon/shaping_config.hpp"
 #include "daemon/transports/address.hpp"
 
 namespace yuragi {
@@ -223,6 +224,8 @@ const std::array kConfigTables = {
     ConfigTable{"stream", "where viewers connect", kStreamParameters},
     ConfigTable{"animation", "the pace", kAnimationParameters},
     ConfigTable{"wind", "what blows while no sensor speaks, and the way from one wind to another", kWindParameters},
+    ConfigTable{"shaping", "days without wind, storms, opening hours: from the real wind to the scenes'",
+                shaping_parameters()},
 };
 
 constexpr std::string_view kNameKey = "name";
@@ -263,11 +266,14 @@ class ConfigReader {
     check_listen(root, config.stream);
     config.animation = read_table(root, "", "animation", kAnimationParameters);
     config.wind = read_table(root, "", "wind", kWindParameters);
+    config.shaping = read_table(root, "", "shaping", shaping_parameters());
+    check_shaping(root, config.shaping);
 
     for_each_entry(root, "sensor", "driver", driver_table(),
                    [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {
                      const ParameterValues calibration =
                          read_table(entry, "sensor.", kCalibrationKey, kCalibrationParameters);
+                     check_is_table(entry, kCalibrationKey);
                      check_curve(entry, calibration);
                      check_is_table(entry, kJudgeKey);
                      const ParameterValues judge = read_table(entry, "sensor.", kJudgeKey, kJudgeParameters);
@@ -308,7 +314,7 @@ class ConfigReader {
       for (const ConfigTable& table : kConfigTables) known = known || table.name == key.str();
       if (!known) {
         mistake(key.source(), std::string(key.str()),
-                "is not known here; allowed: seed, [stream], [animation], [wind], [[sensor]], [[scene]]");
+                "is not known here; allowed: seed, [stream], [animation], [wind], [shaping], [[sensor]], [[scene]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
                 "is one table; write [[" + std::string(key.str()) + "]] above it");
@@ -344,10 +350,18 @@ class ConfigReader {
     }
   }
 
+  void check_shaping(const toml::table& root, const ParameterValues& shaping) {
+    // A mistake that a default takes part in stands at the table.
+    for (const ParameterError& error : shaping_mistakes(shaping)) {
+      const toml::node* table = root.get("shaping");
+      const toml::node* node = table != nullptr && table->is_table() ? table->as_table()->get(error.name) : nullptr;
+      const toml::node& place = node != nullptr ? *node : table != nullptr ? *table : root;
+      mistake(place.source(), "shaping." + error.name, error.message);
+    }
+  }
+
   void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
-    if (const toml::node* node = sensor.get(kCalibrationKey); node != nullptr && !node->is_table()) {
-      mistake(node->source(), "sensor.calibration", "is a value; write it as a table, [sensor.calibration]");
-    } else if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
+    if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
       mistake(sensor[kCalibrationKey]["curve"].node()->source(), "sensor.calibration.curve", curve.error().message);
     }
   }
@@ -514,6 +528,7 @@ Config default_config() {
   config.stream = defaults_of(kStreamParameters);
   config.animation = defaults_of(kAnimationParameters);
   config.wind = defaults_of(kWindParameters);
+  config.shaping = defaults_of(shaping_parameters());
   const auto* synthetic = find_by_name(driver_table(), "synthetic");
   config.sensors.push_back({"synthetic", synthetic, defaults_of(parameters_of(*synthetic)), no_calibration(), {}});
   const auto* grass = find_by_name(scene_table(), "grass");
@@ -559,6 +574,7 @@ std::string to_toml(const Config& config) {
   root.insert("stream", to_table(config.stream));
   root.insert("animation", to_table(config.animation));
   root.insert("wind", to_table(config.wind));
+  root.insert("shaping", to_table(config.shaping));
 
   const auto append = [&root](const char* list, const char* kind_key, std::string_view kind, const std::string& name,
                               const ParameterValues& values) {

@@ -47,6 +47,7 @@ struct Config {
   ParameterValues stream;             ///< kStreamParameters
   ParameterValues animation;          ///< kAnimationParameters
   ParameterValues wind;               ///< kWindParameters
+  ParameterValues shaping;            ///< shaping_parameters()
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
 };

@@ -4,6 +4,7 @@
 
 #include "daemon/animation.hpp"
 #include "daemon/sensor_hub.hpp"
+#include "daemon/shaping_config.hpp"
 #include "engine/pose/pose_hash.hpp"
 
 namespace yuragi {
@@ -25,6 +26,8 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   Config one_source = config;
   one_source.sensors.resize(1);
   const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts);
+
+  WindShaping shaping(shaping_settings(config), gusts);
 
   const double rate_hz = config.animation.number("rate");
   const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
@@ -50,8 +53,11 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
       result.reading_max_m_s = std::max(result.reading_max_m_s, reading.speed_m_s);
     }
 
-    const WindState state = estimator->advance(MonoTime(from_seconds(now_s)));
-    animation.step(estimator->ground(), 1.0 / rate_hz);
+    // A recording is always open: log time is not the time of a wall.
+    DrivingWind wind{estimator->advance(MonoTime(from_seconds(now_s))), estimator->ground()};
+    shaping.shape(wind, true);
+    const WindState& state = wind.state;
+    animation.step(wind.ground, 1.0 / rate_hz);
     result.pose_hash = hash_poses(result.pose_hash, animation.poses());
     ++result.ticks;
     if (state.source == WindSource::kLive) {

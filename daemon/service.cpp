@@ -17,6 +17,7 @@
 #include "daemon/sensor_hub.hpp"
 #include "daemon/system_clock.hpp"
 #include "daemon/transports/tcp_stream.hpp"
+#include "daemon/wind_shaper.hpp"
 #include "engine/base/latest.hpp"
 
 namespace yuragi {
@@ -39,8 +40,10 @@ class Service::Io {
         director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
-        hub_(config, clock_, gusts_, listener()) {
+        hub_(config, clock_, gusts_, listener()),
+        shaper_(config, gusts_) {
     if (animation_) {
+      shaper_.keep_site_file();
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
     }
@@ -110,8 +113,9 @@ class Service::Io {
 
   /// Takes in readings and lets the wind go on, at the animation's pace.
   void step_wind() {
-    const WindState& state = hub_.advance();
-    wind_.publish({state, hub_.ground()});
+    DrivingWind wind{hub_.advance(), hub_.ground()};
+    shaper_.shape(wind, clock_.now().utc);
+    wind_.publish(wind);
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     if (options_.end_with_recordings && hub_.is_finished()) return end("the recording is over");
@@ -140,6 +144,7 @@ class Service::Io {
     wire::Sensors status;
     status.sensors = hub_.status();
     status.wind = hub_.wind();
+    status.shaping = shaper_.status();
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
     stream_.publish_sensors(std::make_shared<const wire::Bytes>(wire::encode(status)));
@@ -181,6 +186,7 @@ class Service::Io {
   TcpStream stream_;
   std::unique_ptr<Recorder> recorder_;
   SensorHub hub_;
+  WindShaper shaper_;
   Latest<DrivingWind> wind_;
   std::unique_ptr<AnimationLoop> loop_;
 };

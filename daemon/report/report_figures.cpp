@@ -73,14 +73,14 @@ class Figures {
     panel.is_x_time = true;
     panel.x_range = {{axis_s(recording_.begin_s) - margin_s, axis_s(recording_.end_s) + margin_s}};
     // Silences stand behind the curves.
-    for (const auto& [from_s, to_s] : stretches(SensorState::kStale, SensorState::kStale)) {
+    for (const auto& [from_s, to_s] : stretches(RecordedState::kStale, RecordedState::kStale)) {
       panel.spans.push_back({.from = from_s, .to = to_s, .color = "#dddddd"});
     }
     return panel;
   }
 
   /// Where, on the axis, the gravest state of the bins is one of these.
-  std::vector<std::pair<double, double>> stretches(SensorState first, SensorState last) const {
+  std::vector<std::pair<double, double>> stretches(RecordedState first, RecordedState last) const {
     std::vector<std::pair<double, double>> found;
     const double bin_s = recording_.duration_s() / static_cast<double>(kTimeBins);
     bool is_open = false;
@@ -178,9 +178,9 @@ PlotPanel Figures::state_panel() const {
   PlotPanel panel = time_panel();
   panel.spans = {{.from = panel.x_range->first,
                   .to = panel.x_range->second,
-                  .color = std::string(kStateColors[static_cast<std::size_t>(SensorState::kLive)])}};
-  for (std::size_t i = 1; i < kSensorStates; ++i) {
-    const auto state = static_cast<SensorState>(i);
+                  .color = std::string(kStateColors[static_cast<std::size_t>(RecordedState::kLive)])}};
+  for (std::size_t i = 1; i < kRecordedStates; ++i) {
+    const auto state = static_cast<RecordedState>(i);
     for (const auto& [from_s, to_s] : stretches(state, state)) {
       panel.spans.push_back({.from = from_s, .to = to_s, .color = std::string(kStateColors[i])});
     }

@@ -26,9 +26,9 @@ std::string iso_text(UtcTime moment) {
 
 ordered_json json_of_states(const SensorNumbers& sensor) {
   ordered_json totals = ordered_json::object();
-  for (std::size_t i = 0; i < kSensorStates; ++i) {
+  for (std::size_t i = 0; i < kRecordedStates; ++i) {
     const StateTotal& total = sensor.states[i];
-    totals[std::string(kSensorStateNames[i])] = {
+    totals[std::string(kRecordedStateNames[i])] = {
         {"count", total.count}, {"time_s", total.time_s}, {"longest_s", total.longest_s}};
   }
   return totals;
@@ -37,7 +37,7 @@ ordered_json json_of_states(const SensorNumbers& sensor) {
 ordered_json json_of_events(const RecordingNumbers& recording, const SensorNumbers& sensor) {
   ordered_json events = ordered_json::array();
   for (const StateEvent& event : sensor.events) {
-    events.push_back({{"state", kSensorStateNames[static_cast<std::size_t>(event.state)]},
+    events.push_back({{"state", kRecordedStateNames[static_cast<std::size_t>(event.state)]},
                       {"from_s", event.from_s},
                       {"to_s", event.to_s},
                       {"length_s", event.length_s()},
@@ -97,7 +97,7 @@ ordered_json json_of_series(const RecordingNumbers& recording, const SensorNumbe
                     {"max_m_s", bin.max_m_s},
                     {"gust_m_s", json_of(bin.gust_m_s)},
                     {"direction_deg", json_of(direction_deg)},
-                    {"state", kSensorStateNames[static_cast<std::size_t>(bin.gravest)]}});
+                    {"state", kRecordedStateNames[static_cast<std::size_t>(bin.gravest)]}});
   }
   return rows;
 }

@@ -17,19 +17,21 @@
 namespace yuragi {
 
 /// How a sensor did at one moment, the gravest last.
-enum class SensorState : std::uint8_t {
+enum class RecordedState : std::uint8_t {
   kLive,
-  kStale,   ///< silent for several of its own intervals, as the daemon judges (SourceRecord)
-  kSpike,   ///< from here on ReadingFault: a reading is held back
-  kFrozen,  ///< exactly the same value again and again
-  kSeized,  ///< no wind for hours on a windy day
+  kStale,        ///< silent for several of its own intervals, as the daemon judges (SourceRecord)
+  kSpike,        ///< from here on ReadingFault: a reading is held back
+  kImplausible,  ///< out of range, or a spike, again and again
+  kFrozen,       ///< exactly the same value again and again
+  kSeized,       ///< no wind for hours on a windy day
 };
-inline constexpr std::array<std::string_view, 5> kSensorStateNames = {"live", "stale", "spike", "frozen", "seized"};
-inline constexpr std::size_t kSensorStates = kSensorStateNames.size();
+inline constexpr std::array<std::string_view, 6> kRecordedStateNames = {"live",        "stale",  "spike",
+                                                                        "implausible", "frozen", "seized"};
+inline constexpr std::size_t kRecordedStates = kRecordedStateNames.size();
 
 /// A stretch in which a sensor was not live. Of a silence it is all the time from one reading to the next.
 struct StateEvent {
-  SensorState state = SensorState::kStale;
+  RecordedState state = RecordedState::kStale;
   double from_s = 0.0;
   double to_s = 0.0;
 
@@ -54,7 +56,7 @@ struct TimeBin {
   double u_sum_m_s = 0.0;
   double v_sum_m_s = 0.0;
   std::optional<double> gust_m_s;  ///< the strongest that the sensor told, or 3 s mean
-  SensorState gravest = SensorState::kLive;
+  RecordedState gravest = RecordedState::kLive;
   bool follows_silence = false;  ///< the sensor was stale before it: no line leads here
 
   double time_s() const { return time_sum_s / static_cast<double>(count); }
@@ -171,7 +173,7 @@ struct SensorNumbers {
   std::optional<double> steadiness;       ///< length of the mean vector over the mean speed, 0 to 1
   std::optional<double> integral_time_s;  ///< of the speed: its autocorrelation, integrated to its first zero
 
-  std::array<StateTotal, kSensorStates> states{};
+  std::array<StateTotal, kRecordedStates> states{};
   std::vector<StateEvent> events;  ///< of each state the longest kMaxEvents, by time
   static constexpr std::size_t kMaxEvents = 100;
 

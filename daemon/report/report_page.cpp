@@ -71,7 +71,7 @@ void add_recording(PageWriter& page, const RecordingNumbers& recording, const st
         "class=\"n\">{}</td><td>{}</td></tr>\n",
         page_text(sensor.name), page_text(sensor.driver), sensor.readings,
         sensor.readings > 1 ? duration_text(sensor.interval_s) : "–",
-        sensor.states[static_cast<std::size_t>(SensorState::kStale)].count, quality);
+        sensor.states[static_cast<std::size_t>(RecordedState::kStale)].count, quality);
   }
   page.add("</tbody></table>\n");
 }

@@ -55,9 +55,9 @@ void add_series(PageWriter& page, const SensorFigures& figures) {
       "single directions; dark ones: means. Grey "
       "behind the curves: the sensor was silent.");
   page.add("<p class=\"keys quiet\">");
-  for (std::size_t i = 0; i < kSensorStates; ++i) {
+  for (std::size_t i = 0; i < kRecordedStates; ++i) {
     page.add("<span class=\"item\"><span class=\"key\" style=\"background:{}\"></span>{}</span> ", kStateColors[i],
-             kSensorStateNames[i]);
+             kRecordedStateNames[i]);
   }
   page.add("</p>\n");
 }
@@ -168,17 +168,19 @@ void add_spectrum(PageWriter& page, const SensorNumbers& sensor, const SensorFig
 }
 
 /// What a state means, for a technician.
-std::string_view meaning_of(SensorState state) {
+std::string_view meaning_of(RecordedState state) {
   switch (state) {
-    case SensorState::kLive:
+    case RecordedState::kLive:
       return "heard, and credible";
-    case SensorState::kStale:
+    case RecordedState::kStale:
       return "silent: cable, power, radio?";
-    case SensorState::kSpike:
+    case RecordedState::kSpike:
       return "a reading far from all others was held back";
-    case SensorState::kFrozen:
+    case RecordedState::kImplausible:
+      return "out of range, or spike after spike: wiring, scale, interference?";
+    case RecordedState::kFrozen:
       return "exactly the same value again and again: icing, a stuck logger?";
-    case SensorState::kSeized:
+    case RecordedState::kSeized:
       return "no wind for hours on a windy day: a bearing, a bird, ice?";
   }
   return "";
@@ -191,8 +193,8 @@ void add_events(PageWriter& page, const RecordingNumbers& recording, const Senso
   const auto listed = std::ranges::count_if(sensor.events, is_wanted);
   if (listed == 0) return;
   std::uint64_t all = 0;
-  for (std::size_t i = 1; i < kSensorStates; ++i) {
-    if (is_wanted(StateEvent{.state = static_cast<SensorState>(i)})) all += sensor.states[i].count;
+  for (std::size_t i = 1; i < kRecordedStates; ++i) {
+    if (is_wanted(StateEvent{.state = static_cast<RecordedState>(i)})) all += sensor.states[i].count;
   }
   page.add("<h3>{}</h3>\n", title);
   if (all > static_cast<std::uint64_t>(listed)) page.add("<p class=\"quiet\">The longest {} of {}.</p>\n", listed, all);
@@ -205,7 +207,7 @@ void add_events(PageWriter& page, const RecordingNumbers& recording, const Senso
     page.add(
         "<tr><td><span class=\"key\" style=\"background:{}\"></span>{}</td><td>{}</td><td>{}</td>"
         "<td class=\"n\">{}</td></tr>\n",
-        kStateColors[state], kSensorStateNames[state], utc_text(recording.utc_at(event.from_s)),
+        kStateColors[state], kRecordedStateNames[state], utc_text(recording.utc_at(event.from_s)),
         utc_text(recording.utc_at(event.to_s)), duration_text(event.length_s()));
   }
   page.add("</tbody></table>\n");
@@ -216,16 +218,16 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
       "<h3>How the sensor did</h3>\n<table><thead><tr><th>state</th><th class=\"n\">times</th><th class=\"n\">in "
       "all</th>"
       "<th class=\"n\">share</th><th class=\"n\">longest</th><th>meaning</th></tr></thead><tbody>\n");
-  for (std::size_t i = 0; i < kSensorStates; ++i) {
+  for (std::size_t i = 0; i < kRecordedStates; ++i) {
     const StateTotal& total = sensor.states[i];
     const bool has_any = total.count > 0;
     page.add(
         "<tr><td><span class=\"key\" style=\"background:{}\"></span>{}</td><td class=\"n\">{}</td><td "
         "class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n",
-        kStateColors[i], kSensorStateNames[i], total.count, has_any ? duration_text(total.time_s) : "–",
+        kStateColors[i], kRecordedStateNames[i], total.count, has_any ? duration_text(total.time_s) : "–",
         has_any ? percent(total.time_s / std::max(recording.duration_s(), 1e-9)) : "–",
-        has_any ? duration_text(total.longest_s) : "–", meaning_of(static_cast<SensorState>(i)));
+        has_any ? duration_text(total.longest_s) : "–", meaning_of(static_cast<RecordedState>(i)));
   }
   page.add(
       "</tbody></table>\n<p class=\"quiet\">A sensor is stale when it has said nothing for {:g} of its own intervals, "
@@ -234,7 +236,7 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
       "{} of {} readings were believed; {} turned out to be spikes. The numbers on this page are of those that were "
       "believed, as recorded, before calibration.</p>\n",
       recording.stale_intervals, sensor.believed, sensor.readings, sensor.spikes);
-  const auto is_gap = [](const StateEvent& event) { return event.state == SensorState::kStale; };
+  const auto is_gap = [](const StateEvent& event) { return event.state == RecordedState::kStale; };
   if (sensor.events.empty()) page.add("<p>No gap, and nothing else to tell.</p>\n");
   add_events(page, recording, sensor, "Gaps", is_gap);
   add_events(page, recording, sensor, "What else was wrong", std::not_fn(is_gap));
@@ -256,7 +258,7 @@ std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& 
     text += fmt::format(" from the {}", compass_text(*sensor.direction_deg));
   }
   text += fmt::format(", with gusts of up to {}.", speed_text(gust_of(sensor)));
-  const StateTotal& silence = sensor.states[static_cast<std::size_t>(SensorState::kStale)];
+  const StateTotal& silence = sensor.states[static_cast<std::size_t>(RecordedState::kStale)];
   if (silence.count == 0) return text + " It was heard without a gap.";
   return text + fmt::format(" It was silent {} {}, for {} in all.", silence.count,
                             silence.count == 1 ? "time" : "times", duration_text(silence.time_s));

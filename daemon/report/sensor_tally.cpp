@@ -25,18 +25,20 @@ constexpr double kMostCorrelationSamples = 1 << 17;
 /// Fewer readings with a direction than this, and only the speed is analysed.
 constexpr double kMostlyDirected = 0.9;
 
-SensorState state_of(ReadingFault fault) {
+RecordedState state_of(ReadingFault fault) {
   switch (fault) {
     case ReadingFault::kNone:
-      return SensorState::kLive;
+      return RecordedState::kLive;
     case ReadingFault::kSpike:
-      return SensorState::kSpike;
+      return RecordedState::kSpike;
+    case ReadingFault::kImplausible:
+      return RecordedState::kImplausible;
     case ReadingFault::kFrozen:
-      return SensorState::kFrozen;
+      return RecordedState::kFrozen;
     case ReadingFault::kSeized:
-      return SensorState::kSeized;
+      return RecordedState::kSeized;
   }
-  return SensorState::kLive;
+  return RecordedState::kLive;
 }
 
 }  // namespace
@@ -100,10 +102,10 @@ std::size_t SensorTally::hour_of(UtcTime moment) {
   return known_hour_;
 }
 
-void SensorTally::mark(SensorState state, double from_s, double to_s) {
+void SensorTally::mark(RecordedState state, double from_s, double to_s) {
   states_.add(state, from_s, to_s);
-  if (state == SensorState::kLive || !(to_s > from_s)) return;
-  if (state != SensorState::kSpike) was_interrupted_ = true;
+  if (state == RecordedState::kLive || !(to_s > from_s)) return;
+  if (state != RecordedState::kSpike) was_interrupted_ = true;
   for (std::size_t bin = bin_of(from_s); bin <= bin_of(to_s); ++bin) {
     numbers_.bins[bin].gravest = std::max(numbers_.bins[bin].gravest, state);
   }
@@ -117,13 +119,13 @@ void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   // How was it since the last reading? Of a sensor that has spoken once the record knows no interval yet.
   const double patience_s = std::max(1.0, settings_.stale_intervals * numbers_.interval_s);
   if (!record_.has_spoken()) {
-    if (time_s - begin_s_ > patience_s) mark(SensorState::kStale, begin_s_, time_s);
+    if (time_s - begin_s_ > patience_s) mark(RecordedState::kStale, begin_s_, time_s);
     numbers_.first_s = time_s;
     numbers_.first = reading.time.utc;
   } else {
     const bool was_silent = numbers_.readings == 1 ? time_s - numbers_.last_s > patience_s
                                                    : !record_.is_live(heard.time.mono, settings_.stale_intervals);
-    mark(was_silent ? SensorState::kStale : state_, numbers_.last_s, time_s);
+    mark(was_silent ? RecordedState::kStale : state_, numbers_.last_s, time_s);
   }
   numbers_.last_s = time_s;
   numbers_.last = reading.time.utc;
@@ -210,7 +212,7 @@ SensorNumbers SensorTally::finish() {
   const MonoTime end(from_seconds(end_s_));
   if (record_.has_spoken() && end_s_ > numbers_.last_s) {
     const bool is_live = record_.is_live(end, settings_.stale_intervals);
-    mark(is_live ? state_ : SensorState::kStale, numbers_.last_s, end_s_);
+    mark(is_live ? state_ : RecordedState::kStale, numbers_.last_s, end_s_);
   }
   numbers_.states = states_.totals();
   numbers_.events = states_.events();

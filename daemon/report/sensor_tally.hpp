@@ -40,7 +40,7 @@ class SensorTally {
 
  private:
   void plan_spectrum(const SensorSurvey& survey);
-  void mark(SensorState state, double from_s, double to_s);
+  void mark(RecordedState state, double from_s, double to_s);
   void add_believed(Nanoseconds log_time, const WindReading& reading);
   void add_to_bin(double time_s, const WindReading& reading, const std::optional<double>& gust_m_s);
   std::size_t bin_of(double time_s) const;
@@ -55,7 +55,7 @@ class SensorTally {
   SourceRecord record_;
   ReadingJudge judge_;
   StateHistory states_;
-  SensorState state_ = SensorState::kLive;
+  RecordedState state_ = RecordedState::kLive;
   bool was_interrupted_ = false;  ///< since the last believed reading
 
   SpeedStatistics speeds_;

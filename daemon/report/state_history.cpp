@@ -18,7 +18,7 @@ void keep_longest(std::vector<StateEvent>& events) {
 
 }  // namespace
 
-void StateHistory::add(SensorState state, double from_s, double to_s) {
+void StateHistory::add(RecordedState state, double from_s, double to_s) {
   if (!(to_s > from_s)) return;
   if (state == open_.state && from_s == open_.to_s) {
     open_.to_s = to_s;
@@ -35,14 +35,14 @@ void StateHistory::close() {
   ++total.count;
   total.time_s += open_.length_s();
   total.longest_s = std::max(total.longest_s, open_.length_s());
-  if (open_.state != SensorState::kLive) {
+  if (open_.state != RecordedState::kLive) {
     longest_[index].push_back(open_);
     if (longest_[index].size() > 2 * SensorNumbers::kMaxEvents) keep_longest(longest_[index]);
   }
   open_ = {open_.state, open_.to_s, open_.to_s};
 }
 
-std::array<StateTotal, kSensorStates> StateHistory::totals() {
+std::array<StateTotal, kRecordedStates> StateHistory::totals() {
   close();
   return totals_;
 }

@@ -12,17 +12,17 @@ namespace yuragi {
 class StateHistory {
  public:
   /// From one moment to the next it was in this state. Stretches come in order; equal ones that touch are one.
-  void add(SensorState state, double from_s, double to_s);
+  void add(RecordedState state, double from_s, double to_s);
 
-  std::array<StateTotal, kSensorStates> totals();
+  std::array<StateTotal, kRecordedStates> totals();
   std::vector<StateEvent> events();
 
  private:
   void close();
 
-  std::array<StateTotal, kSensorStates> totals_{};
-  std::array<std::vector<StateEvent>, kSensorStates> longest_;
-  StateEvent open_{SensorState::kLive, 0.0, 0.0};
+  std::array<StateTotal, kRecordedStates> totals_{};
+  std::array<std::vector<StateEvent>, kRecordedStates> longest_;
+  StateEvent open_{RecordedState::kLive, 0.0, 0.0};
 };
 
 }  // namespace yuragi

@@ -43,10 +43,10 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
   const double cell_m = std::max(extent_m / static_cast<double>(nodes - 2), finest_cell_m);
   const double period_m = cell_m * static_cast<double>(nodes);
 
-  for (std::size_t row = 0; row < nodes; ++row) {
+  for (std::size_t line = 0; line < nodes; ++line) {
     for (std::size_t column = 0; column < nodes; ++column) {
       const double node_x_m = first_x_m + cell_m * static_cast<double>(column);
-      const double node_z_m = first_z_m + cell_m * static_cast<double>(row);
+      const double node_z_m = first_z_m + cell_m * static_cast<double>(line);
       node_x_m_.push_back(node_x_m);
       node_z_m_.push_back(node_z_m);
       for (std::size_t which = 0; which < 2; ++which) {

@@ -19,8 +19,6 @@ constexpr double kTrustRate_rad_s = 1.0;
 /// The slow mean of the speed, by which turbulence is measured.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kLeastSpeed_m_s = 0.5;
-/// Standard deviation across the wind over that along it, where nobody measured it (IEC 61400-1, normal turbulence).
-constexpr double kAcrossPerAlong = 0.8;
 constexpr double kFitEvery_s = 1.0;
 
 double sinc(double x) noexcept {

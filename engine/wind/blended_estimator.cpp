@@ -18,7 +18,7 @@ constexpr double kLeastAdvection_m_s = 0.3;
 /// Below this the wind's direction is no direction: what it was is held, the more the calmer it is.
 constexpr double kCalm_m_s = 0.5;
 constexpr double kTurnRate_hz = 0.1;
-constexpr double kAcrossPerAlongOfClimate = 0.8;  // IEC 61400-1, normal turbulence
+
 /// How fast two sensors disagree with their distance over the length of a gust (Davenport 1961: 10 to 16 sideways).
 constexpr double kCoherenceDecay = 10.0;
 /// Gusts of an absolute source tell something new after so many of its intervals.
@@ -51,7 +51,7 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
       noise_(std::move(noise)),
       climate_along_(gust_variances(*noise_, settings.climate.turbulence_intensity, settings.length_m)),
       climate_across_(
-          gust_variances(*noise_, kAcrossPerAlongOfClimate * settings.climate.turbulence_intensity, settings.length_m)),
+          gust_variances(*noise_, kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)),
       choice_(completed(settings.sources, source_count), settings.handover_s, settings.return_after_s),
       plane_(completed(settings.sources, source_count)),
       shares_(source_count),

@@ -118,6 +118,23 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
          read(from.gust_m_s(), to.gust_m_s);
 }
 
+/// A server that does not know of it sends none: then nothing is at work.
+bool read(const fb::Shaping* from, Shaping& to) {
+  if (from == nullptr) return true;
+  constexpr double kMaxGain = 1e3;
+  const auto take = [](float value, double max, double& into) {
+    into = static_cast<double>(value);
+    return is_within(into, 0.0, max);
+  };
+  return take(from->site_gain(), kMaxGain, to.site_gain) && take(from->floor_gain(), kMaxGain, to.floor_gain) &&
+         take(from->breeze_m_s(), kMaxWind_m_s, to.breeze_m_s) && take(from->opening(), 1.0, to.opening) &&
+         take(from->ceiling_gain(), 1.0, to.ceiling_gain) && take(from->mean_m_s(), kMaxWind_m_s, to.mean_m_s) &&
+         take(from->shaped_mean_m_s(), kMaxWind_m_s, to.shaped_mean_m_s) &&
+         take(from->site_median_m_s(), kMaxWind_m_s, to.site_median_m_s) &&
+         take(from->site_strong_m_s(), kMaxWind_m_s, to.site_strong_m_s) &&
+         take(from->site_known_s(), kMaxDuration_s, to.site_known_s) && read_text(from->text(), to.text);
+}
+
 bool read(const fb::Sensors& from, Sensors& to) {
   const std::size_t count = from.sensors() == nullptr ? 0 : from.sensors()->size();
   if (count > kMaxSensors || !read(from.wind(), to.wind)) return false;
@@ -125,7 +142,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
     if (!read(*from.sensors()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.sensors.emplace_back())) return false;
   to.late_ticks = from.late_ticks();
   to.clients = from.clients();
-  return true;
+  return read(from.shaping(), to.shaping);
 }
 
 bool read(const fb::Control& from, Control& to) {

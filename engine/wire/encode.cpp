@@ -134,6 +134,23 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   return table.Finish();
 }
 
+flatbuffers::Offset<fb::Shaping> add_shaping(Builder& builder, const Shaping& shaping) {
+  const auto text = add_text(builder, shaping.text);
+  fb::ShapingBuilder table(builder);
+  table.add_site_gain(static_cast<float>(shaping.site_gain));
+  table.add_floor_gain(static_cast<float>(shaping.floor_gain));
+  table.add_breeze_m_s(static_cast<float>(shaping.breeze_m_s));
+  table.add_opening(static_cast<float>(shaping.opening));
+  table.add_ceiling_gain(static_cast<float>(shaping.ceiling_gain));
+  table.add_mean_m_s(static_cast<float>(shaping.mean_m_s));
+  table.add_shaped_mean_m_s(static_cast<float>(shaping.shaped_mean_m_s));
+  table.add_site_median_m_s(static_cast<float>(shaping.site_median_m_s));
+  table.add_site_strong_m_s(static_cast<float>(shaping.site_strong_m_s));
+  table.add_site_known_s(static_cast<float>(shaping.site_known_s));
+  table.add_text(text);
+  return table.Finish();
+}
+
 template <class Table>
 Bytes finish(Builder& builder, fb::Body type, flatbuffers::Offset<Table> body) {
   fb::FinishSizePrefixedMessageBuffer(builder, fb::CreateMessage(builder, type, body.Union()));
@@ -180,8 +197,9 @@ Bytes encode(const Sensors& sensors) {
   for (const SensorStatus& sensor : sensors.sensors) tables.push_back(add_sensor(builder, sensor));
   const auto vector = builder.CreateVector(tables);
   const fb::Wind wind = to_schema(sensors.wind);
+  const auto shaping = add_shaping(builder, sensors.shaping);
   return finish(builder, fb::Body_Sensors,
-                fb::CreateSensors(builder, vector, &wind, sensors.late_ticks, sensors.clients));
+                fb::CreateSensors(builder, vector, &wind, sensors.late_ticks, sensors.clients, shaping));
 }
 
 Bytes encode(const Control& control) {

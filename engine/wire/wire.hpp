@@ -106,11 +106,27 @@ struct SensorStatus {
   std::string state_reason;  ///< why, and what to do about it
 };
 
+/// What makes the wind that moves the scenes another than the real one (engine/wind/wind_shaping.hpp).
+struct Shaping {
+  double site_gain = 1.0;
+  double floor_gain = 1.0;
+  double breeze_m_s = 0.0;
+  double opening = 1.0;
+  double ceiling_gain = 1.0;
+  double mean_m_s = 0.0;
+  double shaped_mean_m_s = 0.0;
+  double site_median_m_s = 0.0;
+  double site_strong_m_s = 0.0;
+  double site_known_s = 0.0;
+  std::string text;  ///< all that is at work, for a person to read; empty: nothing
+};
+
 struct Sensors {
   std::vector<SensorStatus> sensors;
-  WindState wind;
+  WindState wind;  ///< the real one; that of the frames is shaped
   std::uint64_t late_ticks = 0;
   std::uint32_t clients = 0;
+  Shaping shaping = {};
 };
 
 /// A wish to show or hide scenes.

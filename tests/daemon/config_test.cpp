@@ -140,6 +140,24 @@ TEST(Config, ASensorHasItsPartAmongSeveral) {
               StartsWith("wall.toml:3:9: sensor.blend: is a value; write it as a table"));
 }
 
+TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {
+  EXPECT_THAT(mistakes_of("[shaping]\nhours = \"25:00-18:00\"\n"),
+              StartsWith("wall.toml:2:9: shaping.hours: has \"25:00-18:00\"; allowed: FROM-TO"));
+  EXPECT_THAT(mistakes_of("[shaping]\nfloor = 1\nzone = \"Mars\"\n"),
+              StartsWith("wall.toml:3:8: shaping.zone: is \"Mars\", which is no time zone"));
+  EXPECT_THAT(mistakes_of("[shaping]\nceiling_most = 12\n"),
+              StartsWith("wall.toml:2:16: shaping.ceiling_most: is 12; allowed: more than ceiling, which is 17"));
+  EXPECT_THAT(mistakes_of("[shaping]\nceiling = 30\n"), StartsWith("wall.toml:1:1: shaping.ceiling_most: is 25"));
+  EXPECT_THAT(mistakes_of("[shaping]\nsite_median = 3\nsite_strong = 3\n"),
+              StartsWith("wall.toml:3:15: shaping.site_strong: is 3, with site_median 3"));
+  EXPECT_THAT(mistakes_of("[shaping]\nfloor = -1\n"), StartsWith("wall.toml:2:9: shaping.floor: is -1"));
+  EXPECT_THAT(mistakes_of("shaping = 3\n"), StartsWith("wall.toml:1:1: shaping: is a value; write it as a table"));
+  const Config config =
+      parse_config("[shaping]\nceiling = 0\nceiling_most = 1\nhours = \"10:00-18:00\"\n", "wall.toml");
+  EXPECT_EQ(config.shaping.number("ceiling"), 0.0);
+  EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
+}
+
 TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
   const Config config = parse_config(
       "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades_across = 50\n"

@@ -306,7 +306,7 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
     EXPECT_EQ(state(sensor), SensorState::kLive);
     EXPECT_THAT(reason(sensor), HasSubstr("nobody can tell who is right"));
   }
-  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1.0 s; but it says"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1 s; but it says"), 1) << log_.str();
   EXPECT_EQ(lines_of_log_with("nobody can tell"), 2) << log_.str();
 }
 

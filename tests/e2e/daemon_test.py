@@ -349,6 +349,36 @@ port = {port}
         self.assertIn("daemon at " + daemon.address(), done.stdout)
         self.assertIn("simulated", done.stdout)
 
+    def test_watch_says_how_the_wind_is_shaped_for_the_scenes(self):
+        config = self.file("wall.toml", """
+[shaping]
+floor = 4
+over = 10
+ceiling = 0
+[wind]
+default_speed = 1
+default_turbulence = 0
+[[sensor]]
+driver = "synthetic"
+speed = 1
+turbulence = 0
+""")
+        daemon = self.start_daemon("--config", config)
+        with Stream(daemon.address()) as stream:
+            deadline = time.monotonic() + 60.0
+            shaping = stream.next("Sensors").Shaping()
+            while shaping.ShapedMeanMS() < 3.9 and time.monotonic() < deadline:
+                shaping = stream.next("Sensors").Shaping()
+            self.assertAlmostEqual(shaping.ShapedMeanMS(), 4.0, delta=0.3)
+            self.assertAlmostEqual(shaping.MeanMS(), 1.0, delta=0.3)
+            wind = stream.next("Sensors").Wind()
+            self.assertLess(numpy.hypot(wind.UMS(), wind.VMS()), 1.5, "the sensors' wind stays the real one")
+            wind = stream.next("Frame").Wind()
+            self.assertGreater(numpy.hypot(wind.UMS(), wind.VMS()), 2.0, "the scenes' is raised")
+        table = run("sensors", "watch", "--listen", daemon.address(), "--once").stdout
+        self.assertRegex(table, r"shaped: floor: raised (0\.9|1\.[01]) to 4\.0 m/s")
+        self.assertRegex(daemon.end(signal.SIGINT)[0] == 0 and daemon.text(), "raised toward the floor of 4.0 m/s")
+
     def test_watch_opens_the_devices_itself_where_no_daemon_runs(self):
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))

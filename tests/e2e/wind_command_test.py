@@ -100,6 +100,22 @@ class WindCommand(unittest.TestCase):
         steps = [math.hypot(b["u_m_s"] - a["u_m_s"], b["v_m_s"] - a["v_m_s"]) for a, b in zip(rows, rows[1:])]
         self.assertLess(max(steps), 0.5)
 
+    def test_shapes_the_wind_for_the_scenes_where_it_is_asked_to(self):
+        real, _ = self.wind("--rate", 10)
+        self.assertEqual(self.wind("--rate", 10, "--shaped")[0], real, "an ordinary wind is as it is")
+        config = self.log.with_name("wall.toml")
+        config.write_text("[shaping]\nceiling = 5\nceiling_most = 6.5\n", encoding="ascii")
+        shaped, _ = self.wind("--rate", 10, "--shaped", "--config", config)
+        self.assertEqual([row["time_s"] for row in shaped], [row["time_s"] for row in real])
+        self.assertGreater(max(row["speed_m_s"] for row in real), 6.8)
+        for before, after in zip(real, shaped):
+            self.assertLess(after["speed_m_s"], 6.5)
+            if before["speed_m_s"] <= 5.0:
+                self.assertEqual(after["speed_m_s"], before["speed_m_s"])
+            turn_deg = (after["direction_deg"] - before["direction_deg"] + 180.0) % 360.0 - 180.0
+            self.assertAlmostEqual(turn_deg, 0.0, delta=0.001)
+        self.assertEqual(self.wind("--rate", 10, "--config", config)[0], real, "the real wind, without --shaped")
+
     def test_writes_a_file_and_keeps_one_that_is_there(self):
         file = self.log.with_name("out.csv")
         self.assertEqual(yuragi("wind", self.log, "-o", file).returncode, 0)

@@ -30,7 +30,7 @@ TEST(MeasureRecording, ASilenceIsAGapFromReadingToReading) {
   ASSERT_EQ(numbers.sensors.size(), 1U);
   const SensorNumbers& sensor = numbers.sensors[0];
   ASSERT_EQ(sensor.events.size(), 1U);
-  EXPECT_EQ(sensor.events[0].state, SensorState::kStale);
+  EXPECT_EQ(sensor.events[0].state, RecordedState::kStale);
   EXPECT_DOUBLE_EQ(sensor.events[0].from_s, 99.0);
   EXPECT_DOUBLE_EQ(sensor.events[0].to_s, 160.0);
   const double all_s = std::accumulate(sensor.states.begin(), sensor.states.end(), 0.0,
@@ -62,8 +62,8 @@ TEST(MeasureRecording, WhatIsFrozenOrASpikeIsToldAndNotCounted) {
   const SensorNumbers& sensor = numbers.sensors[0];
   EXPECT_LT(sensor.max_m_s, 8.0);
   EXPECT_EQ(sensor.spikes, 1U);
-  EXPECT_EQ(sensor.states[static_cast<std::size_t>(SensorState::kSpike)].count, 1U);
-  const StateTotal& frozen = sensor.states[static_cast<std::size_t>(SensorState::kFrozen)];
+  EXPECT_EQ(sensor.states[static_cast<std::size_t>(RecordedState::kSpike)].count, 1U);
+  const StateTotal& frozen = sensor.states[static_cast<std::size_t>(RecordedState::kFrozen)];
   EXPECT_EQ(frozen.count, 1U);
   EXPECT_NEAR(frozen.time_s, 170.0, 2.0) << "from when it was noticed, after 30 s";
   EXPECT_LT(sensor.believed, sensor.readings - 160);
@@ -168,9 +168,9 @@ TEST(StateHistory, JoinsWhatTouchesAndKeepsTheLongest) {
   StateHistory history;
   double now_s = 0.0;
   for (int i = 1; i <= 1000; ++i) {
-    history.add(SensorState::kLive, now_s, now_s + 1.0);
-    history.add(SensorState::kStale, now_s + 1.0, now_s + 1.0 + 0.5 * i);
-    history.add(SensorState::kStale, now_s + 1.0 + 0.5 * i, now_s + 1.0 + i);
+    history.add(RecordedState::kLive, now_s, now_s + 1.0);
+    history.add(RecordedState::kStale, now_s + 1.0, now_s + 1.0 + 0.5 * i);
+    history.add(RecordedState::kStale, now_s + 1.0 + 0.5 * i, now_s + 1.0 + i);
     now_s += 1.0 + i;
   }
   const auto events = history.events();
@@ -178,8 +178,8 @@ TEST(StateHistory, JoinsWhatTouchesAndKeepsTheLongest) {
   EXPECT_DOUBLE_EQ(events.front().length_s(), 901.0);
   EXPECT_DOUBLE_EQ(events.back().length_s(), 1000.0);
   const auto totals = history.totals();
-  EXPECT_EQ(totals[static_cast<std::size_t>(SensorState::kStale)].count, 1000U);
-  EXPECT_DOUBLE_EQ(totals[static_cast<std::size_t>(SensorState::kLive)].time_s, 1000.0);
+  EXPECT_EQ(totals[static_cast<std::size_t>(RecordedState::kStale)].count, 1000U);
+  EXPECT_DOUBLE_EQ(totals[static_cast<std::size_t>(RecordedState::kLive)].time_s, 1000.0);
 }
 
 }  // namespace

@@ -227,6 +227,10 @@ TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
       [](auto& s) { s.sensors[0].interval_s = std::nan(""); },
       [](auto& s) { s.sensors.resize(kMaxSensors + 1); },
       [](auto& s) { s.sensors[0].refused.resize(kMaxRefusalReasons + 1); },
+      [](auto& s) { s.shaping.site_gain = std::nan(""); },
+      [](auto& s) { s.shaping.floor_gain = -1.0; },
+      [](auto& s) { s.shaping.opening = 1.5; },
+      [](auto& s) { s.shaping.mean_m_s = 1e9; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     Sensors sensors = samples::sensors();

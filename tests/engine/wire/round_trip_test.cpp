@@ -231,6 +231,21 @@ TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
   }
 }
 
+TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
+  const Shaping shaping = decoded<Sensors>(encode(samples::sensors())).shaping;
+  EXPECT_EQ(shaping.site_gain, 1.75);
+  EXPECT_EQ(shaping.floor_gain, 2.5);
+  EXPECT_EQ(shaping.breeze_m_s, 0.25);
+  EXPECT_EQ(shaping.opening, 0.5);
+  EXPECT_EQ(shaping.ceiling_gain, 0.875);
+  EXPECT_EQ(shaping.mean_m_s, 0.75);
+  EXPECT_EQ(shaping.shaped_mean_m_s, 1.5);
+  EXPECT_EQ(shaping.site_median_m_s, 1.25);
+  EXPECT_EQ(shaping.site_strong_m_s, 3.5);
+  EXPECT_EQ(shaping.site_known_s, 86400.0);
+  EXPECT_EQ(shaping.text, "floor: raised 0.8 to 1.5 m/s");
+}
+
 TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {
   const RawTrace sent = samples::raw_trace();
   const RawTrace trace = decoded<RawTrace>(encode(sent));

@@ -240,7 +240,18 @@ inline wire::Sensors sensors() {
   gauge.replayed = true;
   gauge.state = SensorState::kFrozen;
   gauge.state_reason = "the same 3.42 m/s 61 times";
-  return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2};
+  const wire::Shaping shaping{.site_gain = 1.75,
+                              .floor_gain = 2.5,
+                              .breeze_m_s = 0.25,
+                              .opening = 0.5,
+                              .ceiling_gain = 0.875,
+                              .mean_m_s = 0.75,
+                              .shaped_mean_m_s = 1.5,
+                              .site_median_m_s = 1.25,
+                              .site_strong_m_s = 3.5,
+                              .site_known_s = 86400.0,
+                              .text = "floor: raised 0.8 to 1.5 m/s"};
+  return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2, .shaping = shaping};
 }
 
 inline wire::RawTrace raw_trace() {
