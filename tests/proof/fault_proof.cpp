@@ -32,11 +32,8 @@ constexpr double kEndOfRecord_s = 1800.0;
 /// Until then an estimator that has just begun is on its way to what the sensor says.
 constexpr double kSettled_s = 60.0;
 constexpr std::uint64_t kSeeds = 32;
-constexpr std::uint64_t kStepSeeds = 16;
+constexpr std::uint64_t kStepSeeds = 8;
 constexpr int kTicksASecond = 60;
-/// The largest step of all seeds may be so much larger than that of normal motion: where a spike is held back, what the
-/// record itself does in two seconds comes as one reading.
-constexpr double kOneInMany = 1.1;
 
 using Readings = std::vector<WindReading>;
 
@@ -139,7 +136,7 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
   for (const auto& [name, steps] : faulty) {
     fmt::print("| {} | {:.3f} | {:.3f} |\n", name, steps.mean_m_s, steps.most_m_s);
     EXPECT_LE(steps.mean_m_s, normal.mean_m_s) << name;
-    EXPECT_LE(steps.most_m_s, kOneInMany * normal.most_m_s) << name;
+    EXPECT_LE(steps.most_m_s, normal.most_m_s) << name;
   }
 }
 
