@@ -16,6 +16,7 @@ build_packages=(
   libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
   gnuplot-nox                # plots
+  tzdata                     # opening hours in local time
   libgl1-mesa-dri xvfb xauth # the viewer's picture where there is no display
 )
 test_packages=(

@@ -9,7 +9,9 @@
 
 #include <toml++/toml.h>
 
+#include "daemon/shaping_config.hpp"
 #include "daemon/transports/address.hpp"
+#include "drivers/speed_unit.hpp"
 
 namespace yuragi {
 namespace {
@@ -93,15 +95,36 @@ const std::array kWindParameters = {
               .min = 2.0,
               .max = 100.0,
               .help = "a sensor that is silent for this many of its own intervals is stale"},
+    Parameter{.name = "return_after",
+              .unit = "s",
+              .default_value = 10.0,
+              .min = 0.0,
+              .max = 3600.0,
+              .help = "a sensor that was stale gets the word back after speaking for so long; twice as long each time"},
+    Parameter{.name = "fallback_recording",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "a .windlog that is played while every sensor is silent; empty: the default wind blows then"},
+    Parameter{.name = "fallback_after",
+              .unit = "s",
+              .default_value = 60.0,
+              .min = 1.0,
+              .max = 86400.0,
+              .help = "how long every sensor must have been silent for that"},
 };
 
 const std::array kCalibrationParameters = {
+    Parameter{.name = "unit",
+              .unit = "",
+              .default_value = std::string("m/s"),
+              .help = "what the sensor's numbers really are, where its driver takes them for m/s",
+              .choices = kSpeedUnitNames},
     Parameter{.name = "gain",
               .unit = "",
               .default_value = 1.0,
               .min = 0.01,
               .max = 100.0,
-              .help = "the speed is multiplied by this"},
+              .help = "the speed in m/s is multiplied by this"},
     Parameter{.name = "offset",
               .unit = "m/s",
               .default_value = 0.0,
@@ -181,7 +204,8 @@ const std::array kJudgeParameters = {
     Parameter{.name = "compare",
               .unit = "",
               .default_value = true,
-              .help = "its mean over 5 min is compared with the other sensors'; where three or more speak, one that "
+              .help = "its mean over 5 min is compared with the other sensors' (a microphone's never is); where three "
+                      "or more speak, one that "
                       "differs from most by more than 3 times and 3 m/s for 10 min is not believed"},
 };
 
@@ -217,10 +241,13 @@ const std::array kConfigTables = {
     ConfigTable{"stream", "where viewers connect", kStreamParameters},
     ConfigTable{"animation", "the pace", kAnimationParameters},
     ConfigTable{"wind", "what blows while no sensor speaks, and the way from one wind to another", kWindParameters},
+    ConfigTable{"shaping", "days without wind, storms, opening hours: from the real wind to the scenes'",
+                shaping_parameters()},
 };
 
 constexpr std::string_view kNameKey = "name";
 constexpr std::string_view kCalibrationKey = "calibration";
+constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
 
 /// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
@@ -256,15 +283,23 @@ class ConfigReader {
     check_listen(root, config.stream);
     config.animation = read_table(root, "", "animation", kAnimationParameters);
     config.wind = read_table(root, "", "wind", kWindParameters);
+    config.shaping = read_table(root, "", "shaping", shaping_parameters());
+    check_shaping(root, config.shaping);
+    if (const toml::node* node = root["wind"]["fallback_recording"].node()) {
+      config.fallback_origin = place(node->source());
+    }
 
     for_each_entry(root, "sensor", "driver", driver_table(),
                    [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {
                      const ParameterValues calibration =
                          read_table(entry, "sensor.", kCalibrationKey, kCalibrationParameters);
+                     check_is_table(entry, kCalibrationKey);
                      check_curve(entry, calibration);
                      check_is_table(entry, kJudgeKey);
                      const ParameterValues judge = read_table(entry, "sensor.", kJudgeKey, kJudgeParameters);
                      config.sensors.push_back({name, driver, values, calibration, place(entry.source()), judge});
+                     check_is_table(entry, kBlendKey);
+                     config.sensors.back().blend = read_table(entry, "sensor.", kBlendKey, sensor_blend_parameters());
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
                    [&](const auto& name, auto* kind, const auto& values, const auto&) {
@@ -299,7 +334,7 @@ class ConfigReader {
       for (const ConfigTable& table : kConfigTables) known = known || table.name == key.str();
       if (!known) {
         mistake(key.source(), std::string(key.str()),
-                "is not known here; allowed: seed, [stream], [animation], [wind], [[sensor]], [[scene]]");
+                "is not known here; allowed: seed, [stream], [animation], [wind], [shaping], [[sensor]], [[scene]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
                 "is one table; write [[" + std::string(key.str()) + "]] above it");
@@ -335,10 +370,18 @@ class ConfigReader {
     }
   }
 
+  void check_shaping(const toml::table& root, const ParameterValues& shaping) {
+    // A mistake that a default takes part in stands at the table.
+    for (const ParameterError& error : shaping_mistakes(shaping)) {
+      const toml::node* table = root.get("shaping");
+      const toml::node* node = table != nullptr && table->is_table() ? table->as_table()->get(error.name) : nullptr;
+      const toml::node& place = node != nullptr ? *node : table != nullptr ? *table : root;
+      mistake(place.source(), "shaping." + error.name, error.message);
+    }
+  }
+
   void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
-    if (const toml::node* node = sensor.get(kCalibrationKey); node != nullptr && !node->is_table()) {
-      mistake(node->source(), "sensor.calibration", "is a value; write it as a table, [sensor.calibration]");
-    } else if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
+    if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
       mistake(sensor[kCalibrationKey]["curve"].node()->source(), "sensor.calibration.curve", curve.error().message);
     }
   }
@@ -394,6 +437,7 @@ class ConfigReader {
       std::set<std::string_view> aside = {kNameKey, kind_key};
       if (list == "sensor") aside.insert(kCalibrationKey);
       if (list == "sensor") aside.insert(kJudgeKey);
+      if (list == "sensor") aside.insert(kBlendKey);
       const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), aside);
       use(name, description, values, *entry);
     }
@@ -489,7 +533,8 @@ Calibration calibration_of(const SensorConfig& sensor) {
   const ParameterValues& values = sensor.calibration;
   auto curve = parse_calibration_curve(values.text("curve"));
   if (!curve) throw ConfigError(sensor.origin + ": sensor.calibration.curve: " + curve.error().message);
-  Calibration calibration{.gain = values.number("gain"),
+  Calibration calibration{.unit_m_s = metres_per_second_in(values.text("unit")),
+                          .gain = values.number("gain"),
                           .offset_m_s = values.number("offset"),
                           .curve = std::move(*curve),
                           .north_offset_deg = values.number("north_offset")};
@@ -504,6 +549,7 @@ Config default_config() {
   config.stream = defaults_of(kStreamParameters);
   config.animation = defaults_of(kAnimationParameters);
   config.wind = defaults_of(kWindParameters);
+  config.shaping = defaults_of(shaping_parameters());
   const auto* synthetic = find_by_name(driver_table(), "synthetic");
   config.sensors.push_back({"synthetic", synthetic, defaults_of(parameters_of(*synthetic)), no_calibration(), {}});
   const auto* grass = find_by_name(scene_table(), "grass");
@@ -524,15 +570,16 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
   return ConfigReader(source_name).read(root);
 }
 
-Config load_config(const std::filesystem::path& file) {
+std::string read_config_text(const std::filesystem::path& file) {
   std::ifstream input(file, std::ios::binary);
-  std::string text;
-  if (input.is_open() && !std::filesystem::is_directory(file)) {
-    text.assign(std::istreambuf_iterator<char>(input), {});
-  } else {
+  if (!input.is_open() || std::filesystem::is_directory(file)) {
     throw ConfigError(file.string() + ":1:1: file: cannot be read; check its path and permissions");
   }
-  return parse_config(text, file.string());
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+Config load_config(const std::filesystem::path& file) {
+  return parse_config(read_config_text(file), file.string());
 }
 
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor) {
@@ -549,6 +596,7 @@ std::string to_toml(const Config& config) {
   root.insert("stream", to_table(config.stream));
   root.insert("animation", to_table(config.animation));
   root.insert("wind", to_table(config.wind));
+  root.insert("shaping", to_table(config.shaping));
 
   const auto append = [&root](const char* list, const char* kind_key, std::string_view kind, const std::string& name,
                               const ParameterValues& values) {
@@ -562,6 +610,7 @@ std::string to_toml(const Config& config) {
     append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
     root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.calibration));
     root["sensor"].as_array()->back().as_table()->insert(kJudgeKey, to_table(sensor.judge));
+    root["sensor"].as_array()->back().as_table()->insert(kBlendKey, to_table(sensor.blend));
   }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
 
@@ -574,6 +623,22 @@ std::string to_toml(const ParameterValues& values) {
   std::ostringstream out;
   out << to_table(values);
   return out.str();
+}
+
+Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters) {
+  try {
+    ParameterValues::Map given;
+    for (const auto& [key, node] : toml::parse(toml_text)) {
+      const std::optional<ParameterValue> value = to_parameter_value(node);
+      if (!value) return Failure{std::string(key.str()) + ": takes one value: true, a number or a text"};
+      given.emplace(key.str(), *value);
+    }
+    auto values = ParameterValues::resolve(parameters, given);
+    if (!values) return Failure{values.error().name + ": " + values.error().message};
+    return std::move(*values);
+  } catch (const toml::parse_error& error) {
+    return Failure{"TOML: " + std::string(error.description())};
+  }
 }
 
 }  // namespace yuragi

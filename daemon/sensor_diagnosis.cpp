@@ -2,16 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "daemon/duration_text.hpp"
+
 namespace yuragi {
 namespace {
-
-/// A duration as a person says it: "12.3 s", "45 min", "3.5 h", "12 days".
-std::string duration_text(double duration_s) {
-  if (duration_s < 120.0) return fmt::format("{:.1f} s", duration_s);
-  if (duration_s < 7200.0) return fmt::format("{:.0f} min", duration_s / 60.0);
-  if (duration_s < 2.0 * 86400.0) return fmt::format("{:.1f} h", duration_s / 3600.0);
-  return fmt::format("{:.0f} days", duration_s / 86400.0);
-}
 
 std::string connecting_text(const SensorEvidence& evidence) {
   if (evidence.link == LinkState::kConnected) {

@@ -83,8 +83,10 @@ std::string refusal_text(const wire::SensorStatus& sensor) {
 std::string sensor_table(const wire::Sensors& sensors) {
   const WindVector wind = sensors.wind.wind;
   std::string table =
-      fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n\n", speed_of(wind),
+      fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n", speed_of(wind),
                   direction_text(direction_from_deg(wind)), wind_source(sensors), sensors.clients, sensors.late_ticks);
+  if (!sensors.shaping.text.empty()) table += wrapped("shaped: " + sensors.shaping.text);
+  table += '\n';
   const auto out = std::back_inserter(table);
   const auto row = [&](const auto&... cells) {
     fmt::format_to(out, "{:<12.12} {:<10.10} {:<12} {:>6} {:>7} {:>6} {:>7} {:>7} {:>9} {:>9} {:>5}\n", cells...);

@@ -12,11 +12,13 @@
 
 #include "daemon/animation.hpp"
 #include "daemon/animation_loop.hpp"
+#include "daemon/player_director.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/scene_director.hpp"
 #include "daemon/sensor_hub.hpp"
 #include "daemon/system_clock.hpp"
 #include "daemon/transports/tcp_stream.hpp"
+#include "daemon/wind_shaper.hpp"
 #include "engine/base/latest.hpp"
 
 namespace yuragi {
@@ -39,8 +41,11 @@ class Service::Io {
         director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
-        hub_(config, clock_, gusts_, listener()) {
+        hub_(config, clock_, gusts_, listener()),
+        shaper_(config, gusts_),
+        players_(config.stream.text("control"), hub_.players()) {
     if (animation_) {
+      shaper_.keep_site_file();
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
     }
@@ -93,12 +98,16 @@ class Service::Io {
     if (animation_) {
       settings.scenes = animation_->describe();
       refuse_what_no_client_takes(settings.scenes);
-      settings.on_control = [this](const wire::Control& wish, bool is_local) {
-        return director_.answer(wish, is_local);
-      };
     }
+    settings.on_control = [this](const wire::Control& wish, bool is_local) { return answer(wish, is_local); };
     settings.max_clients = static_cast<std::size_t>(config.stream.integer("max_clients"));
     return settings;
+  }
+
+  wire::ControlReply answer(const wire::Control& wish, bool is_local) {
+    if (wish.player) return players_.answer(*wish.player, is_local);
+    if (animation_) return director_.answer(wish, is_local);
+    return {.done = false, .message = "there are no scenes here", .scenes = {}};
   }
 
   std::unique_ptr<Recorder> make_recorder(const Config& config, const std::filesystem::path& file) const;
@@ -110,8 +119,9 @@ class Service::Io {
 
   /// Takes in readings and lets the wind go on, at the animation's pace.
   void step_wind() {
-    const WindState& state = hub_.advance();
-    wind_.publish({state, hub_.ground()});
+    DrivingWind wind{hub_.advance(), hub_.ground()};
+    shaper_.shape(wind, clock_.now().utc);
+    wind_.publish(wind);
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     if (options_.end_with_recordings && hub_.is_finished()) return end("the recording is over");
@@ -140,6 +150,7 @@ class Service::Io {
     wire::Sensors status;
     status.sensors = hub_.status();
     status.wind = hub_.wind();
+    status.shaping = shaper_.status();
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
     stream_.publish_sensors(std::make_shared<const wire::Bytes>(wire::encode(status)));
@@ -181,6 +192,8 @@ class Service::Io {
   TcpStream stream_;
   std::unique_ptr<Recorder> recorder_;
   SensorHub hub_;
+  WindShaper shaper_;
+  PlayerDirector players_;
   Latest<DrivingWind> wind_;
   std::unique_ptr<AnimationLoop> loop_;
 };

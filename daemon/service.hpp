@@ -18,7 +18,7 @@ struct ServiceOptions {
 /// The daemon: sensors, wind, animation, stream and recording, put together. This is the one place where drivers and
 /// engine meet, and it reads as the way of the data:
 ///
-///   sensors -> SensorHub -> Latest<DrivingWind> -> AnimationLoop -> Latest<frame> -> TcpStream
+///   sensors -> SensorHub -> WindShaper -> Latest<DrivingWind> -> AnimationLoop -> Latest<frame> -> TcpStream
 ///                 `-> Recorder
 ///
 /// Everything but the sensors' threads, the animation's and the recorder's runs on the one I/O thread, which is the

@@ -151,6 +151,17 @@ void write_sensor(const wire::SensorStatus& sensor) {
   ImGui::PopTextWrapPos();
 }
 
+/// Why the wind of the picture is not the one outside, a line for each reason.
+void write_shaping(const OverlayFacts& facts) {
+  if (facts.sensors == nullptr) return;
+  for (std::string_view text = facts.sensors->shaping.text; !text.empty();) {
+    constexpr std::string_view kBetween = "; ";
+    const std::size_t end = text.find(kBetween);
+    write(kWarn, std::string(text.substr(0, end)));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + kBetween.size());
+  }
+}
+
 void write_stream(const OverlayFacts& facts) {
   switch (facts.playback) {
     case Playback::kReplaying:
@@ -224,6 +235,7 @@ void Overlay::draw(const OverlayFacts& facts) {
   if (facts.sensors != nullptr) {
     for (const wire::SensorStatus& sensor : facts.sensors->sensors) write_sensor(sensor);
   }
+  write_shaping(facts);
   write_scenes(facts);
   write_stream(facts);
   ImGui::End();

@@ -17,6 +17,7 @@
 #include "daemon/standard_output.hpp"
 #include "daemon/system_clock.hpp"
 #include "daemon/transports/stream_client.hpp"
+#include "daemon/wind_shaper.hpp"
 
 namespace yuragi {
 namespace {
@@ -135,7 +136,9 @@ void watch_daemon(StreamClient client, const std::string& address, const Deadlin
 
 void watch_devices(const Config& config, const std::string& why, const Deadline& deadline, Screen& screen) {
   const SystemClock clock;
-  SensorHub hub(config, clock, make_gust_noise(config));
+  const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
+  SensorHub hub(config, clock, gusts);
+  WindShaper shaper(config, gusts);
   const wire::Subscribe wish = screen.wish();
   hub.trace(
       [&](std::string_view sensor) { return wish.raw && (wish.raw_sensor.empty() || wish.raw_sensor == sensor); });
@@ -146,9 +149,12 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
   while (!deadline.is_over()) {
     wire::Sensors sensors;
     sensors.wind = hub.advance();
+    DrivingWind wind{sensors.wind, hub.ground()};
+    shaper.shape(wind, clock.now().utc);
     if (clock.now().mono >= next_status) {
       next_status += kTableInterval;
       sensors.sensors = hub.status();
+      sensors.shaping = shaper.status();
       if (!screen.show_sensors(sensors, source)) return;
     }
     bool is_enough = false;
@@ -191,6 +197,9 @@ void add_sensors_watch(CLI::App& sensors) {
       "The table: m/s, gust and from (degrees) as the sensor says them; age of the last reading; the interval "
       "measured\n"
       "between two; frames (messages from the device), readings among them, and how often the device came again.\n"
+      "Below the wind stands what the scenes feel instead, where [shaping] is at work: floor, site gain, opening "
+      "hours,\n"
+      "ceiling.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();

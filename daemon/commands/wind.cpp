@@ -1,4 +1,5 @@
 // `yuragi wind`: the estimator of the daemon over a recording, as a table.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -16,6 +17,7 @@
 #include "daemon/offline_wind.hpp"
 #include "daemon/output_file.hpp"
 #include "daemon/sensor_hub.hpp"
+#include "daemon/shaping_config.hpp"
 
 namespace yuragi {
 
@@ -24,9 +26,9 @@ extern const Command kWindCommand;
 namespace {
 
 constexpr const char* kWindFooter =
-    "Hears the recording as the daemon hears its sensor, reading by reading, and writes the wind that would have "
-    "moved\n"
-    "the scenes: time_s (since the start), u_m_s and v_m_s (east and north, toward which it blows), speed_m_s,\n"
+    "Hears the recording as the daemon hears its sensor, reading by reading, and writes the wind that it makes of "
+    "them:\n"
+    "time_s (since the start), u_m_s and v_m_s (east and north, toward which it blows), speed_m_s,\n"
     "direction_deg (where it comes from), trust (0: all default wind, 1: all sensor), state (default, handover, "
     "live).\n"
     "\n"
@@ -35,7 +37,8 @@ constexpr const char* kWindFooter =
     "\n"
     "--sensor-interval plays a slower sensor: vector means over so many seconds, heard at their end. --gap leaves out\n"
     "what was said from one second on and before another; it can be given again. The same recording, options and seed\n"
-    "give the same table.\n"
+    "give the same table. The wind is the real one; --shaped writes the one that moves the scenes (opening hours are\n"
+    "left out, and the site gain begins at 1).\n"
     "\n"
     "  yuragi wind mast.windlog --rate 60 --sensor-interval 14 --gap 600,700 -o blended.csv";
 
@@ -47,6 +50,7 @@ struct WindOptions {
   PlaybackOptions playback;
   std::optional<std::filesystem::path> config_file;
   std::optional<std::uint64_t> seed;
+  bool shaped = false;
   bool force = false;
 };
 
@@ -79,8 +83,10 @@ class Table {
   explicit Table(std::FILE* out) : out_(out) { text_ = "time_s,u_m_s,v_m_s,speed_m_s,direction_deg,trust,state\n"; }
 
   void add(double time_s, const WindState& state) {
+    // A hair west of north is rounded to north, not to 360.
+    const double direction_deg = std::fmod(std::round(direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
     fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}\n", time_s,
-                   state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind), direction_from_deg(state.wind),
+                   state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind), direction_deg,
                    state.live_weight, name_of(state.source));
     if (text_.size() > kBlock) flush();
   }
@@ -104,14 +110,18 @@ class Table {
 
 void write_wind(const WindOptions& options, const Config& config, std::FILE* out) {
   WindlogPlayback playback(options.file, options.playback);
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, make_gust_noise(config));
+  const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, gusts);
+  WindShaping shaping(shaping_settings(config), gusts);
   Table table(out);
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto told_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
   const OfflineWindResult result =
       run_offline(playback, *estimator, options.offline, [&](double time_s, const WindState& state) {
-        table.add(time_s, state);
+        DrivingWind wind{state, estimator->ground()};
+        if (options.shaped) shaping.shape(wind, true);
+        table.add(time_s, wind.state);
         if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
       });
   table.end(options.output);
@@ -162,7 +172,10 @@ void add_wind(CLI::App& app) {
       ->type_name("NAME");
   command->add_option("--start", options->playback.start, "where to begin: seconds, or a UTC time (ISO 8601)")
       ->type_name("T");
-  command->add_option("--config", options->config_file, "the [wind] of this configuration")->type_name("FILE.toml");
+  command->add_option("--config", options->config_file, "the [wind] and [shaping] of this configuration")
+      ->type_name("FILE.toml");
+  command->add_flag("--shaped", options->shaped,
+                    "what [shaping] makes of it for the scenes: floor, site gain, ceiling");
   command->add_flag("--force", options->force, "overwrite the output");
   command->callback([options] { run_wind(*options); });
 }

@@ -21,7 +21,7 @@ enum class RecordedState : std::uint8_t {
   kLive,
   kStale,        ///< silent for several of its own intervals, as the daemon judges (SourceRecord)
   kSpike,        ///< from here on ReadingFault: a reading is held back
-  kImplausible,  ///< spikes again and again
+  kImplausible,  ///< out of range, or a spike, again and again
   kFrozen,       ///< exactly the same value again and again
   kSeized,       ///< no wind for hours on a windy day
 };

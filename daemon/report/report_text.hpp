@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/duration_text.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi {
@@ -19,9 +20,6 @@ std::string local_text(UtcTime moment);
 
 /// Local time minus UTC, in the zone of this machine. Reads no clock. Thread-safe: yes, unless TZ is changed.
 Nanoseconds local_offset(UtcTime moment);
-
-/// "0.4 s", "12 min 5 s", "3 h 20 min", "41 days 6 h".
-std::string duration_text(double duration_s);
 
 /// "north-north-east" and so on, sixteen of them.
 std::string_view compass_text(double direction_deg);

@@ -9,6 +9,9 @@ namespace yuragi {
 /// A variance for each octave of the noise, over the square of the mean speed.
 using GustVariances = std::array<double, GustNoise::kOctaves>;
 
+/// Standard deviation across the wind over that along it, where nobody measured it (IEC 61400-1, normal turbulence).
+inline constexpr double kAcrossPerAlong = 0.8;
+
 /// The frequency in the middle of an octave that passes at this speed.
 double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept;
 

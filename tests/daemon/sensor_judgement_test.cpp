@@ -185,6 +185,8 @@ TEST_F(SensorJudgement, SpikesDoNotReachTheWind) {
   EXPECT_EQ(state(), SensorState::kLive) << "one in twenty is no fault";
   EXPECT_LT(largest_wind_m_s_, 1.5 * normal_wind_m_s);
   EXPECT_EQ(recorded_, 360);
+  EXPECT_THAT(hub_->status()[0].refused,
+              ::testing::Contains(std::pair<std::string, std::uint64_t>("not believed", 15)));
 }
 
 TEST_F(SensorJudgement, ASensorThatSaysNonsenseAgainAndAgainIsImplausibleUntilItSpeaksSense) {
@@ -306,7 +308,7 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
     EXPECT_EQ(state(sensor), SensorState::kLive);
     EXPECT_THAT(reason(sensor), HasSubstr("nobody can tell who is right"));
   }
-  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1.0 s; but it says"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1 s; but it says"), 1) << log_.str();
   EXPECT_EQ(lines_of_log_with("nobody can tell"), 2) << log_.str();
 }
 

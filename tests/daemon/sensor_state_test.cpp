@@ -26,7 +26,7 @@ std::string reason(const SensorEvidence& evidence) {
 
 TEST(SensorState, ASensorThatSpeaksIsLive) {
   EXPECT_EQ(state_of(well()), SensorState::kLive);
-  EXPECT_EQ(reason(well()), "a reading every 1.0 s");
+  EXPECT_EQ(reason(well()), "a reading every 1 s");
 }
 
 TEST(SensorState, BeforeItsFirstReadingItIsConnecting) {
@@ -45,7 +45,7 @@ TEST(SensorState, SilenceOfADeviceThatIsThereIsStaleAndOfOneThatHasGoneDisconnec
   evidence.said.health = SourceHealth::kStale;
   evidence.said.age_s = 12.34;
   EXPECT_EQ(state_of(evidence), SensorState::kStale);
-  EXPECT_THAT(reason(evidence), StartsWith("no reading for 12.3 s; it used to speak every 1.0 s"));
+  EXPECT_THAT(reason(evidence), StartsWith("no reading for 12.3 s; it used to speak every 1 s"));
   evidence.link = LinkState::kConnecting;
   evidence.link_detail = "slave 1 does not answer";
   EXPECT_EQ(state_of(evidence), SensorState::kDisconnected);
@@ -72,12 +72,12 @@ TEST(SensorState, WhatItSaysIsJudgedInTheOrderOfHowSureThatIs) {
   evidence.fault = ReadingFault::kSeized;
   evidence.still_for_s = 3.0 * 3600.0;
   EXPECT_EQ(state_of(evidence), SensorState::kSeized);
-  EXPECT_THAT(reason(evidence), StartsWith("no wind for 3.0 h, while the others say 5.2 m/s"));
+  EXPECT_THAT(reason(evidence), StartsWith("no wind for 3 h, while the others say 5.2 m/s"));
   evidence.fault = ReadingFault::kFrozen;
   evidence.same_count = 61;
   evidence.same_for_s = 60.0;
   EXPECT_EQ(state_of(evidence), SensorState::kFrozen);
-  EXPECT_THAT(reason(evidence), StartsWith("the same 3.42 m/s 61 times in 60.0 s"));
+  EXPECT_THAT(reason(evidence), StartsWith("the same 3.42 m/s 61 times in 1 min"));
 }
 
 TEST(SensorState, ASingleSpikeChangesNothing) {

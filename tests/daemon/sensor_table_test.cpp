@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(SensorTable, NamesTheCompassPoints) {
   EXPECT_EQ(compass_point(0.0), "N");
@@ -74,6 +75,13 @@ TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   log.state = SensorState::kLive;
   sensors.sensors.push_back(log);
   EXPECT_THAT(sensor_table(sensors), HasSubstr("(live)")) << "a real one speaks beside it";
+}
+
+TEST(SensorTable, SaysHowTheWindIsShapedWhereItIs) {
+  wire::Sensors sensors;
+  EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("shaped")));
+  sensors.shaping.text = "floor: raised 0.6 to 1.5 m/s; closed until 10:00";
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  shaped: floor: raised 0.6 to 1.5 m/s; closed until 10:00\n"));
 }
 
 TEST(SensorTable, ShowsFramesAndReconnects) {

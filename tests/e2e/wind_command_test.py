@@ -83,6 +83,22 @@ class WindCommand(unittest.TestCase):
         north = [row["direction_deg"] for row in live if 90.0 < row["direction_deg"] < 270.0]
         self.assertEqual(north, [])
 
+    def test_averages_through_north(self):
+        # 350 and 10 degrees in turn: their mean is north, whatever the average is over.
+        table = self.log.with_name("north.csv")
+        lines = [f"{i / 4},6,{350 if i % 2 else 10}" for i in range(400)]
+        table.write_text("time_s,speed_m_s,direction_deg\n" + "\n".join(lines) + "\n", encoding="ascii")
+        north = self.log.with_name("north.windlog")
+        self.assertEqual(yuragi("import", table, "-o", north).returncode, 0)
+        run = yuragi("wind", north, "-o", "-", "--sensor-interval", "2", "--rate", "10")
+        rows = [row for row in csv.DictReader(io.StringIO(run.stdout)) if float(row["time_s"]) > 30.0]
+        self.assertGreater(len(rows), 600)
+        v = sum(float(row["v_m_s"]) for row in rows) / len(rows)
+        self.assertAlmostEqual(v, -6.0 * math.cos(math.radians(10.0)), delta=0.5)
+        for row in rows:
+            direction = float(row["direction_deg"])
+            self.assertTrue(0.0 <= direction < 360.0 and (direction < 60.0 or direction > 300.0), direction)
+
     def test_says_the_same_again_and_something_else_with_another_seed(self):
         self.assertEqual(self.wind("--seed", 5), self.wind("--seed", 5))
         self.assertNotEqual(self.wind("--seed", 5)[0], self.wind("--seed", 6)[0])
@@ -99,6 +115,22 @@ class WindCommand(unittest.TestCase):
         self.assertGreater(trust[240.0], 0.9)
         steps = [math.hypot(b["u_m_s"] - a["u_m_s"], b["v_m_s"] - a["v_m_s"]) for a, b in zip(rows, rows[1:])]
         self.assertLess(max(steps), 0.5)
+
+    def test_shapes_the_wind_for_the_scenes_where_it_is_asked_to(self):
+        real, _ = self.wind("--rate", 10)
+        self.assertEqual(self.wind("--rate", 10, "--shaped")[0], real, "an ordinary wind is as it is")
+        config = self.log.with_name("wall.toml")
+        config.write_text("[shaping]\nceiling = 5\nceiling_most = 6.5\n", encoding="ascii")
+        shaped, _ = self.wind("--rate", 10, "--shaped", "--config", config)
+        self.assertEqual([row["time_s"] for row in shaped], [row["time_s"] for row in real])
+        self.assertGreater(max(row["speed_m_s"] for row in real), 6.8)
+        for before, after in zip(real, shaped):
+            self.assertLess(after["speed_m_s"], 6.5)
+            if before["speed_m_s"] <= 5.0:
+                self.assertEqual(after["speed_m_s"], before["speed_m_s"])
+            turn_deg = (after["direction_deg"] - before["direction_deg"] + 180.0) % 360.0 - 180.0
+            self.assertAlmostEqual(turn_deg, 0.0, delta=0.001)
+        self.assertEqual(self.wind("--rate", 10, "--config", config)[0], real, "the real wind, without --shaped")
 
     def test_writes_a_file_and_keeps_one_that_is_there(self):
         file = self.log.with_name("out.csv")

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace yuragi {
+
+/// "0.4 s", "12 min 5 s", "3 h 20 min", "41 days 6 h".
+std::string duration_text(double duration_s);
+
+}  // namespace yuragi

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "engine/base/parameter.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace date {
+class time_zone;
+}
+
+namespace yuragi {
+
+/// When a house is open, in the local time of its zone, week after week, to the minute.
+///
+/// Written as rules with commas between them: "10:00-18:00" (every day), "Tue-Sun 10:00-18:00, Thu 18:00-21:00",
+/// "Fri 20:00-02:00" (into the next day), "00:00-24:00". It is open when any rule says so; days that none names are
+/// closed. Summer time is the zone's: 10:00 is what the clock on the wall shows.
+///
+/// Thread-safe: reading, yes. Asking allocates nothing but texts.
+class OpeningHours {
+ public:
+  /// Open at all hours.
+  OpeningHours() noexcept { open_.set(); }
+
+  /// An empty text: open at all hours. `zone`: a name of the IANA database ("Europe/Berlin"); empty: this machine's
+  /// own, or UTC where it has none. The error names "hours" or "zone".
+  static Result<OpeningHours, ParameterError> parse(std::string_view hours, const std::string& zone);
+
+  bool is_always_open() const noexcept { return open_.all(); }
+
+  bool is_open(UtcTime now) const;
+
+  /// The next change by the clock on the wall, for a person: "until 18:00", "until Tue 10:00" where that is more than a
+  /// day away; empty where there is none.
+  std::string until_text(UtcTime now) const;
+
+ private:
+  static constexpr std::size_t kMinutesPerWeek = 7 * 24 * 60;
+
+  std::size_t minute_of_week(UtcTime now) const;
+
+  std::bitset<kMinutesPerWeek> open_;      ///< from Monday 00:00 on
+  const date::time_zone* zone_ = nullptr;  ///< null: UTC; lives as long as the program
+};
+
+}  // namespace yuragi
