@@ -163,12 +163,14 @@ TEST_P(WindFaults, AClockThatIsSetDoesNotMoveIt) {
 double seen_in(double window_s, const Turbulence& turbulence) {
   const auto spectrum = WindSpectrum::make({.speed_m_s = 1.0, .sigma_m_s = 1.0, .length_m = turbulence.time_scale_s});
   double seen = 0.0;
-  constexpr double kStep = 0.01;
-  for (double log_hz = std::log(1e-5); log_hz < std::log(1e2); log_hz += kStep) {
-    const double frequency_hz = std::exp(log_hz);
+  // Over ln f, from 1e-5 to 1e2 Hz.
+  constexpr int kSteps = 1600;
+  const double step = std::log(1e7) / kSteps;
+  for (int k = 0; k < kSteps; ++k) {
+    const double frequency_hz = 1e-5 * std::exp(step * (k + 0.5));
     const double angle = std::numbers::pi * frequency_hz * window_s;
     const double mean = std::sin(angle) / angle;
-    seen += spectrum.value().density_m2_s2_hz(frequency_hz) * (1.0 - mean * mean) * frequency_hz * kStep;
+    seen += spectrum.value().density_m2_s2_hz(frequency_hz) * (1.0 - mean * mean) * frequency_hz * step;
   }
   return seen;
 }
@@ -184,7 +186,7 @@ TEST_P(WindFaults, InAGapItGoesOnAsTheModelDoes) {
     HeardWind heard(seed);
     const std::vector<WindVector> before = wind_of(heard, gap, 0.0, kFaultFrom_s);
     // The last 100 s before the gap, and the gap.
-    const std::vector<WindVector> last(before.end() - 100 * kTicksASecond, before.end());
+    const std::vector<WindVector> last(before.end() - 100L * kTicksASecond, before.end());
     const Turbulence turbulence = heard.estimator().turbulence();
     const WindVector ahead = heard.estimator().ground().gusts.ahead;
     const WindMoments usual = moments_of(last);
