@@ -11,6 +11,7 @@
 
 #include "daemon/shaping_config.hpp"
 #include "daemon/transports/address.hpp"
+#include "drivers/speed_unit.hpp"
 
 namespace yuragi {
 namespace {
@@ -94,15 +95,36 @@ const std::array kWindParameters = {
               .min = 2.0,
               .max = 100.0,
               .help = "a sensor that is silent for this many of its own intervals is stale"},
+    Parameter{.name = "return_after",
+              .unit = "s",
+              .default_value = 10.0,
+              .min = 0.0,
+              .max = 3600.0,
+              .help = "a sensor that was stale gets the word back after speaking for so long; twice as long each time"},
+    Parameter{.name = "fallback_recording",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "a .windlog that is played while every sensor is silent; empty: the default wind blows then"},
+    Parameter{.name = "fallback_after",
+              .unit = "s",
+              .default_value = 60.0,
+              .min = 1.0,
+              .max = 86400.0,
+              .help = "how long every sensor must have been silent for that"},
 };
 
 const std::array kCalibrationParameters = {
+    Parameter{.name = "unit",
+              .unit = "",
+              .default_value = std::string("m/s"),
+              .help = "what the sensor's numbers really are, where its driver takes them for m/s",
+              .choices = kSpeedUnitNames},
     Parameter{.name = "gain",
               .unit = "",
               .default_value = 1.0,
               .min = 0.01,
               .max = 100.0,
-              .help = "the speed is multiplied by this"},
+              .help = "the speed in m/s is multiplied by this"},
     Parameter{.name = "offset",
               .unit = "m/s",
               .default_value = 0.0,
@@ -225,6 +247,7 @@ const std::array kConfigTables = {
 
 constexpr std::string_view kNameKey = "name";
 constexpr std::string_view kCalibrationKey = "calibration";
+constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
 
 /// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
@@ -262,6 +285,9 @@ class ConfigReader {
     config.wind = read_table(root, "", "wind", kWindParameters);
     config.shaping = read_table(root, "", "shaping", shaping_parameters());
     check_shaping(root, config.shaping);
+    if (const toml::node* node = root["wind"]["fallback_recording"].node()) {
+      config.fallback_origin = place(node->source());
+    }
 
     for_each_entry(root, "sensor", "driver", driver_table(),
                    [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {
@@ -272,6 +298,8 @@ class ConfigReader {
                      check_is_table(entry, kJudgeKey);
                      const ParameterValues judge = read_table(entry, "sensor.", kJudgeKey, kJudgeParameters);
                      config.sensors.push_back({name, driver, values, calibration, place(entry.source()), judge});
+                     check_is_table(entry, kBlendKey);
+                     config.sensors.back().blend = read_table(entry, "sensor.", kBlendKey, sensor_blend_parameters());
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
                    [&](const auto& name, auto* kind, const auto& values, const auto&) {
@@ -409,6 +437,7 @@ class ConfigReader {
       std::set<std::string_view> aside = {kNameKey, kind_key};
       if (list == "sensor") aside.insert(kCalibrationKey);
       if (list == "sensor") aside.insert(kJudgeKey);
+      if (list == "sensor") aside.insert(kBlendKey);
       const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), aside);
       use(name, description, values, *entry);
     }
@@ -504,7 +533,8 @@ Calibration calibration_of(const SensorConfig& sensor) {
   const ParameterValues& values = sensor.calibration;
   auto curve = parse_calibration_curve(values.text("curve"));
   if (!curve) throw ConfigError(sensor.origin + ": sensor.calibration.curve: " + curve.error().message);
-  Calibration calibration{.gain = values.number("gain"),
+  Calibration calibration{.unit_m_s = metres_per_second_in(values.text("unit")),
+                          .gain = values.number("gain"),
                           .offset_m_s = values.number("offset"),
                           .curve = std::move(*curve),
                           .north_offset_deg = values.number("north_offset")};
@@ -540,15 +570,16 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
   return ConfigReader(source_name).read(root);
 }
 
-Config load_config(const std::filesystem::path& file) {
+std::string read_config_text(const std::filesystem::path& file) {
   std::ifstream input(file, std::ios::binary);
-  std::string text;
-  if (input.is_open() && !std::filesystem::is_directory(file)) {
-    text.assign(std::istreambuf_iterator<char>(input), {});
-  } else {
+  if (!input.is_open() || std::filesystem::is_directory(file)) {
     throw ConfigError(file.string() + ":1:1: file: cannot be read; check its path and permissions");
   }
-  return parse_config(text, file.string());
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+Config load_config(const std::filesystem::path& file) {
+  return parse_config(read_config_text(file), file.string());
 }
 
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor) {
@@ -579,6 +610,7 @@ std::string to_toml(const Config& config) {
     append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
     root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.calibration));
     root["sensor"].as_array()->back().as_table()->insert(kJudgeKey, to_table(sensor.judge));
+    root["sensor"].as_array()->back().as_table()->insert(kBlendKey, to_table(sensor.blend));
   }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
 
@@ -591,6 +623,22 @@ std::string to_toml(const ParameterValues& values) {
   std::ostringstream out;
   out << to_table(values);
   return out.str();
+}
+
+Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters) {
+  try {
+    ParameterValues::Map given;
+    for (const auto& [key, node] : toml::parse(toml_text)) {
+      const std::optional<ParameterValue> value = to_parameter_value(node);
+      if (!value) return Failure{std::string(key.str()) + ": takes one value: true, a number or a text"};
+      given.emplace(key.str(), *value);
+    }
+    auto values = ParameterValues::resolve(parameters, given);
+    if (!values) return Failure{values.error().name + ": " + values.error().message};
+    return std::move(*values);
+  } catch (const toml::parse_error& error) {
+    return Failure{"TOML: " + std::string(error.description())};
+  }
 }
 
 }  // namespace yuragi

@@ -37,7 +37,8 @@ std::string stale_text(const SensorEvidence& evidence) {
 std::string frozen_text(const SensorEvidence& evidence) {
   return fmt::format(
       "the same {:.2f} m/s {} times in {}. Its electronics hang, or ice holds it: look at it, and switch it off and on",
-      evidence.said.last ? evidence.said.last->speed_m_s : 0.0, evidence.same_count, duration_text(evidence.same_for_s));
+      evidence.said.last ? evidence.said.last->speed_m_s : 0.0, evidence.same_count,
+      duration_text(evidence.same_for_s));
 }
 
 std::string seized_text(const SensorEvidence& evidence) {

@@ -1,6 +1,7 @@
 #include "daemon/sensor_hub.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -42,15 +43,20 @@ std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
 }
 
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
-  const BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
-                                           .mean_direction_deg = config.wind.number("default_direction"),
-                                           .turbulence_intensity = config.wind.number("default_turbulence"),
-                                           .seed = config.seed},
-                               .length_m = config.wind.number("default_length"),
-                               .handover_s = config.wind.number("handover"),
-                               .stale_intervals = config.wind.number("stale_intervals"),
-                               .rate_hz = config.animation.number("rate")};
-  return std::make_unique<BlendedEstimator>(config.sensors.size(), settings, std::move(noise));
+  BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
+                                     .mean_direction_deg = config.wind.number("default_direction"),
+                                     .turbulence_intensity = config.wind.number("default_turbulence"),
+                                     .seed = config.seed},
+                         .length_m = config.wind.number("default_length"),
+                         .handover_s = config.wind.number("handover"),
+                         .stale_intervals = config.wind.number("stale_intervals"),
+                         .return_after_s = config.wind.number("return_after"),
+                         .rate_hz = config.animation.number("rate")};
+  for (const SensorConfig& sensor : config.sensors) settings.sources.push_back(blend_source_of(sensor.blend));
+  // Behind all sensors, whatever their priorities.
+  if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
+  const std::size_t source_count = settings.sources.size();
+  return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
 }
 
 SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
@@ -59,7 +65,8 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
       listener_(std::move(listener)),
       estimator_(make_estimator(config, std::move(noise))),
       stale_intervals_(config.wind.number("stale_intervals")),
-      vote_(config.sensors.size()) {
+      vote_(config.sensors.size()),
+      fallback_(config, clock) {
   // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
   std::vector<std::unique_ptr<Sensor>> sensors;
   for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
@@ -81,14 +88,19 @@ const WindState& SensorHub::advance() {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     Channel& channel = channels_[index];
     channel.runner->drain([&](const WindReading& reading) {
-      ++channel.readings;
-      if (listener_) listener_(index, reading);
+      if (!reading.is_held) {
+        ++channel.readings;
+        channel.last_raw = reading;
+        if (listener_) listener_(index, reading);
+      }
       take(index, reading);
     });
     judge_refusals(channel);
   }
   const MonoTime now = clock_.now().mono;
   compare(now);
+  fallback_.advance(is_any_live(),
+                    [this](const WindReading& reading) { estimator_->accept(channels_.size(), reading); });
   wind_ = estimator_->advance(now);
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     log_link(channels_[index], now);
@@ -108,6 +120,11 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
     return;
   }
   if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
+  if (reading.is_held) {
+    channel.said.hold(reading.time);
+    estimator_->accept(index, reading);
+    return;
+  }
   channel.said.take(reading);
 
   // What a simulation makes up may be as steady as it likes.
@@ -205,6 +222,10 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
       status.gust_m_s = report.last->gust_m_s;
       status.simulated = report.last->quality == ReadingQuality::kSimulated;
     }
+    if (channel.last_raw) {
+      status.raw_speed_m_s = channel.last_raw->speed_m_s;
+      status.raw_direction_deg = channel.last_raw->direction_deg;
+    }
     status.age_s = report.age_s;
     status.interval_s = report.interval_s;
     status.readings = channel.readings;
@@ -223,7 +244,26 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     status.state_reason = reason_of(status.state, evidence);
     all.push_back(std::move(status));
   }
+  if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
   return all;
+}
+
+/// Does a sensor speak that is believed?
+bool SensorHub::is_any_live() const {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    if (estimator_->report(index).health == SourceHealth::kLive) return true;
+  }
+  return false;
+}
+
+std::vector<NamedPlayer> SensorHub::players() {
+  std::vector<NamedPlayer> players;
+  for (const Channel& channel : channels_) {
+    SensorRunner& runner = *channel.runner;
+    if (runner.player() == nullptr) continue;
+    players.push_back({channel.config.name, runner.player(), [&runner] { runner.wake(); }});
+  }
+  return players;
 }
 
 void SensorHub::trace(const std::function<bool(std::string_view)>& is_wanted) {

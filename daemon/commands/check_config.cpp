@@ -6,6 +6,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/config.hpp"
 #include "daemon/driver_reference.hpp"
+#include "daemon/fallback_recording.hpp"
 
 namespace yuragi {
 namespace {
@@ -22,6 +23,7 @@ void add_check_config(CLI::App& app) {
   command->callback([file, full] {
     const Config config = load_config(*file);
     for (const SensorConfig& sensor : config.sensors) open_sensor(sensor);
+    if (has_fallback(config)) check_fallback(config);
     if (*full) {
       fmt::print("{}", to_toml(config));
       return;
@@ -51,6 +53,8 @@ void describe_everything() {
       "\n[sensor.calibration]  # below a [[sensor]] of any kind: from what it says to the wind; recordings keep what "
       "it says\n");
   print_parameters(calibration_parameters());
+  fmt::print("\n[sensor.blend]  # below a [[sensor]] of any kind: its part among several\n");
+  print_parameters(sensor_blend_parameters());
   fmt::print("\n[sensor.judge]  # below a [[sensor]] of any kind: which of its readings are believed\n");
   print_parameters(judge_parameters());
   fmt::print("\n[[scene]]  # of any kind: where it stands, and how it is seen\n");

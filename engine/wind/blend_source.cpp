@@ -20,8 +20,6 @@ constexpr double kTrustRate_rad_s = 1.0;
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kLeastSpeed_m_s = 0.5;
 constexpr double kFitEvery_s = 1.0;
-/// How soon the noise is as strong as a new fit says.
-constexpr double kVarianceMemory_s = 1.0;
 
 double sinc(double x) noexcept {
   const double angle = std::numbers::pi * x;
@@ -59,16 +57,12 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
       direction_(settings.direction_step_deg),
       along_{.fit = TurbulenceFit({.intensity = blend.climate.turbulence_intensity, .length_m = blend.length_m},
                                   blend.fit_memory_s),
-             .wanted = gust_variances(noise, blend.climate.turbulence_intensity, blend.length_m),
-             .variances = {}},
+             .variances = gust_variances(noise, blend.climate.turbulence_intensity, blend.length_m)},
       across_{.fit = TurbulenceFit(
                   {.intensity = kAcrossPerAlong * blend.climate.turbulence_intensity, .length_m = blend.length_m},
                   blend.fit_memory_s),
-              .wanted = gust_variances(noise, kAcrossPerAlong * blend.climate.turbulence_intensity, blend.length_m),
-              .variances = {}},
+              .variances = gust_variances(noise, kAcrossPerAlong * blend.climate.turbulence_intensity, blend.length_m)},
       history_(std::size_t{2} << (TurbulenceFit::kScales - 1)) {
-  along_.variances = along_.wanted;
-  across_.variances = across_.wanted;
   turbulence_ = along_.fit.turbulence();
 }
 
@@ -77,6 +71,10 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   const bool is_first = !record_.has_spoken();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
   if (gap_s < 0.0) return false;  // older than what is known
+  if (reading.is_held && !is_first) {
+    record_.hold(reading.time);
+    return true;
+  }
   if (gap_s > kGapIntervals * record_.expected_interval_s()) history_size_ = 0;
 
   record_.take(reading);
@@ -84,7 +82,6 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   if (is_first) {
     follower_.begin(wind_);
     speed_m_s_ = reading.speed_m_s;
-    vane_trust_.value = has_vane() ? 1.0 : 0.0;
   }
   set_full_trust();
 
@@ -155,15 +152,15 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   for (Component* component : {&along_, &across_}) {
     component->fit.fit(interval_s, speed_m_s);
     const Turbulence turbulence = component->fit.turbulence();
-    component->wanted = gust_variances(*noise_, turbulence.intensity, turbulence.time_scale_s * speed_m_s);
+    component->variances = gust_variances(*noise_, turbulence.intensity, turbulence.time_scale_s * speed_m_s);
     for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
-      component->wanted[i] *= component->fit.correction(centre_hz(noise_->octaves()[i], advection_m_s));
+      component->variances[i] *= component->fit.correction(centre_hz(noise_->octaves()[i], advection_m_s));
     }
   }
   // What no vane tells, or one of few points, is as a rule.
   if (!has_vane() || is_coarse()) {
     for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
-      across_.wanted[i] = kAcrossPerAlong * kAcrossPerAlong * along_.wanted[i];
+      across_.variances[i] = kAcrossPerAlong * kAcrossPerAlong * along_.variances[i];
     }
   }
   turbulence_ = along_.fit.turbulence();
@@ -186,25 +183,15 @@ void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& p
     trusts_[i].step(kept * full_trust_[i], kTrustRate_rad_s, dt_s);
     trust_[i] = std::clamp(trusts_[i].value, 0.0, 1.0);
   }
-  vane_trust_.step(has_vane() ? 1.0 : 0.0, kTrustRate_rad_s, dt_s);
-
-  // The noise goes to where the last fit wants it.
-  const double part = -std::expm1(-dt_s / kVarianceMemory_s);
-  vane_memory_s_ += part * (direction_.memory_s() - vane_memory_s_);
-  for (Component* component : {&along_, &across_}) {
-    for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
-      component->variances[i] += part * (component->wanted[i] - component->variances[i]);
-    }
-  }
 }
 
 SourceResponse BlendSource::response(double frequency_hz, const OctaveFollower::Response& response,
                                      const BandWeights& weights) const noexcept {
   const std::complex<double> along =
       averaged_and_held(frequency_hz, averaging_s(), interval_s_) * response.weighted(weights);
-  const std::complex<double> vane =
-      1.0 / std::complex<double>(1.0, 2.0 * std::numbers::pi * frequency_hz * vane_memory_s_);
-  return {along, along * vane * std::clamp(vane_trust_.value, 0.0, 1.0)};
+  if (!has_vane()) return {along, 0.0};
+  const std::complex<double> vane(1.0, 2.0 * std::numbers::pi * frequency_hz * direction_.memory_s());
+  return {along, along / vane};
 }
 
 double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept {

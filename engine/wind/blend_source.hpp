@@ -70,10 +70,10 @@ class BlendSource {
   RelativeScale scale;  ///< of a relative source
 
  private:
-  /// One component of its wind. The variances follow those of the fit within a second or two.
+  /// One component of its wind: its turbulence, and what of it each octave of the noise has.
   struct Component {
     TurbulenceFit fit;
-    GustVariances wanted, variances;
+    GustVariances variances;
   };
 
   double averaging_s() const noexcept;
@@ -92,8 +92,6 @@ class BlendSource {
   WindVector wind_;  ///< that is held
   OctaveFollower follower_;
   std::array<CriticallyDamped, OctaveFollower::kBands + 1> trusts_{};
-  CriticallyDamped vane_trust_;
-  double vane_memory_s_ = 0.0;  ///< follows that of the direction
   BandWeights trust_{}, full_trust_{}, passed_{};
   double interval_s_ = 0.0;  ///< that the full trust is made for
   double speed_m_s_ = 0.0;

@@ -23,6 +23,8 @@ constexpr double kTurnRate_hz = 0.1;
 constexpr double kCoherenceDecay = 10.0;
 /// Gusts of an absolute source tell something new after so many of its intervals.
 constexpr double kIntervalsOfAGust = 3.0;
+/// A low pass has done 98 % of its way after 4 time constants.
+constexpr double kPlaneRateTimesHandover = 4.0;
 /// Less than this is nothing.
 constexpr double kLeastShare = 1e-9;
 /// How fast the strength of the gusts follows what it should be.
@@ -81,11 +83,12 @@ bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
 }
 
 /// What each source has of the mean and of each band.
-void BlendedEstimator::share_out() noexcept {
-  for (std::size_t level = 0; level <= kBands; ++level) share_level(level);
+void BlendedEstimator::share_out(double dt_s) noexcept {
+  const double plane_part = -std::expm1(-kPlaneRateTimesHandover / settings_.handover_s * dt_s);
+  for (std::size_t level = 0; level <= kBands; ++level) share_level(level, plane_part);
 }
 
-void BlendedEstimator::share_level(std::size_t level) noexcept {
+void BlendedEstimator::share_level(std::size_t level, double plane_part) noexcept {
   // Those who have the word: of what is known together, each has a part by weight times trust. What is known together
   // is the mean of their trusts, weighted in the same way: as much as the one knows who knows.
   double words = 0.0;
@@ -104,7 +107,8 @@ void BlendedEstimator::share_level(std::size_t level) noexcept {
     known += level_shares_[i];
   }
 
-  // Their plane, less steep the less coherent their gusts are.
+  // Their plane, less steep the less coherent their gusts are. A second place at once makes a slope, however small its
+  // share: its weights follow as slowly as a hand-over.
   double part = 1.0;
   if (!plane_.is_point() && level > 0) {
     part = std::sqrt(davenport_coherence(OctaveFollower::centre_hz(level - 1), plane_.length_m(),
@@ -115,9 +119,12 @@ void BlendedEstimator::share_level(std::size_t level) noexcept {
   // Relative sources have of the gusts what is left.
   const double left = level > 0 ? std::max(0.0, 1.0 - known) : 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    shares_[i].middle[level] = place_weights_[i].middle + left * choice_.gusts(i) * sources_[i].trust()[level];
-    shares_[i].per_m_east[level] = place_weights_[i].per_m_east;
-    shares_[i].per_m_south[level] = place_weights_[i].per_m_south;
+    Share& share = shares_[i];
+    share.tilt[level] += plane_part * (place_weights_[i].middle - level_shares_[i] - share.tilt[level]);
+    share.per_m_east[level] += plane_part * (place_weights_[i].per_m_east - share.per_m_east[level]);
+    share.per_m_south[level] += plane_part * (place_weights_[i].per_m_south - share.per_m_south[level]);
+    const double filled = left * choice_.gusts(i) * sources_[i].trust()[level];
+    share.middle[level] = level_shares_[i] + share.tilt[level] + filled;
   }
 }
 
@@ -182,12 +189,12 @@ BlendedEstimator::Heard BlendedEstimator::hear() noexcept {
   heard.speed_m_s = std::max(heard.speed_m_s, 0.0) + (1.0 - heard.weight) * settings_.climate.mean_speed_m_s;
   heard.trust = trust() * heard.weight;
 
-  // From end to end the wind differs at most as much as it blows.
+  // Winds of this mean speed differ from end to end by twice as much at most.
   const double difference_m_s = speed_of(slope.per_m_east) * (slope.east_m - slope.west_m) +
                                 speed_of(slope.per_m_south) * (slope.south_m - slope.north_m);
-  if (difference_m_s > heard.speed_m_s) {
-    slope.per_m_east = (heard.speed_m_s / difference_m_s) * slope.per_m_east;
-    slope.per_m_south = (heard.speed_m_s / difference_m_s) * slope.per_m_south;
+  if (const double most_m_s = 2.0 * heard.speed_m_s; difference_m_s > most_m_s) {
+    slope.per_m_east = (most_m_s / difference_m_s) * slope.per_m_east;
+    slope.per_m_south = (most_m_s / difference_m_s) * slope.per_m_south;
   }
   return heard;
 }
@@ -317,7 +324,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   for (BlendSource& source : sources_) {
     if (source.record().has_spoken()) source.step(now, dt_s, parts);
   }
-  share_out();
+  share_out(dt_s);
   learn_scales(dt_s);
 
   // The wind: what is heard, and the gusts for the rest.

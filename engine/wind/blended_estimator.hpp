@@ -62,6 +62,7 @@ class BlendedEstimator final : public WindEstimator {
   struct Share {
     BandWeights word{};    ///< as one who has the word
     BandWeights middle{};  ///< in the middle of the scene, with what a relative source fills
+    BandWeights tilt{};    ///< what the plane adds in the middle; it and the slopes follow the plane slowly
     BandWeights per_m_east{}, per_m_south{};
   };
 
@@ -79,8 +80,8 @@ class BlendedEstimator final : public WindEstimator {
   };
 
   bool is_direction_live(std::size_t besides) const noexcept;
-  void share_out() noexcept;
-  void share_level(std::size_t level) noexcept;
+  void share_out(double dt_s) noexcept;
+  void share_level(std::size_t level, double plane_part) noexcept;
   void learn_scales(double dt_s) noexcept;
   Heard hear() noexcept;
   double trust() const noexcept;

@@ -32,9 +32,10 @@ class DirectionKeeper {
   /// The time constant of the smoothing; 0 for a fine vane.
   double memory_s() const noexcept { return memory_s_; }
 
-  /// Sets it from the turbulence, to where the stairs' own noise, step^2 / 12 (Bennett 1948) spread evenly
-  /// over all frequencies that readings every `interval_s` can have, is as strong as the swing of the direction in von
-  /// Karman's inertial range, of deviation `swing_rad` and time scale `time_scale_s`.
+  /// Sets it from the turbulence, to where the stairs' own noise is as strong as the swing of the direction. That noise
+  /// is step^2 / 12 (Bennett 1948), spread over the frequencies that readings every `interval_s` can have, or, the less
+  /// the swing covers the steps, over those of the gusts (Widrow 1961: by the swing's characteristic function). The
+  /// swing is in von Karman's inertial range, of deviation `swing_rad` and time scale `time_scale_s`.
   void expect(double swing_rad, double time_scale_s, double interval_s) noexcept;
 
  private:

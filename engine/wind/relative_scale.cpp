@@ -12,11 +12,11 @@ constexpr double kMostGain = 20.0;
 constexpr double kTimeToBelieve_s = 15.0;
 /// And the gusts when far more of them than these are.
 constexpr double kGustsToBelieve = 4.0;
-/// In less wind than this a ratio says nothing.
-constexpr double kLeastSum = 1e-6;
+/// Is added to both sides of a ratio: where there is hardly any wind, it is 1.
+constexpr double kLeastSum = 1e-3;
 
 double log_ratio(double above, double below) noexcept {
-  return std::clamp(std::log(above / below), std::log(kLeastGain), std::log(kMostGain));
+  return std::clamp(std::log((above + kLeastSum) / (below + kLeastSum)), std::log(kLeastGain), std::log(kMostGain));
 }
 
 }  // namespace
@@ -32,15 +32,9 @@ void RelativeScale::learn(const Pair& pair, double dt_s) noexcept {
   relative_square_ = kept * relative_square_ + added_s * pair.relative_gust_m_s * pair.relative_gust_m_s;
   gusts_seen_ = kept * gusts_seen_ + added_s / pair.independent_after_s;
 
-  double log_mean = 0.0;
-  if (speed_ > kLeastSum && relative_speed_ > kLeastSum) {
-    log_mean = weight_s_ / (weight_s_ + kTimeToBelieve_s) * log_ratio(speed_, relative_speed_);
-  }
-  double log_gust = log_mean;
-  if (square_ > kLeastSum && relative_square_ > kLeastSum) {
-    const double belief = gusts_seen_ / (gusts_seen_ + kGustsToBelieve);
-    log_gust += belief * (log_ratio(std::sqrt(square_), std::sqrt(relative_square_)) - log_mean);
-  }
+  const double log_mean = weight_s_ / (weight_s_ + kTimeToBelieve_s) * log_ratio(speed_, relative_speed_);
+  const double belief = gusts_seen_ / (gusts_seen_ + kGustsToBelieve);
+  const double log_gust = log_mean + belief * (log_ratio(std::sqrt(square_), std::sqrt(relative_square_)) - log_mean);
   mean_gain_ = std::exp(log_mean);
   gust_gain_ = std::exp(log_gust);
 }

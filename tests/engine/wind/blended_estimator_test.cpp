@@ -1,90 +1,39 @@
-#include "engine/wind/blended_estimator.hpp"
-
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <memory>
+#include <numbers>
 #include <optional>
 #include <random>
-#include <utility>
 
 #include <gtest/gtest.h>
+
+#include "tests/engine/wind/blend_run.hpp"
 
 namespace yuragi {
 namespace {
 
-constexpr double kBlendTick_s = 1.0 / 60.0;
+using Blend = BlendRun;
+using Moments = BlendMoments;
 
-/// An estimator, and a wind that is read every now and then.
-class Blend {
- public:
-  explicit Blend(std::uint64_t seed = 1, std::size_t sources = 1)
-      : estimator_(sources,
-                   {.climate = {.mean_speed_m_s = 4.0,
-                                .mean_direction_deg = 180.0,
-                                .turbulence_intensity = 0.2,
-                                .seed = seed}},
-                   noise()) {}
+Blend usual_blend(std::uint64_t seed = 1, std::size_t sources = 1) {
+  return Blend(sources, Blend::usual(seed));
+}
 
-  MonoTime now() const { return now_; }
-  WindState state() const { return state_; }
-  BlendedEstimator& estimator() { return estimator_; }
-
-  bool read(double speed_m_s, std::optional<double> direction_deg, std::size_t source = 0) {
-    WindReading reading;
-    reading.time.mono = now_;
-    reading.speed_m_s = speed_m_s;
-    reading.direction_deg = direction_deg;
-    return estimator_.accept(source, reading);
-  }
-
-  /// Goes on for so long; `each` is called at each tick.
-  void run_for(double duration_s, const std::function<void(const WindState&)>& each = {}) {
-    const auto ticks = static_cast<int>(std::lround(duration_s / kBlendTick_s));
-    for (int tick = 0; tick < ticks; ++tick) {
-      now_ += from_seconds(kBlendTick_s);
-      const WindVector before = state_.wind;
-      state_ = estimator_.advance(now_);
-      largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(state_.wind - before));
-      if (each) each(state_);
-    }
-  }
-  double take_largest_step_m_s() { return std::exchange(largest_step_m_s_, 0.0); }
-
- private:
-  static std::shared_ptr<const GustNoise> noise() {
-    static const auto shared = std::make_shared<const GustNoise>(GustNoiseSettings{});
-    return shared;
-  }
-
-  BlendedEstimator estimator_;
-  MonoTime now_{std::chrono::hours(1)};
-  WindState state_;
-  double largest_step_m_s_ = 0.0;
-};
-
-/// Mean, and variance about it, of the states of a while.
-struct Moments {
-  WindVector sum{};
-  double squares = 0.0;
-  int count = 0;
-  void add(const WindState& state) {
-    sum = sum + state.wind;
-    squares += state.wind.u_m_s * state.wind.u_m_s + state.wind.v_m_s * state.wind.v_m_s;
-    ++count;
-  }
-  WindVector mean() const { return (1.0 / count) * sum; }
-  double variance() const { return squares / count - std::pow(speed_of(mean()), 2); }
-};
+/// A climate of 3 m/s from west without turbulence, so that only what is heard moves the wind.
+Blend calm_blend(std::size_t sources = 1) {
+  return Blend(
+      sources,
+      {.climate = {.mean_speed_m_s = 3.0, .mean_direction_deg = 270.0, .turbulence_intensity = 0.0, .seed = 1}});
+}
 
 TEST(BlendedEstimator, WithoutASensorIsTheClimate) {
   double mean = 0.0;
   double variance = 0.0;
   constexpr int kSeeds = 12;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    Blend blend(seed);
+    Blend blend = usual_blend(seed);
     Moments moments;
     blend.run_for(600.0, [&](const WindState& state) { moments.add(state); });
     EXPECT_EQ(blend.state().source, WindSource::kDefault);
@@ -97,7 +46,7 @@ TEST(BlendedEstimator, WithoutASensorIsTheClimate) {
 }
 
 TEST(BlendedEstimator, FollowsASteadySensorAndMovesAboutIt) {
-  Blend blend;
+  Blend blend = usual_blend();
   Moments moments;
   for (int i = 0; i < 120; ++i) {
     blend.read(8.0, 270.0);
@@ -112,7 +61,7 @@ TEST(BlendedEstimator, FollowsASteadySensorAndMovesAboutIt) {
 }
 
 TEST(BlendedEstimator, PassesThroughNorthAndNotThroughSouth) {
-  Blend blend;
+  Blend blend = usual_blend();
   for (int i = 0; i < 60; ++i) {
     blend.read(6.0, 350.0);
     blend.run_for(1.0);
@@ -133,7 +82,7 @@ TEST(BlendedEstimator, ALossAndAReturnMoveItNoMoreThanItMovesAnyway) {
   double unusual_m_s = 0.0;
   constexpr int kSeeds = 4;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    Blend blend(seed);
+    Blend blend = usual_blend(seed);
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     double gust_m_s = 0.0;  // that lasts for about 8 s
@@ -161,7 +110,7 @@ TEST(BlendedEstimator, GoesOnMovingWhileTheSensorIsSilent) {
   double variance = 0.0;
   constexpr int kSeeds = 8;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    Blend blend(seed);
+    Blend blend = usual_blend(seed);
     for (int i = 0; i < 60; ++i) {
       blend.read(8.0, 180.0);
       blend.run_for(1.0);
@@ -176,7 +125,7 @@ TEST(BlendedEstimator, GoesOnMovingWhileTheSensorIsSilent) {
 }
 
 TEST(BlendedEstimator, FadesIntoTheClimateOverTheMeansMemory) {
-  Blend blend;
+  Blend blend = usual_blend();
   for (int i = 0; i < 200; ++i) {
     blend.read(12.0, 90.0);
     blend.run_for(1.0);
@@ -190,7 +139,7 @@ TEST(BlendedEstimator, FadesIntoTheClimateOverTheMeansMemory) {
 }
 
 TEST(BlendedEstimator, HandsOverToTheNextSourceAndBackWithoutAJump) {
-  Blend blend(2, 2);
+  Blend blend = usual_blend(2, 2);
   const auto both_for = [&](int readings, bool first_speaks) {
     for (int i = 0; i < readings; ++i) {
       if (first_speaks) blend.read(8.0, 180.0, 0);
@@ -211,7 +160,7 @@ TEST(BlendedEstimator, IsFiniteAndBoundedWhateverComesIn) {
   std::mt19937_64 random(11);
   const std::array<double, 10> speeds = {0.0, 3.0, 8.0, 119.0, 121.0, -1.0, 1e300, std::nan(""), 4.0, 55.0};
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    Blend blend(seed, 2);
+    Blend blend = usual_blend(seed, 2);
     for (int i = 0; i < 600; ++i) {
       WindReading reading;
       const auto jump_s = static_cast<double>(random() % 7) - 2.0;
@@ -231,8 +180,35 @@ TEST(BlendedEstimator, IsFiniteAndBoundedWhateverComesIn) {
   }
 }
 
+TEST(BlendedEstimator, WhatIsHeldIsNeitherSilenceNorSomethingToLearn) {
+  // Ten minutes of a gusty wind, and then as many in which its last reading is held: by a sensor that says so, and by
+  // one that seems to measure the same again and again.
+  std::array<double, 2> intensity{};
+  for (const bool says_so : {true, false}) {
+    Blend blend;
+    for (int i = 0; i < 600; ++i) {
+      blend.read(6.0 + 2.0 * std::sin(0.7 * i) + std::sin(2.3 * i), 90.0);
+      blend.run_for(1.0);
+    }
+    const double learnt = blend.estimator().turbulence().intensity;
+    for (int i = 0; i < 600; ++i) {
+      WindReading reading;
+      reading.time.mono = blend.now();
+      reading.speed_m_s = 6.0;
+      reading.direction_deg = 90.0;
+      reading.is_held = says_so;
+      blend.estimator().accept(0, reading);
+      blend.run_for(1.0);
+    }
+    EXPECT_EQ(blend.estimator().report(0).health, SourceHealth::kLive);
+    intensity[says_so ? 0 : 1] = blend.estimator().turbulence().intensity / learnt;
+  }
+  EXPECT_DOUBLE_EQ(intensity[0], 1.0);
+  EXPECT_LT(intensity[1], 0.8);
+}
+
 TEST(BlendedEstimator, TimeThatGoesBackChangesNothing) {
-  Blend blend;
+  Blend blend = usual_blend();
   blend.read(5.0, 90.0);
   blend.run_for(5.0);
   const WindState before = blend.state();
@@ -243,7 +219,7 @@ TEST(BlendedEstimator, TimeThatGoesBackChangesNothing) {
 
 TEST(BlendedEstimator, TheSameReadingsGiveTheSameWind) {
   const auto run = [](std::uint64_t seed) {
-    Blend blend(seed);
+    Blend blend = usual_blend(seed);
     for (int i = 0; i < 30; ++i) {
       blend.read(5.0 + 0.1 * i, 90.0);
       blend.run_for(1.0);
@@ -252,6 +228,161 @@ TEST(BlendedEstimator, TheSameReadingsGiveTheSameWind) {
   };
   EXPECT_EQ(run(1).u_m_s, run(1).u_m_s);
   EXPECT_NE(run(1).u_m_s, run(2).u_m_s);
+}
+
+// What the wind owes to every sensor, whatever the gusts: shown where there are none.
+
+TEST(BlendedEstimator, IsTheDefaultWindWhileNoSensorSpeaks) {
+  Blend blend = calm_blend();
+  blend.run_for(10.0);
+  EXPECT_EQ(blend.state().source, WindSource::kDefault);
+  EXPECT_NEAR(blend.state().wind.u_m_s, 3.0, 0.01);
+  EXPECT_NEAR(blend.state().wind.v_m_s, 0.0, 0.01);
+  EXPECT_EQ(blend.report().health, SourceHealth::kSilent);
+}
+
+TEST(BlendedEstimator, ComesToWhatTheSensorSays) {
+  Blend blend = calm_blend();
+  blend.read_for(20.0, 1.0, 8.0, 180.0);
+  EXPECT_EQ(blend.state().source, WindSource::kLive);
+  EXPECT_NEAR(blend.state().wind.u_m_s, 0.0, 0.05);
+  EXPECT_NEAR(blend.state().wind.v_m_s, 8.0, 0.05);
+  EXPECT_EQ(blend.report().health, SourceHealth::kLive);
+}
+
+TEST(BlendedEstimator, MeasuresTheIntervalOfEachSource) {
+  Blend blend = calm_blend(2);
+  for (int second = 0; second < 60; ++second) {
+    blend.read(5.0, 90.0, 0);
+    if (second % 14 == 0) blend.read(6.0, 90.0, 1);
+    blend.run_for(1.0);
+  }
+  EXPECT_NEAR(blend.report(0).interval_s, 1.0, 0.05);
+  EXPECT_NEAR(blend.report(1).interval_s, 14.0, 0.3);
+}
+
+TEST(BlendedEstimator, OneLateReadingDoesNotChangeTheMeasuredInterval) {
+  Blend blend = calm_blend();
+  blend.read_for(10.0, 0.5, 5.0, 90.0);
+  blend.run_for(2.0);
+  blend.read(5.0, 90.0);
+  EXPECT_NEAR(blend.report().interval_s, 0.5, 0.05);
+}
+
+TEST(BlendedEstimator, CallsASourceStaleAfterFiveOfItsOwnIntervals) {
+  Blend blend = calm_blend();
+  blend.read_for(20.0, 1.0, 8.0, 180.0);
+  blend.run_for(3.5);
+  EXPECT_EQ(blend.report().health, SourceHealth::kLive);
+  blend.run_for(2.0);
+  EXPECT_EQ(blend.report().health, SourceHealth::kStale);
+  EXPECT_GT(blend.report().age_s, 5.0);
+  ASSERT_TRUE(blend.report().last.has_value());
+  EXPECT_EQ(blend.report().last->speed_m_s, 8.0) << "the last value is kept, apart from the state";
+}
+
+TEST(BlendedEstimator, ASlowSensorIsNotStaleBetweenItsReadings) {
+  Blend blend = calm_blend();
+  blend.read_for(48.0 * 6.0, 48.0, 8.0, 180.0);
+  blend.run_for(100.0);
+  EXPECT_EQ(blend.report().health, SourceHealth::kLive);
+}
+
+TEST(BlendedEstimator, ANewReadingBendsTheWindAndNeverSteps) {
+  Blend blend = calm_blend();
+  blend.read_for(20.0, 0.1, 2.0, 90.0);
+  blend.take_largest_step_m_s();
+  blend.read_for(10.0, 0.1, 12.0, 90.0);
+  EXPECT_LT(blend.take_largest_step_m_s(), 5.0) << "readings every 0.1 s are believed up to about 5 Hz";
+  EXPECT_NEAR(speed_of(blend.state().wind), 12.0, 0.3);
+}
+
+TEST(BlendedEstimator, AloneATurnFrom350To10DegreesPassesThroughNorth) {
+  Blend blend = calm_blend();
+  blend.read_for(60.0, 1.0, 6.0, 350.0);
+  double furthest_from_north_deg = 0.0;
+  double least_m_s = 6.0;
+  blend.read_for(60.0, 1.0, 6.0, 10.0, 0, [&](const WindState& state) {
+    const double from_deg = std::remainder(direction_from_deg(state.wind), 360.0);
+    furthest_from_north_deg = std::max(furthest_from_north_deg, std::abs(from_deg));
+    least_m_s = std::min(least_m_s, speed_of(state.wind));
+  });
+  EXPECT_LT(furthest_from_north_deg, 20.0) << "the turn itself is turbulence, as far as anyone can tell";
+  EXPECT_GT(least_m_s, 5.0);
+}
+
+// A critically damped step of e moves at most 0.37 e w a second: here 11 m/s, w = 4 / 3 s.
+TEST(BlendedEstimator, LossAndReturnHandOverWithoutAJump) {
+  constexpr double kLargestStep_m_s = 0.37 * (4.0 / 3.0) * 11.0 * kBlendTick_s * 1.1;
+  BlendSettings settings = Blend::usual(1, 0.0);
+  settings.mean_memory_s = 60.0;
+  Blend blend(1, settings);
+  blend.read_for(100.0, 0.5, 8.0, 90.0);
+  blend.take_largest_step_m_s();
+  blend.run_for(600.0);
+  EXPECT_EQ(blend.state().source, WindSource::kDefault);
+  EXPECT_NEAR(blend.state().wind.v_m_s, 4.0, 0.05);
+  EXPECT_LT(blend.take_largest_step_m_s(), kLargestStep_m_s);
+
+  blend.read_for(100.0, 0.5, 8.0, 90.0);
+  EXPECT_EQ(blend.state().source, WindSource::kLive);
+  EXPECT_NEAR(blend.state().wind.u_m_s, -8.0, 0.1);
+  EXPECT_LT(blend.take_largest_step_m_s(), kLargestStep_m_s);
+}
+
+TEST(BlendedEstimator, FallsBackToTheNextLiveSourceAndReturnsToTheFirst) {
+  Blend blend = calm_blend(2);
+  const auto both_for = [&blend](double duration_s, bool first_speaks) {
+    for (int half = 0; half < static_cast<int>(2.0 * duration_s); ++half) {
+      if (first_speaks) blend.read(8.0, 90.0, 0);
+      blend.read(4.0, 0.0, 1);
+      blend.run_for(0.5);
+    }
+  };
+  both_for(30.0, true);
+  EXPECT_NEAR(blend.state().wind.u_m_s, -8.0, 0.1);
+  blend.take_largest_step_m_s();
+  both_for(30.0, false);
+  EXPECT_NEAR(blend.state().wind.u_m_s, 0.0, 0.1);
+  EXPECT_NEAR(blend.state().wind.v_m_s, -4.0, 0.1);
+  both_for(40.0, true);
+  EXPECT_NEAR(blend.state().wind.u_m_s, -8.0, 0.1);
+  EXPECT_LT(blend.take_largest_step_m_s(), 0.37 * (4.0 / 3.0) * 9.0 * kBlendTick_s * 1.1);
+}
+
+TEST(BlendedEstimator, WithoutADirectionItKeepsTheLastOneOrTheDefaultOne) {
+  Blend blend = calm_blend();
+  blend.read_for(20.0, 1.0, 5.0, std::nullopt);
+  EXPECT_NEAR(direction_from_deg(blend.state().wind), 270.0, 0.5);
+  Blend lost = calm_blend();
+  lost.read_for(60.0, 1.0, 5.0, 30.0);
+  lost.read_for(60.0, 1.0, 5.0, std::nullopt);
+  EXPECT_NEAR(direction_from_deg(lost.state().wind), 30.0, 0.5);
+}
+
+TEST(BlendedEstimator, RefusesWhatNoWindCanBe) {
+  Blend blend = calm_blend();
+  EXPECT_FALSE(blend.read(std::nan(""), 90.0));
+  EXPECT_FALSE(blend.read(-1.0, 90.0));
+  EXPECT_FALSE(blend.read(500.0, 90.0));
+  EXPECT_FALSE(blend.read(5.0, std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(blend.read(5.0, 360.0));
+  EXPECT_FALSE(blend.estimator().accept(1, WindReading{})) << "there is no source 1";
+  EXPECT_EQ(blend.report().health, SourceHealth::kSilent);
+}
+
+TEST(BlendedEstimator, ALongHaltOfTheMachineLeavesItFinite) {
+  Blend blend = calm_blend();
+  blend.read_for(5.0, 0.1, 8.0, 180.0);
+  const WindVector before = blend.state().wind;
+  blend.halt_for(std::chrono::hours(87600));
+  blend.run_for(kBlendTick_s);
+  EXPECT_LT(speed_of(blend.state().wind - before), 0.1) << "it goes on from where it was";
+  EXPECT_EQ(blend.report().health, SourceHealth::kStale);
+  blend.run_for(30.0);
+  EXPECT_NEAR(blend.state().wind.u_m_s, 3.0, 0.01);
+  EXPECT_NEAR(blend.state().wind.v_m_s, 0.0, 0.01);
+  EXPECT_EQ(blend.state().source, WindSource::kDefault);
 }
 
 }  // namespace
