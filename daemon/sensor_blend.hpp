@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "drivers/driver.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/wind/blend_settings.hpp"
 
@@ -12,7 +13,7 @@ std::span<const Parameter> sensor_blend_parameters();
 
 ParameterValues default_sensor_blend();
 
-/// The same for the estimator. `values` are those of the table.
-BlendSourceSettings blend_source_of(const ParameterValues& values);
+/// The same for the estimator. `values` are those of the table, `driver` the sensor's.
+BlendSourceSettings blend_source_of(const ParameterValues& values, const DriverDescription& driver);
 
 }  // namespace yuragi

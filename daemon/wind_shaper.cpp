@@ -29,6 +29,7 @@ WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> no
   const bool is_of_this_site =
       std::ranges::none_of(config.sensors, [](const SensorConfig& sensor) { return sensor.driver->plays_recordings; });
   if (is_of_this_site && shaping_.settings().site.median_m_s > 0.0) site_path_ = config.shaping.text("site_file");
+  if (!hours_.is_always_open()) spdlog::info("shaping: opening hours by the clocks of {}", hours_.zone_name());
 }
 
 WindShaper::~WindShaper() {

@@ -52,7 +52,8 @@ struct WindShapingReport {
 ///     and its 95th percentile to `site.strong_m_s`; between the two the mean goes on a straight line, and beyond them
 ///     the factor stays. It grows from 1 while the first hours of live wind are heard, and is 1 for the default wind.
 ///  2. Floor: a mean below it is raised to it by a factor of up to kMostFloorGain; what then still lacks is a breeze
-///     that blows where the wind last came from, with the turbulence of the climate at that level.
+///     that blows where the wind last came from, with the turbulence of the climate at that level. It carries the
+///     gusts on: those that no sensor measured are others from then on than in the real wind.
 ///  3. Opening: outside of opening hours only a part is left.
 ///  4. Ceiling: SoftCeiling at the middle of the scene; the whole ground gets the same factor, so that neighbours
 ///     differ as they did.
