@@ -11,6 +11,7 @@
 
 #include "daemon/shaping_config.hpp"
 #include "daemon/transports/address.hpp"
+#include "drivers/speed_unit.hpp"
 
 namespace yuragi {
 namespace {
@@ -100,15 +101,30 @@ const std::array kWindParameters = {
               .min = 0.0,
               .max = 3600.0,
               .help = "a sensor that was stale gets the word back after speaking for so long; twice as long each time"},
+    Parameter{.name = "fallback_recording",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "a .windlog that is played while every sensor is silent; empty: the default wind blows then"},
+    Parameter{.name = "fallback_after",
+              .unit = "s",
+              .default_value = 60.0,
+              .min = 1.0,
+              .max = 86400.0,
+              .help = "how long every sensor must have been silent for that"},
 };
 
 const std::array kCalibrationParameters = {
+    Parameter{.name = "unit",
+              .unit = "",
+              .default_value = std::string("m/s"),
+              .help = "what the sensor's numbers really are, where its driver takes them for m/s",
+              .choices = kSpeedUnitNames},
     Parameter{.name = "gain",
               .unit = "",
               .default_value = 1.0,
               .min = 0.01,
               .max = 100.0,
-              .help = "the speed is multiplied by this"},
+              .help = "the speed in m/s is multiplied by this"},
     Parameter{.name = "offset",
               .unit = "m/s",
               .default_value = 0.0,
@@ -188,7 +204,8 @@ const std::array kJudgeParameters = {
     Parameter{.name = "compare",
               .unit = "",
               .default_value = true,
-              .help = "its mean over 5 min is compared with the other sensors'; where three or more speak, one that "
+              .help = "its mean over 5 min is compared with the other sensors' (a microphone's never is); where three "
+                      "or more speak, one that "
                       "differs from most by more than 3 times and 3 m/s for 10 min is not believed"},
 };
 
@@ -268,6 +285,9 @@ class ConfigReader {
     config.wind = read_table(root, "", "wind", kWindParameters);
     config.shaping = read_table(root, "", "shaping", shaping_parameters());
     check_shaping(root, config.shaping);
+    if (const toml::node* node = root["wind"]["fallback_recording"].node()) {
+      config.fallback_origin = place(node->source());
+    }
 
     for_each_entry(root, "sensor", "driver", driver_table(),
                    [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {
@@ -513,7 +533,8 @@ Calibration calibration_of(const SensorConfig& sensor) {
   const ParameterValues& values = sensor.calibration;
   auto curve = parse_calibration_curve(values.text("curve"));
   if (!curve) throw ConfigError(sensor.origin + ": sensor.calibration.curve: " + curve.error().message);
-  Calibration calibration{.gain = values.number("gain"),
+  Calibration calibration{.unit_m_s = metres_per_second_in(values.text("unit")),
+                          .gain = values.number("gain"),
                           .offset_m_s = values.number("offset"),
                           .curve = std::move(*curve),
                           .north_offset_deg = values.number("north_offset")};
@@ -549,15 +570,16 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
   return ConfigReader(source_name).read(root);
 }
 
-Config load_config(const std::filesystem::path& file) {
+std::string read_config_text(const std::filesystem::path& file) {
   std::ifstream input(file, std::ios::binary);
-  std::string text;
-  if (input.is_open() && !std::filesystem::is_directory(file)) {
-    text.assign(std::istreambuf_iterator<char>(input), {});
-  } else {
+  if (!input.is_open() || std::filesystem::is_directory(file)) {
     throw ConfigError(file.string() + ":1:1: file: cannot be read; check its path and permissions");
   }
-  return parse_config(text, file.string());
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+Config load_config(const std::filesystem::path& file) {
+  return parse_config(read_config_text(file), file.string());
 }
 
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor) {
@@ -601,6 +623,22 @@ std::string to_toml(const ParameterValues& values) {
   std::ostringstream out;
   out << to_table(values);
   return out.str();
+}
+
+Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters) {
+  try {
+    ParameterValues::Map given;
+    for (const auto& [key, node] : toml::parse(toml_text)) {
+      const std::optional<ParameterValue> value = to_parameter_value(node);
+      if (!value) return Failure{std::string(key.str()) + ": takes one value: true, a number or a text"};
+      given.emplace(key.str(), *value);
+    }
+    auto values = ParameterValues::resolve(parameters, given);
+    if (!values) return Failure{values.error().name + ": " + values.error().message};
+    return std::move(*values);
+  } catch (const toml::parse_error& error) {
+    return Failure{"TOML: " + std::string(error.description())};
+  }
 }
 
 }  // namespace yuragi

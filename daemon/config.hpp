@@ -48,6 +48,7 @@ struct Config {
   ParameterValues animation;          ///< kAnimationParameters
   ParameterValues wind;               ///< kWindParameters
   ParameterValues shaping;            ///< shaping_parameters()
+  std::string fallback_origin;        ///< `file:line:column` of wind.fallback_recording; empty where it is not set
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
 };
@@ -87,7 +88,10 @@ Config default_config();
 /// Reads a configuration. `source_name` stands in messages. Throws ConfigError with every mistake that was found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
 
-/// The same of a file. A file that cannot be read is a ConfigError too.
+/// The text of a file. Throws ConfigError where it cannot be read.
+std::string read_config_text(const std::filesystem::path& file);
+
+/// The configuration of a file. A file that cannot be read is a ConfigError too.
 Config load_config(const std::filesystem::path& file);
 
 /// Makes the sensor, without touching its device. Throws ConfigError where its values cannot work together.
@@ -96,5 +100,8 @@ std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor);
 /// The configuration as TOML with every value written out: what a recording keeps, and what `check-config` shows.
 std::string to_toml(const Config& config);
 std::string to_toml(const ParameterValues& values);
+
+/// The way back: the values of a table alone, such as a recording keeps of each sensor. Fails with the first mistake.
+Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters);
 
 }  // namespace yuragi

@@ -18,13 +18,14 @@ std::uint64_t hash_poses(std::uint64_t hash, std::span<const Pose* const> poses)
 }  // namespace
 
 LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
-                                  const PlaybackOptions& options, double duration_s,
+                                  const PlayerOptions& options, double duration_s,
                                   const std::function<void(double)>& progress) {
-  WindlogPlayback playback(recording, options);
+  WindlogPlayer player(recording, options, Instant{});
   const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
   Animation animation(config, gusts);
   Config one_source = config;
   one_source.sensors.resize(1);
+  one_source.wind.set("fallback_recording", std::string{});
   const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts);
 
   WindShaping shaping(shaping_settings(config), gusts);
@@ -36,22 +37,20 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   const std::optional<JudgeSettings> judged_by = judge_settings_of(one_source.sensors[0]);
   ReadingJudge judge(judged_by.value_or(JudgeSettings{}));
 
-  std::optional<PlayedReading> next = playback.next();
-  for (std::uint64_t tick = 0; next.has_value(); ++tick) {
+  for (std::uint64_t tick = 0; !player.is_finished(); ++tick) {
     const double now_s = static_cast<double>(tick) / rate_hz;
     if (duration_s > 0.0 && now_s >= duration_s) break;
 
     // Readings that are due by this tick, at their own log time.
-    for (; next && next->log_time_s <= now_s; next = playback.next()) {
-      WindReading reading = next->reading;
-      reading.time.mono = MonoTime(from_seconds(next->log_time_s));
+    const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
+    player.play(now, [&](const WindReading& reading) {
       // As the daemon would: what is not believed moves nothing.
-      if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) continue;
-      if (!estimator->accept(0, reading)) continue;
+      if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) return;
+      if (!estimator->accept(0, reading)) return;
       ++result.readings;
       result.reading_mean_m_s += reading.speed_m_s;
       result.reading_max_m_s = std::max(result.reading_max_m_s, reading.speed_m_s);
-    }
+    });
 
     // A recording is always open: log time is not the time of a wall.
     DrivingWind wind{estimator->advance(MonoTime(from_seconds(now_s))), estimator->ground()};

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "daemon/config.hpp"
-#include "drivers/windlog/windlog_playback.hpp"
+#include "drivers/windlog/windlog_player.hpp"
 
 namespace yuragi {
 
@@ -22,11 +22,11 @@ struct LockstepResult {
 };
 
 /// Replays in log time, tick by tick, with no clock and no thread, so that every run of the same seed and recording
-/// gives the same poses, bit for bit. `progress` is called about once a second of work with the log time reached; it
-/// may be empty. Ends after `duration_s` of log time, if above 0. Throws std::runtime_error where the recording cannot
-/// be read.
+/// gives the same poses, bit for bit. Log time is that of the playback at rate 1, loops and their seams included.
+/// `progress` is called about once a second of work with the log time reached; it may be empty. Ends after `duration_s`
+/// of log time, if above 0. Throws std::runtime_error where the recording cannot be read.
 LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
-                                  const PlaybackOptions& options, double duration_s,
+                                  const PlayerOptions& options, double duration_s,
                                   const std::function<void(double log_time_s)>& progress);
 
 }  // namespace yuragi

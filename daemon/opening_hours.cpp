@@ -93,6 +93,9 @@ const date::time_zone* find_zone(const std::string& name) {
 
 Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours, const std::string& zone) {
   OpeningHours result;
+  const bool has_hours = !without_spaces_around(hours).empty();
+  // No clock is looked at: nobody needs the zones.
+  if (!has_hours && zone.empty()) return result;
   try {
     result.zone_ = find_zone(zone);
   } catch (const std::exception&) {
@@ -101,7 +104,7 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
                                               "list-timezones), or nothing for this machine's own",
                                               zone)};
   }
-  if (without_spaces_around(hours).empty()) return result;
+  if (!has_hours) return result;
 
   result.open_.reset();
   while (true) {

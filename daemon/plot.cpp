@@ -16,10 +16,6 @@
 namespace yuragi {
 namespace {
 
-/// So much is left and right of panels whose x axes are the same time, so that they line up.
-constexpr int kTimeMargin_px = 70;
-constexpr int kTimeMarginRight_px = 24;
-
 std::string_view style_of(PlotStyle style) {
   switch (style) {
     case PlotStyle::kLine:
@@ -89,8 +85,8 @@ void add_axes(std::string& script, const PlotPanel& panel, int width_px) {
     const TimeMarks marks = time_marks(panel.x_range->second - panel.x_range->first);
     fmt::format_to(out, "set format x \"{}\" time\nset xtics {:g}\n", marks.format, marks.step_s);
     fmt::format_to(out, "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n",
-                   static_cast<double>(kTimeMargin_px) / width_px,
-                   1.0 - static_cast<double>(kTimeMarginRight_px) / width_px);
+                   static_cast<double>(kTimeAxisLeft_px) / width_px,
+                   1.0 - static_cast<double>(kTimeAxisRight_px) / width_px);
   } else {
     fmt::format_to(out, "set format x '%g' numeric\nset xtics {}\nset lmargin\nset rmargin\n",
                    panel.x_step > 0.0 ? fmt::format("{:g}", panel.x_step) : "autofreq");

@@ -54,6 +54,10 @@ struct PlotPanel {
   int height_px = 480;
 };
 
+/// Where the x axes of times begin and end in a picture, from its left and right edge: all panels' line up.
+inline constexpr int kTimeAxisLeft_px = 70;
+inline constexpr int kTimeAxisRight_px = 24;
+
 /// Draws the panels below one another into `file`, whose name ends in .png or .svg; one of that name is replaced. By
 /// gnuplot. Throws ExitError where the name is another one, the file cannot be written, or gnuplot is not installed.
 void draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px = 1000);

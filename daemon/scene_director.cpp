@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/control_permission.hpp"
+
 namespace yuragi {
 
 SceneDirector::SceneDirector(const Config& config, Hand hand)
@@ -21,10 +23,7 @@ wire::ControlReply SceneDirector::answer(const wire::Control& wish, bool is_loca
     for (const wire::SceneState& scene : scenes_) known.append(known.empty() ? "" : ", ").append(scene.name);
     return refuse(fmt::format("there is no scene \"{}\"; there are: {}", wish.scene, known));
   }
-  if (allowed_ == "nobody") return refuse("nobody may switch scenes here: [stream] control = \"nobody\"");
-  if (allowed_ == "loopback" && !is_local) {
-    return refuse("scenes are switched from the daemon's own machine only: [stream] control = \"loopback\"");
-  }
+  if (const auto refusal = control_refusal(allowed_, is_local, "scenes are switched")) return refuse(*refusal);
 
   const auto index = static_cast<std::size_t>(found - scenes_.begin());
   if (!hand_({index, wish.shown, wish.hide_others, wish.over_s})) return refuse("too many changes at once; try again");

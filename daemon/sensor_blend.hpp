@@ -12,7 +12,8 @@ std::span<const Parameter> sensor_blend_parameters();
 
 ParameterValues default_sensor_blend();
 
-/// The same for the estimator. `values` are those of the table.
-BlendSourceSettings blend_source_of(const ParameterValues& values);
+/// The same for the estimator. `values` are those of the table; `is_relative_by_kind`: as its driver's description
+/// says.
+BlendSourceSettings blend_source_of(const ParameterValues& values, bool is_relative_by_kind);
 
 }  // namespace yuragi

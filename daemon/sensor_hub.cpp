@@ -1,6 +1,7 @@
 #include "daemon/sensor_hub.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,10 +12,15 @@
 namespace yuragi {
 namespace {
 
-/// What a log line is about: a state, and whether the others differ.
+/// Is it believed although others differ?
+bool is_disputed(SensorState state, Vote vote) {
+  return is_believed(state) && vote == Vote::kDisputed;
+}
+
+/// What a log line is about: a state, and whether others differ.
 std::uint32_t key_of(SensorState state, Vote vote) {
   constexpr std::uint32_t kDisputedBit = 1U << 8U;
-  return static_cast<std::uint32_t>(state) | (vote == Vote::kDisputed ? kDisputedBit : 0U);
+  return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
 }
 SensorState state_in(std::uint32_t key) {
   return static_cast<SensorState>(key & 0xFFU);
@@ -46,8 +52,12 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
                          .stale_intervals = config.wind.number("stale_intervals"),
                          .return_after_s = config.wind.number("return_after"),
                          .rate_hz = config.animation.number("rate")};
-  for (const SensorConfig& sensor : config.sensors) settings.sources.push_back(blend_source_of(sensor.blend));
-  return std::make_unique<BlendedEstimator>(config.sensors.size(), settings, std::move(noise));
+  for (const SensorConfig& sensor : config.sensors)
+    settings.sources.push_back(blend_source_of(sensor.blend, sensor.driver->is_relative));
+  // Behind all sensors, whatever their priorities.
+  if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
+  const std::size_t source_count = settings.sources.size();
+  return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
 }
 
 SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
@@ -56,7 +66,8 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
       listener_(std::move(listener)),
       estimator_(make_estimator(config, std::move(noise))),
       stale_intervals_(config.wind.number("stale_intervals")),
-      vote_(config.sensors.size()) {
+      vote_(config.sensors.size()),
+      fallback_(config, clock) {
   // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
   std::vector<std::unique_ptr<Sensor>> sensors;
   for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
@@ -68,8 +79,8 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     channel.is_judged = judged_by.has_value();
     channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
     // A sensor whose scale is not to be believed is no witness.
-    channel.is_compared =
-        channel.is_judged && channel.config.judge.flag("compare") && !blend_source_of(channel.config.blend).is_relative;
+    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") &&
+                          !blend_source_of(channel.config.blend, channel.config.driver->is_relative).is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }
@@ -79,14 +90,19 @@ const WindState& SensorHub::advance() {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     Channel& channel = channels_[index];
     channel.runner->drain([&](const WindReading& reading) {
-      ++channel.readings;
-      if (listener_) listener_(index, reading);
+      if (!reading.is_held) {
+        ++channel.readings;
+        channel.last_raw = reading;
+        if (listener_) listener_(index, reading);
+      }
       take(index, reading);
     });
     judge_refusals(channel);
   }
   const MonoTime now = clock_.now().mono;
   compare(now);
+  fallback_.advance(is_any_live(),
+                    [this](const WindReading& reading) { estimator_->accept(channels_.size(), reading); });
   wind_ = estimator_->advance(now);
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     log_link(channels_[index], now);
@@ -106,13 +122,22 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
     return;
   }
   if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
+  if (reading.is_held) {
+    channel.said.hold(reading.time);
+    estimator_->accept(index, reading);
+    return;
+  }
   channel.said.take(reading);
 
   // What a simulation makes up may be as steady as it likes.
   const bool is_judged = channel.is_judged && reading.quality != ReadingQuality::kSimulated;
-  if (is_judged && !channel.judge.judge(reading, vote_.others_m_s(index))) return;
-  vote_.hear(index, reading.time.mono, reading.speed_m_s);
-  if (vote_.vote_on(index) != Vote::kOutvoted) estimator_->accept(index, reading);
+  const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
+  if (makes_sense) vote_.hear(index, reading.time.mono, reading.speed_m_s);
+  if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
+    estimator_->accept(index, reading);
+  } else {
+    ++channel.not_believed;
+  }
 }
 
 /// Readings that were refused before they came to the hub speak against the sensor, too.
@@ -170,7 +195,8 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
   const SensorState state = state_of(evidence);
   const SensorState before = state_in(channel.state_gate.told());
   if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
-  const auto level = is_trouble(state) || evidence.vote == Vote::kDisputed ? spdlog::level::warn : spdlog::level::info;
+  const bool is_warning = is_trouble(state) || is_disputed(state, evidence.vote);
+  const auto level = is_warning ? spdlog::level::warn : spdlog::level::info;
   spdlog::log(level, "sensor {}: {}: {} (was {}{}; {} readings, {} frames, {} reconnects)", channel.config.name,
               name_of(state), reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
               channel.readings, channel.runner->frame_count(), channel.runner->reconnect_count());
@@ -198,6 +224,10 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
       status.gust_m_s = report.last->gust_m_s;
       status.simulated = report.last->quality == ReadingQuality::kSimulated;
     }
+    if (channel.last_raw) {
+      status.raw_speed_m_s = channel.last_raw->speed_m_s;
+      status.raw_direction_deg = channel.last_raw->direction_deg;
+    }
     status.age_s = report.age_s;
     status.interval_s = report.interval_s;
     status.readings = channel.readings;
@@ -207,6 +237,7 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
         status.refused.emplace_back(name_of(refusal), count);
       }
     }
+    if (channel.not_believed > 0) status.refused.emplace_back("not believed", channel.not_believed);
     if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
     status.frames = channel.runner->frame_count();
     status.reconnects = channel.runner->reconnect_count();
@@ -215,7 +246,26 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     status.state_reason = reason_of(status.state, evidence);
     all.push_back(std::move(status));
   }
+  if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
   return all;
+}
+
+/// Does a sensor speak that is believed?
+bool SensorHub::is_any_live() const {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    if (estimator_->report(index).health == SourceHealth::kLive) return true;
+  }
+  return false;
+}
+
+std::vector<NamedPlayer> SensorHub::players() {
+  std::vector<NamedPlayer> players;
+  for (const Channel& channel : channels_) {
+    SensorRunner& runner = *channel.runner;
+    if (runner.player() == nullptr) continue;
+    players.push_back({channel.config.name, runner.player(), [&runner] { runner.wake(); }});
+  }
+  return players;
 }
 
 void SensorHub::trace(const std::function<bool(std::string_view)>& is_wanted) {

@@ -2,11 +2,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "daemon/change_gate.hpp"
 #include "daemon/config.hpp"
+#include "daemon/fallback_recording.hpp"
+#include "daemon/player_director.hpp"
 #include "daemon/sensor_diagnosis.hpp"
 #include "daemon/sensor_runner.hpp"
 #include "engine/wind/reading_judge.hpp"
@@ -39,7 +42,7 @@ class SensorHub {
   const WindState& wind() const noexcept { return wind_; }
   const GroundWind& ground() const noexcept { return estimator_->ground(); }
 
-  /// How each sensor does, for the stream and for `sensors watch`.
+  /// How each sensor does, for the stream and for `sensors watch`; and the fall-back, while it plays.
   std::vector<wire::SensorStatus> status() const;
 
   /// Decides for each sensor, by its name, whether the messages to and from its device are kept for drain_traces().
@@ -50,6 +53,9 @@ class SensorHub {
 
   /// A line for each sensor in the log: what came of it since the start.
   void log_summary() const;
+
+  /// The controls of the sensors that play a recording; they live as long as the hub.
+  std::vector<NamedPlayer> players();
 
   /// True when every sensor is a recording that has come to its end.
   bool is_finished() const;
@@ -66,16 +72,19 @@ class SensorHub {
     std::unique_ptr<SensorRunner> runner;
     SourceRecord said;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
-    std::uint64_t impossible = 0;  ///< readings that were refused for what they said
-    LinkReport link;               ///< as of its last report
+    std::uint64_t not_believed = 0;  ///< plausible readings that were kept from the wind
+    std::uint64_t impossible = 0;    ///< readings that were refused for what they said
+    LinkReport link;                 ///< as of its last report
     std::uint64_t link_reports = 0;
     ChangeGate link_gate{kNothingTold};
     ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
+    std::optional<WindReading> last_raw;  ///< before calibration
   };
 
   void take(std::size_t index, const WindReading& reading);
   void judge_refusals(Channel& channel) const;
   void compare(MonoTime now);
+  bool is_any_live() const;
   SensorEvidence evidence_of(std::size_t index, MonoTime now) const;
   void log_link(Channel& channel, MonoTime now) const;
   void log_state(std::size_t index, MonoTime now);
@@ -86,13 +95,14 @@ class SensorHub {
   double stale_intervals_;
   SensorVote vote_;
   std::vector<Channel> channels_;
+  FallbackRecording fallback_;  ///< the estimator's source behind those of the channels
   WindState wind_;
 };
 
 /// The pattern of gusts of an installation: the estimator and the scenes share it. Set-up work of about 0.1 s.
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
 
-/// The estimator that a configuration asks for, with one source for each of its sensors.
+/// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise);
 
 }  // namespace yuragi

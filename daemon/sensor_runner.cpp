@@ -27,8 +27,16 @@ void SensorRunner::run(const std::stop_token& stop) {
     const Nanoseconds wait = std::min<Nanoseconds>(next - clock_.now().mono, kLongestSleep);
     if (wait <= Nanoseconds::zero()) continue;
     std::unique_lock lock(sleep_mutex_);
-    wake_.wait_for(lock, stop, wait, [] { return false; });
+    wake_.wait_for(lock, stop, wait, [this] { return std::exchange(is_woken_, false); });
   }
+}
+
+void SensorRunner::wake() {
+  {
+    const std::lock_guard lock(sleep_mutex_);
+    is_woken_ = true;
+  }
+  wake_.notify_one();
 }
 
 void SensorRunner::reading(const WindReading& reading) {

@@ -64,6 +64,12 @@ class SensorRunner final : private SensorSink {
     if (trace_) trace_->drain(use);
   }
 
+  /// Has the sensor polled at once, if it waits.
+  void wake();
+
+  /// The sensor's controls, if it plays a recording.
+  RecordingPlayer* player() noexcept { return sensor_->player(); }
+
   LinkReport link() const;
   /// How often the link has been told of; looks cheaply whether there is news.
   std::uint64_t link_reports() const noexcept { return link_reports_.load(std::memory_order_acquire); }
@@ -105,6 +111,7 @@ class SensorRunner final : private SensorSink {
   std::atomic<std::uint64_t> link_reports_{0};
 
   std::mutex sleep_mutex_;
+  bool is_woken_ = false;
   std::condition_variable_any wake_;
   std::jthread thread_;  // last: it uses all of the above
 };

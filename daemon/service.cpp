@@ -12,6 +12,7 @@
 
 #include "daemon/animation.hpp"
 #include "daemon/animation_loop.hpp"
+#include "daemon/player_director.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/scene_director.hpp"
 #include "daemon/sensor_hub.hpp"
@@ -41,7 +42,8 @@ class Service::Io {
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
         hub_(config, clock_, gusts_, listener()),
-        shaper_(config, gusts_) {
+        shaper_(config, gusts_),
+        players_(config.stream.text("control"), hub_.players()) {
     if (animation_) {
       shaper_.keep_site_file();
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
@@ -96,12 +98,16 @@ class Service::Io {
     if (animation_) {
       settings.scenes = animation_->describe();
       refuse_what_no_client_takes(settings.scenes);
-      settings.on_control = [this](const wire::Control& wish, bool is_local) {
-        return director_.answer(wish, is_local);
-      };
     }
+    settings.on_control = [this](const wire::Control& wish, bool is_local) { return answer(wish, is_local); };
     settings.max_clients = static_cast<std::size_t>(config.stream.integer("max_clients"));
     return settings;
+  }
+
+  wire::ControlReply answer(const wire::Control& wish, bool is_local) {
+    if (wish.player) return players_.answer(*wish.player, is_local);
+    if (animation_) return director_.answer(wish, is_local);
+    return {.done = false, .message = "there are no scenes here", .scenes = {}};
   }
 
   std::unique_ptr<Recorder> make_recorder(const Config& config, const std::filesystem::path& file) const;
@@ -187,6 +193,7 @@ class Service::Io {
   std::unique_ptr<Recorder> recorder_;
   SensorHub hub_;
   WindShaper shaper_;
+  PlayerDirector players_;
   Latest<DrivingWind> wind_;
   std::unique_ptr<AnimationLoop> loop_;
 };

@@ -29,9 +29,11 @@ std::string shaping_text(const WindShapingReport& report, const WindShapingSetti
   if (opening.has_hours) {
     std::string hours = opening.is_open ? "open" : "closed";
     if (!opening.until.empty()) hours += " " + opening.until;
+    // On the way, and where closing leaves a part, how much of the wind is left is said, too.
     const double target = opening.is_open ? 1.0 : settings.closed_level;
-    if (std::abs(report.opening - target) > 0.005) {
-      hours += fmt::format(", fading {}: {:.0f} % of the wind", opening.is_open ? "in" : "out", 100.0 * report.opening);
+    if (std::abs(report.opening - target) > 0.005) hours += opening.is_open ? ", fading in" : ", fading out";
+    if (std::abs(report.opening - (opening.is_open ? 1.0 : 0.0)) > 0.005) {
+      hours += fmt::format(": {:.0f} % of the wind", 100.0 * report.opening);
     }
     add(hours);
   }

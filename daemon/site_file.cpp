@@ -52,12 +52,13 @@ Result<std::vector<double>, Failure> SiteFile::read() const {
 
 void SiteFile::save(std::span<const double> times_s) {
   std::vector<double> copy(times_s.begin(), times_s.end());
-  writing_ = std::async(std::launch::async, write_site_file, file_, std::move(copy));
+  // Where there is no thread to be had, wait() writes.
+  writing_ = std::async(std::launch::async | std::launch::deferred, write_site_file, file_, std::move(copy));
 }
 
 bool SiteFile::is_writing() const {
   using namespace std::chrono_literals;
-  return writing_.valid() && writing_.wait_for(0s) != std::future_status::ready;
+  return writing_.valid() && writing_.wait_for(0s) == std::future_status::timeout;
 }
 
 Failure SiteFile::wait() {

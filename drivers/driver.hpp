@@ -24,6 +24,9 @@ struct DriverDescription {
   std::vector<FoundDevice> (*find)() = nullptr;
   /// It plays what was recorded: nobody may take it for the wind of now.
   bool plays_recordings = false;
+  /// How its readings rise and fall is to be believed, but not their scale, which depends on where it hangs: it is
+  /// compared with no other sensor.
+  bool is_relative = false;
 };
 
 /// Every driver (generated).

@@ -17,6 +17,7 @@
 
 #include "drivers/bus/process_port.hpp"
 #include "drivers/driver.hpp"
+#include "drivers/microphone_calibration.hpp"
 #include "drivers/microphone_sensor.hpp"
 
 namespace yuragi {
@@ -146,17 +147,8 @@ std::vector<double> parse_faces(const std::string& text) {
 MicrophoneSettings settings_of(const ParameterValues& values) {
   MicrophoneSettings settings;
   MicEstimatorOptions& estimator = settings.estimator;
-  const std::string& curve = values.text("curve");
-  const double gain_m_s = values.number("gain");
-  settings.is_calibrated = gain_m_s > 0.0 || !curve.empty();
-  MicPowerLaw law{.exponent = values.number("exponent")};
-  if (gain_m_s > 0.0) law.gain_m_s = gain_m_s;
-  estimator.calibration = law;
-  if (!curve.empty()) {
-    auto parsed = parse_mic_curve(curve);
-    if (!parsed) throw std::runtime_error("curve = \"" + curve + "\": " + parsed.error().message);
-    estimator.calibration = *parsed;
-  }
+  settings.is_calibrated = values.number("gain") > 0.0 || !values.text("curve").empty();
+  estimator.calibration = mic_calibration_of(values);
   if (values.number("noise_floor") < 0.0) estimator.noise_floor_db = values.number("noise_floor");
   estimator.noise_memory_s = values.number("noise_memory");
   estimator.ignores_sound = values.flag("ignore_sound");
@@ -208,6 +200,7 @@ const DriverDescription kMicrophoneDriver{.name = "microphone",
                                           .summary = "one to four bare microphones, by PortAudio",
                                           .parameters = kMicrophoneParameters,
                                           .open = open_microphone,
-                                          .find = find_plugged_microphones};
+                                          .find = find_plugged_microphones,
+                                          .is_relative = true};
 
 }  // namespace yuragi

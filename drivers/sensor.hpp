@@ -35,6 +35,8 @@ class SensorSink {
   virtual void raw(RawDirection direction, std::span<const std::uint8_t> message) = 0;
 };
 
+class RecordingPlayer;
+
 /// An open sensor, real or not. It holds its device for as long as it lives and finds it again for ever.
 class Sensor {
  public:
@@ -47,6 +49,10 @@ class Sensor {
 
   /// Ends a poll() that waits, from another thread, so that shutting down waits for nobody. No poll() follows.
   virtual void interrupt() noexcept {}
+
+  /// The controls (drivers/recording_player.hpp) of one that plays a recording; nullptr for any other. Lives as long as
+  /// the sensor; may be asked for from another thread.
+  virtual RecordingPlayer* player() noexcept { return nullptr; }
 };
 
 }  // namespace yuragi

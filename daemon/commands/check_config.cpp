@@ -6,6 +6,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/config.hpp"
 #include "daemon/driver_reference.hpp"
+#include "daemon/fallback_recording.hpp"
 
 namespace yuragi {
 namespace {
@@ -22,6 +23,7 @@ void add_check_config(CLI::App& app) {
   command->callback([file, full] {
     const Config config = load_config(*file);
     for (const SensorConfig& sensor : config.sensors) open_sensor(sensor);
+    if (has_fallback(config)) check_fallback(config);
     if (*full) {
       fmt::print("{}", to_toml(config));
       return;

@@ -19,6 +19,10 @@ struct ReplayOptions {
   std::filesystem::path file;
   std::string rate = "1";
   PlaybackOptions playback;
+  double seam_s = PlayerOptions{}.seam_s;
+  bool at_time_of_day = false;
+  std::string utc_offset;
+  bool is_paused = false;
 };
 
 constexpr double kMinRate = 0.01;
@@ -38,10 +42,10 @@ double parse_rate(const std::string& text) {
 SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
   for (const DriverDescription* driver : driver_table()) {
     if (driver->name != "windlog") continue;
-    const ParameterValues::Map given{{"file", options.file.string()},
-                                     {"rate", rate},
-                                     {"loop", options.playback.loop},
-                                     {"start", options.playback.start},
+    const ParameterValues::Map given{{"file", options.file.string()},    {"rate", rate},
+                                     {"loop", options.playback.loop},    {"start", options.playback.start},
+                                     {"seam", options.seam_s},           {"same_time_of_day", options.at_time_of_day},
+                                     {"utc_offset", options.utc_offset}, {"paused", options.is_paused},
                                      {"sensor", options.playback.sensor}};
     auto values = ParameterValues::resolve(driver->parameters, given);
     if (!values) throw ExitError(kExitUsage, values.error().name + ": " + values.error().message);
@@ -54,12 +58,16 @@ void replay_at_full_speed(const ReplayOptions& options) {
   if (options.playback.loop && !options.run.duration_s) {
     throw ExitError(kExitUsage, "--rate max with --loop would never end; add --duration SECONDS (of log time)");
   }
+  if (options.at_time_of_day || options.is_paused) {
+    throw ExitError(kExitUsage, "--rate max has no clock: it takes neither --same-time-of-day nor --paused");
+  }
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto progress = [is_watched](double log_time_s) {
     if (is_watched) fmt::print(stderr, "\rreplayed {:.0f} s", log_time_s);
   };
-  const LockstepResult result = replay_in_lockstep(options.run.config(), options.file, options.playback,
-                                                   options.run.duration_s.value_or(0.0), progress);
+  const LockstepResult result =
+      replay_in_lockstep(options.run.config(), options.file, {.playback = options.playback, .seam_s = options.seam_s},
+                         options.run.duration_s.value_or(0.0), progress);
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(
       "readings   {} in {:.1f} s of log time\n"
@@ -80,6 +88,7 @@ void replay(const ReplayOptions& options) {
 
   Config config = options.run.config();
   config.sensors = {replay_sensor(options, parse_rate(options.rate))};
+  config.wind.set("fallback_recording", std::string{});
   Service(config, {.record = {}, .duration_s = options.run.duration_s, .end_with_recordings = true}).run();
 }
 
@@ -91,7 +100,9 @@ void add_replay(CLI::App& app) {
       "scenes tick by tick, and a summary with a hash over all poses is printed; the same seed and recording give the\n"
       "same hash.\n"
       "  yuragi replay storm.windlog --rate 4 --start 90\n"
-      "  yuragi replay storm.windlog --rate max");
+      "  yuragi replay storm.windlog --rate max\n"
+      "  yuragi replay year.windlog --same-time-of-day --loop\n"
+      "While it runs, in another terminal: yuragi player pause, step, seek, rate, status.");
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("file", options->file, "the recording")->required()->type_name("FILE.windlog");
   command->add_option("--rate", options->rate, "how many times faster than it was recorded, or max (default 1)")
@@ -101,6 +112,20 @@ void add_replay(CLI::App& app) {
       ->add_option("--start", options->playback.start,
                    "where to begin: seconds from its beginning, or a UTC time (ISO 8601)")
       ->type_name("T");
+  command
+      ->add_option(
+          "--seam", options->seam_s,
+          "how long the end of a loop, or a place left by a seek, fades into the new place (default 5; 0: not at all)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 600.0));
+  command->add_flag("--same-time-of-day", options->at_time_of_day,
+                    "begin where the recording's local time of day is that of now");
+  command
+      ->add_option(
+          "--utc-offset", options->utc_offset,
+          "for that: how far the clocks where it was recorded were ahead of UTC; without it: this machine's zone")
+      ->type_name("HOURS");
+  command->add_flag("--paused", options->is_paused, "stand still at the first reading (see `yuragi player`)");
   command->add_option("--sensor", options->playback.sensor, "which sensor's readings; without it: the first that spoke")
       ->type_name("NAME");
   options->run.add_to(*command);

@@ -31,7 +31,7 @@ constexpr const char* kReportFooter =
     "Writes one HTML file that needs nothing else: what the recording is, speed, gust and direction over time, wind\n"
     "rose, distribution, spectrum with its slope and the fitted von Karman's (U, TI, L), gaps, and how each sensor "
     "did.\n"
-    "U, TI and L may go into the configuration: [wind] default_speed, default_turbulence, default_length.\n"
+    "What may go into a configuration as its default wind stands there ready to be copied.\n"
     "Hours of the day are local time, in the zone of this machine (TZ).\n"
     "\n"
     "Examples:\n"
@@ -135,7 +135,9 @@ void add_report(CLI::App& app) {
   command->footer(kReportFooter);
   command->add_option("file", options->input, "the recording")->required()->type_name("FILE.windlog");
   command->add_option("-o,--output", options->output, "the page to write")->required()->type_name("FILE.html");
-  command->add_option("--sensor", options->sensors, "only this sensor; can be given again")->type_name("NAME");
+  command->add_option("--sensor", options->sensors, "only this sensor; can be given again")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command->add_option("--from", options->from, "begin here: seconds, or a moment such as 2018-07-20T14:05:00Z")
       ->type_name("T");
   command->add_option("--to", options->to, "end before this, written likewise")->type_name("T");

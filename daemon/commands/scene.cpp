@@ -4,39 +4,20 @@
 
 #include <fmt/core.h>
 
+#include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
 #include "daemon/exit.hpp"
-#include "daemon/transports/stream_client.hpp"
 
 namespace yuragi {
 namespace {
-
-constexpr auto kSceneConnectTimeout = std::chrono::seconds(2);
-constexpr auto kReplyTimeout = std::chrono::seconds(5);
 
 struct SceneOptions {
   std::string connect = fmt::format("127.0.0.1:{}", wire::kDefaultPort);
   wire::Control control = {};
 };
 
-/// Asks the daemon, and waits for its answer.
 wire::ControlReply ask(const SceneOptions& options) {
-  auto client = StreamClient::connect(options.connect, kSceneConnectTimeout);
-  if (!client) throw ExitError(kExitUnavailable, client.error().message + ". Is `yuragi run` running?");
-  if (!client->subscribe({.poses = false, .client = "scene"}) || !client->send(options.control))
-    throw ExitError(kExitUnavailable, fmt::format("the daemon at {} does not listen", options.connect));
-  while (true) {
-    const auto message = client->receive(kReplyTimeout);
-    if (!message) {
-      throw ExitError(kExitUnavailable,
-                      fmt::format("no answer from the daemon at {} ({})", options.connect, name_of(message.error())));
-    }
-    if (const auto* hello = std::get_if<wire::Hello>(&*message); hello != nullptr && hello->refused) {
-      throw ExitError(kExitUnavailable,
-                      fmt::format("the daemon at {} lets nobody in: {}", options.connect, *hello->refused));
-    }
-    if (const auto* reply = std::get_if<wire::ControlReply>(&*message)) return *reply;
-  }
+  return ask_daemon(options.connect, "scene", options.control);
 }
 
 void list_scenes(const SceneOptions& options) {

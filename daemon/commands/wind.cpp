@@ -1,4 +1,5 @@
 // `yuragi wind`: the estimator of the daemon over a recording, as a table.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -82,8 +83,10 @@ class Table {
   explicit Table(std::FILE* out) : out_(out) { text_ = "time_s,u_m_s,v_m_s,speed_m_s,direction_deg,trust,state\n"; }
 
   void add(double time_s, const WindState& state) {
+    // A hair west of north is rounded to north, not to 360.
+    const double direction_deg = std::fmod(std::round(direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
     fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}\n", time_s,
-                   state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind), direction_from_deg(state.wind),
+                   state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind), direction_deg,
                    state.live_weight, name_of(state.source));
     if (text_.size() > kBlock) flush();
   }

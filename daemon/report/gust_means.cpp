@@ -7,7 +7,8 @@ namespace yuragi {
 namespace {
 
 constexpr double kGust_s = 3.0;
-constexpr std::size_t kMostPast = 100'000;
+/// So many readings of 3 s are looked at; a sensor that says more in that time has no gust.
+constexpr std::size_t kMostPast = 1000;
 constexpr double kBlock_s = 600.0;
 /// A block counts when so much of it was heard, in a wind that is no calm.
 constexpr double kWholeBlock = 0.95;

@@ -12,6 +12,7 @@
 
 #include "daemon/exit.hpp"
 #include "daemon/plot.hpp"
+#include "daemon/report/report_text.hpp"
 #include "daemon/report/wind_rose.hpp"
 #include "engine/wind/turbulence_fit.hpp"
 #include "engine/wind/wind_vector.hpp"
@@ -20,6 +21,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kWidth_px = 1000;
 /// Fewer than these are points, not a line.
 constexpr std::size_t kFewReadings = 100;
 constexpr const char* kWindColor = "#2f7fc1";
@@ -47,7 +49,11 @@ class Figures {
     std::vector<PlotPanel> panels = {speed_panel()};
     if (sensor_.directed > 0) panels.push_back(direction_panel());
     panels.push_back(state_panel());
-    return draw(panels, "series", "Speed, direction and state over time");
+    std::string svg = draw(panels, "series", "Speed, direction and state over time");
+    int height_px = 0;
+    for (const PlotPanel& panel : panels) height_px += panel.height_px;
+    svg.insert(svg.rfind("</svg>"), event_titles(height_px));
+    return svg;
   }
 
   std::string distribution();
@@ -56,7 +62,7 @@ class Figures {
 
  private:
   std::string draw(std::span<const PlotPanel> panels, const std::string& name, std::string_view label,
-                   int width_px = 1000) {
+                   int width_px = kWidth_px) {
     draw_plot(scratch_, panels, width_px);
     std::string text = text_of_file(scratch_);
     std::error_code ignored;
@@ -94,6 +100,7 @@ class Figures {
     return found;
   }
 
+  std::string event_titles(int height_px) const;
   PlotPanel speed_panel() const;
   PlotPanel direction_panel() const;
   PlotPanel state_panel() const;
@@ -103,6 +110,25 @@ class Figures {
   std::filesystem::path scratch_;
   std::size_t index_;
 };
+
+/// What the mouse is told over each event: nothing is seen of it.
+std::string Figures::event_titles(int height_px) const {
+  constexpr double kLeastWidth_px = 3.0;
+  const double axis_px = kWidth_px - kTimeAxisLeft_px - kTimeAxisRight_px;
+  std::string titles;
+  for (const StateEvent& event : sensor_.events) {
+    const double px_per_s = axis_px / recording_.duration_s();
+    const double from_px = kTimeAxisLeft_px + (event.from_s - recording_.begin_s) * px_per_s;
+    fmt::format_to(
+        std::back_inserter(titles),
+        "<rect x=\"{:.1f}\" y=\"0\" width=\"{:.1f}\" height=\"{}\" fill=\"transparent\"><title>{} for {}, from "
+        "{}</title></rect>\n",
+        from_px, std::max(event.length_s() * px_per_s, kLeastWidth_px), height_px,
+        kRecordedStateNames[static_cast<std::size_t>(event.state)], duration_text(event.length_s()),
+        utc_text(recording_.utc_at(event.from_s)));
+  }
+  return titles;
+}
 
 PlotPanel Figures::speed_panel() const {
   PlotCurve band{.title = "lowest to highest", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
@@ -136,7 +162,7 @@ PlotPanel Figures::speed_panel() const {
 
   PlotPanel panel = time_panel();
   panel.y_label = "speed, m/s";
-  panel.y_range = {{0.0, 1.15 * highest_m_s}};
+  panel.y_range = {{0.0, 1.3 * highest_m_s}};
   panel.height_px = 360;
   if (has_band) {
     mean.title = "mean";
@@ -178,11 +204,11 @@ PlotPanel Figures::state_panel() const {
   PlotPanel panel = time_panel();
   panel.spans = {{.from = panel.x_range->first,
                   .to = panel.x_range->second,
-                  .color = std::string(kStateColors[static_cast<std::size_t>(RecordedState::kLive)])}};
+                  .color = std::string(kRecordedStateColors[static_cast<std::size_t>(RecordedState::kLive)])}};
   for (std::size_t i = 1; i < kRecordedStates; ++i) {
     const auto state = static_cast<RecordedState>(i);
     for (const auto& [from_s, to_s] : stretches(state, state)) {
-      panel.spans.push_back({.from = from_s, .to = to_s, .color = std::string(kStateColors[i])});
+      panel.spans.push_back({.from = from_s, .to = to_s, .color = std::string(kRecordedStateColors[i])});
     }
   }
   panel.x_label = "UTC";
@@ -233,7 +259,8 @@ std::string Figures::spectrum() {
   // Means over eighths of an octave: as many points high up as low down.
   PlotCurve measured{.title = "measured", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
   constexpr double kPerOctave = 8.0;
-  const std::size_t lines = numbers.density_m2_s2_hz.size();
+  // Without the last line, at Nyquist's frequency, which has half of the power.
+  const std::size_t lines = numbers.density_m2_s2_hz.size() - 1;
   for (std::size_t k = 1; k < lines;) {
     const double place = std::floor(kPerOctave * std::log2(static_cast<double>(k)));
     double sum = 0.0;
@@ -281,7 +308,7 @@ std::string Figures::spectrum() {
   if (numbers.power_law) {
     // Drawn above the measured curve, so that both can be seen.
     const PowerLawFit& fit = *numbers.power_law;
-    PlotCurve curve{.title = fmt::format("slope -{:.2f} (drawn twice as high)", fit.beta),
+    PlotCurve curve{.title = fmt::format("f to the power of {:.2f}, drawn twice as high", -fit.beta),
                     .style = PlotStyle::kLine,
                     .x = {},
                     .y = {},

@@ -10,8 +10,8 @@
 namespace yuragi {
 
 /// Colours of the states, in the figures and in their legend; live has none.
-inline constexpr std::array<std::string_view, kRecordedStates> kStateColors = {"#3fa66b", "#9a9a9a", "#e0a100",
-                                                                               "#b05cc4", "#3d7edb", "#c2453d"};
+inline constexpr std::array<std::string_view, kRecordedStates> kRecordedStateColors = {"#3fa66b", "#9a9a9a", "#e0a100",
+                                                                                       "#d9662b", "#3d7edb", "#c2453d"};
 
 /// The figures of one sensor, each an SVG element for a page; empty where there is nothing to draw.
 struct SensorFigures {

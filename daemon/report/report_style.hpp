@@ -25,6 +25,9 @@ table { border-collapse: collapse; font-size: .93rem; margin: .4rem 0 1rem; font
 th, td { padding: .22rem .9rem .22rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line);
          overflow-wrap: anywhere; }
 th { font-weight: 600; } tbody th { font-weight: 400; color: var(--quiet); } td.n, th.n { text-align: right; }
+td.n, th.n, td.s { white-space: nowrap; }
+pre { background: var(--card); border: 1px solid var(--line); border-radius: .5rem; padding: .5rem .8rem; font-size: .9rem;
+      overflow-x: auto; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(9.5rem, 1fr)); gap: .6rem; margin: .8rem 0 1rem; }
 .tile { background: var(--card); border: 1px solid var(--line); border-radius: .5rem; padding: .5rem .8rem; }
 .tile b { display: block; font-size: 1.35rem; line-height: 1.3; } .tile span { color: var(--quiet); font-size: .85rem; }
@@ -47,9 +50,12 @@ footer { margin-top: 3rem; color: var(--quiet); font-size: .85rem; border-top: 1
 @media print {
   :root { color-scheme: light; --ink: #000; --quiet: #444; --paper: #fff; --card: #fff; --line: #bbb; --accent: #2f7fc1;
           --warn: #fff; }
-  body { max-width: none; padding: 0; font-size: 10.5pt; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  html { font-size: 12.5px; }
+  body { max-width: none; padding: 0; font-size: 1rem; line-height: 1.4; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   h2.next { break-before: page; } h3 { break-after: avoid; } table, .tiles { break-inside: avoid; }
-  table.long { break-inside: auto; } .pair { grid-template-columns: 1fr 1fr; }
+  h1 { font-size: 1.45rem; } .lead { font-size: 1.05rem; } h2 { margin-top: 1.2rem; } h3 { margin-top: 1rem; }
+  .tiles { grid-template-columns: repeat(5, 1fr); } .tile b { font-size: 1.1rem; } svg.plot { max-height: 112mm; }
+  svg.rose { max-height: 80mm; } table.long { break-inside: auto; } .pair { grid-template-columns: 1fr 1fr; }
 }
 )css";
 

@@ -48,18 +48,18 @@ void add_tiles(PageWriter& page, const SensorNumbers& sensor) {
 
 void add_series(PageWriter& page, const SensorFigures& figures) {
   if (figures.series.empty()) return;
+  std::string keys;
+  for (std::size_t i = 0; i < kRecordedStates; ++i) {
+    keys += fmt::format("<span class=\"item\"><span class=\"key\" style=\"background:{}\"></span>{}</span> ",
+                        kRecordedStateColors[i], kRecordedStateNames[i]);
+  }
   page.add("<h3>Speed, direction and state</h3>\n");
   page.figure(
       figures.series,
-      "Each column of the picture shows the lowest, mean and highest of its readings: no extreme is lost. Pale points: "
-      "single directions; dark ones: means. Grey "
-      "behind the curves: the sensor was silent.");
-  page.add("<p class=\"keys quiet\">");
-  for (std::size_t i = 0; i < kRecordedStates; ++i) {
-    page.add("<span class=\"item\"><span class=\"key\" style=\"background:{}\"></span>{}</span> ", kStateColors[i],
-             kRecordedStateNames[i]);
-  }
-  page.add("</p>\n");
+      fmt::format("<span class=\"keys\">{}</span><br>Each column of the picture shows the lowest, mean and "
+                  "highest of its readings: no extreme is lost. Pale points: single directions; dark ones: means. "
+                  "Grey behind the curves: the sensor was silent; a blank: it was not believed.",
+                  keys));
 }
 
 void add_rose_and_distribution(PageWriter& page, const SensorNumbers& sensor, const SensorFigures& figures) {
@@ -111,6 +111,14 @@ void add_octaves(PageWriter& page, const SpectrumNumbers& spectrum) {
   page.add("</tbody></table>\n");
 }
 
+/// Why a slope may be smaller than that of turbulence.
+std::string_view slope_remark(const SpectrumNumbers& spectrum) {
+  // Three times above the bend von Karman's has come to 1.5.
+  const bool is_bent = spectrum.von_karman && spectrum.power_law->beta < 1.5 &&
+                       spectrum.power_law->from_hz < 3.0 * 0.146 / spectrum.von_karman->time_scale_s;
+  return is_bent ? "; these frequencies are near the bend of the spectrum, where it is flatter" : "";
+}
+
 void add_turbulence(PageWriter& page, const SensorNumbers& sensor) {
   page.add("<table><tbody>\n");
   if (sensor.blocks.turbulence_intensity) {
@@ -131,10 +139,10 @@ void add_turbulence(PageWriter& page, const SensorNumbers& sensor) {
   if (sensor.spectrum) {
     const SpectrumNumbers& spectrum = *sensor.spectrum;
     if (const auto& fit = spectrum.power_law) {
-      page.row("Slope of the spectrum",
-               fmt::format(
-                   "f<sup>−{:.2f}</sup>: β = {:.2f} (least squares, {} to {} Hz; turbulence far from the ground: 1.67)",
-                   fit->beta, fit->beta, frequency_text(fit->from_hz), frequency_text(fit->to_hz)));
+      page.row(
+          "Slope of the spectrum",
+          fmt::format("β = {:.2f} (f<sup>−β</sup>, least squares from {} to {} Hz; Kolmogorov’s is 1.67){}", fit->beta,
+                      frequency_text(fit->from_hz), frequency_text(fit->to_hz), slope_remark(spectrum)));
     }
     if (const auto& fit = spectrum.von_karman) {
       page.row(
@@ -149,7 +157,24 @@ void add_turbulence(PageWriter& page, const SensorNumbers& sensor) {
   page.add("</tbody></table>\n");
 }
 
-void add_spectrum(PageWriter& page, const SensorNumbers& sensor, const SensorFigures& figures) {
+/// The recording's wind as the default wind of a configuration, where it is long enough to be somebody's wind.
+void add_default_wind(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor) {
+  constexpr double kLeast_s = 600.0;
+  const bool has_fit = sensor.spectrum && sensor.spectrum->von_karman;
+  if (!has_fit || recording.duration_s() < kLeast_s) return;
+  const VonKarmanFit& fit = *sensor.spectrum->von_karman;
+  page.add(
+      "<p>To have such a wind while no sensor speaks, put this into the configuration (a recording of weeks says more "
+      "about a place than one of minutes):</p>\n<pre>[wind]\ndefault_speed = {:.1f}\n",
+      std::min(sensor.mean_m_s, 40.0));
+  if (sensor.direction_deg) page.add("default_direction = {:.0f}\n", *sensor.direction_deg);
+  page.add("default_turbulence = {:.2f}\n", std::min(fit.intensity, 1.0));
+  if (fit.length_m) page.add("default_length = {:.0f}\n", std::clamp(*fit.length_m, 1.0, 1000.0));
+  page.add("</pre>\n");
+}
+
+void add_spectrum(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor,
+                  const SensorFigures& figures) {
   page.add("<h3>Gusts and turbulence</h3>\n");
   add_turbulence(page, sensor);
   if (!sensor.spectrum) {
@@ -165,6 +190,7 @@ void add_spectrum(PageWriter& page, const SensorNumbers& sensor, const SensorFig
                           duration_text(static_cast<double>(spectrum.segment_readings) * spectrum.step_s)));
   page.add("<h3>Octave by octave</h3>\n");
   add_octaves(page, spectrum);
+  add_default_wind(page, recording, sensor);
 }
 
 /// What a state means, for a technician.
@@ -173,11 +199,11 @@ std::string_view meaning_of(RecordedState state) {
     case RecordedState::kLive:
       return "heard, and credible";
     case RecordedState::kStale:
-      return "silent: cable, power, radio?";
+      return "silent, or nobody recorded: cable, power, radio?";
     case RecordedState::kSpike:
       return "a reading far from all others was held back";
     case RecordedState::kImplausible:
-      return "out of range, or spike after spike: wiring, scale, interference?";
+      return "far from all others again and again: a loose contact, disturbances on the line?";
     case RecordedState::kFrozen:
       return "exactly the same value again and again: icing, a stuck logger?";
     case RecordedState::kSeized:
@@ -205,9 +231,9 @@ void add_events(PageWriter& page, const RecordingNumbers& recording, const Senso
     if (!is_wanted(event)) continue;
     const auto state = static_cast<std::size_t>(event.state);
     page.add(
-        "<tr><td><span class=\"key\" style=\"background:{}\"></span>{}</td><td>{}</td><td>{}</td>"
+        "<tr><td class=\"s\"><span class=\"key\" style=\"background:{}\"></span>{}</td><td>{}</td><td>{}</td>"
         "<td class=\"n\">{}</td></tr>\n",
-        kStateColors[state], kRecordedStateNames[state], utc_text(recording.utc_at(event.from_s)),
+        kRecordedStateColors[state], kRecordedStateNames[state], utc_text(recording.utc_at(event.from_s)),
         utc_text(recording.utc_at(event.to_s)), duration_text(event.length_s()));
   }
   page.add("</tbody></table>\n");
@@ -222,10 +248,10 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
     const StateTotal& total = sensor.states[i];
     const bool has_any = total.count > 0;
     page.add(
-        "<tr><td><span class=\"key\" style=\"background:{}\"></span>{}</td><td class=\"n\">{}</td><td "
+        "<tr><td class=\"s\"><span class=\"key\" style=\"background:{}\"></span>{}</td><td class=\"n\">{}</td><td "
         "class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n",
-        kStateColors[i], kRecordedStateNames[i], total.count, has_any ? duration_text(total.time_s) : "–",
+        kRecordedStateColors[i], kRecordedStateNames[i], total.count, has_any ? duration_text(total.time_s) : "–",
         has_any ? percent(total.time_s / std::max(recording.duration_s(), 1e-9)) : "–",
         has_any ? duration_text(total.longest_s) : "–", meaning_of(static_cast<RecordedState>(i)));
   }
@@ -267,7 +293,6 @@ std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& 
 void add_sensor_section(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor,
                         const SensorFigures& figures, bool is_first) {
   page.add("<section>\n<h2{}>{}</h2>\n", is_first ? "" : " class=\"next\"", page_text(sensor.name));
-  if (recording.sensors.size() > 1) page.add("<p class=\"lead\">{}</p>\n", sentence_of(recording, sensor));
   if (sensor.believed > 0) {
     add_tiles(page, sensor);
     add_series(page, figures);
@@ -277,7 +302,7 @@ void add_sensor_section(PageWriter& page, const RecordingNumbers& recording, con
       page.figure(figures.diurnal,
                   "Mean speed by the hour of the day, and between which speeds eight of ten readings are.");
     }
-    add_spectrum(page, sensor, figures);
+    add_spectrum(page, recording, sensor, figures);
   }
   add_states(page, recording, sensor);
   page.add("</section>\n");

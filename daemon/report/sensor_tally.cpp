@@ -133,8 +133,10 @@ void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   ++numbers_.readings;
   ++numbers_.quality.at(static_cast<std::size_t>(reading.quality));
 
-  const bool is_believed = judge_.judge(heard);
-  state_ = state_of(judge_.fault());
+  // What a simulation makes up is not judged, as in the daemon: it may be as steady as it likes.
+  const bool is_judged = reading.quality != ReadingQuality::kSimulated;
+  const bool is_believed = !is_judged || judge_.judge(heard);
+  state_ = is_judged ? state_of(judge_.fault()) : RecordedState::kLive;
   if (is_believed) add_believed(log_time, heard);
 }
 

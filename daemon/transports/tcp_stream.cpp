@@ -204,7 +204,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const wire::ControlReply reply =
         answer ? answer(wish, is_local_)
                : wire::ControlReply{.done = false, .message = "there are no scenes here", .scenes = {}};
-    if (!wish.scene.empty()) spdlog::info("client {} {}: {}", peer_, client_name_, reply.message);
+    const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kTell;
+    if (!wish.scene.empty() || changes_players) spdlog::info("client {} {}: {}", peer_, client_name_, reply.message);
     if (!queue_.offer_reply(share(wire::encode(reply)))) return end("it asks faster than it reads");
     write();
     read_prefix();

@@ -16,7 +16,8 @@ struct TcpStreamSettings {
   wire::Hello hello;             ///< what every client is greeted with
   wire::Scenes scenes;           ///< what those who ask for poses get first
   std::size_t max_clients = 32;  ///< more are told so, and let go
-  /// Answers a client's wish to show or hide a scene; `is_local`: it asks from this machine. None: nothing is taken.
+  /// Answers a client's wish to show or hide a scene, or to control a recording; `is_local`: it asks from this machine.
+  /// None: nothing is taken.
   std::function<wire::ControlReply(const wire::Control& wish, bool is_local)> on_control = {};
   ClientLimits limits = {};
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are looked at

@@ -128,6 +128,23 @@ double mic_speed_m_s(const MicCalibration& calibration, double power, double noi
   return std::clamp(speed_m_s, 0.0, kMaxPlausibleSpeed_m_s);
 }
 
+std::optional<double> mic_level_db(const MicCalibration& calibration, double speed_m_s, double noise_power) noexcept {
+  if (const auto* law = std::get_if<MicPowerLaw>(&calibration)) {
+    if (!(speed_m_s > 0.0)) return std::nullopt;
+    return 10.0 * std::log10(std::pow(speed_m_s / law->gain_m_s, 2.0 * law->exponent) + noise_power);
+  }
+  // The segment that rises through the speed; the last one holds what is above it.
+  const auto& points = std::get<MicCurve>(calibration).points;
+  for (std::size_t upper = 1; upper < points.size(); ++upper) {
+    const MicLevelAndSpeed& a = points[upper - 1];
+    const MicLevelAndSpeed& b = points[upper];
+    const bool holds = speed_m_s > a.speed_m_s && (speed_m_s <= b.speed_m_s || upper + 1 == points.size());
+    if (!holds || !(b.speed_m_s > a.speed_m_s)) continue;
+    return a.level_db + (speed_m_s - a.speed_m_s) * (b.level_db - a.level_db) / (b.speed_m_s - a.speed_m_s);
+  }
+  return std::nullopt;
+}
+
 Result<MicCurve, Failure> parse_mic_curve(std::string_view text) {
   const Failure malformed{"a microphone's curve is written as points dB:m/s, such as \"-62:0 -50:1.2 -40:3.4\""};
   MicCurve curve;
@@ -217,7 +234,25 @@ Result<MicCurve, Failure> fit_mic_curve(Pairs pairs) {
   return curve;
 }
 
-Result<MicFit, Failure> fit_mic_calibration(Pairs pairs, double noise_power) {
+Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft, const MicLevelAndSpeed& loud,
+                                                   double noise_power) {
+  const double soft_power = power_of_db(soft.level_db) - noise_power;
+  const double loud_power = power_of_db(loud.level_db) - noise_power;
+  const bool is_wide = soft.speed_m_s > 0.0 && loud.speed_m_s - soft.speed_m_s >= kLeastSpan_m_s &&
+                       loud.level_db - soft.level_db >= kLeastSpan_db && soft_power > 0.0;
+  if (!is_wide) {
+    return Failure{
+        "the two winds are too much alike: they must differ by 1 m/s and 3 dB, and the slower must be heard"};
+  }
+  // U1 / U2 = (P1 / P2)^(1 / 2n), and the gain from the faster.
+  const double exponent = 0.5 * std::log(loud_power / soft_power) / std::log(loud.speed_m_s / soft.speed_m_s);
+  if (!(exponent >= kLowestExponent && exponent <= kHighestExponent)) {
+    return Failure{"no microphone's sound grows so with the wind: were both winds steady, and is nothing else heard?"};
+  }
+  return MicPowerLaw{loud.speed_m_s / std::pow(loud_power, 0.5 / exponent), exponent};
+}
+
+Result<MicFit, Failure> fit_mic_calibration(Pairs pairs, double noise_power, MicFitKind kind) {
   if (auto failure = too_little(pairs)) return *failure;
   std::vector<MicLevelAndSpeed> even;
   std::vector<MicLevelAndSpeed> odd;
@@ -236,7 +271,10 @@ Result<MicFit, Failure> fit_mic_calibration(Pairs pairs, double noise_power) {
                                    }};
 
   std::optional<MicFit> best;
-  for (const Fit& fit : fits) {
+  const std::span<const Fit> allowed = kind == MicFitKind::kPowerLaw ? std::span(fits).first(1)
+                                       : kind == MicFitKind::kCurve  ? std::span(fits).last(1)
+                                                                     : std::span(fits);
+  for (const Fit& fit : allowed) {
     const auto whole = fit(pairs);
     if (!whole) continue;
     // Each half is tried by what the other taught; too few pairs for halves are tried on themselves.

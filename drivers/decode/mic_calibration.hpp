@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +46,10 @@ using MicCalibration = std::variant<MicPowerLaw, MicCurve>;
 /// by a power law. Thread-safe and realtime-safe: yes.
 double mic_speed_m_s(const MicCalibration& calibration, double power, double noise_power) noexcept;
 
+/// The way back: the level of a band that is taken for this wind, dB. Nothing where many levels are (a calm).
+/// Thread-safe and realtime-safe: yes.
+std::optional<double> mic_level_db(const MicCalibration& calibration, double speed_m_s, double noise_power) noexcept;
+
 /// "-62:0 -50:1.2 -40:3.4" (dB:m/s). The failure says what is wrong.
 Result<MicCurve, Failure> parse_mic_curve(std::string_view text);
 std::string format_mic_curve(const MicCurve& curve);
@@ -57,13 +63,23 @@ struct MicFit {
 /// The power law with the least squared error in speed. Fails with too few pairs or too little difference between them.
 Result<MicPowerLaw, Failure> fit_mic_power_law(std::span<const MicLevelAndSpeed> pairs, double noise_power);
 
+/// The power law through two known winds; the noise is taken off both. Fails where they are too much alike, or where no
+/// power law goes through both.
+Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft, const MicLevelAndSpeed& loud,
+                                                   double noise_power);
+
 /// A parabola in the level by least squares, held level on the side where it would turn back, as a curve. Fails
 /// likewise.
 Result<MicCurve, Failure> fit_mic_curve(std::span<const MicLevelAndSpeed> pairs);
 
+/// What may come of a fit: a power law needs levels from which the noise of a calm can be taken off (or has been), a
+/// curve such as hold it.
+enum class MicFitKind : std::uint8_t { kPowerLawOrCurve, kPowerLaw, kCurve };
+
 /// A power law, which knows what lies beyond the pairs, unless a curve is better by a tenth. Each is fitted to every
 /// second pair and tried on the others, by the mean absolute error, and what is chosen is fitted to all. Pairs in the
 /// order of time, each a mean of some seconds; at least 8, over at least 1 m/s and 3 dB.
-Result<MicFit, Failure> fit_mic_calibration(std::span<const MicLevelAndSpeed> pairs, double noise_power = 0.0);
+Result<MicFit, Failure> fit_mic_calibration(std::span<const MicLevelAndSpeed> pairs, double noise_power = 0.0,
+                                            MicFitKind kind = MicFitKind::kPowerLawOrCurve);
 
 }  // namespace yuragi

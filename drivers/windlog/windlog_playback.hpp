@@ -59,6 +59,11 @@ class WindlogPlayback {
   std::unique_ptr<State> state_;
 };
 
+class WindlogCursor;
+
+/// Places a cursor where `start` says, and answers that log time. Throws as WindlogPlayback does.
+Nanoseconds begin_of_playback(WindlogCursor& cursor, std::string_view start);
+
 /// Is this a `start` that PlaybackOptions takes? The failure says what it takes.
 Result<void, Failure> check_playback_start(std::string_view start);
 

@@ -315,6 +315,33 @@ Result<std::optional<Nanoseconds>, Failure> WindlogReader::log_time_of(UtcTime m
   return std::optional<Nanoseconds>{};
 }
 
+Result<std::optional<Nanoseconds>, Failure> WindlogReader::last_log_time(const std::vector<bool>& of_sensors) {
+  auto backward = database_.prepare(
+      "SELECT mono_ns FROM reading WHERE session = ?1 AND sensor = ?2 AND mono_ns BETWEEN ?3 AND ?4 "
+      "ORDER BY mono_ns DESC LIMIT 1");
+  if (!backward) return backward.error();
+  for (std::size_t back = 0; back < sessions_.size(); ++back) {
+    const LoggedSession& session = sessions_[sessions_.size() - 1 - back];
+    std::optional<Nanoseconds> last;
+    for (std::size_t index = 0; index < sensors_.size(); ++index) {
+      if (!of_sensors[index] || sensors_[index].session != session.id) continue;
+      backward->bind(1, session.id);
+      backward->bind(2, sensors_[index].id);
+      backward->bind(3, session.first.mono.time_since_epoch().count());
+      backward->bind(4, session.last.mono.time_since_epoch().count());
+      const Statement::Step step = backward->step();
+      if (step == Statement::Step::kFailed) return database_.failure();
+      if (step == Statement::Step::kRow) {
+        const Nanoseconds found = session.log_begin + (mono_time(backward->integer(0)) - session.first.mono);
+        last = std::max(last.value_or(found), found);
+      }
+      backward->reset();
+    }
+    if (last) return last;
+  }
+  return std::optional<Nanoseconds>{};
+}
+
 Result<void, Failure> WindlogReader::copy_to(const std::filesystem::path& copy) {
   auto vacuum = database_.prepare("VACUUM INTO ?1");
   if (!vacuum) return vacuum.error();

@@ -54,6 +54,7 @@ class WindlogReader {
  public:
   static Result<WindlogReader, Failure> open(const std::filesystem::path& file);
 
+  const std::filesystem::path& file() const { return database_.file(); }
   /// Those with readings, in order; as of open().
   std::span<const LoggedSession> sessions() const { return sessions_; }
   /// Of all sessions: one that was used in three of them is here three times.
@@ -73,6 +74,10 @@ class WindlogReader {
 
   /// The log time of the first reading at or after a moment; nothing if all are before it. Scans one session.
   Result<std::optional<Nanoseconds>, Failure> log_time_of(UtcTime moment);
+
+  /// The log time of the last reading of those sensors (one flag for each of sensors()); nothing if they never spoke.
+  /// Walks back from the end to it.
+  Result<std::optional<Nanoseconds>, Failure> last_log_time(const std::vector<bool>& of_sensors);
 
   /// Writes a copy of the whole recording as it is at one moment, as one file, which must not be there yet.
   Result<void, Failure> copy_to(const std::filesystem::path& copy);

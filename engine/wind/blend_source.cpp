@@ -71,6 +71,10 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   const bool is_first = !record_.has_spoken();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
   if (gap_s < 0.0) return false;  // older than what is known
+  if (reading.is_held && !is_first) {
+    record_.hold(reading.time);
+    return true;
+  }
   if (gap_s > kGapIntervals * record_.expected_interval_s()) history_size_ = 0;
 
   record_.take(reading);

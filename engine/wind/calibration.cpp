@@ -27,7 +27,7 @@ double on_curve(const std::vector<CalibrationPoint>& curve, double measured_m_s)
 
 double calibrated_speed_m_s(const Calibration& calibration, double speed_m_s) noexcept {
   if (speed_m_s <= 0.0) return 0.0;
-  double speed = calibration.gain * speed_m_s + calibration.offset_m_s;
+  double speed = calibration.gain * calibration.unit_m_s * speed_m_s + calibration.offset_m_s;
   if (calibration.curve.size() >= 2) speed = on_curve(calibration.curve, speed);
   return std::clamp(calibration.height_factor * speed, 0.0, kMaxPlausibleSpeed_m_s);
 }
@@ -44,6 +44,16 @@ WindReading Calibration::applied_to(const WindReading& reading) const noexcept {
     if (*calibrated.direction_deg >= 360.0) calibrated.direction_deg = 0.0;  // a tiny negative, rounded
   }
   return calibrated;
+}
+
+double zero_point_m_s(const Calibration& calibration) noexcept {
+  double before_curve_m_s = 0.0;
+  if (calibration.curve.size() >= 2) {
+    const CalibrationPoint& a = calibration.curve[0];
+    const CalibrationPoint& b = calibration.curve[1];
+    before_curve_m_s = a.measured_m_s - a.true_m_s * (b.measured_m_s - a.measured_m_s) / (b.true_m_s - a.true_m_s);
+  }
+  return (before_curve_m_s - calibration.offset_m_s) / calibration.gain;
 }
 
 Result<std::vector<CalibrationPoint>, Failure> parse_calibration_curve(std::string_view text) {

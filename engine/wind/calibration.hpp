@@ -14,12 +14,13 @@ struct CalibrationPoint {
   double true_m_s = 0.0;
 };
 
-/// From what a sensor says to the wind at the scene's height: speed * gain + offset, then the curve, then the change of
-/// the wind with height; direction + north offset. By itself it changes nothing.
+/// From what a sensor says to the wind at the scene's height: speed * unit * gain + offset, then the curve, then the
+/// change of the wind with height; direction + north offset. By itself it changes nothing.
 ///
 /// A reading of 0 stays 0: a cup that stands still says nothing of its offset. The gust goes the same way as the speed.
 /// Thread-safe: yes. Realtime-safe: applied_to() is.
 struct Calibration {
+  double unit_m_s = 1.0;  ///< how much one of the sensor's own units is, where its driver takes them for m/s
   double gain = 1.0;
   double offset_m_s = 0.0;
   std::vector<CalibrationPoint> curve{};  ///< as parse_calibration_curve() makes it; beyond its ends, on in a line
@@ -28,6 +29,10 @@ struct Calibration {
 
   WindReading applied_to(const WindReading& reading) const noexcept;
 };
+
+/// What the sensor says, in m/s (its unit counted), where the calibration makes 0 of it: where its straight line
+/// crosses 0. May be below 0. Thread-safe and realtime-safe: yes.
+double zero_point_m_s(const Calibration& calibration) noexcept;
 
 /// Points "measured:true" in m/s, separated by blanks: "0:0 5:5.2 12:12.9". At least two, both numbers rising from each
 /// to the next. An empty text is no curve. The failure says what is allowed.

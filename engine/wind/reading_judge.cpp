@@ -57,7 +57,10 @@ bool ReadingJudge::judge(const WindReading& reading, std::optional<double> other
   if (has_begun_ && time_s < last_s_) return false;
   if (!has_begun_) last_s_ = time_s;
   has_begun_ = true;
-  if (time_s - last_s_ > kForgotten_s) believed_ = 0;
+  if (time_s - last_s_ > kForgotten_s) {
+    believed_ = 0;
+    same_.reset();
+  }
 
   fault_ = fault_of(reading, time_s, others_m_s);
   last_s_ = time_s;

@@ -50,7 +50,7 @@ struct JudgeSettings {
 /// Frozen: bit for bit the same speed, direction and gust, above a calm, and ten times longer than the sensor usually
 /// stays with a value: one that is asked more often than it measures, or whose resolution is coarse for the wind's
 /// turbulence, repeats itself by nature. One that never said anything else has twenty times the time: it may be a
-/// simulator whose wind is steady.
+/// simulator whose wind is steady. After ten minutes of silence a freeze and a spike are judged anew.
 /// Thread-safe: no. Realtime-safe: yes.
 class ReadingJudge {
  public:

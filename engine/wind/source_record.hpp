@@ -25,6 +25,11 @@ class SourceRecord {
     last_ = reading;
   }
 
+  /// What it said last still holds at `time`: nothing new, but it is not silent.
+  void hold(Instant time) noexcept {
+    if (last_) last_->time = time;
+  }
+
   bool has_spoken() const noexcept { return last_.has_value(); }
   const std::optional<WindReading>& last() const noexcept { return last_; }
 

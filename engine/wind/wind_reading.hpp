@@ -22,6 +22,9 @@ struct WindReading {
       direction_deg;               ///< where the wind comes *from*, clockwise from north, [0, 360); empty: not known
   std::optional<double> gust_m_s;  ///< the strongest of the device's own recent past
   ReadingQuality quality = ReadingQuality::kGood;
+  /// The reading before, said again because it still holds (a recording that stands still): its source is not silent,
+  /// but there is nothing to learn from it, to judge, or to record.
+  bool is_held = false;
 };
 
 /// The fastest wind that a reading may claim: above the strongest surface gust on record (113 m/s, Barrow Island 1996,

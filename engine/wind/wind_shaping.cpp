@@ -25,7 +25,7 @@ constexpr double kKnownShare = 0.25;
 constexpr double kMedian = 0.50;
 constexpr double kStrong = 0.95;
 /// Slower than anything that a sensor tells from calm.
-constexpr double kStill_m_s = 0.05;
+constexpr double kLeastMedian_m_s = 0.05;
 
 /// Goes on, and ends its way at the target itself, not ever nearer to it.
 void follow_to_the_end(CriticallyDamped& value, double target, double over_s, double dt_s) noexcept {
@@ -98,7 +98,7 @@ double WindShaping::site_gain_of(double mean_m_s) const noexcept {
   const auto limited = [&site](double gain) { return std::clamp(gain, 1.0 / site.most_gain, site.most_gain); };
 
   // Where the two percentiles go to; what lies between them goes between.
-  const double median_m_s = std::max(median_m_s_, kStill_m_s);
+  const double median_m_s = std::max(median_m_s_, kLeastMedian_m_s);
   const double median_gain = limited(site.median_m_s / median_m_s);
   if (site.strong_m_s <= 0.0) return 1.0 + trust * (median_gain - 1.0);
   const double strong_m_s = std::max(strong_m_s_, 1.1 * median_m_s);

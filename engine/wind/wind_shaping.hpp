@@ -50,8 +50,7 @@ struct WindShapingReport {
 ///
 ///  1. Site gain: the wind is made stronger or weaker by a factor that takes the site's median to `site.median_m_s`
 ///     and its 95th percentile to `site.strong_m_s`; between the two the mean goes on a straight line, and beyond them
-///     the factor stays. It grows from 1 while the first hours of live wind are heard, and is 1 for the
-///     default wind.
+///     the factor stays. It grows from 1 while the first hours of live wind are heard, and is 1 for the default wind.
 ///  2. Floor: a mean below it is raised to it by a factor of up to kMostFloorGain; what then still lacks is a breeze
 ///     that blows where the wind last came from, with the turbulence of the climate at that level.
 ///  3. Opening: outside of opening hours only a part is left.
@@ -68,8 +67,8 @@ class WindShaping {
   /// `noise`: the one that the estimator and the scenes have.
   WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise);
 
-  /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call
-  /// begins where its wind and `is_open` say, without a way there.
+  /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call begins where
+  /// its wind and `is_open` say, without a way there.
   void shape(DrivingWind& wind, bool is_open) noexcept;
 
   const WindShapingSettings& settings() const noexcept { return settings_; }

@@ -115,7 +115,8 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
          read_text(from.name(), to.name) && read_text(from.driver(), to.driver) &&
          read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
          read(from.speed_m_s(), to.speed_m_s) && read(from.direction_deg(), to.direction_deg) &&
-         read(from.gust_m_s(), to.gust_m_s);
+         read(from.gust_m_s(), to.gust_m_s) && read(from.raw_speed_m_s(), to.raw_speed_m_s) &&
+         read(from.raw_direction_deg(), to.raw_direction_deg);
 }
 
 /// A server that does not know of it sends none: then nothing is at work.
@@ -145,7 +146,34 @@ bool read(const fb::Sensors& from, Sensors& to) {
   return read(from.shaping(), to.shaping);
 }
 
+bool read(const fb::PlayerWish& from, PlayerWish& to) {
+  if (from.action() > fb::PlayerAction_MAX) return false;
+  to.action = static_cast<PlayerAction>(from.action());
+  to.count = from.count();
+  to.rate = from.rate();
+  return to.count >= 1 && to.count <= kMaxSteps && is_within(to.rate, kMinPlayRate, kMaxPlayRate) &&
+         read_text(from.sensor(), to.sensor) && read_text(from.place(), to.place);
+}
+
+bool read(const fb::PlayerState& from, PlayerState& to) {
+  to.is_open = from.is_open();
+  to.position_s = from.position_s();
+  to.length_s = from.length_s();
+  to.recorded_utc_ns = from.recorded_utc_ns();
+  to.rate = from.rate();
+  to.is_paused = from.is_paused();
+  to.is_finished = from.is_finished();
+  to.loops = from.loops();
+  to.rounds = from.rounds();
+  to.order = from.order();
+  to.orders_done = from.orders_done();
+  return is_within(to.position_s, 0.0, kMaxDuration_s) && is_within(to.length_s, 0.0, kMaxDuration_s) &&
+         is_within(to.rate, kMinPlayRate, kMaxPlayRate) && read_text(from.sensor(), to.sensor) &&
+         read_text(from.file(), to.file) && read_text(from.refusal(), to.refusal);
+}
+
 bool read(const fb::Control& from, Control& to) {
+  if (from.player() != nullptr && !read(*from.player(), to.player.emplace())) return false;
   to.shown = from.shown();
   to.hide_others = from.hide_others();
   to.over_s = static_cast<double>(from.over_s());
@@ -162,6 +190,10 @@ bool read(const fb::ControlReply& from, ControlReply& to) {
     scene.shown = state.shown();
     if (!read_text(state.name(), scene.name) || !read_text(state.kind(), scene.kind)) return false;
   }
+  const std::size_t players = from.players() == nullptr ? 0 : from.players()->size();
+  if (players > kMaxSensors) return false;
+  for (std::size_t i = 0; i < players; ++i)
+    if (!read(*from.players()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.players.emplace_back())) return false;
   return true;
 }
 

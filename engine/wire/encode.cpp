@@ -131,6 +131,8 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   table.add_replayed(sensor.replayed);
   table.add_state(static_cast<fb::SensorState>(sensor.state));
   table.add_state_reason(state_reason);
+  if (sensor.raw_speed_m_s) table.add_raw_speed_m_s(*sensor.raw_speed_m_s);
+  if (sensor.raw_direction_deg) table.add_raw_direction_deg(*sensor.raw_direction_deg);
   return table.Finish();
 }
 
@@ -148,6 +150,35 @@ flatbuffers::Offset<fb::Shaping> add_shaping(Builder& builder, const Shaping& sh
   table.add_site_strong_m_s(static_cast<float>(shaping.site_strong_m_s));
   table.add_site_known_s(static_cast<float>(shaping.site_known_s));
   table.add_text(text);
+  return table.Finish();
+}
+
+flatbuffers::Offset<fb::PlayerWish> add_player(Builder& builder, const PlayerWish& wish) {
+  const auto sensor = add_text(builder, wish.sensor);
+  const auto place = add_text(builder, wish.place);
+  return fb::CreatePlayerWish(builder, static_cast<fb::PlayerAction>(wish.action), sensor, wish.count, place,
+                              wish.rate);
+}
+
+flatbuffers::Offset<fb::PlayerState> add_player(Builder& builder, const PlayerState& player) {
+  const auto sensor = add_text(builder, player.sensor);
+  const auto file = add_text(builder, player.file);
+  const auto refusal = add_text(builder, player.refusal);
+  fb::PlayerStateBuilder table(builder);
+  table.add_sensor(sensor);
+  table.add_file(file);
+  table.add_is_open(player.is_open);
+  table.add_position_s(player.position_s);
+  table.add_length_s(player.length_s);
+  table.add_recorded_utc_ns(player.recorded_utc_ns);
+  table.add_rate(player.rate);
+  table.add_is_paused(player.is_paused);
+  table.add_is_finished(player.is_finished);
+  table.add_loops(player.loops);
+  table.add_rounds(player.rounds);
+  table.add_order(player.order);
+  table.add_orders_done(player.orders_done);
+  table.add_refusal(refusal);
   return table.Finish();
 }
 
@@ -205,9 +236,10 @@ Bytes encode(const Sensors& sensors) {
 Bytes encode(const Control& control) {
   Builder builder;
   const auto scene = add_text(builder, control.scene);
-  return finish(
-      builder, fb::Body_Control,
-      fb::CreateControl(builder, scene, control.shown, control.hide_others, static_cast<float>(control.over_s)));
+  const auto player = control.player ? add_player(builder, *control.player) : flatbuffers::Offset<fb::PlayerWish>();
+  return finish(builder, fb::Body_Control,
+                fb::CreateControl(builder, scene, control.shown, control.hide_others,
+                                  static_cast<float>(control.over_s), player));
 }
 
 Bytes encode(const ControlReply& reply) {
@@ -218,9 +250,13 @@ Bytes encode(const ControlReply& reply) {
     const auto kind = add_text(builder, scene.kind);
     scenes.push_back(fb::CreateSceneState(builder, name, kind, scene.shown));
   }
+  std::vector<flatbuffers::Offset<fb::PlayerState>> players;
+  for (const PlayerState& player : reply.players) players.push_back(add_player(builder, player));
   const auto message = add_text(builder, reply.message);
+  const auto scene_vector = builder.CreateVector(scenes);
+  const auto player_vector = builder.CreateVector(players);
   return finish(builder, fb::Body_ControlReply,
-                fb::CreateControlReply(builder, reply.done, message, builder.CreateVector(scenes)));
+                fb::CreateControlReply(builder, reply.done, message, scene_vector, player_vector));
 }
 
 Bytes encode(const RawTrace& trace) {

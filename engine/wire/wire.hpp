@@ -40,6 +40,9 @@ inline constexpr std::size_t kMaxLinksPerStrand = 256;
 inline constexpr std::size_t kMaxSensors = 256;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
 inline constexpr double kMaxFade_s = 3600.0;
+inline constexpr std::uint32_t kMaxSteps = 1'000'000;
+inline constexpr double kMinPlayRate = 0.01;
+inline constexpr double kMaxPlayRate = 1000.0;
 inline constexpr std::size_t kMaxRawBytes = 512;  ///< of one message to or from a device; encoders cut longer ones
 
 using Bytes = std::vector<std::uint8_t>;
@@ -103,7 +106,9 @@ struct SensorStatus {
   std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
   bool replayed = false;         ///< a recording that is played again
   SensorState state = SensorState::kConnecting;
-  std::string state_reason;  ///< why, and what to do about it
+  std::string state_reason;             ///< why, and what to do about it
+  std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
+  std::optional<double> raw_direction_deg;
 };
 
 /// What makes the wind that moves the scenes another than the real one (engine/wind/wind_shaping.hpp).
@@ -129,12 +134,24 @@ struct Sensors {
   Shaping shaping = {};
 };
 
-/// A wish to show or hide scenes.
+enum class PlayerAction : std::uint8_t { kTell, kPause, kResume, kStep, kSeek, kRate };
+
+/// What sensors that play a recording are to do.
+struct PlayerWish {
+  PlayerAction action = PlayerAction::kTell;
+  std::string sensor = {};  ///< its name; empty: each that plays a recording
+  std::uint32_t count = 1;  ///< kStep: 1 to kMaxSteps
+  std::string place = {};   ///< kSeek: seconds, "+30", "-30", or a moment
+  double rate = 1.0;        ///< kRate: kMinPlayRate to kMaxPlayRate
+};
+
+/// A wish to show or hide scenes; or, with `player`, to change how recordings are played.
 struct Control {
   std::string scene;  ///< its name; empty: change nothing, only tell how things are
   bool shown = true;
   bool hide_others = false;  ///< and hide every other scene, in the same time
   double over_s = 2.0;       ///< 0 to kMaxFade_s
+  std::optional<PlayerWish> player = std::nullopt;
 };
 
 struct SceneState {
@@ -143,10 +160,29 @@ struct SceneState {
   bool shown = true;  ///< what it is, or what it is fading to
 };
 
+/// How a sensor that plays a recording does.
+struct PlayerState {
+  std::string sensor;
+  std::string file;
+  bool is_open = false;     ///< otherwise the recording cannot be read
+  double position_s = 0.0;  ///< since the recording's first reading
+  double length_s = 0.0;
+  std::int64_t recorded_utc_ns = 0;
+  double rate = 1.0;
+  bool is_paused = false;
+  bool is_finished = false;
+  bool loops = false;
+  std::uint64_t rounds = 0;  ///< how often it began again
+  std::uint64_t order = 0;   ///< the number of the order that this answers; 0: none
+  std::uint64_t orders_done = 0;
+  std::string refusal;  ///< why the last order was not carried out
+};
+
 struct ControlReply {
   bool done = false;
   std::string message;  ///< what was done, or why not
   std::vector<SceneState> scenes;
+  std::vector<PlayerState> players = {};
 };
 
 /// One message to or from a sensor's device, as it went over the wire.

@@ -5,25 +5,25 @@
 namespace yuragi {
 namespace {
 
-MonoTime moment(double time_s) {
+MonoTime gate_time(double time_s) {
   return MonoTime(from_seconds(1000.0 + time_s));
 }
 
 TEST(ChangeGate, WhatIsSoFromTheBeginningIsNotToldAndTheFirstChangeAtOnce) {
   ChangeGate gate(0);
-  EXPECT_FALSE(gate.offer(0, moment(0.0)));
-  EXPECT_TRUE(gate.offer(1, moment(0.1)));
-  EXPECT_FALSE(gate.offer(1, moment(0.2))) << "once";
+  EXPECT_FALSE(gate.offer(0, gate_time(0.0)));
+  EXPECT_TRUE(gate.offer(1, gate_time(0.1)));
+  EXPECT_FALSE(gate.offer(1, gate_time(0.2))) << "once";
   EXPECT_EQ(gate.told(), 1U);
 }
 
 TEST(ChangeGate, AChangeThatDoesNotLastIsCountedAndNotTold) {
   ChangeGate gate(0);
-  gate.offer(1, moment(0.0));
-  EXPECT_FALSE(gate.offer(2, moment(1.0)));
-  EXPECT_FALSE(gate.offer(1, moment(1.5))) << "as it was told";
-  EXPECT_FALSE(gate.offer(3, moment(5.0)));
-  EXPECT_TRUE(gate.offer(3, moment(6.5)));
+  gate.offer(1, gate_time(0.0));
+  EXPECT_FALSE(gate.offer(2, gate_time(1.0)));
+  EXPECT_FALSE(gate.offer(1, gate_time(1.5))) << "as it was told";
+  EXPECT_FALSE(gate.offer(3, gate_time(5.0)));
+  EXPECT_TRUE(gate.offer(3, gate_time(6.5)));
   EXPECT_EQ(gate.passed_over(), 1U) << "the 2 was never told";
   EXPECT_EQ(gate.told(), 3U);
 }
@@ -44,7 +44,7 @@ TEST(ChangeGate, AMonthOfFlappingIsReadableAndCountedInFull) {
         ++changes;
         next_change_s = now_s + period_s;
       }
-      if (!gate.offer(value, moment(now_s))) continue;
+      if (!gate.offer(value, gate_time(now_s))) continue;
       ++told;
       passed_over += gate.passed_over();
     }
@@ -56,20 +56,20 @@ TEST(ChangeGate, AMonthOfFlappingIsReadableAndCountedInFull) {
 
 TEST(ChangeGate, AChangeAfterAQuietDayIsToldWithinASecondOrTwo) {
   ChangeGate gate(0);
-  for (int i = 0; i < 100000; ++i) gate.offer(static_cast<std::uint32_t>(i / 2 % 2), moment(i));
-  gate.offer(0, moment(100'001.0));
-  gate.offer(0, moment(101'000.0));
+  for (int i = 0; i < 100000; ++i) gate.offer(static_cast<std::uint32_t>(i / 2 % 2), gate_time(i));
+  gate.offer(0, gate_time(100'001.0));
+  gate.offer(0, gate_time(101'000.0));
   ASSERT_EQ(gate.told(), 0U);
-  gate.offer(1, moment(190'000.0));
-  EXPECT_TRUE(gate.offer(1, moment(190'002.0)));
+  gate.offer(1, gate_time(190'000.0));
+  EXPECT_TRUE(gate.offer(1, gate_time(190'002.0)));
 }
 
 TEST(ChangeGate, AClockThatGoesBackTellsNothingTwice) {
   ChangeGate gate(0);
-  EXPECT_TRUE(gate.offer(1, moment(0.0)));
-  EXPECT_FALSE(gate.offer(1, moment(-500.0)));
-  EXPECT_FALSE(gate.offer(2, moment(-500.0)));
-  EXPECT_TRUE(gate.offer(2, moment(10.0)));
+  EXPECT_TRUE(gate.offer(1, gate_time(0.0)));
+  EXPECT_FALSE(gate.offer(1, gate_time(-500.0)));
+  EXPECT_FALSE(gate.offer(2, gate_time(-500.0)));
+  EXPECT_TRUE(gate.offer(2, gate_time(10.0)));
 }
 
 }  // namespace

@@ -99,6 +99,9 @@ name = "other"
   EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
 
   const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  const Config in_km_h = parse_config(sensor + "[sensor.calibration]\nunit = \"km/h\"\n", "wall.toml");
+  EXPECT_EQ(calibration_of(in_km_h.sensors[0]).unit_m_s, 1.0 / 3.6);
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\nunit = \"km\"\n"), HasSubstr("sensor.calibration.unit: is"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ngain = 0\n"),
               StartsWith("wall.toml:4:8: sensor.calibration.gain: is 0; allowed: number from 0.01 to 100"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ncurve = \"5\"\n"),
@@ -107,37 +110,6 @@ name = "other"
               StartsWith("wall.toml:3:15: sensor.calibration: is a value; write it as a table"));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\n[scene.calibration]\ngain = 2\n"),
               HasSubstr("scene.calibration: takes one value"));
-}
-
-TEST(Config, ASensorHasItsPartAmongSeveral) {
-  const Config config = parse_config(
-      "[wind]\nreturn_after = 20\n"
-      "[[sensor]]\ndriver = \"synthetic\"\nname = \"roof\"\n"
-      "[[sensor]]\ndriver = \"synthetic\"\nname = \"microphone\"\n[sensor.blend]\nrole = \"relative\"\n"
-      "priority = 3\nweight = 2\nx = -4.5\nz = 2\naveraging = 600\ndirection_step = 22.5\n",
-      "wall.toml");
-  EXPECT_EQ(config.wind.number("return_after"), 20.0);
-  const BlendSourceSettings roof = blend_source_of(config.sensors[0].blend);
-  EXPECT_FALSE(roof.is_relative);
-  EXPECT_EQ(roof.priority, 0);
-  EXPECT_EQ(roof.weight, 1.0);
-  const BlendSourceSettings microphone = blend_source_of(config.sensors[1].blend);
-  EXPECT_TRUE(microphone.is_relative);
-  EXPECT_EQ(microphone.priority, 3);
-  EXPECT_EQ(microphone.weight, 2.0);
-  EXPECT_EQ(microphone.east_m, -4.5);
-  EXPECT_EQ(microphone.south_m, 2.0);
-  EXPECT_EQ(microphone.averaging_s, 600.0);
-  EXPECT_EQ(microphone.direction_step_deg, 22.5);
-  EXPECT_THAT(to_toml(config), HasSubstr("averaging = 600.0"));
-
-  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
-  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nrole = \"boss\"\n"),
-              StartsWith("wall.toml:4:8: sensor.blend.role: is \"boss\"; allowed:"));
-  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nweight = 0\n"),
-              StartsWith("wall.toml:4:10: sensor.blend.weight: is 0; allowed: number from 0.01 to 100"));
-  EXPECT_THAT(mistakes_of(sensor + "blend = 3\n"),
-              StartsWith("wall.toml:3:9: sensor.blend: is a value; write it as a table"));
 }
 
 TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {
@@ -156,6 +128,38 @@ TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {
       parse_config("[shaping]\nceiling = 0\nceiling_most = 1\nhours = \"10:00-18:00\"\n", "wall.toml");
   EXPECT_EQ(config.shaping.number("ceiling"), 0.0);
   EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
+}
+
+TEST(Config, ASensorHasItsPartAmongSeveral) {
+  const Config config = parse_config(
+      "[wind]\nreturn_after = 20\n"
+      "[[sensor]]\ndriver = \"synthetic\"\nname = \"roof\"\n"
+      "[[sensor]]\ndriver = \"synthetic\"\nname = \"microphone\"\n[sensor.blend]\nrole = \"relative\"\n"
+      "priority = 3\nweight = 2\nx = -4.5\nz = 2\naveraging = 600\ndirection_step = 22.5\n",
+      "wall.toml");
+  EXPECT_EQ(config.wind.number("return_after"), 20.0);
+  const BlendSourceSettings roof = blend_source_of(config.sensors[0].blend, false);
+  EXPECT_FALSE(roof.is_relative);
+  EXPECT_TRUE(blend_source_of(config.sensors[0].blend, true).is_relative) << "as its kind is";
+  EXPECT_EQ(roof.priority, 0);
+  EXPECT_EQ(roof.weight, 1.0);
+  const BlendSourceSettings microphone = blend_source_of(config.sensors[1].blend, false);
+  EXPECT_TRUE(microphone.is_relative);
+  EXPECT_EQ(microphone.priority, 3);
+  EXPECT_EQ(microphone.weight, 2.0);
+  EXPECT_EQ(microphone.east_m, -4.5);
+  EXPECT_EQ(microphone.south_m, 2.0);
+  EXPECT_EQ(microphone.averaging_s, 600.0);
+  EXPECT_EQ(microphone.direction_step_deg, 22.5);
+  EXPECT_THAT(to_toml(config), HasSubstr("averaging = 600.0"));
+
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nrole = \"boss\"\n"),
+              StartsWith("wall.toml:4:8: sensor.blend.role: is \"boss\"; allowed:"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nweight = 0\n"),
+              StartsWith("wall.toml:4:10: sensor.blend.weight: is 0; allowed: number from 0.01 to 100"));
+  EXPECT_THAT(mistakes_of(sensor + "blend = 3\n"),
+              StartsWith("wall.toml:3:9: sensor.blend: is a value; write it as a table"));
 }
 
 TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
@@ -212,11 +216,54 @@ TEST(Config, AFileThatIsNotThereIsAMistakeOfTheConfiguration) {
   EXPECT_THROW(load_config("/"), ConfigError);
 }
 
+TEST(Config, ASensorsJudgeHasLimitsOfItsOwnAndDefaults) {
+  const Config config = parse_config(
+      "[[sensor]]\ndriver = \"synthetic\"\n[sensor.judge]\nfrozen = 120\nseized = 600\n"
+      "[[sensor]]\nname = \"free\"\ndriver = \"synthetic\"\n[sensor.judge]\nenabled = false\n"
+      "[[sensor]]\nname = \"usual\"\ndriver = \"synthetic\"\n",
+      "wall.toml");
+  const auto strict = judge_settings_of(config.sensors[0]);
+  ASSERT_TRUE(strict.has_value());
+  EXPECT_EQ(strict->frozen_s, 120.0);
+  EXPECT_EQ(strict->seized_s, 600.0);
+  EXPECT_EQ(strict->seized_alone_s, 3600.0);
+  EXPECT_FALSE(judge_settings_of(config.sensors[1]).has_value());
+  const auto usual = judge_settings_of(config.sensors[2]);
+  ASSERT_TRUE(usual.has_value());
+  const JudgeSettings defaults;
+  EXPECT_EQ(usual->max_speed_m_s, defaults.max_speed_m_s);
+  EXPECT_EQ(usual->slew_m_s2, defaults.slew_m_s2);
+  EXPECT_EQ(usual->least_spike_m_s, defaults.least_spike_m_s);
+  EXPECT_EQ(usual->frozen_s, defaults.frozen_s);
+  EXPECT_EQ(usual->seized_s, defaults.seized_s);
+  EXPECT_EQ(usual->seized_alone_s, defaults.seized_alone_s);
+}
+
+TEST(Config, MistakesOfAJudgeAreToldAtTheirPlaces) {
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  EXPECT_THAT(mistakes_of(sensor + "judge = true\n"),
+              HasSubstr("wall.toml:3:9: sensor.judge: is a value; write it as a table"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfrozen = 0\n"),
+              HasSubstr("wall.toml:4:10: sensor.judge.frozen: is 0"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfreeze = 10\n"), HasSubstr("sensor.judge.freeze"));
+}
+
 TEST(Config, WrittenOutAndReadAgainItIsTheSame) {
   const Config config = parse_config("seed = 5\n[[sensor]]\ndriver = \"synthetic\"\nspeed = 2.25\n", "wall.toml");
   const std::string written = to_toml(config);
   EXPECT_EQ(to_toml(parse_config(written, "again.toml")), written);
   EXPECT_THAT(written, HasSubstr("speed = 2.25"));
+}
+
+TEST(Config, TheValuesOfOneTableAreReadBack) {
+  const Config config = parse_config("[[sensor]]\ndriver = \"synthetic\"\nspeed = 2.25\n", "wall.toml");
+  const SensorConfig& sensor = config.sensors[0];
+  const auto again = parse_values(to_toml(sensor.values), sensor.driver->parameters);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->all(), sensor.values.all());
+  EXPECT_THAT(parse_values("speed = -1", sensor.driver->parameters).error().message, HasSubstr("speed: is -1"));
+  EXPECT_THAT(parse_values("speed = [1]", sensor.driver->parameters).error().message, HasSubstr("takes one value"));
+  EXPECT_THAT(parse_values("speed =", sensor.driver->parameters).error().message, HasSubstr("TOML"));
 }
 
 TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {

@@ -3,6 +3,7 @@
 #include <future>
 #include <limits>
 #include <mutex>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +95,8 @@ TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid
   EXPECT_NEAR(wind_after_a_while(hub, clock_).wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
   EXPECT_EQ(heard, std::vector{6.0});
   EXPECT_EQ(hub.status()[0].speed_m_s, 9.0);
+  EXPECT_EQ(hub.status()[0].raw_speed_m_s, 6.0);
+  EXPECT_EQ(hub.status()[0].raw_direction_deg, 90.0);
 }
 
 TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
@@ -121,6 +124,47 @@ TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
   EXPECT_EQ(status[0].speed_m_s, 6.0);
   EXPECT_EQ(status[0].detail, "here");
   EXPECT_NEAR(status[0].age_s, 10.0, 1e-3);
+}
+
+/// Says one reading, and then ten times a second that it still holds.
+class HoldingSensor final : public Sensor {
+ public:
+  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+    const Instant now = clock.now();
+    if (now.mono - said_.time.mono >= std::chrono::milliseconds(100)) {
+      said_.is_held = said_.speed_m_s > 0.0;
+      said_.time = now;
+      said_.speed_m_s = 6.0;
+      sink.reading(said_);
+    }
+    return now.mono + std::chrono::milliseconds(1);
+  }
+
+ private:
+  WindReading said_;
+};
+
+const DriverDescription kHoldingDriver{
+    .name = "holding", .summary = "", .parameters = {}, .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> {
+      return std::make_unique<HoldingSensor>();
+    }};
+
+TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
+  config_.sensors[0].driver = &kHoldingDriver;
+  std::atomic<int> heard = 0;
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { ++heard; });
+  // Two minutes: a sensor that measured the same for so long would be frozen.
+  for (int tick = 0; tick < 1200; ++tick) {
+    clock_.advance(0.1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    hub.advance();
+  }
+  // The sensor's thread may be behind the clock: let it catch up.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (hub.status()[0].age_s > 0.2 && std::chrono::steady_clock::now() < deadline) hub.advance();
+  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(hub.status()[0].readings, 1U);
+  EXPECT_EQ(hub.status()[0].state, SensorState::kLive) << "two minutes after it was first said";
 }
 
 TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {

@@ -185,6 +185,8 @@ TEST_F(SensorJudgement, SpikesDoNotReachTheWind) {
   EXPECT_EQ(state(), SensorState::kLive) << "one in twenty is no fault";
   EXPECT_LT(largest_wind_m_s_, 1.5 * normal_wind_m_s);
   EXPECT_EQ(recorded_, 360);
+  EXPECT_THAT(hub_->status()[0].refused,
+              ::testing::Contains(std::pair<std::string, std::uint64_t>("not believed", 15)));
 }
 
 TEST_F(SensorJudgement, ASensorThatSaysNonsenseAgainAndAgainIsImplausibleUntilItSpeaksSense) {

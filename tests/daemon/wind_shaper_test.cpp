@@ -225,6 +225,9 @@ TEST(ShapingText, SaysEverythingThatIsAtWork) {
             "site gain 1.50 (in 5 days 5 h median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; "
             "closed until Tue 10:00, fading out: 60 % of the wind; ceiling: 30.0 held back to 22.5 m/s");
   EXPECT_EQ(shaping_text({}, {}, {}), "");
+  const OpeningNews closed{.has_hours = true, .is_open = false, .until = "until 10:00"};
+  EXPECT_EQ(shaping_text({.opening = 0.2}, settings, closed),
+            "site gain 1.00 (nothing is known of the site yet); closed until 10:00: 20 % of the wind");
 }
 
 }  // namespace

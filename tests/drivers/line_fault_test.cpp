@@ -63,8 +63,13 @@ TEST_F(LineFault, Freeze) {
 TEST_F(LineFault, Spike) {
   put(Wire::kPty, "key-value", 4.0);
   ASSERT_TRUE(is_live());
+  bench_.run(5.0);
+  ASSERT_FALSE(bench_.sink.believed.empty());
   bench_.run(2.0, FaultKind::kSpike);
   EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 0.01);
+  EXPECT_EQ(bench_.sink.judge.fault(), ReadingFault::kSpike);
+  EXPECT_THAT(bench_.sink.believed, testing::Each(testing::Field(&WindReading::speed_m_s, kLineWind.speed_m_s)))
+      << "the hub keeps it from the wind";
   EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnected);
   expect_return();
 }

@@ -105,6 +105,46 @@ TEST(MicCalibration, NeverFallsWhateverThePairs) {
   }
 }
 
+TEST(MicCalibration, ASpeedGivesBackTheLevelThatMadeIt) {
+  const double noise_power = 1e-7;
+  const MicCalibration curve = *parse_mic_curve("-60:0.5 -55:0.5 -50:2 -40:6");
+  for (const MicCalibration& calibration : {MicCalibration(MicPowerLaw{25.0, 1.7}), curve}) {
+    for (double level_db = -54.0; level_db < -20.0; level_db += 1.5) {
+      const double speed_m_s = mic_speed_m_s(calibration, std::pow(10.0, 0.1 * level_db), noise_power);
+      const auto back_db = mic_level_db(calibration, speed_m_s, noise_power);
+      ASSERT_TRUE(back_db);
+      EXPECT_NEAR(*back_db, level_db, 1e-6);
+    }
+    EXPECT_FALSE(mic_level_db(calibration, 0.0, noise_power)) << "many levels are a calm";
+  }
+  EXPECT_FALSE(mic_level_db(curve, 0.5, 0.0)) << "so are they where the curve is level";
+}
+
+TEST(MicCalibration, TwoKnownWindsMakeAPowerLaw) {
+  const MicPowerLaw made{18.0, 1.6};
+  const double noise_power = 1e-6;
+  const auto heard = [&](double speed_m_s) {
+    return MicLevelAndSpeed{*mic_level_db(made, speed_m_s, noise_power), speed_m_s};
+  };
+  const auto law = mic_power_law_through(heard(2.0), heard(9.0), noise_power);
+  ASSERT_TRUE(law);
+  EXPECT_NEAR(law->gain_m_s, made.gain_m_s, 1e-9);
+  EXPECT_NEAR(law->exponent, made.exponent, 1e-9);
+  EXPECT_FALSE(mic_power_law_through(heard(9.0), heard(2.0), noise_power)) << "the slower comes first";
+  EXPECT_FALSE(mic_power_law_through({-70.0, 2.0}, {-20.0, 9.0}, noise_power)) << "the slower is not heard";
+  EXPECT_FALSE(mic_power_law_through({-50.0, 2.0}, {-46.0, 20.0}, 0.0)) << "it grows too little";
+}
+
+TEST(MicCalibration, IsOfTheKindThatIsAskedFor) {
+  std::vector<MicLevelAndSpeed> pairs;
+  for (int i = 0; i < 40; ++i) pairs.push_back({-60.0 + i, 0.15 * i});
+  EXPECT_TRUE(std::holds_alternative<MicCurve>(fit_mic_calibration(pairs)->calibration));
+  EXPECT_TRUE(std::holds_alternative<MicPowerLaw>(fit_mic_calibration(pairs, 0.0, MicFitKind::kPowerLaw)->calibration));
+  const auto of_law = pairs_of_law({18.0, 1.6}, 0.0, 0.0);
+  EXPECT_TRUE(std::holds_alternative<MicPowerLaw>(fit_mic_calibration(of_law)->calibration));
+  EXPECT_TRUE(std::holds_alternative<MicCurve>(fit_mic_calibration(of_law, 0.0, MicFitKind::kCurve)->calibration));
+}
+
 TEST(MicCalibration, RefusesToLearnFromTooLittle) {
   const auto all = pairs_of_law({}, 0.0, 0.0);
   EXPECT_FALSE(fit_mic_calibration(std::span(all).first(7)));

@@ -162,9 +162,12 @@ TEST_F(UsbFault, Spike) {
     SCOPED_TRACE(device);
     UsbBench bench(device);
     bench.poll_for(5.0);
+    EXPECT_GT(bench.sink.believed.size(), 40U);
     bench.bus.fault = FaultKind::kSpike;
     bench.poll_for(1.0);
     EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 55.0, 2.0);
+    EXPECT_THAT(bench.sink.believed, Each(testing::Field(&WindReading::speed_m_s, testing::Lt(10.0))))
+        << "the hub keeps it from the wind";
     EXPECT_TRUE(bench.sink.refusals.empty());
     bench.bus.fault.reset();
     bench.poll_for(1.0);

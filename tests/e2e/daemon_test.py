@@ -335,6 +335,178 @@ port = {port}
         self.assertLess(time.monotonic() - begun, 3.0)
         self.assertIn("the recording is over", done.stderr)
 
+    # ---- playing a recording ----
+
+    def recording(self, speeds, interval_s=0.1, name="told.windlog", sensor=None):
+        """A recording of these speeds, one every so often, from 2024-06-01T12:00:00Z on, from west."""
+        rows = ["time,speed,direction"]
+        rows += [f"2024-06-01T12:{int(i * interval_s) // 60:02}:{i * interval_s % 60:06.3f}Z,{speed},270"
+                 for i, speed in enumerate(speeds)]
+        log = self.file(name)
+        done = run("import", self.file(name + ".csv", "\n".join(rows) + "\n"), "-o", log)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return log
+
+    def start_replay(self, log, *arguments):
+        daemon = self.start(YURAGI, "replay", log, "--listen", "127.0.0.1:0", *arguments)
+        return daemon, daemon.address()
+
+    def player(self, address, *words, code=0):
+        done = run("player", words[0], "--connect", address, *words[1:])
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout if code == 0 else done.stderr
+
+    def test_a_replay_is_paused_stepped_and_moved_while_it_runs(self):
+        # Each reading says which one it is.
+        log = self.recording([0.01 * i for i in range(1200)])
+        daemon, address = self.start_replay(log, "--seam", 0, "--loop")
+        with Stream(address, poses=False) as stream:
+            stream.wait_for_sensor(lambda sensor: sensor.Health() == LIVE, 20.0)
+            self.assertRegex(self.player(address, "status"), r"told: playing at 0:00:\d\d\.\d of 0:01:59\.9, rate 1, looping")
+
+            paused = self.player(address, "pause")
+            self.assertIn("paused at", paused)
+            held = stream.wait_for_sensor(lambda sensor: b"paused" in sensor.Detail(), 10.0)
+            for _ in range(6):  # three seconds, which would make any other sensor at 10 Hz stale
+                later = stream.next("Sensors").Sensors(0)
+            self.assertEqual(later.Health(), LIVE)
+            self.assertLess(later.AgeS(), 0.5)
+            self.assertEqual(later.SpeedMS(), held.SpeedMS())
+            self.assertEqual(later.Readings(), held.Readings())
+            self.assertEqual(self.player(address, "status"), paused)
+
+            self.assertIn("paused at 0:01:00.0", self.player(address, "seek", "60"))
+            self.assertIn("paused at 0:01:00.5", self.player(address, "step", "5"))
+            stepped = stream.wait_for_sensor(lambda sensor: abs(sensor.SpeedMS() - 6.05) < 1e-9, 10.0)
+            self.assertTrue(stepped.Replayed(), "nobody may take it for live")
+            self.assertIn("paused at 0:00:30.5", self.player(address, "seek", "-30"))
+            self.assertIn("recorded 2024-06-01T12:01:40Z", self.player(address, "seek", "2024-06-01T12:01:40Z"))
+            self.assertIn("rate 10", self.player(address, "rate", "10"))
+            self.assertIn("playing", self.player(address, "resume"))
+            stream.wait_for_sensor(lambda sensor: sensor.SpeedMS() < 9.0, 20.0)
+            self.assertRegex(self.player(address, "status"), r"looping: round [2-9]")
+
+        self.assertIn("119.9", self.player(address, "seek", "500", code=64))
+        self.assertIn("give seconds", self.player(address, "seek", "soon", code=64))
+        self.assertIn("there are: told", self.player(address, "pause", "--sensor", "roof", code=64))
+        self.player(address, "rate", "0", code=64)
+        self.player(address, "step", "0", code=64)
+        self.assertIn("told is told to pause", daemon.text())
+
+    def test_a_seek_and_the_seam_of_a_loop_move_the_wind_without_a_jump(self):
+        # Half a calm, half a storm: 14 m/s apart.
+        log = self.recording([1.0] * 150 + [15.0] * 150)
+        quiet = self.file("quiet.toml", "[wind]\ndefault_turbulence = 0\n[[scene]]\nkind = \"grass\"\n"
+                                        "blades_across = 20\nblades_deep = 20\n")
+        _, address = self.start_replay(log, "--loop", "--seam", 3, "--config", quiet)
+        with Stream(address, poses=False) as status:
+            status.wait_for_sensor(lambda sensor: sensor.Health() == LIVE, 20.0)
+            watcher = FrameWatcher(address)
+            self.player(address, "seek", "22")
+            status.wait_for_sensor(lambda sensor: sensor.SpeedMS() > 14.9, 20.0)
+            self.player(address, "rate", "2")  # to the end, and over it
+            status.wait_for_sensor(lambda sensor: sensor.SpeedMS() < 1.1, 30.0)
+            watcher.end()
+        self.assertGreater(watcher.frames, 120)
+        self.assertTrue(watcher.all_finite)
+        # 14 m/s over 3 s, at most 1.5 times as fast in the middle: 0.12 m/s a tick; a hard step of 14 m/s would move a
+        # follower by 0.37 w e a second, 2 m/s a tick (see above).
+        self.assertLess(watcher.largest_wind_step_m_s, 0.6)
+
+    def test_players_obey_those_who_may_and_a_daemon_without_recordings_says_so(self):
+        log = self.recording([5.0] * 100)
+        nobody = self.file("nobody.toml", '[stream]\ncontrol = "nobody"\n')
+        _, address = self.start_replay(log, "--loop", "--config", nobody)
+        self.assertIn("control", self.player(address, "pause", code=77))
+        self.assertIn("playing", self.player(address, "status"))
+        self.assertIn("no sensor here plays a recording", self.player(self.start_daemon().address(), "status", code=64))
+        self.player(self.free_address(), "status", code=69)
+
+    def test_a_replay_begins_paused_or_at_the_time_of_day_where_it_is_told_to(self):
+        log = self.recording([0.01 * i for i in range(600)], interval_s=1.0)
+        _, address = self.start_replay(log, "--paused", "--start", "90")
+        with Stream(address, poses=False) as stream:
+            stream.wait_for_sensor(lambda sensor: sensor.Readings() == 1, 20.0)
+        self.assertIn("paused at 0:01:30.0", self.player(address, "status"))
+
+        # Recorded from 12:00 to 12:10 UTC. The offset that makes the middle of that this machine's time of day.
+        here_h = (time.time() + time.localtime().tm_gmtoff) / 3600.0
+        hours_ahead = (here_h - 12.0 - 300.0 / 3600.0) % 24.0
+        hours_ahead = hours_ahead - 24.0 if hours_ahead > 12.0 else hours_ahead
+        _, address = self.start_replay(log, "--same-time-of-day", "--utc-offset", f"{hours_ahead:.6f}")
+        with Stream(address, poses=False) as stream:
+            stream.wait_for_sensor(lambda sensor: sensor.Readings() > 0, 20.0)
+        self.assertRegex(self.player(address, "status"), r"playing at 0:0(4:5|5:[0-3])\d")
+        refused = run("replay", log, "--same-time-of-day", "--rate", "max")
+        self.assertEqual(refused.returncode, 64)
+        self.assertIn("--same-time-of-day", refused.stderr)
+
+    # ---- the fall-back ----
+
+    def test_a_recording_is_played_when_the_only_sensor_dies_and_ends_when_it_is_back(self):
+        log = self.recording([3.0] * 600, name="calm.windlog")
+        simulator = self.start_simulator()
+        sensor_address = simulator.address()
+        host, port = sensor_address.rsplit(":", 1)
+        config = self.file("wall.toml", f"""
+[wind]
+default_speed = 2.0
+default_turbulence = 0.0
+fallback_recording = "{log}"
+fallback_after = 2
+[[sensor]]
+name = "roof"
+driver = "modbus"
+profile = "{RENKE}"
+host = "{host}"
+port = {port}
+""")
+        self.assertEqual(run("check-config", config).returncode, 0)
+        kept = self.file("kept.windlog")
+        daemon = self.start_daemon("--config", config, "--record", kept)
+        address = daemon.address()
+        with Stream(address, poses=False) as status:
+            status.wait_for_sensor(lambda sensor: sensor.Health() == LIVE and sensor.Readings() > 10, 30.0)
+            watcher = FrameWatcher(address)
+            simulator.end(signal.SIGKILL)
+
+            def wait_for(condition, timeout_s=30.0):
+                deadline = time.monotonic() + timeout_s
+                while time.monotonic() < deadline:
+                    sensors = status.next("Sensors")
+                    if condition(sensors):
+                        return sensors
+                raise AssertionError("the fall-back did not get there\n" + daemon.text())
+
+            plays = wait_for(lambda sensors: sensors.SensorsLength() == 2 and sensors.Sensors(1).Health() == LIVE)
+            fallback = plays.Sensors(1)
+            self.assertEqual(fallback.Name(), b"fall-back")
+            self.assertTrue(fallback.Replayed())
+            self.assertIn(b"all sensors are silent", fallback.Detail())
+            self.assertAlmostEqual(fallback.SpeedMS(), 3.0, 6)
+            table = run("sensors", "watch", "--listen", address, "--once").stdout
+            self.assertIn("REPLAY", table)
+
+            self.start_simulator(sensor_address)
+            wait_for(lambda sensors: sensors.SensorsLength() == 1 and sensors.Sensors(0).Health() == LIVE)
+            watcher.end()
+        self.assertIn("all sensors are silent: plays " + log, daemon.text())
+        self.assertIn("a sensor is live again", daemon.text())
+        self.assertLess(watcher.largest_wind_step_m_s, 1.2)
+        self.assertTrue(watcher.all_finite)
+        code, _ = daemon.end()
+        self.assertEqual(code, 0)
+        rows = run("export", kept, "-o", "-").stdout.splitlines()[1:]
+        self.assertTrue(rows)
+        self.assertFalse([row for row in rows if "fall-back" in row])
+
+    def test_a_fall_back_that_cannot_be_played_is_a_mistake_of_the_configuration(self):
+        path = self.file("wall.toml", '[wind]\nfallback_recording = "/no/such.windlog"\n')
+        for command in (["check-config", path], ["run", "--listen", "127.0.0.1:0", "--config", path]):
+            done = run(*command)
+            self.assertEqual(done.returncode, 78, done.stderr)
+            self.assertIn(path + ":2:22: wind.fallback_recording: /no/such.windlog: there is no such recording", done.stderr)
+
     def test_a_recording_that_is_not_there_ends_with_66(self):
         self.assertEqual(run("replay", self.file("none.windlog")).returncode, 66)
 

@@ -141,6 +141,7 @@ class ReportCommand(unittest.TestCase):
         self.assertEqual(len(figures), 6, "all four of one; of the other, slow and without direction, two")
         for words in ("How strong it was", "Where the wind came from", "Octave by octave", "Gaps", "frozen", "Simulated."):
             self.assertIn(words, page.text)
+        self.assertIn("stale for 5 min 1 s, from 2018-07-20 14:09:59 UTC", page.text, "what the mouse is told")
         self.assertLess(len(text), 1_500_000)
 
     def test_a_hostile_name_is_only_a_name(self):
@@ -273,9 +274,14 @@ class ReportCommand(unittest.TestCase):
             if table is None:
                 self.skipTest("../shared/data is not there")
             text, numbers = self.report(self.imported(table))
-            self.check_page(text)
+            page, _ = self.check_page(text)
             self.assertEqual(numbers["readings"], 18000)
-            self.assertIn("18000", text)
+            self.assertIn("18000 in 1 session", page.text)
+            # What it offers for a configuration is one.
+            offered = re.search(r"<pre>(\[wind\].*?)</pre>", text, re.S)
+            wall = self.folder / "wall.toml"
+            wall.write_text(offered.group(1), encoding="ascii")
+            self.assertEqual(yuragi("check-config", wall).returncode, 0)
 
     def test_a_month_is_a_small_page_with_hours_in_local_time(self):
         # A wind that blows from noon to six, UTC, once in ten minutes; one gust that a mean would lose.
@@ -323,6 +329,9 @@ class ReportCommand(unittest.TestCase):
         self.assertGreaterEqual(numbers["begin_s"], 100.0)
         self.assertLess(numbers["end_s"], 200.0)
         self.assertEqual(numbers["sensors"][0]["readings"], 7)
+        # An option takes one name, not the file that follows.
+        run = yuragi("report", "--sensor", "mast", log, "-o", self.folder / "mast.html")
+        self.assertEqual(run.returncode, 0, run.stderr)
 
     def test_says_what_is_wrong(self):
         log = self.record(self.faulty())

@@ -83,6 +83,22 @@ class WindCommand(unittest.TestCase):
         north = [row["direction_deg"] for row in live if 90.0 < row["direction_deg"] < 270.0]
         self.assertEqual(north, [])
 
+    def test_averages_through_north(self):
+        # 350 and 10 degrees in turn: their mean is north, whatever the average is over.
+        table = self.log.with_name("north.csv")
+        lines = [f"{i / 4},6,{350 if i % 2 else 10}" for i in range(400)]
+        table.write_text("time_s,speed_m_s,direction_deg\n" + "\n".join(lines) + "\n", encoding="ascii")
+        north = self.log.with_name("north.windlog")
+        self.assertEqual(yuragi("import", table, "-o", north).returncode, 0)
+        run = yuragi("wind", north, "-o", "-", "--sensor-interval", "2", "--rate", "10")
+        rows = [row for row in csv.DictReader(io.StringIO(run.stdout)) if float(row["time_s"]) > 30.0]
+        self.assertGreater(len(rows), 600)
+        v = sum(float(row["v_m_s"]) for row in rows) / len(rows)
+        self.assertAlmostEqual(v, -6.0 * math.cos(math.radians(10.0)), delta=0.5)
+        for row in rows:
+            direction = float(row["direction_deg"])
+            self.assertTrue(0.0 <= direction < 360.0 and (direction < 60.0 or direction > 300.0), direction)
+
     def test_says_the_same_again_and_something_else_with_another_seed(self):
         self.assertEqual(self.wind("--seed", 5), self.wind("--seed", 5))
         self.assertNotEqual(self.wind("--seed", 5)[0], self.wind("--seed", 6)[0])

@@ -1,14 +1,19 @@
-// A recording of which any bytes were changed, and any part cut off: the reader gives plausible readings, or a failure.
+// A recording of which any bytes were changed, and any part cut off: the reader gives plausible readings, or a failure;
+// a player that is told anything gives plausible readings whose time does not go back, or throws what says why.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
+#include <stdexcept>
 #include <string>
 
 #include <unistd.h>
 
+#include "drivers/windlog/windlog_player.hpp"
 #include "drivers/windlog/windlog_reader.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 
@@ -42,6 +47,54 @@ std::string make_recording() {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Plays the scratch file; each byte is an order, and the last ones are a place to seek to as well.
+void play_anything(std::span<const std::uint8_t> orders) {
+  Instant now{MonoTime(std::chrono::hours(1)), UtcTime(std::chrono::hours(500'000))};
+  MonoTime last = now.mono;
+  const auto use = [&](const WindReading& reading) {
+    if (!is_plausible(reading) || reading.time.mono < last) std::abort();
+    last = reading.time.mono;
+  };
+  const std::string place(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(orders.size() % 12));
+  static_cast<void>(parse_utc_offset(place));
+  try {
+    WindlogPlayer player(
+        scratch_file(),
+        {.playback = {.loop = orders.size() % 2 == 0, .sensor = "*"}, .at_time_of_day = orders.size() % 3 == 0}, now);
+    for (const std::uint8_t order : orders.first(std::min<std::size_t>(orders.size(), 64))) {
+      try {
+        switch (order % 8) {
+          case 0:
+            player.pause(now);
+            break;
+          case 1:
+            player.resume(now);
+            break;
+          case 2:
+            player.step(now, 1 + order / 8);
+            break;
+          case 3:
+            player.seek(now, std::to_string(order / 8));
+            break;
+          case 4:
+            player.seek(now, place);
+            break;
+          case 5:
+            player.set_rate(now, 0.25 * (1 + order / 8));
+            break;
+          default:
+            break;
+        }
+        player.play(now, use);
+      } catch (const std::runtime_error&) {
+      }
+      now.mono += std::chrono::milliseconds(10 * order);
+      now.utc += std::chrono::milliseconds(10 * order);
+    }
+  } catch (const std::runtime_error&) {
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -59,6 +112,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     bytes[offset % bytes.size()] = static_cast<char>(data[i + 3]);
   }
   std::ofstream(scratch_file(), std::ios::binary | std::ios::trunc) << bytes;
+
+  play_anything(std::span(data, size));
 
   auto reader = WindlogReader::open(scratch_file());
   if (!reader) return 0;

@@ -33,6 +33,11 @@ void demand_consistency(const wire::Message& message) {
   if (const auto* trace = std::get_if<wire::RawTrace>(&message)) {
     if (trace->bytes.size() > wire::kMaxRawBytes || trace->bytes.size() > trace->length) std::abort();
   }
+  if (const auto* control = std::get_if<wire::Control>(&message); control != nullptr && control->player) {
+    const wire::PlayerWish& wish = *control->player;
+    if (!(wish.rate >= wire::kMinPlayRate && wish.rate <= wire::kMaxPlayRate)) std::abort();
+    if (wish.count < 1 || wish.count > wire::kMaxSteps) std::abort();
+  }
   if (const auto* frame = std::get_if<wire::Frame>(&message)) {
     if (frame->opacities.size() != frame->poses.size()) std::abort();
     for (const auto& pose : frame->poses)

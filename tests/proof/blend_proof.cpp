@@ -13,7 +13,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "daemon/config.hpp"
 #include "daemon/plot.hpp"
+#include "daemon/sensor_hub.hpp"
 #include "tests/proof/blend_comparison.hpp"
 
 namespace yuragi::proof {
@@ -171,7 +173,7 @@ struct Options {
 
 int prove(const Options& options) {
   if (!options.plot.empty()) check_plot_name(options.plot);
-  const auto noise = std::make_shared<const GustNoise>(GustNoiseSettings{});
+  const std::shared_ptr<const GustNoise> noise = make_gust_noise(default_config());
   Verdict verdict;
   std::vector<PlotPanel> panels;
   for (const int number : options.records) {

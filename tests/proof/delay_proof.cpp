@@ -54,11 +54,11 @@ Complex averaged(double frequency_hz, double interval_s) {
 /// From the reading to the wind: it is held for an interval, and what the bands pass of that, each as far as it is
 /// trusted, adds up. A tick takes what is there at its end, as if it had been there from its begin on.
 Complex heard(double frequency_hz, double interval_s) {
-  std::array<double, OctaveFollower::kBands> weights{};
-  for (std::size_t band = 0; band < weights.size(); ++band) {
-    weights[band] = 1.0 / (1.0 + std::pow(OctaveFollower::centre_hz(band) * interval_s / 0.5, 4.0));
+  BandWeights weights{1.0};  // first the mean
+  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
+    weights[1 + band] = 1.0 / (1.0 + std::pow(OctaveFollower::centre_hz(band) * interval_s / 0.5, 4.0));
   }
-  return averaged(frequency_hz, interval_s) * OctaveFollower::response(frequency_hz, 1.0, weights) *
+  return averaged(frequency_hz, interval_s) * OctaveFollower::Response(frequency_hz).weighted(weights) *
          ahead_by(kDelayTick_s, frequency_hz);
 }
 

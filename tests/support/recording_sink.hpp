@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "drivers/sensor.hpp"
+#include "engine/wind/reading_judge.hpp"
 
 namespace yuragi {
 
@@ -21,11 +22,16 @@ struct RecordingSink final : SensorSink {
   };
 
   std::vector<WindReading> readings;
+  std::vector<WindReading> believed;  ///< those of them that a hub would give to the wind
   std::vector<Refusal> refusals;
   std::vector<Link> links;
   std::vector<Raw> raws;
+  ReadingJudge judge;
 
-  void reading(const WindReading& reading) override { readings.push_back(reading); }
+  void reading(const WindReading& reading) override {
+    readings.push_back(reading);
+    if (is_plausible(reading) && judge.judge(reading)) believed.push_back(reading);
+  }
   void refused(Refusal why) override { refusals.push_back(why); }
   void link(LinkState state, std::string_view detail) override { links.push_back({state, std::string(detail)}); }
   void raw(RawDirection direction, std::span<const std::uint8_t> message) override {

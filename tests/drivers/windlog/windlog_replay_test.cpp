@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/driver.hpp"
+#include "drivers/recording_player.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
@@ -97,7 +98,7 @@ TEST(WindlogReplay, GoesOnFromWhereItWasAfterALongSuspension) {
 TEST(WindlogReplay, LoopsForEver) {
   const test::TemporaryFolder folder;
   write_session(folder / "a.windlog", numbered_readings(10));
-  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"loop", true}});
+  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"loop", true}, {"seam", 0.0}});
   ManualClock clock;
   RecordingSink sink;
   const MonoTime begin = clock.now().mono;
@@ -145,6 +146,76 @@ TEST(WindlogReplay, RefusesToBeOpenedWithoutAFileOrWithABadStart) {
   EXPECT_THROW(open_replay({{"file", (folder / "a.windlog").string()}, {"start", std::string("soon")}}),
                std::runtime_error);
   EXPECT_THROW(open_replay({{"file", (folder / "a.windlog").string()}, {"rate", 0.0}}), std::runtime_error);
+}
+
+TEST(WindlogReplay, CarriesOutOrdersAndTellsHowItDoes) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  write_session(file, numbered_readings(100));
+  const auto sensor = open_replay({{"file", file.string()}, {"loop", true}, {"seam", 0.0}});
+  RecordingPlayer& player = *sensor->player();
+  ManualClock clock;
+  RecordingSink sink;
+  EXPECT_FALSE(player.report().position) << "nothing is open before the first poll";
+  EXPECT_EQ(player.report().file, file.string());
+  sensor->poll(clock, sink);
+  EXPECT_DOUBLE_EQ(seconds(player.report().position->length), 9.9);
+  EXPECT_TRUE(player.report().position->loops);
+
+  EXPECT_EQ(player.order({.kind = PlayerOrder::Kind::kSeek, .place = "5"}), 1U);
+  EXPECT_EQ(player.order({.kind = PlayerOrder::Kind::kPause}), 2U);
+  EXPECT_EQ(player.report().orders_done, 0U);
+  sensor->poll(clock, sink);
+  EXPECT_EQ(player.report().orders_done, 2U);
+  EXPECT_EQ(player.report().refusal, "");
+  EXPECT_TRUE(player.report().position->is_paused);
+  EXPECT_DOUBLE_EQ(seconds(player.report().position->log_time), 5.0);
+  EXPECT_DOUBLE_EQ(sink.readings.back().speed_m_s, 0.050);
+  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_NE(sink.last_detail().find("paused"), std::string::npos);
+
+  EXPECT_EQ(player.order({.kind = PlayerOrder::Kind::kSeek, .place = "500"}), 3U);
+  sensor->poll(clock, sink);
+  EXPECT_NE(player.report().refusal.find("9.9"), std::string::npos);
+  EXPECT_DOUBLE_EQ(seconds(player.report().position->log_time), 5.0);
+
+  player.order({.kind = PlayerOrder::Kind::kStep, .count = 2});
+  sensor->poll(clock, sink);
+  EXPECT_DOUBLE_EQ(sink.readings.back().speed_m_s, 0.052);
+  EXPECT_EQ(player.report().refusal, "");
+  player.order({.kind = PlayerOrder::Kind::kRate, .rate = 2.0});
+  player.order({.kind = PlayerOrder::Kind::kResume});
+  sensor->poll(clock, sink);
+  clock.advance(1s);
+  sensor->poll(clock, sink);
+  EXPECT_NEAR(seconds(player.report().position->log_time), 7.2, 1e-6);
+  EXPECT_NE(sink.last_detail().find("playing"), std::string::npos);
+}
+
+TEST(WindlogReplay, OrdersWithoutEndAreRefused) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(100));
+  const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
+  int taken = 0;
+  while (taken < 100'000 && sensor->player()->order({.kind = PlayerOrder::Kind::kPause})) ++taken;
+  EXPECT_GT(taken, 10);
+  EXPECT_LT(taken, 1000);
+  ManualClock clock;
+  RecordingSink sink;
+  sensor->poll(clock, sink);
+  EXPECT_EQ(sensor->player()->report().orders_done, static_cast<std::uint64_t>(taken));
+  EXPECT_TRUE(sensor->player()->order({.kind = PlayerOrder::Kind::kResume})) << "there is room again";
+}
+
+TEST(WindlogReplay, RefusesAnOffsetFromUtcThatIsNone) {
+  const test::TemporaryFolder folder;
+  write_session(folder / "a.windlog", numbered_readings(5));
+  try {
+    open_replay({{"file", (folder / "a.windlog").string()}, {"utc_offset", std::string("Tokyo")}});
+    FAIL() << "it was taken";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("utc_offset: \"Tokyo\""), std::string::npos) << error.what();
+  }
 }
 
 TEST(WindlogReplay, WaitsOutAGapOfManyYearsWithoutOverflow) {

@@ -180,6 +180,33 @@ TEST(BlendedEstimator, IsFiniteAndBoundedWhateverComesIn) {
   }
 }
 
+TEST(BlendedEstimator, WhatIsHeldIsNeitherSilenceNorSomethingToLearn) {
+  // Ten minutes of a gusty wind, and then as many in which its last reading is held: by a sensor that says so, and by
+  // one that seems to measure the same again and again.
+  std::array<double, 2> intensity{};
+  for (const bool says_so : {true, false}) {
+    Blend blend = usual_blend();
+    for (int i = 0; i < 600; ++i) {
+      blend.read(6.0 + 2.0 * std::sin(0.7 * i) + std::sin(2.3 * i), 90.0);
+      blend.run_for(1.0);
+    }
+    const double learnt = blend.estimator().turbulence().intensity;
+    for (int i = 0; i < 600; ++i) {
+      WindReading reading;
+      reading.time.mono = blend.now();
+      reading.speed_m_s = 6.0;
+      reading.direction_deg = 90.0;
+      reading.is_held = says_so;
+      blend.estimator().accept(0, reading);
+      blend.run_for(1.0);
+    }
+    EXPECT_EQ(blend.estimator().report(0).health, SourceHealth::kLive);
+    intensity[says_so ? 0 : 1] = blend.estimator().turbulence().intensity / learnt;
+  }
+  EXPECT_DOUBLE_EQ(intensity[0], 1.0);
+  EXPECT_LT(intensity[1], 0.8);
+}
+
 TEST(BlendedEstimator, TimeThatGoesBackChangesNothing) {
   Blend blend = usual_blend();
   blend.read(5.0, 90.0);

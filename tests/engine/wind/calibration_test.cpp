@@ -48,6 +48,21 @@ TEST(Calibration, TurnsTheDirectionThroughNorth) {
   }
 }
 
+TEST(Calibration, TakesTheSensorsNumbersForWhatTheyReallyAre) {
+  const Calibration km_h{.unit_m_s = 1.0 / 3.6, .gain = 1.1, .offset_m_s = 0.4};
+  EXPECT_NEAR(km_h.applied_to(raw_reading(36.0)).speed_m_s, 11.4, 1e-12);
+  WindReading reading = raw_reading(36.0);
+  reading.gust_m_s = 72.0;
+  EXPECT_NEAR(km_h.applied_to(reading).gust_m_s.value(), 22.4, 1e-12);
+}
+
+TEST(Calibration, KnowsWhereItCrossesZero) {
+  EXPECT_EQ(zero_point_m_s({}), 0.0);
+  EXPECT_NEAR(zero_point_m_s({.unit_m_s = 0.5, .gain = 2.0, .offset_m_s = -0.6}), 0.3, 1e-12);
+  const Calibration bent{.gain = 2.0, .offset_m_s = 0.5, .curve = parse_calibration_curve("1:0.5 5:4.5").value()};
+  EXPECT_NEAR(zero_point_m_s(bent), 0.0, 1e-12) << "the curve crosses 0 at 0.5, and so does 2 * 0 + 0.5";
+}
+
 TEST(Calibration, FollowsItsCurveAndGoesOnBeyondIt) {
   Calibration calibration;
   calibration.curve = parse_calibration_curve("1:0.5 5:5  10:12").value();

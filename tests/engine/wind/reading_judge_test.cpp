@@ -28,6 +28,7 @@ class Court {
   void breeze(int readings, double mean_m_s = 6.0) {
     for (int i = 0; i < readings; ++i) say(mean_m_s + 0.8 * std::sin(1.7 * now_s_) + 0.3 * std::sin(5.1 * now_s_));
   }
+  void be_silent(double duration_s) { now_s_ += duration_s; }
   void count_impossible(std::uint64_t readings) { judge_.count_impossible(readings); }
   const ReadingJudge& judge() const { return judge_; }
 
@@ -119,6 +120,14 @@ TEST(ReadingJudge, AWindThatIsSteadyFromTheFirstReadingOnHasTimeButNotForEver) {
   EXPECT_EQ(court.judge().fault(), ReadingFault::kFrozen);
   EXPECT_NEAR(court.judge().same_for_s(), 609.0, 1e-6);
   EXPECT_EQ(court.judge().same_count(), 610U);
+}
+
+TEST(ReadingJudge, TheSameValueBeforeAndAfterALongSilenceIsNoFreeze) {
+  Court court;
+  court.breeze(60);
+  for (int i = 0; i < 15; ++i) court.say(6.2);
+  court.be_silent(4000.0);
+  for (int i = 0; i < 25; ++i) EXPECT_TRUE(court.say(6.2)) << i;
 }
 
 TEST(ReadingJudge, AGustThatMovesShowsThatTheSensorLives) {

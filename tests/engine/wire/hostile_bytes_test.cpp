@@ -198,6 +198,29 @@ TEST(HostileBytes, ControlsOutOfBoundsAreRefused) {
   EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent);
 }
 
+TEST(HostileBytes, WishesForPlayersOutOfBoundsAreRefused) {
+  const auto refusal = [](const PlayerWish& wish) {
+    const auto message = decode(samples::body(encode(Control{.scene = "", .player = wish})));
+    return message ? std::optional<WireError>{} : message.error();
+  };
+  EXPECT_FALSE(refusal({}));
+  for (const double rate : {-1.0, 0.0, 0.001, 1e9, std::nan("")}) {
+    EXPECT_EQ(refusal({.rate = rate}), WireError::kInconsistent) << rate;
+  }
+  EXPECT_EQ(refusal({.count = 0}), WireError::kInconsistent);
+  EXPECT_EQ(refusal({.count = kMaxSteps + 1}), WireError::kInconsistent);
+  EXPECT_EQ(refusal({.action = static_cast<PlayerAction>(6)}), WireError::kInconsistent);
+
+  ControlReply reply;
+  for (const double position_s : {-1.0, std::nan(""), 1e300}) {
+    reply.players.assign(1, {});
+    reply.players[0].position_s = position_s;
+    EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent) << position_s;
+  }
+  reply.players.assign(kMaxSensors + 1, {});
+  EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent);
+}
+
 TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
   const std::vector<std::function<void(FrameInfo&)>> changes{
       [](auto& f) { f.time_s = std::nan(""); },

@@ -186,6 +186,36 @@ TEST(WireRoundTrip, ControlAndItsReplyComeBackAsTheyWere) {
   EXPECT_FALSE(reply.scenes[1].shown);
 }
 
+TEST(WireRoundTrip, WhatPlayersAreToDoAndHowTheyDoComesBackAsItWas) {
+  EXPECT_FALSE(decoded<Control>(encode(samples::control())).player.has_value());
+  const Control control = decoded<Control>(encode(samples::player_control()));
+  ASSERT_TRUE(control.player.has_value());
+  EXPECT_EQ(control.player->action, PlayerAction::kSeek);
+  EXPECT_EQ(control.player->sensor, "roof");
+  EXPECT_EQ(control.player->count, 7U);
+  EXPECT_EQ(control.player->place, "2018-07-20T14:05:00Z");
+  EXPECT_EQ(control.player->rate, 2.5);
+
+  const ControlReply reply = decoded<ControlReply>(encode(samples::control_reply()));
+  ASSERT_EQ(reply.players.size(), 2U);
+  const PlayerState& player = reply.players[0];
+  EXPECT_EQ(player.sensor, "roof");
+  EXPECT_EQ(player.file, "storm.windlog");
+  EXPECT_TRUE(player.is_open);
+  EXPECT_EQ(player.position_s, 90.5);
+  EXPECT_EQ(player.length_s, 3600.0);
+  EXPECT_EQ(player.recorded_utc_ns, 1'700'000'000'000'000'000);
+  EXPECT_EQ(player.rate, 0.5);
+  EXPECT_TRUE(player.is_paused);
+  EXPECT_TRUE(player.is_finished);
+  EXPECT_TRUE(player.loops);
+  EXPECT_EQ(player.rounds, 3U);
+  EXPECT_EQ(player.order, 5U);
+  EXPECT_EQ(player.orders_done, 4U);
+  EXPECT_EQ(player.refusal, "there is no reading from there on");
+  EXPECT_FALSE(reply.players[1].is_open);
+}
+
 TEST(WireRoundTrip, AFrameFitsItsScenesAndNoOthers) {
   const Frame frame = decoded<Frame>(samples::frame_bytes());
   EXPECT_TRUE(fits(frame, samples::scenes()));
@@ -217,6 +247,9 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.state_reason, "the same 3.42 m/s 61 times");
   EXPECT_EQ(sensors.sensors[1].state, SensorState::kConnecting);
   EXPECT_FALSE(sensors.sensors[1].replayed);
+  EXPECT_EQ(gauge.raw_speed_m_s, 0.5);
+  EXPECT_EQ(gauge.raw_direction_deg, 349.5);
+  EXPECT_EQ(sensors.sensors[1].raw_speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
   EXPECT_EQ(sensors.late_ticks, 5u);

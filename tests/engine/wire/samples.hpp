@@ -217,8 +217,34 @@ inline wire::Control control() {
   return {.scene = "elm", .shown = true, .hide_others = true, .over_s = 4.5};
 }
 
+inline wire::Control player_control() {
+  return {.scene = "",
+          .player = wire::PlayerWish{.action = wire::PlayerAction::kSeek,
+                                     .sensor = "roof",
+                                     .count = 7,
+                                     .place = "2018-07-20T14:05:00Z",
+                                     .rate = 2.5}};
+}
+
 inline wire::ControlReply control_reply() {
-  return {.done = true, .message = "elm is shown", .scenes = {{"elm", "tree", true}, {"pond", "ripple", false}}};
+  return {.done = true,
+          .message = "elm is shown",
+          .scenes = {{"elm", "tree", true}, {"pond", "ripple", false}},
+          .players = {{.sensor = "roof",
+                       .file = "storm.windlog",
+                       .is_open = true,
+                       .position_s = 90.5,
+                       .length_s = 3600.0,
+                       .recorded_utc_ns = 1'700'000'000'000'000'000,
+                       .rate = 0.5,
+                       .is_paused = true,
+                       .is_finished = true,
+                       .loops = true,
+                       .rounds = 3,
+                       .order = 5,
+                       .orders_done = 4,
+                       .refusal = "there is no reading from there on"},
+                      {}}};
 }
 
 inline wire::Sensors sensors() {
@@ -240,6 +266,8 @@ inline wire::Sensors sensors() {
   gauge.replayed = true;
   gauge.state = SensorState::kFrozen;
   gauge.state_reason = "the same 3.42 m/s 61 times";
+  gauge.raw_speed_m_s = 0.5;
+  gauge.raw_direction_deg = 349.5;
   const wire::Shaping shaping{.site_gain = 1.75,
                               .floor_gain = 2.5,
                               .breeze_m_s = 0.25,
@@ -264,12 +292,13 @@ inline wire::RawTrace raw_trace() {
           .lost = 3};
 }
 
-/// One of each, in the order of wire::Message, and scenes and a frame of all kinds; with their size prefixes.
+/// One of each, in the order of wire::Message, scenes and a frame of all kinds, and a wish for players; with their size
+/// prefixes.
 inline std::vector<wire::Bytes> one_of_each() {
   return {
       wire::encode(hello()),     wire::encode(subscribe()), wire::encode(scenes()),        frame_bytes(),
       wire::encode(sensors()),   wire::encode(control()),   wire::encode(control_reply()), wire::encode(raw_trace()),
-      wire::encode(all_kinds()), frame_of_all_kinds()};
+      wire::encode(all_kinds()), frame_of_all_kinds(),      wire::encode(player_control())};
 }
 
 /// What decode() takes: the bytes behind the size prefix.

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+/// Sends a running daemon a Control and waits for its answer. `client`: how the command is called in the daemon's log.
+/// Throws ExitError where nobody answers, or lets nobody in.
+wire::ControlReply ask_daemon(const std::string& address, const std::string& client, const wire::Control& control);
+
+}  // namespace yuragi

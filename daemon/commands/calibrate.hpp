@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "daemon/calibration_session.hpp"
+
+namespace yuragi {
+
+// One of these a file; each adds itself to `yuragi calibrate`.
+void add_calibrate_zero(CLI::App& calibrate);
+void add_calibrate_north(CLI::App& calibrate);
+void add_calibrate_span(CLI::App& calibrate);
+void add_calibrate_microphone(CLI::App& calibrate);
+
+/// Adds what all of them are asked for; `default_duration` is for the help.
+void add_calibration_request(CLI::App& command, CalibrationRequest& request, const std::string& default_duration);
+
+}  // namespace yuragi

@@ -1,0 +1,235 @@
+// `yuragi calibrate microphone`: from how loud the wind is to how fast it blows, beside another anemometer.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "daemon/commands/calibrate.hpp"
+#include "daemon/exit.hpp"
+#include "drivers/microphone_calibration.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kMicBlock_s = 5.0;
+/// Of the readings of a block: with fewer the rest was a calm, whose level nobody knows.
+constexpr double kLeastHeardPart = 0.5;
+
+struct MicrophoneOptions {
+  CalibrationRequest request;
+  std::vector<double> speeds_m_s;
+};
+
+/// How the readings were made from levels, so that the levels can be had back.
+struct HeardThrough {
+  MicCalibration calibration;
+  double noise_power = 0.0;  ///< of a fixed noise floor; 0: it was found while running
+  MicFitKind kind = MicFitKind::kPowerLaw;
+
+  bool operator==(const HeardThrough&) const = default;
+};
+
+HeardThrough heard_through(const ParameterValues& values) {
+  HeardThrough through{.calibration = mic_calibration_of(values)};
+  const double floor_db = values.number("noise_floor");
+  if (floor_db < 0.0) {
+    through.noise_power = std::pow(10.0, 0.1 * floor_db);
+    through.kind = MicFitKind::kPowerLawOrCurve;
+  } else if (std::holds_alternative<MicCurve>(through.calibration)) {
+    through.kind = MicFitKind::kCurve;
+  }
+  return through;
+}
+
+/// Of a recording the settings that it was made with, else those of the configuration.
+HeardThrough heard_through(const CalibrationSession& session, const HeardSensor& heard) {
+  const ParameterValues& now = session.sensor().values;
+  std::vector<HeardThrough> all;
+  for (const std::string& text : heard.settings) {
+    const auto values = parse_values(text, session.sensor().driver->parameters);
+    if (!values) {
+      refuse(
+          {"the recording says of this microphone what this version does not understand: " + values.error().message});
+    }
+    for (const char* key : {"band_low", "band_high"}) {
+      if (values->number(key) != now.number(key)) {
+        refuse(
+            {fmt::format("the recording was made with {} = {:g} Hz, and the configuration has {:g}: levels of "
+                         "another band are of no use",
+                         key, values->number(key), now.number(key))});
+      }
+    }
+    all.push_back(heard_through(*values));
+  }
+  if (all.empty()) return heard_through(now);
+  if (std::ranges::any_of(all, [&all](const HeardThrough& one) { return !(one == all.front()); })) {
+    refuse({"the microphone was calibrated anew while this was recorded: choose a time before or after with --part"});
+  }
+  return all.front();
+}
+
+std::vector<TimedSpeed> levels_of(const HeardSensor& heard, const HeardThrough& through) {
+  std::vector<TimedSpeed> levels_db;
+  for (const TimedReading& one : heard.readings) {
+    const auto level_db = mic_level_db(through.calibration, one.reading.speed_m_s, through.noise_power);
+    if (level_db) levels_db.push_back({one.time_s, *level_db});
+  }
+  return levels_db;
+}
+
+/// Pairs of mean level and mean true speed, block by block.
+std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, HeardThrough& through) {
+  const Heard heard = session.hear(
+      "The microphone and the reference must be in the same wind, as close together as can be. Calm and wind are both\n"
+      "needed: the more the wind changes meanwhile, the better.");
+  through = heard_through(session, heard[0]);
+  const ReferencePairs beside = pair_with_reference(session, heard, kMicBlock_s);
+  std::map<double, std::size_t> all_in_block;
+  std::map<double, std::vector<double>> levels_in_block;
+  for (const TimedReading& one : heard[0].readings) ++all_in_block[std::floor(one.time_s / beside.block_s)];
+  for (const TimedSpeed& one : levels_of(heard[0], through)) {
+    levels_in_block[std::floor(one.time_s / beside.block_s)].push_back(one.speed_m_s);
+  }
+  std::map<double, std::vector<double>> truth_in_block;
+  for (const TimedSpeed& one : beside.truth) {
+    truth_in_block[std::floor(one.time_s / beside.block_s)].push_back(one.speed_m_s);
+  }
+  const auto mean_of = [](const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return sum / static_cast<double>(values.size());
+  };
+  std::vector<MicLevelAndSpeed> pairs;
+  for (const auto& [block, levels_db] : levels_in_block) {
+    const auto truth = truth_in_block.find(block);
+    const bool is_heard =
+        static_cast<double>(levels_db.size()) >= kLeastHeardPart * static_cast<double>(all_in_block[block]);
+    if (truth != truth_in_block.end() && is_heard) pairs.push_back({mean_of(levels_db), mean_of(truth->second)});
+  }
+  session.dialog().say(fmt::format("\nBeside \"{}\": {} pairs of level and speed, means over {:.0f} s.",
+                                   session.reference()->name, pairs.size(), beside.block_s));
+  return pairs;
+}
+
+/// The mean level in a wind of this speed.
+MicLevelAndSpeed hear_level(CalibrationSession& session, double speed_m_s, HeardThrough& through) {
+  const Heard heard = session.hear(
+      fmt::format("Bring the wind at the microphone to a steady {:g} m/s, and let nothing else be heard.", speed_m_s));
+  through = heard_through(session, heard[0]);
+  double sum_db = 0.0;
+  const std::vector<TimedSpeed> levels_db = levels_of(heard[0], through);
+  for (const TimedSpeed& one : levels_db) sum_db += one.speed_m_s;
+  if (levels_db.empty()) refuse({"the microphone hears no wind: is it in it, and is it switched on?"});
+  const double level_db = sum_db / static_cast<double>(levels_db.size());
+  session.dialog().say(
+      fmt::format("At {:g} m/s it hears {:.1f} dB, over {} readings.", speed_m_s, level_db, levels_db.size()));
+  return {level_db, speed_m_s};
+}
+
+MicCalibration calibration_by_two_winds(CalibrationSession& session, std::vector<double> speeds_m_s,
+                                        HeardThrough& through, std::vector<MicLevelAndSpeed>& pairs) {
+  for (const double speed_m_s : speeds_m_s) pairs.push_back(hear_level(session, speed_m_s, through));
+  if (through.kind == MicFitKind::kCurve) {
+    refuse({"two winds make no curve, and this microphone has one: set its curve to \"\", or its noise_floor"});
+  }
+  std::ranges::sort(pairs, {}, &MicLevelAndSpeed::speed_m_s);
+  const MicPowerLaw law = value_or_refuse(mic_power_law_through(pairs[0], pairs[1], through.noise_power));
+  session.dialog().say("A power law through both winds.");
+  return law;
+}
+
+MicCalibration calibration_beside(CalibrationSession& session, HeardThrough& through,
+                                  std::vector<MicLevelAndSpeed>& pairs) {
+  pairs = pairs_beside(session, through);
+  const MicFit fit = value_or_refuse(fit_mic_calibration(pairs, through.noise_power, through.kind));
+  session.dialog().say(fmt::format("A {}: mean error {:.2f} m/s on pairs that it was not fitted to.",
+                                   std::holds_alternative<MicCurve>(fit.calibration) ? "curve" : "power law",
+                                   fit.mean_error_m_s));
+  if (through.kind == MicFitKind::kPowerLaw) {
+    session.dialog().say("(Only a power law was tried: for a curve the noise of a calm must be known, noise_floor.)");
+  }
+  return fit.calibration;
+}
+
+/// What levels are taken for, now and then.
+std::vector<std::string> level_effect(const CalibrationSession& session, const MicCalibration& then, double noise_power,
+                                      const std::vector<MicLevelAndSpeed>& pairs) {
+  const MicCalibration now = mic_calibration_of(session.sensor().values);
+  Calibration after = session.calibration();
+  after.height_factor = 1.0;
+  const auto [softest, loudest] = std::ranges::minmax(pairs, {}, &MicLevelAndSpeed::level_db);
+  std::vector<std::string> lines = {"where it hears  is taken now for   then for"};
+  for (int step = 0; step <= 3; ++step) {
+    const double level_db = softest.level_db + (loudest.level_db - softest.level_db) * step / 3.0;
+    const double power = std::pow(10.0, 0.1 * level_db);
+    WindReading reading;
+    reading.speed_m_s = mic_speed_m_s(now, power, noise_power);
+    lines.push_back(fmt::format("{:8.1f} dB        {:8.2f} m/s   {:6.2f} m/s", level_db,
+                                after.applied_to(reading).speed_m_s, mic_speed_m_s(then, power, noise_power)));
+  }
+  return lines;
+}
+
+void calibrate_microphone(const MicrophoneOptions& options) {
+  const std::size_t speeds = options.speeds_m_s.size();
+  const bool has_reference = !options.request.reference.empty();
+  if (has_reference == (speeds > 0) || (speeds > 0 && speeds != 2)) {
+    throw ExitError(kExitUsage, "what is the known wind? Give --reference, or --speed twice");
+  }
+  const std::size_t parts = options.request.parts.size();
+  if (!options.request.recording.empty() && (has_reference ? parts > 1 : parts != 2)) {
+    throw ExitError(kExitUsage, "--part: one with --reference; one for each --speed, in the same order");
+  }
+  CalibrationSession session(options.request, has_reference ? 900.0 : 60.0);
+  if (session.sensor().driver->name != std::string_view("microphone")) {
+    throw ExitError(kExitUsage, fmt::format("\"{}\" is no microphone; its gain is found by `yuragi calibrate span`",
+                                            session.sensor().name));
+  }
+
+  HeardThrough through;
+  std::vector<MicLevelAndSpeed> pairs;
+  const MicCalibration found = has_reference ? calibration_beside(session, through, pairs)
+                                             : calibration_by_two_winds(session, options.speeds_m_s, through, pairs);
+
+  // All of it is in the driver's own parameters now: nothing of it may be done twice.
+  std::vector<ConfigChange> wanted;
+  for (const auto& [key, value] : parameters_of(found)) wanted.push_back({"", key, value});
+  wanted.push_back({"calibration", "unit", std::string("m/s")});
+  wanted.push_back({"calibration", "gain", 1.0});
+  wanted.push_back({"calibration", "offset", 0.0});
+  wanted.push_back({"calibration", "curve", std::string()});
+  session.finish(wanted, level_effect(session, found, through.noise_power, pairs));
+}
+
+}  // namespace
+
+void add_calibrate_microphone(CLI::App& calibrate) {
+  CLI::App* command = calibrate.add_subcommand("microphone", "a bare microphone, beside any other anemometer");
+  command->footer(
+      "Finds gain and exponent, or a curve, of the microphone's own entry, from pairs of level and speed (means over\n"
+      "5 s and more): the one that is better on pairs that it was not fitted to. Wants at least 8 pairs over 1 m/s "
+      "and\n"
+      "3 dB; learned in a calm half hour it is worse in a storm, so let the wind change. With --speed twice: a power "
+      "law\n"
+      "through two winds that are known. [sensor.calibration] of the microphone becomes neutral, but for its height\n"
+      "and north.\n"
+      "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --for 3600\n"
+      "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --recording may.windlog\n"
+      "  yuragi calibrate microphone --config wall.toml --sensor mic --speed 3 --speed 9");
+  auto options = std::make_shared<MicrophoneOptions>();
+  add_calibration_request(*command, options->request, "60; with --reference 900");
+  command->add_option("--reference", options->request.reference, "another sensor of the configuration, which is right")
+      ->type_name("NAME");
+  command->add_option("--speed", options->speeds_m_s, "a wind that is known; twice")
+      ->type_name("M_S")
+      ->check(CLI::Range(0.1, 100.0))
+      ->expected(1)
+      ->take_all();
+  command->callback([options] { calibrate_microphone(*options); });
+}
+
+}  // namespace yuragi

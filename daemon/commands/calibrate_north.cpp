@@ -1,0 +1,114 @@
+// `yuragi calibrate north`: the vane's directions become those of the map.
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "daemon/commands/calibrate.hpp"
+#include "daemon/exit.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kLeastVaneSpeed_m_s = 1.0;  // below it a vane points where it was left
+constexpr double kTurnBlock_s = 10.0;
+
+struct NorthOptions {
+  CalibrationRequest request;
+  std::optional<double> bearing_deg;
+};
+
+/// The turn from what the vane says to what is true, by a landmark that it is pointed to.
+double turn_by_landmark(CalibrationSession& session, double bearing_deg) {
+  const Heard heard = session.hear(fmt::format(
+      "Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind came from there, and hold\n"
+      "it still.",
+      bearing_deg));
+  std::vector<double> said_deg;
+  for (const TimedReading& one : heard[0].readings) {
+    if (one.reading.direction_deg) said_deg.push_back(*one.reading.direction_deg);
+  }
+  const DirectionMean mean = value_or_refuse(measure_held_vane(said_deg));
+  session.dialog().say(
+      fmt::format("\nThe vane says {:.1f} deg, scattered by {:.1f} deg, over {} readings; true is {:g}.", mean.mean_deg,
+                  mean.spread_deg, mean.count, bearing_deg));
+  return bearing_deg - mean.mean_deg;
+}
+
+std::vector<TimedDirection> directions_of(const HeardSensor& heard, const Calibration& calibration) {
+  std::vector<TimedDirection> directions;
+  for (const TimedReading& one : heard.readings) {
+    const WindReading reading = calibration.applied_to(one.reading);
+    if (reading.direction_deg && reading.speed_m_s >= kLeastVaneSpeed_m_s) {
+      directions.push_back({one.time_s, *reading.direction_deg});
+    }
+  }
+  return directions;
+}
+
+/// The same, by another vane in the same wind.
+double turn_by_reference(CalibrationSession& session) {
+  const Heard heard = session.hear("Both vanes must be in the same wind, of more than 1 m/s.");
+  Calibration without_north = session.calibration();
+  without_north.north_offset_deg = 0.0;
+  const std::vector<double> turns_deg =
+      pair_turns(directions_of(heard[0], without_north), directions_of(heard[1], calibration_of(*session.reference())),
+                 kTurnBlock_s);
+  const DirectionMean turn = value_or_refuse(measure_turn(turns_deg));
+  session.dialog().say(
+      fmt::format("\nIt has to be turned by {:+.1f} deg, scattered by {:.1f} deg, over {} means of "
+                  "{:g} s.",
+                  signed_degrees(turn.mean_deg), turn.spread_deg, turn.count, kTurnBlock_s));
+  return turn.mean_deg;
+}
+
+void calibrate_north(NorthOptions options) {
+  const bool has_reference = !options.request.reference.empty();
+  if (has_reference && options.bearing_deg) throw ExitError(kExitUsage, "--bearing or --reference, not both");
+  CalibrationSession session(options.request, has_reference ? 900.0 : 20.0);
+  if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: one is enough");
+  if (!has_reference && !options.bearing_deg) {
+    if (!session.dialog().has_person()) throw ExitError(kExitUsage, "add --bearing DEG, or --reference NAME");
+    session.dialog().say(
+        "\nChoose a landmark far away: a tower, a summit. Take its bearing from the sensor off a map (true north; a\n"
+        "compass is off by the declination, and more beside steel).");
+    options.bearing_deg = session.dialog().ask_number("Its bearing, degrees clockwise from north", 0.0, 360.0);
+  }
+
+  const double turn_deg = has_reference ? turn_by_reference(session) : turn_by_landmark(session, *options.bearing_deg);
+  const double north_offset_deg = rounded(signed_degrees(turn_deg), 0.1);
+  Calibration now = session.calibration();
+  Calibration then = now;
+  then.north_offset_deg = north_offset_deg;
+  std::vector<std::string> effect = {"where it says   is taken now for   then for"};
+  for (const double said_deg : {0.0, 90.0, 180.0, 270.0}) {
+    WindReading reading;
+    reading.direction_deg = said_deg;
+    effect.push_back(fmt::format("{:7.0f} deg        {:7.1f} deg     {:7.1f} deg", said_deg,
+                                 *now.applied_to(reading).direction_deg, *then.applied_to(reading).direction_deg));
+  }
+  session.finish({{"calibration", "north_offset", north_offset_deg}}, effect);
+}
+
+}  // namespace
+
+void add_calibrate_north(CLI::App& calibrate) {
+  CLI::App* command = calibrate.add_subcommand("north", "point the vane to a landmark of known bearing (north_offset)");
+  command->footer(
+      "Averages directions as vectors, so that 350 and 10 degrees make 0; refuses a vane that moves. --reference\n"
+      "compares with another vane in the same wind instead. Where nothing turns (a sonic), sight along its north "
+      "mark:\n"
+      "the bearing of the mark is north_offset itself.\n"
+      "  yuragi calibrate north --config wall.toml --sensor roof --bearing 214\n"
+      "  yuragi calibrate north --config wall.toml --sensor roof --reference mast --recording may.windlog");
+  auto options = std::make_shared<NorthOptions>();
+  add_calibration_request(*command, options->request, "20; with --reference 900");
+  command->add_option("--bearing", options->bearing_deg, "of the landmark, clockwise from true north")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 360.0));
+  command->add_option("--reference", options->request.reference, "another sensor of the configuration, which is right")
+      ->type_name("NAME");
+  command->callback([options] { calibrate_north(*options); });
+}
+
+}  // namespace yuragi

@@ -1,0 +1,151 @@
+// `yuragi player`: how the recordings that a running daemon plays do, and pausing, stepping and moving them.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <thread>
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include "daemon/commands/ask_daemon.hpp"
+#include "daemon/commands/command.hpp"
+#include "daemon/exit.hpp"
+
+namespace yuragi {
+namespace {
+
+/// An order is carried out by the sensor's next poll, which is at once; unless its disk hangs.
+constexpr auto kOrderTimeout = std::chrono::seconds(5);
+constexpr auto kOrderPause = std::chrono::milliseconds(20);
+
+struct PlayerCommandOptions {
+  std::string connect = fmt::format("127.0.0.1:{}", wire::kDefaultPort);
+  wire::PlayerWish wish = {};
+};
+
+wire::ControlReply ask_players(const PlayerCommandOptions& options, const wire::PlayerWish& wish) {
+  return ask_daemon(options.connect, "player", {.scene = "", .player = wish});
+}
+
+/// "1:02:03.4"
+std::string clock_text(double time_s) {
+  const auto tenths = static_cast<std::int64_t>(std::floor(time_s * 10.0 + 1e-6));
+  const std::int64_t whole_s = tenths / 10;
+  return fmt::format("{}:{:02}:{:02}.{}", whole_s / 3600, whole_s / 60 % 60, whole_s % 60, tenths % 10);
+}
+
+std::string player_text(const wire::PlayerState& player) {
+  if (!player.is_open) return fmt::format("{}: {} cannot be read at present\n", player.sensor, player.file);
+  const char* doing = player.is_finished ? "finished" : player.is_paused ? "paused" : "playing";
+  const std::time_t recorded =
+      std::chrono::floor<std::chrono::seconds>(std::chrono::nanoseconds(player.recorded_utc_ns)).count();
+  std::string text = fmt::format("{}: {} at {} of {}, rate {:g}", player.sensor, doing, clock_text(player.position_s),
+                                 clock_text(player.length_s), player.rate);
+  if (player.loops) text += fmt::format(", looping: round {}", player.rounds + 1);
+  return text + fmt::format(", recorded {:%Y-%m-%dT%H:%M:%S}Z, {}\n", fmt::gmtime(recorded), player.file);
+}
+
+void print_states(const std::vector<wire::PlayerState>& players) {
+  for (const wire::PlayerState& player : players) fmt::print("{}", player_text(player));
+}
+
+/// Waits until each player has done what `given` says, and answers how they are then.
+std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& options,
+                                               const std::vector<wire::PlayerState>& given) {
+  const auto deadline = std::chrono::steady_clock::now() + kOrderTimeout;
+  while (true) {
+    const wire::ControlReply reply = ask_players(options, {.sensor = options.wish.sensor});
+    const bool is_done = std::ranges::equal(
+        reply.players, given, [](const auto& now, const auto& then) { return now.orders_done >= then.order; });
+    if (is_done) return reply.players;
+    if (std::chrono::steady_clock::now() > deadline) {
+      print_states(reply.players);
+      throw ExitError(kExitUnavailable, "the order waits: the recording cannot be read at present");
+    }
+    std::this_thread::sleep_for(kOrderPause);
+  }
+}
+
+void tell_status(const PlayerCommandOptions& options) {
+  const wire::ControlReply reply = ask_players(options, options.wish);
+  if (!reply.done) throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, reply.message);
+  print_states(reply.players);
+}
+
+void give_order(const PlayerCommandOptions& options) {
+  const wire::ControlReply reply = ask_players(options, options.wish);
+  if (!reply.done) {
+    const std::string message = reply.message.empty() ? "this daemon has no players" : reply.message;
+    throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, message);
+  }
+  const std::vector<wire::PlayerState> players = wait_for_orders(options, reply.players);
+  print_states(players);
+  std::string refusals;
+  for (const wire::PlayerState& player : players) {
+    if (player.refusal.empty()) continue;
+    refusals += fmt::format("{}{}: {}", refusals.empty() ? "" : "\n", player.sensor, player.refusal);
+  }
+  if (!refusals.empty()) throw ExitError(kExitUsage, refusals);
+}
+
+using PlayerOptionsPointer = std::shared_ptr<PlayerCommandOptions>;
+
+/// Adds `yuragi player NAME`, with what all of them take.
+CLI::App* add_action(CLI::App& player, const char* name, const char* help, const PlayerOptionsPointer& options) {
+  CLI::App* command = player.add_subcommand(name, help);
+  command
+      ->add_option("--sensor", options->wish.sensor, "this one only; without it: every sensor that plays a recording")
+      ->type_name("NAME");
+  command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
+  return command;
+}
+
+void add_player(CLI::App& app) {
+  CLI::App* player = app.add_subcommand("player", "pause, step and move the recordings that a running daemon plays");
+  player->require_subcommand(1);
+  player->footer(
+      "For sensors of the driver windlog, and for `yuragi replay`:\n"
+      "  yuragi player status                     where each one is\n"
+      "  yuragi player pause                      the wall holds its wind\n"
+      "  yuragi player step 10                    ten readings on, and stand still again\n"
+      "  yuragi player seek 90                    to 90 s after the first reading\n"
+      "  yuragi player seek +30                   30 s further; -30: back\n"
+      "  yuragi player seek 2018-07-20T14:05:00Z  to a moment (UTC where it names no zone)\n"
+      "  yuragi player rate 4\n"
+      "A seek fades from the old place to the new one ([[sensor]] seam), so that nothing jumps.\n"
+      "Exit code 0: done; 64: there is no such sensor or place; 69: no daemon answers; 77: the daemon does not take "
+      "it\n"
+      "from here (see `yuragi describe`, [stream] control).");
+
+  const auto add = [player](const char* name, const char* help, wire::PlayerAction action) {
+    auto options = std::make_shared<PlayerCommandOptions>();
+    options->wish.action = action;
+    CLI::App* command = add_action(*player, name, help, options);
+    command->callback([options] { give_order(*options); });
+    return std::pair(command, options);
+  };
+  auto options = std::make_shared<PlayerCommandOptions>();
+  add_action(*player, "status", "where each recording is", options)->callback([options] { tell_status(*options); });
+  add("pause", "stand still: the wind of this moment holds", wire::PlayerAction::kPause);
+  add("resume", "go on", wire::PlayerAction::kResume);
+  const auto [step, step_options] = add("step", "stand still, so many readings further on", wire::PlayerAction::kStep);
+  step->add_option("count", step_options->wish.count, "how many readings (default 1)")
+      ->check(CLI::Range(std::uint32_t{1}, wire::kMaxSteps));
+  const auto [seek, seek_options] = add("seek", "go on from another place", wire::PlayerAction::kSeek);
+  seek->add_option("place", seek_options->wish.place,
+                   "seconds from the beginning (90), further or back (+30, -30), or a moment (ISO 8601)")
+      ->required();
+  const auto [rate, rate_options] = add("rate", "play faster or slower", wire::PlayerAction::kRate);
+  rate->add_option("rate", rate_options->wish.rate, "seconds of the recording in one second, 0.01 to 1000")
+      ->required()
+      ->check(CLI::Range(wire::kMinPlayRate, wire::kMaxPlayRate));
+}
+
+}  // namespace
+
+extern const Command kPlayerCommand;
+const Command kPlayerCommand{add_player};
+
+}  // namespace yuragi

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "drivers/windlog/windlog_player.hpp"
+
+namespace yuragi {
+
+/// What a recording that plays is to do.
+struct PlayerOrder {
+  enum class Kind : std::uint8_t { kPause, kResume, kStep, kSeek, kRate };
+  Kind kind = Kind::kPause;
+  std::uint64_t count = 1;  ///< kStep: so many readings
+  std::string place = {};   ///< kSeek: as WindlogPlayer::seek() takes it
+  double rate = 1.0;        ///< kRate: above 0
+};
+
+/// How a recording that plays does.
+struct PlayerReport {
+  std::string file;
+  std::optional<PlayerPosition> position;  ///< nothing while it cannot be read
+  std::uint64_t orders_done = 0;           ///< carried out or refused
+  std::string refusal;                     ///< why the last order was not carried out; empty: it was
+};
+
+/// The controls of a sensor that plays a recording. Thread-safe: yes; orders are carried out on the sensor's thread, by
+/// its next poll().
+class RecordingPlayer {
+ public:
+  virtual ~RecordingPlayer() = default;
+
+  /// Takes an order, and answers its number, counted from 1; nothing where too many wait.
+  virtual std::optional<std::uint64_t> order(const PlayerOrder& order) = 0;
+
+  /// As of the last poll().
+  virtual PlayerReport report() const = 0;
+};
+
+}  // namespace yuragi

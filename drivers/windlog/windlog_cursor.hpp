@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/windlog/log_moment.hpp"
+#include "drivers/windlog/windlog_reader.hpp"
+
+namespace yuragi {
+
+/// The readings of the chosen sensors of a recording, from any place of it on, in the order of log time. Log time is
+/// the recording's own: zero is its first reading, whichever sensor's that is.
+///
+/// Owns the open file. Every function throws std::runtime_error where the file cannot be read, naming it; the next call
+/// tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
+class WindlogCursor {
+ public:
+  /// `sensor`: its name; empty: the one that spoke first; "*": all of them. Throws also where there is no such sensor,
+  /// or no reading at all.
+  WindlogCursor(const std::filesystem::path& file, std::string_view sensor);
+
+  /// The next reading; nothing at the end, until more has been recorded.
+  std::optional<LoggedReading> next();
+
+  /// Makes next() answer the first reading at or after a log time.
+  void seek(Nanoseconds log_time);
+
+  /// The log time of a place that a person named; for UTC that of the first reading at or after it. Nothing if all are
+  /// before it.
+  std::optional<Nanoseconds> find(const LogMoment& moment);
+
+  /// The log time of the last reading, as of the opening.
+  Nanoseconds last() const noexcept { return last_; }
+
+  /// The median of the first intervals; one second where there are none, and never less than a millisecond.
+  Nanoseconds interval() const noexcept { return interval_; }
+
+  const WindlogReader& reader() const noexcept { return reader_; }
+  const LoggedSensor& sensor_of(const LoggedReading& logged) const { return reader_.sensors()[logged.sensor]; }
+
+ private:
+  Nanoseconds measure_interval();
+
+  WindlogReader reader_;
+  std::vector<bool> is_chosen_;  ///< by index of a sensor
+  Nanoseconds last_{0};
+  Nanoseconds interval_{0};
+};
+
+}  // namespace yuragi

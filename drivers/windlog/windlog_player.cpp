@@ -1,0 +1,304 @@
+#include "drivers/windlog/windlog_player.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi {
+namespace {
+
+// Later than this (the machine was suspended) it goes on from where it was.
+constexpr Nanoseconds kMaxLateness = std::chrono::seconds(1);
+// What is further away than this never comes: a clock could not hold it. About 30 years.
+constexpr double kMaxWait_s = 1e9;
+// Nothing comes after the end; a clock can add this to any time.
+constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
+// A cross-fade has so many readings at least, or it would be a step; and is no more than this part of the recording.
+constexpr int kLeastReadingsOfFade = 3;
+constexpr int kParts = 3;
+// What is held is said again no more often than this.
+constexpr Nanoseconds kLeastHoldInterval = std::chrono::milliseconds(100);
+
+/// A difference of times from `duration_s`, which may be anything.
+Nanoseconds wait_of(double duration_s) {
+  const std::chrono::duration<double> wait(std::clamp(duration_s, -kMaxWait_s, kMaxWait_s));
+  return std::chrono::round<Nanoseconds>(wait);
+}
+
+bool is_same_wind(const WindReading& a, const WindReading& b) {
+  return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg;
+}
+
+/// Seconds after a sign: "+30", "-12.5"; nothing for a text of another form.
+std::optional<double> parse_relative(std::string_view text) {
+  if (text.size() < 2 || (text.front() != '+' && text.front() != '-')) return std::nullopt;
+  double by_s = 0.0;
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), by_s);
+  if (error != std::errc{} || end != text.data() + text.size() || !(by_s >= 0.0) || by_s > kMaxWait_s) {
+    return std::nullopt;
+  }
+  return text.front() == '-' ? -by_s : by_s;
+}
+
+}  // namespace
+
+WindReading between(const WindReading& from, const WindReading& to, double part) {
+  WindReading reading = to;
+  reading.speed_m_s = from.speed_m_s + part * (to.speed_m_s - from.speed_m_s);
+  if (from.gust_m_s && to.gust_m_s) reading.gust_m_s = *from.gust_m_s + part * (*to.gust_m_s - *from.gust_m_s);
+  if (!from.direction_deg || !to.direction_deg) return reading;
+  const WindVector old_wind = wind_from(from.speed_m_s, *from.direction_deg);
+  const WindVector wind = old_wind + part * (wind_from(to.speed_m_s, *to.direction_deg) - old_wind);
+  reading.speed_m_s = speed_of(wind);
+  // Where two opposite winds cancel out there is no direction; that of the new one is as good.
+  if (reading.speed_m_s > 0.0) reading.direction_deg = direction_from_deg(wind);
+  return reading;
+}
+
+// ---- a voice ----
+
+MonoTime WindlogPlayer::Voice::due(double rate) const {
+  return anchor + wait_of(seconds(upcoming->log_time - anchor_log) / rate);
+}
+
+Nanoseconds WindlogPlayer::Voice::place(MonoTime now, double rate) const {
+  return anchor_log + wait_of(seconds(now - anchor) * rate);
+}
+
+void WindlogPlayer::Voice::go_to(MonoTime at, Nanoseconds log_time) {
+  anchor = at;
+  anchor_log = log_time;
+  is_frozen = false;
+}
+
+void WindlogPlayer::Voice::take() {
+  said = upcoming->reading;
+  upcoming.reset();
+}
+
+// ---- playing ----
+
+WindlogPlayer::WindlogPlayer(const std::filesystem::path& file, PlayerOptions options, const Instant& now)
+    : options_(std::move(options)),
+      playing_{.cursor = WindlogCursor(file, options_.playback.sensor)},
+      leaving_{.cursor = WindlogCursor(file, options_.playback.sensor)},
+      rate_(options_.rate),
+      is_paused_(options_.is_paused),
+      begin_(begin_of_playback(playing_.cursor, options_.playback.start)) {
+  const Nanoseconds from = options_.at_time_of_day ? place_of_day(now) : begin_;
+  playing_.cursor.seek(from);
+  playing_.go_to(now.mono, from);
+}
+
+MonoTime WindlogPlayer::play(const Instant& now, const Use& use) {
+  if (is_finished_) return now.mono + kAfterTheEnd;
+  if (is_paused_) return hold(now, use);
+  for (int count = 0;; ++count) {
+    if (!look_ahead(now)) return now.mono + kAfterTheEnd;
+    const MonoTime due = playing_.due(rate_);
+    if (due > now.mono || count == kMaxReadingsPerPlay) return due;
+    if (const Nanoseconds late = now.mono - due; late > kMaxLateness) {
+      playing_.anchor += late;
+      leaving_.anchor += late;
+      fade_begin_ += late;
+    } else if (is_at_seam()) {
+      begin_again(now, due);
+    } else {
+      playing_.take();
+      say(due, now, use);
+    }
+  }
+}
+
+/// Is there an upcoming reading? At the end it begins again, or is finished.
+bool WindlogPlayer::look_ahead(const Instant& now) {
+  if (!playing_.upcoming) playing_.upcoming = playing_.cursor.next();
+  if (playing_.upcoming) return true;
+  if (options_.playback.loop) begin_again(now, last_out_ ? last_out_->time.mono + usual_interval() : now.mono);
+  is_finished_ = !playing_.upcoming;
+  return !is_finished_;
+}
+
+/// Has a loop come to where its next round begins, under what is left of this one?
+bool WindlogPlayer::is_at_seam() const {
+  if (!options_.playback.loop || is_fading(playing_.due(rate_))) return false;
+  const Nanoseconds overlap = wait_of(seconds(fade_duration()) * rate_);
+  return overlap > Nanoseconds{0} && playing_.upcoming->log_time > playing_.cursor.last() - overlap;
+}
+
+void WindlogPlayer::begin_again(const Instant& now, MonoTime at) {
+  jump(at, options_.at_time_of_day ? place_of_day(now) : begin_);
+  // Its first reading comes at once, so that the seam is no longer than any interval.
+  playing_.anchor_log = playing_.upcoming->log_time;
+  ++rounds_;
+}
+
+/// Goes on from `target` at a moment, and fades what was playing out.
+void WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
+  // In the middle of a fade the wind of that moment stands for the two that were heard, and the older one is free.
+  const bool was_fading = is_fading(at);
+  leaving_.is_frozen = true;
+  leaving_.cursor.seek(target);
+  leaving_.upcoming = leaving_.cursor.next();
+  if (!leaving_.upcoming) throw std::runtime_error("there is no reading from there on");
+
+  std::swap(playing_, leaving_);
+  playing_.go_to(at, target);
+  playing_.said.reset();
+  if (was_fading) {
+    leaving_.is_frozen = true;
+    leaving_.said = last_out_;
+  }
+  fade_begin_ = at;
+  fade_ = leaving_.said ? fade_duration() : Nanoseconds{0};
+}
+
+Nanoseconds WindlogPlayer::fade_duration() const {
+  if (options_.seam_s <= 0.0) return Nanoseconds{0};
+  const double interval_s = seconds(playing_.cursor.interval()) / rate_;
+  const double span_s = seconds(playing_.cursor.last() - begin_) / rate_;
+  return wait_of(std::min(std::max(options_.seam_s, kLeastReadingsOfFade * interval_s), span_s / kParts));
+}
+
+/// Says what the playing voice said last, as of a time, blended with what is left of a voice that fades out.
+void WindlogPlayer::say(MonoTime time, const Instant& now, const Use& use) {
+  // Whatever was done to the pace: time does not go backward.
+  if (last_out_) time = std::max(time, last_out_->time.mono);
+  WindReading reading = blended(time);
+  reading.time = {time, now.utc - (now.mono - time)};
+  reading.is_held = is_paused_ && last_out_ && is_same_wind(reading, *last_out_);
+  last_out_ = reading;
+  use(reading);
+}
+
+WindReading WindlogPlayer::blended(MonoTime time) {
+  if (!is_fading(time)) return *playing_.said;
+  const double done = std::max(0.0, seconds(time - fade_begin_) / seconds(fade_));
+  const double part = done * done * (3.0 - 2.0 * done);
+  follow_leaving(time);
+  return between(*leaving_.said, *playing_.said, part);
+}
+
+/// Lets the voice that fades out go on to a time; where it cannot be read it holds what it said.
+void WindlogPlayer::follow_leaving(MonoTime time) {
+  if (leaving_.is_frozen || is_paused_) return;
+  try {
+    for (;;) {
+      if (!leaving_.upcoming) leaving_.upcoming = leaving_.cursor.next();
+      if (!leaving_.upcoming || leaving_.due(rate_) > time) return;
+      leaving_.take();
+    }
+  } catch (const std::runtime_error&) {
+    leaving_.is_frozen = true;
+  }
+}
+
+/// While it is paused: the same again and again, so that nobody takes the sensor for dead.
+MonoTime WindlogPlayer::hold(const Instant& now, const Use& use) {
+  if (!playing_.said) {
+    if (!look_ahead(now)) return now.mono + kAfterTheEnd;
+    take_while_paused();
+  }
+  const Nanoseconds interval = std::max(usual_interval(), kLeastHoldInterval);
+  const MonoTime due = has_news_ || !last_out_ ? now.mono : last_out_->time.mono + interval;
+  if (due > now.mono) return due;
+  has_news_ = false;
+  say(now.mono, now, use);
+  return now.mono + interval;
+}
+
+void WindlogPlayer::take_while_paused() {
+  playing_.anchor_log = playing_.upcoming->log_time;
+  playing_.take();
+  has_news_ = true;
+}
+
+Nanoseconds WindlogPlayer::usual_interval() const {
+  return std::max(wait_of(seconds(playing_.cursor.interval()) / rate_), Nanoseconds{std::chrono::microseconds(1)});
+}
+
+Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {
+  const Nanoseconds wanted = time_of_day(now.utc, options_.offset_here);
+  const auto sessions = playing_.cursor.reader().sessions();
+  const auto place = find_time_of_day(sessions, begin_, wanted, options_.recorded_offset);
+  return place && *place <= playing_.cursor.last() ? *place : begin_;
+}
+
+// ---- orders ----
+
+/// Both voices go on from where they are now: the pace is about to change.
+void WindlogPlayer::settle(MonoTime now) {
+  for (Voice* voice : {&playing_, &leaving_}) {
+    if (!is_paused_) voice->anchor_log = voice->place(now, rate_);
+    voice->anchor = now;
+  }
+}
+
+void WindlogPlayer::pause(const Instant& now) {
+  settle(now.mono);
+  is_paused_ = true;
+}
+
+void WindlogPlayer::resume(const Instant& now) {
+  settle(now.mono);
+  is_paused_ = false;
+}
+
+void WindlogPlayer::set_rate(const Instant& now, double rate) {
+  settle(now.mono);
+  rate_ = rate;
+}
+
+void WindlogPlayer::step(const Instant& now, std::uint64_t count) {
+  if (is_finished_) throw std::runtime_error("is at its end; seek to a place first");
+  pause(now);
+  for (std::uint64_t moved = 0; moved < count; ++moved) {
+    if (!playing_.upcoming) playing_.upcoming = playing_.cursor.next();
+    if (!playing_.upcoming && options_.playback.loop) begin_again(now, now.mono);
+    if (!playing_.upcoming && moved == 0) throw std::runtime_error("stands at its last reading");
+    if (!playing_.upcoming) return;
+    take_while_paused();
+  }
+}
+
+void WindlogPlayer::seek(const Instant& now, std::string_view place) {
+  Nanoseconds target{0};
+  if (const auto by_s = parse_relative(place)) {
+    target = std::max(Nanoseconds{0}, position(now.mono).log_time + wait_of(*by_s));
+  } else {
+    const auto moment = parse_log_moment(place);
+    if (!moment) throw std::runtime_error(moment.error().message);
+    const auto found = playing_.cursor.find(*moment);
+    target = found.value_or(Nanoseconds::max());
+  }
+  if (target > playing_.cursor.last()) {
+    throw std::runtime_error(std::string(place) + " is behind its last reading, which is at " +
+                             std::to_string(seconds(playing_.cursor.last())) + " s");
+  }
+  settle(now.mono);
+  jump(now.mono, target);
+  is_finished_ = false;
+  if (is_paused_) take_while_paused();
+}
+
+PlayerPosition WindlogPlayer::position(MonoTime now) const {
+  const Nanoseconds last = playing_.cursor.last();
+  Nanoseconds place = is_paused_ ? playing_.anchor_log : playing_.place(now, rate_);
+  if (is_finished_) place = last;
+  return {.log_time = std::clamp(place, Nanoseconds{0}, last),
+          .length = last,
+          .recorded = playing_.said       ? playing_.said->time.utc
+                      : playing_.upcoming ? playing_.upcoming->reading.time.utc
+                                          : UtcTime{},
+          .rate = rate_,
+          .is_paused = is_paused_,
+          .is_finished = is_finished_,
+          .loops = options_.playback.loop,
+          .rounds = rounds_};
+}
+
+}  // namespace yuragi

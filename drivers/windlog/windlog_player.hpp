@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "drivers/windlog/time_of_day.hpp"
+#include "drivers/windlog/windlog_cursor.hpp"
+#include "drivers/windlog/windlog_playback.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+struct PlayerOptions {
+  PlaybackOptions playback = {};
+  double rate = 1.0;            ///< seconds of the recording in one second; above 0
+  double seam_s = 5.0;          ///< how long a jump (a loop's seam, a seek) takes; 0: no cross-fade
+  bool is_paused = false;       ///< stand at the first reading until resume() or step()
+  bool at_time_of_day = false;  ///< begin, and begin again, where the recording's clock shows what the wall's shows
+  UtcOffset recorded_offset = machine_utc_offset;  ///< of the place where it was recorded
+  UtcOffset offset_here = machine_utc_offset;
+};
+
+/// Where a player is.
+struct PlayerPosition {
+  Nanoseconds log_time{0};  ///< since the recording's first reading
+  Nanoseconds length{0};    ///< the log time of the last reading that it plays
+  UtcTime recorded{};       ///< when the reading that holds was recorded
+  double rate = 1.0;
+  bool is_paused = false;
+  bool is_finished = false;  ///< at the end, and it does not loop
+  bool loops = false;
+  std::uint64_t rounds = 0;  ///< how often it began again
+};
+
+/// Plays a recording (.windlog) against a clock that the caller reads: pause, step, seek, rate, loop.
+///
+/// Each reading comes out with the time at which it was due on the caller's clock, and that time never goes backward,
+/// whatever is done. A jump (a seek, or the seam of a loop) is a cross-fade of `seam_s`: what the old place goes on to
+/// say and what the new one says are blended as vectors, so that there is no step; a loop begins again `seam_s` before
+/// its end for that. While it is paused it says the same reading again and again, marked as held, at its usual
+/// interval: the wind holds, and nobody takes the sensor for dead. Where the recording has a gap, so has the replay.
+///
+/// Every function but position() throws std::runtime_error where the file cannot be read, or does not hold what is
+/// asked for, saying so; a failed order changes nothing, and play() tries the same place again.
+/// Thread-safe: no. Realtime-safe: no; it reads a file.
+class WindlogPlayer {
+ public:
+  using Use = std::function<void(const WindReading&)>;
+
+  /// Readings that one play() gives at most, whatever the rate.
+  static constexpr int kMaxReadingsPerPlay = 4096;
+
+  /// Opens the recording; `now` is when its first moment is due.
+  WindlogPlayer(const std::filesystem::path& file, PlayerOptions options, const Instant& now);
+
+  /// Hands on what is due by now, oldest first; answers when the next reading is. `now` must not go back. After a halt
+  /// of more than a second it goes on from where it was, rather than pour out what it missed.
+  MonoTime play(const Instant& now, const Use& use);
+
+  void pause(const Instant& now);
+  void resume(const Instant& now);
+  /// Pauses, and moves `count` readings on, of which the last is handed on by the next play(). At the end of a
+  /// recording that does not loop it stays at the last reading.
+  void step(const Instant& now, std::uint64_t count);
+  /// Goes on from a place: seconds from the beginning ("90"), so much further or back ("+30", "-30"), or a moment
+  /// (ISO 8601).
+  void seek(const Instant& now, std::string_view place);
+  void set_rate(const Instant& now, double rate);
+
+  PlayerPosition position(MonoTime now) const;
+  bool is_paused() const noexcept { return is_paused_; }
+  bool is_finished() const noexcept { return is_finished_; }
+
+ private:
+  /// One place of the recording that speaks. While a jump lasts there are two.
+  struct Voice {
+    WindlogCursor cursor;
+    std::optional<LoggedReading> upcoming = {};
+    std::optional<WindReading> said = {};
+    MonoTime anchor{};  ///< when `anchor_log` is, or was, due
+    Nanoseconds anchor_log{0};
+    bool is_frozen = false;  ///< holds what it said
+
+    MonoTime due(double rate) const;
+    Nanoseconds place(MonoTime now, double rate) const;
+    void go_to(MonoTime at, Nanoseconds log_time);
+    void take();
+  };
+
+  bool look_ahead(const Instant& now);
+  bool is_at_seam() const;
+  void begin_again(const Instant& now, MonoTime at);
+  void jump(MonoTime at, Nanoseconds target);
+  void settle(MonoTime now);
+  MonoTime hold(const Instant& now, const Use& use);
+  void say(MonoTime time, const Instant& now, const Use& use);
+  WindReading blended(MonoTime time);
+  void follow_leaving(MonoTime time);
+  void take_while_paused();
+  Nanoseconds fade_duration() const;
+  bool is_fading(MonoTime time) const { return time < fade_begin_ + fade_; }
+  Nanoseconds usual_interval() const;
+  Nanoseconds place_of_day(const Instant& now);
+
+  PlayerOptions options_;
+  Voice playing_, leaving_;
+  double rate_;
+  bool is_paused_;
+  bool is_finished_ = false;
+  bool has_news_ = false;  ///< a reading to hand on while paused
+  std::uint64_t rounds_ = 0;
+  Nanoseconds begin_{0};
+  MonoTime fade_begin_{};
+  Nanoseconds fade_{0};
+  std::optional<WindReading> last_out_;
+};
+
+/// The wind between two readings, `part` (0 to 1) of the way from `from` to `to`: as vectors where both have a
+/// direction, else by speed. Everything else is of `to`.
+WindReading between(const WindReading& from, const WindReading& to, double part);
+
+}  // namespace yuragi
