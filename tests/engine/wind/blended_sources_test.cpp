@@ -306,6 +306,36 @@ TEST(BlendedSources, ARunningMeanSentOftenIsNotTakenForAQuickSensor) {
   EXPECT_GT(moments.variance_v(), 1.0) << "not the 0.1 of a calm flow";
 }
 
+TEST(BlendedSources, TheDelayIsThatOfAveragingHoldAndBands) {
+  for (const double interval_s : {1.0, 14.0}) {
+    // Of block means: half the mean, half the hold, and what the bands add.
+    EXPECT_NEAR(blend_group_delay_s(0.01 / interval_s, interval_s, interval_s), 1.36 * interval_s, 0.01 * interval_s);
+    EXPECT_NEAR(blend_group_delay_s(0.25 / interval_s, interval_s, interval_s), 1.22 * interval_s, 0.01 * interval_s);
+  }
+  EXPECT_NEAR(blend_group_delay_s(0.01, 1.0, 0.0), 0.86, 0.01) << "a reading of the moment";
+}
+
+// A slow wave of the wind, as readings of the moment, comes out of the estimator as much later as is stated.
+TEST(BlendedSources, AWaveIsAsMuchLaterAsStated) {
+  constexpr double kWave_hz = 0.05;
+  BlendRun run(1, without_noise({{}}));
+  double cosine = 0.0;
+  double sine = 0.0;
+  for (int second = 0; second < 1200; ++second) {
+    const double turn = 2.0 * std::numbers::pi * kWave_hz;
+    run.read(8.0 + 0.5 * std::sin(turn * second), 180.0);
+    double time_s = second;
+    run.run_for(1.0, [&](const WindState& state) {
+      time_s += kBlendTick_s;
+      if (second < 600) return;
+      cosine += state.wind.v_m_s * std::cos(turn * time_s);
+      sine += state.wind.v_m_s * std::sin(turn * time_s);
+    });
+  }
+  const double delay_s = -std::atan2(cosine, sine) / (2.0 * std::numbers::pi * kWave_hz);
+  EXPECT_NEAR(delay_s, blend_group_delay_s(kWave_hz, 1.0, 0.0), 0.15);
+}
+
 // Random speech and silence of four sources of all kinds, garbage included.
 TEST(BlendedSources, AreFiniteBoundedAndContinuousUnderRandomFaults) {
   constexpr double kStrongest_m_s = 30.0;
