@@ -77,8 +77,9 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     const std::optional<JudgeSettings> judged_by = judge_settings_of(channel.config);
     channel.is_judged = judged_by.has_value();
     channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
-    channel.is_compared =
-        channel.is_judged && channel.config.judge.flag("compare") && !channel.config.driver->is_relative;
+    // A sensor whose scale is not to be believed is no witness.
+    const bool is_relative = channel.config.driver->is_relative || blend_source_of(channel.config.blend).is_relative;
+    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") && !is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }
