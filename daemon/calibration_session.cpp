@@ -112,9 +112,13 @@ Heard CalibrationSession::hear(const std::string& hands) {
     stretch = parse_part(request_.parts[stretches_]);
   }
   ++stretches_;
-  Heard heard = source_->hear(stretch, [this](double elapsed_s, const Heard& so_far) {
-    dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
+  bool is_told = false;
+  Heard heard = source_->hear(stretch, [this, &is_told](double elapsed_s, const Heard& so_far) {
+    if (is_live()) return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
+    dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
+    is_told = true;
   });
+  if (is_told) dialog_.show(0.0, "the recording is read", true);
   beware(heard);
   return heard;
 }

@@ -21,6 +21,7 @@ constexpr auto kDaemonSilence = std::chrono::seconds(5);
 constexpr auto kDevicePause = std::chrono::milliseconds(20);
 constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station speaks every 48 s
 constexpr double kProgressInterval_s = 0.25;
+constexpr std::size_t kReadingsPerProgress = 200'000;  // a second or less
 
 bool all_have_spoken(const Heard& heard) {
   return std::ranges::none_of(heard, [](const HeardSensor& sensor) { return sensor.readings.empty(); });
@@ -205,16 +206,17 @@ class RecordedSource final : public CalibrationSource {
   std::string description() const override { return "the recording " + file_.string(); }
   bool is_live() const override { return false; }
 
-  Heard hear(const Stretch& stretch, const Progress& /*progress*/) override {
+  Heard hear(const Stretch& stretch, const Progress& progress) override {
     WindlogReader reader = opened();
     if (stretch.from_s) reader.seek(from_seconds(*stretch.from_s));
     Heard heard(sensors_.size());
-    for (;;) {
+    for (std::size_t count = 1;; ++count) {
       auto logged = reader.next();
       if (!logged) throw ExitError(kExitDataError, logged.error().message);
       if (!*logged) break;
       const double time_s = seconds((*logged)->log_time);
       if (stretch.to_s && time_s >= *stretch.to_s) break;
+      if (count % kReadingsPerProgress == 0) progress(time_s, heard);
       const LoggedSensor& from = reader.sensors()[(*logged)->sensor];
       for (std::size_t index = 0; index < sensors_.size(); ++index) {
         if (sensors_[index]->name != from.name) continue;

@@ -40,7 +40,8 @@ struct Stretch {
 /// any [sensor.calibration].
 class CalibrationSource {
  public:
-  /// Told about four times a second while listening, and once at the end; of a recording not at all.
+  /// Told about four times a second while listening, and once at the end; of a recording after each so many readings,
+  /// with the time that they are of.
   using Progress = std::function<void(double elapsed_s, const Heard& so_far)>;
 
   virtual ~CalibrationSource() = default;

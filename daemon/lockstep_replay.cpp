@@ -27,7 +27,6 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   one_source.sensors.resize(1);
   one_source.wind.set("fallback_recording", std::string{});
   const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts);
-
   WindShaping shaping(shaping_settings(config), gusts);
 
   const double rate_hz = config.animation.number("rate");

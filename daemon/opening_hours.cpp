@@ -142,6 +142,10 @@ bool OpeningHours::is_open(UtcTime now) const {
   return is_always_open() || open_.test(minute_of_week(now));
 }
 
+std::string OpeningHours::zone_name() const {
+  return zone_ != nullptr ? zone_->name() : "UTC";
+}
+
 std::string OpeningHours::until_text(UtcTime now) const {
   const std::size_t begun = minute_of_week(now);
   for (std::size_t ahead = 1; ahead < kMinutesPerWeek; ++ahead) {

@@ -35,6 +35,9 @@ class OpeningHours {
 
   bool is_open(UtcTime now) const;
 
+  /// Whose local time it is: "Europe/Berlin". Of a machine without a zone: "UTC".
+  std::string zone_name() const;
+
   /// The next change by the clock on the wall, for a person: "until 18:00", "until Tue 10:00" where that is more than a
   /// day away; empty where there is none.
   std::string until_text(UtcTime now) const;

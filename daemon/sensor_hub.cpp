@@ -53,7 +53,7 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
                          .return_after_s = config.wind.number("return_after"),
                          .rate_hz = config.animation.number("rate")};
   for (const SensorConfig& sensor : config.sensors)
-    settings.sources.push_back(blend_source_of(sensor.blend, sensor.driver->is_relative));
+    settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
   // Behind all sensors, whatever their priorities.
   if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
   const std::size_t source_count = settings.sources.size();
@@ -79,8 +79,8 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     channel.is_judged = judged_by.has_value();
     channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
     // A sensor whose scale is not to be believed is no witness.
-    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") &&
-                          !blend_source_of(channel.config.blend, channel.config.driver->is_relative).is_relative;
+    const bool is_relative = blend_source_of(channel.config.blend, *channel.config.driver).is_relative;
+    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") && !is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }
@@ -250,7 +250,6 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
   return all;
 }
 
-/// Does a sensor speak that is believed?
 bool SensorHub::is_any_live() const {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     if (estimator_->report(index).health == SourceHealth::kLive) return true;

@@ -29,6 +29,7 @@ WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> no
   const bool is_of_this_site =
       std::ranges::none_of(config.sensors, [](const SensorConfig& sensor) { return sensor.driver->plays_recordings; });
   if (is_of_this_site && shaping_.settings().site.median_m_s > 0.0) site_path_ = config.shaping.text("site_file");
+  if (!hours_.is_always_open()) spdlog::info("shaping: opening hours by the clocks of {}", hours_.zone_name());
 }
 
 WindShaper::~WindShaper() {
@@ -58,11 +59,11 @@ void WindShaper::keep_site_file() {
   }
 }
 
-void WindShaper::shape(DrivingWind& wind, UtcTime utc) {
+void WindShaper::shape(DrivingWind& wind, UtcTime utc, bool is_any_live) {
   const MonoTime now = wind.state.time;
   const bool is_time_to_look = !has_looked_ || now - looked_ >= kLookAtHoursEvery;
   if (is_time_to_look) look_at_hours(now, utc);
-  shaping_.shape(wind, is_open_);
+  shaping_.shape(wind, is_open_, is_any_live);
   log_ceiling(shaping_.report(), now);
   if (!is_time_to_look) return;
   log_changes();

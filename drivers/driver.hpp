@@ -25,7 +25,7 @@ struct DriverDescription {
   /// It plays what was recorded: nobody may take it for the wind of now.
   bool plays_recordings = false;
   /// How its readings rise and fall is to be believed, but not their scale, which depends on where it hangs: it is
-  /// compared with no other sensor.
+  /// compared with no other sensor, and beside others only its gusts count, unless the configuration says otherwise.
   bool is_relative = false;
 };
 

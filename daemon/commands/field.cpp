@@ -260,7 +260,7 @@ void run_field(FieldOptions options) {
     if (written == 0 && !options.plot.empty()) first.assign(values.begin(), values.end());
     file.add(values);
     ++written;
-    if (is_watched) fmt::print(stderr, "\rframe {} of {}", written, options.frames.count);
+    if (is_watched) fmt::print(stderr, "\r\x1b[Kframe {} of {}", written, options.frames.count);
   };
   std::string title;
   if (options.recording) {
@@ -277,6 +277,7 @@ void run_field(FieldOptions options) {
   } else {
     options.wind.samples = tile_of(options, grid);
     options.wind.seed = options.seed.value_or(options.wind.seed);
+    if (is_watched) fmt::print(stderr, "making a tile of {} samples an edge", options.wind.samples);
     SpectralWindField field(options.wind);
     const WindFieldSettings& wind = options.wind;
     description["wind"] = {{"speed_m_s", wind.speed_m_s},

@@ -150,7 +150,7 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
     wire::Sensors sensors;
     sensors.wind = hub.advance();
     DrivingWind wind{sensors.wind, hub.ground()};
-    shaper.shape(wind, clock.now().utc);
+    shaper.shape(wind, clock.now().utc, hub.is_any_live());
     if (clock.now().mono >= next_status) {
       next_status += kTableInterval;
       sensors.sensors = hub.status();
@@ -197,6 +197,11 @@ void add_sensors_watch(CLI::App& sensors) {
       "The table: m/s, gust and from (degrees) as the sensor says them; age of the last reading; the interval "
       "measured\n"
       "between two; frames (messages from the device), readings among them, and how often the device came again.\n"
+      "The state: what is live, simulated or a REPLAY makes the wind. What is connecting, STALE (silent), "
+      "DISCONNECTED,\n"
+      "FROZEN (says the same again and again), SEIZED (stands still where a wind blows) or IMPLAUSIBLE does not; "
+      "below\n"
+      "it stands why, and what to do about it.\n"
       "Below the wind stands what the scenes feel instead, where [shaping] is at work: floor, site gain, opening "
       "hours,\n"
       "ceiling.\n"

@@ -32,7 +32,7 @@ struct MovingField {
 ///
 /// A field is Gaussian, of mean 0; its variance is, on average over seeds, the sum of its powers. Waves with two
 /// samples on an axis are left out, since they cannot be carried by a part of a sample, and so is the constant one.
-/// Same settings, same bits. Owns its modes and samples: 12 bytes a sample and field, and 24 a sample besides.
+/// Same settings, same bits. Owns its modes and samples: 8 bytes a sample and field, and 20 a sample besides.
 /// Thread-safe: reading, yes. Realtime-safe: no; 256 x 256 takes a few milliseconds a field, 128 x 128 x 128 a tenth of
 /// a second. Source: Taylor 1938 (k . X), wind.md 1 (turning).
 class MovingNoise {

@@ -19,8 +19,8 @@ constexpr std::array<WindComponent, 3> kComponents = {WindComponent::kAlong, Win
 constexpr std::array kDeviations = {1.0, 0.8, 0.5};
 constexpr std::array kLengths = {1.0, 2.7 / 8.1, 0.66 / 8.1};
 
-constexpr std::size_t kTilesPerWay = 256;
-constexpr std::size_t kWaySamples = 16 * kTilesPerWay / 2;  // 16 in its shortest waves, which are two tiles long
+constexpr std::size_t kPeriodsPerWay = 256;
+constexpr std::size_t kFieldWaySamples = 16 * kPeriodsPerWay / 2;  // 16 in its shortest waves, which are two tiles long
 
 VonKarmanModes modes_of(const WindFieldSettings& settings, WindComponent component) {
   const auto i = static_cast<std::size_t>(component);
@@ -103,12 +103,12 @@ std::vector<MovingField> SpectralWindField::fields_of(const WindFieldSettings& s
 
 SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& settings, WindComponent component) {
   // What the tile has no mode for is in the cell about 0: waves longer than two tiles.
-  const double way_m = static_cast<double>(kTilesPerWay * settings.samples) * settings.spacing_m;
+  const double way_m = static_cast<double>(kPeriodsPerWay * settings.samples) * settings.spacing_m;
   const double length_m = kLengths[static_cast<std::size_t>(component)] * settings.length_m;
-  return {make_noise_1d({.size = kWaySamples,
+  return {make_noise_1d({.size = kFieldWaySamples,
                          .seed = seed_of(settings, component),
                          .integral_scale = std::max(length_m / way_m, kMinNoiseIntegralScale),
-                         .to_cycles = kTilesPerWay / 2.0})
+                         .to_cycles = kPeriodsPerWay / 2.0})
               .value(),
           std::sqrt(CellPower(settings, component)(0.0, 0.0, 0.0))};
 }
@@ -132,7 +132,7 @@ void SpectralWindField::go_to(double time_s) noexcept {
   const double way_m = speed_m_s_ * time_s;
   noise_.move_to({way_m * ahead_.u_m_s / period_m_, -way_m * ahead_.v_m_s / period_m_, 0.0}, turning_rad_s_ * time_s);
   // What is carried past comes from upwind: read at minus the way.
-  const std::uint32_t place = torus_phase(-way_m, static_cast<double>(kTilesPerWay) * period_m_);
+  const std::uint32_t place = torus_phase(-way_m, static_cast<double>(kPeriodsPerWay) * period_m_);
   for (std::size_t i = 0; i < ways_.size(); ++i) {
     now_m_s_[i] = ways_[i].deviation_m_s * static_cast<double>(read_noise(ways_[i].noise, place));
   }

@@ -35,7 +35,7 @@ struct WindFieldSettings {
 /// tile repeats every samples x spacing; a frozen one comes round after that length of way. The components are
 /// independent of each other: there is no shear stress, and the field is not free of divergence.
 ///
-/// Time may go either way. Owns its tiles (about 36 bytes a sample in 2-D, 60 in 3-D). Same settings, same bits.
+/// Time may go either way. Owns its tiles (about 36 bytes a sample in 2-D, 44 in 3-D). Same settings, same bits.
 /// Thread-safe: reading, yes. Realtime-safe: at(); go_to() makes 2 or 3 Fourier transforms.
 class SpectralWindField final : public WindField {
  public:

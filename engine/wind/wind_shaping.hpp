@@ -52,7 +52,8 @@ struct WindShapingReport {
 ///     and its 95th percentile to `site.strong_m_s`; between the two the mean goes on a straight line, and beyond them
 ///     the factor stays. It grows from 1 while the first hours of live wind are heard, and is 1 for the default wind.
 ///  2. Floor: a mean below it is raised to it by a factor of up to kMostFloorGain; what then still lacks is a breeze
-///     that blows where the wind last came from, with the turbulence of the climate at that level.
+///     that blows where the wind last came from, with the turbulence of the climate at that level. It carries the
+///     gusts on: those that no sensor measured are others from then on than in the real wind.
 ///  3. Opening: outside of opening hours only a part is left.
 ///  4. Ceiling: SoftCeiling at the middle of the scene; the whole ground gets the same factor, so that neighbours
 ///     differ as they did.
@@ -68,8 +69,8 @@ class WindShaping {
   WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise);
 
   /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call begins where
-  /// its wind and `is_open` say, without a way there.
-  void shape(DrivingWind& wind, bool is_open) noexcept;
+  /// its wind and `is_open` say, without a way there. `is_of_site`: live wind is what the site has, and is remembered.
+  void shape(DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
 
   const WindShapingSettings& settings() const noexcept { return settings_; }
   WindShapingReport report() const noexcept;

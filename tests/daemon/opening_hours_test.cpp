@@ -96,7 +96,10 @@ TEST(OpeningHours, EveryTimeThereIsHasAnAnswer) {
 }
 
 TEST(OpeningHours, TheMachinesOwnZoneIsOneToo) {
-  EXPECT_TRUE(OpeningHours::parse("10:00-18:00", "").has_value());
+  const auto hours = OpeningHours::parse("10:00-18:00", "");
+  ASSERT_TRUE(hours.has_value());
+  EXPECT_FALSE(hours->zone_name().empty());
+  EXPECT_EQ(hours_of("10:00-18:00", "Europe/Berlin").zone_name(), "Europe/Berlin");
 }
 
 TEST(OpeningHours, SaysWhatIsNoSuchText) {

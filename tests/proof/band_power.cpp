@@ -89,8 +89,11 @@ std::vector<double> Welch::density(const Segments& segments) {
 
 std::vector<Band> octaves_down(double top_hz, double bottom_hz) {
   std::vector<Band> bands;
-  for (double to_hz = top_hz; to_hz > bottom_hz; to_hz *= 0.5)
+  double to_hz = top_hz;
+  while (to_hz > bottom_hz) {
     bands.push_back({std::max(0.5 * to_hz, bottom_hz), to_hz});
+    to_hz *= 0.5;
+  }
   std::ranges::reverse(bands);
   return bands;
 }

@@ -250,6 +250,7 @@ void add_to(std::vector<double>& sum, const std::vector<double>& values, double 
 std::vector<double> decibels(const std::vector<double>& density, const std::vector<double>& reference, double step_hz,
                              const std::vector<Band>& bands) {
   std::vector<double> result;
+  result.reserve(bands.size());
   for (const Band& band : bands) {
     result.push_back(decibel(power_in(density, step_hz, band) / power_in(reference, step_hz, band)));
   }
@@ -280,7 +281,11 @@ BlendComparison compare_blend(const SonicRecord& record, double interval_s, int 
   const Welch::Segments sensor = welch.segments(comparer.held());
   result.sensor_density = Welch::density(sensor);
   result.octaves = octaves_down(kToHz, kFromHz);
-  for (double from_hz = kToHz; from_hz < kTopHz / 2.0; from_hz *= 2.0) result.above.push_back({from_hz, 2.0 * from_hz});
+  double from_hz = kToHz;
+  while (from_hz < kTopHz / 2.0) {
+    result.above.push_back({from_hz, 2.0 * from_hz});
+    from_hz *= 2.0;
+  }
 
   // The mean of the seeds.
   const std::vector<SeedResult> all = run_seeds(comparer, seeds, sensor);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -128,18 +128,15 @@ void judge(const BlendComparison& blend, Verdict& verdict) {
 PlotCurve curve_of(const std::string& title, const std::vector<double>& density, double step_hz, double from_hz) {
   PlotCurve curve{.title = title, .x = {}, .y = {}};
   constexpr double kRatio = 1.12;
-  for (double low_hz = from_hz; low_hz < kTopHz; low_hz *= kRatio) {
-    double sum = 0.0;
-    int bins = 0;
-    for (std::size_t k = 1; k < density.size(); ++k) {
-      const double frequency_hz = static_cast<double>(k) * step_hz;
-      if (frequency_hz < low_hz || frequency_hz >= low_hz * kRatio) continue;
-      sum += density[k];
-      ++bins;
-    }
-    if (bins == 0 || sum <= 0.0) continue;
-    curve.x.push_back(low_hz * std::sqrt(kRatio));
-    curve.y.push_back(sum / bins);
+  double low_hz = from_hz;
+  while (low_hz < kTopHz) {
+    const Band band{low_hz, low_hz * kRatio};
+    low_hz = band.to_hz;
+    const double bins = std::ceil(band.to_hz / step_hz) - std::ceil(band.from_hz / step_hz);
+    const double power = power_in(density, step_hz, band);
+    if (bins < 1.0 || power <= 0.0) continue;
+    curve.x.push_back(std::sqrt(band.from_hz * band.to_hz));
+    curve.y.push_back(power / (bins * step_hz));
   }
   return curve;
 }
@@ -196,15 +193,12 @@ int prove(const Options& options) {
   return verdict.failures() == 0 ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace yuragi::proof
-
-int main(int argc, char** argv) {
-  yuragi::proof::Options options;
+int run(int argc, char** argv) {
+  Options options;
   CLI::App app("Compares the blended wind with the recordings that it was made from");
   app.footer(
-      "Example: yuragi-blend-proof --record 1 --interval 14 --plot blend.png\nEnds with 1 where a bound does not "
-      "hold, and with 77 where ../shared/data/sonic is not there.");
+      "Example: yuragi-blend-proof --record 1 --interval 14 --plot blend.png\n"
+      "Ends with 1 where a bound does not hold, and with 77 where ../shared/data/sonic is not there.");
   app.add_option("--record", options.records, "which recordings: 0 (13:30), 1 (14:00)")->check(CLI::Range(0, 1));
   app.add_option("--interval", options.intervals_s, "how often the sensors speak, s")->check(CLI::Range(0.1, 60.0));
   app.add_option("--seeds", options.seeds, "how many winds of noise")
@@ -212,10 +206,17 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--plot", options.plot, "draws the spectra")->type_name("FILE.png|svg");
   CLI11_PARSE(app, argc, argv);
+  return prove(options);
+}
+
+}  // namespace
+}  // namespace yuragi::proof
+
+int main(int argc, char** argv) {
   try {
-    return yuragi::proof::prove(options);
+    return yuragi::proof::run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "yuragi-blend-proof: " << error.what() << '\n';
+    std::fprintf(stderr, "yuragi-blend-proof: %s\n", error.what());
     return 1;
   }
 }

@@ -32,11 +32,8 @@ constexpr double kEndOfRecord_s = 1800.0;
 /// Until then an estimator that has just begun is on its way to what the sensor says.
 constexpr double kSettled_s = 60.0;
 constexpr std::uint64_t kSeeds = 32;
-constexpr std::uint64_t kStepSeeds = 16;
+constexpr std::uint64_t kStepSeeds = 8;
 constexpr int kTicksASecond = 60;
-/// The largest step of all seeds may be so much larger than that of normal motion: where a spike is held back, what the
-/// record itself does in two seconds comes as one reading.
-constexpr double kOneInMany = 1.1;
 
 using Readings = std::vector<WindReading>;
 
@@ -139,7 +136,7 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
   for (const auto& [name, steps] : faulty) {
     fmt::print("| {} | {:.3f} | {:.3f} |\n", name, steps.mean_m_s, steps.most_m_s);
     EXPECT_LE(steps.mean_m_s, normal.mean_m_s) << name;
-    EXPECT_LE(steps.most_m_s, kOneInMany * normal.most_m_s) << name;
+    EXPECT_LE(steps.most_m_s, normal.most_m_s) << name;
   }
 }
 
@@ -163,12 +160,14 @@ TEST_P(WindFaults, AClockThatIsSetDoesNotMoveIt) {
 double seen_in(double window_s, const Turbulence& turbulence) {
   const auto spectrum = WindSpectrum::make({.speed_m_s = 1.0, .sigma_m_s = 1.0, .length_m = turbulence.time_scale_s});
   double seen = 0.0;
-  constexpr double kStep = 0.01;
-  for (double log_hz = std::log(1e-5); log_hz < std::log(1e2); log_hz += kStep) {
-    const double frequency_hz = std::exp(log_hz);
+  // Over ln f, from 1e-5 to 1e2 Hz.
+  constexpr int kSteps = 1600;
+  const double step = std::log(1e7) / kSteps;
+  for (int k = 0; k < kSteps; ++k) {
+    const double frequency_hz = 1e-5 * std::exp(step * (k + 0.5));
     const double angle = std::numbers::pi * frequency_hz * window_s;
     const double mean = std::sin(angle) / angle;
-    seen += spectrum.value().density_m2_s2_hz(frequency_hz) * (1.0 - mean * mean) * frequency_hz * kStep;
+    seen += spectrum.value().density_m2_s2_hz(frequency_hz) * (1.0 - mean * mean) * frequency_hz * step;
   }
   return seen;
 }
@@ -184,7 +183,7 @@ TEST_P(WindFaults, InAGapItGoesOnAsTheModelDoes) {
     HeardWind heard(seed);
     const std::vector<WindVector> before = wind_of(heard, gap, 0.0, kFaultFrom_s);
     // The last 100 s before the gap, and the gap.
-    const std::vector<WindVector> last(before.end() - 100 * kTicksASecond, before.end());
+    const std::vector<WindVector> last(before.end() - 100L * kTicksASecond, before.end());
     const Turbulence turbulence = heard.estimator().turbulence();
     const WindVector ahead = heard.estimator().ground().gusts.ahead;
     const WindMoments usual = moments_of(last);

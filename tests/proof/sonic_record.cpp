@@ -29,7 +29,7 @@ std::optional<SonicRecord> load_sonic(int number) {
     const std::size_t comma = line.find(',');
     WindVector wind;
     if (comma == std::string::npos || std::sscanf(line.c_str() + comma, ",%lf,%lf", &wind.u_m_s, &wind.v_m_s) != 2) {
-      throw std::runtime_error(file + ": \"" + line + "\" is not time,u,v,...");
+      throw std::runtime_error(std::string(file).append(": a line is not time,u,v: ").append(line));
     }
     record.samples.push_back(wind);
   }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "engine/wind/blended_estimator.hpp"
 #include "tests/support/gusty_wind.hpp"
 
 namespace yuragi {
@@ -305,6 +307,69 @@ TEST(WindShaping, WhateverComesTheWindIsFiniteBoundedAndItsGainsNeverJump) {
       before = now;
     }
   }
+}
+
+/// What an anemometer with a reading a second says in half an hour of calm, breeze, front, storm, silence and calm.
+std::optional<WindReading> reading_of_a_day(int second, std::mt19937& random) {
+  const auto uniform = [&](double from, double to) {
+    return from + (to - from) * static_cast<double>(random()) / 4294967296.0;
+  };
+  WindReading reading;
+  reading.time.mono = MonoTime(std::chrono::seconds(second));
+  reading.direction_deg = std::fmod(350.0 + 40.0 * std::sin(0.01 * second) + uniform(-10.0, 10.0) + 360.0, 360.0);
+  if (second < 400) return reading;
+  if (second < 700) reading.speed_m_s = uniform(0.4, 1.0);
+  if (second >= 700 && second < 1100)
+    reading.speed_m_s = std::min(30.0, 0.1 * (second - 700)) * (1.0 + 0.3 * std::sin(0.5 * second));
+  if (second >= 1100 && second < 1200) return std::nullopt;
+  return reading;
+}
+
+TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings) {
+  constexpr int kRate_hz = 15;
+  BlendedEstimator estimator(1, {.climate = {.mean_speed_m_s = 3.0}, .rate_hz = kRate_hz}, shared_gusts());
+  WindShaping shaping({.floor_m_s = 2.0,
+                       .over_s = 60.0,
+                       .ceiling = {.from_m_s = 17.0, .most_m_s = 25.0},
+                       .closed_level = 0.3,
+                       .fade_s = 60.0},
+                      shared_gusts());
+  // The largest steps from tick to tick while it is calm, and in the storm; in the middle and at a corner.
+  struct Largest {
+    double real_m_s = 0.0, shaped_m_s = 0.0;
+  };
+  Largest calm, storm;
+  std::mt19937 random(3);
+  DrivingWind last_real, last_shaped;
+  double weakest_mean_m_s = 1e9;
+  for (int tick = 0; tick < 1400 * kRate_hz; ++tick) {
+    const int second = tick / kRate_hz;
+    if (tick % kRate_hz == 0) {
+      if (const auto reading = reading_of_a_day(second, random)) estimator.accept(0, *reading);
+    }
+    const WindState state = estimator.advance(MonoTime(from_seconds(static_cast<double>(tick) / kRate_hz)));
+    const DrivingWind real{state, estimator.ground()};
+    DrivingWind shaped = real;
+    shaping.shape(shaped, second / 250 % 2 == 0);
+    ASSERT_TRUE(std::isfinite(speed_of(shaped.state.wind)));
+    ASSERT_LT(speed_of(shaped.state.wind), 25.0);
+    if (second > 200 && second < 400) weakest_mean_m_s = std::min(weakest_mean_m_s, shaping.report().shaped_mean_m_s);
+
+    Largest& largest = second < 700 ? calm : storm;
+    for (const double at_m : {0.0, 40.0}) {
+      if (tick == 0) break;
+      const auto at = [at_m](const DrivingWind& wind) { return wind.ground.at(*shared_gusts(), at_m, at_m); };
+      largest.real_m_s = std::max(largest.real_m_s, speed_of(at(real) - at(last_real)));
+      largest.shaped_m_s = std::max(largest.shaped_m_s, speed_of(at(shaped) - at(last_shaped)));
+    }
+    last_real = real;
+    last_shaped = shaped;
+  }
+  EXPECT_GT(weakest_mean_m_s, 1.9) << "a calm is raised";
+  // The floor's gain, and gusts that pass at up to its speed; in a storm no gain is above 1, and others of the same
+  // gusts pass.
+  EXPECT_LT(calm.shaped_m_s, WindShaping::kMostFloorGain * calm.real_m_s + 0.05);
+  EXPECT_LT(storm.shaped_m_s, 1.1 * storm.real_m_s);
 }
 
 }  // namespace
