@@ -5,17 +5,17 @@
 namespace yuragi {
 namespace {
 
+constexpr std::string_view kOfDriver = "auto";
 constexpr std::string_view kRelative = "relative";
-constexpr std::string_view kUsual = "usual";
-constexpr std::array<std::string_view, 3> kRoles = {kUsual, "absolute", kRelative};
+constexpr std::array<std::string_view, 3> kRoles = {kOfDriver, "absolute", kRelative};
 
 const std::array kSensorBlendParameters = {
     Parameter{.name = "role",
               .unit = "",
-              .default_value = std::string(kUsual),
-              .help = "relative: only its rise and fall is believed (usual for a microphone); it gives the gusts that "
-                      "the absolute "
-                      "sensors are too slow for, as strong as theirs",
+              .default_value = std::string(kOfDriver),
+              .help =
+                  "relative: only its rise and fall is believed; it gives the gusts that the absolute sensors are too "
+                  "slow for, as strong as theirs. auto: a microphone is relative, all else absolute",
               .choices = kRoles},
     Parameter{
         .name = "priority",
@@ -61,9 +61,9 @@ ParameterValues default_sensor_blend() {
   return ParameterValues::resolve(kSensorBlendParameters, {}).value();
 }
 
-BlendSourceSettings blend_source_of(const ParameterValues& values, bool is_relative_by_kind) {
+BlendSourceSettings blend_source_of(const ParameterValues& values, const DriverDescription& driver) {
   const std::string& role = values.text("role");
-  return {.is_relative = role == kRelative || (role == kUsual && is_relative_by_kind),
+  return {.is_relative = role == kRelative || (role == kOfDriver && driver.is_relative),
           .priority = static_cast<int>(values.integer("priority")),
           .weight = values.number("weight"),
           .east_m = values.number("x"),

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "drivers/driver.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/wind/blend_settings.hpp"
 
@@ -12,8 +13,7 @@ std::span<const Parameter> sensor_blend_parameters();
 
 ParameterValues default_sensor_blend();
 
-/// The same for the estimator. `values` are those of the table; `is_relative_by_kind`: as its driver's description
-/// says.
-BlendSourceSettings blend_source_of(const ParameterValues& values, bool is_relative_by_kind);
+/// The same for the estimator. `values` are those of the table, `driver` the sensor's.
+BlendSourceSettings blend_source_of(const ParameterValues& values, const DriverDescription& driver);
 
 }  // namespace yuragi

@@ -53,7 +53,7 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
                          .return_after_s = config.wind.number("return_after"),
                          .rate_hz = config.animation.number("rate")};
   for (const SensorConfig& sensor : config.sensors)
-    settings.sources.push_back(blend_source_of(sensor.blend, sensor.driver->is_relative));
+    settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
   // Behind all sensors, whatever their priorities.
   if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
   const std::size_t source_count = settings.sources.size();
@@ -79,8 +79,8 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     channel.is_judged = judged_by.has_value();
     channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
     // A sensor whose scale is not to be believed is no witness.
-    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") &&
-                          !blend_source_of(channel.config.blend, channel.config.driver->is_relative).is_relative;
+    const bool is_relative = blend_source_of(channel.config.blend, *channel.config.driver).is_relative;
+    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") && !is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }

@@ -39,7 +39,7 @@ namespace yuragi {
 ///     frequency times T   to 0.02   0.05   0.1    0.2    0.25 (the crossover)
 ///     delay over T        1.36      1.35   1.31   1.25   1.22
 ///
-/// Cost: about 5 us a tick for one source and 12 us for four (2 cores, -O2; 20 000 ticks timed after 600 to begin
+/// Cost: about 5 us a tick for one source and 15 us for four (2 cores, -O2; 20 000 ticks timed after 600 to begin
 /// with).
 ///
 /// Source: method of the wind model (`wind.md` 2 of the specification), Taylor 1938 (frozen turbulence), Davenport 1961

@@ -138,12 +138,11 @@ TEST(Config, ASensorHasItsPartAmongSeveral) {
       "priority = 3\nweight = 2\nx = -4.5\nz = 2\naveraging = 600\ndirection_step = 22.5\n",
       "wall.toml");
   EXPECT_EQ(config.wind.number("return_after"), 20.0);
-  const BlendSourceSettings roof = blend_source_of(config.sensors[0].blend, false);
+  const BlendSourceSettings roof = blend_source_of(config.sensors[0].blend, *config.sensors[0].driver);
   EXPECT_FALSE(roof.is_relative);
-  EXPECT_TRUE(blend_source_of(config.sensors[0].blend, true).is_relative) << "as its kind is";
   EXPECT_EQ(roof.priority, 0);
   EXPECT_EQ(roof.weight, 1.0);
-  const BlendSourceSettings microphone = blend_source_of(config.sensors[1].blend, false);
+  const BlendSourceSettings microphone = blend_source_of(config.sensors[1].blend, *config.sensors[1].driver);
   EXPECT_TRUE(microphone.is_relative);
   EXPECT_EQ(microphone.priority, 3);
   EXPECT_EQ(microphone.weight, 2.0);
