@@ -250,7 +250,6 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
   return all;
 }
 
-/// Does a sensor speak that is believed?
 bool SensorHub::is_any_live() const {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     if (estimator_->report(index).health == SourceHealth::kLive) return true;

@@ -38,6 +38,9 @@ class SensorHub {
   /// Takes in what has arrived and says what the wind is now. Logs each change of a sensor's state once.
   const WindState& advance();
 
+  /// Does a sensor speak that is believed? A fall-back recording is none. As of the last advance().
+  bool is_any_live() const;
+
   /// The wind as of the last advance().
   const WindState& wind() const noexcept { return wind_; }
   const GroundWind& ground() const noexcept { return estimator_->ground(); }
@@ -84,7 +87,6 @@ class SensorHub {
   void take(std::size_t index, const WindReading& reading);
   void judge_refusals(Channel& channel) const;
   void compare(MonoTime now);
-  bool is_any_live() const;
   SensorEvidence evidence_of(std::size_t index, MonoTime now) const;
   void log_link(Channel& channel, MonoTime now) const;
   void log_state(std::size_t index, MonoTime now);

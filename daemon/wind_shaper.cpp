@@ -59,11 +59,11 @@ void WindShaper::keep_site_file() {
   }
 }
 
-void WindShaper::shape(DrivingWind& wind, UtcTime utc) {
+void WindShaper::shape(DrivingWind& wind, UtcTime utc, bool is_any_live) {
   const MonoTime now = wind.state.time;
   const bool is_time_to_look = !has_looked_ || now - looked_ >= kLookAtHoursEvery;
   if (is_time_to_look) look_at_hours(now, utc);
-  shaping_.shape(wind, is_open_);
+  shaping_.shape(wind, is_open_, is_any_live);
   log_ceiling(shaping_.report(), now);
   if (!is_time_to_look) return;
   log_changes();

@@ -28,7 +28,8 @@ class WindShaper {
   void keep_site_file();
 
   /// Makes of the real wind the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
-  void shape(DrivingWind& wind, UtcTime utc);
+  /// `is_any_live`: a sensor speaks. Where none does, but a recording is played, nothing is learnt of the site.
+  void shape(DrivingWind& wind, UtcTime utc, bool is_any_live);
 
   /// What is at work, as of the last shape().
   wire::Shaping status() const;

@@ -150,7 +150,7 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
     wire::Sensors sensors;
     sensors.wind = hub.advance();
     DrivingWind wind{sensors.wind, hub.ground()};
-    shaper.shape(wind, clock.now().utc);
+    shaper.shape(wind, clock.now().utc, hub.is_any_live());
     if (clock.now().mono >= next_status) {
       next_status += kTableInterval;
       sensors.sensors = hub.status();

@@ -64,17 +64,17 @@ class Figures {
   std::string draw(std::span<const PlotPanel> panels, const std::string& name, std::string_view label,
                    int width_px = kWidth_px) {
     draw_plot(scratch_, panels, width_px);
-    std::string text = text_of_file(scratch_);
+    const std::string text = text_of_file(scratch_);
     std::error_code ignored;
     std::filesystem::remove(scratch_, ignored);
-    return embedded_svg(std::move(text), fmt::format("{}{}", name, index_), label);
+    return embedded_svg(text, fmt::format("{}{}", name, index_), label);
   }
 
   double axis_s(double time_s) const { return seconds(recording_.utc_at(time_s).time_since_epoch()); }
 
   PlotPanel time_panel() const {
-    // One reading has a time, but no duration.
-    const double margin_s = recording_.duration_s() > 0.0 ? 0.0 : 1.0;
+    // One reading has a time, but no duration; and gnuplot knows no axis of microseconds in this century.
+    const double margin_s = recording_.duration_s() < 1.0 ? 1.0 : 0.0;
     PlotPanel panel;
     panel.is_x_time = true;
     panel.x_range = {{axis_s(recording_.begin_s) - margin_s, axis_s(recording_.end_s) + margin_s}};
@@ -116,9 +116,10 @@ std::string Figures::event_titles(int height_px) const {
   constexpr double kLeastWidth_px = 3.0;
   const double axis_px = kWidth_px - kTimeAxisLeft_px - kTimeAxisRight_px;
   std::string titles;
+  const auto [axis_begin_s, axis_end_s] = *time_panel().x_range;
+  const double px_per_s = axis_px / (axis_end_s - axis_begin_s);
   for (const StateEvent& event : sensor_.events) {
-    const double px_per_s = axis_px / recording_.duration_s();
-    const double from_px = kTimeAxisLeft_px + (event.from_s - recording_.begin_s) * px_per_s;
+    const double from_px = kTimeAxisLeft_px + (axis_s(event.from_s) - axis_begin_s) * px_per_s;
     fmt::format_to(
         std::back_inserter(titles),
         "<rect x=\"{:.1f}\" y=\"0\" width=\"{:.1f}\" height=\"{}\" fill=\"transparent\"><title>{} for {}, from "
@@ -358,7 +359,7 @@ void replace_all(std::string& text, std::string_view what, std::string_view with
 
 }  // namespace
 
-std::string embedded_svg(std::string file, const std::string& prefix, std::string_view label) {
+std::string embedded_svg(const std::string& file, const std::string& prefix, std::string_view label) {
   // From <svg viewBox=...> on: a page needs neither prolog nor name spaces, and names nothing outside itself.
   const std::size_t view = file.find("viewBox=");
   const std::size_t view_end = view == std::string::npos ? view : file.find('\n', view);

@@ -29,6 +29,6 @@ SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumber
                            const std::filesystem::path& scratch, std::size_t index);
 
 /// gnuplot's SVG file as an element of a page: with no prolog and no background, under ids that begin with `prefix`.
-std::string embedded_svg(std::string file, const std::string& prefix, std::string_view label);
+std::string embedded_svg(const std::string& file, const std::string& prefix, std::string_view label);
 
 }  // namespace yuragi

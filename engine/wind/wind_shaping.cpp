@@ -43,7 +43,7 @@ WindShaping::WindShaping(const WindShapingSettings& settings, std::shared_ptr<co
       across_(gust_variances(*noise_, kAcrossPerAlong * settings.turbulence_intensity, settings.length_m)),
       memory_(settings.site_memory_s) {}
 
-void WindShaping::shape(DrivingWind& wind, bool is_open) noexcept {
+void WindShaping::shape(DrivingWind& wind, bool is_open, bool is_of_site) noexcept {
   WindState& state = wind.state;
   const double dt_s = has_begun_ ? std::max(0.0, seconds(state.time - time_)) : 0.0;
   if (!has_begun_ || state.time > time_) time_ = state.time;
@@ -53,7 +53,7 @@ void WindShaping::shape(DrivingWind& wind, bool is_open) noexcept {
   const double way_s = std::exchange(has_begun_, true) ? dt_s : kForEver_s;
   mean_.step(speed_m_s, kPhaseOfArrival / settings_.over_s, way_s);
   quick_mean_.step(speed_m_s, kPhaseOfArrival / kQuickOver_s, way_s);
-  live_s_ = state.live_weight > 0.5 ? live_s_ + dt_s : 0.0;
+  live_s_ = is_of_site && state.live_weight > 0.5 ? live_s_ + dt_s : 0.0;
   // By then the mean has forgotten what was before.
   if (live_s_ > settings_.over_s) remember(mean_.value, dt_s);
   follow(state.live_weight, is_open, way_s);

@@ -69,8 +69,8 @@ class WindShaping {
   WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise);
 
   /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call begins where
-  /// its wind and `is_open` say, without a way there.
-  void shape(DrivingWind& wind, bool is_open) noexcept;
+  /// its wind and `is_open` say, without a way there. `is_of_site`: live wind is what the site has, and is remembered.
+  void shape(DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
 
   const WindShapingSettings& settings() const noexcept { return settings_; }
   WindShapingReport report() const noexcept;

@@ -61,7 +61,7 @@ class ShaperBench {
       utc += from_seconds(step_s);
       DrivingWind wind{.state = {.time = mono, .wind = {speed_m_s, 0.0}, .live_weight = 1.0},
                        .ground = WindVector{speed_m_s, 0.0}};
-      shaper.shape(wind, utc);
+      shaper.shape(wind, utc, is_any_live);
       shaped_m_s = speed_of(wind.state.wind);
       largest_step_m_s = std::max(largest_step_m_s, has_begun_ ? std::abs(shaped_m_s - last_m_s_) : 0.0);
       has_begun_ = true;
@@ -80,6 +80,7 @@ class ShaperBench {
   MonoTime mono{std::chrono::hours(1)};
   UtcTime utc = std::chrono::sys_days(std::chrono::year(2026) / 11 / 17) + 9h + 58min;  // a Tuesday
   double largest_step_m_s = 0.0;
+  bool is_any_live = true;
   WindShaper shaper;
 };
 
@@ -207,6 +208,16 @@ TEST_F(SiteFileTest, ARecordingIsNotTheSite) {
     wall.after(2.0);
   }
   EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST(WindShaper, NothingIsLearntOfTheSiteFromAFallBack) {
+  ShaperBench wall("site_median = 4\nover = 10\n");
+  wall.is_any_live = false;
+  EXPECT_EQ(wall.after(2.0, 3.0 * 3600.0, 1.0), 2.0);
+  EXPECT_EQ(wall.shaper.status().site_known_s, 0.0);
+  wall.is_any_live = true;
+  wall.after(2.0, 600.0, 1.0);
+  EXPECT_NEAR(wall.shaper.status().site_known_s, 590.0, 5.0);
 }
 
 TEST(ShapingText, SaysEverythingThatIsAtWork) {

@@ -358,6 +358,19 @@ class ReportCommand(unittest.TestCase):
             self.assertFalse(out.exists())
         self.assertEqual((self.folder / "there.html").read_text(encoding="ascii"), "precious")
 
+    def test_any_times_and_numbers_make_a_page(self):
+        log = self.record(self.faulty())
+        whole = log.read_bytes()
+        far = 2**63 // 2 - 1
+        for change in ("utc_ns = random() / 2", f"utc_ns = {far}", f"utc_ns = -{far}", "mono_ns = 5", "mono_ns = rowid",
+                       "mono_ns = abs(random()) / 4", "speed_m_s = 1e-300", "speed_m_s = -1", "direction_deg = 359.9999999"):
+            log.write_bytes(whole)
+            with sqlite3.connect(log) as file:
+                file.execute(f"UPDATE reading SET {change}")
+            text, _ = self.report(log)
+            self.check_page(text)
+            self.assertNotRegex(text.split("<body>")[1], r"\b(nan|inf)\b", change)
+
     def test_too_many_sensors_are_refused_with_advice(self):
         run = yuragi("report", self.record([(i, f"s{i}", 1, None, None, "good") for i in range(40)]), "-o", self.folder / "a.html")
         self.assertEqual(run.returncode, 65)
