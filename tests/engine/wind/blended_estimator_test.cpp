@@ -185,7 +185,7 @@ TEST(BlendedEstimator, WhatIsHeldIsNeitherSilenceNorSomethingToLearn) {
   // one that seems to measure the same again and again.
   std::array<double, 2> intensity{};
   for (const bool says_so : {true, false}) {
-    Blend blend;
+    Blend blend = usual_blend();
     for (int i = 0; i < 600; ++i) {
       blend.read(6.0 + 2.0 * std::sin(0.7 * i) + std::sin(2.3 * i), 90.0);
       blend.run_for(1.0);
