@@ -119,7 +119,7 @@ const wire::SensorStatus* find_status(const wire::Sensors& all, const SensorConf
 }
 
 /// A client of the daemon that has asked for the sensors. Nothing where nobody answers.
-std::optional<StreamClient> ask_daemon(const std::string& address) {
+std::optional<StreamClient> connect_to_daemon(const std::string& address) {
   auto client = StreamClient::connect(address, kDaemonConnectTimeout);
   if (!client || !client->subscribe({.poses = false, .sensors = true, .client = "calibrate"})) return std::nullopt;
   return std::move(*client);
@@ -151,7 +151,7 @@ class DaemonSource final : public CalibrationSource {
 
   Heard hear(const Stretch& stretch, const Progress& progress) override {
     // A connection of its own: an old one would hand out what was said while hands were busy.
-    auto client = ask_daemon(address_);
+    auto client = connect_to_daemon(address_);
     if (!client) throw ExitError(kExitUnavailable, "the daemon at " + address_ + " has gone");
     std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
     std::vector<std::string> links(sensors_.size(), "it is not there");
@@ -245,7 +245,7 @@ class RecordedSource final : public CalibrationSource {
 
 std::unique_ptr<CalibrationSource> make_live_source(SensorConfigs sensors, const std::string& address,
                                                     const Clock& clock) {
-  auto client = ask_daemon(address);
+  auto client = connect_to_daemon(address);
   if (!client) return std::make_unique<DeviceSource>(std::move(sensors), clock);
 
   const wire::Sensors all = next_sensors(*client, address);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/speed_unit.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi {
@@ -23,12 +24,6 @@ inline constexpr std::string_view kExportedHeader = "utc,time_s,sensor,speed_m_s
 
 /// The words of its column `quality`, by ReadingQuality.
 inline constexpr std::array<std::string_view, 3> kQualityWords = {"good", "uncertain", "simulated"};
-
-/// A unit that a speed can have.
-struct SpeedUnit {
-  std::string_view name;
-  double metres_per_second = 1.0;
-};
 
 /// By one of the names that people give it ("km/h", "kn", "kts", "mph"), in small letters, signs left out or not.
 std::optional<SpeedUnit> find_speed_unit(std::string_view name);

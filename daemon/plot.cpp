@@ -46,21 +46,21 @@ TimeMarks time_marks(double span_s) {
   constexpr std::string_view kSeconds = "%H:%M:%S";
   constexpr std::string_view kMinutes = "%H:%M";
   constexpr std::string_view kHours = "%H:%M\\n%d %b";
-  constexpr std::string_view kDays = "%d %b\\n%Y";
+  constexpr std::string_view kDates = "%d %b\\n%Y";
   constexpr std::array kMarks = {
-      TimeMarks{1, kSeconds},         TimeMarks{2, kSeconds},         TimeMarks{5, kSeconds},
-      TimeMarks{10, kSeconds},        TimeMarks{30, kSeconds},        TimeMarks{60, kMinutes},
-      TimeMarks{120, kMinutes},       TimeMarks{300, kMinutes},       TimeMarks{600, kMinutes},
-      TimeMarks{1800, kMinutes},      TimeMarks{kHour_s, kHours},     TimeMarks{2 * kHour_s, kHours},
-      TimeMarks{4 * kHour_s, kHours}, TimeMarks{6 * kHour_s, kHours}, TimeMarks{12 * kHour_s, kHours},
-      TimeMarks{kDay_s, kDays},       TimeMarks{2 * kDay_s, kDays},   TimeMarks{4 * kDay_s, kDays},
-      TimeMarks{7 * kDay_s, kDays},   TimeMarks{14 * kDay_s, kDays},  TimeMarks{28 * kDay_s, kDays},
-      TimeMarks{91 * kDay_s, kDays},  TimeMarks{182 * kDay_s, kDays}, TimeMarks{365 * kDay_s, kDays}};
+      TimeMarks{1, kSeconds},         TimeMarks{2, kSeconds},          TimeMarks{5, kSeconds},
+      TimeMarks{10, kSeconds},        TimeMarks{30, kSeconds},         TimeMarks{60, kMinutes},
+      TimeMarks{120, kMinutes},       TimeMarks{300, kMinutes},        TimeMarks{600, kMinutes},
+      TimeMarks{1800, kMinutes},      TimeMarks{kHour_s, kHours},      TimeMarks{2 * kHour_s, kHours},
+      TimeMarks{4 * kHour_s, kHours}, TimeMarks{6 * kHour_s, kHours},  TimeMarks{12 * kHour_s, kHours},
+      TimeMarks{kDay_s, kDates},      TimeMarks{2 * kDay_s, kDates},   TimeMarks{4 * kDay_s, kDates},
+      TimeMarks{7 * kDay_s, kDates},  TimeMarks{14 * kDay_s, kDates},  TimeMarks{28 * kDay_s, kDates},
+      TimeMarks{91 * kDay_s, kDates}, TimeMarks{182 * kDay_s, kDates}, TimeMarks{365 * kDay_s, kDates}};
   constexpr double kMostMarks = 8.0;
   for (const TimeMarks& marks : kMarks) {
     if (span_s <= kMostMarks * marks.step_s) return marks;
   }
-  return {std::ceil(span_s / kMostMarks / (365.0 * kDay_s)) * 365.0 * kDay_s, kDays};
+  return {std::ceil(span_s / kMostMarks / (365.0 * kDay_s)) * 365.0 * kDay_s, kDates};
 }
 
 /// What stands before the plot command of a panel. All of it is set anew, so that nothing is left of the one before.

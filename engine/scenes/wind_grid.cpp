@@ -15,7 +15,7 @@ constexpr std::size_t kFewestNodes = 4;
 constexpr std::size_t kMostNodes = 64;
 
 /// What is left of a wind that has ceased is nothing: numbers too small are slow.
-constexpr float kCalm_m_s = 1e-12F;
+constexpr float kNoWind_m_s = 1e-12F;
 
 /// The standard deviation of a usual wind, as a part of its speed.
 constexpr double kUsualTurbulence = 0.2;
@@ -121,7 +121,7 @@ void WindGrid::follow(Component& component, double dt_s) noexcept {
     const float rate = component.rate_per_s[i];
     const float value = target + value_from_distance * distance + value_from_rate * rate;
     const float new_rate = rate_from_rate * rate + rate_from_distance * distance;
-    const bool is_still = std::abs(value) < kCalm_m_s && std::abs(new_rate) < kCalm_m_s;
+    const bool is_still = std::abs(value) < kNoWind_m_s && std::abs(new_rate) < kNoWind_m_s;
     component.value.values[i] = is_still ? 0.0F : value;
     component.rate_per_s[i] = is_still ? 0.0F : new_rate;
   }
@@ -144,7 +144,7 @@ void WindGrid::sample_gusts(std::size_t first, std::span<float> out, float limit
   const std::span<float> south_m_s = std::span(south_m_s_).first(out.size());
   sample(first, east_m_s, south_m_s);
   const double speed_m_s = smooth_.speed_m_s();
-  if (speed_m_s < static_cast<double>(kCalm_m_s)) {
+  if (speed_m_s < static_cast<double>(kNoWind_m_s)) {
     std::ranges::fill(out, 0.0F);
     return;
   }

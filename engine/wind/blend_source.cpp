@@ -18,7 +18,6 @@ constexpr double kGapIntervals = 3.0;
 constexpr double kTrustRate_rad_s = 1.0;
 /// The slow mean of the speed, by which turbulence is measured.
 constexpr double kSpeedMemory_s = 60.0;
-constexpr double kLeastSpeed_m_s = 0.5;
 constexpr double kFitEvery_s = 1.0;
 
 double sinc(double x) noexcept {

@@ -12,7 +12,6 @@
 namespace yuragi {
 namespace {
 
-constexpr double kLeastSpeed_m_s = 0.5;
 /// Gusts go on changing in calm air as if it moved at this.
 constexpr double kLeastAdvection_m_s = 0.3;
 /// Below this the wind's direction is no direction: what it was is held, the more the calmer it is.

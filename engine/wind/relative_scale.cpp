@@ -6,8 +6,8 @@
 namespace yuragi {
 namespace {
 
-constexpr double kLeastGain = 0.05;
-constexpr double kMostGain = 20.0;
+constexpr double kLeastScale = 0.05;
+constexpr double kMostScale = 20.0;
 /// The mean speeds are believed in full when far more time than this is behind them.
 constexpr double kTimeToBelieve_s = 15.0;
 /// And the gusts when far more of them than these are.
@@ -16,7 +16,7 @@ constexpr double kGustsToBelieve = 4.0;
 constexpr double kLeastSum = 1e-3;
 
 double log_ratio(double above, double below) noexcept {
-  return std::clamp(std::log((above + kLeastSum) / (below + kLeastSum)), std::log(kLeastGain), std::log(kMostGain));
+  return std::clamp(std::log((above + kLeastSum) / (below + kLeastSum)), std::log(kLeastScale), std::log(kMostScale));
 }
 
 }  // namespace

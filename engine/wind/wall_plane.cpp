@@ -8,7 +8,7 @@ namespace {
 
 /// Over the wall's length squared: two sensors at its ends, whose own spread is 0.25, lose 1 % of the slope.
 constexpr double kRidge = 0.0025;
-constexpr double kLeastShare = 1e-9;
+constexpr double kLeastWallShare = 1e-9;
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void WallPlane::weigh(std::span<const double> shares, double part, std::span<Pla
     centre.east_m += shares[i] * places_[i].east_m;
     centre.south_m += shares[i] * places_[i].south_m;
   }
-  if (is_point() || sum < kLeastShare) return;
+  if (is_point() || sum < kLeastWallShare) return;
   centre = {centre.east_m / sum, centre.south_m / sum};
 
   // How far they are spread about their centre, in both directions; with the ridge the matrix has an inverse.

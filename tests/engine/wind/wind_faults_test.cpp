@@ -27,7 +27,7 @@ enum class RandomFault : std::uint8_t {
   kFrozen,
   kZero,
   kNoDirection,
-  kTurned,
+  kTurnedAbout,
   kEarlier,  ///< the readings' clock is behind, or runs ahead
   kLater,
   kTwice,
@@ -82,7 +82,7 @@ class FaultySensor {
       case RandomFault::kNoDirection:
         reading.direction_deg.reset();
         break;
-      case RandomFault::kTurned:
+      case RandomFault::kTurnedAbout:
         reading.direction_deg = static_cast<double>(random_() % 360);
         break;
       case RandomFault::kEarlier:
