@@ -167,6 +167,7 @@ void add_wind(CLI::App& app) {
       ->check(CLI::Range(0.01, 3600.0))
       ->type_name("T");
   command->add_option("--gap", options->gaps, "leave out what was said from one second on to another")
+      ->allow_extra_args(false)
       ->type_name("FROM,TO");
   command->add_option("--sensor", options->playback.sensor, "whose readings; without it: of the first that spoke")
       ->type_name("NAME");

@@ -115,6 +115,7 @@ class WindCommand(unittest.TestCase):
         self.assertGreater(trust[240.0], 0.9)
         steps = [math.hypot(b["u_m_s"] - a["u_m_s"], b["v_m_s"] - a["v_m_s"]) for a, b in zip(rows, rows[1:])]
         self.assertLess(max(steps), 0.5)
+        self.assertEqual(yuragi("wind", "--gap", "100,200", self.log, "-o", "-").returncode, 0, "a file is no gap")
 
     def test_shapes_the_wind_for_the_scenes_where_it_is_asked_to(self):
         real, _ = self.wind("--rate", 10)
