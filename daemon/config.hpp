@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/config_tables.hpp"
 #include "daemon/sensor_blend.hpp"
 #include "drivers/driver.hpp"
 #include "engine/base/parameter.hpp"
@@ -19,8 +20,8 @@
 
 namespace yuragi {
 
-/// What the table [sensor.judge] of a sensor may hold, and its defaults.
-std::span<const Parameter> judge_parameters();
+/// [sensor.calibration] and [sensor.judge] where they are not written.
+ParameterValues no_calibration();
 ParameterValues default_judge();
 
 /// A sensor or a scene of an installation: which kind, how it is called, and its own parameters.
@@ -44,30 +45,14 @@ struct SceneConfig {
 /// default.
 struct Config {
   std::uint64_t seed = 1;
-  ParameterValues stream;             ///< kStreamParameters
-  ParameterValues animation;          ///< kAnimationParameters
-  ParameterValues wind;               ///< kWindParameters
+  ParameterValues stream;             ///< stream_parameters()
+  ParameterValues animation;          ///< animation_parameters()
+  ParameterValues wind;               ///< wind_parameters()
   ParameterValues shaping;            ///< shaping_parameters()
   std::string fallback_origin;        ///< `file:line:column` of wind.fallback_recording; empty where it is not set
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
 };
-
-/// The tables of the file that are there once, with what each may hold.
-struct ConfigTable {
-  std::string_view name;
-  std::string_view summary;
-  std::span<const Parameter> parameters;
-};
-std::span<const ConfigTable> config_tables();
-
-/// What a scene of any kind may hold besides: where it stands, its gain, whether it is shown.
-std::span<const Parameter> common_scene_parameters();
-
-/// What the table [sensor.calibration] of a sensor may hold.
-std::span<const Parameter> calibration_parameters();
-
-ParameterValues no_calibration();
 
 /// What a sensor's calibration says. Throws ConfigError for a curve that is none.
 Calibration calibration_of(const SensorConfig& sensor);
