@@ -356,6 +356,7 @@ double BlendedEstimator::newest_age_s() const noexcept {
 }
 
 SourceReport BlendedEstimator::report(std::size_t index) const noexcept {
+  if (index >= sources_.size()) return {};
   return sources_[index].record().report(state_.time, settings_.stale_intervals);
 }
 

@@ -42,7 +42,7 @@ class WindEstimator {
   /// The same wind over the ground, as of the last advance().
   virtual const GroundWind& ground() const noexcept = 0;
 
-  /// How `source` does, as of the last advance().
+  /// How `source` does, as of the last advance(). One that is not there is silent.
   virtual SourceReport report(std::size_t source) const noexcept = 0;
 };
 

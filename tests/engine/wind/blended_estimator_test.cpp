@@ -28,6 +28,12 @@ Blend calm_blend(std::size_t sources = 1) {
       {.climate = {.mean_speed_m_s = 3.0, .mean_direction_deg = 270.0, .turbulence_intensity = 0.0, .seed = 1}});
 }
 
+TEST(BlendedEstimator, ASourceThatIsNotThereIsSilentAndNotHeard) {
+  Blend blend = usual_blend();
+  EXPECT_FALSE(blend.read(5.0, 90.0, 7));
+  EXPECT_EQ(blend.estimator().report(7).health, SourceHealth::kSilent);
+}
+
 TEST(BlendedEstimator, WithoutASensorIsTheClimate) {
   double mean = 0.0;
   double variance = 0.0;
