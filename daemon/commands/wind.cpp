@@ -86,8 +86,8 @@ class Table {
     // A hair west of north is rounded to north, not to 360.
     const double direction_deg = std::fmod(std::round(direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
     fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}\n", time_s,
-                   state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind), direction_deg,
-                   state.live_weight, name_of(state.source));
+                   state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind), direction_deg, state.live_weight,
+                   name_of(state.source));
     if (text_.size() > kBlock) flush();
   }
   void flush() {
