@@ -37,8 +37,9 @@ check() {
   return 1
 }
 
-# count_results FILE: "PASSED FAILED SKIPPED" of CTest's JUnit file, then the name of each test that failed and its
-# last words. CTest also calls skipped what could not be started (a missing program, a failed fixture): that is a failure here.
+# count_results FILE: "PASSED FAILED SKIPPED" of CTest's JUnit file, then the last words of the first five tests that
+# failed, and the names of all. CTest also calls skipped what could not be started (a missing program, a failed fixture):
+# that is a failure here.
 count_results() {
   /usr/bin/python3 - "$1" <<'PYTHON'
 import sys
@@ -55,10 +56,13 @@ for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
         counts[2] += 1
     else:
         counts[1] += 1
-        failures.append("FAILED: " + case.get("name"))
-        failures += ["    " + line for line in case.findtext("system-out", "").splitlines()[-30:]]
+        failures.append(case)
 print(*counts)
-print(*failures[:200], sep="\n")
+for case in failures[:5]:
+    print(case.get("name") + " said at last:")
+    print(*("    " + line for line in case.findtext("system-out", "").splitlines()[-30:]), sep="\n")
+for case in failures:
+    print("FAILED: " + case.get("name"))
 PYTHON
 }
 
