@@ -140,8 +140,11 @@ class Ripple final : public Scene {
       waves_.shift(i, way * (kCrossingCos * east_m_s - sine * south_m_s),
                    way * (sine * east_m_s + kCrossingCos * south_m_s));
     }
-    gusts_.shift(east_m_s, south_m_s, dt_s);
-    if (outside_) outside_->step(wind, dt_s);
+    if (outside_) {
+      outside_->step(wind, dt_s);
+    } else {
+      gusts_.shift(east_m_s, south_m_s, dt_s);
+    }
   }
 
   void sample() noexcept override {

@@ -185,8 +185,11 @@ class Tree final : public Scene {
     // The wind carries both noises on.
     wind_.step(wind, dt_s);
     leaf_wind_.step(wind, dt_s);
-    if (outside_) outside_->step(wind, dt_s);
-    noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
+    if (outside_) {
+      outside_->step(wind, dt_s);
+    } else {
+      noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
+    }
     const double slowed = kLargestLeafNoiseSpeed_m_s / (kLargestLeafNoiseSpeed_m_s + wind_.speed_m_s());
     leaf_noise_.shift(slowed * wind_.east_m_s(), slowed * wind_.south_m_s(), dt_s);
   }
