@@ -13,8 +13,10 @@ struct BlendSourceSettings {
   bool is_relative = false;
   int priority = 0;                 ///< lower first; equal ones share; 0: its place among the sources, from 1
   double weight = 1.0;              ///< among those of the same priority; above 0
-  double east_m = 0.0;              ///< where it stands, from the middle of the scene
-  double south_m = 0.0;             ///< (a relative one is taken to stand in the middle)
+  bool has_place = false;           ///< it is known where it stands; otherwise it is taken for the windward edge
+  double east_m = 0.0;              ///< where it stands, from the middle of the scenes
+  double south_m = 0.0;             ///< (a relative one is taken to stand where those do whose gusts it fills)
+  double lead_m = 0.0;              ///< it is taken to stand so far upwind of there: more is known, and known later
   double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
   double direction_step_deg = 0.0;  ///< its vane knows only every so many degrees; 0: found out
 };
@@ -27,6 +29,7 @@ struct BlendSettings {
   double return_after_s = 10.0;   ///< a source that failed is trusted again after so long; longer if it often fails
   double fit_memory_s = 600.0;    ///< how long the fit of the turbulence remembers
   double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
+  double reach_m = 0.0;           ///< from the middle of the scenes to the farthest place of any of them
   double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
   std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults
 };
