@@ -25,13 +25,14 @@ Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise
   largest_frame_bytes_ = encoder_.encode({}, skeletons_, poses_).size();
 }
 
-void Animation::step(const GroundWind& wind, double dt_s) noexcept {
+void Animation::step(const DrivingWind& wind, double dt_s) noexcept {
+  const GroundWind ground = written_to(tapes_, wind);
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     fades_[i].advance(dt_s);
     opacities_[i] = fades_[i].opacity();
     if (opacities_[i] == 0.0F) continue;
     Scene& scene = *scenes_[i];
-    scene.shift(gains_[i] * wind, dt_s);
+    scene.shift(gains_[i] * ground, dt_s);
     pool_.run([&scene](Part part) { scene.sample_part(part); });
     pool_.run([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
   }

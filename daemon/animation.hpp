@@ -32,8 +32,9 @@ class Animation {
   /// `gusts`: of the wind that step() will be given.
   Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts);
 
-  /// Moves every scene that is seen on by dt_s under `wind`, and every fade.
-  void step(const GroundWind& wind, double dt_s) noexcept;
+  /// Writes the wind onto the tapes that carry it over the ground, and moves every scene that is seen, and every fade,
+  /// on by dt_s under it.
+  void step(const DrivingWind& wind, double dt_s) noexcept;
 
   /// Begins a fade. A scene that is not there is no scene to show: nothing happens.
   void cue(const SceneCue& cue) noexcept;
@@ -58,6 +59,7 @@ class Animation {
   std::vector<std::string> names_, kinds_;
   std::vector<std::unique_ptr<Scene>> scenes_;
   WorkerPool pool_;
+  WindTapes tapes_;
   std::vector<double> gains_;
   std::vector<Fade> fades_;
   std::vector<const Skeleton*> skeletons_;

@@ -78,7 +78,7 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   const DrivingWind& wind = wind_.value();
   const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
   cues_.drain([this](const SceneCue& cue) { animation_.cue(cue); });
-  animation_.step(wind.ground, dt_s);
+  animation_.step(wind, dt_s);
 
   const wire::FrameInfo info{.sequence = sequence_++,
                              .tick = tick.number,

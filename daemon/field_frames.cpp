@@ -33,7 +33,9 @@ void make_recorded_frames(const std::filesystem::path& recording, const Playback
   WindlogPlayback playback(recording, playback_options);
   const std::shared_ptr<const GustNoise> noise = make_gust_noise(config);
   const std::unique_ptr<WindEstimator> estimator = make_estimator(config, noise);
-  const GroundWindField field(estimator->ground(), *noise);
+  WindTapes tapes;
+  GroundWind ground;
+  const GroundWindField field(ground, *noise);
 
   // Some ticks a frame. A frame is of the first tick at its time or after it.
   OfflineWindOptions offline;
@@ -43,12 +45,14 @@ void make_recorded_frames(const std::filesystem::path& recording, const Playback
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
   std::size_t next = 0;
-  const OfflineWindResult result = run_offline(playback, *estimator, offline, [&](double time_s, const WindState&) {
-    if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
-    sample_field(field, grid, values);
-    use(values);
-    ++next;
-  });
+  const OfflineWindResult result =
+      run_offline(playback, *estimator, offline, [&](double time_s, const WindState& state) {
+        ground = written_to(tapes, {state, estimator->ground(), estimator->stroke()});
+        if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
+        sample_field(field, grid, values);
+        use(values);
+        ++next;
+      });
   if (next < frames.count) {
     throw ExitError(kExitDataError,
                     fmt::format("{}: ends after {:.1f} s, and {} frames from {:g} s on need {:.1f} s; ask for fewer "

@@ -52,10 +52,10 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
     });
 
     // A recording is always open: log time is not the time of a wall.
-    DrivingWind wind{estimator->advance(MonoTime(from_seconds(now_s))), estimator->ground()};
+    DrivingWind wind{estimator->advance(MonoTime(from_seconds(now_s))), estimator->ground(), estimator->stroke()};
     shaping.shape(wind, true);
     const WindState& state = wind.state;
-    animation.step(wind.ground, 1.0 / rate_hz);
+    animation.step(wind, 1.0 / rate_hz);
     result.pose_hash = hash_poses(result.pose_hash, animation.poses());
     ++result.ticks;
     if (state.source == WindSource::kLive) {

@@ -44,6 +44,7 @@ class SensorHub {
   /// The wind as of the last advance().
   const WindState& wind() const noexcept { return wind_; }
   const GroundWind& ground() const noexcept { return estimator_->ground(); }
+  const WindStroke& stroke() const noexcept { return estimator_->stroke(); }
 
   /// How each sensor does, for the stream and for `sensors watch`; and the fall-back, while it plays.
   std::vector<wire::SensorStatus> status() const;

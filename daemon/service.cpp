@@ -119,7 +119,7 @@ class Service::Io {
 
   /// Takes in readings and lets the wind go on, at the animation's pace.
   void step_wind() {
-    DrivingWind wind{hub_.advance(), hub_.ground()};
+    DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
     shaper_.shape(wind, clock_.now().utc, hub_.is_any_live());
     wind_.publish(wind);
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });

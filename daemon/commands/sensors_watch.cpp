@@ -149,7 +149,7 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
   while (!deadline.is_over()) {
     wire::Sensors sensors;
     sensors.wind = hub.advance();
-    DrivingWind wind{sensors.wind, hub.ground()};
+    DrivingWind wind{sensors.wind, hub.ground(), hub.stroke()};
     shaper.shape(wind, clock.now().utc, hub.is_any_live());
     if (clock.now().mono >= next_status) {
       next_status += kTableInterval;

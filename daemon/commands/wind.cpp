@@ -119,7 +119,7 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
   std::uint64_t states = 0;
   const OfflineWindResult result =
       run_offline(playback, *estimator, options.offline, [&](double time_s, const WindState& state) {
-        DrivingWind wind{state, estimator->ground()};
+        DrivingWind wind{state, estimator->ground(), estimator->stroke()};
         if (options.shaped) shaping.shape(wind, true);
         table.add(time_s, wind.state);
         if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);

@@ -20,8 +20,14 @@ void settle(CriticallyDamped& follower) noexcept {
 
 }  // namespace
 
-SceneWind::SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts)
-    : gusts_(std::move(gusts)), place_x_m_(placement.x_m), place_z_m_(placement.z_m) {}
+SceneWind::SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts, WindPart part)
+    : gusts_(std::move(gusts)), part_(part), place_x_m_(placement.x_m), place_z_m_(placement.z_m) {}
+
+WindVector SceneWind::at_place(const GroundWind& wind) const noexcept {
+  if (part_ == WindPart::kMean) return wind.smooth_at(place_x_m_, place_z_m_);
+  if (!gusts_) return wind.measured_at(place_x_m_, place_z_m_);
+  return wind.at(*gusts_, place_x_m_, place_z_m_);
+}
 
 WindVector SceneWind::cut(WindVector wind) noexcept {
   const double speed_m_s = std::sqrt(wind.u_m_s * wind.u_m_s + wind.v_m_s * wind.v_m_s);
@@ -29,8 +35,7 @@ WindVector SceneWind::cut(WindVector wind) noexcept {
 }
 
 void SceneWind::step(const GroundWind& wind, double dt_s) noexcept {
-  const WindVector here =
-      cut(gusts_ ? wind.at(*gusts_, place_x_m_, place_z_m_) : wind.smooth_at(place_x_m_, place_z_m_));
+  const WindVector here = cut(at_place(wind));
   east_.step(here.u_m_s, kOmega_rad_s, dt_s);
   south_.step(-here.v_m_s, kOmega_rad_s, dt_s);
   settle(east_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "engine/math/critically_damped.hpp"
@@ -8,6 +9,12 @@
 namespace yuragi {
 
 struct ScenePlacement;
+
+/// What of the wind over the ground a scene feels in its place.
+enum class WindPart : std::uint8_t {
+  kAll,       ///< with all gusts; those of the noise where it is given
+  kMean,      ///< without any: for a scene whose elements read the gusts each in its own place
+};
 
 /// The wind as a scene feels it: what is too strong is cut to kStrongestSceneWind_m_s, and a step becomes a quick
 /// swell, so that no input whatever makes a scene jump. It lags by 2 / kOmega_rad_s = 0.1 s.
@@ -20,8 +27,10 @@ class SceneWind {
  public:
   static constexpr double kOmega_rad_s = 20.0;
 
-  /// The wind in the place of a scene; with its gusts, where they are given.
-  explicit SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts = nullptr);
+  /// The wind in the place of a scene. `gusts`: the noise of the wind that it will be given; without it, only what was
+  /// measured blows there.
+  explicit SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts = nullptr,
+                     WindPart part = WindPart::kAll);
 
   /// Goes on by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
   void step(const GroundWind& wind, double dt_s) noexcept;
@@ -36,7 +45,10 @@ class SceneWind {
   static WindVector cut(WindVector wind) noexcept;
 
  private:
+  WindVector at_place(const GroundWind& wind) const noexcept;
+
   std::shared_ptr<const GustNoise> gusts_;
+  WindPart part_;
   double place_x_m_, place_z_m_;
   CriticallyDamped east_, south_;
 };

@@ -269,7 +269,7 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
       leaf_lean_rad_(values.number("leaf_lean") * kRadPerDeg),
       leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg),
       half_flutter_speed_m_s_(values.number("half_flutter_speed")),
-      wind_(setup.placement),
+      wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
       leaf_wind_(setup.placement, setup.gusts),
       noise_(tree_wind_noise(values, setup.seed)),
       leaf_noise_(leaf_noise(setup.seed)),

@@ -18,8 +18,6 @@ constexpr double kLeastAdvection_m_s = 0.3;
 constexpr double kCalm_m_s = 0.5;
 constexpr double kTurnRate_hz = 0.1;
 
-/// How fast two sensors disagree with their distance over the length of a gust (Davenport 1961: 10 to 16 sideways).
-constexpr double kCoherenceDecay = 10.0;
 /// Gusts of an absolute source tell something new after so many of its intervals.
 constexpr double kIntervalsOfAGust = 3.0;
 /// A low pass has done 98 % of its way after 4 time constants.
@@ -28,6 +26,12 @@ constexpr double kPlaneRateTimesHandover = 4.0;
 constexpr double kLeastShare = 1e-9;
 /// How fast the strength of the gusts follows what it should be.
 constexpr double kStrengthMemory_s = 1.0;
+/// And how fast they lose what is known of them follows the turbulence that is fitted.
+constexpr double kCoherenceMemory_s = 10.0;
+/// Waves shorter than so many of its samples are faded out of the tape, over the octave above them.
+constexpr double kLeastSamplesAWave = 4.0;
+/// How far the windward edge moves with a wider scene, over how far the wind goes.
+constexpr double kReachRate = 0.2;
 /// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
 /// machine: the wind goes on from where it was, and only the readings' ages are what they are.
 constexpr double kLongestStep_ticks = 2.0;
@@ -53,14 +57,19 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
           gust_variances(*noise_, kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)),
       choice_(completed(settings.sources, source_count), settings.handover_s, settings.return_after_s),
       plane_(completed(settings.sources, source_count)),
+      places_(completed(settings.sources, source_count)),
+      pens_(places_.count(), Pen{.shares = std::vector<BandWeights>(source_count)}),
       shares_(source_count),
+      words_(source_count),
       level_shares_(source_count),
-      place_weights_(source_count),
-      responses_(source_count) {
+      place_weights_(source_count) {
   settings_.sources.resize(source_count);
   ground_.slope = plane_.ends();
   ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
   ground_.gusts.carried = noise_->begin(settings.climate.seed);
+  stroke_.pen_count = pens_.size();
+  stroke_.coherence.longest_wave_m =
+      2.0 * std::numbers::pi / noise_->octaves()[GustNoise::kFirstTileOctave + GustNoise::kTileOctaves].from_rad_m;
   sources_.reserve(source_count);
   for (const BlendSourceSettings& source : settings_.sources) sources_.emplace_back(settings, source, *noise_);
 }
@@ -83,47 +92,77 @@ bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
 
 /// What each source has of the mean and of each band.
 void BlendedEstimator::share_out(double dt_s) noexcept {
-  const double plane_part = -std::expm1(-kPlaneRateTimesHandover / settings_.handover_s * dt_s);
-  for (std::size_t level = 0; level <= kBands; ++level) share_level(level, plane_part);
+  share_words();
+  share_mean(dt_s);
+  for (std::size_t pen = 0; pen < pens_.size(); ++pen) share_at(pen);
 }
 
-void BlendedEstimator::share_level(std::size_t level, double plane_part) noexcept {
-  // Those who have the word: of what is known together, each has a part by weight times trust. What is known together
-  // is the mean of their trusts, weighted in the same way: as much as the one knows who knows.
-  double words = 0.0;
+/// Of a band that is known together each source has a part by its word times trust. What is known together is the mean
+/// of their trusts, weighted in the same way: as much as the one knows who knows. Returns the sum of the shares.
+double BlendedEstimator::share_level(std::size_t level, std::span<const double> words,
+                                     std::span<double> shares) const noexcept {
+  double all = 0.0;
   double trusted = 0.0;
   double squares = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const double trust = sources_[i].trust()[level];
-    words += choice_.word(i);
-    trusted += choice_.word(i) * trust;
-    squares += choice_.word(i) * trust * trust;
+    all += words[i];
+    trusted += words[i] * trust;
+    squares += words[i] * trust * trust;
   }
-  const double scale = trusted > kLeastShare ? std::min(words, 1.0) * squares / (trusted * trusted) : 1.0;
+  const double scale = trusted > kLeastShare ? std::min(all, 1.0) * squares / (trusted * trusted) : 1.0;
   double known = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    shares_[i].word[level] = level_shares_[i] = scale * choice_.word(i) * sources_[i].trust()[level];
-    known += level_shares_[i];
+    shares[i] = scale * words[i] * sources_[i].trust()[level];
+    known += shares[i];
   }
+  return known;
+}
 
-  // Their plane, less steep the less coherent their gusts are. A second place at once makes a slope, however small its
-  // share: its weights follow as slowly as a hand-over.
-  double part = 1.0;
-  if (!plane_.is_point() && level > 0) {
-    part = std::sqrt(davenport_coherence(OctaveFollower::centre_hz(level - 1), plane_.length_m(),
-                                         std::max(advection_m_s_, kLeastAdvection_m_s), kCoherenceDecay));
+/// Of all sources together, wherever they stand.
+void BlendedEstimator::share_words() noexcept {
+  for (std::size_t i = 0; i < sources_.size(); ++i) words_[i] = choice_.word(i);
+  for (std::size_t level = 0; level <= kBands; ++level) {
+    share_level(level, words_, level_shares_);
+    for (std::size_t i = 0; i < sources_.size(); ++i) shares_[i].word[level] = level_shares_[i];
   }
-  plane_.weigh(level_shares_, part, place_weights_);
+}
 
-  // Relative sources have of the gusts what is left.
-  const double left = level > 0 ? std::max(0.0, 1.0 - known) : 0.0;
+/// The means make a plane. A second place at once makes a slope, however small its share: its weights follow as slowly
+/// as a hand-over.
+void BlendedEstimator::share_mean(double dt_s) noexcept {
+  const double plane_part = -std::expm1(-kPlaneRateTimesHandover / settings_.handover_s * dt_s);
+  for (std::size_t i = 0; i < sources_.size(); ++i) level_shares_[i] = shares_[i].word[0];
+  plane_.weigh(level_shares_, 1.0, place_weights_);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     Share& share = shares_[i];
-    share.tilt[level] += plane_part * (place_weights_[i].middle - level_shares_[i] - share.tilt[level]);
-    share.per_m_east[level] += plane_part * (place_weights_[i].per_m_east - share.per_m_east[level]);
-    share.per_m_south[level] += plane_part * (place_weights_[i].per_m_south - share.per_m_south[level]);
-    const double filled = left * choice_.gusts(i) * sources_[i].trust()[level];
-    share.middle[level] = level_shares_[i] + share.tilt[level] + filled;
+    share.tilt += plane_part * (place_weights_[i].middle - share.word[0] - share.tilt);
+    share.per_m_east += plane_part * (place_weights_[i].per_m_east - share.per_m_east);
+    share.per_m_south += plane_part * (place_weights_[i].per_m_south - share.per_m_south);
+    share.middle = share.word[0] + share.tilt;
+  }
+}
+
+/// Of the bands at one place those who stand there know all that can be known, however small their part among others
+/// is; how far they count at all is the pen's presence. Relative sources have of the gusts what is left.
+void BlendedEstimator::share_at(std::size_t index) noexcept {
+  Pen& pen = pens_[index];
+  double all = 0.0;
+  pen.word = 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    all += choice_.word(i);
+    if (places_.pen_of(i) == index) pen.word += choice_.word(i);
+  }
+  const double times = pen.word > kLeastShare ? all / pen.word : 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    words_[i] = places_.pen_of(i) == index ? times * choice_.word(i) : 0.0;
+    pen.shares[i][0] = shares_[i].middle;
+  }
+  for (std::size_t level = 1; level <= kBands; ++level) {
+    const double left = std::max(0.0, 1.0 - share_level(level, words_, level_shares_));
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      pen.shares[i][level] = level_shares_[i] + left * choice_.gusts(i) * sources_[i].trust()[level];
+    }
   }
 }
 
@@ -172,19 +211,15 @@ BlendedEstimator::Heard BlendedEstimator::hear() noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Share& share = shares_[i];
     const bool is_relative = settings_.sources[i].is_relative;
-    heard.weight += share.middle[0];
-    heard.mean = heard.mean + share.middle[0] * said(i, 0);
-    heard.speed_m_s += share.middle[0] * sources_[i].speed_m_s() * (is_relative ? sources_[i].scale.mean_gain() : 1.0);
-    for (std::size_t level = 0; level <= kBands; ++level) {
-      const WindVector value = said(i, level);
-      if (level > 0) heard.wind = heard.wind + share.middle[level] * value;
-      slope.per_m_east = slope.per_m_east + share.per_m_east[level] * value;
-      slope.per_m_south = slope.per_m_south + share.per_m_south[level] * value;
-    }
+    const WindVector mean = said(i, 0);
+    heard.weight += share.middle;
+    heard.mean = heard.mean + share.middle * mean;
+    heard.speed_m_s += share.middle * sources_[i].speed_m_s() * (is_relative ? sources_[i].scale.mean_gain() : 1.0);
+    slope.per_m_east = slope.per_m_east + share.per_m_east * mean;
+    slope.per_m_south = slope.per_m_south + share.per_m_south * mean;
   }
   heard.weight = std::clamp(heard.weight, 0.0, 1.0);
   heard.mean = heard.mean + (1.0 - heard.weight) * climate_;
-  heard.wind = heard.wind + heard.mean;
   heard.speed_m_s = std::max(heard.speed_m_s, 0.0) + (1.0 - heard.weight) * settings_.climate.mean_speed_m_s;
   heard.trust = trust() * heard.weight;
 
@@ -211,30 +246,20 @@ double BlendedEstimator::trust() const noexcept {
   return knowable > 0.0 ? std::clamp(known / std::max(knowable, known), 0.0, 1.0) : 0.0;
 }
 
-BlendedEstimator::Power BlendedEstimator::power_heard(double frequency_hz) noexcept {
-  const OctaveFollower::Response bands(frequency_hz);
+/// All that is said at one place adds up by amplitude.
+BlendedEstimator::Power BlendedEstimator::power_heard(double frequency_hz, const OctaveFollower::Response& bands,
+                                                      const Pen& pen, const BandWeights* fade) const noexcept {
+  SourceResponse sum;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    responses_[i] = sources_[i].response(frequency_hz, bands, shares_[i].middle);
-  }
-  // Each with each: what two sources say adds up by amplitude as far as they are coherent, else by power.
-  Power power;
-  for (std::size_t i = 0; i < sources_.size(); ++i) {
-    power.along += std::norm(responses_[i].along);
-    power.across += std::norm(responses_[i].across);
-    for (std::size_t j = 0; j < i; ++j) {
-      double coherence = 2.0;
-      if (!plane_.is_point()) {
-        const BlendSourceSettings& a = settings_.sources[i];
-        const BlendSourceSettings& b = settings_.sources[j];
-        const double distance_m =
-            a.is_relative || b.is_relative ? 0.0 : std::hypot(a.east_m - b.east_m, a.south_m - b.south_m);
-        coherence *= davenport_coherence(frequency_hz, distance_m, advection_m_s_, kCoherenceDecay);
-      }
-      power.along += coherence * (responses_[i].along * std::conj(responses_[j].along)).real();
-      power.across += coherence * (responses_[i].across * std::conj(responses_[j].across)).real();
+    BandWeights weights = pen.shares[i];
+    if (fade != nullptr) {
+      for (std::size_t level = 1; level <= kBands; ++level) weights[level] *= (*fade)[level];
     }
+    const SourceResponse response = sources_[i].response(frequency_hz, bands, weights);
+    sum.along += response.along;
+    sum.across += response.across;
   }
-  return {std::clamp(power.along, 0.0, 1.0), std::clamp(power.across, 0.0, 1.0)};
+  return {std::clamp(std::norm(sum.along), 0.0, 1.0), std::clamp(std::norm(sum.across), 0.0, 1.0)};
 }
 
 /// The mean wind carries the gusts, and says where ahead is; their eddies turn over as the turbulence does.
@@ -248,10 +273,64 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   }
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
   const Turbulence now = turbulence();
-  const double turnover_m23_s = eddy_turnover_m23_s(now.intensity * heard.speed_m_s,
-                                                    now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s));
+  const double length_m = now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s);
   noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
-                turnover_m23_s);
+                eddy_turnover_m23_s(now.intensity * heard.speed_m_s, length_m));
+
+  // The tapes go the same way.
+  const double way_m = advection_m_s_ * dt_s;
+  stroke_.way_m += way_m;
+  stroke_.carried_east_m += way_m * ahead.u_m_s;
+  stroke_.carried_south_m -= way_m * ahead.v_m_s;
+  stroke_.ahead = ahead;
+  GustCoherence& coherence = stroke_.coherence;
+  const double part = is_first_ ? 1.0 : -std::expm1(-dt_s / kCoherenceMemory_s);
+  coherence.speed_m_s = advection_m_s_;
+  coherence.length_m += part * (length_m - coherence.length_m);
+  coherence.decay_along += part * (GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
+  reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
+}
+
+/// Where each pen stands: at the windward edge of the scenes, or where its sensor does, and how far its sensors count.
+void BlendedEstimator::place_pens() noexcept {
+  double largest = kLeastShare;
+  for (const Pen& pen : pens_) largest = std::max(largest, pen.word);
+  const WindVector ahead = stroke_.ahead;
+  for (std::size_t i = 0; i < pens_.size(); ++i) {
+    const PenPlaces::Place& place = places_.place(i);
+    const double upwind_m = place.is_edge ? reach_m_ : place.lead_m;
+    WindPen& pen = stroke_.pens[i];
+    pen.east_m = place.east_m - upwind_m * ahead.u_m_s;
+    pen.south_m = place.south_m + upwind_m * ahead.v_m_s;
+    pen.presence = std::clamp(2.0 * pens_[i].word / largest, 0.0, 1.0);
+    pen.now.east_m = pen.east_m - stroke_.carried_east_m;
+    pen.now.south_m = pen.south_m - stroke_.carried_south_m;
+  }
+}
+
+/// What is measured at each place, and what of it the tape can hold.
+void BlendedEstimator::write_gusts() noexcept {
+  is_fading_ = false;
+  for (std::size_t band = 0; band < kBands; ++band) {
+    const double wave_m = advection_m_s_ / OctaveFollower::centre_hz(band);
+    fade_[1 + band] = std::clamp(std::log2(wave_m / (kLeastSamplesAWave * WindTape::kStep_m)), 0.0, 1.0);
+  }
+  for (std::size_t p = 0; p < pens_.size(); ++p) {
+    WindPen& pen = stroke_.pens[p];
+    pen.weights.fill(0.0);
+    for (std::size_t level = 0; level <= kBands; ++level) {
+      WindVector gust;
+      for (std::size_t i = 0; i < sources_.size(); ++i) {
+        const double share = pens_[p].shares[i][level];
+        pen.weights[level] += share * (level == 0 ? 1.0 : fade_[level]);
+        if (level > 0 && share > 0.0) gust = gust + share * said(i, level);
+      }
+      if (level == 0) continue;
+      if (pen.weights[level] > kLeastShare && fade_[level] < 1.0) is_fading_ = true;
+      pen.now.east_m_s[level - 1] = static_cast<float>(gust.u_m_s);
+      pen.now.north_m_s[level - 1] = static_cast<float>(gust.v_m_s);
+    }
+  }
 }
 
 /// How much a source's turbulence counts at a frequency, over the square of the mean speed: its part of the mean; above
@@ -261,9 +340,9 @@ double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, 
   double unknown = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     gusts += choice_.gusts(i);
-    unknown += shares_[i].middle[0] * (1.0 - sources_[i].trust_at(frequency_hz));
+    unknown += shares_[i].middle * (1.0 - sources_[i].trust_at(frequency_hz));
   }
-  const double own = shares_[index].middle[0];
+  const double own = shares_[index].middle;
   if (gusts < kLeastShare) return own;
   const double given = heard.weight > 0.0 ? std::clamp(unknown / heard.weight, 0.0, 1.0) : 0.0;
   const double kept = own * (1.0 - std::min(gusts, 1.0) * given);
@@ -273,39 +352,109 @@ double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, 
   return kept + heard.weight * choice_.gusts(index) * given * std::min(strength * strength, 4.0);
 }
 
-/// How strong each octave of the noise is: what the sensors leave of it.
+/// How strong each octave of the noise is, and how much of it the sensors know already. What the way brings is less
+/// what they know; of the tiles' octaves that is for each place to say.
 void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
   // A new fit, or another interval of a sensor, is a step that nobody shall see.
-  const auto part = static_cast<float>(-std::expm1(-dt_s / kStrengthMemory_s));
-  const double scale = heard.speed_m_s * heard.speed_m_s;
-  for (std::size_t i = 0; i < kOctaves; ++i) {
-    const double frequency_hz = centre_hz(noise_->octaves()[i], advection_m_s_);
-    // What would jitter from one picture to the next is left out, by and by over the octave before.
-    const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / frequency_hz), 0.0, 1.0);
-    // Waves of a plane that run aslant pass more slowly than their length tells: what a tile's octave brings is lower
-    // by about half an octave, and that is where it would come on top of what the sensors say.
-    const bool is_way = i < 2 * GustNoise::kWayOctaves;
-    const Power known = power_heard(is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2);
-    double variance_along = (1.0 - heard.weight) * climate_along_[i];
-    double variance_across = (1.0 - heard.weight) * climate_across_[i];
-    for (std::size_t index = 0; index < sources_.size(); ++index) {
-      if (!sources_[index].record().has_spoken()) continue;
-      const double share = variance_share(index, frequency_hz, heard);
-      variance_along += share * sources_[index].along()[i];
-      variance_across += share * sources_[index].across()[i];
+  const auto part = static_cast<float>(is_first_ ? 1.0 : -std::expm1(-dt_s / kStrengthMemory_s));
+  for (std::size_t i = 0; i < kOctaves; ++i) weigh_octave(i, heard, part);
+}
+
+void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept {
+  const double frequency_hz = centre_hz(noise_->octaves()[octave], advection_m_s_);
+  // What would jitter from one picture to the next is left out, by and by over the octave before.
+  const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / frequency_hz), 0.0, 1.0);
+  double variance_along = (1.0 - heard.weight) * climate_along_[octave];
+  double variance_across = (1.0 - heard.weight) * climate_across_[octave];
+  for (std::size_t index = 0; index < sources_.size(); ++index) {
+    if (!sources_[index].record().has_spoken()) continue;
+    const double share = variance_share(index, frequency_hz, heard);
+    variance_along += share * sources_[index].along()[octave];
+    variance_across += share * sources_[index].across()[octave];
+  }
+  const double scale = shown * heard.speed_m_s * heard.speed_m_s;
+  const auto approach = [part](float& value, double wanted) { value += part * (static_cast<float>(wanted) - value); };
+  const auto deviation = [scale](double variance) { return std::sqrt(std::max(scale * variance, 0.0)); };
+  float& along_m_s = ground_.gusts.along_m_s[octave];
+  float& across_m_s = ground_.gusts.across_m_s[octave];
+
+  // Waves of a plane that run aslant pass more slowly than their length tells: what a tile's octave brings is lower by
+  // about half an octave, and that is where it would come on top of what the sensors say.
+  const bool is_way = octave < GustNoise::kFirstTileOctave;
+  const double known_hz = is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2;
+  const OctaveFollower::Response bands(known_hz);
+  if (is_way) {
+    Power known;
+    for (const Pen& pen : pens_) {
+      const Power here = power_heard(known_hz, bands, pen, nullptr);
+      known.along += part_of(pen) * here.along;
+      known.across += part_of(pen) * here.across;
     }
-    const auto approach = [part](float& strength_m_s, double variance) {
-      strength_m_s += part * (static_cast<float>(std::sqrt(std::max(variance, 0.0))) - strength_m_s);
-    };
-    approach(ground_.gusts.along_m_s[i], shown * (1.0 - known.along) * scale * variance_along);
-    approach(ground_.gusts.across_m_s[i], shown * (1.0 - known.across) * scale * variance_across);
+    approach(along_m_s, deviation((1.0 - known.along) * variance_along));
+    approach(across_m_s, deviation((1.0 - known.across) * variance_across));
+    return;
+  }
+
+  approach(along_m_s, deviation(variance_along));
+  approach(across_m_s, deviation(variance_across));
+  const std::size_t lane = octave - GustNoise::kFirstTileOctave;
+  stroke_.octave_hz[lane] = static_cast<float>(known_hz);
+  for (std::size_t p = 0; p < pens_.size(); ++p) {
+    const Power now = power_heard(known_hz, bands, pens_[p], nullptr);
+    const Power written = is_fading_ ? power_heard(known_hz, bands, pens_[p], &fade_) : now;
+    WindPen& pen = stroke_.pens[p];
+    approach(pen.now.known_along[lane], now.along);
+    approach(pen.now.known_across[lane], now.across);
+    approach(pen.written.known_along[lane], written.along);
+    approach(pen.written.known_across[lane], written.across);
+  }
+}
+
+/// A place's part of the wind that is shown.
+double BlendedEstimator::part_of(const Pen& pen) const noexcept {
+  double all = 0.0;
+  for (const Pen& other : pens_) all += other.word;
+  return all > kLeastShare ? pen.word / all : 1.0 / static_cast<double>(pens_.size());
+}
+
+GustNoise::Moment BlendedEstimator::gusts_at(std::size_t pen) const noexcept {
+  return ground_.left_of(WindTapes::at_pen(stroke_.pens[pen].now));
+}
+
+/// The wind that is shown, and the samples that go onto the tapes.
+void BlendedEstimator::show(const Heard& heard) noexcept {
+  const WindVector way = noise_->everywhere(ground_.gusts);
+  ground_.everywhere = heard.mean + way;
+  state_.upwind_m = 0.0;
+  for (std::size_t p = 0; p < pens_.size(); ++p) {
+    WindPen& pen = stroke_.pens[p];
+    pen.part = part_of(pens_[p]);
+    pen.now.mean = heard.mean;
+    pen.now.way = way;
+    const OctaveLanes known_along = pen.written.known_along;
+    const OctaveLanes known_across = pen.written.known_across;
+    pen.written = pen.now;
+    pen.written.known_along = known_along;
+    pen.written.known_across = known_across;
+    for (std::size_t band = 0; band < kBands; ++band) {
+      pen.written.east_m_s[band] *= static_cast<float>(fade_[1 + band]);
+      pen.written.north_m_s[band] *= static_cast<float>(fade_[1 + band]);
+    }
+    ground_.everywhere = ground_.everywhere + pen.part * WindTapes::at_pen(pen.now).gusts;
+    state_.upwind_m -= pen.part * (pen.east_m * stroke_.ahead.u_m_s - pen.south_m * stroke_.ahead.v_m_s);
+  }
+  state_.wind = wind_where_measured(ground_, stroke_, *noise_);
+  state_.to_middle_s = std::max(state_.upwind_m, 0.0) / advection_m_s_;
+  if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {
+    state_.wind = (kMaxPlausibleSpeed_m_s / speed_m_s) * state_.wind;
   }
 }
 
 WindState BlendedEstimator::advance(MonoTime now) noexcept {
-  const bool is_first = !has_begun_;
-  if (is_first) {
+  is_first_ = !has_begun_;
+  if (is_first_) {
     has_begun_ = true;
+    reach_m_ = settings_.reach_m;
     state_.time = now;
   }
   if (now < state_.time) return state_;
@@ -326,15 +475,13 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   share_out(dt_s);
   learn_scales(dt_s);
 
-  // The wind: what is heard, and the gusts for the rest.
+  // The wind: what is measured, and the gusts for the rest.
   const Heard heard = hear();
   carry_gusts(heard, dt_s);
-  weigh_gusts(heard, is_first ? std::numeric_limits<double>::infinity() : dt_s);
-  ground_.everywhere = heard.wind + noise_->everywhere(ground_.gusts);
-  state_.wind = ground_.at(*noise_, 0.0, 0.0);
-  if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {
-    state_.wind = (kMaxPlausibleSpeed_m_s / speed_m_s) * state_.wind;
-  }
+  place_pens();
+  write_gusts();
+  weigh_gusts(heard, dt_s);
+  show(heard);
 
   state_.live_weight = heard.trust;
   state_.reading_age_s = newest_age_s();

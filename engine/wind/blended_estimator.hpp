@@ -2,12 +2,14 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/wind/blend_settings.hpp"
 #include "engine/wind/blend_source.hpp"
 #include "engine/wind/gust_noise.hpp"
 #include "engine/wind/gust_variances.hpp"
+#include "engine/wind/pen_places.hpp"
 #include "engine/wind/source_choice.hpp"
 #include "engine/wind/wall_plane.hpp"
 #include "engine/wind/wind_estimator.hpp"
@@ -26,11 +28,15 @@ namespace yuragi {
 /// nobody measures fades into the climate's. Everything is made of vectors; weights slew by critically damped filters,
 /// so nothing jumps.
 ///
-/// Several sources: SourceChoice says who has the word. Those who share it share each band by weight times trust, so
-/// that a slow one rules the mean and a fast one the gusts; a relative one gives the gusts that they leave, scaled to
-/// theirs. Where they stand at several places, the wind is a plane through what they say (WallPlane), as steep in each
-/// band as their coherence at that distance allows; what they do not have alike, the noise fills. Across the wind a
-/// source without a vane knows nothing, and one of few points only what is slow.
+/// Where: what is measured is written where the sensor stands (PenPlaces), which is at the windward edge of the scenes
+/// unless it is told, and goes on from there with the mean wind: stroke() is what a tick adds to the tapes (WindTapes),
+/// ground() says how strong the noise is that fills what is not known. The state is the wind at that place; of several
+/// places their mean, by the sensors' weights.
+///
+/// Several sources: SourceChoice says which of them count. Those that count at one place share each band by weight
+/// times trust, so that a slow one rules the mean and a fast one the gusts; a relative one gives the gusts that they
+/// leave, scaled to theirs. Sources at several places each have a tape of their own, and their means make a plane
+/// (WallPlane). Across the wind a source without a vane knows nothing, and one of few points only what is slow.
 ///
 /// Delay: what comes from a sensor is later than the wind by half of what it averages over, half of the interval that a
 /// reading is held for, and the group delay of the weighted bands, 0.36 to 0.2 of the interval: blend_group_delay_s().
@@ -39,11 +45,7 @@ namespace yuragi {
 ///     frequency times T   to 0.02   0.05   0.1    0.2    0.25 (the crossover)
 ///     delay over T        1.36      1.35   1.31   1.25   1.22
 ///
-/// Cost: about 5 us a tick for one source and 15 us for four (2 cores, -O2; 20 000 ticks timed after 600 to begin
-/// with).
-///
-/// Source: method of the wind model (`wind.md` 2 of the specification), Taylor 1938 (frozen turbulence), Davenport 1961
-/// (coherence).
+/// Source: Taylor 1938, The spectrum of turbulence (frozen turbulence).
 class BlendedEstimator final : public WindEstimator {
  public:
   /// `noise`: shared with whoever wants to know the wind at other places. The climate's seed says where on it the gusts
@@ -53,26 +55,35 @@ class BlendedEstimator final : public WindEstimator {
   bool accept(std::size_t source, const WindReading& reading) noexcept override;
   WindState advance(MonoTime now) noexcept override;
   const GroundWind& ground() const noexcept override { return ground_; }
+  const WindStroke& stroke() const noexcept override { return stroke_; }
   SourceReport report(std::size_t source) const noexcept override;
 
   /// The turbulence that is fitted at the moment, along the wind.
   Turbulence turbulence() const noexcept;
 
+  /// The noise that is left at the place of a sensor, where most is known.
+  GustNoise::Moment gusts_at(std::size_t pen) const noexcept;
+
  private:
   static constexpr std::size_t kBands = OctaveFollower::kBands;
   static constexpr std::size_t kOctaves = GustNoise::kOctaves;
 
-  /// What a source has of the wind at the moment, in the mean (0) and in each band (1 + band).
+  /// What a source has of the wind at the moment: of the mean, and of the bands by the word of all together.
   struct Share {
-    BandWeights word{};    ///< as one who has the word
-    BandWeights middle{};  ///< in the middle of the scene, with what a relative source fills
-    BandWeights tilt{};    ///< what the plane adds in the middle; it and the slopes follow the plane slowly
-    BandWeights per_m_east{}, per_m_south{};
+    BandWeights word{};   ///< of the mean (0) and each band (1 + band), as one whose readings count
+    double middle = 0.0;  ///< of the mean in the middle of the scenes
+    double tilt = 0.0;    ///< what the plane adds there; it and the slopes follow the plane slowly
+    double per_m_east = 0.0, per_m_south = 0.0;
   };
 
-  /// What all sources together say, and how far it is to be believed.
+  /// What is written at one place.
+  struct Pen {
+    std::vector<BandWeights> shares;  ///< of each source: of the mean, and of the bands at this place
+    double word = 0.0;                ///< of its sources, of that of all
+  };
+
+  /// What all sources together say of the mean, and how far it is to be believed.
   struct Heard {
-    WindVector wind;
     WindVector mean;
     double weight = 0.0;     ///< of the means that are measured; the climate's has the rest
     double speed_m_s = 0.0;  ///< slow mean
@@ -85,15 +96,24 @@ class BlendedEstimator final : public WindEstimator {
 
   bool is_direction_live(std::size_t besides) const noexcept;
   void share_out(double dt_s) noexcept;
-  void share_level(std::size_t level, double plane_part) noexcept;
+  void share_mean(double dt_s) noexcept;
+  void share_words() noexcept;
+  double share_level(std::size_t level, std::span<const double> words, std::span<double> shares) const noexcept;
+  void share_at(std::size_t pen) noexcept;
   void learn_scales(double dt_s) noexcept;
   Heard hear() noexcept;
   double trust() const noexcept;
   double newest_age_s() const noexcept;
   WindVector said(std::size_t source, std::size_t level) const noexcept;
   void carry_gusts(const Heard& heard, double dt_s) noexcept;
+  void place_pens() noexcept;
+  void write_gusts() noexcept;
   void weigh_gusts(const Heard& heard, double dt_s) noexcept;
-  Power power_heard(double frequency_hz) noexcept;
+  void weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept;
+  Power power_heard(double frequency_hz, const OctaveFollower::Response& bands, const Pen& pen,
+                    const BandWeights* fade) const noexcept;
+  double part_of(const Pen& pen) const noexcept;
+  void show(const Heard& heard) noexcept;
   double variance_share(std::size_t source, double frequency_hz, const Heard& heard) const noexcept;
 
   BlendSettings settings_;
@@ -103,17 +123,23 @@ class BlendedEstimator final : public WindEstimator {
   std::vector<BlendSource> sources_;
   SourceChoice choice_;
   WallPlane plane_;
+  PenPlaces places_;
+  std::vector<Pen> pens_;
   GroundWind ground_;
+  WindStroke stroke_;
   double advection_m_s_ = 0.0;
   WindState state_;
+  double reach_m_ = 0.0;      ///< where the windward edge is
   double last_step_s_ = 0.0;  ///< the time that passed from the last tick but one to the last
   bool has_begun_ = false;
+  bool is_first_ = false;  ///< tick
 
   // Made anew in each tick; for each source.
   std::vector<Share> shares_;
-  std::vector<double> level_shares_;
+  std::vector<double> words_, level_shares_;
   std::vector<PlaceWeights> place_weights_;
-  std::vector<SourceResponse> responses_;
+  BandWeights fade_{};  ///< what the tape can hold of each band
+  bool is_fading_ = false;
 };
 
 }  // namespace yuragi

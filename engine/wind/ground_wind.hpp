@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "engine/wind/gust_noise.hpp"
 #include "engine/wind/wind_state.hpp"
+#include "engine/wind/wind_stroke.hpp"
+#include "engine/wind/wind_tapes.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi {
@@ -23,38 +26,100 @@ struct WindSlope {
   }
 };
 
-/// The wind over the ground at one moment: what all places have alike, how what is measured changes from place to
-/// place, and the gusts that differ from place to place. Finite.
+/// The wind over the ground at one moment: what was measured, where the wind has carried it to by now, and the noise
+/// that fills what is not known there. Finite. Refers to the tapes of what was measured; without them (nothing is
+/// measured, or a test) all places have the same but for their own gusts. Thread-safe and realtime-safe: reading, yes.
 struct GroundWind {
-  WindVector everywhere;    ///< in the middle of the scene
-  WindSlope slope;          ///< elsewhere; none unless sensors stand at several places
-  GustNoise::Moment gusts;  ///< of these the octaves of the tiles; those of the way are in `everywhere`
+  WindVector everywhere;    ///< without tapes: the wind of all places, less the gusts of the tiles
+  WindSlope slope;          ///< of the mean; none unless sensors stand at several places
+  GustNoise::Moment gusts;  ///< the noise, as strong as it is where nothing is known
+  const WindTapes* tapes = nullptr;
+  double gain = 1.0;       ///< on all that the tapes say
+  double gust_gain = 1.0;  ///< and on its gusts besides
+  WindVector breeze;       ///< blows everywhere besides
 
   GroundWind() = default;
   /// The same wind everywhere.
   GroundWind(WindVector wind) : everywhere(wind) {}  // NOLINT(google-explicit-constructor): a wind is a wind
 
-  /// What the wind at a place (metres east and south of the middle of the scene) has without the place's own gusts:
-  /// `everywhere`, and the slope. Thread-safe and realtime-safe: yes.
-  WindVector smooth_at(double east_m, double south_m) const noexcept { return everywhere + slope.at(east_m, south_m); }
+  /// The wind at a place (metres east and south of the middle of the scenes) without the gusts that pass there: its
+  /// mean, and what is longer than the ground.
+  WindVector smooth_at(double east_m, double south_m) const noexcept {
+    return tapes == nullptr ? everywhere + slope.at(east_m, south_m)
+                            : smooth(tapes->at(east_m, south_m), east_m, south_m);
+  }
 
-  /// The wind at a place. Thread-safe and realtime-safe: yes.
+  /// The same with the gusts that were measured, without those of the noise.
+  WindVector measured_at(double east_m, double south_m) const noexcept {
+    return tapes == nullptr ? everywhere + slope.at(east_m, south_m)
+                            : measured(tapes->at(east_m, south_m), east_m, south_m);
+  }
+
+  /// The wind at a place.
   WindVector at(const GustNoise& noise, double east_m, double south_m) const noexcept {
-    return smooth_at(east_m, south_m) + noise.local(gusts, east_m, south_m);
+    return tapes == nullptr ? everywhere + slope.at(east_m, south_m) + noise.local(gusts, east_m, south_m)
+                            : at(noise, tapes->at(east_m, south_m), east_m, south_m);
+  }
+
+  // The same three of a reading of the tapes at that place.
+  WindVector smooth(const WindTapes::Reading& reading, double east_m, double south_m) const noexcept {
+    return reading.gain * (gain * (reading.mean + gust_gain * reading.way) + slope.at(east_m, south_m) + breeze);
+  }
+  WindVector measured(const WindTapes::Reading& reading, double east_m, double south_m) const noexcept {
+    return smooth(reading, east_m, south_m) + (reading.gain * gain * gust_gain) * reading.gusts;
+  }
+  WindVector at(const GustNoise& noise, const WindTapes::Reading& reading, double east_m,
+                double south_m) const noexcept {
+    return measured(reading, east_m, south_m) + reading.gain * noise.local(left_of(reading), east_m, south_m);
+  }
+
+  /// The noise that is left where this is known.
+  GustNoise::Moment left_of(const WindTapes::Reading& reading) const noexcept {
+    GustNoise::Moment left = gusts;
+    for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+      left.along_m_s[GustNoise::kFirstTileOctave + i] *= reading.noise_along[i];
+      left.across_m_s[GustNoise::kFirstTileOctave + i] *= reading.noise_across[i];
+    }
+    return left;
   }
 };
 
-/// The wind that moves the scenes: what it is in the middle, for people to see, and over the ground.
+/// The wind that moves the scenes: what it is where it is measured, for people to see; over the ground; and what it
+/// adds to the tapes. Whoever reads `ground` at a place has WindTapes of its own, writes `stroke` of every moment onto
+/// them, and lets `ground` refer to them: Latest may drop a moment, and the tapes go straight on over it.
 struct DrivingWind {
   WindState state;
-  GroundWind ground;
+  GroundWind ground{};
+  WindStroke stroke{};
 };
+
+/// The wind over the ground at this moment, read from these tapes, onto which its stroke is written.
+inline GroundWind written_to(WindTapes& tapes, const DrivingWind& wind) noexcept {
+  tapes.write(wind.stroke);
+  GroundWind ground = wind.ground;
+  ground.tapes = tapes.is_written() ? &tapes : nullptr;
+  return ground;
+}
+
+/// The wind where it is measured at this moment (of several places their mean), or in the middle of the scenes where
+/// nothing can be measured.
+inline WindVector wind_where_measured(const GroundWind& ground, const WindStroke& stroke,
+                                      const GustNoise& noise) noexcept {
+  if (stroke.pen_count == 0) return ground.at(noise, 0.0, 0.0);
+  WindVector wind;
+  for (const WindPen& pen : std::span(stroke.pens).first(stroke.pen_count)) {
+    wind = wind + pen.part * ground.at(noise, WindTapes::at_pen(pen.now), pen.east_m, pen.south_m);
+  }
+  return wind;
+}
 
 /// A wind that is stronger by a factor, blowing as far.
 inline GroundWind operator*(double gain, GroundWind wind) noexcept {
   wind.everywhere = gain * wind.everywhere;
   wind.slope.per_m_east = gain * wind.slope.per_m_east;
   wind.slope.per_m_south = gain * wind.slope.per_m_south;
+  wind.gain *= gain;
+  wind.breeze = gain * wind.breeze;
   for (float& deviation : wind.gusts.along_m_s) deviation *= static_cast<float>(gain);
   for (float& deviation : wind.gusts.across_m_s) deviation *= static_cast<float>(gain);
   return wind;

@@ -41,6 +41,7 @@ class GustNoise {
   /// Octaves below the tiles (of the way), and those of each tile.
   static constexpr std::size_t kWayOctaves = 8;
   static constexpr std::size_t kTileOctaves = 7;
+  static constexpr std::size_t kFirstTileOctave = 2 * kWayOctaves;
   static constexpr std::size_t kOctaves = 2 * (kWayOctaves + kTileOctaves);
 
   /// Throws what make_noise_2d says, and std::bad_alloc.

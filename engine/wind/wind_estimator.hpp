@@ -6,6 +6,7 @@
 #include "engine/wind/ground_wind.hpp"
 #include "engine/wind/wind_reading.hpp"
 #include "engine/wind/wind_state.hpp"
+#include "engine/wind/wind_stroke.hpp"
 
 namespace yuragi {
 
@@ -36,11 +37,13 @@ class WindEstimator {
   /// answered with false.
   virtual bool accept(std::size_t source, const WindReading& reading) noexcept = 0;
 
-  /// Goes on to `now` and says what the wind is in the middle of the scene.
+  /// Goes on to `now` and says what the wind is where it is measured.
   virtual WindState advance(MonoTime now) noexcept = 0;
 
-  /// The same wind over the ground, as of the last advance().
+  /// The same wind over the ground, as of the last advance(); without tapes.
   virtual const GroundWind& ground() const noexcept = 0;
+  /// What the last advance() adds to the tapes.
+  virtual const WindStroke& stroke() const noexcept = 0;
 
   /// How `source` does, as of the last advance(). One that is not there is silent.
   virtual SourceReport report(std::size_t source) const noexcept = 0;

@@ -32,7 +32,8 @@ class WindField {
   virtual WindVector3 at(WindPlace place) const noexcept = 0;
 };
 
-/// The live wind over the ground as a field of two dimensions. Refers to both; they must live on.
+/// The live wind over the ground as a field of two dimensions. Refers to both, and to the ground's tapes; they must
+/// live on.
 class GroundWindField final : public WindField {
  public:
   GroundWindField(const GroundWind& ground, const GustNoise& noise) : ground_(ground), noise_(noise) {}

@@ -34,6 +34,37 @@ void follow_to_the_end(CriticallyDamped& value, double target, double over_s, do
   if (std::abs(value.value - target) < kArrived && std::abs(value.rate_per_s) < kArrived) value = {target, 0.0};
 }
 
+/// The breeze has carried the tapes farther, too.
+void carry_tapes(WindStroke& stroke, WindVector blown_m, double way_m) noexcept {
+  stroke.way_m += way_m;
+  stroke.carried_east_m += blown_m.u_m_s;
+  stroke.carried_south_m -= blown_m.v_m_s;
+  for (WindPen& pen : stroke.pens) {
+    for (WindSample* sample : {&pen.now, &pen.written}) {
+      sample->east_m -= blown_m.u_m_s;
+      sample->south_m += blown_m.v_m_s;
+    }
+  }
+}
+
+/// Of gusts that have become stronger by some that nobody measures, the same is a smaller part.
+void know_less(WindStroke& stroke, const GustNoise::Moment& real, const GustNoise::Moment& all) noexcept {
+  const auto part = [](float of_m_s, float all_m_s) {
+    return all_m_s > 0.0F ? of_m_s * of_m_s / (all_m_s * all_m_s) : 0.0F;
+  };
+  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+    const std::size_t octave = GustNoise::kFirstTileOctave + i;
+    const float along = part(real.along_m_s[octave], all.along_m_s[octave]);
+    const float across = part(real.across_m_s[octave], all.across_m_s[octave]);
+    for (WindPen& pen : stroke.pens) {
+      for (WindSample* sample : {&pen.now, &pen.written}) {
+        sample->known_along[i] *= along;
+        sample->known_across[i] *= across;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 WindShaping::WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise)
@@ -58,15 +89,26 @@ void WindShaping::shape(DrivingWind& wind, bool is_open, bool is_of_site) noexce
   if (live_s_ > settings_.over_s) remember(mean_.value, dt_s);
   follow(state.live_weight, is_open, way_s);
 
-  // Three factors, the breeze, and last the ceiling.
-  const double gain = site_.value * floor_.value * opening_.value;
-  state.wind = gain * state.wind;
-  wind.ground = gain * wind.ground;
+  // Factors, the breeze, and last the ceiling.
+  apply_gains(wind);
   add_breeze(wind, dt_s);
-  speed_m_s_ = speed_of(state.wind);
+  hold_back(wind);
+}
+
+/// Site gain, floor and opening: on all wind that is over the ground now.
+void WindShaping::apply_gains(DrivingWind& wind) const noexcept {
+  const double gain = site_.value * floor_.value * opening_.value;
+  wind.state.wind = gain * wind.state.wind;
+  wind.ground = gain * wind.ground;
+}
+
+/// The ceiling: on what is measured now, and on that for as long as it crosses the ground.
+void WindShaping::hold_back(DrivingWind& wind) noexcept {
+  speed_m_s_ = speed_of(wind.state.wind);
   ceiling_gain_ = settings_.ceiling.gain(speed_m_s_);
-  state.wind = ceiling_gain_ * state.wind;
-  wind.ground = ceiling_gain_ * wind.ground;
+  wind.state.wind = ceiling_gain_ * wind.state.wind;
+  if (wind.stroke.pen_count == 0) wind.ground = ceiling_gain_ * wind.ground;
+  for (WindPen& pen : wind.stroke.pens) pen.now.gain = pen.written.gain = ceiling_gain_;
 }
 
 bool WindShaping::restore(std::span<const double> times_s) noexcept {
@@ -136,10 +178,13 @@ void WindShaping::add_breeze(DrivingWind& wind, double dt_s) noexcept {
   GroundWind& ground = wind.ground;
   GustNoise::Moment& gusts = ground.gusts;
   blown_m_ = blown_m_ + breeze_m_s * dt_s * gusts.ahead;
+  blown_way_m_ += breeze_m_s * dt_s;
   noise_->carry(gusts.carried, blown_m_.u_m_s, -blown_m_.v_m_s, 1.0);
+  carry_tapes(wind.stroke, blown_m_, blown_way_m_);
 
   const double scale = opening_.value * std::sqrt(breeze_m_s * (2.0 * settings_.floor_m_s - breeze_m_s));
   GustNoise::Moment own = gusts;
+  const GustNoise::Moment real = gusts;
   for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
     const double along_m_s = scale * std::sqrt(along_[i]);
     const double across_m_s = scale * std::sqrt(across_[i]);
@@ -148,8 +193,12 @@ void WindShaping::add_breeze(DrivingWind& wind, double dt_s) noexcept {
     gusts.along_m_s[i] = static_cast<float>(std::hypot(static_cast<double>(gusts.along_m_s[i]), along_m_s));
     gusts.across_m_s[i] = static_cast<float>(std::hypot(static_cast<double>(gusts.across_m_s[i]), across_m_s));
   }
-  ground.everywhere = ground.everywhere + opening_.value * breeze_m_s * gusts.ahead + noise_->everywhere(own);
-  wind.state.wind = ground.at(*noise_, 0.0, 0.0);
+  know_less(wind.stroke, real, gusts);
+  const WindVector breeze = opening_.value * breeze_m_s * gusts.ahead + noise_->everywhere(own);
+  ground.breeze = ground.breeze + breeze;
+  ground.everywhere = ground.everywhere + breeze;
+
+  wind.state.wind = wind_where_measured(ground, wind.stroke, *noise_);
 }
 
 WindShapingReport WindShaping::report() const noexcept {

@@ -55,8 +55,8 @@ struct WindShapingReport {
 ///     that blows where the wind last came from, with the turbulence of the climate at that level. It carries the
 ///     gusts on: those that no sensor measured are others from then on than in the real wind.
 ///  3. Opening: outside of opening hours only a part is left.
-///  4. Ceiling: SoftCeiling at the middle of the scene; the whole ground gets the same factor, so that neighbours
-///     differ as they did.
+///  4. Ceiling: SoftCeiling where the wind is measured. Its factor is written on the tapes with the wind that it holds
+///     back, so that a gust crosses the ground as it was cut.
 ///
 /// A factor never turns the wind. Site gain, floor and opening are slow, critically damped: they never jump, whatever
 /// the wind, the clock or `is_open` does. What is switched off leaves the wind as it is, bit for bit. Finite for a
@@ -84,7 +84,9 @@ class WindShaping {
   void look_at_memory() noexcept;
   double site_gain_of(double mean_m_s) const noexcept;
   void follow(double live_weight, bool is_open, double dt_s) noexcept;
+  void apply_gains(DrivingWind& wind) const noexcept;
   void add_breeze(DrivingWind& wind, double dt_s) noexcept;
+  void hold_back(DrivingWind& wind) noexcept;
 
   WindShapingSettings settings_;
   std::shared_ptr<const GustNoise> noise_;
@@ -95,7 +97,8 @@ class WindShaping {
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
   CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
   CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0};
-  WindVector blown_m_;  ///< how far the breeze has carried the gusts besides
+  WindVector blown_m_;        ///< how far the breeze has carried the gusts besides
+  double blown_way_m_ = 0.0;  ///< and along how much of a way
   double speed_m_s_ = 0.0, ceiling_gain_ = 1.0;
   MonoTime time_{};
   bool has_begun_ = false;

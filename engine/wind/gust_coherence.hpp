@@ -1,0 +1,48 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace yuragi {
+
+/// How much of a gust that was measured at one place is still known at another: the root coherence
+///
+///     g = exp(-distance kappa(f)),  kappa(f) = sqrt(k^2 + 1 / (1.339 L)^2),  k = 2 pi f / U,
+///
+/// where `distance` counts metres across the wind C_y / (2 pi) times and metres along it C_x / (2 pi) times. Across,
+/// C_y = 12 (IEC 61400-1:2005, annex B.2, whose 0.12 d / L_c is the term with L; Davenport 1961 has 10 to 16). Along,
+/// C_x grows with the turbulence intensity: 0.025 + 5.7 TI (Simley and Pao 2015, A longitudinal spatial coherence model
+/// for wind evolution based on large-eddy simulation; half of it, since theirs is the squared coherence, with a total
+/// deviation of 1.35 sigma_u). What is slower than some minutes is weather, alike everywhere, and is never lost.
+///
+/// A value. All functions: thread-safe and realtime-safe.
+struct GustCoherence {
+  static constexpr double kDecayAcross = 12.0;
+
+  double speed_m_s = 1.0;           ///< U, that carries the gusts; above 0
+  double length_m = 57.0;           ///< L, integral length scale; above 0
+  double decay_along = 1.0;         ///< C_x
+  double longest_wave_m = 2'048.0;  ///< what is longer is alike everywhere
+
+  /// C_x of a turbulence intensity.
+  static double decay_along_of(double turbulence_intensity) noexcept {
+    return std::clamp(0.025 + 5.7 * turbulence_intensity, 0.5, 10.0);
+  }
+
+  /// The distance of a place so far along and across the way from where the gust was measured, m.
+  double distance_m(double along_m, double across_m) const noexcept {
+    return (kDecayAcross * std::abs(across_m) + decay_along * std::abs(along_m)) / (2.0 * std::numbers::pi);
+  }
+
+  /// kappa(f), 1/m; 0 for what is alike everywhere.
+  double loss_per_m(double frequency_hz) const noexcept {
+    constexpr double kWeather_hz = 0.003;
+    const double wavenumber_rad_m = 2.0 * std::numbers::pi * frequency_hz / speed_m_s;
+    const double longest_hz = speed_m_s / longest_wave_m;
+    const double travels = std::clamp(std::log2(frequency_hz / std::max(longest_hz, kWeather_hz)), 0.0, 1.0);
+    return travels * std::hypot(wavenumber_rad_m, 1.0 / (1.339 * length_m));
+  }
+};
+
+}  // namespace yuragi

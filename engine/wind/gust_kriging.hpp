@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "engine/wind/wind_stroke.hpp"
+
+namespace yuragi {
+
+/// What sensors at several places say together of the gusts at another: simple kriging, wave by wave (Krige 1951;
+/// Chiles and Delfiner 2012, Geostatistics, 3.2). Their weights are
+///
+///     w = (C + N)^-1 c,
+///
+/// c_i how coherent sensor i is with the place, C_ij with each other, N a small nugget that grows without bound while a
+/// sensor's presence fades: who comes or goes moves nothing at once. Known is w' C w of the power, at most all of it.
+/// One lane a wave: all lanes are computed side by side.
+///
+/// Thread-safe: reading, yes. Realtime-safe: yes.
+template <std::size_t lanes>
+class GustKriging {
+ public:
+  static constexpr std::size_t kMost = WindStroke::kMostPens;
+  using Lanes = std::array<float, lanes>;
+
+  /// What changes with the wind alone, not from place to place: for these sensors, in waves that lose so much a metre.
+  void prepare(std::span<const WindPen> pens, WindVector ahead, const GustCoherence& coherence,
+               const std::array<float, lanes>& loss_per_m) noexcept {
+    count_ = pens.size();
+    for (std::size_t i = 0; i < count_; ++i) {
+      root_presence_[i] = static_cast<float>(std::sqrt(std::clamp(pens[i].presence, 0.0, 1.0)));
+      for (std::size_t j = 0; j < count_; ++j) {
+        const double east_m = pens[i].east_m - pens[j].east_m;
+        const double north_m = pens[j].south_m - pens[i].south_m;
+        const double distance_m = coherence.distance_m(east_m * ahead.u_m_s + north_m * ahead.v_m_s,
+                                                       north_m * ahead.u_m_s - east_m * ahead.v_m_s);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          coherence_[i][j][lane] = static_cast<float>(std::exp(-distance_m * static_cast<double>(loss_per_m[lane])));
+        }
+      }
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) invert(lane);
+  }
+
+  /// The weights of the sensors at a place, and by what they are limited: coherent[i] is c_i.
+  void weigh(const std::array<Lanes, kMost>& coherent, std::array<Lanes, kMost>& weights) const noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+      weights[i].fill(0.0F);
+      for (std::size_t j = 0; j < count_; ++j) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) weights[i][lane] += inverse_[i][j][lane] * coherent[j][lane];
+      }
+    }
+    const Lanes known = power(weights, [](std::size_t, std::size_t, std::size_t) { return 1.0F; });
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const float limit = 1.0F / std::sqrt(std::max(known[lane], 1.0F));
+      for (std::size_t i = 0; i < count_; ++i) weights[i][lane] *= limit;
+    }
+  }
+
+  /// w' (C . part) w: the power that is known, where each two sensors know `part(i, j, lane)` of what they could.
+  template <class Part>
+  Lanes power(const std::array<Lanes, kMost>& weights, Part part) const noexcept {
+    Lanes sum{};
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = 0; j < count_; ++j) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          sum[lane] += weights[i][lane] * weights[j][lane] * coherence_[i][j][lane] * part(i, j, lane);
+        }
+      }
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr double kNugget = 0.001;
+
+  /// S (S (C + N) S)^-1 S, S the roots of the presences: with N = nugget + (1 - presence) / presence, the diagonal of
+  /// what is inverted is 1 + nugget presence, however small a presence is. Gauss and Jordan; it is positive definite.
+  void invert(std::size_t lane) noexcept {
+    std::array<std::array<double, kMost>, kMost> left{}, right{};
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = 0; j < count_; ++j) {
+        const auto roots = static_cast<double>(root_presence_[i] * root_presence_[j]);
+        left[i][j] = roots * static_cast<double>(coherence_[i][j][lane]);
+      }
+      left[i][i] = 1.0 + kNugget * static_cast<double>(root_presence_[i] * root_presence_[i]);
+      right[i][i] = 1.0;
+    }
+    for (std::size_t pivot = 0; pivot < count_; ++pivot) {
+      const double scale = 1.0 / left[pivot][pivot];
+      for (std::size_t j = 0; j < count_; ++j) {
+        left[pivot][j] *= scale;
+        right[pivot][j] *= scale;
+      }
+      for (std::size_t i = 0; i < count_; ++i) {
+        if (i == pivot) continue;
+        const double factor = left[i][pivot];
+        for (std::size_t j = 0; j < count_; ++j) {
+          left[i][j] -= factor * left[pivot][j];
+          right[i][j] -= factor * right[pivot][j];
+        }
+      }
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = 0; j < count_; ++j) {
+        inverse_[i][j][lane] = root_presence_[i] * static_cast<float>(right[i][j]) * root_presence_[j];
+      }
+    }
+  }
+
+  std::size_t count_ = 0;
+  std::array<float, kMost> root_presence_{};
+  std::array<std::array<Lanes, kMost>, kMost> coherence_{}, inverse_{};
+};
+
+}  // namespace yuragi

@@ -1,0 +1,223 @@
+#include "engine/wind/wind_tapes.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+
+namespace yuragi {
+namespace {
+
+/// Over so much of its end a tape's gusts fade out.
+constexpr double kTapeEnd_m = 16.0;
+/// The mean at a place is that of the sensor that stands nearest; those within this of it count alike.
+constexpr double kNearby_m = 1.0;
+
+double dot_product(double east, double north, WindVector unit) noexcept {
+  return east * unit.u_m_s + north * unit.v_m_s;
+}
+
+}  // namespace
+
+WindTapes::WindTapes() : tapes_(WindStroke::kMostPens) {}
+
+double WindTapes::distance_of(std::size_t row) noexcept {
+  if (row == 0) return 0.0;
+  const std::size_t step = row - 1;
+  const double within = 1.0 + static_cast<double>(step % kRowsAnOctave) / static_cast<double>(kRowsAnOctave);
+  return std::ldexp(within, kFirstOctave + static_cast<int>(step / kRowsAnOctave));
+}
+
+/// Rows stand on a straight line within an octave of the distance: its exponent and the first bits of its mantissa say
+/// which they are.
+WindTapes::Row WindTapes::row_of(double distance_m) noexcept {
+  constexpr float kShortest_m = 1.0F / 32.0F;
+  static_assert(kFirstOctave == -5 && kRowsAnOctave == 4);
+  const auto distance = static_cast<float>(distance_m);
+  if (distance < kShortest_m) return {0, distance / kShortest_m};
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(distance) - std::bit_cast<std::uint32_t>(kShortest_m);
+  const std::size_t row = 1 + (bits >> 21U);  // two bits of the mantissa's 23
+  if (row >= kRows - 1) return {kRows - 2, 1.0F};
+  return {row, static_cast<float>(bits & 0x1FFFFFU) * 0x1p-21F};
+}
+
+void WindTapes::write(const WindStroke& stroke) noexcept {
+  const bool is_new = pen_count_ != stroke.pen_count;
+  pen_count_ = stroke.pen_count;
+  if (pen_count_ == 0) return;
+  stroke_ = stroke;
+  for (std::size_t i = 0; i < pen_count_; ++i) tapes_[i].write(stroke.pens[i], stroke.way_m);
+
+  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
+    band_loss_per_m_[band] = static_cast<float>(stroke.coherence.loss_per_m(OctaveFollower::centre_hz(band)));
+  }
+  renew_rows(is_new);
+  if (pen_count_ == 1) return;
+  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+    octave_loss_per_m_[i] = static_cast<float>(stroke.coherence.loss_per_m(static_cast<double>(stroke.octave_hz[i])));
+  }
+  const std::span pens(stroke_.pens.data(), pen_count_);
+  band_kriging_.prepare(pens, stroke.ahead, stroke.coherence, band_loss_per_m_);
+  octave_kriging_.prepare(pens, stroke.ahead, stroke.coherence, octave_loss_per_m_);
+}
+
+void WindTapes::renew_rows(bool all) noexcept {
+  const std::size_t count = all ? kRows : kRowsATick;
+  for (std::size_t i = 0; i < count; ++i) keep((tick_ * kRowsATick + i) % kRows);
+  ++tick_;
+}
+
+/// What is left at a distance: of each band, and of each octave of the noise, which is in several bands.
+void WindTapes::keep(std::size_t row) noexcept {
+  const double distance_m = distance_of(row);
+  BandLanes bands{};
+  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
+    bands[band] = static_cast<float>(std::exp(-distance_m * static_cast<double>(band_loss_per_m_[band])));
+  }
+  for (std::size_t tape = 0; tape < pen_count_; ++tape) kept_[tape][row].bands = bands;
+
+  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+    const OctaveFollower::Response response(static_cast<double>(stroke_.octave_hz[i]));
+    for (std::size_t tape = 0; tape < pen_count_; ++tape) {
+      const auto& written = stroke_.pens[tape].weights;
+      auto left = written;
+      for (std::size_t band = 0; band < OctaveFollower::kBands; ++band)
+        left[1 + band] *= static_cast<double>(bands[band]);
+      const double all = std::norm(response.weighted(written));
+      const double kept = all > 0.0 ? std::norm(response.weighted(left)) / all : 0.0;
+      kept_[tape][row].octaves[i] = static_cast<float>(std::clamp(kept, 0.0, 1.0));
+    }
+  }
+}
+
+WindTapes::Found WindTapes::find(std::size_t tape, double east_m, double south_m) const noexcept {
+  const WindPen& pen = stroke_.pens[tape];
+  const double downwind_m = dot_product(east_m - pen.east_m, pen.south_m - south_m, stroke_.ahead);
+  Found found{.place = tapes_[tape].back(std::max(downwind_m, 0.0))};
+
+  // How far the place is from where the air that was measured then is by now.
+  const WindSample& first = *found.place.first;
+  const WindSample& second = *found.place.second;
+  const double fraction = found.place.fraction;
+  const double parcel_east_m = first.east_m + fraction * (second.east_m - first.east_m) + stroke_.carried_east_m;
+  const double parcel_south_m = first.south_m + fraction * (second.south_m - first.south_m) + stroke_.carried_south_m;
+  double away_east_m = east_m - parcel_east_m;
+  double away_north_m = parcel_south_m - south_m;
+  if (downwind_m < 0.0) {
+    const double along_m = dot_product(away_east_m, away_north_m, stroke_.ahead);
+    away_east_m -= along_m * stroke_.ahead.u_m_s;
+    away_north_m -= along_m * stroke_.ahead.v_m_s;
+  }
+  const double away_m = std::sqrt(away_east_m * away_east_m + away_north_m * away_north_m);
+  found.distance_m = stroke_.coherence.distance_m(std::max(downwind_m, 0.0), away_m) + std::max(-downwind_m, 0.0);
+  found.kept = static_cast<float>(std::clamp(found.place.left_m / kTapeEnd_m, 0.0, 1.0));
+  return found;
+}
+
+WindTapes::Reading WindTapes::at(double east_m, double south_m) const noexcept {
+  return pen_count_ == 1 ? at_one(find(0, east_m, south_m)) : at_several(east_m, south_m);
+}
+
+WindTapes::Reading WindTapes::at_pen(const WindSample& now) noexcept {
+  Reading reading;
+  reading.mean = now.mean;
+  reading.way = now.way;
+  reading.gain = now.gain;
+  for (std::size_t i = 0; i < kBandLanes; ++i) {
+    reading.gusts =
+        reading.gusts + WindVector{static_cast<double>(now.east_m_s[i]), static_cast<double>(now.north_m_s[i])};
+  }
+  for (std::size_t i = 0; i < kOctaveLanes; ++i) {
+    reading.noise_along[i] = std::sqrt(std::max(1.0F - now.known_along[i], 0.0F));
+    reading.noise_across[i] = std::sqrt(std::max(1.0F - now.known_across[i], 0.0F));
+  }
+  return reading;
+}
+
+WindTapes::Reading WindTapes::at_one(const Found& found) const noexcept {
+  const WindSample& first = *found.place.first;
+  const WindSample& second = *found.place.second;
+  const double fraction = found.place.fraction;
+  const auto part = static_cast<float>(fraction);
+  const Row row = row_of(found.distance_m);
+  const Kept& near = kept_[0][row.below];
+  const Kept& far = kept_[0][row.below + 1];
+
+  Reading reading;
+  reading.mean = first.mean + fraction * (second.mean - first.mean);
+  reading.way = first.way + fraction * (second.way - first.way);
+  reading.gain = first.gain + fraction * (second.gain - first.gain);
+  float east = 0.0F;
+  float north = 0.0F;
+  for (std::size_t i = 0; i < kBandLanes; ++i) {
+    const float kept = found.kept * (near.bands[i] + row.fraction * (far.bands[i] - near.bands[i]));
+    east += kept * (first.east_m_s[i] + part * (second.east_m_s[i] - first.east_m_s[i]));
+    north += kept * (first.north_m_s[i] + part * (second.north_m_s[i] - first.north_m_s[i]));
+  }
+  reading.gusts = {static_cast<double>(east), static_cast<double>(north)};
+  const float kept_square = found.kept * found.kept;
+  for (std::size_t i = 0; i < kOctaveLanes; ++i) {
+    const float kept = kept_square * (near.octaves[i] + row.fraction * (far.octaves[i] - near.octaves[i]));
+    const float along = first.known_along[i] + part * (second.known_along[i] - first.known_along[i]);
+    const float across = first.known_across[i] + part * (second.known_across[i] - first.known_across[i]);
+    reading.noise_along[i] = std::sqrt(std::max(1.0F - along * kept, 0.0F));
+    reading.noise_across[i] = std::sqrt(std::max(1.0F - across * kept, 0.0F));
+  }
+  return reading;
+}
+
+WindTapes::Reading WindTapes::at_several(double east_m, double south_m) const noexcept {
+  constexpr std::size_t kMost = WindStroke::kMostPens;
+  std::array<WindSample, kMost> samples;
+  std::array<BandLanes, kMost> bands, band_weights;
+  std::array<OctaveLanes, kMost> octaves, octave_weights;
+  Reading reading;
+  reading.gain = 0.0;
+  double counted = 0.0;
+  for (std::size_t tape = 0; tape < pen_count_; ++tape) {
+    const Found found = find(tape, east_m, south_m);
+    samples[tape] = between(*found.place.first, *found.place.second, found.place.fraction);
+    const Row row = row_of(found.distance_m);
+    const Kept& near = kept_[tape][row.below];
+    const Kept& far = kept_[tape][row.below + 1];
+    for (std::size_t i = 0; i < kBandLanes; ++i) {
+      bands[tape][i] = found.kept * (near.bands[i] + row.fraction * (far.bands[i] - near.bands[i]));
+    }
+    for (std::size_t i = 0; i < kOctaveLanes; ++i) {
+      octaves[tape][i] = found.kept * std::sqrt(near.octaves[i] + row.fraction * (far.octaves[i] - near.octaves[i]));
+    }
+    const double counts = std::max(stroke_.pens[tape].presence, 1e-9) / (kNearby_m + found.distance_m);
+    counted += counts;
+    reading.mean = reading.mean + counts * samples[tape].mean;
+    reading.way = reading.way + counts * samples[tape].way;
+    reading.gain += counts * samples[tape].gain;
+  }
+  reading.mean = (1.0 / counted) * reading.mean;
+  reading.way = (1.0 / counted) * reading.way;
+  reading.gain /= counted;
+
+  band_kriging_.weigh(bands, band_weights);
+  float east = 0.0F;
+  float north = 0.0F;
+  for (std::size_t tape = 0; tape < pen_count_; ++tape) {
+    for (std::size_t i = 0; i < kBandLanes; ++i) {
+      east += band_weights[tape][i] * samples[tape].east_m_s[i];
+      north += band_weights[tape][i] * samples[tape].north_m_s[i];
+    }
+  }
+  reading.gusts = {static_cast<double>(east), static_cast<double>(north)};
+
+  octave_kriging_.weigh(octaves, octave_weights);
+  const auto fill = [&](OctaveLanes WindSample::*known, OctaveLanes& noise) {
+    const OctaveLanes power =
+        octave_kriging_.power(octave_weights, [&](std::size_t i, std::size_t j, std::size_t lane) {
+          return std::sqrt((samples[i].*known)[lane] * (samples[j].*known)[lane]);
+        });
+    for (std::size_t i = 0; i < kOctaveLanes; ++i) noise[i] = std::sqrt(std::clamp(1.0F - power[i], 0.0F, 1.0F));
+  };
+  fill(&WindSample::known_along, reading.noise_along);
+  fill(&WindSample::known_across, reading.noise_across);
+  return reading;
+}
+
+}  // namespace yuragi
