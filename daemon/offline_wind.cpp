@@ -66,29 +66,54 @@ class HeardReadings {
   std::optional<WindReading> held_;
 };
 
-}  // namespace
+/// One source of the estimator: what it says next, and whether that is to be believed.
+class OfflineSource {
+ public:
+  OfflineSource(WindlogPlayback& playback, const OfflineWindOptions& options)
+      : readings_(playback, options),
+        is_judged_(options.judge.has_value()),
+        judge_(options.judge.value_or(JudgeSettings{})),
+        next_(readings_.next()) {}
 
-OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimator, const OfflineWindOptions& options,
-                              const std::function<void(double time_s, const WindState&)>& use) {
-  OfflineWindResult result;
-  HeardReadings readings(playback, options);
-  std::optional<WindReading> next = readings.next();
-  ReadingJudge judge(options.judge.value_or(JudgeSettings{}));
-  const auto is_believed = [&](const WindReading& reading) {
-    return !options.judge || reading.quality == ReadingQuality::kSimulated || judge.judge(reading);
-  };
-  // The last reading is heard by the tick at its time or after it, which is the last.
-  for (bool goes_on = next.has_value(); goes_on; ++result.states) {
-    const double time_s = static_cast<double>(result.states) / options.rate_hz;
-    const MonoTime now(from_seconds(time_s));
-    for (; next && next->time.mono <= now; next = readings.next()) {
-      if (!is_believed(*next)) {
+  bool has_more() const { return next_.has_value(); }
+
+  /// Tells the estimator what was said up to `now`, as source `number`.
+  void tell(WindEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
+    for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
+      if (!is_believed(*next_)) {
         ++result.withheld;
-      } else if (estimator.accept(0, *next)) {
+      } else if (estimator.accept(number, *next_)) {
         ++result.readings;
       }
     }
-    goes_on = next.has_value() && time_s + 1.0 / options.rate_hz <= options.until_s;
+  }
+
+ private:
+  bool is_believed(const WindReading& reading) {
+    return !is_judged_ || reading.quality == ReadingQuality::kSimulated || judge_.judge(reading);
+  }
+
+  HeardReadings readings_;
+  bool is_judged_;
+  ReadingJudge judge_;
+  std::optional<WindReading> next_;
+};
+
+}  // namespace
+
+OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, WindEstimator& estimator,
+                              const OfflineWindOptions& options,
+                              const std::function<void(double time_s, const WindState&)>& use) {
+  OfflineWindResult result;
+  std::vector<OfflineSource> sources;
+  for (WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
+  const auto has_more = [&] { return std::ranges::any_of(sources, &OfflineSource::has_more); };
+  // The last reading is heard by the tick at its time or after it, which is the last.
+  for (bool goes_on = has_more(); goes_on; ++result.states) {
+    const double time_s = static_cast<double>(result.states) / options.rate_hz;
+    const MonoTime now(from_seconds(time_s));
+    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].tell(estimator, i, now, result);
+    goes_on = has_more() && time_s + 1.0 / options.rate_hz <= options.until_s;
     use(time_s, estimator.advance(now));
     result.duration_s = time_s;
   }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "drivers/windlog/windlog_playback.hpp"
@@ -35,10 +36,18 @@ struct OfflineWindResult {
   double duration_s = 0.0;  ///< of log time
 };
 
-/// Runs an estimator with one source over a recording, as fast as it can: it hears each reading at its own log time,
-/// and `use` is told the state of each tick, from log time 0 to the last reading or `until_s`. Throws what the playback
-/// throws.
-OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimator, const OfflineWindOptions& options,
+/// Runs an estimator over recordings, as fast as it can: source i hears each reading of `playbacks[i]` at its own log
+/// time, and `use` is told the state of each tick, from log time 0 to the last reading or `until_s`. What the options
+/// say of the sensor holds for each. Throws what the playback throws.
+OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, WindEstimator& estimator,
+                              const OfflineWindOptions& options,
                               const std::function<void(double time_s, const WindState&)>& use);
+
+/// The same over one recording.
+inline OfflineWindResult run_offline(WindlogPlayback& playback, WindEstimator& estimator,
+                                     const OfflineWindOptions& options,
+                                     const std::function<void(double time_s, const WindState&)>& use) {
+  return run_offline(std::span(&playback, 1), estimator, options, use);
+}
 
 }  // namespace yuragi

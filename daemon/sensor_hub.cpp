@@ -42,7 +42,7 @@ std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
       GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
 }
 
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
+BlendSettings blend_settings_of(const Config& config) {
   BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
                                      .mean_direction_deg = config.wind.number("default_direction"),
                                      .turbulence_intensity = config.wind.number("default_turbulence"),
@@ -56,6 +56,11 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
     settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
   // Behind all sensors, whatever their priorities.
   if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
+  return settings;
+}
+
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
+  const BlendSettings settings = blend_settings_of(config);
   const std::size_t source_count = settings.sources.size();
   return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
 }

@@ -12,6 +12,7 @@
 #include "daemon/player_director.hpp"
 #include "daemon/sensor_diagnosis.hpp"
 #include "daemon/sensor_runner.hpp"
+#include "engine/wind/blend_settings.hpp"
 #include "engine/wind/reading_judge.hpp"
 #include "engine/wind/sensor_vote.hpp"
 #include "engine/wind/source_record.hpp"
@@ -104,6 +105,9 @@ class SensorHub {
 
 /// The pattern of gusts of an installation: the estimator and the scenes share it. Set-up work of about 0.1 s.
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
+
+/// What a configuration says of the blend, with one source for each of its sensors, and one for the fall-back.
+BlendSettings blend_settings_of(const Config& config);
 
 /// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise);

@@ -1,11 +1,15 @@
 // `yuragi wind`: the estimator of the daemon over a recording, as a table.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -18,6 +22,7 @@
 #include "daemon/output_file.hpp"
 #include "daemon/sensor_hub.hpp"
 #include "daemon/shaping_config.hpp"
+#include "engine/wind/blended_estimator.hpp"
 
 namespace yuragi {
 
@@ -40,13 +45,32 @@ constexpr const char* kWindFooter =
     "give the same table. The wind is the real one; --shaped writes the one that moves the scenes (opening hours are\n"
     "left out, and the site gain begins at 1).\n"
     "\n"
-    "  yuragi wind mast.windlog --rate 60 --sensor-interval 14 --gap 600,700 -o blended.csv";
+    "u_m_s and v_m_s are the wind where the sensor stands. Without --sensor-place that is the windward edge of the\n"
+    "scenes: the circle about their middle that just holds a square of --scene-size, wherever the wind comes from.\n"
+    "--place adds the wind at a place of the ground; it can be given again. The columns u1_m_s, v1_m_s are those of "
+    "the\n"
+    "first, u2_m_s, v2_m_s of the second, and a comment on top of the table says where each place is.\n"
+    "--also adds an anemometer at a place of its own, from a recording that began at the same moment.\n"
+    "\n"
+    "  yuragi wind mast.windlog --rate 60 --sensor-interval 14 --gap 600,700 -o blended.csv\n"
+    "  yuragi wind mast.windlog --scene-size 7 --place -3,0 --place 3,0 -o meadow.csv";
+
+/// A place on the ground, metres from the middle of the scenes.
+struct GroundPlace {
+  double east_m = 0.0;
+  double south_m = 0.0;
+};
 
 struct WindOptions {
   std::filesystem::path file;
   std::string output;
   OfflineWindOptions offline;
   std::vector<std::string> gaps;
+  double scene_size_m = 0.0;
+  std::vector<std::string> places;
+  std::optional<std::string> sensor_place;
+  double lead_m = 0.0;
+  std::vector<std::string> also;
   PlaybackOptions playback;
   std::optional<std::filesystem::path> config_file;
   std::optional<std::uint64_t> seed;
@@ -54,15 +78,40 @@ struct WindOptions {
   bool force = false;
 };
 
+/// "A,B": two numbers.
+std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
+  double first = 0.0;
+  double second = 0.0;
+  int used = 0;
+  const int found = std::sscanf(text.c_str(), "%lf,%lf%n", &first, &second, &used);
+  if (found != 2 || static_cast<std::size_t>(used) != text.size()) return std::nullopt;
+  return std::pair(first, second);
+}
+
 /// "FROM,TO" in seconds.
 OfflineGap parse_gap(const std::string& text) {
-  OfflineGap gap;
-  int used = 0;
-  const int found = std::sscanf(text.c_str(), "%lf,%lf%n", &gap.from_s, &gap.to_s, &used);
-  if (found != 2 || static_cast<std::size_t>(used) != text.size() || !(gap.from_s >= 0.0) || !(gap.to_s > gap.from_s)) {
+  const auto gap = two_numbers(text);
+  if (!gap || !(gap->first >= 0.0) || !(gap->second > gap->first)) {
     throw ExitError(kExitUsage, "--gap: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
   }
-  return gap;
+  return {gap->first, gap->second};
+}
+
+/// "X,Z" in metres.
+GroundPlace parse_place(const std::string& option, const std::string& text) {
+  constexpr double kFarthest_m = 1000.0;
+  const auto place = two_numbers(text);
+  if (!place || !(std::abs(place->first) <= kFarthest_m) || !(std::abs(place->second) <= kFarthest_m)) {
+    throw ExitError(kExitUsage, option + ": is \"" + text +
+                                    "\"; allowed: X,Z in metres east and south of the middle of the scenes, each from "
+                                    "-1000 to 1000");
+  }
+  return {place->first, place->second};
+}
+
+const std::filesystem::path& existing(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw ExitError(kExitNoInput, file.string() + ": there is no such recording");
+  return file;
 }
 
 std::string_view name_of(WindSource source) {
@@ -80,14 +129,28 @@ std::string_view name_of(WindSource source) {
 /// Text that goes out in blocks. What the disk does not take is told at the end.
 class Table {
  public:
-  explicit Table(std::FILE* out) : out_(out) { text_ = "time_s,u_m_s,v_m_s,speed_m_s,direction_deg,trust,state\n"; }
+  Table(std::FILE* out, std::span<const GroundPlace> places) : out_(out) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      fmt::format_to(std::back_inserter(text_), "{} u{}_m_s, v{}_m_s: {:g} m east and {:g} m south of the middle",
+                     i == 0 ? "#" : ";", i + 1, i + 1, places[i].east_m, places[i].south_m);
+    }
+    text_ += places.empty() ? "time_s" : "\ntime_s";
+    text_ += ",u_m_s,v_m_s,speed_m_s,direction_deg,trust,state";
+    for (std::size_t i = 1; i <= places.size(); ++i) {
+      fmt::format_to(std::back_inserter(text_), ",u{}_m_s,v{}_m_s", i, i);
+    }
+    text_ += '\n';
+  }
 
-  void add(double time_s, const WindState& state) {
+  void add(double time_s, const WindState& state, std::span<const WindVector> at_places) {
     // A hair west of north is rounded to north, not to 360.
     const double direction_deg = std::fmod(std::round(direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
-    fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}\n", time_s,
-                   state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind), direction_deg, state.live_weight,
-                   name_of(state.source));
+    fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}", time_s, state.wind.u_m_s,
+                   state.wind.v_m_s, speed_of(state.wind), direction_deg, state.live_weight, name_of(state.source));
+    for (const WindVector wind : at_places) {
+      fmt::format_to(std::back_inserter(text_), ",{:.6f},{:.6f}", wind.u_m_s, wind.v_m_s);
+    }
+    text_ += '\n';
     if (text_.size() > kBlock) flush();
   }
   void flush() {
@@ -108,20 +171,81 @@ class Table {
   bool is_complete_ = true;
 };
 
+/// The wind over the ground, read where it is asked for.
+class WindAtPlaces {
+ public:
+  WindAtPlaces(std::shared_ptr<const GustNoise> gusts, std::vector<GroundPlace> places)
+      : gusts_(std::move(gusts)), places_(std::move(places)), winds_(places_.size()) {}
+
+  std::span<const GroundPlace> places() const { return places_; }
+
+  std::span<const WindVector> read(const DrivingWind& wind) {
+    const GroundWind ground = written_to(tapes_, wind);
+    std::ranges::transform(places_, winds_.begin(),
+                           [&](const GroundPlace& place) { return ground.at(*gusts_, place.east_m, place.south_m); });
+    return winds_;
+  }
+
+ private:
+  std::shared_ptr<const GustNoise> gusts_;
+  std::vector<GroundPlace> places_;
+  std::vector<WindVector> winds_;
+  WindTapes tapes_;
+};
+
+/// "FILE.windlog@X,Z": a recording, and where its anemometer stood.
+struct PlacedRecording {
+  std::filesystem::path file;
+  GroundPlace place;
+};
+
+PlacedRecording parse_also(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos) {
+    throw ExitError(kExitUsage, "--also: is \"" + text + "\"; allowed: FILE.windlog@X,Z");
+  }
+  return {text.substr(0, at), parse_place("--also", text.substr(at + 1))};
+}
+
+void stand_at(BlendSourceSettings& source, const GroundPlace& place, double lead_m) {
+  source.has_place = true;
+  source.east_m = place.east_m;
+  source.south_m = place.south_m;
+  source.lead_m = lead_m;
+}
+
 void write_wind(const WindOptions& options, const Config& config, std::FILE* out) {
-  WindlogPlayback playback(options.file, options.playback);
+  BlendSettings settings = blend_settings_of(config);
+  settings.sources.resize(1);
+  settings.reach_m = options.scene_size_m / std::numbers::sqrt2;
+  settings.rate_hz = options.offline.rate_hz;
+  if (options.sensor_place) {
+    stand_at(settings.sources[0], parse_place("--sensor-place", *options.sensor_place), options.lead_m);
+  }
+  std::vector<WindlogPlayback> playbacks;
+  playbacks.emplace_back(options.file, options.playback);
+  if (!options.also.empty()) settings.sources[0].priority = 1;  // They share the word.
+  for (const std::string& text : options.also) {
+    const PlacedRecording other = parse_also(text);
+    stand_at(settings.sources.emplace_back(settings.sources[0]), other.place, options.lead_m);
+    playbacks.emplace_back(existing(other.file), options.playback);
+  }
+  std::vector<GroundPlace> places;
+  for (const std::string& text : options.places) places.push_back(parse_place("--place", text));
+
   const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, gusts);
+  BlendedEstimator estimator(settings.sources.size(), settings, gusts);
   WindShaping shaping(shaping_settings(config), gusts);
-  Table table(out);
+  WindAtPlaces at_places(gusts, std::move(places));
+  Table table(out, at_places.places());
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto told_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
   const OfflineWindResult result =
-      run_offline(playback, *estimator, options.offline, [&](double time_s, const WindState& state) {
-        DrivingWind wind{state, estimator->ground(), estimator->stroke()};
+      run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
+        DrivingWind wind{state, estimator.ground(), estimator.stroke()};
         if (options.shaped) shaping.shape(wind, true);
-        table.add(time_s, wind.state);
+        table.add(time_s, wind.state, at_places.read(wind));
         if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
       });
   table.end(options.output);
@@ -132,9 +256,7 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
 }
 
 void run_wind(WindOptions options) {
-  if (!std::filesystem::exists(options.file)) {
-    throw ExitError(kExitNoInput, options.file.string() + ": there is no such recording");
-  }
+  existing(options.file);
   for (const std::string& gap : options.gaps) options.offline.gaps.push_back(parse_gap(gap));
   Config config = options.config_file ? load_config(*options.config_file) : default_config();
   config.sensors.resize(1);
@@ -169,6 +291,26 @@ void add_wind(CLI::App& app) {
   command->add_option("--gap", options->gaps, "leave out what was said from one second on to another")
       ->allow_extra_args(false)
       ->type_name("FROM,TO");
+  command->add_option("--place", options->places, "the wind there as well: metres east and south of the middle")
+      ->allow_extra_args(false)
+      ->type_name("X,Z");
+  command->add_option("--scene-size", options->scene_size_m, "edge of the square that the scenes fill, m")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->type_name("S")
+      ->capture_default_str();
+  auto* const sensor_place =
+      command->add_option("--sensor-place", options->sensor_place, "where the sensor stands; without it: the edge")
+          ->allow_extra_args(false)
+          ->type_name("X,Z");
+  command->add_option("--also", options->also, "a second anemometer, and where it stands; needs --sensor-place")
+      ->allow_extra_args(false)
+      ->needs(sensor_place)
+      ->type_name("FILE.windlog@X,Z");
+  command->add_option("--lead", options->lead_m, "take the sensors to stand so far upwind of their places, m")
+      ->needs(sensor_place)
+      ->check(CLI::Range(0.0, 1000.0))
+      ->type_name("M")
+      ->capture_default_str();
   command->add_option("--sensor", options->playback.sensor, "whose readings; without it: of the first that spoke")
       ->type_name("NAME");
   command->add_option("--start", options->playback.start, "where to begin: seconds, or a UTC time (ISO 8601)")

@@ -133,6 +133,31 @@ class WindCommand(unittest.TestCase):
             self.assertAlmostEqual(turn_deg, 0.0, delta=0.001)
         self.assertEqual(self.wind("--rate", 10, "--config", config)[0], real, "the real wind, without --shaped")
 
+    def test_adds_the_wind_at_places(self):
+        def table(*arguments):
+            run = yuragi("wind", self.log, "-o", "-", "--rate", 20, *arguments)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            return run.stdout.splitlines()
+
+        plain = table()
+        with_places = table("--place", "0,0", "--place=-3,2.5")
+        self.assertEqual(with_places[0], "# u1_m_s, v1_m_s: 0 m east and 0 m south of the middle; "
+                                         "u2_m_s, v2_m_s: -3 m east and 2.5 m south of the middle")
+        self.assertEqual(with_places[1], plain[0] + ",u1_m_s,v1_m_s,u2_m_s,v2_m_s")
+        cells = [line.split(",") for line in with_places[2:]]
+        self.assertEqual([",".join(row[:7]) for row in cells], plain[1:])
+        # Scenes without an extent: the wind that is shown is that of their middle.
+        self.assertEqual([row[7:9] for row in cells], [row[1:3] for row in cells])
+        self.assertNotEqual([row[9:11] for row in cells], [row[1:3] for row in cells])
+
+    def test_hears_anemometers_at_their_places(self):
+        # Two of them that hear the same: whoever stands between them hears it, too.
+        told = ["--sensor-place", "-4,0", "--also", f"{self.log}@4,0"]
+        rows, said = self.wind("--rate", 20, "--sensor-interval", 1, *told)
+        self.assertIn("from 600 readings", said)
+        self.assertTrue(all(math.isfinite(row["speed_m_s"]) for row in rows))
+        self.assertAlmostEqual(sum(row["speed_m_s"] for row in rows[1200:]) / len(rows[1200:]), 6.0, delta=0.3)
+
     def test_writes_a_file_and_keeps_one_that_is_there(self):
         file = self.log.with_name("out.csv")
         self.assertEqual(yuragi("wind", self.log, "-o", file).returncode, 0)
@@ -145,6 +170,11 @@ class WindCommand(unittest.TestCase):
             (["/no/such.windlog", "-o", "-"], 66, "no such recording"),
             ([self.log, "-o", "-", "--gap", "9,3"], 64, "allowed: FROM,TO"),
             ([self.log, "-o", "-", "--rate", "0"], 64, "--rate"),
+            ([self.log, "-o", "-", "--place", "3"], 64, "allowed: X,Z"),
+            ([self.log, "-o", "-", "--place", "3,nan"], 64, "allowed: X,Z"),
+            ([self.log, "-o", "-", "--lead", "3"], 64, "--sensor-place"),
+            ([self.log, "-o", "-", "--sensor-place", "0,0", "--also", self.log], 64, "allowed: FILE.windlog@X,Z"),
+            ([self.log, "-o", "-", "--sensor-place", "0,0", "--also", "/no/such.windlog@1,2"], 66, "no such recording"),
             ([self.log, "-o", "/no/such/folder/a.csv"], 73, "/no/such/folder"),
         ):
             run = yuragi("wind", *arguments)
