@@ -1,7 +1,6 @@
 #include "daemon/offline_wind.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace yuragi {
 namespace {
@@ -28,11 +27,13 @@ class HeardReadings {
 
   /// The mean over one block of time; blocks in which nothing was said are passed over.
   std::optional<WindReading> next_mean() {
-    const double interval_s = *options_.sensor_interval_s;
     if (!held_) held_ = next_single();
     if (!held_) return std::nullopt;
-    const double block = std::floor(seconds(held_->time.mono.time_since_epoch()) / interval_s);
-    const MonoTime end(from_seconds((block + 1.0) * interval_s));
+    // In whole nanoseconds, of which one may be lost on the way through seconds: a reading on the edge of two blocks is
+    // the later one's, and who asks for the wind of the block's end hears it.
+    const Nanoseconds interval = from_seconds(*options_.sensor_interval_s);
+    const Nanoseconds edge = ((held_->time.mono.time_since_epoch() + Nanoseconds(1)) / interval + 1) * interval;
+    const MonoTime end(from_seconds(seconds(edge)));
 
     WindVector sum{};
     double speed_sum_m_s = 0.0;

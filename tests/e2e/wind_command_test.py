@@ -107,6 +107,15 @@ class WindCommand(unittest.TestCase):
         _, told = self.wind("--sensor-interval", 14)
         self.assertIn("from 22 readings", told)  # 300 s make 21.4 blocks; the last is heard at its end
 
+    def test_plays_a_sensor_as_quick_as_the_recording(self):
+        # Of an interval that is no sum of halves each reading stands on the edge of two blocks.
+        table = self.log.with_name("quick.csv")
+        table.write_text("time_s,speed_m_s,direction_deg\n" + "".join(f"{i / 10:.1f},6,200\n" for i in range(500)), encoding="ascii")
+        quick = self.log.with_name("quick.windlog")
+        self.assertEqual(yuragi("import", table, "-o", quick).returncode, 0)
+        run = yuragi("wind", quick, "-o", "-", "--sensor-interval", "0.1", "--rate", "10")
+        self.assertIn("from 500 readings", run.stderr)
+
     def test_leaves_out_a_gap_and_returns(self):
         rows, _ = self.wind("--gap", "100,200")
         trust = {round(row["time_s"], 3): row["trust"] for row in rows}
