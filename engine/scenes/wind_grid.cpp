@@ -25,13 +25,20 @@ ScenePlacement first_of(std::span<const float> x_m, std::span<const float> z_m) 
   return {.x_m = static_cast<double>(x_m.front()), .z_m = static_cast<double>(z_m.front())};
 }
 
+/// How many nodes of an axis are read from these places on it: up to the one behind the last place.
+std::size_t nodes_read(std::span<const std::uint32_t> places, std::size_t nodes) {
+  if (places.empty()) return 0;
+  const std::uint32_t last = *std::max_element(places.begin(), places.end());
+  return (std::uint64_t{last} * nodes >> 32U) + 2;
+}
+
 }  // namespace
 
 WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m,
                    SimdRow row, double finest_cell_m)
     : gusts_(std::move(gusts)), row_(row), east_m_s_(x_m.size()), south_m_s_(x_m.size()), smooth_(first_of(x_m, z_m)) {
-  // A square over all places, a power of two of nodes a side; the last column and row are beyond every place, so that
-  // none reads where the torus closes.
+  // A square torus over all places, a power of two of nodes a side. Of its nodes those are computed that a place reads:
+  // the last column and row are beyond every place, so that none reads where the torus closes.
   const auto [west, east] = std::minmax_element(x_m.begin(), x_m.end());
   const auto [north, south] = std::minmax_element(z_m.begin(), z_m.end());
   const double first_x_m = x_m.empty() ? 0.0 : static_cast<double>(*west);
@@ -43,8 +50,14 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
   const double cell_m = std::max(extent_m / static_cast<double>(nodes - 2), finest_cell_m);
   const double period_m = cell_m * static_cast<double>(nodes);
 
-  for (std::size_t line = 0; line < nodes; ++line) {
-    for (std::size_t column = 0; column < nodes; ++column) {
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    place_x_.push_back(torus_phase(static_cast<double>(x_m[i]) - first_x_m, period_m));
+    place_z_.push_back(torus_phase(static_cast<double>(z_m[i]) - first_z_m, period_m));
+  }
+  columns_ = nodes_read(place_x_, nodes);
+  const std::size_t lines = nodes_read(place_z_, nodes);
+  for (std::size_t line = 0; line < lines; ++line) {
+    for (std::size_t column = 0; column < columns_; ++column) {
       const double node_x_m = first_x_m + cell_m * static_cast<double>(column);
       const double node_z_m = first_z_m + cell_m * static_cast<double>(line);
       node_x_m_.push_back(node_x_m);
@@ -56,14 +69,11 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
       }
     }
   }
-  for (std::size_t i = 0; i < x_m.size(); ++i) {
-    place_x_.push_back(torus_phase(static_cast<double>(x_m[i]) - first_x_m, period_m));
-    place_z_.push_back(torus_phase(static_cast<double>(z_m[i]) - first_z_m, period_m));
-  }
   for (Component* component : {&east_, &south_}) {
-    component->value = {nodes, std::vector<float>(nodes * nodes)};
-    component->target.assign(nodes * nodes, 0.0F);
-    component->rate_per_s.assign(nodes * nodes, 0.0F);
+    component->on_torus = {nodes, std::vector<float>(nodes * nodes)};
+    component->value.assign(node_x_m_.size(), 0.0F);
+    component->target.assign(node_x_m_.size(), 0.0F);
+    component->rate_per_s.assign(node_x_m_.size(), 0.0F);
   }
 }
 
@@ -117,18 +127,23 @@ void WindGrid::follow(Component& component, double dt_s) noexcept {
   const auto rate_from_distance = static_cast<float>(-decay * SceneWind::kOmega_rad_s * phase);
   for (std::size_t i = 0; i < component.target.size(); ++i) {
     const float target = component.target[i];
-    const float distance = component.value.values[i] - target;
+    const float distance = component.value[i] - target;
     const float rate = component.rate_per_s[i];
     const float value = target + value_from_distance * distance + value_from_rate * rate;
     const float new_rate = rate_from_rate * rate + rate_from_distance * distance;
     const bool is_still = std::abs(value) < kNoWind_m_s && std::abs(new_rate) < kNoWind_m_s;
-    component.value.values[i] = is_still ? 0.0F : value;
+    component.value[i] = is_still ? 0.0F : value;
     component.rate_per_s[i] = is_still ? 0.0F : new_rate;
+  }
+  auto on_torus = component.on_torus.values.begin();
+  for (std::size_t i = 0; i < component.value.size(); i += columns_) {
+    std::ranges::copy(std::span(component.value).subspan(i, columns_), on_torus);
+    on_torus += static_cast<std::ptrdiff_t>(component.on_torus.size);
   }
 }
 
 void WindGrid::read(const Component& component, std::size_t first, std::span<float> out) const noexcept {
-  const NoiseLayer layer{.tile = &component.value,
+  const NoiseLayer layer{.tile = &component.on_torus,
                          .place_x = std::span(place_x_).subspan(first, out.size()),
                          .place_z = std::span(place_z_).subspan(first, out.size())};
   SampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();

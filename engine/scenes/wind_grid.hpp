@@ -42,8 +42,8 @@ class WindGrid {
  private:
   /// One component of the wind at the nodes: toward where it goes, and how quickly it does.
   struct Component {
-    NoiseTile2 value;
-    std::vector<float> target, rate_per_s;
+    std::vector<float> value, target, rate_per_s;
+    NoiseTile2 on_torus;  ///< the values, where places read them
   };
 
   void read_octaves(const GroundWind& wind, GustNoise::Component component, std::span<float> out) const noexcept;
@@ -52,7 +52,8 @@ class WindGrid {
 
   std::shared_ptr<const GustNoise> gusts_;
   SimdRow row_;
-  std::vector<double> node_x_m_, node_z_m_;
+  std::size_t columns_ = 0;
+  std::vector<double> node_x_m_, node_z_m_;                    ///< line by line
   std::array<std::vector<std::uint32_t>, 2> node_x_, node_z_;  ///< on the tiles' tori
   std::vector<std::uint32_t> place_x_, place_z_;               ///< on the grid's
   std::vector<float> east_m_s_, south_m_s_;                    ///< of the places, for sample_gusts()
