@@ -20,6 +20,12 @@ std::uint64_t address_of(std::int64_t wave_x, std::int64_t wave_z, std::int64_t 
          (static_cast<std::uint64_t>(wave_y) << 48U);
 }
 
+bool is_in_band(std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y, double from_cycles,
+                double to_cycles) noexcept {
+  const auto k_squared = static_cast<double>(wave_x * wave_x + wave_z * wave_z + wave_y * wave_y);
+  return k_squared >= from_cycles * from_cycles && k_squared < to_cycles * to_cycles;
+}
+
 }  // namespace
 
 std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept {
@@ -97,27 +103,29 @@ void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
   fill_modes(fft, spec.seed, [&](std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) {
     // The constant mode is the mean: 0. Waves outside the band are left out.
     const auto k_squared = static_cast<double>(wave_x * wave_x + wave_z * wave_z + wave_y * wave_y);
-    const bool is_wanted =
-        k_squared >= spec.from_cycles * spec.from_cycles && k_squared < spec.to_cycles * spec.to_cycles;
+    const bool is_wanted = is_in_band(wave_x, wave_z, wave_y, spec.from_cycles, spec.to_cycles);
     return k_squared == 0.0 || !is_wanted ? 0.0 : std::pow(corner * corner + k_squared, -0.25 * exponent);
   });
 }
 
-std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed) {
+std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed, double from_cycles, double to_cycles) {
   const RandomStream random(seed, stream_id("evolving noise signs"));
   const std::size_t columns = fft.row_modes();
   const std::size_t half = fft.size() / 2;
   const std::size_t rows = fft.dims() == 1 ? 1 : fft.dims() == 2 ? fft.size() : fft.size() * fft.size();
   std::vector<std::int8_t> signs(rows * columns);
-  for (std::size_t i = 0; i < signs.size(); ++i) {
-    // In the first and the middle column a mode's mirror image, its conjugate, stands in the same column.
-    const std::size_t x = i % columns;
-    const SpectrumRow row = spectrum_row(i / columns, fft.size(), fft.dims());
-    const bool mirrored_here = x == 0 || x == half;
-    if (mirrored_here && row.mirror <= row.index) {
-      signs[i] = row.mirror == row.index ? std::int8_t{0} : static_cast<std::int8_t>(-signs[row.mirror * columns + x]);
-    } else {
-      signs[i] = random.uniform(i) < 0.5 ? std::int8_t{-1} : std::int8_t{1};
+  for (std::size_t index = 0; index < rows; ++index) {
+    const SpectrumRow row = spectrum_row(index, fft.size(), fft.dims());
+    for (std::size_t x = 0; x < columns; ++x) {
+      if (!is_in_band(static_cast<std::int64_t>(x), row.wave_z, row.wave_y, from_cycles, to_cycles)) continue;
+      // In the first and the middle column a mode's mirror image, its conjugate, stands in the same column.
+      const std::size_t i = index * columns + x;
+      const bool mirrored_here = x == 0 || x == half;
+      if (mirrored_here && row.mirror <= row.index) {
+        signs[i] = static_cast<std::int8_t>(row.mirror == row.index ? 0 : -signs[row.mirror * columns + x]);
+      } else {
+        signs[i] = random.uniform(i) < 0.5 ? std::int8_t{-1} : std::int8_t{1};
+      }
     }
   }
   return signs;

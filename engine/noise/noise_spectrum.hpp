@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,8 +36,9 @@ void fill_modes(RealFft& fft, std::uint64_t seed,
 std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept;
 
 /// Which way each mode of the half spectrum turns, where eddies turn over: 1 or -1 at random, s_-k = -s_k, and 0 for
-/// the modes that are their own mirror images, which must stay real.
-std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed);
+/// the modes that are their own mirror images, which must stay real, and for those outside the band, if one is given.
+std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed, double from_cycles = 0.0,
+                                       double to_cycles = std::numeric_limits<double>::infinity());
 
 /// What brings samples to mean 0 and variance 1.
 struct Standard {

@@ -28,7 +28,7 @@ Result<TurningNoise2, NoiseError> make_turning_noise_2d(const NoiseSpec& spec) {
   RealFft fft(2, spec.size);
   fill_spectrum(fft, spec);
   std::vector<std::complex<double>> turned(fft.spectrum().begin(), fft.spectrum().end());
-  const std::vector<std::int8_t> signs = turning_signs(fft, spec.seed);
+  const std::vector<std::int8_t> signs = turning_signs(fft, spec.seed, spec.from_cycles, spec.to_cycles);
   for (std::size_t i = 0; i < turned.size(); ++i) turned[i] *= std::complex<double>(0.0, -signs[i]);
 
   TurningNoise2 noise{tile_of(fft), {}};

@@ -15,12 +15,13 @@ struct SampleKernelLayer {
   std::uint32_t offset_x = 0;
   std::uint32_t offset_z = 0;
   float weight = 1.0F;
+  const float* weights = nullptr;  ///< of each place, beside `weight`; null: 1
 };
 
 struct SampleKernelArguments {
   std::size_t count = 0;
   std::size_t layer_count = 0;
-  SampleKernelLayer layers[32] = {};
+  SampleKernelLayer layers[64] = {};
   float scale = 0.0F;
   float bias = 0.0F;
   float low = 0.0F;

@@ -18,6 +18,7 @@ SampleJob::Problem SampleJob::validate() const noexcept {
   for (const NoiseLayer& layer : layers) {
     if (layer.tile == nullptr || !is_readable(*layer.tile)) return Problem::kTileNotReadable;
     if (layer.place_x.size() != out.size() || layer.place_z.size() != out.size()) return Problem::kSizesDiffer;
+    if (!layer.weights.empty() && layer.weights.size() != out.size()) return Problem::kSizesDiffer;
     if (!std::isfinite(layer.weight)) return Problem::kRangeNotNumber;
   }
   if (!std::isfinite(scale) || !std::isfinite(bias) || !(low <= high)) return Problem::kRangeNotNumber;
@@ -38,7 +39,8 @@ SampleJob::Problem SampleJob::run() const noexcept {
                                                  .place_z = layer.place_z.data(),
                                                  .offset_x = layer.offset.x,
                                                  .offset_z = layer.offset.z,
-                                                 .weight = layer.weight};
+                                                 .weight = layer.weight,
+                                                 .weights = layer.weights.empty() ? nullptr : layer.weights.data()};
   }
   kSampleRows[row.value_or(best_simd_row())].sample(arguments);
   return Problem::kNone;

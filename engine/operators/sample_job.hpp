@@ -19,6 +19,7 @@ struct NoiseLayer {
   std::span<const std::uint32_t> place_z;
   TorusPhase offset = {};
   float weight = 1.0F;
+  std::span<const float> weights = {};  ///< of each place, beside `weight`; empty: 1
 };
 
 /// The sampling operator: reads shifted noise at many places and brings it into the range that the projection wants,
@@ -28,9 +29,10 @@ struct NoiseLayer {
 /// 7); octaves by themselves, added up, are a noise whose spectrum the moment decides. One value out for each place
 /// (one a strand: what bends as a whole is read once). Owns nothing; `out` overlaps no input. Thread-safe: jobs with
 /// different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits, and layers are added in their
-/// order. Cost: about 2 ns a place and layer.
+/// order. The weight is the layer's, or the layer's times the place's. A place's weight is used as it is: finite.
+/// Cost: about 2 ns a place and layer.
 struct SampleJob {
-  static constexpr std::size_t kMaxLayers = 32;
+  static constexpr std::size_t kMaxLayers = 64;
 
   std::span<const NoiseLayer> layers;
   float scale = 1.0F;
@@ -45,7 +47,7 @@ struct SampleJob {
     kNone,
     kLayerCount,       ///< none, or more than kMaxLayers
     kTileNotReadable,  ///< none, or is_readable() says no
-    kSizesDiffer,      ///< place_x, place_z and out
+    kSizesDiffer,      ///< place_x, place_z, weights (where there are any) and out
     kRangeNotNumber,   ///< a weight, scale or bias is not finite, or low and high are not in order
     kRowNotRunnable,
   };

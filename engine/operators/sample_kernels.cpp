@@ -29,6 +29,14 @@ struct Pairs {
   return pair;
 }
 
+/// The same where the row may end between the two: the east is then the row's first. `last`: of a row's samples.
+[[gnu::always_inline]] inline std::uint64_t load_pair_around(const float* tile, std::uint32_t west,
+                                                             std::uint32_t last) noexcept {
+  const std::uint32_t east = (west & ~last) | ((west + 1U) & last);
+  return __builtin_bit_cast(std::uint32_t, tile[west]) |
+         static_cast<std::uint64_t>(__builtin_bit_cast(std::uint32_t, tile[east])) << 32U;
+}
+
 [[gnu::always_inline]] inline float western(std::uint64_t pair) noexcept {
   return __builtin_bit_cast(float, static_cast<std::uint32_t>(pair));
 }
@@ -36,8 +44,12 @@ struct Pairs {
   return __builtin_bit_cast(float, static_cast<std::uint32_t>(pair >> 32U));
 }
 
+[[gnu::always_inline]] inline float weight_at(const SampleKernelLayer& layer, std::size_t place) noexcept {
+  return layer.weights == nullptr ? layer.weight : layer.weight * layer.weights[place];
+}
+
 /// Adds weight * noise at kAtOnce places to `sum`. A cell's two samples stand side by side in the tile, but for the
-/// last column's, whose east is the first: where one of the places is there, they are read one by one.
+/// last column's, whose east is the first: where one of the places is there, all are loaded one by one.
 [[gnu::always_inline]] inline void add_layer(const SampleKernelLayer& layer, std::size_t begin, float* sum) noexcept {
   const std::uint32_t last = (1U << layer.log2_size) - 1U;
   Cells at;
@@ -51,23 +63,27 @@ struct Pairs {
     at.z_fraction[i] = z.fraction;
     wraps |= x.first == last ? 1U : 0U;
   }
-  if (wraps != 0) {
-    for (std::size_t i = 0; i < kAtOnce; ++i) {
-      sum[i] += layer.weight * read_bilinear(layer.tile, layer.log2_size, layer.place_x[begin + i] - layer.offset_x,
-                                             layer.place_z[begin + i] - layer.offset_z);
-    }
-    return;
-  }
-
   Pairs pairs;
-  for (std::size_t i = 0; i < kAtOnce; ++i) {
-    pairs.north[i] = load_pair(layer.tile + at.north[i]);
-    pairs.south[i] = load_pair(layer.tile + at.south[i]);
+  if (wraps == 0) {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      pairs.north[i] = load_pair(layer.tile + at.north[i]);
+      pairs.south[i] = load_pair(layer.tile + at.south[i]);
+    }
+  } else {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      pairs.north[i] = load_pair_around(layer.tile, at.north[i], last);
+      pairs.south[i] = load_pair_around(layer.tile, at.south[i], last);
+    }
+  }
+  alignas(64) float weights[kAtOnce];
+  for (std::size_t i = 0; i < kAtOnce; ++i) weights[i] = layer.weight;
+  if (layer.weights != nullptr) {
+    for (std::size_t i = 0; i < kAtOnce; ++i) weights[i] *= layer.weights[begin + i];
   }
   for (std::size_t i = 0; i < kAtOnce; ++i) {
     const float north = between(western(pairs.north[i]), eastern(pairs.north[i]), at.x_fraction[i]);
     const float south = between(western(pairs.south[i]), eastern(pairs.south[i]), at.x_fraction[i]);
-    sum[i] += layer.weight * between(north, south, at.z_fraction[i]);
+    sum[i] += weights[i] * between(north, south, at.z_fraction[i]);
   }
 }
 
@@ -97,8 +113,8 @@ template <std::size_t known_layers>
     float sum = 0.0F;
     for (std::size_t index = 0; index < layers; ++index) {
       const SampleKernelLayer& layer = in.layers[index];
-      sum += layer.weight * read_bilinear(layer.tile, layer.log2_size, layer.place_x[i] - layer.offset_x,
-                                          layer.place_z[i] - layer.offset_z);
+      sum += weight_at(layer, i) * read_bilinear(layer.tile, layer.log2_size, layer.place_x[i] - layer.offset_x,
+                                                 layer.place_z[i] - layer.offset_z);
     }
     in.out[i] = scaled(in, sum);
   }

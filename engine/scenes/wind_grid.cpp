@@ -25,81 +25,68 @@ ScenePlacement first_of(std::span<const float> x_m, std::span<const float> z_m) 
   return {.x_m = static_cast<double>(x_m.front()), .z_m = static_cast<double>(z_m.front())};
 }
 
+/// How many nodes of an axis are read from these places on it: up to the one behind the last place.
+std::size_t nodes_read(std::span<const std::uint32_t> places, std::size_t nodes) {
+  if (places.empty()) return 0;
+  const std::uint32_t last = *std::max_element(places.begin(), places.end());
+  return (std::uint64_t{last} * nodes >> 32U) + 2;
+}
+
 }  // namespace
+
+/// A square torus over all places, a power of two of nodes a side. Of its nodes those are computed that a place reads:
+/// the last column and row are beyond every place, so that none reads where the torus closes.
+WindGrid::Layout::Layout(std::span<const float> x_m, std::span<const float> z_m, double finest_cell_m) {
+  if (x_m.empty()) return;
+  const auto [west, east] = std::minmax_element(x_m.begin(), x_m.end());
+  const auto [north, south] = std::minmax_element(z_m.begin(), z_m.end());
+  nodes.west_m = static_cast<double>(*west);
+  nodes.north_m = static_cast<double>(*north);
+  const double extent_m =
+      std::max(static_cast<double>(*east) - nodes.west_m, static_cast<double>(*south) - nodes.north_m);
+  const auto cells = static_cast<std::size_t>(std::ceil(std::min(extent_m / finest_cell_m, 1e6)));
+  torus_nodes = std::clamp(std::bit_ceil(cells + 2), kFewestNodes, kMostNodes);
+  const double cell_m = std::max(extent_m / static_cast<double>(torus_nodes - 2), finest_cell_m);
+  const double period_m = cell_m * static_cast<double>(torus_nodes);
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    place_x.push_back(torus_phase(static_cast<double>(x_m[i]) - nodes.west_m, period_m));
+    place_z.push_back(torus_phase(static_cast<double>(z_m[i]) - nodes.north_m, period_m));
+  }
+  nodes.cell_x_m = cell_m;
+  nodes.cell_z_m = cell_m;
+  nodes.columns = nodes_read(place_x, torus_nodes);
+  nodes.lines = nodes_read(place_z, torus_nodes);
+}
 
 WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m,
                    SimdRow row, double finest_cell_m)
-    : gusts_(std::move(gusts)), row_(row), east_m_s_(x_m.size()), south_m_s_(x_m.size()), smooth_(first_of(x_m, z_m)) {
-  // A square over all places, a power of two of nodes a side; the last column and row are beyond every place, so that
-  // none reads where the torus closes.
-  const auto [west, east] = std::minmax_element(x_m.begin(), x_m.end());
-  const auto [north, south] = std::minmax_element(z_m.begin(), z_m.end());
-  const double first_x_m = x_m.empty() ? 0.0 : static_cast<double>(*west);
-  const double first_z_m = z_m.empty() ? 0.0 : static_cast<double>(*north);
-  const double extent_m =
-      x_m.empty() ? 0.0 : std::max(static_cast<double>(*east) - first_x_m, static_cast<double>(*south) - first_z_m);
-  const auto cells = static_cast<std::size_t>(std::ceil(std::min(extent_m / finest_cell_m, 1e6)));
-  const std::size_t nodes = std::clamp(std::bit_ceil(cells + 2), kFewestNodes, kMostNodes);
-  const double cell_m = std::max(extent_m / static_cast<double>(nodes - 2), finest_cell_m);
-  const double period_m = cell_m * static_cast<double>(nodes);
-
-  for (std::size_t line = 0; line < nodes; ++line) {
-    for (std::size_t column = 0; column < nodes; ++column) {
-      const double node_x_m = first_x_m + cell_m * static_cast<double>(column);
-      const double node_z_m = first_z_m + cell_m * static_cast<double>(line);
-      node_x_m_.push_back(node_x_m);
-      node_z_m_.push_back(node_z_m);
-      for (std::size_t which = 0; which < 2; ++which) {
-        const TorusPhase phase = gusts_->place_on(which, node_x_m, node_z_m);
-        node_x_[which].push_back(phase.x);
-        node_z_[which].push_back(phase.z);
-      }
-    }
-  }
-  for (std::size_t i = 0; i < x_m.size(); ++i) {
-    place_x_.push_back(torus_phase(static_cast<double>(x_m[i]) - first_x_m, period_m));
-    place_z_.push_back(torus_phase(static_cast<double>(z_m[i]) - first_z_m, period_m));
-  }
+    : row_(row),
+      layout_(x_m, z_m, finest_cell_m),
+      gusts_(std::move(gusts), layout_.nodes, row),
+      east_m_s_(x_m.size()),
+      south_m_s_(x_m.size()),
+      smooth_(first_of(x_m, z_m)) {
+  const std::size_t count = layout_.nodes.size();
   for (Component* component : {&east_, &south_}) {
-    component->value = {nodes, std::vector<float>(nodes * nodes)};
-    component->target.assign(nodes * nodes, 0.0F);
-    component->rate_per_s.assign(nodes * nodes, 0.0F);
+    component->value.assign(count, 0.0F);
+    component->target.assign(count, 0.0F);
+    component->rate_per_s.assign(count, 0.0F);
+    component->on_torus = {layout_.torus_nodes, std::vector<float>(layout_.torus_nodes * layout_.torus_nodes)};
   }
-}
-
-void WindGrid::read_octaves(const GroundWind& wind, GustNoise::Component component,
-                            std::span<float> out) const noexcept {
-  std::array<GustNoise::Layer, GustNoise::kMaxLayers> octaves;
-  const std::size_t count = gusts_->layers(wind.gusts, component, octaves);
-  if (count == 0) {
-    std::ranges::fill(out, 0.0F);
-    return;
-  }
-  std::array<NoiseLayer, GustNoise::kMaxLayers> layers;
-  static_assert(GustNoise::kMaxLayers <= SampleJob::kMaxLayers);
-  for (std::size_t i = 0; i < count; ++i) {
-    const GustNoise::Layer& octave = octaves[i];
-    layers[i] = {.tile = octave.tile,
-                 .place_x = node_x_[octave.which],
-                 .place_z = node_z_[octave.which],
-                 .offset = octave.offset,
-                 .weight = octave.weight_m_s};
-  }
-  SampleJob{.layers = std::span(layers).first(count), .row = row_, .out = out}.run();
 }
 
 void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
   smooth_.step(wind, dt_s);
 
-  // The gusts at each node, along the mean wind and to the left of it, turned into the world.
-  read_octaves(wind, GustNoise::Component::kAlong, east_.target);
-  read_octaves(wind, GustNoise::Component::kAcross, south_.target);
+  // The gusts at each node, along the mean wind and to the left of it, turned into the world and added to what is
+  // smooth.
+  gusts_.read(wind.gusts);
   const WindVector ahead = wind.gusts.ahead;
   for (std::size_t i = 0; i < east_.target.size(); ++i) {
-    const auto along = static_cast<double>(east_.target[i]);
-    const auto across = static_cast<double>(south_.target[i]);
+    const auto along = static_cast<double>(gusts_.along_m_s()[i]);
+    const auto across = static_cast<double>(gusts_.across_m_s()[i]);
     const WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
-    const WindVector here = SceneWind::cut(wind.smooth_at(node_x_m_[i], node_z_m_[i]) + gust);
+    const WindVector here = SceneWind::cut(wind.smooth_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust);
     east_.target[i] = static_cast<float>(here.u_m_s);
     south_.target[i] = static_cast<float>(-here.v_m_s);
   }
@@ -108,7 +95,7 @@ void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
 }
 
 /// CriticallyDamped, for all nodes at once.
-void WindGrid::follow(Component& component, double dt_s) noexcept {
+void WindGrid::follow(Component& component, double dt_s) const noexcept {
   const double phase = SceneWind::kOmega_rad_s * dt_s;
   const double decay = std::exp(-phase);
   const auto value_from_distance = static_cast<float>(decay * (1.0 + phase));
@@ -117,20 +104,26 @@ void WindGrid::follow(Component& component, double dt_s) noexcept {
   const auto rate_from_distance = static_cast<float>(-decay * SceneWind::kOmega_rad_s * phase);
   for (std::size_t i = 0; i < component.target.size(); ++i) {
     const float target = component.target[i];
-    const float distance = component.value.values[i] - target;
+    const float distance = component.value[i] - target;
     const float rate = component.rate_per_s[i];
     const float value = target + value_from_distance * distance + value_from_rate * rate;
     const float new_rate = rate_from_rate * rate + rate_from_distance * distance;
     const bool is_still = std::abs(value) < kNoWind_m_s && std::abs(new_rate) < kNoWind_m_s;
-    component.value.values[i] = is_still ? 0.0F : value;
+    component.value[i] = is_still ? 0.0F : value;
     component.rate_per_s[i] = is_still ? 0.0F : new_rate;
+  }
+  const std::size_t columns = layout_.nodes.columns;
+  auto on_torus = component.on_torus.values.begin();
+  for (std::size_t i = 0; i < component.value.size(); i += columns) {
+    std::ranges::copy(std::span(component.value).subspan(i, columns), on_torus);
+    on_torus += static_cast<std::ptrdiff_t>(component.on_torus.size);
   }
 }
 
 void WindGrid::read(const Component& component, std::size_t first, std::span<float> out) const noexcept {
-  const NoiseLayer layer{.tile = &component.value,
-                         .place_x = std::span(place_x_).subspan(first, out.size()),
-                         .place_z = std::span(place_z_).subspan(first, out.size())};
+  const NoiseLayer layer{.tile = &component.on_torus,
+                         .place_x = std::span(layout_.place_x).subspan(first, out.size()),
+                         .place_z = std::span(layout_.place_z).subspan(first, out.size())};
   SampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();
 }
 

@@ -1,7 +1,10 @@
 #include "engine/wind/gust_noise.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "engine/math/philox.hpp"
@@ -11,48 +14,77 @@
 namespace yuragi {
 namespace {
 
-constexpr double kTurn_rad = 1.0;  // of the second tile
-/// The way repeats after so many tiles: one octave above its shortest waves the tiles begin.
-constexpr double kTilesPerWay = static_cast<double>(std::size_t{1} << GustNoise::kWayOctaves);
-constexpr std::size_t kWaySamples = std::size_t{4} << GustNoise::kWayOctaves;
+/// The long tile, the middle one and the short one of a chain: their periods, in middle ones, and the cycles an edge of
+/// their longest waves. By what angle each of the six is turned: they differ by 0.2 rad or more, quarter turns aside.
+constexpr std::array kPeriods = {8.0, 1.0, 0.125};
+constexpr std::array kFirstCycles = {1.0, 1.0, 16.0};
+constexpr std::array<std::size_t, 3> kFirstOctave = {0, GustNoise::kLongOctaves,
+                                                     GustNoise::kTileOctaves - GustNoise::kShortOctaves};
+constexpr std::array kTurns_rad = {2.0, 0.0, 0.7, 3.0, 1.0, 1.2};
+
+/// The way repeats after so many middle tiles: one octave above its shortest waves the long tiles begin.
+constexpr double kTilesPerWay = 8.0 * static_cast<double>(std::size_t{1} << GustNoise::kWayOctaves);
+constexpr std::size_t kWaySamples = std::size_t{16} << GustNoise::kWayOctaves;
 constexpr double kBeta = 5.0 / 3.0;
+
+/// The envelope's waves, in cycles of the long tile: 100 to 400 m.
+constexpr double kStrengthFromCycles = 5.12;
+constexpr double kStrengthToCycles = 20.48;
+constexpr std::size_t kStrengthSamples = 128;
 
 /// An octave weaker than this moves nothing, and is not read.
 constexpr float kNothing_m_s = 1e-4F;
-
-/// What reading between samples leaves of an octave's standard deviation, measured at places at random.
-template <class Tile, class PlaceAt>
-double read_deviation(const Tile& tile, PlaceAt place_at) {
-  constexpr std::uint64_t kPlaces = 1 << 14U;
-  const RandomStream random(1, stream_id("gust noise: where an octave is measured"));
-  double squares = 0.0;
-  for (std::uint64_t i = 0; i < kPlaces; ++i) {
-    const auto [x, z] = random.uniform_pair(i);
-    const auto value = static_cast<double>(read_noise(tile, place_at(x, z)));
-    squares += value * value;
-  }
-  return std::sqrt(squares / static_cast<double>(kPlaces));
-}
-
-std::uint32_t phase_of(double part) noexcept {
-  return static_cast<std::uint32_t>(part * 4294967296.0);
-}
 
 /// `along` and `across` of a unit vector, in the world.
 WindVector turned(WindVector unit, double along, double across) noexcept {
   return {along * unit.u_m_s - across * unit.v_m_s, along * unit.v_m_s + across * unit.u_m_s};
 }
 
+/// Gives a tile variance 1 as it is read. Reading between samples, over all places alike, has 2/3 of a sample's own
+/// variance, and 1/3 of what it has in common with the next one, on each axis.
 void scale_to_unit_reading(NoiseTile2& tile) {
-  const double deviation = read_deviation(tile, [](double x, double z) {
-    return TorusPhase{phase_of(x), phase_of(z)};
-  });
-  for (float& value : tile.values) value = static_cast<float>(static_cast<double>(value) / deviation);
+  double own = 0.0;
+  double beside = 0.0;
+  double across = 0.0;
+  const std::size_t last = tile.size - 1;
+  for (std::size_t z = 0; z < tile.size; ++z) {
+    const std::span here = std::span(tile.values).subspan(z * tile.size, tile.size);
+    const std::span next = std::span(tile.values).subspan(((z + 1) & last) * tile.size, tile.size);
+    for (std::size_t x = 0; x < tile.size; ++x) {
+      const std::size_t east = (x + 1) & last;
+      own += static_cast<double>(here[x] * here[x]);
+      beside += static_cast<double>(here[x] * (here[east] + next[x]));
+      across += static_cast<double>(here[x] * next[east] + here[east] * next[x]);
+    }
+  }
+  const double variance = (4.0 * own + 2.0 * beside + across / 2.0) / 9.0 / static_cast<double>(tile.values.size());
+  const auto scale = static_cast<float>(1.0 / std::sqrt(variance));
+  for (float& value : tile.values) value *= scale;
 }
 
+void scale_to_unit_reading(NoiseTile1& tile) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    const auto here = static_cast<double>(tile.values[i]);
+    squares += here * (2.0 * here + static_cast<double>(tile.values[(i + 1) % tile.size()])) / 3.0;
+  }
+  const auto scale = static_cast<float>(1.0 / std::sqrt(squares / static_cast<double>(tile.size())));
+  for (float& value : tile.values) value *= scale;
+}
+
+/// An octave of a chain's tiles. Tiles are as large as their waves need: 16 samples for the longest where that is no
+/// more than half the largest edge, else 8.
 NoiseSpec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
-  const double cycles = std::ldexp(1.0, static_cast<int>(octave));
-  return {.size = samples, .beta = kBeta, .seed = seed, .from_cycles = cycles, .to_cycles = 2.0 * cycles};
+  const std::size_t tile = GustNoise::torus_of(octave);
+  const double cycles = std::ldexp(kFirstCycles[tile], static_cast<int>(octave - kFirstOctave[tile]));
+  constexpr std::size_t kFewestSamples = 64;
+  const std::size_t a_wave = samples / 64;
+  const auto fewest = a_wave * static_cast<std::size_t>(cycles);
+  return {.size = std::max(kFewestSamples, std::min(2 * fewest, std::max(samples / 2, fewest))),
+          .beta = kBeta,
+          .seed = seed,
+          .from_cycles = cycles,
+          .to_cycles = 2.0 * cycles};
 }
 
 NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
@@ -61,52 +93,73 @@ NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
       make_noise_1d(
           {.size = kWaySamples, .beta = kBeta, .seed = seed, .from_cycles = cycles, .to_cycles = 2.0 * cycles})
           .value();
-  const double deviation = read_deviation(tile, [](double x, double) { return phase_of(x); });
-  for (float& value : tile.values) value = static_cast<float>(static_cast<double>(value) / deviation);
+  scale_to_unit_reading(tile);
+  return tile;
+}
+
+NoiseTile2 make_strength(std::uint64_t seed) {
+  NoiseTile2 tile = make_noise_2d({.size = kStrengthSamples,
+                                   .beta = kBeta,
+                                   .seed = seed ^ stream_id("how strong gusts are"),
+                                   .from_cycles = kStrengthFromCycles,
+                                   .to_cycles = kStrengthToCycles})
+                        .value();
+  scale_to_unit_reading(tile);
   return tile;
 }
 
 }  // namespace
 
 GustNoise::GustNoise(const GustNoiseSettings& settings)
-    : periods_m_{settings.period_m, std::numbers::phi * settings.period_m},
-      evolves_(settings.evolves),
+    : evolves_(settings.evolves),
       along_(make_octaves(settings, settings.seed ^ stream_id("gusts along the wind"))),
-      across_(make_octaves(settings, settings.seed ^ stream_id("gusts across the wind"))) {
-  // The octaves of the way, then those of the tiles. The first tile's and the second's overlap, and share.
+      across_(make_octaves(settings, settings.seed ^ stream_id("gusts across the wind"))),
+      strength_(make_strength(settings.seed)) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
-  std::size_t next = 0;
-  for (std::size_t which = 0; which < 2; ++which) {
-    for (std::size_t octave = 0; octave < kWayOctaves; ++octave) {
-      const double from = kTurn / (kTilesPerWay * periods_m_[which]) * std::ldexp(1.0, static_cast<int>(octave));
-      octaves_[next++] = {from, 2.0 * from, 0.5};
+  for (std::size_t chain = 0; chain < 2; ++chain) {
+    const double period_m = chain == 0 ? settings.period_m : std::numbers::phi * settings.period_m;
+    way_periods_m_[chain] = kTilesPerWay * period_m;
+    for (std::size_t i = 0; i < kPeriods.size(); ++i) {
+      const std::size_t torus = kPeriods.size() * chain + i;
+      tori_[torus] = {kPeriods[i] * period_m, std::cos(kTurns_rad[torus]), std::sin(kTurns_rad[torus])};
     }
-  }
-  for (std::size_t which = 0; which < 2; ++which) {
-    for (std::size_t octave = 0; octave < kTileOctaves; ++octave) {
-      const double from = kTurn / periods_m_[which] * std::ldexp(1.0, static_cast<int>(octave));
-      octaves_[next++] = {from, 2.0 * from, 0.5};
+    // Each begins where the one before it ends: twice as many waves to the metre. The chains' overlap, and share.
+    double from_rad_m = kTurn / way_periods_m_[chain];
+    const auto next = [&from_rad_m] {
+      const Octave octave{from_rad_m, 2.0 * from_rad_m, 0.5};
+      from_rad_m = octave.to_rad_m;
+      return octave;
+    };
+    for (std::size_t i = 0; i < kWayOctaves; ++i) octaves_[chain * kWayOctaves + i] = next();
+    for (std::size_t i = 0; i < kTileOctaves; ++i) {
+      const std::size_t tile_octave = chain * kTileOctaves + i;
+      const Octave& octave = octaves_[2 * kWayOctaves + tile_octave] = next();
+      const double middle_rad_m = std::numbers::sqrt2 * octave.from_rad_m;
+      turn_rates_m_23_[tile_octave] = std::cbrt(middle_rad_m * middle_rad_m);
     }
   }
 }
 
 GustNoise::Octaves GustNoise::make_octaves(const GustNoiseSettings& settings, std::uint64_t seed) {
   Octaves component;
-  for (std::size_t which = 0; which < 2; ++which) {
-    for (std::size_t octave = 0; octave < kTileOctaves; ++octave) {
-      const NoiseSpec spec = tile_octave(octave, settings.samples, seed + 100 * which + octave);
+  for (std::size_t chain = 0; chain < 2; ++chain) {
+    const std::uint64_t chain_seed = seed + 100 * chain;
+    for (std::size_t i = 0; i < kTileOctaves; ++i) {
+      const NoiseSpec spec = tile_octave(i, settings.samples, chain_seed + i);
+      NoiseTile2& tile = component.tiles[chain * kTileOctaves + i];
       if (settings.evolves) {
         TurningNoise2 noise = make_turning_noise_2d(spec).value();
-        scale_to_unit_reading(noise.quarter);
-        component.quarters[which].push_back(std::move(noise.quarter));
-        component.tiles[which].push_back(std::move(noise.first));
+        NoiseTile2& quarter = component.quarters[chain * kTileOctaves + i];
+        tile = std::move(noise.first);
+        quarter = std::move(noise.quarter);
+        scale_to_unit_reading(quarter);
       } else {
-        component.tiles[which].push_back(make_noise_2d(spec).value());
+        tile = make_noise_2d(spec).value();
       }
-      scale_to_unit_reading(component.tiles[which].back());
+      scale_to_unit_reading(tile);
     }
-    for (std::size_t octave = 0; octave < kWayOctaves; ++octave) {
-      component.ways[which].push_back(way_octave(octave, seed + 100 * which + octave));
+    for (std::size_t i = 0; i < kWayOctaves; ++i) {
+      component.ways[chain * kWayOctaves + i] = way_octave(i, chain_seed + i);
     }
   }
   return component;
@@ -114,66 +167,56 @@ GustNoise::Octaves GustNoise::make_octaves(const GustNoiseSettings& settings, st
 
 GustNoise::Carried GustNoise::begin(std::uint64_t seed) const noexcept {
   const RandomStream random(seed, stream_id("where gusts begin"));
-  const auto [east, south] = random.uniform_pair(0);
-  const auto [first, second] = random.uniform_pair(1);
   Carried carried;
-  carried.first.x.add(east * periods_m_[0], periods_m_[0]);
-  carried.first.z.add(south * periods_m_[0], periods_m_[0]);
-  carried.second.x.add(first * periods_m_[1], periods_m_[1]);
-  carried.second.z.add(second * periods_m_[1], periods_m_[1]);
-  carried.way_first.add(first * kTilesPerWay * periods_m_[0], kTilesPerWay * periods_m_[0]);
-  carried.way_second.add(south * kTilesPerWay * periods_m_[1], kTilesPerWay * periods_m_[1]);
+  for (std::size_t i = 0; i < kTori; ++i) {
+    const auto [x, z] = random.uniform_pair(i);
+    carried.tiles[i].x.add(x * tori_[i].period_m, tori_[i].period_m);
+    carried.tiles[i].z.add(z * tori_[i].period_m, tori_[i].period_m);
+  }
+  const auto [first, second] = random.uniform_pair(kTori);
+  carried.way_first.add(first * way_periods_m_[0], way_periods_m_[0]);
+  carried.way_second.add(second * way_periods_m_[1], way_periods_m_[1]);
   return carried;
 }
 
 void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, double dt_s,
                       double turnover_m23_s) const noexcept {
-  const double c = std::cos(kTurn_rad);
-  const double s = std::sin(kTurn_rad);
-  carried.first.x.add(east_m_s * dt_s, periods_m_[0]);
-  carried.first.z.add(south_m_s * dt_s, periods_m_[0]);
-  carried.second.x.add((c * east_m_s + s * south_m_s) * dt_s, periods_m_[1]);
-  carried.second.z.add((c * south_m_s - s * east_m_s) * dt_s, periods_m_[1]);
+  for (std::size_t i = 0; i < kTori; ++i) {
+    const auto [x_m, z_m] = tori_[i].turned(east_m_s * dt_s, south_m_s * dt_s);
+    carried.tiles[i].x.add(x_m, tori_[i].period_m);
+    carried.tiles[i].z.add(z_m, tori_[i].period_m);
+  }
   const double way_m = std::hypot(east_m_s, south_m_s) * dt_s;
-  carried.way_first.add(way_m, kTilesPerWay * periods_m_[0]);
-  carried.way_second.add(way_m, kTilesPerWay * periods_m_[1]);
+  carried.way_first.add(way_m, way_periods_m_[0]);
+  carried.way_second.add(way_m, way_periods_m_[1]);
 
   if (!evolves_ || turnover_m23_s == 0.0) return;
   constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
-    const double middle_rad_m = std::numbers::sqrt2 * octaves_[2 * kWayOctaves + i].from_rad_m;
     TorusTravel& turn = carried.turned.turns[i];
-    turn.add(turnover_m23_s * std::cbrt(middle_rad_m * middle_rad_m) * dt_s, kFullTurn_rad);
+    turn.add(turnover_m23_s * turn_rates_m_23_[i] * dt_s, kFullTurn_rad);
     const double angle_rad = kFullTurn_rad * 0x1p-32 * static_cast<double>(turn.phase());
     carried.turned.cosine[i] = static_cast<float>(std::cos(angle_rad));
     carried.turned.sine[i] = static_cast<float>(std::sin(angle_rad));
   }
 }
 
-TorusPhase GustNoise::place_on(std::size_t which, double east_m, double south_m) const noexcept {
-  if (which == 0) return {torus_phase(east_m, periods_m_[0]), torus_phase(south_m, periods_m_[0])};
-  const double c = std::cos(kTurn_rad);
-  const double s = std::sin(kTurn_rad);
-  return {torus_phase(c * east_m + s * south_m, periods_m_[1]), torus_phase(c * south_m - s * east_m, periods_m_[1])};
+TorusPhase GustNoise::place_on(std::size_t torus, double east_m, double south_m) const noexcept {
+  const auto [x_m, z_m] = tori_[torus].turned(east_m, south_m);
+  return {torus_phase(x_m, tori_[torus].period_m), torus_phase(z_m, tori_[torus].period_m)};
 }
 
 GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m) const noexcept {
-  // A field that has moved by X is read at x - X.
-  const TorusPhase first = place_on(0, east_m, south_m) - carried.first.phase();
-  const TorusPhase second = place_on(1, east_m, south_m) - carried.second.phase();
-  return {read(along_, first, second, carried), read(across_, first, second, carried)};
+  return {read(along_, carried, east_m, south_m), read(across_, carried, east_m, south_m)};
 }
 
 WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
   double along = 0.0;
   double across = 0.0;
-  for (std::size_t which = 0; which < 2; ++which) {
-    const std::uint32_t phase = which == 0 ? moment.carried.way_first.phase() : moment.carried.way_second.phase();
-    for (std::size_t i = 0; i < kWayOctaves; ++i) {
-      const std::size_t octave = which * kWayOctaves + i;
-      along += static_cast<double>(moment.along_m_s[octave] * read_noise(along_.ways[which][i], phase));
-      across += static_cast<double>(moment.across_m_s[octave] * read_noise(across_.ways[which][i], phase));
-    }
+  for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
+    const TorusTravel& way = i < kWayOctaves ? moment.carried.way_first : moment.carried.way_second;
+    along += static_cast<double>(moment.along_m_s[i] * read_noise(along_.ways[i], way.phase()));
+    across += static_cast<double>(moment.across_m_s[i] * read_noise(across_.ways[i], way.phase()));
   }
   return turned(moment.ahead, along, across);
 }
@@ -183,54 +226,56 @@ std::size_t GustNoise::layers(const Moment& moment, Component component,
   const bool is_along = component == Component::kAlong;
   const Octaves& octaves = is_along ? along_ : across_;
   const auto& weights_m_s = is_along ? moment.along_m_s : moment.across_m_s;
-  const std::array<TorusPhase, 2> offsets = {moment.carried.first.phase(), moment.carried.second.phase()};
+  const Carried& carried = moment.carried;
   std::size_t count = 0;
-  for (std::size_t which = 0; which < 2; ++which) {
-    for (std::size_t i = 0; i < kTileOctaves; ++i) {
-      const float weight_m_s = weights_m_s[2 * kWayOctaves + which * kTileOctaves + i];
-      if (weight_m_s < kNothing_m_s) continue;
-      const std::size_t turn = which * kTileOctaves + i;
-      out[count++] = {&octaves.tiles[which][i], which, offsets[which], moment.carried.turned.cosine[turn] * weight_m_s};
-      if (!evolves_) continue;
-      out[count++] = {&octaves.quarters[which][i], which, offsets[which],
-                      moment.carried.turned.sine[turn] * weight_m_s};
-    }
+  for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
+    const float weight_m_s = weights_m_s[2 * kWayOctaves + i];
+    if (weight_m_s < kNothing_m_s) continue;
+    const TorusPhase offset = carried.tiles[torus_of(i)].phase();
+    out[count++] = {&octaves.tiles[i], i, offset, carried.turned.cosine[i] * weight_m_s};
+    if (evolves_) out[count++] = {&octaves.quarters[i], i, offset, carried.turned.sine[i] * weight_m_s};
   }
   return count;
 }
 
 WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
-  const std::array<TorusPhase, 2> places = {place_on(0, east_m, south_m), place_on(1, east_m, south_m)};
+  std::array<TorusPhase, kTori> places;
+  for (std::size_t i = 0; i < kTori; ++i) places[i] = place_on(i, east_m, south_m);
+  const float strength = envelope(moment, east_m, south_m);
   const auto sum_of = [&](Component component) {
     std::array<Layer, kMaxLayers> all;
     const std::size_t count = layers(moment, component, all);
     float sum = 0.0F;
     for (const Layer& layer : std::span(all).first(count)) {
-      sum += layer.weight_m_s * read_noise(*layer.tile, places[layer.which] - layer.offset);
+      sum += layer.weight_m_s * read_noise(*layer.tile, places[torus_of(layer.octave)] - layer.offset);
     }
-    return static_cast<double>(sum);
+    return static_cast<double>(strength * sum);
   };
   return turned(moment.ahead, sum_of(Component::kAlong), sum_of(Component::kAcross));
 }
 
-std::array<float, GustNoise::kOctaves> GustNoise::read(const Octaves& component, TorusPhase first, TorusPhase second,
-                                                       const Carried& carried) const noexcept {
-  std::array<float, kOctaves> values{};
-  std::size_t next = 0;
-  for (const NoiseTile1& way : component.ways[0]) values[next++] = read_noise(way, carried.way_first.phase());
-  for (const NoiseTile1& way : component.ways[1]) values[next++] = read_noise(way, carried.way_second.phase());
-  for (std::size_t i = 0; i < kTileOctaves; ++i) values[next++] = read_tile(component, 0, i, first, carried.turned);
-  for (std::size_t i = 0; i < kTileOctaves; ++i) values[next++] = read_tile(component, 1, i, second, carried.turned);
-  return values;
+float GustNoise::envelope(const Moment& moment, double east_m, double south_m) const noexcept {
+  const float g = moment.gustiness;
+  if (g == 0.0F) return 1.0F;
+  return std::exp(g * read_noise(strength_, place_on(0, east_m, south_m) - moment.carried.tiles[0].phase()) - g * g);
 }
 
-/// An octave of a tile at a place, its eddies as far turned as they are.
-float GustNoise::read_tile(const Octaves& component, std::size_t which, std::size_t octave, TorusPhase place,
-                           const Turned& turned) noexcept {
-  const float first = read_noise(component.tiles[which][octave], place);
-  if (component.quarters[which].empty()) return first;
-  const std::size_t turn = which * kTileOctaves + octave;
-  return turned.cosine[turn] * first + turned.sine[turn] * read_noise(component.quarters[which][octave], place);
+std::array<float, GustNoise::kOctaves> GustNoise::read(const Octaves& component, const Carried& carried, double east_m,
+                                                       double south_m) const noexcept {
+  std::array<float, kOctaves> values{};
+  for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
+    values[i] = read_noise(component.ways[i], (i < kWayOctaves ? carried.way_first : carried.way_second).phase());
+  }
+  for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
+    // A field that has moved by X is read at x - X; its eddies as far turned as they are.
+    const std::size_t torus = torus_of(i);
+    const TorusPhase place = place_on(torus, east_m, south_m) - carried.tiles[torus].phase();
+    float& value = values[2 * kWayOctaves + i];
+    value = read_noise(component.tiles[i], place);
+    if (!evolves_) continue;
+    value = carried.turned.cosine[i] * value + carried.turned.sine[i] * read_noise(component.quarters[i], place);
+  }
+  return values;
 }
 
 double eddy_turnover_m23_s(double sigma_m_s, double length_m) noexcept {

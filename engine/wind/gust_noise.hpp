@@ -14,8 +14,8 @@ namespace yuragi {
 
 /// What the noise of gusts is like.
 struct GustNoiseSettings {
-  double period_m = 256.0;    ///< of the first tile
-  std::size_t samples = 512;  ///< an edge of each tile: a power of two, 64 to 2048
+  double period_m = 256.0;    ///< of the first chain's middle tile
+  std::size_t samples = 512;  ///< an edge of the largest tiles: a power of two, 128 to 2048
   std::uint64_t seed = 1;
   /// Eddies turn over while they travel, so that a gust does not come back unchanged when its tile has wrapped. Twice
   /// the memory, and two tiles to read where a frozen octave has one.
@@ -23,31 +23,39 @@ struct GustNoiseSettings {
 };
 
 /// Gusts as a pattern that the wind carries over the ground, taken apart into octaves of the wavenumber, so that each
-/// can be given the strength that the moment asks for. Every octave has mean 0 and variance 1.
+/// can be given the strength that the moment asks for. Every octave has mean 0 and variance 1 as it is read.
 ///
-/// What fits on a tile is a 2-D noise: two tiles are added whose periods have the ratio of the golden section, the
-/// second turned by one radian, so that no repeat is seen. Waves of four samples are the shortest. What is longer than
-/// a tile is the same everywhere in the scene: a 1-D noise along the way that the wind has come (65 km and 106 km
-/// before it repeats).
+/// Two chains of octaves are added, the second's waves longer than the first's by the golden section, so that no repeat
+/// is seen. A chain's waves of 2048 m down to 0.25 m are 2-D noises on three tori, each turned by an angle of its own:
+/// three octaves on a long tile (2048 m), seven on a middle one (256 m), three on a short one (32 m). What is longer
+/// is the same everywhere in the scene: a 1-D noise along the way that the wind has come (65 km and 106 km before it
+/// repeats). An octave's shortest wave has four samples or more.
 ///
 /// Where it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (TurningNoise2), and
 /// its angle a goes on by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
 /// 1941), turnover being the cube root of the dissipation, eddy_turnover_m23_s().
 ///
-/// Owns its tiles (about 30 MB at 512 samples, 60 MB if it evolves). Set-up work. Thread-safe: reading, yes.
-/// Realtime-safe: all but construction.
+/// Gusts come in bursts: where the moment asks for it, all octaves of the tiles are stronger together in some places
+/// and weaker in others, by envelope(). It travels with them.
+///
+/// Owns its tiles (13 MB at 512 samples, 26 MB if it evolves). Set-up work. Thread-safe: reading, yes. Realtime-safe:
+/// all but construction.
 class GustNoise {
  public:
-  /// Octaves below the tiles (of the way), and those of each tile.
-  static constexpr std::size_t kWayOctaves = 8;
-  static constexpr std::size_t kTileOctaves = 7;
+  /// Octaves of each chain: of the way, and of its tiles, of which the first are the long tile's and the last the short
+  /// one's.
+  static constexpr std::size_t kWayOctaves = 5;
+  static constexpr std::size_t kTileOctaves = 13;
+  static constexpr std::size_t kLongOctaves = 3;
+  static constexpr std::size_t kShortOctaves = 3;
+  /// Of both chains: the first's way, the second's way, the first's tiles, the second's; the longest waves first.
   static constexpr std::size_t kFirstTileOctave = 2 * kWayOctaves;
   static constexpr std::size_t kOctaves = 2 * (kWayOctaves + kTileOctaves);
 
   /// Throws what make_noise_2d says, and std::bad_alloc.
   explicit GustNoise(const GustNoiseSettings& settings);
 
-  /// An octave: its waves, and which part of the power at its wavenumbers is its own (the two tiles share).
+  /// An octave: its waves, and which part of the power at its wavenumbers is its own (the two chains share).
   struct Octave {
     double from_rad_m = 0.0;
     double to_rad_m = 0.0;
@@ -55,7 +63,13 @@ class GustNoise {
   };
   const std::array<Octave, kOctaves>& octaves() const noexcept { return octaves_; }
 
-  /// How far the eddies of each octave of the tiles, first and second, have turned.
+  /// How far apart the samples of an octave's tiles are, m; octaves of the tiles are counted from the first chain's
+  /// longest. A wave is read linearly between them.
+  double sample_m(std::size_t tile_octave) const noexcept {
+    return tori_[torus_of(tile_octave)].period_m / static_cast<double>(along_.tiles[tile_octave].size);
+  }
+
+  /// How far the eddies of each octave of the tiles, the first chain's and the second's, have turned.
   struct Turned {
     std::array<TorusTravel, 2 * kTileOctaves> turns;
     std::array<float, 2 * kTileOctaves> cosine, sine;
@@ -65,9 +79,18 @@ class GustNoise {
     }
   };
 
+  /// The tiles' tori: the first chain's long, middle and short one, then the second's.
+  static constexpr std::size_t kTori = 6;
+  /// The torus of an octave of the tiles, counted from the first chain's longest.
+  static constexpr std::size_t torus_of(std::size_t tile_octave) noexcept {
+    const std::size_t octave = tile_octave % kTileOctaves;
+    const std::size_t first = tile_octave < kTileOctaves ? 0 : kTori / 2;
+    return first + (octave < kLongOctaves ? 0 : octave < kTileOctaves - kShortOctaves ? 1 : 2);
+  }
+
   /// How far the pattern has been carried, and its eddies have turned.
   struct Carried {
-    TorusOffset first, second;
+    std::array<TorusOffset, kTori> tiles;
     TorusTravel way_first, way_second;
     Turned turned;
   };
@@ -92,17 +115,25 @@ class GustNoise {
     Carried carried;
     WindVector ahead{0.0, 1.0};  ///< unit vector downwind; `across` is to the left of it
     std::array<float, kOctaves> along_m_s{}, across_m_s{};
+    float gustiness = 0.0F;  ///< how unequal the gusts of places are: of envelope(); 0: all alike
   };
   /// The gusts that all places have alike: the octaves of the way.
   WindVector everywhere(const Moment& moment) const noexcept;
   /// The gusts of a place alone: the octaves of the tiles (metres east and south of the middle of the scene).
   WindVector local(const Moment& moment, double east_m, double south_m) const noexcept;
 
-  /// The same as layers, to be read at many places at once and added up: a tile, how far it has been carried, and its
-  /// weight in m/s. A place is read at place_on(layer.which, ...) - offset. An octave that evolves has two layers.
+  /// By how much the gusts of a place are stronger than usual: exp(g G - g^2), g being the moment's gustiness and G a
+  /// noise of variance 1 with waves of 100 to 400 m (at periods of 256 m). Its mean square is 1. Exactly 1 where g is
+  /// 0. Gusts whose strength varies in this way have the sharp increments of real ones (Castaing, Gagne and Hopfinger
+  /// 1990, Velocity probability density functions of high Reynolds number turbulence: a lognormal strength).
+  float envelope(const Moment& moment, double east_m, double south_m) const noexcept;
+
+  /// The gusts of a place as layers, to be read at many places at once and added up, without the envelope: a tile, how
+  /// far it has been carried, and its weight in m/s. A place is read at place_on(torus_of(layer.octave), ...) - offset.
+  /// An octave that evolves has two layers.
   struct Layer {
     const NoiseTile2* tile = nullptr;
-    std::size_t which = 0;  ///< on the first tile's torus, or on the second's
+    std::size_t octave = 0;  ///< of the tiles, counted from the first chain's longest
     TorusPhase offset;
     float weight_m_s = 0.0F;
   };
@@ -112,27 +143,37 @@ class GustNoise {
   /// Writes those that have a weight; how many they are.
   std::size_t layers(const Moment& moment, Component component, std::span<Layer, kMaxLayers> out) const noexcept;
 
-  /// A place on the torus of a tile.
-  TorusPhase place_on(std::size_t which, double east_m, double south_m) const noexcept;
+  /// A place on a torus.
+  TorusPhase place_on(std::size_t torus, double east_m, double south_m) const noexcept;
 
  private:
-  /// One component of the wind: the octaves of both tiles and of both ways.
+  /// A tile's torus on the ground.
+  struct Torus {
+    double period_m = 0.0;
+    double cosine = 1.0, sine = 0.0;  ///< of the angle by which it is turned
+    /// East and south, m, along its axes.
+    std::array<double, 2> turned(double east_m, double south_m) const noexcept {
+      return {cosine * east_m + sine * south_m, cosine * south_m - sine * east_m};
+    }
+  };
+  /// One component of the wind: both chains' octaves.
   struct Octaves {
-    std::array<std::vector<NoiseTile2>, 2> tiles;
-    std::array<std::vector<NoiseTile2>, 2> quarters;  ///< the same, a quarter turn on; none if nothing evolves
-    std::array<std::vector<NoiseTile1>, 2> ways;
+    std::array<NoiseTile1, 2 * kWayOctaves> ways;
+    std::array<NoiseTile2, 2 * kTileOctaves> tiles;
+    std::array<NoiseTile2, 2 * kTileOctaves> quarters;  ///< the same, a quarter turn on; empty if nothing evolves
   };
 
   static Octaves make_octaves(const GustNoiseSettings& settings, std::uint64_t seed);
-  static float read_tile(const Octaves& component, std::size_t which, std::size_t octave, TorusPhase place,
-                         const Turned& turned) noexcept;
-  std::array<float, kOctaves> read(const Octaves& component, TorusPhase first, TorusPhase second,
-                                   const Carried& carried) const noexcept;
+  std::array<float, kOctaves> read(const Octaves& component, const Carried& carried, double east_m,
+                                   double south_m) const noexcept;
 
-  std::array<double, 2> periods_m_;  ///< of the tiles
+  std::array<double, 2> way_periods_m_;
+  std::array<Torus, kTori> tori_;
   std::array<Octave, kOctaves> octaves_{};
+  std::array<double, 2 * kTileOctaves> turn_rates_m_23_{};  ///< |k|^(2/3) in the middle of each octave of the tiles
   bool evolves_;
   Octaves along_, across_;
+  NoiseTile2 strength_;  ///< the envelope's G, on the first torus
 };
 
 /// How fast eddies turn over in a wind of standard deviation `sigma_m_s` (along it) and integral length scale

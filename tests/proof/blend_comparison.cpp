@@ -32,9 +32,7 @@ class TileCuts {
  public:
   explicit TileCuts(const GustNoise& noise) : noise_(noise) {
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      const auto samples = static_cast<double>(GustNoiseSettings{}.samples);
-      const std::size_t first = i / GustNoise::kTileOctaves * GustNoise::kTileOctaves;
-      cuts_[i] = cut(from_rad_m(i) / (from_rad_m(first) * samples));
+      cuts_[i] = cut(from_rad_m(i) * noise.sample_m(i) / (2.0 * std::numbers::pi));
     }
   }
 

@@ -109,6 +109,51 @@ TEST_P(SampleJobOnEachRow, ScalesAndKeepsWithinTheRange) {
   EXPECT_EQ(*std::max_element(out.begin(), out.end()), 1.25F);
 }
 
+TEST_P(SampleJobOnEachRow, APlacesWeightMultipliesTheLayers) {
+  const NoiseTile2 tile = wind_tile();
+  const RandomStream random(2, stream_id("weights of places"));
+  const TorusPhase offset{987'654'321U, 123'456'789U};
+  for (const std::size_t count : {1U, 15U, 16U, 17U, 1000U}) {
+    std::vector<std::uint32_t> x;
+    std::vector<std::uint32_t> z;
+    std::vector<float> weights;
+    std::vector<float> expected;
+    for (std::size_t i = 0; i < count; ++i) {
+      x.push_back(static_cast<std::uint32_t>(random.uniform(3 * i) * 4294967296.0));
+      z.push_back(static_cast<std::uint32_t>(random.uniform(3 * i + 1) * 4294967296.0));
+      weights.push_back(static_cast<float>(random.uniform(3 * i + 2)));
+      const TorusPhase at{x.back(), z.back()};
+      const float plain = 0.5F * read_noise(tile, at);
+      expected.push_back(plain + 0.7F * weights.back() * read_noise(tile, at - offset));
+    }
+    std::vector<float> out(count);
+    const std::vector<NoiseLayer> layers = {
+        {.tile = &tile, .place_x = x, .place_z = z, .weight = 0.5F},
+        {.tile = &tile, .place_x = x, .place_z = z, .offset = offset, .weight = 0.7F, .weights = weights}};
+    EXPECT_EQ((SampleJob{.layers = layers, .row = GetParam(), .out = out}.run()), SampleJob::Problem::kNone);
+    EXPECT_EQ(bits_of(out), bits_of(expected));
+  }
+}
+
+TEST_P(SampleJobOnEachRow, AWeightOfOneAtEachPlaceChangesNoBit) {
+  const NoiseTile2 tile = wind_tile();
+  const Places places = grid(0.3, 0.2);
+  const std::vector<float> ones(places.x.size(), 1.0F);
+  std::vector<float> out(places.x.size());
+  const NoiseLayer layer{.tile = &tile, .place_x = places.x, .place_z = places.z, .weights = ones};
+  EXPECT_EQ((SampleJob{.layers = {&layer, 1}, .row = GetParam(), .out = out}.run()), SampleJob::Problem::kNone);
+  EXPECT_EQ(bits_of(out), bits_of(read(tile, places, {})));
+}
+
+TEST(SampleJobTest, RefusesWeightsThatAreNotOneForEachPlace) {
+  const NoiseTile2 tile = wind_tile();
+  const Places places = grid(0.0, 0.0);
+  const std::vector<float> too_few(places.x.size() - 1, 1.0F);
+  std::vector<float> out(places.x.size());
+  const NoiseLayer layer{.tile = &tile, .place_x = places.x, .place_z = places.z, .weights = too_few};
+  EXPECT_EQ((SampleJob{.layers = {&layer, 1}, .out = out}.run()), SampleJob::Problem::kSizesDiffer);
+}
+
 TEST(SampleJobTest, AFieldThatHasMovedByXIsReadAtXBack) {
   const NoiseTile2 tile = wind_tile();
   const std::vector<float> at_first = read(tile, grid(0.0, 0.0), {});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,9 +16,10 @@ namespace {
 
 constexpr double kGridTick_s = 1.0 / 60.0;
 
-/// Places in a square of this side, with one in each corner.
+/// Places in a square of this side, with one in each corner; or in a rectangle, from north to south so many times as
+/// long.
 struct Places {
-  explicit Places(double side_m, std::size_t count = 203) {
+  explicit Places(double side_m, std::size_t count = 203, double length = 1.0) {
     const RandomStream random(4, stream_id("wind grid test"));
     for (std::size_t i = 0; i < count; ++i) {
       const auto [x, z] = random.uniform_pair(i);
@@ -25,7 +27,7 @@ struct Places {
       const double corner_x = i % 2 == 0 ? 0.0 : 1.0;
       const double corner_z = i < 2 ? 0.0 : 1.0;
       x_m.push_back(static_cast<float>(side_m * (is_corner ? corner_x : x) - 20.0));
-      z_m.push_back(static_cast<float>(side_m * (is_corner ? corner_z : z) + 5.0));
+      z_m.push_back(static_cast<float>(length * side_m * (is_corner ? corner_z : z) + 5.0));
     }
     east_m_s.resize(count);
     south_m_s.resize(count);
@@ -34,26 +36,51 @@ struct Places {
   std::vector<float> x_m, z_m, east_m_s, south_m_s;
 };
 
+/// The part of an octave that nodes so far apart hold: all of waves of four cells, nothing of those of two.
+double held_part(std::size_t tile_octave, double cell_m) {
+  const double shortest_m =
+      2.0 * std::numbers::pi / shared_gusts()->octaves()[2 * GustNoise::kWayOctaves + tile_octave].to_rad_m;
+  return std::clamp(std::log2(shortest_m / (2.0 * cell_m)), 0.0, 1.0);
+}
+
+/// What nodes so far apart hold of a wind.
+GroundWind held(GroundWind wind, double cell_m) {
+  for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
+    const auto part = static_cast<float>(held_part(i, cell_m));
+    wind.gusts.along_m_s[2 * GustNoise::kWayOctaves + i] *= part;
+    wind.gusts.across_m_s[2 * GustNoise::kWayOctaves + i] *= part;
+  }
+  return wind;
+}
+
 TEST(WindGrid, EachPlaceFeelsTheWindOfThatPlace) {
   // Gusts that stand still: the grid has all the time to follow. Between nodes it reads a straight line, as the gusts'
   // own tiles do, so that they differ by the bend of the shortest waves alone.
-  for (const double side_m : {0.0, 3.0, 7.0, 28.0}) {
-    Places places(side_m);
+  struct Case {
+    double side_m, length, gustiness;
+  };
+  for (const auto& [side_m, length, gustiness] :
+       {Case{0.0, 1.0, 0.0}, Case{3.0, 1.0, 0.3}, Case{7.0, 1.0, 0.0}, Case{7.0, 1.0, 0.3}, Case{28.0, 1.0, 0.0},
+        Case{28.0, 0.1, 0.3}, Case{0.5, 50.0, 0.0}}) {
+    Places places(side_m, 203, length);
     WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
     const GustyWind gusty({6.0, -2.0}, 0.5F);
-    for (int tick = 0; tick < 240; ++tick) grid.step(gusty.wind(), kGridTick_s);
+    GroundWind wind = gusty.wind();
+    wind.gusts.gustiness = static_cast<float>(gustiness);
+    for (int tick = 0; tick < 240; ++tick) grid.step(wind, kGridTick_s);
+    const GroundWind expected = held(wind, 0.5);
     grid.sample(0, places.east_m_s, places.south_m_s);
     double squares = 0.0;
     double scatter = 0.0;
     for (std::size_t i = 0; i < places.x_m.size(); ++i) {
       const WindVector there =
-          gusty.wind().at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
+          expected.at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
       squares += std::pow(static_cast<double>(places.east_m_s[i]) - there.u_m_s, 2) +
                  std::pow(-static_cast<double>(places.south_m_s[i]) - there.v_m_s, 2);
       scatter += std::pow(there.u_m_s - 6.0, 2) + std::pow(there.v_m_s + 2.0, 2);
     }
     EXPECT_GT(scatter, 0.5 * static_cast<double>(places.x_m.size()));
-    EXPECT_LT(squares, 0.01 * scatter) << side_m << " m";
+    EXPECT_LT(squares, 0.01 * scatter) << side_m << " m, " << length << " times as long, " << gustiness;
   }
 }
 
@@ -70,8 +97,11 @@ TEST(WindGrid, PlacesOfALargeSceneHaveTheVarianceOfTheGusts) {
       variance += std::pow(static_cast<double>(east_m_s) - 6.0, 2) / 2000.0 / kMoments;
     }
   }
-  // Nodes are 3.2 m apart: of the waves shorter than two of them, 2 octaves of 7, half is left between nodes.
-  const double of_gusts = 0.25 * 2.0 * static_cast<double>(GustNoise::kTileOctaves);
+  // Nodes are 3.2 m apart: of the waves shorter than four of them, a part is left, and none of those of two.
+  double of_gusts = 0.0;
+  for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
+    of_gusts += 0.25 * std::pow(held_part(i, 200.0 / 62.0), 2);
+  }
   EXPECT_GT(variance, 0.7 * of_gusts);
   EXPECT_LT(variance, 1.05 * of_gusts);
 }

@@ -1,0 +1,155 @@
+#include "engine/scenes/gust_nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "engine/operators/sample_job.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr std::size_t kFewestCoarseNodes = 4;
+constexpr double kLargestCoarseCell_m = 16.0;
+
+/// So many nodes that they are near enough to each other, and no more than there are fine ones.
+std::size_t coarse_nodes(std::size_t nodes, double cell_m) {
+  if (nodes == 0) return 0;
+  const double extent_m = static_cast<double>(nodes - 1) * cell_m;
+  const auto cells = static_cast<std::size_t>(std::ceil(extent_m / kLargestCoarseCell_m));
+  return std::min(nodes, std::max(kFewestCoarseNodes, cells + 1));
+}
+
+double stretched_cell_m(std::size_t nodes, double cell_m, std::size_t coarse) {
+  return coarse < 2 ? cell_m : static_cast<double>(nodes - 1) * cell_m / static_cast<double>(coarse - 1);
+}
+
+/// Coarse nodes over the same ground.
+GroundNodes coarse_of(const GroundNodes& nodes) {
+  GroundNodes coarse = nodes;
+  coarse.columns = coarse_nodes(nodes.columns, nodes.cell_x_m);
+  coarse.lines = coarse_nodes(nodes.lines, nodes.cell_z_m);
+  coarse.cell_x_m = stretched_cell_m(nodes.columns, nodes.cell_x_m, coarse.columns);
+  coarse.cell_z_m = stretched_cell_m(nodes.lines, nodes.cell_z_m, coarse.lines);
+  return coarse;
+}
+
+/// Reads and adds up those layers that there are.
+void add_up(std::span<const NoiseLayer> layers, SimdRow row, std::span<float> out) noexcept {
+  if (layers.empty()) {
+    std::ranges::fill(out, 0.0F);
+  } else {
+    SampleJob{.layers = layers, .row = row, .out = out}.run();
+  }
+}
+
+}  // namespace
+
+GustNodes::Nodes::Nodes(const GustNoise& gusts, const GroundNodes& nodes)
+    : along_m_s(nodes.size()), across_m_s(nodes.size()) {
+  for (std::size_t line = 0; line < nodes.lines; ++line) {
+    for (std::size_t column = 0; column < nodes.columns; ++column) {
+      x_m.push_back(nodes.west_m + nodes.cell_x_m * static_cast<double>(column));
+      z_m.push_back(nodes.north_m + nodes.cell_z_m * static_cast<double>(line));
+      for (std::size_t torus = 0; torus < GustNoise::kTori; ++torus) {
+        const TorusPhase phase = gusts.place_on(torus, x_m.back(), z_m.back());
+        on_torus_x[torus].push_back(phase.x);
+        on_torus_z[torus].push_back(phase.z);
+      }
+    }
+  }
+}
+
+GustNodes::GustNodes(std::shared_ptr<const GustNoise> gusts, const GroundNodes& nodes, SimdRow row)
+    : gusts_(std::move(gusts)), row_(row), fine_(*gusts_, nodes), coarse_(*gusts_, coarse_of(nodes)) {
+  const GroundNodes coarse = coarse_of(nodes);
+  columns_ = between(nodes.columns, coarse.columns);
+  lines_ = between(nodes.lines, coarse.lines);
+  envelope_.resize(coarse.size());
+  for (auto* line : {&line_along_m_s_, &line_across_m_s_, &line_envelope_}) line->resize(coarse.columns);
+
+  const double cell_m = std::max(nodes.cell_x_m, nodes.cell_z_m);
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    const double shortest_m = 2.0 * std::numbers::pi / gusts_->octaves()[2 * GustNoise::kWayOctaves + i].to_rad_m;
+    held_[i] = is_coarse(i) ? 1.0F : static_cast<float>(std::clamp(std::log2(0.5 * shortest_m / cell_m), 0.0, 1.0));
+  }
+}
+
+std::vector<GustNodes::Between> GustNodes::between(std::size_t nodes, std::size_t coarse_nodes) {
+  std::vector<Between> result(nodes);
+  for (std::size_t i = 0; i < nodes && coarse_nodes > 1; ++i) {
+    const double at = static_cast<double>(i * (coarse_nodes - 1)) / static_cast<double>(nodes - 1);
+    const std::size_t first = std::min(static_cast<std::size_t>(at), coarse_nodes - 2);
+    result[i] = {first, static_cast<float>(at - static_cast<double>(first))};
+  }
+  return result;
+}
+
+void GustNodes::read(const GustNoise::Moment& moment, const GustWeights& weights) noexcept {
+  read(moment, GustNoise::Component::kAlong, weights);
+  read(moment, GustNoise::Component::kAcross, weights);
+  for (std::size_t i = 0; i < envelope_.size(); ++i) {
+    envelope_[i] = gusts_->envelope(moment, coarse_.x_m[i], coarse_.z_m[i]);
+  }
+  add_coarse();
+}
+
+/// One component at the nodes, and apart from it at the coarse nodes.
+void GustNodes::read(const GustNoise::Moment& moment, GustNoise::Component component,
+                     const GustWeights& weights) noexcept {
+  const bool is_along = component == GustNoise::Component::kAlong;
+  std::array<GustNoise::Layer, GustNoise::kMaxLayers> octaves;
+  const std::size_t count = gusts_->layers(moment, component, octaves);
+  static_assert(GustNoise::kMaxLayers <= SampleJob::kMaxLayers);
+  std::array<NoiseLayer, GustNoise::kMaxLayers> fine;
+  std::array<NoiseLayer, GustNoise::kMaxLayers> coarse;
+  std::size_t fine_count = 0;
+  std::size_t coarse_count = 0;
+  for (const GustNoise::Layer& layer : std::span(octaves).first(count)) {
+    if (held_[layer.octave] == 0.0F) continue;
+    const bool is_slow = is_coarse(layer.octave);
+    const Nodes& nodes = is_slow ? coarse_ : fine_;
+    const std::size_t torus = GustNoise::torus_of(layer.octave);
+    (is_slow ? coarse[coarse_count++] : fine[fine_count++]) = {
+        .tile = layer.tile,
+        .place_x = nodes.on_torus_x[torus],
+        .place_z = nodes.on_torus_z[torus],
+        .offset = layer.offset,
+        .weight = held_[layer.octave] * layer.weight_m_s,
+        .weights = (is_along ? weights.along : weights.across)[layer.octave]};
+  }
+  add_up(std::span(fine).first(fine_count), row_, is_along ? fine_.along_m_s : fine_.across_m_s);
+  add_up(std::span(coarse).first(coarse_count), row_, is_along ? coarse_.along_m_s : coarse_.across_m_s);
+}
+
+/// Adds what the coarse nodes have to what the nodes have, and gives it the strength of the place.
+void GustNodes::add_coarse() noexcept {
+  const std::size_t coarse_columns = line_envelope_.size();
+  for (std::size_t line = 0; line < lines_.size(); ++line) {
+    const auto [north, z_fraction] = lines_[line];
+    for (std::size_t column = 0; column < coarse_columns; ++column) {
+      const std::size_t here = north * coarse_columns + column;
+      const std::size_t south = here + (envelope_.size() > coarse_columns ? coarse_columns : 0);
+      const auto at = [&](const std::vector<float>& values) {
+        return values[here] + z_fraction * (values[south] - values[here]);
+      };
+      line_along_m_s_[column] = at(coarse_.along_m_s);
+      line_across_m_s_[column] = at(coarse_.across_m_s);
+      line_envelope_[column] = at(envelope_);
+    }
+    for (std::size_t column = 0; column < columns_.size(); ++column) {
+      const auto [west, x_fraction] = columns_[column];
+      const std::size_t east = std::min(west + 1, coarse_columns - 1);
+      const auto at = [&](const std::vector<float>& values) {
+        return values[west] + x_fraction * (values[east] - values[west]);
+      };
+      const std::size_t node = line * columns_.size() + column;
+      const float strength = at(line_envelope_);
+      fine_.along_m_s[node] = strength * (fine_.along_m_s[node] + at(line_along_m_s_));
+      fine_.across_m_s[node] = strength * (fine_.across_m_s[node] + at(line_across_m_s_));
+    }
+  }
+}
+
+}  // namespace yuragi
