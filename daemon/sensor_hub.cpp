@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/gust_length.hpp"
 #include "daemon/sensor_table.hpp"
 #include "engine/wind/blended_estimator.hpp"
 
@@ -47,13 +48,15 @@ BlendSettings blend_settings_of(const Config& config) {
                                      .mean_direction_deg = config.wind.number("default_direction"),
                                      .turbulence_intensity = config.wind.number("default_turbulence"),
                                      .seed = config.seed},
-                         .length_m = config.wind.number("default_length"),
+                         .length_m = default_gust_length_m(config),
                          .handover_s = config.wind.number("handover"),
                          .stale_intervals = config.wind.number("stale_intervals"),
                          .return_after_s = config.wind.number("return_after"),
                          .rate_hz = config.animation.number("rate")};
-  for (const SensorConfig& sensor : config.sensors)
+  for (const SensorConfig& sensor : config.sensors) {
     settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
+    settings.sources.back().length_m = gust_length_m(config, sensor);
+  }
   // Behind all sensors, whatever their priorities.
   if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
   return settings;

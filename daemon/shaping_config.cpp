@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/gust_length.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -123,7 +125,7 @@ WindShapingSettings shaping_settings(const Config& config) {
                                .closed_level = shaping.number("closed"),
                                .fade_s = shaping.number("fade"),
                                .turbulence_intensity = config.wind.number("default_turbulence"),
-                               .length_m = config.wind.number("default_length")};
+                               .length_m = default_gust_length_m(config)};
   if (const double ceiling_m_s = shaping.number("ceiling"); ceiling_m_s > 0.0) {
     settings.ceiling = {.from_m_s = ceiling_m_s, .most_m_s = shaping.number("ceiling_most")};
   }

@@ -1,5 +1,6 @@
 // `yuragi check-config` and `yuragi describe`: what a configuration says, and what one may say.
 #include <memory>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -7,9 +8,19 @@
 #include "daemon/config.hpp"
 #include "daemon/driver_reference.hpp"
 #include "daemon/fallback_recording.hpp"
+#include "daemon/gust_length.hpp"
 
 namespace yuragi {
 namespace {
+
+std::string length_reason(const Config& config, const SensorConfig& sensor) {
+  if (config.wind.number("default_length") > 0.0) return " (default_length)";
+  const double height_m = sensor.calibration.number("height");
+  if (height_m <= 0.0) return " (its calibration tells no height)";
+  const double scene_height_m = sensor.calibration.number("scene_height");
+  const std::string brought = scene_height_m != height_m ? fmt::format(", brought to {:g} m", scene_height_m) : "";
+  return fmt::format(" (it stands {:g} m high{})", height_m, brought);
+}
 
 void add_check_config(CLI::App& app) {
   CLI::App* command = app.add_subcommand("check-config", "tell whether a configuration is right, and what it comes to");
@@ -29,8 +40,10 @@ void add_check_config(CLI::App& app) {
       return;
     }
     fmt::print("{}: all right\n", file->string());
-    for (const SensorConfig& sensor : config.sensors)
-      fmt::print("  sensor {} ({})\n", sensor.name, sensor.driver->name);
+    for (const SensorConfig& sensor : config.sensors) {
+      fmt::print("  sensor {} ({}), gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
+                 gust_length_m(config, sensor), length_reason(config, sensor));
+    }
     for (const SceneConfig& scene : config.scenes) fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
   });
 }

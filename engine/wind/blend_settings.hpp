@@ -17,6 +17,7 @@ struct BlendSourceSettings {
   double east_m = 0.0;              ///< where it stands, from the middle of the scenes
   double south_m = 0.0;             ///< (a relative one is taken to stand where those do whose gusts it fills)
   double lead_m = 0.0;              ///< it is taken to stand so far upwind of there: more is known, and known later
+  double length_m = 0.0;            ///< how far its gusts reach, until it tells more of them; 0: the blend's length
   double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
   double direction_step_deg = 0.0;  ///< its vane knows only every so many degrees; 0: found out
 };

@@ -19,6 +19,9 @@ constexpr double kTrustRate_rad_s = 1.0;
 /// The slow mean of the speed, by which turbulence is measured.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kFitEvery_s = 1.0;
+/// A difference between two means, over the mean speed, counts as at most this. A wind that rises out of a calm differs
+/// by many times the mean that it rises from, which tells how fast that mean follows and not how strong the gusts are.
+constexpr double kLargestDifference = 1.0;
 
 double sinc(double x) noexcept {
   const double angle = std::numbers::pi * x;
@@ -54,15 +57,18 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
       mean_memory_s_(blend.mean_memory_s),
       noise_(&noise),
       direction_(settings.direction_step_deg),
-      along_{.fit = TurbulenceFit({.intensity = blend.climate.turbulence_intensity, .length_m = blend.length_m},
-                                  blend.fit_memory_s),
-             .variances = gust_variances(noise, blend.climate.turbulence_intensity, blend.length_m)},
-      across_{.fit = TurbulenceFit(
-                  {.intensity = kAcrossPerAlong * blend.climate.turbulence_intensity, .length_m = blend.length_m},
-                  blend.fit_memory_s),
-              .variances = gust_variances(noise, kAcrossPerAlong * blend.climate.turbulence_intensity, blend.length_m)},
+      along_(component(blend, settings, noise, blend.climate.turbulence_intensity)),
+      across_(component(blend, settings, noise, kAcrossPerAlong * blend.climate.turbulence_intensity)),
       history_(std::size_t{2} << (TurbulenceFit::kScales - 1)) {
   turbulence_ = along_.fit.turbulence();
+}
+
+/// What is believed of its turbulence before it has spoken.
+BlendSource::Component BlendSource::component(const BlendSettings& blend, const BlendSourceSettings& settings,
+                                              const GustNoise& noise, double intensity) {
+  const double length_m = settings.length_m > 0.0 ? settings.length_m : blend.length_m;
+  return {.fit = TurbulenceFit({.intensity = intensity, .length_m = length_m}, blend.fit_memory_s),
+          .variances = gust_variances(noise, intensity, length_m)};
 }
 
 bool BlendSource::accept(const WindReading& reading, const Around& around) noexcept {
@@ -78,11 +84,8 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
 
   record_.take(reading);
   wind_ = reading.speed_m_s * direction_.take(reading, gap_s, around.ahead, around.is_direction_live);
-  if (is_first) {
-    follower_.begin(wind_);
-    speed_m_s_ = reading.speed_m_s;
-  }
   set_full_trust();
+  if (is_first) begin();
 
   // The turbulence. Of running means only as many are compared as do not overlap.
   const double interval_s = record_.expected_interval_s();
@@ -98,6 +101,14 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   fitted_s_ += interval_s;
   if (fitted_s_ >= kFitEvery_s) fit(readings_of_one * interval_s, around.advection_m_s);
   return true;
+}
+
+/// With its first reading it is what it says, believed at once: nothing of it is shown yet, and how it comes into the
+/// wind is SourceChoice's.
+void BlendSource::begin() noexcept {
+  follower_.begin(wind_);
+  speed_m_s_ = record_.last()->speed_m_s;
+  for (std::size_t i = 0; i < trusts_.size(); ++i) trusts_[i].value = trust_[i] = full_trust_[i];
 }
 
 double BlendSource::averaging_s() const noexcept {
@@ -138,9 +149,10 @@ void BlendSource::measure_scales(WindVector ahead) noexcept {
     WindVector older{};
     for (std::size_t back = count; back < 2 * count; ++back) older = older + reading(back);
     const WindVector difference = 1.0 / (static_cast<double>(count) * speed_m_s) * (newer - older);
-    along_.fit.add(scale_index, difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s);
+    const auto limited = [](double value) { return std::clamp(value, -kLargestDifference, kLargestDifference); };
+    along_.fit.add(scale_index, limited(difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s));
     if (!tells_across) continue;
-    across_.fit.add(scale_index, difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s);
+    across_.fit.add(scale_index, limited(difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s));
   }
 }
 
@@ -171,7 +183,13 @@ void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& p
 
   // What was known of a band is forgotten as fast as its waves pass, and as the gusts do.
   const double late_s = std::max(0.0, record_.age_s(now) - kLateAfterIntervals * interval_s_);
-  if (late_s == 0.0) speed_m_s_ += -std::expm1(-dt_s / kSpeedMemory_s) * (record_.last()->speed_m_s - speed_m_s_);
+  if (late_s == 0.0) {
+    // Until it has spoken for so long, the mean of all that it has said.
+    spoken_s_ = std::min(spoken_s_ + dt_s, kSpeedMemory_s);
+    if (spoken_s_ > 0.0) {
+      speed_m_s_ += -std::expm1(-dt_s / spoken_s_) * (record_.last()->speed_m_s - speed_m_s_);
+    }
+  }
   for (std::size_t i = 0; i < trusts_.size(); ++i) {
     double kept = 1.0;
     if (late_s > 0.0 && i == 0) kept = std::exp(-late_s / mean_memory_s_);

@@ -79,10 +79,12 @@ class BlendSource {
     GustVariances variances;
   };
 
+  static Component component(const BlendSettings& blend, const BlendSourceSettings& settings, const GustNoise& noise,
+                             double intensity);
+  void begin() noexcept;
   double averaging_s() const noexcept;
   double slowness_s() const noexcept;
   void set_full_trust() noexcept;
-  void learn(double advection_m_s) noexcept;
   void measure_scales(WindVector ahead) noexcept;
   void fit(double interval_s, double advection_m_s) noexcept;
 
@@ -98,6 +100,7 @@ class BlendSource {
   BandWeights trust_{}, full_trust_{}, passed_{};
   double interval_s_ = 0.0;  ///< that the full trust is made for
   double speed_m_s_ = 0.0;
+  double spoken_s_ = 0.0;  ///< for so long, at most the memory of that speed
 
   Component along_, across_;
   Turbulence turbulence_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace yuragi {
 namespace {
@@ -79,7 +80,13 @@ void SourceChoice::step(double dt_s) noexcept {
     if (!give(&Entry::gusts_wanted, true, is_ready)) give(&Entry::gusts_wanted, true, is_live);
   }
 
+  // Before anything was shown there is nobody to hand over from.
+  const bool is_first = !std::exchange(has_begun_, true);
   for (Entry& entry : entries_) {
+    if (is_first) {
+      entry.word.value = entry.word_wanted;
+      entry.gusts.value = entry.gusts_wanted;
+    }
     entry.word.step(entry.word_wanted, kRateTimesHandover / handover_s_, dt_s);
     entry.gusts.step(entry.gusts_wanted, kRateTimesHandover / handover_s_, dt_s);
     entry.is_chosen = entry.word_wanted > 0.0 || entry.gusts_wanted > 0.0;

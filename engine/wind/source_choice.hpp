@@ -17,7 +17,8 @@ namespace yuragi {
 /// it has been live for `return_after_s`, and for twice as long after each further failure (up to 64 times; ten minutes
 /// without one and all is forgiven), so that a flapping one does not make the wind flap; unless there is nobody else.
 /// While absolute sources have the word, the live relative ones of the lowest number have the gusts. All weights move
-/// by critically damped filters. Allocates at construction only. Thread-safe: no. Realtime-safe: yes.
+/// by critically damped filters; only what the first step finds is taken at once. Allocates at construction only.
+/// Thread-safe: no. Realtime-safe: yes.
 class SourceChoice {
  public:
   /// A source for each of the settings.
@@ -55,6 +56,7 @@ class SourceChoice {
 
   double handover_s_;
   double return_after_s_;
+  bool has_begun_ = false;
   std::vector<Entry> entries_;
 };
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/gust_length.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -110,6 +112,26 @@ name = "other"
               StartsWith("wall.toml:3:15: sensor.calibration: is a value; write it as a table"));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\n[scene.calibration]\ngain = 2\n"),
               HasSubstr("scene.calibration: takes one value"));
+}
+
+TEST(Config, GustsReachAsFarAsTheHeightOfASensorSaysUnlessTheirLengthIsSet) {
+  const std::string sensors =
+      "[[sensor]]\nname = \"low\"\ndriver = \"synthetic\"\n[sensor.calibration]\nheight = 4.4\nscene_height = 4.4\n"
+      "[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n[sensor.calibration]\nheight = 15\nscene_height = 15\n"
+      "[[sensor]]\nname = \"raised\"\ndriver = \"synthetic\"\n[sensor.calibration]\nheight = 4.4\n"
+      "[[sensor]]\nname = \"any\"\ndriver = \"synthetic\"\n";
+  const Config derived = parse_config(sensors, "test");
+  ASSERT_EQ(derived.sensors.size(), 4U);
+  EXPECT_NEAR(gust_length_m(derived, derived.sensors[0]), 25.0, 0.1);
+  EXPECT_NEAR(gust_length_m(derived, derived.sensors[1]), 85.0, 0.1);
+  // Brought to 10 m, speed and length by the same factor: it passes in the same time.
+  EXPECT_NEAR(gust_length_m(derived, derived.sensors[2]), 24.95 * height_factor(4.4, 10.0, 0.03), 0.1);
+  EXPECT_EQ(gust_length_m(derived, derived.sensors[3]), 57.0);
+  EXPECT_EQ(default_gust_length_m(derived), 57.0);
+
+  const Config set = parse_config("[wind]\ndefault_length = 40\n" + sensors, "test");
+  for (const SensorConfig& sensor : set.sensors) EXPECT_EQ(gust_length_m(set, sensor), 40.0) << sensor.name;
+  EXPECT_EQ(default_gust_length_m(set), 40.0);
 }
 
 TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {

@@ -2,6 +2,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -64,6 +65,83 @@ TEST(BlendedEstimator, FollowsASteadySensorAndMovesAboutIt) {
   EXPECT_NEAR(moments.mean().v_m_s, 0.0, 0.2);
   EXPECT_EQ(blend.state().source, WindSource::kLive);
   EXPECT_GT(blend.state().live_weight, 0.99);
+}
+
+/// How strong the noise of gusts is along the wind: the root of all octaves' power.
+double gusts_along_m_s(Blend& blend) {
+  double power = 0.0;
+  for (const float strength_m_s : blend.estimator().ground().gusts.along_m_s) {
+    power += static_cast<double>(strength_m_s) * static_cast<double>(strength_m_s);
+  }
+  return std::sqrt(power);
+}
+
+TEST(BlendedEstimator, GustsDoNotBurstWhenWindRisesOutOfACalm) {
+  for (const double interval_s : {1.0, 14.0}) {
+    Blend blend = usual_blend();
+    TestGusts gusts(3);
+    const auto read_gusts = [&](double duration_s, const std::function<void(const WindState&)>& each) {
+      for (double time_s = 0.0; time_s < duration_s; time_s += interval_s) {
+        blend.read(5.0 * std::max(0.1, 1.0 + 0.2 * gusts.next()), 180.0);
+        blend.run_for(interval_s, each);
+      }
+    };
+    blend.read_for(182.0, interval_s, 0.1, 180.0);
+
+    // Of 5 m/s and a fifth of it: 1 m/s; what the fit makes of the front itself is not much more than the front.
+    double strongest_m_s = 0.0;
+    double fastest_m_s = 0.0;
+    read_gusts(420.0, [&](const WindState& state) {
+      strongest_m_s = std::max(strongest_m_s, gusts_along_m_s(blend));
+      fastest_m_s = std::max(fastest_m_s, speed_of(state.wind));
+    });
+    EXPECT_LT(strongest_m_s, 2.0) << interval_s << " s";
+    EXPECT_LT(fastest_m_s, 12.0) << interval_s << " s";
+  }
+}
+
+TEST(BlendedEstimator, BeginsWithTheSpeedOfTheFirstReading) {
+  // The default wind is shown until somebody speaks, and then handed over from within the 3 s of a hand-over.
+  for (const double interval_s : {1.0, 14.0}) {
+    Blend blend = calm_blend();
+    blend.run_for(2.0);
+    blend.take_largest_step_m_s();
+    blend.read(9.0, 270.0);
+    blend.run_for(std::min(interval_s, 3.0));
+    if (interval_s < 3.0) blend.read_for(2.0, 1.0, 9.0, 270.0);
+    EXPECT_NEAR(blend.state().wind.u_m_s, 9.0, 0.1 * (9.0 - 3.0)) << interval_s;
+    blend.run_for(1.0);
+    EXPECT_NEAR(blend.state().wind.u_m_s, 9.0, 0.04 * (9.0 - 3.0)) << interval_s;
+    // A critically damped way of 6 m/s: 0.37 * 6 * 4 / 3 s, in a tick.
+    EXPECT_LT(blend.take_largest_step_m_s(), 0.37 * 6.0 * 4.0 / 3.0 * kBlendTick_s * 1.02);
+  }
+}
+
+TEST(BlendedEstimator, ASourceHasTheGustsOfItsOwnLength) {
+  // In a steady wind nothing is learnt of the gusts: they are what they are taken for.
+  for (const double length_m : {0.0, 25.0, 85.0}) {
+    BlendSettings settings = Blend::usual();
+    settings.length_m = 40.0;
+    settings.sources = {{.length_m = length_m}};
+    Blend blend(1, settings);
+    blend.read_for(30.0, 1.0, 5.0, 180.0);
+    const double expected_s = (length_m > 0.0 ? length_m : 40.0) / 5.0;
+    EXPECT_NEAR(blend.estimator().turbulence().time_scale_s, expected_s, 0.08 * expected_s) << length_m;
+  }
+}
+
+TEST(BlendedEstimator, WhatWasSaidBeforeItWasAskedIsTheWindAtOnce) {
+  BlendedEstimator estimator(1, Blend::usual(1, 0.0), shared_gust_noise());
+  WindReading reading;
+  reading.time.mono = MonoTime(std::chrono::hours(1));
+  reading.speed_m_s = 9.0;
+  reading.direction_deg = 270.0;
+  ASSERT_TRUE(estimator.accept(0, reading));
+  const WindState state = estimator.advance(reading.time.mono);
+  EXPECT_EQ(state.source, WindSource::kLive);
+  EXPECT_EQ(state.live_weight, 1.0);
+  EXPECT_NEAR(state.wind.u_m_s, 9.0, 1e-3);
+  EXPECT_NEAR(state.wind.v_m_s, 0.0, 1e-3);
 }
 
 TEST(BlendedEstimator, PassesThroughNorthAndNotThroughSouth) {

@@ -14,7 +14,10 @@ constexpr double kChoiceTick_s = 0.1;
 /// A choice, and who is live.
 class Choice {
  public:
-  explicit Choice(std::vector<BlendSourceSettings> sources) : count_(sources.size()), choice_(sources, 3.0, 10.0) {}
+  /// What the first step finds is taken at once: here nobody.
+  explicit Choice(std::vector<BlendSourceSettings> sources) : count_(sources.size()), choice_(sources, 3.0, 10.0) {
+    choice_.step(0.0);
+  }
   void run_for(double duration_s, const std::vector<bool>& live) {
     for (int i = 0; i < static_cast<int>(std::lround(duration_s / kChoiceTick_s)); ++i) {
       for (std::size_t source = 0; source < count_; ++source) choice_.set_live(source, live[source]);
@@ -38,6 +41,18 @@ TEST(SourceChoice, GivesTheWordInTheOrderOfTheSources) {
   choice.run_for(20.0, {true, true});
   EXPECT_NEAR(choice.word(0), 1.0, 1e-3);
   EXPECT_NEAR(choice.word(1), 0.0, 1e-3);
+}
+
+TEST(SourceChoice, WhoIsThereBeforeTheFirstStepHasTheWordAtOnce) {
+  SourceChoice choice(std::vector<BlendSourceSettings>(2), 3.0, 10.0);
+  choice.set_live(1, true);
+  choice.step(0.0);
+  EXPECT_EQ(choice.word(0), 0.0);
+  EXPECT_EQ(choice.word(1), 1.0);
+  // Who comes later has to wait for the way there.
+  choice.set_live(0, true);
+  choice.step(kChoiceTick_s);
+  EXPECT_LT(choice.word(0), 0.02);
 }
 
 TEST(SourceChoice, ThoseOfTheLowestPriorityShareByWeight) {

@@ -1,0 +1,27 @@
+#include "daemon/gust_length.hpp"
+
+#include <algorithm>
+
+#include "engine/wind/blend_settings.hpp"
+#include "engine/wind/wind_profile.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kShortestGusts_m = 1.0;
+
+}  // namespace
+
+double default_gust_length_m(const Config& config) {
+  const double length_m = config.wind.number("default_length");
+  return length_m > 0.0 ? std::max(length_m, kShortestGusts_m) : BlendSettings{}.length_m;
+}
+
+double gust_length_m(const Config& config, const SensorConfig& sensor) {
+  const double height_m = sensor.calibration.number("height");
+  if (config.wind.number("default_length") > 0.0 || height_m <= 0.0) return default_gust_length_m(config);
+  const double length_m = iec_length_scale_m(WindComponent::kAlong, height_m);
+  return std::max(calibration_of(sensor).height_factor * length_m, kShortestGusts_m);
+}
+
+}  // namespace yuragi

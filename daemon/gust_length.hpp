@@ -1,0 +1,17 @@
+#pragma once
+
+#include "daemon/config.hpp"
+
+namespace yuragi {
+
+/// How far the gusts of the default wind reach, m: [wind] default_length where it is set, or 57, as over open land at a
+/// height of 10 m. Pure.
+double default_gust_length_m(const Config& config);
+
+/// What the gusts of a sensor are taken for, until and as far as it tells of them itself, m: [wind] default_length
+/// where it is set; or by the height that its calibration tells, 8.1 * 0.7 times it up to 60 m (IEC 61400-1); or the
+/// default wind's. Where the calibration brings the speeds to another height, the length goes with them: what is
+/// measured goes on passing the sensor in the same time. Pure.
+double gust_length_m(const Config& config, const SensorConfig& sensor);
+
+}  // namespace yuragi
