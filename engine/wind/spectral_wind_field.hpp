@@ -12,7 +12,7 @@
 
 namespace yuragi {
 
-/// Beyond it u and w, whose gusts differ in length, would have to be more alike than the same.
+/// u and w have most of their power in different waves: if each were the same in both, the stress would be 0.63.
 inline constexpr double kLargestStress = 0.6;
 
 /// What wind a field has. The components along the wind, across it and upward have standard deviations of
@@ -38,8 +38,8 @@ struct WindFieldSettings {
 /// A point sees von Karman's spectrum of (U, TI, L) for u, the transverse one for v and w; two points across the wind
 /// have von_karman_coherence(). What is longer than the tile is the same everywhere in it: a 1-D noise along the way
 /// that the wind has come. What is shorter than two samples is missing, and variance_m2_s2() says what is there. The
-/// tile repeats every samples x spacing; a frozen one comes round after that length of way. The field
-/// is not free of divergence.
+/// tile repeats every samples x spacing; a frozen one comes round after that length of way. The field is not free of
+/// divergence.
 ///
 /// Without `stress` the components are independent of each other, as in isotropic turbulence. With it each wave of w
 /// has the same correlation with that wave of u, as large as makes up the stress: variances, spectra and coherences are
