@@ -42,6 +42,9 @@ constexpr const char* kFieldFooter =
     "wind the standard deviation is 0.8 of that along it and the length a third, upward 0.5 and a twelfth (IEC\n"
     "61400-1). The mean wind carries the gusts along; meanwhile their eddies turn over, unless --frozen.\n"
     "\n"
+    "In 3-D gusts come down and lulls rise, as much as --stress says: the covariance of u along the wind and w, over\n"
+    "both standard deviations. Variances and spectra are the same for every stress.\n"
+    "\n"
     "It is made on a tile that repeats: --tile samples an edge, by default at least twice the grid's edge, as far as\n"
     "that is allowed. Give it 8 L or more if you want to measure statistics. Gusts of less than two samples are\n"
     "missing; FILE.json says which variance is there.\n"
@@ -53,10 +56,14 @@ constexpr const char* kFieldFooter =
     "  yuragi field --windlog mast.windlog --time 600 --size 50m --spacing 0.25 -o meadow.npy\n"
     "  python3 -c 'import numpy; print(numpy.load(\"gusts.npy\")[0, 0].std())'";
 
+/// What `--stress` is without a word (Panofsky and Dutton 1984, chapter 6).
+constexpr double kStressNearTheGround = -0.3;
+
 struct FieldOptions {
   WindFieldSettings wind;
   std::vector<std::string> size;
   std::optional<std::size_t> tile;
+  std::optional<double> stress;
   FieldFrames frames;
   bool is_frozen = false;
   bool is_evolving = false;  ///< as it is without, unless a configuration says otherwise
@@ -229,6 +236,12 @@ void write_text(const std::filesystem::path& file, const std::string& text, bool
 void run_field(FieldOptions options) {
   if (!options.plot.empty()) check_plot_name(options.plot);
   options.wind.evolves = !options.is_frozen;
+  if (options.stress && options.wind.dims != 3) {
+    throw ExitError(kExitUsage,
+                    "--stress: is of the wind along and upward, and there is none upward in 2 dimensions; "
+                    "take --dims 3 as well");
+  }
+  if (options.wind.dims == 3) options.wind.stress = options.stress.value_or(kStressNearTheGround);
   const FieldGrid grid = grid_of(options);
   const std::vector<std::size_t> shape = {options.frames.count, static_cast<std::size_t>(options.wind.dims),
                                           grid.count_z, grid.count_y, grid.count_x};
@@ -291,6 +304,10 @@ void run_field(FieldOptions options) {
                             {{"along", field.variance_m2_s2(WindComponent::kAlong)},
                              {"across", field.variance_m2_s2(WindComponent::kAcross)},
                              {"up", field.variance_m2_s2(WindComponent::kUpward)}}}};
+    if (wind.dims == 3) {
+      description["wind"]["stress"] = wind.stress;
+      description["wind"]["covariance_m2_s2"] = {{"along_up", field.along_up_covariance_m2_s2()}};
+    }
     title = fmt::format("Wind of {:g} m/s from {:g} degrees, TI {:g}, L {:g} m, at {:g} s", wind.speed_m_s,
                         wind.direction_deg, wind.turbulence_intensity, wind.length_m, options.frames.first_s);
     make_spectral_frames(field, grid, options.frames, use);
@@ -331,6 +348,11 @@ void add_field(CLI::App& app) {
       command->add_option("--dims", wind.dims, "2: over the ground; 3: in space, and upward as well")
           ->check(CLI::IsMember({2, 3}))
           ->capture_default_str());
+  of_statistics.push_back(command
+                              ->add_option("--stress", options->stress,
+                                           "with --dims 3: cov(u, w) / (sigma_u sigma_w), u along the wind; 0 is none "
+                                           "[-0.3, as near the ground]")
+                              ->check(CLI::Range(-kLargestStress, kLargestStress)));
   of_statistics.push_back(command->add_option("--tile", options->tile, "samples an edge of the tile: a power of two"));
   command
       ->add_option("--size", options->size, "N or X,Z (2-D), N or X,Y,Z (3-D): samples, or metres such as 50m; 256, 64")

@@ -32,7 +32,9 @@ constexpr const char* kNoiseFooter =
     "In two and three dimensions beta can mean two things:\n"
     "  transect  a straight line cut through the tile has the spectrum 1/f^beta. This is what an anemometer sees when\n"
     "            the wind carries the tile past it, so it is the default. Each Fourier mode then has the power\n"
-    "            1/|k|^(beta + 1) in two dimensions, 1/|k|^(beta + 2) in three.\n"
+    "            1/|k|^(beta + 1) in two dimensions, 1/|k|^(beta + 2) in three. beta is then 0.6 or more in two, 1 or\n"
+    "            more in three: a tile has no waves shorter than two samples, and a line cut that is flatter would\n"
+    "            have to be made of them.\n"
     "  radial    each Fourier mode has the power 1/|k|^beta, as Chiba's paper is written. A line cut is rougher: "
     "about\n"
     "            1/f^0.7 for beta 5/3 in two dimensions.\n"
@@ -61,13 +63,15 @@ std::string check_whole_number(const std::string& text) {
   return text + " is not a whole number from 0 to 18446744073709551615";
 }
 
-/// The option that an error is about, as it was given.
-std::string blamed_option(const NoiseSpec& spec, NoiseError error) {
+/// The options that an error is about, as they were given.
+std::string blamed_option(int dims, const NoiseSpec& spec, NoiseError error) {
   switch (error) {
     case NoiseError::kSizeNotAllowed:
       return fmt::format("--size {}", spec.size);
     case NoiseError::kBetaOutOfRange:
       return fmt::format("--beta {}", spec.beta);
+    case NoiseError::kTransectTooFlat:
+      return fmt::format("--dims {} --meaning transect --beta {}", dims, spec.beta);
     case NoiseError::kIntegralScaleOutOfRange:
       return fmt::format("--integral-scale {}", spec.integral_scale);
     case NoiseError::kBandOutOfRange:
@@ -76,10 +80,11 @@ std::string blamed_option(const NoiseSpec& spec, NoiseError error) {
   return "?";
 }
 
-/// The tile's values, or ExitError that names the option to blame and what it takes.
+/// The tile's values, or ExitError that names the options to blame and what it takes.
 std::vector<float> make_values(const NoiseOptions& options) {
   const auto refuse = [&](NoiseError error) {
-    return ExitError(kExitUsage, fmt::format("{}: {}", blamed_option(options.spec, error), explain(error)));
+    return ExitError(kExitUsage,
+                     fmt::format("{}: {}", blamed_option(options.dims, options.spec, error), explain(error)));
   };
   const auto values_of = [&](auto tile) {
     if (!tile) throw refuse(tile.error());
@@ -126,7 +131,10 @@ void add_noise(CLI::App& app) {
           "Samples an edge: a power of two, 8 to 4194304 for a line, 8 to 4096 for a square, 8 to 256 for a cube")
       ->check(check_whole_number)
       ->capture_default_str();
-  command->add_option("--beta", options->spec.beta, "Exponent of the power spectrum, 0 to 8")->capture_default_str();
+  command
+      ->add_option("--beta", options->spec.beta,
+                   "Exponent of the power spectrum, 0 to 8; of a transect of a square from 0.6, of a cube from 1")
+      ->capture_default_str();
   command->add_option("--meaning", options->meaning, "What beta is the exponent of (see below)")
       ->check(CLI::IsMember({"radial", "transect"}))
       ->capture_default_str();

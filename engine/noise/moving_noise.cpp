@@ -22,6 +22,11 @@ std::vector<std::complex<double>> carried_waves(std::size_t size, double carried
   return waves;
 }
 
+/// Waves with two samples on an axis cannot be carried by a part of a sample; the constant one is no noise.
+bool is_left_out(std::int64_t x, std::int64_t z, std::int64_t y, std::int64_t half) noexcept {
+  return x == half || std::abs(z) == half || std::abs(y) == half || (x == 0 && z == 0 && y == 0);
+}
+
 /// Between which samples a place is, in periods, on an axis of so many.
 struct Between {
   std::size_t first, second;
@@ -35,6 +40,26 @@ Between samples_at(double place, std::size_t size) noexcept {
 }
 
 }  // namespace
+
+SharedVariance shared_variance(int dims, std::size_t size, const WavePower& one, const WavePower& other) {
+  const auto half = static_cast<std::int64_t>(size / 2);
+  const std::int64_t deepest = dims == 3 ? half : 0;
+  SharedVariance sum;
+  for (std::int64_t y = -deepest; y <= deepest; ++y) {
+    for (std::int64_t z = -half; z <= half; ++z) {
+      for (std::int64_t x = 0; x <= half; ++x) {
+        if (is_left_out(x, z, y, half)) continue;
+        const double waves = x == 0 ? 1.0 : 2.0;  // mirror images: those of x = 0 are in this loop themselves
+        const double power = one(static_cast<double>(x), static_cast<double>(z), static_cast<double>(y));
+        const double other_power = other(static_cast<double>(x), static_cast<double>(z), static_cast<double>(y));
+        sum.one += waves * power;
+        sum.other += waves * other_power;
+        sum.common += waves * std::sqrt(power * other_power);
+      }
+    }
+  }
+  return sum;
+}
 
 MovingNoise::MovingNoise(int dims, std::size_t size, std::span<const MovingField> fields) : fft_(dims, size) {
   if (dims != 2 && dims != 3) throw std::invalid_argument("a moving noise has two dimensions or three");
@@ -57,18 +82,22 @@ MovingNoise::MovingNoise(int dims, std::size_t size, std::span<const MovingField
 MovingNoise::Field MovingNoise::make_field(const MovingField& wanted) {
   Field field;
   const auto half = static_cast<std::int64_t>(size() / 2);
-  const auto power_of = [&](std::int64_t x, std::int64_t z, std::int64_t y) {
-    const bool is_left_out = x == half || std::abs(z) == half || std::abs(y) == half || (x == 0 && z == 0 && y == 0);
-    if (is_left_out) return 0.0;
-    const double power = wanted.power(static_cast<double>(x), static_cast<double>(z), static_cast<double>(y));
-    field.variance += 2.0 * power;  // each mode that is drawn stands for its mirror image as well
-    return power;
+  const auto draw = [&](std::uint64_t seed, double share) {
+    field.variance = 0.0;
+    fill_modes(fft_, seed, [&](std::int64_t x, std::int64_t z, std::int64_t y) {
+      if (is_left_out(x, z, y, half)) return 0.0;
+      const double power = wanted.power(static_cast<double>(x), static_cast<double>(z), static_cast<double>(y));
+      field.variance += 2.0 * power;          // each mode that is drawn stands for its mirror image as well
+      return share * std::sqrt(0.5 * power);  // of the real part and of the imaginary part
+    });
   };
-  fill_modes(fft_, wanted.seed, [&](std::int64_t x, std::int64_t z, std::int64_t y) {
-    return std::sqrt(0.5 * power_of(x, z, y));  // of the real part and of the imaginary part
-  });
+  draw(wanted.seed, std::sqrt(1.0 - wanted.likeness * wanted.likeness));
   field.modes.reserve(fft_.spectrum().size());
   for (const std::complex<double> mode : fft_.spectrum()) field.modes.emplace_back(mode);
+  if (wanted.likeness != 0.0) {
+    draw(wanted.like_seed, wanted.likeness);
+    for (std::size_t i = 0; i < field.modes.size(); ++i) field.modes[i] += std::complex<float>(fft_.spectrum()[i]);
+  }
   field.samples.resize(fft_.samples().size());
   return field;
 }

@@ -20,7 +20,20 @@ using WavePower = std::function<double(double cycles_x, double cycles_z, double 
 struct MovingField {
   WavePower power;
   std::uint64_t seed = 0;
+  /// How much each of its modes is like the mode of the same wave in a field of `like_seed`, -1 to 1: their
+  /// correlation. Its power is the same for every likeness.
+  double likeness = 0.0;
+  std::uint64_t like_seed = 0;
 };
+
+/// Of two fields of a MovingNoise, on average over seeds: the variance of each, and their covariance if the likeness
+/// were 1, which is the root of the product of the two only where they have it in the same waves.
+struct SharedVariance {
+  double one = 0.0, other = 0.0;
+  double common = 0.0;
+};
+/// Asks each power about size^dims / 2 times. `dims` and `size` as in MovingNoise.
+SharedVariance shared_variance(int dims, std::size_t size, const WavePower& one, const WavePower& other);
 
 /// Several periodic noises of any spectrum on one square or cube, carried together to any place, with their eddies
 /// turned as far as is wanted: each mode is

@@ -45,6 +45,10 @@ std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept 
     return NoiseError::kSizeNotAllowed;
   }
   if (!(spec.beta >= 0.0 && spec.beta <= kMaxNoiseBeta)) return NoiseError::kBetaOutOfRange;
+  constexpr std::array kMinTransectBetas = {0.0, kMinTransectBeta2, kMinTransectBeta3};
+  if (spec.meaning == BetaMeaning::kTransect && spec.beta < kMinTransectBetas[static_cast<std::size_t>(dims - 1)]) {
+    return NoiseError::kTransectTooFlat;
+  }
   if (spec.integral_scale != 0.0 && !(spec.integral_scale >= kMinNoiseIntegralScale)) {
     return NoiseError::kIntegralScaleOutOfRange;
   }

@@ -26,6 +26,8 @@ std::string_view name_of(NoiseError error) noexcept {
       return "size-not-allowed";
     case NoiseError::kBetaOutOfRange:
       return "beta-out-of-range";
+    case NoiseError::kTransectTooFlat:
+      return "transect-too-flat";
     case NoiseError::kIntegralScaleOutOfRange:
       return "integral-scale-out-of-range";
     case NoiseError::kBandOutOfRange:
@@ -50,6 +52,9 @@ std::string_view explain(NoiseError error) noexcept {
       return "the size must be a power of two: 8 to 4194304 in one dimension, 8 to 4096 in two, 8 to 256 in three";
     case NoiseError::kBetaOutOfRange:
       return "beta must be a number from 0 to 8";
+    case NoiseError::kTransectTooFlat:
+      return "along a line, noise of two dimensions falls as 1/f^0.6 or more steeply, of three as 1/f or more steeply; "
+             "flatter noise is made with beta as the exponent of each mode (radial), or in one dimension";
     case NoiseError::kIntegralScaleOutOfRange:
       return "the integral scale must be 0 (none) or a part of the edge of at least 0.000001";
     case NoiseError::kBandOutOfRange:

@@ -1,29 +1,21 @@
 #include "engine/pose/quantise.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 
+#include "engine/base/kernel.hpp"
+#include "engine/pose/quantise_kernels.hpp"
+
 namespace yuragi {
 namespace {
 
-/// values * units_per_one, from `smallest` to `largest`, rounded to the nearest; NaN becomes 0.
-template <class Unit>
-void quantise_within(std::span<const float> values, float units_per_one, float smallest, float largest,
-                     std::span<Unit> units) noexcept {
-  assert(values.size() == units.size());
-  constexpr float kRound = 0x1.8p23F;  // adding it leaves the nearest integer in the low bits
+constexpr KernelRows<QuantiseKernels> kQuantiseRows = YURAGI_KERNEL_ROWS(quantise_kernels);
 
-  const std::size_t count = units.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const float scaled = values[i] * units_per_one;
-    const float number = scaled == scaled ? scaled : 0.0F;
-    const float above = number < smallest ? smallest : number;
-    const float within = above > largest ? largest : above;
-    units[i] = static_cast<Unit>(std::bit_cast<std::int32_t>(within + kRound));
-  }
+const QuantiseKernels& quantise_row(std::optional<SimdRow> row) noexcept {
+  assert(!row || is_runnable(*row));
+  return kQuantiseRows[row.value_or(best_simd_row())];
 }
 
 constexpr float kLargestUnit = 32767.0F;
@@ -60,8 +52,14 @@ float way_step_of(const Points& points, std::size_t columns, std::size_t rows, s
 
 }  // namespace
 
-void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units) noexcept {
-  quantise_within(angle_rad, kLargestUnit / 0x1.921fb6p1F, -kLargestUnit, kLargestUnit, units);
+void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units, std::optional<SimdRow> row) noexcept {
+  assert(angle_rad.size() == units.size());
+  quantise_row(row).to_int16({.count = units.size(),
+                              .values = angle_rad.data(),
+                              .units_per_one = kLargestUnit / 0x1.921fb6p1F,
+                              .smallest = -kLargestUnit,
+                              .largest = kLargestUnit,
+                              .units = units.data()});
 }
 
 void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad) noexcept {
@@ -70,12 +68,25 @@ void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad)
   for (std::size_t i = 0; i < count; ++i) angle_rad[i] = static_cast<float>(units[i]) * kBendStep_rad;
 }
 
-void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::int16_t> units) noexcept {
-  quantise_within(way_m, 1.0F / step_m, -kLargestUnit, kLargestUnit, units);
+void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::int16_t> units,
+                   std::optional<SimdRow> row) noexcept {
+  assert(way_m.size() == units.size());
+  quantise_row(row).to_int16({.count = units.size(),
+                              .values = way_m.data(),
+                              .units_per_one = 1.0F / step_m,
+                              .smallest = -kLargestUnit,
+                              .largest = kLargestUnit,
+                              .units = units.data()});
 }
 
-void quantise_heat(std::span<const float> heat, std::span<std::uint8_t> units) noexcept {
-  quantise_within(heat, 255.0F, 0.0F, 255.0F, units);
+void quantise_heat(std::span<const float> heat, std::span<std::uint8_t> units, std::optional<SimdRow> row) noexcept {
+  assert(heat.size() == units.size());
+  quantise_row(row).to_uint8({.count = units.size(),
+                              .values = heat.data(),
+                              .units_per_one = 255.0F,
+                              .smallest = 0.0F,
+                              .largest = 255.0F,
+                              .units = units.data()});
 }
 
 float way_step_m(const GridSkeleton& grid) noexcept {

@@ -38,7 +38,7 @@ const std::array kBannerParameters = {
     Parameter{"quickness", "rad/s", 18.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
     Parameter{"tile_period", "m", 6.0, 2, 4096, "the longest wave of the noise; 128 samples"},
-    Parameter{"beta", "", 1.3, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
+    Parameter{"beta", "", 1.3, kMinTransectBeta2, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
 /// In the hybrid the cloth is taut from the pole to the free side, and by its loops the pole takes most of the wind.

@@ -38,7 +38,7 @@ const std::array kCurtainParameters = {
     Parameter{"quickness", "rad/s", 11.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
     Parameter{"tile_period", "m", 20.0, 2, 4096, "the longest wave of the noise; 128 samples"},
-    Parameter{"beta", "", 5.0 / 3.0, 0, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
+    Parameter{"beta", "", 5.0 / 3.0, kMinTransectBeta2, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
 ClothSpec curtain_spec(const ParameterValues& values) {

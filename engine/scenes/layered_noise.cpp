@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/noise/band_limited_tile.hpp"
+#include "engine/operators/grid_sample_job.hpp"
 #include "engine/operators/sample_job.hpp"
 
 namespace yuragi {
@@ -19,10 +20,27 @@ std::vector<std::uint32_t> phases_on(std::span<const float> positions_m, double 
   return phases;
 }
 
+/// Are these the rows of a grid, each along x and all with the same x?
+bool goes_along_axes(std::span<const float> x_m, std::span<const float> z_m, std::size_t columns) {
+  if (columns == 0 || x_m.size() % columns != 0) return false;
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    if (x_m[i] != x_m[i % columns] || z_m[i] != z_m[i / columns * columns]) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 LayeredNoise::LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<const float> x_m,
-                           std::span<const float> z_m) {
+                           std::span<const float> z_m, std::size_t columns)
+    : is_grid_(layers.size() <= GridSampleJob::kMaxLayers && goes_along_axes(x_m, z_m, columns)) {
+  // Of a grid the first row has every x, and the first column every z.
+  std::vector<float> column_z_m;
+  if (is_grid_) {
+    for (std::size_t i = 0; i < z_m.size(); i += columns) column_z_m.push_back(z_m[i]);
+    x_m = x_m.first(columns);
+    z_m = column_z_m;
+  }
   for (const NoiseLayerSpec& spec : layers) {
     const auto place_x = phases_on(x_m, spec.period_x_m);
     layers_.push_back({.tile = BandLimitedTile2(make_noise_2d(spec.noise).value(), spec.band + 1).level(spec.band),
@@ -69,6 +87,7 @@ void LayeredNoise::lean(std::size_t first, std::size_t count, double x_m) noexce
 }
 
 void LayeredNoise::sample(SimdRow row, std::span<float> out) const noexcept {
+  if (is_grid_) return sample_grid(row, out);
   std::array<NoiseLayer, SampleJob::kMaxLayers> read;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const Layer& layer = layers_[i];
@@ -79,6 +98,19 @@ void LayeredNoise::sample(SimdRow row, std::span<float> out) const noexcept {
                .weight = layer.weight};
   }
   SampleJob{.layers = std::span(read).first(layers_.size()), .row = row, .out = out}.run();
+}
+
+void LayeredNoise::sample_grid(SimdRow row, std::span<float> out) const noexcept {
+  std::array<GridNoiseLayer, GridSampleJob::kMaxLayers> read;
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    const Layer& layer = layers_[i];
+    read[i] = {.tile = &layer.tile,
+               .column_x = layer.place_x,
+               .row_z = layer.place_z,
+               .offset = layer.offset.phase(),
+               .weight = layer.weight};
+  }
+  GridSampleJob{.layers = std::span(read).first(layers_.size()), .row = row, .out = out}.run();
 }
 
 double LayeredNoise::largest_change(std::size_t layer, double x_m, double z_m) const noexcept {

@@ -197,7 +197,7 @@ class Ripple final : public Scene {
         half_speed_m_s_(values.number("half_speed")),
         gustiness_(values.number("gustiness")),
         wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
-        waves_(wave_layers(values, setup.seed), water.rest_x_m, water.rest_z_m),
+        waves_(wave_layers(values, setup.seed), water.rest_x_m, water.rest_z_m, water.columns),
         gusts_({.has_two_tiles = false, .seed = setup.seed ^ stream_id("ripple gusts")}),
         gust_places_(gusts_.places(water.rest_x_m, water.rest_z_m)),
         noise_(water.rest_x_m.size(), 0.0F),

@@ -80,6 +80,8 @@ WindFieldSettings checked(const WindFieldSettings& settings) {
   require(std::isfinite(settings.direction_deg), "a direction in degrees");
   require(settings.turbulence_intensity >= 0.0 && std::isfinite(settings.turbulence_intensity),
           "a turbulence intensity of 0 or above");
+  require(std::abs(settings.stress) <= kLargestStress, "a stress from -0.6 to 0.6");
+  require(settings.stress == 0.0 || settings.dims == 3, "a stress in 3 dimensions only");
   require(settings.length_m > 0.0 && std::isfinite(settings.length_m), "a length scale above 0 m");
   require(settings.spacing_m > 0.0 && std::isfinite(settings.spacing_m), "a spacing above 0 m");
   return settings;
@@ -93,32 +95,74 @@ std::uint64_t seed_of(const WindFieldSettings& settings, WindComponent component
 
 }  // namespace
 
-std::vector<MovingField> SpectralWindField::fields_of(const WindFieldSettings& settings) {
-  std::vector<MovingField> fields;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(settings.dims); ++i) {
-    fields.push_back({CellPower(settings, kComponents[i]), seed_of(settings, kComponents[i])});
-  }
-  return fields;
-}
-
-SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& settings, WindComponent component) {
+SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& settings, WindComponent component,
+                                                   std::uint64_t seed) {
   // What the tile has no mode for is in the cell about 0: waves longer than two tiles.
   const double way_m = static_cast<double>(kPeriodsPerWay * settings.samples) * settings.spacing_m;
   const double length_m = kLengths[static_cast<std::size_t>(component)] * settings.length_m;
   return {make_noise_1d({.size = kFieldWaySamples,
-                         .seed = seed_of(settings, component),
+                         .seed = seed,
                          .integral_scale = std::max(length_m / way_m, kMinNoiseIntegralScale),
                          .to_cycles = kPeriodsPerWay / 2.0})
               .value(),
           std::sqrt(CellPower(settings, component)(0.0, 0.0, 0.0))};
 }
 
+/// How much each wave of w is to be like that of u. Most of their power is in different waves, so that with a likeness
+/// of 1 the stress would be 0.63 to 0.8, as the tile is long and fine.
+double SpectralWindField::likeness_of(const WindFieldSettings& settings) {
+  if (settings.stress == 0.0 || settings.turbulence_intensity * settings.speed_m_s == 0.0) return 0.0;
+  const SharedVariance shared =
+      shared_variance(settings.dims, settings.samples, CellPower(settings, WindComponent::kAlong),
+                      CellPower(settings, WindComponent::kUpward));
+  const std::uint64_t seed = seed_of(settings, WindComponent::kAlong);
+  const Way along = make_way(settings, WindComponent::kAlong, seed);
+  const Way up = make_way(settings, WindComponent::kUpward, seed);
+  double product = 0.0;
+  for (std::size_t i = 0; i < along.noise.size(); ++i) {
+    product += static_cast<double>(along.noise.values[i]) * static_cast<double>(up.noise.values[i]);
+  }
+  const double of_ways = product / static_cast<double>(along.noise.size()) * along.deviation_m_s * up.deviation_m_s;
+  const double all = std::sqrt((shared.one + along.deviation_m_s * along.deviation_m_s) *
+                               (shared.other + up.deviation_m_s * up.deviation_m_s));
+  const double likeness = settings.stress * all / (shared.common + of_ways);
+  if (std::abs(likeness) <= 1.0) return likeness;
+  throw std::invalid_argument("a wind field of this length and spacing has a stress of at most " +
+                              std::to_string(std::abs(settings.stress / likeness)));
+}
+
+std::vector<MovingField> SpectralWindField::fields_of(const WindFieldSettings& settings, double likeness) {
+  std::vector<MovingField> fields;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(settings.dims); ++i) {
+    fields.push_back({.power = CellPower(settings, kComponents[i]),
+                      .seed = seed_of(settings, kComponents[i]),
+                      .likeness = kComponents[i] == WindComponent::kUpward ? likeness : 0.0,
+                      .like_seed = seed_of(settings, WindComponent::kAlong)});
+  }
+  return fields;
+}
+
 SpectralWindField::SpectralWindField(const WindFieldSettings& settings)
-    : period_m_(static_cast<double>(checked(settings).samples) * settings.spacing_m),
+    : SpectralWindField(settings, likeness_of(checked(settings))) {}
+
+SpectralWindField::SpectralWindField(const WindFieldSettings& settings, double likeness)
+    : period_m_(static_cast<double>(settings.samples) * settings.spacing_m),
       speed_m_s_(settings.speed_m_s),
+      stress_(settings.stress),
       ahead_(wind_from(1.0, settings.direction_deg)),
-      noise_(settings.dims, settings.samples, fields_of(settings)) {
-  for (int i = 0; i < settings.dims; ++i) ways_.push_back(make_way(settings, kComponents[static_cast<std::size_t>(i)]));
+      noise_(settings.dims, settings.samples, fields_of(settings, likeness)) {
+  for (int i = 0; i < settings.dims; ++i) {
+    const WindComponent component = kComponents[static_cast<std::size_t>(i)];
+    ways_.push_back(make_way(settings, component, seed_of(settings, component)));
+  }
+  if (likeness != 0.0) {
+    const Way like = make_way(settings, WindComponent::kUpward, seed_of(settings, WindComponent::kAlong));
+    const auto own_share = static_cast<float>(std::sqrt(1.0 - likeness * likeness));
+    std::vector<float>& up = ways_[2].noise.values;
+    for (std::size_t i = 0; i < up.size(); ++i) {
+      up[i] = own_share * up[i] + static_cast<float>(likeness) * like.noise.values[i];
+    }
+  }
   if (settings.evolves) {
     const double turnover_m23_s =
         eddy_turnover_m23_s(settings.turbulence_intensity * settings.speed_m_s, settings.length_m);
@@ -151,6 +195,10 @@ double SpectralWindField::variance_m2_s2(WindComponent component) const noexcept
   const auto i = static_cast<std::size_t>(component);
   if (i >= ways_.size()) return 0.0;
   return noise_.variance(i) + ways_[i].deviation_m_s * ways_[i].deviation_m_s;
+}
+
+double SpectralWindField::along_up_covariance_m2_s2() const noexcept {
+  return stress_ * std::sqrt(variance_m2_s2(WindComponent::kAlong) * variance_m2_s2(WindComponent::kUpward));
 }
 
 }  // namespace yuragi

@@ -12,6 +12,9 @@
 
 namespace yuragi {
 
+/// u and w have most of their power in different waves: if each were the same in both, the stress would be 0.63.
+inline constexpr double kLargestStress = 0.6;
+
 /// What wind a field has. The components along the wind, across it and upward have standard deviations of
 /// (1, 0.8, 0.5) sigma and integral length scales of (1, 1/3, 1/12.3) L (IEC 61400-1:2005, annex B.2).
 struct WindFieldSettings {
@@ -22,7 +25,10 @@ struct WindFieldSettings {
   double length_m = 57.0;             ///< L, integral length scale of u along the wind, above 0; the IEC's at 10 m
   std::size_t samples = 256;          ///< an edge of the tile: a power of two, 8 to 4096 (2-D) or 256 (3-D)
   double spacing_m = 1.0;             ///< between its samples, above 0
-  bool evolves = true;                ///< eddies turn over while they are carried; false: Taylor's frozen turbulence
+  /// cov(u, w) / (sigma_u sigma_w): near the ground about -0.3, since gusts come down and lulls rise (Panofsky and
+  /// Dutton 1984, Atmospheric turbulence, chapter 6). -kLargestStress to kLargestStress, and 0 in two dimensions.
+  double stress = 0.0;
+  bool evolves = true;  ///< eddies turn over while they are carried; false: Taylor's frozen turbulence
   std::uint64_t seed = 1;
 };
 
@@ -32,8 +38,14 @@ struct WindFieldSettings {
 /// A point sees von Karman's spectrum of (U, TI, L) for u, the transverse one for v and w; two points across the wind
 /// have von_karman_coherence(). What is longer than the tile is the same everywhere in it: a 1-D noise along the way
 /// that the wind has come. What is shorter than two samples is missing, and variance_m2_s2() says what is there. The
-/// tile repeats every samples x spacing; a frozen one comes round after that length of way. The components are
-/// independent of each other: there is no shear stress, and the field is not free of divergence.
+/// tile repeats every samples x spacing; a frozen one comes round after that length of way. The field is not free of
+/// divergence.
+///
+/// Without `stress` the components are independent of each other, as in isotropic turbulence. With it each wave of w
+/// has the same correlation with that wave of u, as large as makes up the stress: variances, spectra and coherences are
+/// the same for every stress, which the rotation of one component into the other, or a sheared tensor (Mann 1994),
+/// would not leave alone. What it does not have of shear: in nature short waves are less correlated than long ones (the
+/// cospectrum falls as k^-7/3), and eddies are tilted.
 ///
 /// Time may go either way. Owns its tiles (about 36 bytes a sample in 2-D, 44 in 3-D). Same settings, same bits.
 /// Thread-safe: reading, yes. Realtime-safe: at(); go_to() makes 2 or 3 Fourier transforms.
@@ -50,6 +62,8 @@ class SpectralWindField final : public WindField {
 
   /// Of a component, on average over seeds and long times. The third is 0 in two dimensions.
   double variance_m2_s2(WindComponent component) const noexcept;
+  /// Of u and w, on average over seeds: the stress times both standard deviations. 0 in two dimensions.
+  double along_up_covariance_m2_s2() const noexcept;
   /// How long the tile is.
   double period_m() const noexcept { return period_m_; }
 
@@ -59,11 +73,14 @@ class SpectralWindField final : public WindField {
     NoiseTile1 noise;
     double deviation_m_s = 0.0;
   };
-  static std::vector<MovingField> fields_of(const WindFieldSettings& settings);
-  static Way make_way(const WindFieldSettings& settings, WindComponent component);
+  static Way make_way(const WindFieldSettings& settings, WindComponent component, std::uint64_t seed);
+  static double likeness_of(const WindFieldSettings& settings);
+  static std::vector<MovingField> fields_of(const WindFieldSettings& settings, double likeness);
+  SpectralWindField(const WindFieldSettings& settings, double likeness);
 
   double period_m_;
   double speed_m_s_;
+  double stress_;
   WindVector ahead_;                 ///< unit vector downwind
   double turning_rad_s_ = 0.0;       ///< of the eddies as long as the tile
   MovingNoise noise_;                ///< a field a component

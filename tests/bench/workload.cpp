@@ -1,54 +1,121 @@
 #include "tests/bench/workload.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
+#include <emmintrin.h>
+
+#include "daemon/config.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi::bench {
 namespace {
 
-const SceneDescription& scene_named(std::string_view kind) {
-  for (const SceneDescription* scene : scene_table()) {
-    if (scene->name == kind) return *scene;
+/// The arrays in which joints lie.
+void add_joints(Kinematics::Joints& joints, std::vector<std::span<float>>& all) {
+  if (auto* strands = std::get_if<JointPositions>(&joints)) {
+    all.emplace_back(strands->data());
+  } else if (auto* points = std::get_if<PointPositions>(&joints)) {
+    all.emplace_back(points->data());
+  } else {
+    auto& tree = std::get<TreeJoints>(joints);
+    for (std::size_t level = 0; level < tree.level_count(); ++level) all.emplace_back(tree.level(level).data());
   }
-  throw std::invalid_argument("no scene is called " + std::string(kind));
 }
 
 }  // namespace
 
-Workload::Workload(std::string_view kind, const ParameterValues::Map& given, SimdRow row, bool has_gusts) {
-  if (has_gusts) {
-    gusts_ = std::make_shared<const GustNoise>(GustNoiseSettings{.evolves = true});
-    wind_.gusts.ahead = (1.0 / speed_of(kBreeze)) * kBreeze;
-    wind_.gusts.along_m_s.fill(0.3F);
-    wind_.gusts.across_m_s.fill(0.3F);
+BenchScene bench_scene(std::string_view kind, const ParameterValues::Map& given) {
+  for (const SceneDescription* scene : scene_table()) {
+    if (scene->name == kind) {
+      return {.kind = scene, .values = ParameterValues::resolve(scene->parameters, given).value()};
+    }
   }
-  const SceneDescription& description = scene_named(kind);
-  scene_ = description.make(ParameterValues::resolve(description.parameters, given).value(),
-                            {.seed = 1, .row = row, .gusts = gusts_});
-  kinematics_ = std::make_unique<Kinematics>(scene_->skeleton(), row);
-  nodes_ = node_count(scene_->skeleton());
+  throw std::invalid_argument("no scene is called " + std::string(kind));
+}
+
+std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file) {
+  const Config config = load_config(config_file);
+  std::vector<BenchScene> scenes;
+  for (const SceneConfig& scene : config.scenes) {
+    if (!scene.values.flag("shown")) continue;
+    scenes.push_back({.kind = scene.kind,
+                      .values = scene.values,
+                      .seed = config.seed + scenes.size(),
+                      .placement = {.x_m = scene.values.number("x"),
+                                    .y_m = scene.values.number("y"),
+                                    .z_m = scene.values.number("z"),
+                                    .heading_deg = scene.values.number("heading")},
+                      .gain = scene.values.number("gain")});
+  }
+  return scenes;
+}
+
+Workload::Workload(const std::vector<BenchScene>& scenes, SimdRow row, std::shared_ptr<const GustNoise> gusts)
+    : wind_(gusts) {
+  for (const BenchScene& scene : scenes) {
+    Placed& placed = parts_.emplace_back();
+    placed.gain = scene.gain;
+    placed.scene =
+        scene.kind->make(scene.values, {.seed = scene.seed, .placement = scene.placement, .row = row, .gusts = gusts});
+    placed.kinematics = std::make_unique<Kinematics>(placed.scene->skeleton(), row);
+    add_joints(placed.kinematics->joints(), joints_);
+    nodes_ += node_count(placed.scene->skeleton());
+  }
   for (int i = 0; i < 60; ++i) frame();  // it moves when it is measured
+}
+
+void Workload::shift() {
+  const GroundWind& wind = wind_.next();
+  for (Placed& part : parts_) part.scene->shift(part.gain * wind, kBenchTick_s);
+}
+
+void Workload::sample() {
+  for (Placed& part : parts_) part.scene->sample();
+}
+
+void Workload::project() {
+  for (Placed& part : parts_) {
+    part.scene->project(kBenchTick_s);
+    part.kinematics->run(part.scene->pose());
+  }
 }
 
 void Workload::frame(WorkerPool& pool) {
   shift();
-  pool.run([this](Part part) { scene_->sample_part(part); });
-  pool.run([this](Part part) {
-    scene_->project_part(part, kBenchTick_s);
-    kinematics_->run(scene_->pose(), part);
-  });
+  for (Placed& placed : parts_) {
+    pool.run([&placed](Part part) { placed.scene->sample_part(part); });
+    pool.run([&placed](Part part) {
+      placed.scene->project_part(part, kBenchTick_s);
+      placed.kinematics->run(placed.scene->pose(), part);
+    });
+  }
 }
 
-void Workload::store_only() {
+void Workload::store_in_a_loop() {
   value_ += 1.0F;
-  const auto fill = [this](std::span<float> joints) { std::fill(joints.begin(), joints.end(), value_); };
-  Kinematics::Joints& joints = kinematics_->joints();
-  if (auto* strands = std::get_if<JointPositions>(&joints)) return fill(strands->data());
-  if (auto* points = std::get_if<PointPositions>(&joints)) return fill(points->data());
-  auto& tree = std::get<TreeJoints>(joints);
-  for (std::size_t level = 0; level < tree.level_count(); ++level) fill(tree.level(level).data());
+  for (const std::span<float> joints : joints_) std::fill(joints.begin(), joints.end(), value_);
+}
+
+void Workload::store_by_memset() {
+  value_ = value_ == 0.0F ? 1.0F : 0.0F;
+  for (const std::span<float> joints : joints_) std::memset(joints.data(), value_ == 0.0F ? 0 : 1, joints.size_bytes());
+}
+
+void Workload::store_past_caches() {
+  value_ += 1.0F;
+  const __m128 four = _mm_set1_ps(value_);
+  for (const std::span<float> joints : joints_) {
+    float* at = joints.data();
+    float* const end = at + joints.size();
+    while (at != end && reinterpret_cast<std::uintptr_t>(at) % sizeof four != 0) *at++ = value_;
+    for (; end - at >= 4; at += 4) _mm_stream_ps(at, four);
+    while (at != end) *at++ = value_;
+  }
+  _mm_sfence();
 }
 
 }  // namespace yuragi::bench

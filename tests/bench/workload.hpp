@@ -1,40 +1,46 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
-#include <string>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "daemon/worker_pool.hpp"
 #include "engine/pose/kinematics.hpp"
 #include "engine/scenes/scene.hpp"
+#include "tests/bench/bench_wind.hpp"
 
 namespace yuragi::bench {
 
-inline constexpr double kBenchTick_s = 1.0 / 60.0;
+/// A scene of a workload.
+struct BenchScene {
+  const SceneDescription* kind = nullptr;
+  ParameterValues values;
+  std::uint64_t seed = 1;
+  ScenePlacement placement = {};
+  double gain = 1.0;
+};
 
-/// A scene of the table, with its joints, in a steady breeze.
+/// The scene that scene_table() has under `kind`, in the middle; `given` are parameters that differ from the defaults.
+BenchScene bench_scene(std::string_view kind, const ParameterValues::Map& given = {});
+
+/// Those that a configuration shows.
+std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file);
+
+/// Scenes of a row of the table, with their joints.
 class Workload {
  public:
-  static constexpr WindVector kBreeze = {6.0, 3.0};
-
-  /// `kind` is in scene_table(); `given` are parameters that differ from the defaults. With gusts from outside the
-  /// breeze has all octaves that a tile holds.
-  Workload(std::string_view kind, const ParameterValues::Map& given, SimdRow row, bool has_gusts = false);
+  /// With `gusts` from outside, or with what noise a scene has of its own.
+  Workload(const std::vector<BenchScene>& scenes, SimdRow row, std::shared_ptr<const GustNoise> gusts = nullptr);
 
   std::size_t nodes() const { return nodes_; }
-  Scene& scene() { return *scene_; }
-  Kinematics& kinematics() { return *kinematics_; }
+  const Skeleton& first_skeleton() const { return parts_.front().scene->skeleton(); }
 
   // One frame's parts. Projection goes as far as joint positions.
-  void shift() {
-    if (gusts_) gusts_->carry(wind_.gusts.carried, kBreeze.u_m_s, -kBreeze.v_m_s, kBenchTick_s, kTurnover_m23_s);
-    scene_->shift(wind_, kBenchTick_s);
-  }
-  void sample() { scene_->sample(); }
-  void project() {
-    scene_->project(kBenchTick_s);
-    kinematics_->run(scene_->pose());
-  }
+  void shift();
+  void sample();
+  void project();
   void frame() {
     shift();
     sample();
@@ -44,16 +50,21 @@ class Workload {
   /// The same frame, shared out among the pool's threads.
   void frame(WorkerPool& pool);
 
-  /// Stores 12 bytes a node into the same joints, and computes nothing.
-  void store_only();
+  // Store 12 bytes a node into the same joints, and compute nothing: in a plain loop, by memset, and past the caches.
+  void store_in_a_loop();
+  void store_by_memset();
+  void store_past_caches();
 
  private:
-  static constexpr double kTurnover_m23_s = 0.3;
+  struct Placed {
+    std::unique_ptr<Scene> scene;
+    std::unique_ptr<Kinematics> kinematics;
+    double gain = 1.0;
+  };
 
-  std::shared_ptr<const GustNoise> gusts_;
-  GroundWind wind_ = kBreeze;
-  std::unique_ptr<Scene> scene_;
-  std::unique_ptr<Kinematics> kinematics_;
+  BenchWind wind_;
+  std::vector<Placed> parts_;
+  std::vector<std::span<float>> joints_;
   std::size_t nodes_ = 0;
   float value_ = 0.0F;
 };

@@ -61,6 +61,20 @@ class FieldCommand(unittest.TestCase):
         self.assertGreater(values[0, 2].std(), 0.05)
         self.assertLess(abs(values[0, 2].mean()), 2.0)
 
+    def test_in_space_gusts_come_down_as_much_as_the_stress_says(self):
+        asked = ("--dims", 3, "--size", 32, "--tile", 32, "--spacing", 2, "--length", 8)
+        for stress, told in ((-0.3, ()), (0.5, ("--stress", 0.5)), (-0.6, ("--stress", -0.6)), (0, ("--stress", 0))):
+            together = 0.0
+            for seed in range(6):
+                values, said = self.field(*asked, *told, "--seed", seed)
+                together += ((values[0, 0].astype(float) - 8) * values[0, 2]).mean() / 6
+            self.assertEqual(said["wind"]["stress"], stress)
+            variance = said["wind"]["variance_m2_s2"]
+            scale = math.sqrt(variance["along"] * variance["up"])
+            self.assertAlmostEqual(said["wind"]["covariance_m2_s2"]["along_up"], stress * scale, places=9)
+            self.assertAlmostEqual(together / scale, stress, delta=0.1)
+        self.assertNotIn("stress", self.field("--size", 8)[1]["wind"])
+
     def test_the_variance_is_that_of_the_turbulence_intensity(self):
         total = 0.0
         for seed in range(8):
@@ -160,6 +174,9 @@ class FieldCommand(unittest.TestCase):
         self.assertIn("power of two", self.refused(64, "--tile", 100))
         self.assertIn("largest tile", self.refused(64, "--dims", 3, "--size", 300))
         self.assertIn("--speed", self.refused(64, "--speed", -1))
+        self.assertIn("--dims 3", self.refused(64, "--stress", -0.3))
+        self.assertIn("--stress", self.refused(64, "--dims", 3, "--stress", 0.7))
+        self.assertIn("--windlog", self.refused(64, "--windlog", "some.windlog", "--stress", 0))
         self.assertIn("GB", self.refused(64, "--size", 4000, "--frames", 100000))
         self.assertIn("no such recording", self.refused(66, "--windlog", "nowhere.windlog"))
         self.assertIn("--windlog", self.refused(64, "--windlog", "some.windlog", "--speed", 4))

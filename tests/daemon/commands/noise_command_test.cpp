@@ -111,6 +111,27 @@ TEST_F(NoiseCommand, RefusesWhatItCannotMakeAsAUsageErrorAndLeavesNoFile) {
   EXPECT_EQ(files(), 0U);
 }
 
+TEST_F(NoiseCommand, RefusesATransectThatATileCannotHaveAndSaysWhichItCan) {
+  EXPECT_EQ(code_of({"--size", "16", "--beta", "0", "--out", path("x.npy")}), kExitUsage);
+  EXPECT_EQ(code_of({"--size", "16", "--beta", "0.59", "--out", path("x.npy")}), kExitUsage);
+  EXPECT_EQ(code_of({"--dims", "3", "--size", "16", "--beta", "0.99", "--out", path("x.npy")}), kExitUsage);
+  EXPECT_EQ(files(), 0U);
+  try {
+    run({"--meaning", "transect", "--beta", "0", "--out", path("x.npy")});
+    FAIL() << "should have thrown";
+  } catch (const ExitError& error) {
+    EXPECT_STREQ(error.what(),
+                 "--dims 2 --meaning transect --beta 0: along a line, noise of two dimensions falls as 1/f^0.6 or more "
+                 "steeply, of three as 1/f or more steeply; flatter noise is made with beta as the exponent of each "
+                 "mode (radial), or in one dimension");
+  }
+
+  EXPECT_EQ(code_of({"--size", "16", "--beta", "0.6", "--out", path("square.npy")}), 0);
+  EXPECT_EQ(code_of({"--dims", "3", "--size", "16", "--beta", "1", "--out", path("cube.npy")}), 0);
+  EXPECT_EQ(code_of({"--size", "16", "--beta", "0", "--meaning", "radial", "--out", path("white.npy")}), 0);
+  EXPECT_EQ(code_of({"--dims", "1", "--size", "16", "--beta", "0", "--out", path("line.npy")}), 0);
+}
+
 TEST_F(NoiseCommand, RefusesWordsThatItDoesNotKnow) {
   const std::string out = path("x.npy");
   EXPECT_THROW(run({"--dims", "4", "--out", out}), CLI::ValidationError);

@@ -17,7 +17,7 @@ constexpr std::size_t kTileSize = 128;
 constexpr double kTilePeriod_m = 64.0;
 
 NoiseTile2 plain_tile() {
-  return make_noise_2d({.size = kTileSize, .beta = 0.0, .seed = 6}).value();
+  return make_noise_2d({.size = kTileSize, .beta = 1.0, .meaning = BetaMeaning::kRadial, .seed = 6}).value();
 }
 
 /// |k| in cycles an edge of the i-th mode of the half spectrum.

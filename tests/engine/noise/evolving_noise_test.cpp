@@ -88,7 +88,7 @@ TEST(EvolvingNoiseTest, ForgetsItsBeginning) {
 TEST(EvolvingNoiseTest, SmallEddiesTurnFasterThanLargeOnes) {
   // From one moment to another the modes around 16 cycles lose more of their likeness than those around 2: their rates
   // are as 4 to 1.
-  EvolvingNoise noise = evolving({.size = 64, .beta = 0.0, .seed = 1}, 0.2);
+  EvolvingNoise noise = evolving({.size = 64, .beta = 1.0, .meaning = BetaMeaning::kRadial, .seed = 1}, 0.2);
   const auto modes_of = [](const NoiseTile2& tile) {
     RealFft fft(2, tile.size);
     for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);

@@ -66,6 +66,43 @@ TEST(NoiseSlope, TransectSquareFallsAsBetaAlongItsRows) {
   }
 }
 
+/// The exponent that the line cuts of a square or cube with modes |k|^-(beta + dims - 1) have on average over seeds:
+/// for each wave number along the line, the sum over the modes beside it.
+double exponent_of_cuts(int dims, std::size_t size, double beta) {
+  const double exponent = mode_exponent(dims, beta, BetaMeaning::kTransect);
+  const auto half = static_cast<std::int64_t>(size / 2);
+  const std::int64_t deepest = dims == 3 ? half : 0;
+  std::vector<double> power(size / 16 + 1, 0.0);
+  for (std::size_t x = 1; x < power.size(); ++x) {
+    for (std::int64_t z = 0; z <= half; ++z) {
+      for (std::int64_t y = 0; y <= deepest; ++y) {
+        const double mirrored = (z == 0 || z == half ? 1.0 : 2.0) * (y == 0 || y == half ? 1.0 : 2.0);
+        const auto beside = static_cast<double>(z * z + y * y);
+        power[x] += mirrored * std::pow(static_cast<double>(x * x) + beside, -0.5 * exponent);
+      }
+    }
+  }
+  return test::falling_exponent(power, 4, size / 16);
+}
+
+TEST(NoiseSlope, ATransectOfTheLeastBetaIsATenthTooSteepAndAFlatterOneIsNoLongerWhatWasAskedFor) {
+  for (const std::size_t size : {std::size_t{512}, std::size_t{1024}}) {
+    EXPECT_NEAR(exponent_of_cuts(2, size, kMinTransectBeta2), kMinTransectBeta2, 0.1) << size;
+    EXPECT_GT(exponent_of_cuts(2, size, 0.0), 0.25) << size;
+  }
+  EXPECT_NEAR(exponent_of_cuts(3, 256, kMinTransectBeta3), kMinTransectBeta3, 0.1);
+  EXPECT_GT(exponent_of_cuts(3, 256, 0.0), 0.35);
+
+  // What is made is what was computed; 4 seeds.
+  std::vector<double> mean(512 / 2 + 1, 0.0);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const std::vector<double> power =
+        test::row_power(make_noise_2d({.size = 512, .beta = kMinTransectBeta2, .seed = seed}).value());
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += power[k];
+  }
+  EXPECT_NEAR(test::falling_exponent(mean, 4, 512 / 16), exponent_of_cuts(2, 512, kMinTransectBeta2), 0.05);
+}
+
 TEST(NoiseSlope, TransectSquareOfOneSeedFallsAsBetaAlongItsRows) {
   constexpr std::size_t kSize = 1024;
   for (const double beta : {1.0, 5.0 / 3.0, 2.0}) {

@@ -57,12 +57,15 @@ TEST(SpectralNoise, TransectAddsOneToTheExponentForEachDimensionBeyondTheFirst) 
 
 TEST(SpectralNoise, HasMeanZeroAndVarianceOne) {
   for (const double beta : {0.0, 5.0 / 3.0, 8.0}) {
-    const Moments cube = moments_of(make_noise_3d({.size = 32, .beta = beta, .seed = 3}).value().values);
+    const BetaMeaning meaning = beta == 0.0 ? BetaMeaning::kRadial : BetaMeaning::kTransect;
+    const Moments cube =
+        moments_of(make_noise_3d({.size = 32, .beta = beta, .meaning = meaning, .seed = 3}).value().values);
     EXPECT_NEAR(cube.mean, 0.0, 0x1p-20);
     EXPECT_NEAR(cube.variance, 1.0, 0x1p-18);
     for (const std::size_t size : {std::size_t{8}, std::size_t{64}, std::size_t{256}}) {
       const Moments line = moments_of(make_noise_1d({.size = size, .beta = beta, .seed = 3}).value().values);
-      const Moments square = moments_of(make_noise_2d({.size = size, .beta = beta, .seed = 3}).value().values);
+      const Moments square =
+          moments_of(make_noise_2d({.size = size, .beta = beta, .meaning = meaning, .seed = 3}).value().values);
       for (const Moments moments : {line, square}) {
         EXPECT_NEAR(moments.mean, 0.0, 0x1p-20);
         EXPECT_NEAR(moments.variance, 1.0, 0x1p-18);
@@ -72,7 +75,8 @@ TEST(SpectralNoise, HasMeanZeroAndVarianceOne) {
 }
 
 TEST(SpectralNoise, StandsOnTheGrid) {
-  for (const float value : make_noise_2d({.size = 128, .beta = 0.0, .seed = 4}).value().values) {
+  for (const float value :
+       make_noise_2d({.size = 128, .beta = 0.0, .meaning = BetaMeaning::kRadial, .seed = 4}).value().values) {
     const double steps = static_cast<double>(value) * 0x1p20;
     ASSERT_EQ(steps, std::nearbyint(steps));
   }
@@ -103,10 +107,12 @@ TEST(SpectralNoise, SmallTilesHaveTheirGoldenBits) {
 TEST(SpectralNoise, DifferentSeedsAreUncorrelated) {
   // Beta 0, so that the samples count as independent: a standard error of 1 / sqrt(4096).
   const auto reference_1 = make_noise_1d({.size = 4096, .beta = 0.0, .seed = 0}).value().values;
-  const auto reference_2 = make_noise_2d({.size = 64, .beta = 0.0, .seed = 0}).value().values;
+  const auto reference_2 =
+      make_noise_2d({.size = 64, .beta = 0.0, .meaning = BetaMeaning::kRadial, .seed = 0}).value().values;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const auto line = make_noise_1d({.size = 4096, .beta = 0.0, .seed = seed}).value().values;
-    const auto square = make_noise_2d({.size = 64, .beta = 0.0, .seed = seed}).value().values;
+    const auto square =
+        make_noise_2d({.size = 64, .beta = 0.0, .meaning = BetaMeaning::kRadial, .seed = seed}).value().values;
     EXPECT_NEAR(correlation(reference_1, line), 0.0, 4.0 / 64.0);
     EXPECT_NEAR(correlation(reference_2, square), 0.0, 4.0 / 64.0);
   }
@@ -114,7 +120,8 @@ TEST(SpectralNoise, DifferentSeedsAreUncorrelated) {
 
 TEST(SpectralNoise, ALineAndASquareOfOneSeedAreUncorrelated) {
   const auto line = make_noise_1d({.size = 4096, .beta = 0.0, .seed = 9}).value().values;
-  const auto square = make_noise_2d({.size = 64, .beta = 0.0, .seed = 9}).value().values;
+  const auto square =
+      make_noise_2d({.size = 64, .beta = 0.0, .meaning = BetaMeaning::kRadial, .seed = 9}).value().values;
   EXPECT_NEAR(correlation(line, square), 0.0, 4.0 / 64.0);
 }
 
@@ -259,6 +266,20 @@ TEST(SpectralNoise, RefusesABetaOutOfRange) {
   }
 }
 
+TEST(SpectralNoise, RefusesATransectThatIsFlatterThanATileCanHave) {
+  for (const double beta : {0.0, 0.3, 0.599}) {
+    EXPECT_EQ(make_noise_2d({.size = 64, .beta = beta}).error(), NoiseError::kTransectTooFlat) << beta;
+    EXPECT_TRUE(make_noise_2d({.size = 64, .beta = beta, .meaning = BetaMeaning::kRadial}).has_value()) << beta;
+  }
+  for (const double beta : {0.0, 0.6, 0.999}) {
+    EXPECT_EQ(make_noise_3d({.size = 8, .beta = beta}).error(), NoiseError::kTransectTooFlat) << beta;
+    EXPECT_TRUE(make_noise_3d({.size = 8, .beta = beta, .meaning = BetaMeaning::kRadial}).has_value()) << beta;
+    EXPECT_TRUE(make_noise_1d({.size = 64, .beta = beta}).has_value()) << beta;
+  }
+  EXPECT_TRUE(make_noise_2d({.size = 64, .beta = kMinTransectBeta2}).has_value());
+  EXPECT_TRUE(make_noise_3d({.size = 8, .beta = kMinTransectBeta3}).has_value());
+}
+
 TEST(SpectralNoise, RefusesAnIntegralScaleThatIsNone) {
   for (const double scale : {-1.0, 0.9e-6, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_EQ(make_noise_1d({.size = 64, .integral_scale = scale}).error(), NoiseError::kIntegralScaleOutOfRange);
@@ -283,6 +304,7 @@ TEST(SpectralNoise, TheSmallestIntegralScaleIsWhiteNoise) {
 TEST(SpectralNoise, EveryErrorHasANameAndAnExplanationThatAnUncheckedCallerGets) {
   EXPECT_EQ(name_of(NoiseError::kSizeNotAllowed), "size-not-allowed");
   EXPECT_EQ(name_of(NoiseError::kBetaOutOfRange), "beta-out-of-range");
+  EXPECT_EQ(name_of(NoiseError::kTransectTooFlat), "transect-too-flat");
   EXPECT_EQ(name_of(NoiseError::kIntegralScaleOutOfRange), "integral-scale-out-of-range");
   try {
     static_cast<void>(make_noise_1d({.size = 7}).value());

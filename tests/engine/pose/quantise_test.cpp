@@ -1,6 +1,8 @@
 #include "engine/pose/quantise.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,7 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/math/philox.hpp"
 #include "engine/pose/strand_kinematics.hpp"
+#include "tests/support/each_simd_row.hpp"
 #include "tests/support/random_strands.hpp"
 
 namespace yuragi {
@@ -103,6 +107,72 @@ TEST(QuantiseTest, HeatIsTheNumberOfAColour) {
   std::uint8_t units[6] = {};
   quantise_heat(heat, units);
   EXPECT_EQ(std::vector<int>(std::begin(units), std::end(units)), (std::vector{0, 255, 128, 0, 255, 0}));
+}
+
+class QuantiseOnEachRow : public EachSimdRow {};
+YURAGI_ON_EACH_ROW(QuantiseOnEachRow);
+
+/// One value alone: to the nearest unit, halves to even.
+template <class Unit>
+Unit quantised_alone(float value, float units_per_one, float smallest, float largest) {
+  const float scaled = value * units_per_one;
+  if (std::isnan(scaled)) return 0;
+  return static_cast<Unit>(std::nearbyint(std::clamp(scaled, smallest, largest)));
+}
+
+TEST_P(QuantiseOnEachRow, GivesTheSameUnitsAsOneValueAlone) {
+  const float kPerRad = 32767.0F / std::numbers::pi_v<float>;
+  const float step_m = 0.0003F;
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::array edges = {0.0F,
+                            -0.0F,
+                            std::numeric_limits<float>::denorm_min(),
+                            std::numeric_limits<float>::min(),
+                            std::numeric_limits<float>::max(),
+                            std::numeric_limits<float>::lowest(),
+                            infinity,
+                            -infinity,
+                            nan,
+                            -nan,
+                            0.5F / 255.0F,
+                            1.5F / 255.0F,
+                            1.0F,
+                            std::nextafter(1.0F, 2.0F),
+                            0.5F * step_m,
+                            1.5F * step_m,
+                            -2.5F * step_m,
+                            std::numbers::pi_v<float>,
+                            -std::numbers::pi_v<float>,
+                            std::nextafter(std::numbers::pi_v<float>, 4.0F)};
+
+  // Any bits that a float can have, and those of the usual range; whole registers, and what is left over.
+  const RandomStream random(5, stream_id("values to quantise"));
+  std::uint64_t drawn = 0;
+  for (const std::size_t count : {0U, 1U, 2U, 7U, 15U, 16U, 31U, 33U, 63U, 65U, 127U, 1001U, 4099U}) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double uniform = random.uniform(drawn++);
+      const auto any_bits = std::bit_cast<float>(static_cast<std::uint32_t>(uniform * 4294967296.0));
+      const auto usual = static_cast<float>(8.0 * uniform - 4.0);
+      values.push_back(i % 3 == 0 ? edges[(i / 3) % edges.size()] : i % 3 == 1 ? any_bits : usual);
+    }
+    // One value more than there is room for, which nothing may touch.
+    std::vector<std::int16_t> bends(count + 1, 77);
+    std::vector<std::int16_t> ways(count + 1, 77);
+    std::vector<std::uint8_t> heats(count + 1, 77);
+    quantise(values, std::span(bends).first(count), GetParam());
+    quantise_ways(values, step_m, std::span(ways).first(count), GetParam());
+    quantise_heat(values, std::span(heats).first(count), GetParam());
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(bends[i], quantised_alone<std::int16_t>(values[i], kPerRad, -32767.0F, 32767.0F)) << values[i];
+      EXPECT_EQ(ways[i], quantised_alone<std::int16_t>(values[i], 1.0F / step_m, -32767.0F, 32767.0F)) << values[i];
+      EXPECT_EQ(heats[i], quantised_alone<std::uint8_t>(values[i], 255.0F, 0.0F, 255.0F)) << values[i];
+    }
+    EXPECT_EQ(bends[count], 77);
+    EXPECT_EQ(ways[count], 77);
+    EXPECT_EQ(heats[count], 77);
+  }
 }
 
 TEST(QuantiseTest, AClothOfTwoMetresIsWithinATenthOfAMillimetre) {

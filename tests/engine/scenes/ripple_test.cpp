@@ -7,7 +7,9 @@
 
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/pose_hash.hpp"
+#include "engine/scenes/layered_noise.hpp"
 #include "engine/scenes/scene.hpp"
+#include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 #include "tests/support/scripted_wind.hpp"
 
@@ -164,6 +166,35 @@ TEST(RippleTest, GustsRoughenTheWaterHereAndThere) {
     return *most / *least;
   };
   EXPECT_GT(unevenness(0.5), 1.5 * unevenness(0.0));
+}
+
+TEST(LayeredNoiseTest, AGridIsReadToTheSameBitsAsItsPlacesWhetherItLiesAlongTheAxesOrNot) {
+  const std::vector<NoiseLayerSpec> layers = {
+      {.noise = {.size = 64, .seed = 1}, .period_x_m = 20.0, .period_z_m = 15.0},
+      {.noise = {.size = 128, .seed = 2}, .period_x_m = 9.0, .weight = 0.5F}};
+  constexpr std::size_t kColumns = 40;
+  for (const float turn : {0.0F, 0.2F}) {
+    std::vector<float> x_m;
+    std::vector<float> z_m;
+    for (std::size_t i = 0; i < 30 * kColumns; ++i) {
+      const auto column = static_cast<float>(i % kColumns);
+      const auto row = static_cast<float>(i / kColumns);
+      x_m.push_back(0.1F * column - turn * row - 3.0F);
+      z_m.push_back(0.1F * row + turn * column + 2.0F);
+    }
+    LayeredNoise grid(layers, x_m, z_m, kColumns);
+    LayeredNoise places(layers, x_m, z_m);
+    for (LayeredNoise* noise : {&grid, &places}) {
+      noise->shift(0, 3.3, -1.2);
+      noise->shift(1, -0.7, 80.0);
+    }
+    std::vector<float> as_grid(x_m.size());
+    std::vector<float> as_places(x_m.size());
+    grid.sample(best_simd_row(), as_grid);
+    places.sample(best_simd_row(), as_places);
+    EXPECT_EQ(bits_of(as_grid), bits_of(as_places)) << turn;
+    EXPECT_GT(rms(as_grid), 0.1);
+  }
 }
 
 class RippleOnEachRow : public EachSimdRow {};

@@ -366,6 +366,83 @@ TEST(SpectralWindField, InSpaceHasAllThreeComponents) {
   EXPECT_LT(field.variance_m2_s2(WindComponent::kUpward), 0.25 * kSigma_m_s * kSigma_m_s);
 }
 
+/// Of fields in space over seeds: variances and the covariance of u and w, over what they are said to be, and how much
+/// w changes from a sample to the next along the wind.
+struct StressRun {
+  double u = 0.0, w = 0.0;
+  double stress = 0.0;   ///< cov(u, w) over the standard deviations that the field says
+  double w_steps = 0.0;  ///< mean square, over the variance of w
+};
+StressRun measure_stress(double stress, bool evolves) {
+  WindFieldSettings settings = kTurned;
+  settings.dims = 3;
+  settings.direction_deg = 270.0;
+  settings.length_m = 8.0;
+  settings.samples = 32;
+  settings.spacing_m = 2.0;  // eight lengths
+  settings.stress = stress;
+  settings.evolves = evolves;
+  const FieldGrid grid{.count_x = 32, .count_y = 32, .count_z = 32, .spacing_m = settings.spacing_m};
+  std::vector<float> values(3 * grid.size());
+  constexpr int kSeeds = 24;
+  StressRun run;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(seed);
+    SpectralWindField field(settings);
+    if (evolves) field.go_to(100.0);
+    sample_field(field, grid, values);
+    const double u_m2_s2 = field.variance_m2_s2(WindComponent::kAlong);
+    const double w_m2_s2 = field.variance_m2_s2(WindComponent::kUpward);
+    EXPECT_NEAR(field.along_up_covariance_m2_s2(), stress * std::sqrt(u_m2_s2 * w_m2_s2), 1e-12);
+    const double count = static_cast<double>(grid.size()) * kSeeds;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const double u = static_cast<double>(values[i]) - settings.speed_m_s;
+      const double w = static_cast<double>(values[2 * grid.size() + i]);
+      run.u += u * u / count / u_m2_s2;
+      run.w += w * w / count / w_m2_s2;
+      run.stress += u * w / count / std::sqrt(u_m2_s2 * w_m2_s2);
+      if (i % 32 == 31) continue;
+      const double step = static_cast<double>(values[2 * grid.size() + i + 1]) - w;
+      run.w_steps += step * step / count / w_m2_s2;
+    }
+  }
+  return run;
+}
+
+TEST(SpectralWindField, GustsComeDownAndLullsRiseAsMuchAsTheStressSays) {
+  const StressRun none = measure_stress(0.0, false);
+  EXPECT_NEAR(none.stress, 0.0, 0.03);
+  for (const double stress : {-0.3, 0.6}) {
+    for (const bool evolves : {false, true}) {
+      const StressRun run = measure_stress(stress, evolves);
+      EXPECT_NEAR(run.stress, stress, 0.04) << stress;
+      EXPECT_NEAR(run.u, 1.0, 0.1);
+      EXPECT_NEAR(run.w, 1.0, 0.04);
+      EXPECT_NEAR(run.w_steps / none.w_steps, 1.0, 0.02) << "the spectrum of w is what it was";
+    }
+  }
+}
+
+TEST(SpectralWindField, StressChangesTheWindUpwardAlone) {
+  WindFieldSettings settings = kTurned;
+  settings.dims = 3;
+  settings.samples = 16;
+  const FieldGrid grid{.count_x = 16, .count_y = 16, .count_z = 16, .spacing_m = 1.0};
+  std::vector<float> without(3 * grid.size());
+  std::vector<float> with(3 * grid.size());
+  sample_field(SpectralWindField(settings), grid, without);
+  const std::array variances = {SpectralWindField(settings).variance_m2_s2(WindComponent::kAlong),
+                                SpectralWindField(settings).variance_m2_s2(WindComponent::kUpward)};
+  settings.stress = -0.3;
+  const SpectralWindField field(settings);
+  sample_field(field, grid, with);
+  const auto level = static_cast<std::ptrdiff_t>(2 * grid.size());
+  EXPECT_TRUE(std::equal(with.begin(), with.begin() + level, without.begin())) << "bit for bit";
+  EXPECT_FALSE(std::equal(with.begin() + level, with.end(), without.begin() + level));
+  EXPECT_EQ(field.variance_m2_s2(WindComponent::kAlong), variances[0]);
+  EXPECT_EQ(field.variance_m2_s2(WindComponent::kUpward), variances[1]);
+}
+
 TEST(SpectralWindField, OnTheGroundIsTheSameAtEveryHeight) {
   const SpectralWindField field(kTurned);
   const WindVector3 low = field.at({3.0, 0.0, 5.0});
@@ -396,6 +473,9 @@ TEST(SpectralWindField, RefusesWhatIsNoWind) {
   };
   refuses([](WindFieldSettings& s) { s.dims = 4; });
   refuses([](WindFieldSettings& s) { s.speed_m_s = -1.0; });
+  refuses([](WindFieldSettings& s) { s.stress = -0.3; });  // in two dimensions
+  refuses([](WindFieldSettings& s) { s.dims = 3, s.samples = 16, s.stress = 0.61; });
+  refuses([](WindFieldSettings& s) { s.dims = 3, s.samples = 16, s.stress = std::nan(""); });
   refuses([](WindFieldSettings& s) { s.direction_deg = std::nan(""); });
   refuses([](WindFieldSettings& s) { s.turbulence_intensity = INFINITY; });
   refuses([](WindFieldSettings& s) { s.length_m = 0.0; });

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Between quantise.cpp and its kernel; nobody else needs this.
+
+namespace yuragi {
+
+template <class Unit>
+struct QuantiseArguments {
+  std::size_t count = 0;
+  const float* values = nullptr;
+  float units_per_one = 0.0F;
+  float smallest = 0.0F;  ///< unit
+  float largest = 0.0F;
+  Unit* units = nullptr;
+};
+
+struct QuantiseKernels {
+  void (*to_int16)(const QuantiseArguments<std::int16_t>&) noexcept;
+  void (*to_uint8)(const QuantiseArguments<std::uint8_t>&) noexcept;
+};
+
+extern const QuantiseKernels quantise_kernels_x86_64;
+extern const QuantiseKernels quantise_kernels_x86_64_v3;
+extern const QuantiseKernels quantise_kernels_x86_64_v4;
+
+}  // namespace yuragi
