@@ -29,8 +29,10 @@ void add_check_config(CLI::App& app) {
       return;
     }
     fmt::print("{}: all right\n", file->string());
-    for (const SensorConfig& sensor : config.sensors)
-      fmt::print("  sensor {} ({})\n", sensor.name, sensor.driver->name);
+    for (const SensorConfig& sensor : config.sensors) {
+      fmt::print("  sensor {} ({}), {}\n", sensor.name, sensor.driver->name,
+                 place_text(blend_source_of(sensor.blend, *sensor.driver)));
+    }
     for (const SceneConfig& scene : config.scenes) fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
   });
 }
