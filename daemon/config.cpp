@@ -71,6 +71,7 @@ class ConfigReader {
                      config.sensors.push_back({name, driver, values, calibration, place(entry.source()), judge});
                      check_is_table(entry, kBlendKey);
                      config.sensors.back().blend = read_table(entry, "sensor.", kBlendKey, sensor_blend_parameters());
+                     check_blend(entry, config.sensors.back().blend);
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
                    [&](const auto& name, auto* kind, const auto& values, const auto&) {
@@ -154,6 +155,12 @@ class ConfigReader {
   void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
     if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
       mistake(sensor[kCalibrationKey]["curve"].node()->source(), "sensor.calibration.curve", curve.error().message);
+    }
+  }
+
+  void check_blend(const toml::table& sensor, const ParameterValues& blend) {
+    if (const auto error = sensor_blend_mistake(blend)) {
+      mistake(sensor[kBlendKey][error->name].node()->source(), "sensor.blend." + error->name, error->message);
     }
   }
 

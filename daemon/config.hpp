@@ -82,7 +82,8 @@ Config load_config(const std::filesystem::path& file);
 /// Makes the sensor, without touching its device. Throws ConfigError where its values cannot work together.
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor);
 
-/// The configuration as TOML with every value written out: what a recording keeps, and what `check-config` shows.
+/// The configuration as TOML with every value written out, but for what has none where it is left out: what a recording
+/// keeps, and what `check-config` shows.
 std::string to_toml(const Config& config);
 std::string to_toml(const ParameterValues& values);
 

@@ -41,8 +41,9 @@ void add_check_config(CLI::App& app) {
     }
     fmt::print("{}: all right\n", file->string());
     for (const SensorConfig& sensor : config.sensors) {
-      fmt::print("  sensor {} ({}), gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
-                 gust_length_m(config, sensor), length_reason(config, sensor));
+      fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
+                 place_text(blend_source_of(sensor.blend, *sensor.driver)), gust_length_m(config, sensor),
+                 length_reason(config, sensor));
     }
     for (const SceneConfig& scene : config.scenes) fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
   });

@@ -85,13 +85,19 @@ std::string describe_allowed(const Parameter& parameter) {
     }
     if (!parameter.unit.empty()) out << ' ' << parameter.unit;
   }
-  out << ", default " << to_text(parameter.default_value);
+  if (parameter.left_out.empty()) {
+    out << ", default " << to_text(parameter.default_value);
+  } else {
+    out << "; left out: " << parameter.left_out;
+  }
   return out.str();
 }
 
 Result<ParameterValues, ParameterError> ParameterValues::resolve(std::span<const Parameter> table, const Map& given) {
   ParameterValues resolved;
-  for (const Parameter& parameter : table) resolved.values_.emplace(parameter.name, parameter.default_value);
+  for (const Parameter& parameter : table) {
+    if (parameter.left_out.empty()) resolved.values_.emplace(parameter.name, parameter.default_value);
+  }
 
   for (const auto& [name, value] : given) {
     const Parameter* parameter = nullptr;

@@ -26,6 +26,9 @@ struct Parameter {
   double max = std::numeric_limits<double>::infinity();
   std::string_view help;
   std::span<const std::string_view> choices = {};  ///< texts only; empty: any text
+  /// What it means where nobody gives it, which none of its values says ("at the windward edge"). Then it has no
+  /// default, and values have it only if it was given. Empty: default_value, of which otherwise only the type counts.
+  std::string_view left_out = {};
 };
 
 /// What is wrong with a given value; the file and line are the caller's to add.
@@ -38,7 +41,8 @@ struct ParameterError {
   throw std::runtime_error(error.name + ": " + error.message);
 }
 
-/// The values of a table of parameters: each declared one is present, of its declared type and within its range.
+/// The values of a table of parameters, of their declared types and within their ranges. Each declared one is present,
+/// but for those whose being left out has a meaning (Parameter::left_out): they are present where they were given.
 class ParameterValues {
  public:
   using Map = std::map<std::string, ParameterValue, std::less<>>;
@@ -46,6 +50,9 @@ class ParameterValues {
   /// Fills what `given` leaves out with defaults. Refuses unknown names, wrong types (an integer passes for a number),
   /// numbers out of range or not finite, and texts that are not among the choices.
   static Result<ParameterValues, ParameterError> resolve(std::span<const Parameter> table, const Map& given);
+
+  /// Is there a value of this name? What has a default always has one.
+  bool has(std::string_view name) const { return values_.contains(name); }
 
   bool flag(std::string_view name) const;
   std::int64_t integer(std::string_view name) const;
@@ -61,7 +68,7 @@ class ParameterValues {
   Map values_;
 };
 
-/// One sentence on what a parameter takes: "number from 0 to 40 m/s, default 4".
+/// One sentence on what a parameter takes: "number from 0 to 40 m/s, default 4", or "number; left out: at the edge".
 std::string describe_allowed(const Parameter& parameter);
 
 }  // namespace yuragi

@@ -12,8 +12,8 @@ struct ScenePlacement;
 
 /// What of the wind over the ground a scene feels in its place.
 enum class WindPart : std::uint8_t {
-  kAll,       ///< with all gusts; those of the noise where it is given
-  kMean,      ///< without any: for a scene whose elements read the gusts each in its own place
+  kAll,   ///< with all gusts; those of the noise where it is given
+  kMean,  ///< without any: for a scene whose elements read the gusts each in its own place
 };
 
 /// The wind as a scene feels it: what is too strong is cut to kStrongestSceneWind_m_s, and a step becomes a quick

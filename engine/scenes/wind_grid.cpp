@@ -63,9 +63,10 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
     : row_(row),
       layout_(x_m, z_m, finest_cell_m),
       gusts_(std::move(gusts), layout_.nodes, row),
+      tape_nodes_(gusts_),
       east_m_s_(x_m.size()),
       south_m_s_(x_m.size()),
-      smooth_(first_of(x_m, z_m)) {
+      smooth_(first_of(x_m, z_m), nullptr, WindPart::kMean) {
   const std::size_t count = layout_.nodes.size();
   for (Component* component : {&east_, &south_}) {
     component->value.assign(count, 0.0F);
@@ -78,17 +79,21 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
 void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
   smooth_.step(wind, dt_s);
 
-  // The gusts at each node, along the mean wind and to the left of it, turned into the world and added to what is
-  // smooth.
-  gusts_.read(wind.gusts);
+  // What is known at each node, and the noise that fills the rest: along the mean wind and to the left of it, turned
+  // into the world.
+  if (wind.tapes != nullptr) tape_nodes_.read(wind, gusts_);
+  gusts_.read(wind.gusts, wind.tapes != nullptr ? tape_nodes_.weights() : GustWeights{});
   const WindVector ahead = wind.gusts.ahead;
   for (std::size_t i = 0; i < east_.target.size(); ++i) {
     const auto along = static_cast<double>(gusts_.along_m_s()[i]);
     const auto across = static_cast<double>(gusts_.across_m_s()[i]);
     const WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
-    const WindVector here = SceneWind::cut(wind.smooth_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust);
-    east_.target[i] = static_cast<float>(here.u_m_s);
-    south_.target[i] = static_cast<float>(-here.v_m_s);
+    const WindVector here = wind.tapes != nullptr
+                                ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
+                                : wind.everywhere + wind.slope.at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
+    const WindVector felt = SceneWind::cut(here);
+    east_.target[i] = static_cast<float>(felt.u_m_s);
+    south_.target[i] = static_cast<float>(-felt.v_m_s);
   }
   follow(east_, dt_s);
   follow(south_, dt_s);

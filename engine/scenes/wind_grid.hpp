@@ -9,6 +9,7 @@
 #include "engine/noise/noise_tile.hpp"
 #include "engine/scenes/gust_nodes.hpp"
 #include "engine/scenes/scene_wind.hpp"
+#include "engine/scenes/tape_nodes.hpp"
 #include "engine/wind/ground_wind.hpp"
 
 namespace yuragi {
@@ -58,6 +59,7 @@ class WindGrid {
   SimdRow row_;
   Layout layout_;
   GustNodes gusts_;
+  TapeNodes tape_nodes_;
   std::vector<float> east_m_s_, south_m_s_;  ///< of the places, for sample_gusts()
   Component east_, south_;
   SceneWind smooth_;  ///< without gusts, in the first place

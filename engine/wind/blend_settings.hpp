@@ -25,6 +25,7 @@ struct BlendSourceSettings {
 struct BlendSettings {
   SyntheticWindSettings climate;  ///< the wind where nobody measures: mean, direction, turbulence intensity, seed
   double length_m = 57.0;         ///< how far its gusts reach: the integral length scale
+  double gustiness = 0.0;         ///< 0 to 0.6: deviation of the logarithm of gusts' strength; 0: all of one strength
   double handover_s = 3.0;        ///< about how long the way from one source to another takes
   double stale_intervals = 5.0;   ///< silent for this many of its own intervals: stale
   double return_after_s = 10.0;   ///< a source that failed is trusted again after so long; longer if it often fails

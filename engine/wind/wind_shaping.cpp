@@ -95,11 +95,16 @@ void WindShaping::shape(DrivingWind& wind, bool is_open, bool is_of_site) noexce
   hold_back(wind);
 }
 
-/// Site gain, floor and opening: on all wind that is over the ground now.
+/// Site gain, floor and opening: on all wind that is over the ground now. And the gusts' own.
 void WindShaping::apply_gains(DrivingWind& wind) const noexcept {
   const double gain = site_.value * floor_.value * opening_.value;
   wind.state.wind = gain * wind.state.wind;
   wind.ground = gain * wind.ground;
+  if (settings_.gusts == 1.0) return;
+  wind.ground.gust_gain = settings_.gusts;
+  for (float& deviation : wind.ground.gusts.along_m_s) deviation *= static_cast<float>(settings_.gusts);
+  for (float& deviation : wind.ground.gusts.across_m_s) deviation *= static_cast<float>(settings_.gusts);
+  wind.state.wind = wind_where_measured(wind.ground, wind.stroke, *noise_);
 }
 
 /// The ceiling: on what is measured now, and on that for as long as it crosses the ground.

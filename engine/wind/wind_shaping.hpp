@@ -24,6 +24,7 @@ struct WindShapingSettings {
   SiteRange site = {};
   double site_memory_s = 7.0 * 86400.0;  ///< of the site's speeds
   double over_s = 120.0;                 ///< how long floor and site gain take to follow the wind's mean
+  double gusts = 1.0;                    ///< the scenes' gusts over the real ones, 0 to 3; 1: as strong
   SoftCeiling ceiling = {};
   double closed_level = 0.0;          ///< outside of opening hours, 0 to 1: the part of the wind that is left
   double fade_s = 300.0;              ///< how long opening and closing take
@@ -38,6 +39,7 @@ struct WindShapingReport {
   double site_gain = 1.0;
   double floor_gain = 1.0;
   double breeze_m_s = 0.0;  ///< what the floor adds
+  double gusts = 1.0;       ///< how strong the gusts are, compared with the real ones
   double opening = 1.0;     ///< the factor on the wind: closed_level when closed, 1 when open
   double speed_m_s = 0.0;   ///< of the wind at this moment, before the ceiling
   double ceiling_gain = 1.0;

@@ -25,6 +25,8 @@ struct WindState {
   /// the sensor is said to stand. What blows there now crosses the scenes.
   double upwind_m = 0.0;
   double to_middle_s = 0.0;  ///< how long a gust takes from there to the middle; 0 where it has passed it already
+  /// There the sensors are said to stand; otherwise it is the windward edge.
+  bool is_place_told = false;
 };
 
 }  // namespace yuragi

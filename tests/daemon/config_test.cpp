@@ -183,6 +183,44 @@ TEST(Config, ASensorHasItsPartAmongSeveral) {
               StartsWith("wall.toml:3:9: sensor.blend: is a value; write it as a table"));
 }
 
+TEST(Config, WhereASensorStandsIsToldOrNotAndStaysSoWhenWrittenOut) {
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  const auto source_of = [](const Config& config) {
+    return blend_source_of(config.sensors.at(0).blend, *config.sensors.at(0).driver);
+  };
+  struct Case {
+    const char* blend;
+    bool has_place;
+    double east_m, south_m, lead_m;
+    const char* text;
+  };
+  for (const Case& one : {Case{"", false, 0.0, 0.0, 0.0, "at the windward edge of the scenes"},
+                          Case{"weight = 2\nlead = 0\n", false, 0.0, 0.0, 0.0, "at the windward edge of the scenes"},
+                          Case{"x = 0\n", true, 0.0, 0.0, 0.0, "in the middle of the scenes"},
+                          Case{"z = -3\n", true, 0.0, -3.0, 0.0, "3 m north of the middle of the scenes"},
+                          Case{"x = -12.5\nz = 3\nlead = 20\n", true, -12.5, 3.0, 20.0,
+                               "12.5 m west and 3 m south of the middle of the scenes, taken 20 m upwind of there"}}) {
+    const Config config = parse_config(sensor + "[sensor.blend]\n" + one.blend, "wall.toml");
+    const std::string written = to_toml(config);
+    const Config again = parse_config(written, "again.toml");
+    EXPECT_EQ(to_toml(again), written) << one.blend;
+    for (const BlendSourceSettings& source : {source_of(config), source_of(again)}) {
+      EXPECT_EQ(source.has_place, one.has_place) << one.blend;
+      EXPECT_EQ(source.east_m, one.east_m) << one.blend;
+      EXPECT_EQ(source.south_m, one.south_m) << one.blend;
+      EXPECT_EQ(source.lead_m, one.lead_m) << one.blend;
+      EXPECT_EQ(place_text(source), one.text) << one.blend;
+    }
+  }
+  EXPECT_FALSE(source_of(default_config()).has_place);
+
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nlead = 20\n"),
+              StartsWith("wall.toml:4:8: sensor.blend.lead: is counted from where the sensor stands; give x or z"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nx = 2000\n"),
+              StartsWith("wall.toml:4:5: sensor.blend.x: is 2000; allowed: number from -1000 to 1000 m; left out: "));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nx = 0\nlead = -1\n"), HasSubstr("sensor.blend.lead: is -1"));
+}
+
 TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
   const Config config = parse_config(
       "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades_across = 50\n"

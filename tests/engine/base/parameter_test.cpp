@@ -48,6 +48,22 @@ TEST(ParameterValues, FillsWhatIsLeftOutWithDefaults) {
   EXPECT_EQ(values.all().size(), table().size());
 }
 
+TEST(ParameterValues, WhatHasAMeaningWhereItIsLeftOutIsThereOnlyIfItWasGiven) {
+  const std::array parameters{Parameter{
+      .name = "x", .unit = "m", .default_value = 0.0, .max = 10.0, .help = "Where", .left_out = "at the edge"}};
+  const auto left_out = ParameterValues::resolve(parameters, {}).value();
+  EXPECT_FALSE(left_out.has("x"));
+  EXPECT_TRUE(left_out.all().empty());
+  EXPECT_THROW(static_cast<void>(left_out.number("x")), std::logic_error);
+  const auto given = ParameterValues::resolve(parameters, {{"x", std::int64_t{0}}}).value();
+  EXPECT_TRUE(given.has("x"));
+  EXPECT_EQ(given.number("x"), 0.0);
+  EXPECT_TRUE(ParameterValues::resolve(parameters, {{"x", 11.0}}).has_error());
+  EXPECT_EQ(describe_allowed(parameters[0]), "number of at most 10 m; left out: at the edge");
+  EXPECT_TRUE(accepted({}).has("speed"));
+  EXPECT_FALSE(accepted({}).has("nothing"));
+}
+
 TEST(ParameterValues, TakesWhatIsGiven) {
   const auto values = accepted(
       {{"speed", 7.5}, {"count", std::int64_t{20}}, {"gusts", false}, {"model", "fixed"s}, {"label", "roof, north"s}});

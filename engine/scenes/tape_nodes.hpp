@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/scenes/gust_nodes.hpp"
+#include "engine/wind/ground_wind.hpp"
+
+namespace yuragi {
+
+/// What is known of the wind at the nodes of a grid: WindTapes read at each of them, and at the coarse nodes for those
+/// octaves of the noise that are read there.
+///
+/// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: all but construction.
+class TapeNodes {
+ public:
+  /// For as many nodes as these.
+  explicit TapeNodes(const GustNodes& nodes);
+
+  /// Reads a wind that has tapes where these nodes are.
+  void read(const GroundWind& wind, const GustNodes& nodes) noexcept;
+
+  /// The measured wind at a node.
+  WindVector known(std::size_t node) const noexcept { return known_[node]; }
+  /// By what the ceiling holds its noise back.
+  double gain(std::size_t node) const noexcept { return gain_[node]; }
+  /// What is left of each octave of the noise.
+  const GustWeights& weights() const noexcept { return weights_; }
+
+ private:
+  void keep(const WindTapes::Reading& reading, bool is_coarse, std::size_t node) noexcept;
+
+  std::vector<WindVector> known_;
+  std::vector<double> gain_;
+  std::array<std::vector<float>, kTileOctaveCount> along_, across_;
+  GustWeights weights_;
+};
+
+}  // namespace yuragi
