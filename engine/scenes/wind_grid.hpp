@@ -20,8 +20,9 @@ namespace yuragi {
 /// So a place's wind is never stronger than kStrongestSceneWind_m_s, and changes in a tick by at most
 /// SceneWind::largest_step_m_s, whatever comes in. Nodes are half a metre apart in scenes of up to 31 m; in larger ones
 /// the longer side has 63. Waves that they cannot hold are left out (GustNodes). Allocates when it is made, never
-/// afterwards. Thread-safe: sampling, yes. Realtime-safe: all but construction. Cost: 23 us a step for a meadow of 7 m
-/// (256 nodes, 1.3 ns a node and layer; 14 us if nothing evolves), about 0.4 ms for one of 60 m, and 4 ns a place.
+/// afterwards. Thread-safe: sampling, yes. Realtime-safe: all but construction. Cost: 24 us a step for a meadow of 7 m
+/// (256 nodes; 1.3 ns a node and layer) and 0.34 ms for one of 60 m, three fifths of it if nothing evolves; and 4 ns a
+/// place.
 class WindGrid {
  public:
   /// Places: metres east and south of the middle of all scenes, as many of x as of z.

@@ -17,7 +17,7 @@ namespace {
 /// The long tile, the middle one and the short one of a chain: their periods, in middle ones, and the cycles an edge of
 /// their longest waves. By what angle each of the six is turned: they differ by 0.2 rad or more, quarter turns aside.
 constexpr std::array kPeriods = {8.0, 1.0, 0.125};
-constexpr std::array kFirstCycles = {1.0, 1.0, 16.0};
+constexpr std::array kFirstCycles = {1.0, 2.0, 16.0};
 constexpr std::array<std::size_t, 3> kFirstOctave = {0, GustNoise::kLongOctaves,
                                                      GustNoise::kTileOctaves - GustNoise::kShortOctaves};
 constexpr std::array kTurns_rad = {2.0, 0.0, 0.7, 3.0, 1.0, 1.2};

@@ -27,9 +27,10 @@ struct GustNoiseSettings {
 ///
 /// Two chains of octaves are added, the second's waves longer than the first's by the golden section, so that no repeat
 /// is seen. A chain's waves of 2048 m down to 0.25 m are 2-D noises on three tori, each turned by an angle of its own:
-/// three octaves on a long tile (2048 m), seven on a middle one (256 m), three on a short one (32 m). What is longer
-/// is the same everywhere in the scene: a 1-D noise along the way that the wind has come (65 km and 106 km before it
-/// repeats). An octave's shortest wave has four samples or more.
+/// four octaves on a long tile (2048 m), six on a middle one (256 m, with waves of 128 m and less: those that are as
+/// long as their tile are too few for an even spectrum), three on a short one (32 m). What is longer is the same
+/// everywhere in the scene: a 1-D noise along the way that the wind has come (65 km and 106 km before it repeats). An
+/// octave's shortest wave has four samples or more.
 ///
 /// Where it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (TurningNoise2), and
 /// its angle a goes on by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
@@ -46,7 +47,7 @@ class GustNoise {
   /// one's.
   static constexpr std::size_t kWayOctaves = 5;
   static constexpr std::size_t kTileOctaves = 13;
-  static constexpr std::size_t kLongOctaves = 3;
+  static constexpr std::size_t kLongOctaves = 4;
   static constexpr std::size_t kShortOctaves = 3;
   /// Of both chains: the first's way, the second's way, the first's tiles, the second's; the longest waves first.
   static constexpr std::size_t kFirstTileOctave = 2 * kWayOctaves;
