@@ -48,6 +48,7 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
                                      .turbulence_intensity = config.wind.number("default_turbulence"),
                                      .seed = config.seed},
                          .length_m = config.wind.number("default_length"),
+                         .gustiness = config.wind.number("gustiness"),
                          .handover_s = config.wind.number("handover"),
                          .stale_intervals = config.wind.number("stale_intervals"),
                          .return_after_s = config.wind.number("return_after"),
