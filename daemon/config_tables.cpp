@@ -75,6 +75,13 @@ const std::array kWindParameters = {
               .help = "how far gusts reach, that wind's and those between a sensor's readings: the integral length "
                       "scale; 0: by the height in each sensor's calibration, 5.7 m a metre up to 60 m (25 m at 4.4 m, "
                       "85 m at 15 m); where none is told, 57 m, as over open land at 10 m"},
+    Parameter{.name = "gustiness",
+              .unit = "",
+              .default_value = 0.3,
+              .min = 0.0,
+              .max = 0.6,
+              .help = "how much gusts differ in strength: in real wind some hundred metres are gustier than the next "
+                      "(about 0.3); 0: all alike. Of the gusts that are made up, not of those that a sensor measured"},
     Parameter{.name = "evolving",
               .unit = "",
               .default_value = true,
@@ -96,7 +103,7 @@ const std::array kWindParameters = {
               .default_value = 10.0,
               .min = 0.0,
               .max = 3600.0,
-              .help = "a sensor that was stale gets the word back after speaking for so long; twice as long each time"},
+              .help = "a stale sensor makes the wind again after speaking for so long; twice as long each time"},
     Parameter{.name = "fallback_recording",
               .unit = "",
               .default_value = std::string{},

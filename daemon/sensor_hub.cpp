@@ -49,6 +49,7 @@ BlendSettings blend_settings_of(const Config& config) {
                                      .turbulence_intensity = config.wind.number("default_turbulence"),
                                      .seed = config.seed},
                          .length_m = default_gust_length_m(config),
+                         .gustiness = config.wind.number("gustiness"),
                          .handover_s = config.wind.number("handover"),
                          .stale_intervals = config.wind.number("stale_intervals"),
                          .return_after_s = config.wind.number("return_after"),

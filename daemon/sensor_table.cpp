@@ -48,6 +48,25 @@ std::string optional_text(const std::optional<double>& value, const char* format
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
+/// Ten metres and more without decimals, so that a number that changes keeps its width.
+std::string short_number(double value) {
+  return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0);
+}
+
+/// Where the wind on top of the table is, and when its gusts come to the middle of the scenes; empty where it is there.
+std::string place_of_wind(const WindState& wind) {
+  if (!wind.is_place_told && wind.upwind_m == 0.0) return {};
+  std::string text = wind.is_place_told ? "at the sensors, " : "at the windward edge, ";
+  if (std::abs(wind.upwind_m) < 0.05) {
+    text += "level with the middle of the scenes";
+  } else {
+    text += fmt::format("{} m {} of the middle of the scenes", short_number(std::abs(wind.upwind_m)),
+                        wind.upwind_m > 0.0 ? "upwind" : "downwind");
+  }
+  if (wind.to_middle_s > 0.0) text += fmt::format("; a gust is there in {} s", short_number(wind.to_middle_s));
+  return text;
+}
+
 /// `text` under a row: indented, broken between words.
 std::string wrapped(std::string_view text) {
   constexpr std::size_t kWidth = 100;
@@ -85,6 +104,7 @@ std::string sensor_table(const wire::Sensors& sensors) {
   std::string table =
       fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n", speed_of(wind),
                   direction_text(direction_from_deg(wind)), wind_source(sensors), sensors.clients, sensors.late_ticks);
+  if (const std::string place = place_of_wind(sensors.wind); !place.empty()) table += wrapped(place);
   if (!sensors.shaping.text.empty()) table += wrapped("shaped: " + sensors.shaping.text);
   table += '\n';
   const auto out = std::back_inserter(table);

@@ -52,6 +52,14 @@ const std::array kShapingParameters = {
               .min = 10.0,
               .max = 3600.0,
               .help = "how long floor and site gain take to follow the wind's mean"},
+    Parameter{.name = "gusts",
+              .unit = "",
+              .default_value = 1.0,
+              .min = 0.0,
+              .max = 3.0,
+              .help =
+                  "how strong gusts and lulls are, compared with the real ones: 0: an even wind, 1: as they are, 2: "
+                  "twice as strong; the mean speed stays"},
     Parameter{.name = "ceiling",
               .unit = "m/s",
               .default_value = 17.0,
@@ -121,6 +129,7 @@ WindShapingSettings shaping_settings(const Config& config) {
                                         .most_gain = shaping.number("site_most_gain")},
                                .site_memory_s = kSecondsPerDay * shaping.number("site_memory"),
                                .over_s = shaping.number("over"),
+                               .gusts = shaping.number("gusts"),
                                .ceiling = {},
                                .closed_level = shaping.number("closed"),
                                .fade_s = shaping.number("fade"),

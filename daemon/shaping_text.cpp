@@ -26,6 +26,7 @@ std::string shaping_text(const WindShapingReport& report, const WindShapingSetti
   if (settings.floor_m_s > 0.0 && is_raised(report)) {
     add(fmt::format("floor: raised {:.1f} to {:.1f} m/s", report.site_gain * report.mean_m_s, report.shaped_mean_m_s));
   }
+  if (std::abs(report.gusts - 1.0) > 0.005) add(fmt::format("gusts {:.2f} times the real ones", report.gusts));
   if (opening.has_hours) {
     std::string hours = opening.is_open ? "open" : "closed";
     if (!opening.until.empty()) hours += " " + opening.until;

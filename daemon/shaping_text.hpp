@@ -17,7 +17,8 @@ struct OpeningNews {
 bool is_raised(const WindShapingReport& report, double share = 0.02);
 
 /// Everything that makes the wind of the scenes another than the real one, in one line: "site gain 1.80 (in 5 days 3 h
-/// median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; closed until 10:00". Empty where nothing does.
+/// median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; gusts 2.00 times the real ones; closed until 10:00".
+/// Empty where nothing does.
 std::string shaping_text(const WindShapingReport& report, const WindShapingSettings& settings,
                          const OpeningNews& opening);
 

@@ -29,6 +29,9 @@ WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> no
   const bool is_of_this_site =
       std::ranges::none_of(config.sensors, [](const SensorConfig& sensor) { return sensor.driver->plays_recordings; });
   if (is_of_this_site && shaping_.settings().site.median_m_s > 0.0) site_path_ = config.shaping.text("site_file");
+  if (const double gusts = shaping_.settings().gusts; gusts != 1.0) {
+    spdlog::info("shaping: gusts {:.2f} times the real ones", gusts);
+  }
   if (!hours_.is_always_open()) spdlog::info("shaping: opening hours by the clocks of {}", hours_.zone_name());
 }
 
@@ -149,7 +152,8 @@ wire::Shaping WindShaper::status() const {
           .site_median_m_s = report.median_m_s,
           .site_strong_m_s = report.strong_m_s,
           .site_known_s = report.known_s,
-          .text = shaping_text(report, shaping_.settings(), opening())};
+          .text = shaping_text(report, shaping_.settings(), opening()),
+          .gusts = report.gusts};
 }
 
 }  // namespace yuragi

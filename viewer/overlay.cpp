@@ -11,6 +11,7 @@
 #include <imgui.h>
 
 #include "engine/base/units.hpp"
+#include "viewer/wind_place_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -118,6 +119,7 @@ void write_wind(const OverlayFacts& facts, float scale) {
   write(fmt::format("{:.1f} m/s", speed_of(facts.wind.wind)));
   ImGui::SetWindowFontScale(1.0F);
   write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, point_of_compass(direction_deg)));
+  if (const std::string place = wind_place_text(facts.wind); !place.empty()) write(kQuiet, place);
   switch (facts.wind.source) {
     case WindSource::kLive:
       if (is_true_of_all_that_speak(facts.sensors, &wire::SensorStatus::replayed)) {

@@ -202,9 +202,12 @@ void add_sensors_watch(CLI::App& sensors) {
       "FROZEN (says the same again and again), SEIZED (stands still where a wind blows) or IMPLAUSIBLE does not; "
       "below\n"
       "it stands why, and what to do about it.\n"
-      "Below the wind stands what the scenes feel instead, where [shaping] is at work: floor, site gain, opening "
-      "hours,\n"
-      "ceiling.\n"
+      "The wind is the one where the sensors stand: at the windward edge of the scenes, unless [sensor.blend] says "
+      "where;\n"
+      "below it stands how far that is from the middle, and how long a gust takes to it.\n"
+      "Below that stands what the scenes feel instead, where [shaping] is at work: floor, site gain, gusts, "
+      "opening\n"
+      "hours, ceiling.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();

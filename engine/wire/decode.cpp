@@ -24,6 +24,7 @@ bool read_text(const flatbuffers::String* from, std::string& to) {
 namespace {
 
 constexpr double kMaxWind_m_s = 1e3;
+constexpr double kMaxWay_m = 1e6;
 constexpr double kMaxDuration_s = 1e12;
 
 bool read(const fb::Wind* from, WindState& to) {
@@ -35,6 +36,15 @@ bool read(const fb::Wind* from, WindState& to) {
   return is_within(to.wind.u_m_s, -kMaxWind_m_s, kMaxWind_m_s) &&
          is_within(to.wind.v_m_s, -kMaxWind_m_s, kMaxWind_m_s) && is_within(to.live_weight, 0.0, 1.0) &&
          is_within(to.reading_age_s, 0.0, kMaxDuration_s);
+}
+
+/// A server that does not know of it sends none: then the wind is in the middle.
+bool read(const fb::WindPlace* from, WindState& to) {
+  if (from == nullptr) return true;
+  to.upwind_m = static_cast<double>(from->upwind_m());
+  to.to_middle_s = static_cast<double>(from->to_middle_s());
+  to.is_place_told = from->is_told();
+  return is_within(to.upwind_m, -kMaxWay_m, kMaxWay_m) && is_within(to.to_middle_s, 0.0, kMaxDuration_s);
 }
 
 bool read(const fb::Hello& from, Hello& to) {
@@ -71,8 +81,10 @@ bool read(const fb::Frame& from, Frame& to) {
   to.info.time_s = from.time_s();
   to.info.utc_ns = from.utc_ns();
   const std::size_t count = from.scenes() == nullptr ? 0 : from.scenes()->size();
-  if (count > kMaxScenes || !is_within(to.info.time_s, 0.0, kMaxDuration_s) || !read(from.wind(), to.info.wind))
+  if (count > kMaxScenes || !is_within(to.info.time_s, 0.0, kMaxDuration_s) || !read(from.wind(), to.info.wind) ||
+      !read(from.wind_place(), to.info.wind)) {
     return false;
+  }
   std::size_t room = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const fb::ScenePose& scene = *from.scenes()->Get(static_cast<flatbuffers::uoffset_t>(i));
@@ -133,12 +145,13 @@ bool read(const fb::Shaping* from, Shaping& to) {
          take(from->shaped_mean_m_s(), kMaxWind_m_s, to.shaped_mean_m_s) &&
          take(from->site_median_m_s(), kMaxWind_m_s, to.site_median_m_s) &&
          take(from->site_strong_m_s(), kMaxWind_m_s, to.site_strong_m_s) &&
-         take(from->site_known_s(), kMaxDuration_s, to.site_known_s) && read_text(from->text(), to.text);
+         take(from->site_known_s(), kMaxDuration_s, to.site_known_s) && take(from->gusts(), kMaxGain, to.gusts) &&
+         read_text(from->text(), to.text);
 }
 
 bool read(const fb::Sensors& from, Sensors& to) {
   const std::size_t count = from.sensors() == nullptr ? 0 : from.sensors()->size();
-  if (count > kMaxSensors || !read(from.wind(), to.wind)) return false;
+  if (count > kMaxSensors || !read(from.wind(), to.wind) || !read(from.wind_place(), to.wind)) return false;
   for (std::size_t i = 0; i < count; ++i)
     if (!read(*from.sensors()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.sensors.emplace_back())) return false;
   to.late_ticks = from.late_ticks();

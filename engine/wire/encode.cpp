@@ -150,6 +150,7 @@ flatbuffers::Offset<fb::Shaping> add_shaping(Builder& builder, const Shaping& sh
   table.add_site_strong_m_s(static_cast<float>(shaping.site_strong_m_s));
   table.add_site_known_s(static_cast<float>(shaping.site_known_s));
   table.add_text(text);
+  table.add_gusts(static_cast<float>(shaping.gusts));
   return table.Finish();
 }
 
@@ -228,9 +229,10 @@ Bytes encode(const Sensors& sensors) {
   for (const SensorStatus& sensor : sensors.sensors) tables.push_back(add_sensor(builder, sensor));
   const auto vector = builder.CreateVector(tables);
   const fb::Wind wind = to_schema(sensors.wind);
+  const fb::WindPlace place = place_to_schema(sensors.wind);
   const auto shaping = add_shaping(builder, sensors.shaping);
   return finish(builder, fb::Body_Sensors,
-                fb::CreateSensors(builder, vector, &wind, sensors.late_ticks, sensors.clients, shaping));
+                fb::CreateSensors(builder, vector, &wind, sensors.late_ticks, sensors.clients, shaping, &place));
 }
 
 Bytes encode(const Control& control) {

@@ -123,7 +123,9 @@ std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info, std::s
   const auto scene_vector = buffer.CreateVector(scenes);
 
   const fb::Wind wind = to_schema(info.wind);
-  const auto frame = fb::CreateFrame(buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector);
+  const fb::WindPlace place = place_to_schema(info.wind);
+  const auto frame =
+      fb::CreateFrame(buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector, &place);
   fb::FinishSizePrefixedMessageBuffer(buffer, fb::CreateMessage(buffer, fb::Body_Frame, frame.Union()));
   return {buffer.GetBufferPointer(), buffer.GetSize()};
 }

@@ -16,4 +16,8 @@ inline fb::Wind to_schema(const WindState& state) {
                   static_cast<fb::WindSource>(state.source));
 }
 
+inline fb::WindPlace place_to_schema(const WindState& state) {
+  return fb::WindPlace(static_cast<float>(state.upwind_m), static_cast<float>(state.to_middle_s), state.is_place_told);
+}
+
 }  // namespace yuragi::wire

@@ -123,7 +123,8 @@ struct Shaping {
   double site_median_m_s = 0.0;
   double site_strong_m_s = 0.0;
   double site_known_s = 0.0;
-  std::string text;  ///< all that is at work, for a person to read; empty: nothing
+  std::string text = {};  ///< all that is at work, for a person to read; empty: nothing
+  double gusts = 1.0;
 };
 
 struct Sensors {

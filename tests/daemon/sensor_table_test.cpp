@@ -77,6 +77,22 @@ TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   EXPECT_THAT(sensor_table(sensors), HasSubstr("(live)")) << "a real one speaks beside it";
 }
 
+TEST(SensorTable, SaysWhereTheWindIsAndWhenItsGustsComeToTheMiddle) {
+  wire::Sensors sensors;
+  EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("middle"))) << "nothing is said of a wind without a place";
+  sensors.wind = {.wind = {7.2, 0.0}, .upwind_m = 5.0, .to_middle_s = 0.694};
+  EXPECT_THAT(
+      sensor_table(sensors),
+      HasSubstr("\n  at the windward edge, 5.0 m upwind of the middle of the scenes; a gust is there in 0.7 s\n"));
+  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = 42.4, .to_middle_s = 14.1, .is_place_told = true};
+  EXPECT_THAT(sensor_table(sensors),
+              HasSubstr("\n  at the sensors, 42 m upwind of the middle of the scenes; a gust is there in 14 s\n"));
+  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = -12.0, .to_middle_s = 0.0, .is_place_told = true};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, 12 m downwind of the middle of the scenes\n"));
+  sensors.wind.upwind_m = 0.0;
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, level with the middle of the scenes\n"));
+}
+
 TEST(SensorTable, SaysHowTheWindIsShapedWhereItIs) {
   wire::Sensors sensors;
   EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("shaped")));

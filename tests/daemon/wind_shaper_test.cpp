@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "daemon/shaping_config.hpp"
 #include "tests/support/gusty_wind.hpp"
 
 namespace yuragi {
@@ -90,6 +91,16 @@ TEST(WindShaper, NothingButTheCeilingIsOnByDefault) {
   EXPECT_EQ(wall.text(), "");
   EXPECT_LT(wall.after(40.0), 25.0);
   EXPECT_THAT(wall.text(), HasSubstr("ceiling: 40.0 held back to 22."));
+}
+
+TEST(WindShaper, TellsHowStrongGustsAreWhereTheyAreNotTheRealOnes) {
+  EXPECT_EQ(shaping_settings(parse_config("", "wall.toml")).gusts, 1.0);
+  const WindShapingSettings settings = shaping_settings(parse_config("[shaping]\ngusts = 1.5\n", "wall.toml"));
+  EXPECT_EQ(settings.gusts, 1.5);
+  EXPECT_EQ(shaping_text({.gusts = 1.5}, settings, {}), "gusts 1.50 times the real ones");
+  EXPECT_EQ(shaping_text({.gusts = 1.0}, settings, {}), "");
+  EXPECT_EQ(shaping_text({.breeze_m_s = 0.0, .gusts = 0.0}, settings, {.has_hours = true, .until = "until 18:00"}),
+            "gusts 0.00 times the real ones; open until 18:00");
 }
 
 TEST(WindShaper, OpensAndClosesByTheWallAndSaysSo) {

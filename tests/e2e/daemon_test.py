@@ -180,6 +180,16 @@ class DaemonTest(unittest.TestCase):
         full = self.file("full.toml", run("check-config", "--full", path).stdout)
         self.assertEqual(run("check-config", full).returncode, 0)
 
+    def test_where_a_sensor_stands_is_told_and_stays_untold_where_it_was_not(self):
+        sensor = '[[sensor]]\nname = "%s"\ndriver = "synthetic"\n'
+        path = self.file("wall.toml", sensor % "roof" + "[sensor.blend]\nx = -12\nlead = 5\n" + sensor % "mast")
+        said = run("check-config", path).stdout
+        self.assertIn("sensor roof (synthetic), 12 m west of the middle of the scenes, taken 5 m upwind of there\n", said)
+        self.assertIn("sensor mast (synthetic), at the windward edge of the scenes\n", said)
+        full = self.file("full.toml", run("check-config", "--full", path).stdout)
+        self.assertEqual(run("check-config", full).stdout.splitlines()[1:], said.splitlines()[1:])
+        self.assertIn("left out: its gusts enter at the windward edge of the scenes", run("describe").stdout)
+
     def test_a_profile_that_is_not_there_is_a_mistake_of_the_configuration(self):
         path = self.file("wall.toml", '[[sensor]]\ndriver = "modbus"\nprofile = "no-such-device"\n')
         done = run("check-config", path)

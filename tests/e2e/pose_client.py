@@ -479,6 +479,7 @@ class Watcher:
         self.first = self.last = None  # (sequence, tick, time_s, when it arrived)
         self.first_bytes = 0
         self.wind = (0.0, 0.0)
+        self.wind_place = (0.0, 0.0)  # (metres upwind of the middle, seconds until a gust is there)
         self.poses = []
         self.opacities = []
 
@@ -515,6 +516,10 @@ class Watcher:
         self.bytes += size
         self.wind = (frame.Wind().UMS(), frame.Wind().VMS())
         self.expect(np.all(np.isfinite(self.wind)), "the wind is not finite")
+        # Absent where the server is older than this field: the wind is then in the middle.
+        place = frame.WindPlace()
+        self.wind_place = (place.UpwindM(), place.ToMiddleS()) if place is not None else (0.0, 0.0)
+        self.expect(np.all(np.isfinite(self.wind_place)) and self.wind_place[1] >= 0.0, "the wind's place is none")
 
         # Dequantise every scene's pose. They pair with the skeletons of the Scenes message.
         self.expect(self.scenes is not None, "a Frame came before Scenes")
@@ -566,6 +571,8 @@ class Watcher:
             "nodes": sum(model.nodes for model in models),
             "wind_u_m_s": self.wind[0],
             "wind_v_m_s": self.wind[1],
+            "wind_upwind_m": self.wind_place[0],
+            "wind_to_middle_s": self.wind_place[1],
             "problems": self.problems,
         }
 
@@ -614,7 +621,8 @@ def main():
                 rate = 8e-6 * (watcher.bytes - line_bytes) / (now_s - line_s)
                 say(
                     f"{watcher.frames - line_frames} frames, {rate:.2f} Mbit/s, {watcher.missed - line_missed} missed, "
-                    f"wind {watcher.wind[0]:+.2f} m/s east {watcher.wind[1]:+.2f} m/s north",
+                    f"wind {watcher.wind[0]:+.2f} m/s east {watcher.wind[1]:+.2f} m/s north, "
+                    f"in the middle in {watcher.wind_place[1]:.1f} s",
                     flush=True,
                 )
                 line_s, line_frames, line_bytes, line_missed = now_s, watcher.frames, watcher.bytes, watcher.missed

@@ -49,6 +49,7 @@ def main():
     error_m = float(np.max(np.abs(points_m - expected_m)))
     print(f"{len(points_m)} points, {error_m * 1e6:.2f} micrometres apart at most, bends up to {watcher.max_bend_rad:.2f} rad")
     assert watcher.opacities == [1.0, 1.0, 0.5, 1.0, 0.25, 1.0, 0.0], watcher.opacities
+    assert watcher.wind_place == (-12.5, 0.75), watcher.wind_place
     fire = watcher.poses[5]
     assert np.ptp(fire.heat) > 200 and len(watcher.scenes[5][2].ramp_rgba) == 256, "the flame does not glow"
     assert watcher.max_bend_rad > 2.0, "the captured poses hardly bend"

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -24,6 +25,10 @@ wire::Bytes damaged(wire::Bytes message, std::span<const std::uint8_t> damage) {
   return message;
 }
 
+void demand_place(const WindState& wind) {
+  if (!(std::abs(wind.upwind_m) <= 1e6) || !(wind.to_middle_s >= 0.0 && wind.to_middle_s <= 1e12)) std::abort();
+}
+
 /// What decode() promises of everything that it lets through.
 void demand_consistency(const wire::Message& message) {
   if (const auto* scenes = std::get_if<wire::Scenes>(&message)) {
@@ -38,8 +43,10 @@ void demand_consistency(const wire::Message& message) {
     if (!(wish.rate >= wire::kMinPlayRate && wish.rate <= wire::kMaxPlayRate)) std::abort();
     if (wish.count < 1 || wish.count > wire::kMaxSteps) std::abort();
   }
+  if (const auto* sensors = std::get_if<wire::Sensors>(&message)) demand_place(sensors->wind);
   if (const auto* frame = std::get_if<wire::Frame>(&message)) {
     if (frame->opacities.size() != frame->poses.size()) std::abort();
+    demand_place(frame->info.wind);
     for (const auto& pose : frame->poses)
       if (!samples::is_sound(pose)) std::abort();
     for (const float opacity : frame->opacities)

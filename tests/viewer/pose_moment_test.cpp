@@ -48,6 +48,23 @@ TEST_F(AllKindsTest, RestInStillAirAndAreAllThere) {
   }
 }
 
+TEST_F(AllKindsTest, TheWindsPlaceGoesFromOneMomentToTheNext) {
+  PoseMoment a = rest_moment(garden_);
+  PoseMoment b = a;
+  a.wind.upwind_m = 4.0;
+  a.wind.to_middle_s = 1.0;
+  b.wind.upwind_m = 8.0;
+  b.wind.to_middle_s = 3.0;
+  b.wind.is_place_told = true;
+  PoseMoment out = rest_moment(garden_);
+  blend(a, b, 0.25, out);
+  EXPECT_EQ(out.wind.upwind_m, 5.0);
+  EXPECT_EQ(out.wind.to_middle_s, 1.5);
+  EXPECT_FALSE(out.wind.is_place_told);
+  blend(a, b, 0.75, out);
+  EXPECT_TRUE(out.wind.is_place_told);
+}
+
 TEST_F(AllKindsTest, AreBlendedNumberByNumber) {
   const PoseMoment a = numbered(garden_, 1.0F, 0.0F);
   const PoseMoment b = numbered(garden_, 3.0F, 1.0F);

@@ -29,6 +29,7 @@ bool is_safe(const Message& message) {
   }
   if (const auto* frame = std::get_if<Frame>(&message)) {
     if (!std::isfinite(frame->info.time_s) || !std::isfinite(frame->info.wind.wind.u_m_s)) return false;
+    if (!std::isfinite(frame->info.wind.upwind_m) || !(frame->info.wind.to_middle_s >= 0.0)) return false;
     if (frame->opacities.size() != frame->poses.size()) return false;
     return std::all_of(frame->poses.begin(), frame->poses.end(),
                        [](const Pose& pose) { return samples::is_sound(pose); });
@@ -230,6 +231,10 @@ TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
       [](auto& f) { f.wind.live_weight = 1.5; },
       [](auto& f) { f.wind.reading_age_s = -1.0; },
       [](auto& f) { f.wind.source = static_cast<WindSource>(3); },
+      [](auto& f) { f.wind.upwind_m = std::nan(""); },
+      [](auto& f) { f.wind.upwind_m = 1e7; },
+      [](auto& f) { f.wind.to_middle_s = std::nan(""); },
+      [](auto& f) { f.wind.to_middle_s = -1.0; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     FrameInfo info = samples::frame_info();
@@ -254,6 +259,12 @@ TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
       [](auto& s) { s.shaping.floor_gain = -1.0; },
       [](auto& s) { s.shaping.opening = 1.5; },
       [](auto& s) { s.shaping.mean_m_s = 1e9; },
+      [](auto& s) { s.shaping.gusts = std::nan(""); },
+      [](auto& s) { s.shaping.gusts = -0.5; },
+      [](auto& s) { s.wind.upwind_m = std::nan(""); },
+      [](auto& s) { s.wind.upwind_m = -1e7; },
+      [](auto& s) { s.wind.to_middle_s = -1.0; },
+      [](auto& s) { s.wind.to_middle_s = 1e30; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     Sensors sensors = samples::sensors();
@@ -431,7 +442,22 @@ TEST(HostileBytes, ARawTraceOfMoreThanIsPromisedIsRefused) {
   EXPECT_EQ(trace(8, 7).error(), WireError::kInconsistent) << "more bytes than the message has";
 }
 
-// ---- of a newer server ----
+// ---- of an older or a newer server ----
+
+TEST(OlderServer, AWindWithoutAPlaceIsInTheMiddleAndGustsAreTheRealOnes) {
+  const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
+  const auto frame = decode_built(fb::Body_Frame,
+                                  [&](auto& builder) { return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind).Union(); });
+  const auto sensors = decode_built(fb::Body_Sensors, [&](auto& builder) {
+    return fb::CreateSensors(builder, 0, &wind, 0, 0, fb::CreateShaping(builder)).Union();
+  });
+  for (const WindState& state : {std::get<Frame>(frame.value()).info.wind, std::get<Sensors>(sensors.value()).wind}) {
+    EXPECT_EQ(state.upwind_m, 0.0);
+    EXPECT_EQ(state.to_middle_s, 0.0);
+    EXPECT_FALSE(state.is_place_told);
+  }
+  EXPECT_EQ(std::get<Sensors>(sensors.value()).shaping.gusts, 1.0);
+}
 
 TEST(NewerServer, ABodyOfAnUnknownKindIsToldApartFromABadOne) {
   const auto build = [](auto& builder) { return fb::CreateHello(builder).Union(); };

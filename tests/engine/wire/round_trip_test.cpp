@@ -75,6 +75,9 @@ TEST(WireRoundTrip, AFrameComesBackWithinHalfAQuantisationStep) {
   EXPECT_EQ(frame.info.wind.source, sent.wind.source);
   EXPECT_EQ(frame.info.wind.live_weight, sent.wind.live_weight);
   EXPECT_EQ(frame.info.wind.reading_age_s, sent.wind.reading_age_s);
+  EXPECT_EQ(frame.info.wind.upwind_m, -12.5);
+  EXPECT_EQ(frame.info.wind.to_middle_s, 0.75);
+  EXPECT_TRUE(frame.info.wind.is_place_told);
 
   ASSERT_EQ(frame.poses.size(), 2u);
   const StrandPose bends = samples::bent(37);
@@ -252,6 +255,9 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(sensors.sensors[1].raw_speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
+  EXPECT_EQ(sensors.wind.upwind_m, -12.5);
+  EXPECT_EQ(sensors.wind.to_middle_s, 0.75);
+  EXPECT_TRUE(sensors.wind.is_place_told);
   EXPECT_EQ(sensors.late_ticks, 5u);
   EXPECT_EQ(sensors.clients, 2u);
 }
@@ -277,6 +283,7 @@ TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   EXPECT_EQ(shaping.site_strong_m_s, 3.5);
   EXPECT_EQ(shaping.site_known_s, 86400.0);
   EXPECT_EQ(shaping.text, "floor: raised 0.8 to 1.5 m/s");
+  EXPECT_EQ(shaping.gusts, 2.25);
 }
 
 TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {

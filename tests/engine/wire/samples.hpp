@@ -153,7 +153,13 @@ inline SurfacePose risen(const SurfaceSkeleton& surface) {
 }
 
 inline WindState wind() {
-  return {.wind = {3.25, -4.5}, .source = WindSource::kHandover, .live_weight = 0.75, .reading_age_s = 1.5};
+  return {.wind = {3.25, -4.5},
+          .source = WindSource::kHandover,
+          .live_weight = 0.75,
+          .reading_age_s = 1.5,
+          .upwind_m = -12.5,
+          .to_middle_s = 0.75,
+          .is_place_told = true};
 }
 
 inline wire::Hello hello() {
@@ -278,7 +284,8 @@ inline wire::Sensors sensors() {
                               .site_median_m_s = 1.25,
                               .site_strong_m_s = 3.5,
                               .site_known_s = 86400.0,
-                              .text = "floor: raised 0.8 to 1.5 m/s"};
+                              .text = "floor: raised 0.8 to 1.5 m/s",
+                              .gusts = 2.25};
   return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2, .shaping = shaping};
 }
 
