@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/operators/grid_sample_job.hpp"
 #include "engine/operators/sample_job.hpp"
+#include "engine/scenes/grid_places.hpp"
 #include "engine/scenes/scene.hpp"
 
 namespace yuragi {
@@ -28,7 +30,7 @@ ScenePlacement first_of(std::span<const float> x_m, std::span<const float> z_m) 
 }  // namespace
 
 WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m,
-                   SimdRow row, double finest_cell_m)
+                   SimdRow row, double finest_cell_m, std::size_t columns)
     : gusts_(std::move(gusts)), row_(row), east_m_s_(x_m.size()), south_m_s_(x_m.size()), smooth_(first_of(x_m, z_m)) {
   // A square over all places, a power of two of nodes a side; the last column and row are beyond every place, so that
   // none reads where the torus closes.
@@ -59,6 +61,10 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
   for (std::size_t i = 0; i < x_m.size(); ++i) {
     place_x_.push_back(torus_phase(static_cast<double>(x_m[i]) - first_x_m, period_m));
     place_z_.push_back(torus_phase(static_cast<double>(z_m[i]) - first_z_m, period_m));
+  }
+  if (goes_along_axes(x_m, z_m, columns)) {
+    column_x_.assign(place_x_.begin(), place_x_.begin() + static_cast<std::ptrdiff_t>(columns));
+    for (std::size_t i = 0; i < place_z_.size(); i += columns) row_z_.push_back(place_z_[i]);
   }
   for (Component* component : {&east_, &south_}) {
     component->value = {nodes, std::vector<float>(nodes * nodes)};
@@ -128,6 +134,11 @@ void WindGrid::follow(Component& component, double dt_s) noexcept {
 }
 
 void WindGrid::read(const Component& component, std::size_t first, std::span<float> out) const noexcept {
+  if (!column_x_.empty() && out.size() == place_x_.size()) {
+    const GridNoiseLayer layer{.tile = &component.value, .column_x = column_x_, .row_z = row_z_};
+    GridSampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();
+    return;
+  }
   const NoiseLayer layer{.tile = &component.value,
                          .place_x = std::span(place_x_).subspan(first, out.size()),
                          .place_z = std::span(place_z_).subspan(first, out.size())};
