@@ -7,6 +7,7 @@
 #include "daemon/config.hpp"
 #include "daemon/fade.hpp"
 #include "daemon/worker_pool.hpp"
+#include "engine/pose/reach.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/wire.hpp"
@@ -54,6 +55,8 @@ class Animation {
   std::span<const Pose* const> poses() const noexcept { return poses_; }
   std::span<const float> opacities() const noexcept { return opacities_; }
   std::size_t node_count() const;
+  /// From the middle of the scenes to the farthest place of any of them, hidden or not.
+  double reach_m() const noexcept { return scenes_reach_m(skeletons_); }
 
  private:
   std::vector<std::string> names_, kinds_;

@@ -32,7 +32,7 @@ void make_recorded_frames(const std::filesystem::path& recording, const Playback
                           const Config& config, const FieldGrid& grid, const FieldFrames& frames, const UseField& use) {
   WindlogPlayback playback(recording, playback_options);
   const std::shared_ptr<const GustNoise> noise = make_gust_noise(config);
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, noise);
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, noise, grid.reach_m());
   WindTapes tapes;
   GroundWind ground;
   const GroundWindField field(ground, *noise);

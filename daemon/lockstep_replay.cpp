@@ -26,7 +26,7 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   Config one_source = config;
   one_source.sensors.resize(1);
   one_source.wind.set("fallback_recording", std::string{});
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts);
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts, animation.reach_m());
   WindShaping shaping(shaping_settings(config), gusts);
 
   const double rate_hz = config.animation.number("rate");

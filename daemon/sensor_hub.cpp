@@ -63,17 +63,19 @@ BlendSettings blend_settings_of(const Config& config) {
   return settings;
 }
 
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
-  const BlendSettings settings = blend_settings_of(config);
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
+                                              double reach_m) {
+  BlendSettings settings = blend_settings_of(config);
+  settings.reach_m = reach_m;
   const std::size_t source_count = settings.sources.size();
   return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
 }
 
 SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
-                     Listener listener)
+                     Listener listener, double reach_m)
     : clock_(clock),
       listener_(std::move(listener)),
-      estimator_(make_estimator(config, std::move(noise))),
+      estimator_(make_estimator(config, std::move(noise), reach_m)),
       stale_intervals_(config.wind.number("stale_intervals")),
       vote_(config.sensors.size()),
       fallback_(config, clock) {

@@ -34,7 +34,8 @@ class SensorHub {
 
   /// Opens and starts every sensor. `noise`: of the gusts. Throws ConfigError where a sensor cannot be made of its
   /// values.
-  SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise, Listener listener = {});
+  SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise, Listener listener = {},
+            double reach_m = 0.0);
 
   /// Takes in what has arrived and says what the wind is now. Logs each change of a sensor's state once.
   const WindState& advance();
@@ -110,6 +111,8 @@ std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
 BlendSettings blend_settings_of(const Config& config);
 
 /// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise);
+/// `reach_m`: from the middle of the scenes to the farthest place of any of them.
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
+                                              double reach_m);
 
 }  // namespace yuragi

@@ -41,7 +41,7 @@ class Service::Io {
         director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.text("listen"), stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
-        hub_(config, clock_, gusts_, listener()),
+        hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0),
         shaper_(config, gusts_),
         players_(config.stream.text("control"), hub_.players()) {
     if (animation_) {

@@ -21,8 +21,9 @@ constexpr std::size_t kStrip = 16;
 struct StripColumns {
   alignas(64) std::uint32_t west[kStrip];
   alignas(64) float fraction[kStrip];
-  bool wraps = false;    ///< one is behind the last sample, whose east is the first
-  bool is_near = false;  ///< all that is read for a register lies in the two that begin at its first column
+  bool wraps = false;                         ///< one is behind the last sample, whose east is the first
+  bool is_near = false;                       ///< all that is read for a register lies in its window
+  std::uint32_t window[kStrip / kLaneCount];  ///< where the 2 kLaneCount samples begin that hold what is read for it
 };
 
 /// Two samples side by side, the western one in the low half.
@@ -57,10 +58,14 @@ struct StripColumns {
   }
   columns.wraps = wraps != 0;
 #if YURAGI_PICKS_LANES
-  std::uint32_t far = wraps;
+  constexpr std::uint32_t kWindow = 2 * kLaneCount;
+  const std::uint32_t last_window = last + 1U >= kWindow ? last + 1U - kWindow : 0U;
+  for (std::size_t i = 0; i < kStrip; i += kLaneCount) {
+    columns.window[i / kLaneCount] = columns.west[i] < last_window ? columns.west[i] : last_window;
+  }
+  std::uint32_t far = wraps | (last + 1U < kWindow ? 1U : 0U);
   for (std::size_t i = 0; i < kStrip; ++i) {
-    const std::uint32_t begin = columns.west[i / kLaneCount * kLaneCount];
-    far |= columns.west[i] - begin > 2 * kLaneCount - 2 || begin + 2 * kLaneCount > last + 1U ? 1U : 0U;
+    far |= columns.west[i] - columns.window[i / kLaneCount] > 2 * kLaneCount - 2 ? 1U : 0U;
   }
   columns.is_near = far == 0;
 #endif
@@ -77,7 +82,7 @@ struct StripColumns {
     for (std::size_t i = 0; i < kStrip; i += kLaneCount) {
       LaneBits west;
       __builtin_memcpy(&west, columns.west + i, sizeof west);
-      const std::uint32_t begin = columns.west[i];
+      const std::uint32_t begin = columns.window[i / kLaneCount];
       west -= begin;
       const LaneBits east = west + 1U;
       const Lanes fraction = load_lanes(columns.fraction + i);

@@ -7,6 +7,7 @@
 #include "engine/noise/band_limited_tile.hpp"
 #include "engine/operators/grid_sample_job.hpp"
 #include "engine/operators/sample_job.hpp"
+#include "engine/scenes/grid_places.hpp"
 
 namespace yuragi {
 namespace {
@@ -18,15 +19,6 @@ std::vector<std::uint32_t> phases_on(std::span<const float> positions_m, double 
     phases.push_back(torus_phase(static_cast<double>(position_m), period_m));
   }
   return phases;
-}
-
-/// Are these the rows of a grid, each along x and all with the same x?
-bool goes_along_axes(std::span<const float> x_m, std::span<const float> z_m, std::size_t columns) {
-  if (columns == 0 || x_m.size() % columns != 0) return false;
-  for (std::size_t i = 0; i < x_m.size(); ++i) {
-    if (x_m[i] != x_m[i % columns] || z_m[i] != z_m[i / columns * columns]) return false;
-  }
-  return true;
 }
 
 }  // namespace

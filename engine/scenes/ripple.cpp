@@ -59,6 +59,9 @@ constexpr double kSlow_m_s = 0.5;
 /// What is left of an amplitude that has died away: it moves nothing, and is not worth a denormal number.
 constexpr double kFlat = 1e-12;
 
+/// The gusts' own samples are as far apart.
+constexpr double kFinestCell_m = 0.5;
+
 /// Beyond it gusts from outside roughen the water no more, in standard deviations of a usual wind.
 constexpr float kLargestGust = 3.0F;
 
@@ -205,7 +208,9 @@ class Ripple final : public Scene {
         skeleton_(std::move(water)),
         pose_(rest_pose(skeleton_)) {
     const SurfaceSkeleton& surface = *std::get_if<SurfaceSkeleton>(&skeleton_);
-    if (setup.gusts) outside_.emplace(setup.gusts, surface.rest_x_m, surface.rest_z_m, setup.row);
+    if (setup.gusts) {
+      outside_.emplace(setup.gusts, surface.rest_x_m, surface.rest_z_m, setup.row, kFinestCell_m, surface.columns);
+    }
 
     // On deep water a wave's speed is sqrt(g length / 2 pi).
     const double length_m = values.number("wave_length");

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/operators/grid_sample_job.hpp"
 #include "engine/operators/sample_job.hpp"
+#include "engine/scenes/grid_places.hpp"
 #include "engine/scenes/scene.hpp"
 
 namespace yuragi {
@@ -59,7 +61,7 @@ WindGrid::Layout::Layout(std::span<const float> x_m, std::span<const float> z_m,
 }
 
 WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m,
-                   SimdRow row, double finest_cell_m)
+                   SimdRow row, double finest_cell_m, std::size_t columns)
     : row_(row),
       layout_(x_m, z_m, finest_cell_m),
       gusts_(std::move(gusts), layout_.nodes, row),
@@ -67,6 +69,10 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
       east_m_s_(x_m.size()),
       south_m_s_(x_m.size()),
       smooth_(first_of(x_m, z_m), nullptr, WindPart::kMean) {
+  if (goes_along_axes(x_m, z_m, columns)) {
+    column_x_.assign(layout_.place_x.begin(), layout_.place_x.begin() + static_cast<std::ptrdiff_t>(columns));
+    for (std::size_t i = 0; i < layout_.place_z.size(); i += columns) row_z_.push_back(layout_.place_z[i]);
+  }
   const std::size_t count = layout_.nodes.size();
   for (Component* component : {&east_, &south_}) {
     component->value.assign(count, 0.0F);
@@ -126,6 +132,11 @@ void WindGrid::follow(Component& component, double dt_s) const noexcept {
 }
 
 void WindGrid::read(const Component& component, std::size_t first, std::span<float> out) const noexcept {
+  if (!column_x_.empty() && out.size() == layout_.place_x.size()) {
+    const GridNoiseLayer layer{.tile = &component.on_torus, .column_x = column_x_, .row_z = row_z_};
+    GridSampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();
+    return;
+  }
   const NoiseLayer layer{.tile = &component.on_torus,
                          .place_x = std::span(layout_.place_x).subspan(first, out.size()),
                          .place_z = std::span(layout_.place_z).subspan(first, out.size())};

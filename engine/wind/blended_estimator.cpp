@@ -67,6 +67,7 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
   ground_.slope = plane_.ends();
   ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
   ground_.gusts.carried = noise_->begin(settings.climate.seed);
+  ground_.gusts.gustiness = static_cast<float>(settings.gustiness);
   stroke_.pen_count = pens_.size();
   stroke_.coherence.longest_wave_m =
       2.0 * std::numbers::pi / noise_->octaves()[GustNoise::kFirstTileOctave + GustNoise::kTileOctaves].from_rad_m;
@@ -426,9 +427,11 @@ void BlendedEstimator::show(const Heard& heard) noexcept {
   const WindVector way = noise_->everywhere(ground_.gusts);
   ground_.everywhere = heard.mean + way;
   state_.upwind_m = 0.0;
+  double told = 0.0;
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     WindPen& pen = stroke_.pens[p];
     pen.part = part_of(pens_[p]);
+    if (!places_.place(p).is_edge) told += pen.part;
     pen.now.mean = heard.mean;
     pen.now.way = way;
     const OctaveLanes known_along = pen.written.known_along;
@@ -444,6 +447,7 @@ void BlendedEstimator::show(const Heard& heard) noexcept {
     state_.upwind_m -= pen.part * (pen.east_m * stroke_.ahead.u_m_s - pen.south_m * stroke_.ahead.v_m_s);
   }
   state_.wind = wind_where_measured(ground_, stroke_, *noise_);
+  state_.is_place_told = told > 0.5;
   state_.to_middle_s = std::max(state_.upwind_m, 0.0) / advection_m_s_;
   if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {
     state_.wind = (kMaxPlausibleSpeed_m_s / speed_m_s) * state_.wind;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -56,6 +57,10 @@ struct FieldGrid {
   double spacing_m = 1.0;
 
   std::size_t size() const noexcept { return count_x * count_y * count_z; }
+  /// From the middle to the farthest sample, along the ground.
+  double reach_m() const noexcept {
+    return spacing_m * std::hypot(static_cast<double>(count_x / 2), static_cast<double>(count_z / 2));
+  }
   WindPlace place(std::size_t i, std::size_t j, std::size_t k) const noexcept;
 };
 

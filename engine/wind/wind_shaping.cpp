@@ -212,6 +212,7 @@ WindShapingReport WindShaping::report() const noexcept {
           .site_gain = site_.value,
           .floor_gain = floor_.value,
           .breeze_m_s = breeze_.value,
+          .gusts = settings_.gusts,
           .opening = opening_.value,
           .speed_m_s = speed_m_s_,
           .ceiling_gain = ceiling_gain_,

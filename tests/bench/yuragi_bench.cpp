@@ -20,6 +20,7 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/noise/spectral_noise.hpp"
+#include "engine/pose/quantise.hpp"
 #include "engine/scenes/meadow.hpp"
 #include "tests/bench/plain_strands.hpp"
 #include "tests/bench/table1.hpp"
@@ -47,6 +48,9 @@ Case own_noise(const std::string& name, std::string_view kind, const ParameterVa
                std::optional<PaperRow> paper = std::nullopt, bool has_plain = false) {
   return {.name = name, .scenes = {bench_scene(kind, given)}, .paper = paper, .has_plain = has_plain};
 }
+
+/// Of angles that are quantised at once.
+constexpr std::size_t kQuantised = 100'000;
 
 ParameterValues::Map meadow(std::int64_t across, std::int64_t deep) {
   return {{"blades_across", across}, {"blades_deep", deep}};
@@ -143,6 +147,7 @@ std::vector<Target> targets_of(const Times& times) {
              at("two threads/alone") / at("two threads/shared"), 1.7, true);
   add_target("grass 1,000,000: a second thread, times faster paced at 60 Hz ",
              at("two threads/alone, paced") / at("two threads/shared, paced"), 0.0, true);
+  add_target("quantising a bend or a way, ns", at("quantise/bends") * 1e9 / static_cast<double>(kQuantised), 0.25);
   const double small = at("grass 10,000/total") / 1e4;
   const double middle = at("grass/total") / 1e5;
   const double large = at("grass 1,000,000/total") / 1e6;
@@ -206,6 +211,11 @@ int run(int argc, char** argv) {
     add(one.name + "/plain",
         [&plain] { plain.frame(BenchWind::kBreeze.u_m_s, -BenchWind::kBreeze.v_m_s, kBenchTick_s, 0.6); });
   }
+
+  std::vector<float> angles_rad;
+  for (std::size_t i = 0; i < kQuantised; ++i) angles_rad.push_back(std::sin(0.37F * static_cast<float>(i)));
+  std::vector<std::int16_t> units(angles_rad.size());
+  add("quantise/bends", [&angles_rad, &units, row] { quantise(angles_rad, units, row); });
 
   // A second thread, on the largest meadow: back to back, and a frame at a time 60 times a second.
   WorkerPool pool(2);

@@ -9,6 +9,7 @@
 
 #include "engine/math/philox.hpp"
 #include "engine/scenes/scene.hpp"
+#include "tests/support/bits.hpp"
 #include "tests/support/gusty_wind.hpp"
 
 namespace yuragi {
@@ -81,6 +82,35 @@ TEST(WindGrid, EachPlaceFeelsTheWindOfThatPlace) {
     }
     EXPECT_GT(scatter, 0.5 * static_cast<double>(places.x_m.size()));
     EXPECT_LT(squares, 0.01 * scatter) << side_m << " m, " << length << " times as long, " << gustiness;
+  }
+}
+
+TEST(WindGrid, AGridOfPlacesIsReadToTheSameBitsAsEachOfThem) {
+  constexpr std::size_t kColumns = 50;
+  for (const float side_m : {1.0F, 7.0F, 60.0F}) {
+    std::vector<float> x_m;
+    std::vector<float> z_m;
+    for (std::size_t i = 0; i < 30 * kColumns; ++i) {
+      x_m.push_back(side_m * static_cast<float>(i % kColumns) / 49.0F + 3.0F);
+      z_m.push_back(side_m * static_cast<float>(i / kColumns) / 29.0F - 4.0F);
+    }
+    WindGrid as_grid(shared_gusts(), x_m, z_m, best_simd_row(), 0.5, kColumns);
+    WindGrid as_places(shared_gusts(), x_m, z_m, best_simd_row());
+    GustyWind gusty({6.0, -2.0}, 0.5F);
+    for (int tick = 0; tick < 30; ++tick) {
+      const GroundWind wind = gusty.step(kGridTick_s);
+      as_grid.step(wind, kGridTick_s);
+      as_places.step(wind, kGridTick_s);
+    }
+    std::vector<float> of_grid(x_m.size());
+    std::vector<float> of_places(x_m.size());
+    as_grid.sample_gusts(0, of_grid, 3.0F);
+    as_places.sample_gusts(0, of_places, 3.0F);
+    EXPECT_EQ(bits_of(of_grid), bits_of(of_places)) << side_m;
+    EXPECT_NE(of_grid.front(), of_grid.back());
+    // A part of them is read place by place.
+    as_grid.sample_gusts(70, std::span(of_grid).subspan(70, 100), 3.0F);
+    EXPECT_EQ(bits_of(of_grid), bits_of(of_places)) << side_m;
   }
 }
 
