@@ -287,9 +287,23 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   GustCoherence& coherence = stroke_.coherence;
   const double part = is_first_ ? 1.0 : -std::expm1(-dt_s / kCoherenceMemory_s);
   coherence.speed_m_s = advection_m_s_;
-  coherence.length_m += part * (length_m - coherence.length_m);
+  coherence.length_m = gust_length_m(heard);
   coherence.decay_along += part * (GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
   reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
+}
+
+/// How far gusts reach as the installation says it, which the coherence law asks for: a fit to quick readings knows
+/// little of it.
+double BlendedEstimator::gust_length_m(const Heard& heard) const noexcept {
+  double length_m = (1.0 - heard.weight) * settings_.length_m;
+  double all = 1.0 - heard.weight;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const double own_m = settings_.sources[i].length_m;
+    const double share = std::max(shares_[i].middle, 0.0);
+    length_m += share * (own_m > 0.0 ? own_m : settings_.length_m);
+    all += share;
+  }
+  return length_m / all;
 }
 
 /// Where each pen stands: at the windward edge of the scenes, or where its sensor does, and how far its sensors count.

@@ -106,6 +106,7 @@ class BlendedEstimator final : public WindEstimator {
   double newest_age_s() const noexcept;
   WindVector said(std::size_t source, std::size_t level) const noexcept;
   void carry_gusts(const Heard& heard, double dt_s) noexcept;
+  double gust_length_m(const Heard& heard) const noexcept;
   void place_pens() noexcept;
   void write_gusts() noexcept;
   void weigh_gusts(const Heard& heard, double dt_s) noexcept;
