@@ -75,6 +75,13 @@ const std::array kWindParameters = {
               .help = "how far gusts reach, that wind's and those between a sensor's readings: the integral length "
                       "scale; 0: by the height in each sensor's calibration, 5.7 m a metre up to 60 m (25 m at 4.4 m, "
                       "85 m at 15 m); where none is told, 57 m, as over open land at 10 m"},
+    Parameter{.name = "site_octaves",
+              .unit = "dB",
+              .default_value = std::string(""),
+              .help = "how much stronger than a slow sensor lets expect the gusts of this site are at 0.0375 to 0.075 "
+                      "Hz, 0.075 to 0.15 Hz and so on, up to 7 numbers, as `yuragi report` prints them for a recording "
+                      "of a quick sensor; the daemon learns them too, while a sensor of 1 s or quicker speaks, and "
+                      "keeps them in site_file of [shaping]"},
     Parameter{.name = "evolving",
               .unit = "",
               .default_value = true,

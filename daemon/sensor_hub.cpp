@@ -8,6 +8,7 @@
 
 #include "daemon/gust_length.hpp"
 #include "daemon/sensor_table.hpp"
+#include "daemon/site_octaves.hpp"
 #include "engine/wind/blended_estimator.hpp"
 
 namespace yuragi {
@@ -43,7 +44,8 @@ std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
       GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
 }
 
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise) {
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
+                                              std::shared_ptr<SiteSpectrum> site) {
   BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
                                      .mean_direction_deg = config.wind.number("default_direction"),
                                      .turbulence_intensity = config.wind.number("default_turbulence"),
@@ -52,10 +54,13 @@ std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_
                          .handover_s = config.wind.number("handover"),
                          .stale_intervals = config.wind.number("stale_intervals"),
                          .return_after_s = config.wind.number("return_after"),
-                         .rate_hz = config.animation.number("rate")};
+                         .rate_hz = config.animation.number("rate"),
+                         .site = site ? std::move(site) : make_site_spectrum(config)};
   for (const SensorConfig& sensor : config.sensors) {
     settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
-    settings.sources.back().length_m = gust_length_m(config, sensor);
+    BlendSourceSettings& source = settings.sources.back();
+    if (is_length_by_height(config, sensor)) source.length_m = gust_length_m(config, sensor);
+    source.teaches_site = !source.is_relative && !sensor.driver->plays_recordings;
   }
   // Behind all sensors, whatever their priorities.
   if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
@@ -67,7 +72,8 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
                      Listener listener)
     : clock_(clock),
       listener_(std::move(listener)),
-      estimator_(make_estimator(config, std::move(noise))),
+      site_(make_site_spectrum(config)),
+      estimator_(make_estimator(config, std::move(noise), site_)),
       stale_intervals_(config.wind.number("stale_intervals")),
       vote_(config.sensors.size()),
       fallback_(config, clock) {

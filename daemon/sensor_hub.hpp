@@ -14,6 +14,7 @@
 #include "daemon/sensor_runner.hpp"
 #include "engine/wind/reading_judge.hpp"
 #include "engine/wind/sensor_vote.hpp"
+#include "engine/wind/site_spectrum.hpp"
 #include "engine/wind/source_record.hpp"
 #include "engine/wind/wind_estimator.hpp"
 #include "engine/wire/wire.hpp"
@@ -44,6 +45,9 @@ class SensorHub {
   /// The wind as of the last advance().
   const WindState& wind() const noexcept { return wind_; }
   const GroundWind& ground() const noexcept { return estimator_->ground(); }
+
+  /// What is known of the site's gusts; learns on while a quick sensor of the site speaks. Of this thread.
+  const std::shared_ptr<SiteSpectrum>& site() const noexcept { return site_; }
 
   /// How each sensor does, for the stream and for `sensors watch`; and the fall-back, while it plays.
   std::vector<wire::SensorStatus> status() const;
@@ -93,6 +97,7 @@ class SensorHub {
 
   const Clock& clock_;
   Listener listener_;
+  std::shared_ptr<SiteSpectrum> site_;
   std::unique_ptr<WindEstimator> estimator_;
   double stale_intervals_;
   SensorVote vote_;
@@ -105,6 +110,8 @@ class SensorHub {
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
 
 /// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise);
+/// `site`: what is known of the site's gusts, and learns more of them; none: what the configuration says of them.
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
+                                              std::shared_ptr<SiteSpectrum> site = {});
 
 }  // namespace yuragi
