@@ -12,6 +12,9 @@ namespace {
 constexpr double kHalfTrustTimesInterval = 0.5;
 /// A reading is late after so many of its intervals; until then what is known is not yet old.
 constexpr double kLateAfterIntervals = 1.5;
+/// A source that has spoken once is taken for one of those that speak seldom: its reading is worth a while, and tells
+/// the mean, while the gusts are left to the noise until it has spoken again.
+constexpr double kUnknownInterval_s = 10.0;
 /// A gap of so many intervals separates what the fit may compare.
 constexpr double kGapIntervals = 3.0;
 /// Trust goes where it should within about 4.75 s: what comes back is believed by and by.
@@ -87,7 +90,7 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
     record_.hold(reading.time);
     return true;
   }
-  if (gap_s > kGapIntervals * record_.expected_interval_s()) {
+  if (gap_s > kGapIntervals * expected_interval_s()) {
     measured_.break_off();
     teacher_.break_off();
   }
@@ -98,7 +101,7 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   if (is_first) begin();
 
   // The turbulence. Of running means only as many are compared as do not overlap.
-  const double interval_s = record_.expected_interval_s();
+  const double interval_s = expected_interval_s();
   measured_.forget(interval_s);
   const double readings_of_one = std::max(1.0, std::round(averaging_s() / interval_s));
   const double mean_of_s = readings_of_one * interval_s;
@@ -119,12 +122,16 @@ void BlendSource::begin() noexcept {
   for (std::size_t i = 0; i < trusts_.size(); ++i) trusts_[i].value = trust_[i] = full_trust_[i];
 }
 
+double BlendSource::expected_interval_s() const noexcept {
+  return record_.interval_s() > 0.0 ? record_.interval_s() : kUnknownInterval_s;
+}
+
 double BlendSource::averaging_s() const noexcept {
-  return settings_.averaging_s > 0.0 ? settings_.averaging_s : record_.expected_interval_s();
+  return settings_.averaging_s > 0.0 ? settings_.averaging_s : expected_interval_s();
 }
 
 double BlendSource::slowness_s() const noexcept {
-  return std::max(record_.expected_interval_s(), averaging_s());
+  return std::max(expected_interval_s(), averaging_s());
 }
 
 double BlendSource::trust_at(double frequency_hz) const noexcept {
@@ -133,8 +140,8 @@ double BlendSource::trust_at(double frequency_hz) const noexcept {
 
 /// When the interval has changed.
 void BlendSource::set_full_trust() noexcept {
-  if (record_.expected_interval_s() == interval_s_) return;
-  interval_s_ = record_.expected_interval_s();
+  if (expected_interval_s() == interval_s_) return;
+  interval_s_ = expected_interval_s();
   full_trust_ = full_trust_of(slowness_s());
   passed_[0] = 1.0;
   for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
@@ -177,7 +184,7 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
     across_ = along_;
     for (double& variance : across_) variance *= kAcrossPerAlong * kAcrossPerAlong;
   }
-  direction_.expect(kAcrossPerAlong * turbulence_.intensity, turbulence_.time_scale_s, record_.expected_interval_s());
+  direction_.expect(kAcrossPerAlong * turbulence_.intensity, turbulence_.time_scale_s, expected_interval_s());
 }
 
 void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept {

@@ -78,6 +78,7 @@ class BlendSource {
 
  private:
   void begin() noexcept;
+  double expected_interval_s() const noexcept;
   double averaging_s() const noexcept;
   double slowness_s() const noexcept;
   void set_full_trust() noexcept;
