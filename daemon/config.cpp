@@ -9,6 +9,7 @@
 #include <toml++/toml.h>
 
 #include "daemon/shaping_config.hpp"
+#include "daemon/site_octaves.hpp"
 #include "daemon/transports/address.hpp"
 #include "drivers/speed_unit.hpp"
 
@@ -54,6 +55,7 @@ class ConfigReader {
     check_listen(root, config.stream);
     config.animation = read_table(root, "", "animation", animation_parameters());
     config.wind = read_table(root, "", "wind", wind_parameters());
+    check_site_octaves(root, config.wind);
     config.shaping = read_table(root, "", "shaping", shaping_parameters());
     check_shaping(root, config.shaping);
     if (const toml::node* node = root["wind"]["fallback_recording"].node()) {
@@ -149,6 +151,12 @@ class ConfigReader {
       const toml::node* node = table != nullptr && table->is_table() ? table->as_table()->get(error.name) : nullptr;
       const toml::node& place = node != nullptr ? *node : table != nullptr ? *table : root;
       mistake(place.source(), "shaping." + error.name, error.message);
+    }
+  }
+
+  void check_site_octaves(const toml::table& root, const ParameterValues& wind) {
+    if (const auto octaves = parse_site_octaves(wind.text("site_octaves")); !octaves) {
+      mistake(root["wind"]["site_octaves"].node()->source(), "wind.site_octaves", octaves.error().message);
     }
   }
 

@@ -82,6 +82,13 @@ const std::array kWindParameters = {
               .max = 0.6,
               .help = "how much gusts differ in strength: in real wind some hundred metres are gustier than the next "
                       "(about 0.3); 0: all alike. Of the gusts that are made up, not of those that a sensor measured"},
+    Parameter{.name = "site_octaves",
+              .unit = "dB",
+              .default_value = std::string(""),
+              .help = "how much stronger than a slow sensor lets expect the gusts of this site are at 0.0375 to 0.075 "
+                      "Hz, 0.075 to 0.15 Hz and so on, up to 7 numbers, as `yuragi report` prints them for a recording "
+                      "of a quick sensor; the daemon learns them too, while a sensor of 1 s or quicker speaks, and "
+                      "keeps them in site_file of [shaping]"},
     Parameter{.name = "evolving",
               .unit = "",
               .default_value = true,

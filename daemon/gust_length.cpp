@@ -17,10 +17,13 @@ double default_gust_length_m(const Config& config) {
   return length_m > 0.0 ? std::max(length_m, kShortestGusts_m) : BlendSettings{}.length_m;
 }
 
+bool is_length_by_height(const Config& config, const SensorConfig& sensor) {
+  return config.wind.number("default_length") <= 0.0 && sensor.calibration.number("height") > 0.0;
+}
+
 double gust_length_m(const Config& config, const SensorConfig& sensor) {
-  const double height_m = sensor.calibration.number("height");
-  if (config.wind.number("default_length") > 0.0 || height_m <= 0.0) return default_gust_length_m(config);
-  const double length_m = iec_length_scale_m(WindComponent::kAlong, height_m);
+  if (!is_length_by_height(config, sensor)) return default_gust_length_m(config);
+  const double length_m = iec_length_scale_m(WindComponent::kAlong, sensor.calibration.number("height"));
   return std::max(calibration_of(sensor).height_factor * length_m, kShortestGusts_m);
 }
 

@@ -8,6 +8,9 @@ namespace yuragi {
 /// height of 10 m. Pure.
 double default_gust_length_m(const Config& config);
 
+/// Does the height of a sensor say how far its gusts reach?
+bool is_length_by_height(const Config& config, const SensorConfig& sensor);
+
 /// What the gusts of a sensor are taken for, until and as far as it tells of them itself, m: [wind] default_length
 /// where it is set; or by the height that its calibration tells, 8.1 * 0.7 times it up to 60 m (IEC 61400-1); or the
 /// default wind's. Where the calibration brings the speeds to another height, the length goes with them: what is

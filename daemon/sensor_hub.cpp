@@ -8,6 +8,7 @@
 
 #include "daemon/gust_length.hpp"
 #include "daemon/sensor_table.hpp"
+#include "daemon/site_octaves.hpp"
 #include "engine/wind/blended_estimator.hpp"
 
 namespace yuragi {
@@ -53,10 +54,13 @@ BlendSettings blend_settings_of(const Config& config) {
                          .handover_s = config.wind.number("handover"),
                          .stale_intervals = config.wind.number("stale_intervals"),
                          .return_after_s = config.wind.number("return_after"),
-                         .rate_hz = config.animation.number("rate")};
+                         .rate_hz = config.animation.number("rate"),
+                         .site = make_site_spectrum(config)};
   for (const SensorConfig& sensor : config.sensors) {
     settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
-    settings.sources.back().length_m = gust_length_m(config, sensor);
+    BlendSourceSettings& source = settings.sources.back();
+    if (is_length_by_height(config, sensor)) source.length_m = gust_length_m(config, sensor);
+    source.teaches_site = !source.is_relative && !sensor.driver->plays_recordings;
   }
   // Behind all sensors, whatever their priorities.
   if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
@@ -64,9 +68,10 @@ BlendSettings blend_settings_of(const Config& config) {
 }
 
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
-                                              double reach_m) {
+                                              double reach_m, std::shared_ptr<SiteSpectrum> site) {
   BlendSettings settings = blend_settings_of(config);
   settings.reach_m = reach_m;
+  if (site) settings.site = std::move(site);
   const std::size_t source_count = settings.sources.size();
   return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
 }
@@ -75,7 +80,8 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
                      Listener listener, double reach_m)
     : clock_(clock),
       listener_(std::move(listener)),
-      estimator_(make_estimator(config, std::move(noise), reach_m)),
+      site_(make_site_spectrum(config)),
+      estimator_(make_estimator(config, std::move(noise), reach_m, site_)),
       stale_intervals_(config.wind.number("stale_intervals")),
       vote_(config.sensors.size()),
       fallback_(config, clock) {

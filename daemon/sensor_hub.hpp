@@ -15,6 +15,7 @@
 #include "engine/wind/blend_settings.hpp"
 #include "engine/wind/reading_judge.hpp"
 #include "engine/wind/sensor_vote.hpp"
+#include "engine/wind/site_spectrum.hpp"
 #include "engine/wind/source_record.hpp"
 #include "engine/wind/wind_estimator.hpp"
 #include "engine/wire/wire.hpp"
@@ -47,6 +48,9 @@ class SensorHub {
   const WindState& wind() const noexcept { return wind_; }
   const GroundWind& ground() const noexcept { return estimator_->ground(); }
   const WindStroke& stroke() const noexcept { return estimator_->stroke(); }
+
+  /// What is known of the site's gusts; learns on while a quick sensor of the site speaks. Of this thread.
+  const std::shared_ptr<SiteSpectrum>& site() const noexcept { return site_; }
 
   /// How each sensor does, for the stream and for `sensors watch`; and the fall-back, while it plays.
   std::vector<wire::SensorStatus> status() const;
@@ -96,6 +100,7 @@ class SensorHub {
 
   const Clock& clock_;
   Listener listener_;
+  std::shared_ptr<SiteSpectrum> site_;
   std::unique_ptr<WindEstimator> estimator_;
   double stale_intervals_;
   SensorVote vote_;
@@ -111,8 +116,9 @@ std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
 BlendSettings blend_settings_of(const Config& config);
 
 /// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
-/// `reach_m`: from the middle of the scenes to the farthest place of any of them.
+/// `reach_m`: from the middle of the scenes to the farthest place of any of them. `site`: what is known of the site's
+/// gusts, and learns more of them; none: what the configuration says of them.
 std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
-                                              double reach_m);
+                                              double reach_m, std::shared_ptr<SiteSpectrum> site = {});
 
 }  // namespace yuragi

@@ -45,7 +45,7 @@ class Service::Io {
         shaper_(config, gusts_),
         players_(config.stream.text("control"), hub_.players()) {
     if (animation_) {
-      shaper_.keep_site_file();
+      shaper_.keep_site_file(hub_.site());
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
     }

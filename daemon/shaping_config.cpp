@@ -45,7 +45,9 @@ const std::array kShapingParameters = {
     Parameter{.name = "site_file",
               .unit = "",
               .default_value = std::string(""),
-              .help = "where that memory is kept over a restart; empty: it begins anew"},
+              .help =
+                  "where that memory is kept over a restart, and what is learnt of the site's gusts (site_octaves of "
+                  "[wind]); empty: both begin anew"},
     Parameter{.name = "over",
               .unit = "s",
               .default_value = 120.0,

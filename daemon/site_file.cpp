@@ -12,15 +12,21 @@ namespace yuragi {
 namespace {
 
 constexpr const char* kTimesKey = "seconds_at_each_speed";
+constexpr const char* kOctavesKnownKey = "seconds_of_each_octave_of_gusts";
+constexpr const char* kOctavesKey = "decibels_of_each_octave_of_gusts";
 /// Many times what a file of ours holds: what is longer is none.
 constexpr std::streamsize kLongestSiteFile = 64 * 1024;
 
 /// An empty message where all went well.
-Failure write_site_file(const std::filesystem::path& file, const std::vector<double>& times_s) {
+Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
     OutputFile output(file, true);
     std::ofstream out(output.working_path());
-    out << nlohmann::json{{kTimesKey, times_s}}.dump() << '\n';
+    out << nlohmann::json{{kTimesKey, memory.times_s},
+                          {kOctavesKnownKey, memory.octaves_known_s},
+                          {kOctavesKey, memory.octaves_db}}
+               .dump()
+        << '\n';
     out.close();
     if (!out) return {file.string() + ": could not be written; is there room, and may this user write there?"};
     output.commit();
@@ -30,9 +36,21 @@ Failure write_site_file(const std::filesystem::path& file, const std::vector<dou
   }
 }
 
+/// The numbers of a key, none where it is not there; false where it holds anything else.
+bool read_numbers(const nlohmann::json& json, const char* key, std::vector<double>& numbers) {
+  if (!json.contains(key)) return true;
+  const nlohmann::json& row = json[key];
+  if (!row.is_array()) return false;
+  for (const auto& number : row) {
+    if (!number.is_number()) return false;
+    numbers.push_back(number.get<double>());
+  }
+  return true;
+}
+
 }  // namespace
 
-Result<std::vector<double>, Failure> SiteFile::read() const {
+Result<SiteMemory, Failure> SiteFile::read() const {
   std::ifstream in(file_);
   if (!in) return Failure{file_.string() + ": cannot be read"};
   std::string text(kLongestSiteFile, '\0');
@@ -41,19 +59,18 @@ Result<std::vector<double>, Failure> SiteFile::read() const {
 
   const Failure none{file_.string() + ": is no memory of a site's wind"};
   const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains(kTimesKey) || !json[kTimesKey].is_array()) return none;
-  std::vector<double> times_s;
-  for (const auto& time_s : json[kTimesKey]) {
-    if (!time_s.is_number()) return none;
-    times_s.push_back(time_s.get<double>());
-  }
-  return times_s;
+  if (!json.is_object() || !json.contains(kTimesKey)) return none;
+  SiteMemory memory;
+  const bool is_read = read_numbers(json, kTimesKey, memory.times_s) &&
+                       read_numbers(json, kOctavesKnownKey, memory.octaves_known_s) &&
+                       read_numbers(json, kOctavesKey, memory.octaves_db);
+  if (!is_read) return none;
+  return memory;
 }
 
-void SiteFile::save(std::span<const double> times_s) {
-  std::vector<double> copy(times_s.begin(), times_s.end());
+void SiteFile::save(SiteMemory memory) {
   // Where there is no thread to be had, wait() writes.
-  writing_ = std::async(std::launch::async | std::launch::deferred, write_site_file, file_, std::move(copy));
+  writing_ = std::async(std::launch::async | std::launch::deferred, write_site_file, file_, std::move(memory));
 }
 
 bool SiteFile::is_writing() const {

@@ -28,7 +28,7 @@ WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> no
     : shaping_(shaping_settings(config), std::move(noise)), hours_(opening_hours(config)) {
   const bool is_of_this_site =
       std::ranges::none_of(config.sensors, [](const SensorConfig& sensor) { return sensor.driver->plays_recordings; });
-  if (is_of_this_site && shaping_.settings().site.median_m_s > 0.0) site_path_ = config.shaping.text("site_file");
+  if (is_of_this_site) site_path_ = config.shaping.text("site_file");
   if (const double gusts = shaping_.settings().gusts; gusts != 1.0) {
     spdlog::info("shaping: gusts {:.2f} times the real ones", gusts);
   }
@@ -41,24 +41,34 @@ WindShaper::~WindShaper() {
   tell_of_site_file();
 }
 
-void WindShaper::keep_site_file() {
-  if (shaping_.settings().site.median_m_s <= 0.0) return;
+void WindShaper::keep_site_file(std::shared_ptr<SiteSpectrum> gusts) {
+  gusts_ = std::move(gusts);
+  const bool has_gain = shaping_.settings().site.median_m_s > 0.0;
   if (site_path_.empty()) {
+    if (!has_gain) return;
     spdlog::info("shaping: site gain begins at 1; without site_file (or with a recording) nothing is remembered");
     return;
   }
+  const std::string_view gain_begins = has_gain ? "site gain begins at 1; " : "";
   site_file_.emplace(site_path_);
   if (std::error_code error; !std::filesystem::exists(site_path_, error)) {
-    spdlog::info("shaping: site gain begins at 1; {} will remember the site's wind", site_path_.string());
+    spdlog::info("shaping: {}{} will remember the site's wind", gain_begins, site_path_.string());
     return;
   }
-  const auto times_s = site_file_->read();
-  if (times_s && shaping_.restore(*times_s)) {
-    spdlog::info("shaping: {} remembers {} of the site's wind", site_path_.string(),
-                 duration_text(shaping_.memory().known_s()));
-  } else {
-    spdlog::warn("shaping: site gain begins at 1, and the file anew: {}",
-                 times_s ? site_path_.string() + ": is of another kind" : times_s.error().message);
+  const auto memory = site_file_->read();
+  if (!memory || !shaping_.restore(memory->times_s)) {
+    spdlog::warn("shaping: {}the file anew: {}",
+                 has_gain ? "site gain begins at 1, and " : "nothing is known yet, and ",
+                 memory ? site_path_.string() + ": is of another kind" : memory.error().message);
+    return;
+  }
+  const double known_s = shaping_.memory().known_s();
+  if (has_gain || known_s > 0.0) {
+    spdlog::info("shaping: {} remembers {} of the site's wind", site_path_.string(), duration_text(known_s));
+  }
+  if (gusts_ && gusts_->restore(memory->octaves_known_s, memory->octaves_db)) {
+    spdlog::info("shaping: {} remembers {} of the site's gusts", site_path_.string(),
+                 duration_text(std::ranges::max(gusts_->known_s())));
   }
 }
 
@@ -125,7 +135,13 @@ void WindShaper::log_ceiling(const WindShapingReport& report, MonoTime now) {
 
 void WindShaper::save_site() {
   tell_of_site_file();
-  site_file_->save(shaping_.memory().times_s());
+  const auto times_s = shaping_.memory().times_s();
+  SiteMemory memory{.times_s = {times_s.begin(), times_s.end()}, .octaves_known_s = {}, .octaves_db = {}};
+  if (gusts_) {
+    memory.octaves_known_s.assign(gusts_->known_s().begin(), gusts_->known_s().end());
+    memory.octaves_db.assign(gusts_->learnt_db().begin(), gusts_->learnt_db().end());
+  }
+  site_file_->save(std::move(memory));
 }
 
 /// What came of the last time that it was written.

@@ -7,6 +7,7 @@
 #include "daemon/opening_hours.hpp"
 #include "daemon/shaping_text.hpp"
 #include "daemon/site_file.hpp"
+#include "engine/wind/site_spectrum.hpp"
 #include "engine/wind/wind_shaping.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -25,7 +26,8 @@ class WindShaper {
   /// Takes up what [shaping] site_file remembers, and keeps it there from now on, once an hour and at the end. Before
   /// the first shape(). Nothing happens where there is no such file to be, or where a sensor plays a recording: what
   /// it says is not of this site, or not of now.
-  void keep_site_file();
+  /// `gusts`: what is known of them, kept with it; none: not kept.
+  void keep_site_file(std::shared_ptr<SiteSpectrum> gusts = {});
 
   /// Makes of the real wind the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
   /// `is_any_live`: a sensor speaks. Where none does, but a recording is played, nothing is learnt of the site.
@@ -45,6 +47,7 @@ class WindShaper {
   WindShaping shaping_;
   OpeningHours hours_;
   std::optional<SiteFile> site_file_;
+  std::shared_ptr<SiteSpectrum> gusts_;
   std::filesystem::path site_path_;  ///< where the file is to be; empty: nowhere
 
   bool is_open_ = true;

@@ -13,13 +13,17 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/config.hpp"
 #include "daemon/exit.hpp"
+#include "daemon/gust_length.hpp"
 #include "daemon/output_file.hpp"
 #include "daemon/report/measure_recording.hpp"
 #include "daemon/report/report_figures.hpp"
 #include "daemon/report/report_json.hpp"
 #include "daemon/report/report_page.hpp"
 #include "daemon/report/report_text.hpp"
+#include "daemon/site_octaves.hpp"
 #include "drivers/windlog/log_moment.hpp"
+#include "engine/wind/blend_source.hpp"
+#include "engine/wind/wind_profile.hpp"
 
 namespace yuragi {
 
@@ -32,6 +36,10 @@ constexpr const char* kReportFooter =
     "rose, distribution, spectrum with its slope and the fitted von Karman's (U, TI, L), gaps, and how each sensor "
     "did.\n"
     "What may go into a configuration as its default wind stands there ready to be copied.\n"
+    "Of a sensor of 1 s or quicker it says what a slow one at its place would miss of the gusts (site_octaves of "
+    "[wind]):\n"
+    "on the page, and on standard output. --height, of the sensor above the ground, makes that fit a sensor whose\n"
+    "calibration tells the same height.\n"
     "Hours of the day are local time, in the zone of this machine (TZ).\n"
     "\n"
     "Examples:\n"
@@ -47,6 +55,7 @@ struct ReportOptions {
   std::string to;
   std::vector<std::string> sensors;
   std::optional<std::filesystem::path> config_file;
+  double height_m = 0.0;
   bool force = false;
 };
 
@@ -85,6 +94,28 @@ class Told {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
+/// What the gusts of a sensor are taken for: by --height, or by the calibration of the sensor of this name.
+TurbulencePrior prior_of(const Config& config, double height_m, const std::string& name) {
+  BlendSourceSettings source;
+  if (height_m == 0.0) {
+    for (const SensorConfig& sensor : config.sensors) {
+      if (sensor.name == name && is_length_by_height(config, sensor)) height_m = sensor.calibration.number("height");
+    }
+  }
+  // As it was recorded: not brought to another height.
+  if (height_m > 0.0) source.length_m = iec_length_scale_m(WindComponent::kAlong, height_m);
+  return turbulence_prior({.climate = {.turbulence_intensity = config.wind.number("default_turbulence")},
+                           .length_m = default_gust_length_m(config)},
+                          source);
+}
+
+/// Says on the terminal, too, what may be pasted.
+void tell_of_site(const SensorNumbers& sensor) {
+  if (!sensor.site) return;
+  fmt::print("# {}: what its gusts tell of the site, for gusts of {:.0f} m\n[wind]\nsite_octaves = \"{}\"\n",
+             page_text(sensor.name), sensor.site->length_m, site_octaves_text(sensor.site->octaves_db));
+}
+
 void run_report(const ReportOptions& options) {
   auto reader = WindlogReader::open(options.input);
   if (!reader) {
@@ -104,6 +135,7 @@ void run_report(const ReportOptions& options) {
   settings.sensors = options.sensors;
   settings.stale_intervals = config.wind.number("stale_intervals");
   settings.utc_offset = local_offset;
+  settings.prior = [&](const std::string& sensor) { return prior_of(config, options.height_m, sensor); };
   if (!options.from.empty()) settings.range.from = moment_of(*reader, "--from", options.from);
   if (!options.to.empty()) settings.range.to = moment_of(*reader, "--to", options.to);
 
@@ -127,6 +159,7 @@ void run_report(const ReportOptions& options) {
   page_file.commit();
   fmt::print(stderr, "{}: {} readings of {} {}\n", options.output, numbers->readings, numbers->sensors.size(),
              numbers->sensors.size() == 1 ? "sensor" : "sensors");
+  for (const SensorNumbers& sensor : numbers->sensors) tell_of_site(sensor);
 }
 
 void add_report(CLI::App& app) {
@@ -135,6 +168,9 @@ void add_report(CLI::App& app) {
   command->footer(kReportFooter);
   command->add_option("file", options->input, "the recording")->required()->type_name("FILE.windlog");
   command->add_option("-o,--output", options->output, "the page to write")->required()->type_name("FILE.html");
+  command->add_option("--height", options->height_m, "of the sensors above the ground, m; without it as --config says")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->type_name("M");
   command->add_option("--sensor", options->sensors, "only this sensor; can be given again")
       ->type_name("NAME")
       ->allow_extra_args(false);
@@ -142,7 +178,8 @@ void add_report(CLI::App& app) {
       ->type_name("T");
   command->add_option("--to", options->to, "end before this, written likewise")->type_name("T");
   command->add_option("--json", options->json, "write the same numbers for machines, too")->type_name("FILE.json");
-  command->add_option("--config", options->config_file, "the stale_intervals of its [wind]")->type_name("FILE.toml");
+  command->add_option("--config", options->config_file, "its [wind], and how high its sensors stand")
+      ->type_name("FILE.toml");
   command->add_flag("--force", options->force, "overwrite the output");
   command->callback([options] { run_report(*options); });
 }

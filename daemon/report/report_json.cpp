@@ -82,6 +82,11 @@ ordered_json json_of_spectrum(const SpectrumNumbers& spectrum) {
   return json;
 }
 
+ordered_json json_of_site(const std::optional<SiteNumbers>& site) {
+  if (!site) return nullptr;
+  return {{"length_m", site->length_m}, {"known_s", site->known_s}, {"octaves_db", site->octaves_db}};
+}
+
 ordered_json json_of_series(const RecordingNumbers& recording, const SensorNumbers& sensor) {
   ordered_json rows = ordered_json::array();
   for (const TimeBin& bin : sensor.bins) {
@@ -155,6 +160,7 @@ ordered_json json_of_sensor(const RecordingNumbers& recording, const SensorNumbe
                        {"states", json_of_states(sensor)},
                        {"events", json_of_events(recording, sensor)},
                        {"spectrum", sensor.spectrum ? json_of_spectrum(*sensor.spectrum) : ordered_json(nullptr)},
+                       {"site", json_of_site(sensor.site)},
                        {"hours", nullptr},
                        {"series", json_of_series(recording, sensor)}};
   if (sensor.diurnal) {

@@ -154,6 +154,13 @@ struct BlockNumbers {
   std::optional<double> gust_factor;           ///< mean of highest 3 s mean / mean; where the interval is at most 1.5 s
 };
 
+/// What a quick sensor shows of its site's gusts: SiteSpectrum, as the daemon learns it.
+struct SiteNumbers {
+  double length_m = 0.0;           ///< that the gusts of the slow sensor were taken for
+  double known_s = 0.0;            ///< how long it was learnt
+  std::vector<double> octaves_db;  ///< from SiteSpectrum::kFrom_hz on, as far as the sensor is quick enough
+};
+
 struct SensorNumbers {
   std::string name;
   std::string driver;
@@ -185,6 +192,7 @@ struct SensorNumbers {
   BlockNumbers blocks;
   std::optional<SpectrumNumbers> spectrum;
   std::string why_no_spectrum;  ///< for a person
+  std::optional<SiteNumbers> site;
 };
 
 /// The recording, or the part of it that was asked for.

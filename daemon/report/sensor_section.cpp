@@ -9,6 +9,7 @@
 
 #include "daemon/report/report_text.hpp"
 #include "daemon/report/wind_rose.hpp"
+#include "daemon/site_octaves.hpp"
 
 namespace yuragi {
 namespace {
@@ -173,6 +174,31 @@ void add_default_wind(PageWriter& page, const RecordingNumbers& recording, const
   page.add("</pre>\n");
 }
 
+/// What a slow sensor at this place cannot tell of its gusts, ready to be copied.
+void add_site(PageWriter& page, const SensorNumbers& sensor) {
+  if (!sensor.site) return;
+  const SiteNumbers& site = *sensor.site;
+  page.add("<h3>For a slow sensor at this place</h3>\n");
+  page.add(
+      "<p>A sensor that speaks every few seconds tells nothing of quicker gusts: they are filled in by a rule, which "
+      "is "
+      "right for open land. This is by how much the gusts that “{}” measured were stronger (+) or weaker (−) than a "
+      "sensor of 14 s at its place would have let expect, learnt in {}:</p>\n",
+      page_text(sensor.name), duration_text(site.known_s));
+  page.add("<table><thead><tr><th>octave</th><th class=\"n\">dB</th></tr></thead><tbody>\n");
+  for (std::size_t octave = 0; octave < site.octaves_db.size(); ++octave) {
+    const double from_hz = std::ldexp(SiteSpectrum::kFrom_hz, static_cast<int>(octave));
+    page.add("<tr><td>{:g} – {:g} Hz</td><td class=\"n\">{:+.1f}</td></tr>\n", from_hz, 2.0 * from_hz,
+             site.octaves_db[octave]);
+  }
+  page.add(
+      "</tbody></table>\n<p>To correct the gusts of slow sensors by it, put this into the configuration; it belongs to "
+      "gusts of {:.0f} m, so let the sensor’s calibration tell the same height (a day says more than half an "
+      "hour):</p>\n"
+      "<pre>[wind]\nsite_octaves = \"{}\"\n</pre>\n",
+      site.length_m, site_octaves_text(site.octaves_db));
+}
+
 void add_spectrum(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor,
                   const SensorFigures& figures) {
   page.add("<h3>Gusts and turbulence</h3>\n");
@@ -191,6 +217,7 @@ void add_spectrum(PageWriter& page, const RecordingNumbers& recording, const Sen
   page.add("<h3>Octave by octave</h3>\n");
   add_octaves(page, spectrum);
   add_default_wind(page, recording, sensor);
+  add_site(page, sensor);
 }
 
 /// What a state means, for a technician.

@@ -49,6 +49,7 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
       end_s_(end_s),
       tells_gusts_(survey.gusts > 0),
       judge_(settings.judge),
+      lesson_(settings.prior ? settings.prior(survey.name) : TurbulencePrior{}, survey.interval_s),
       three_seconds_(survey.interval_s),
       blocks_(survey.interval_s),
       next_direction_s_(begin_s) {
@@ -173,6 +174,8 @@ void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading)
       if (step_s > 0.0) next_direction_s_ = begin_s_ + step_s * (std::floor((time_s - begin_s_) / step_s) + 1.0);
     }
   }
+  lesson_.add(time_s, speed_m_s,
+              held_direction_deg_ ? std::optional(wind_from(speed_m_s, *held_direction_deg_)) : std::nullopt);
   add_to_bin(time_s, reading, tells_gusts_ ? reading.gust_m_s : mean_m_s);
 
   if (!series_) return;
@@ -235,6 +238,7 @@ SensorNumbers SensorTally::finish() {
     if (!numbers_.spectrum) numbers_.why_no_spectrum = "The sensor was never well for long enough.";
   }
   if (integral_time_) numbers_.integral_time_s = integral_time_->seconds();
+  numbers_.site = lesson_.numbers();
   return std::move(numbers_);
 }
 

@@ -8,6 +8,7 @@
 #include "daemon/report/gust_means.hpp"
 #include "daemon/report/recording_survey.hpp"
 #include "daemon/report/report_numbers.hpp"
+#include "daemon/report/site_lesson.hpp"
 #include "daemon/report/speed_statistics.hpp"
 #include "daemon/report/state_history.hpp"
 #include "daemon/report/welch_spectrum.hpp"
@@ -22,6 +23,8 @@ struct ReportSettings {
   std::vector<std::string> sensors;  ///< by name; none: all
   double stale_intervals = 5.0;      ///< [wind] stale_intervals
   JudgeSettings judge;
+  /// What the gusts of a sensor of this name are taken for; none: TurbulencePrior's own.
+  std::function<TurbulencePrior(const std::string& sensor)> prior;
   /// Local time minus UTC at a moment; none: UTC.
   std::function<Nanoseconds(UtcTime)> utc_offset;
 };
@@ -56,6 +59,7 @@ class SensorTally {
   ReadingJudge judge_;
   StateHistory states_;
   RecordedState state_ = RecordedState::kLive;
+  SiteLesson lesson_;
   bool was_interrupted_ = false;  ///< since the last believed reading
 
   SpeedStatistics speeds_;

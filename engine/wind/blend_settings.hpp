@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "engine/wind/site_spectrum.hpp"
 #include "engine/wind/synthetic_wind.hpp"
 
 namespace yuragi {
@@ -18,6 +20,7 @@ struct BlendSourceSettings {
   double south_m = 0.0;             ///< (a relative one is taken to stand where those do whose gusts it fills)
   double lead_m = 0.0;              ///< it is taken to stand so far upwind of there: more is known, and known later
   double length_m = 0.0;            ///< how far its gusts reach, until it tells more of them; 0: the blend's length
+  bool teaches_site = false;        ///< what it measures is the wind of this site and of now
   double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
   double direction_step_deg = 0.0;  ///< its vane knows only every so many degrees; 0: found out
 };
@@ -33,6 +36,9 @@ struct BlendSettings {
   double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
   double reach_m = 0.0;           ///< from the middle of the scenes to the farthest place of any of them
   double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
+  /// What is known of the site's gusts: corrects the noise of slow sources, and is taught by those that may teach. Of
+  /// the estimator's thread. None: nothing is corrected.
+  std::shared_ptr<SiteSpectrum> site{};
   std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults
 };
 

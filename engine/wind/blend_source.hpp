@@ -2,7 +2,7 @@
 
 #include <array>
 #include <complex>
-#include <vector>
+#include <memory>
 
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/blend_settings.hpp"
@@ -10,8 +10,9 @@
 #include "engine/wind/gust_variances.hpp"
 #include "engine/wind/octave_follower.hpp"
 #include "engine/wind/relative_scale.hpp"
+#include "engine/wind/site_teacher.hpp"
 #include "engine/wind/source_record.hpp"
-#include "engine/wind/turbulence_fit.hpp"
+#include "engine/wind/wind_turbulence.hpp"
 
 namespace yuragi {
 
@@ -25,6 +26,9 @@ using BandWeights = std::array<double, OctaveFollower::kBands + 1>;
 struct SourceResponse {
   std::complex<double> along, across;
 };
+
+/// What is believed of a source's turbulence before it has told of it. Pure.
+TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept;
 
 /// One source of a blend: what it says, taken apart into octave bands, how far each is to be believed, and the
 /// turbulence that its readings show. Thread-safe: no. Realtime-safe after construction: yes.
@@ -67,25 +71,18 @@ class BlendSource {
   double trust_at(double frequency_hz) const noexcept;
 
   const Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
-  const GustVariances& along() const noexcept { return along_.variances; }
-  const GustVariances& across() const noexcept { return across_.variances; }
+  const GustVariances& along() const noexcept { return along_; }
+  const GustVariances& across() const noexcept { return across_; }
 
   RelativeScale scale;  ///< of a relative source
 
  private:
-  /// One component of its wind: its turbulence, and what of it each octave of the noise has.
-  struct Component {
-    TurbulenceFit fit;
-    GustVariances variances;
-  };
-
-  static Component component(const BlendSettings& blend, const BlendSourceSettings& settings, const GustNoise& noise,
-                             double intensity);
   void begin() noexcept;
+  double expected_interval_s() const noexcept;
   double averaging_s() const noexcept;
   double slowness_s() const noexcept;
   void set_full_trust() noexcept;
-  void measure_scales(WindVector ahead) noexcept;
+  void measure(WindVector ahead, double mean_of_s) noexcept;
   void fit(double interval_s, double advection_m_s) noexcept;
 
   BlendSourceSettings settings_;
@@ -102,11 +99,11 @@ class BlendSource {
   double speed_m_s_ = 0.0;
   double spoken_s_ = 0.0;  ///< for so long, at most the memory of that speed
 
-  Component along_, across_;
+  WindTurbulence measured_;
   Turbulence turbulence_;
-  std::vector<WindVector> history_;  ///< a ring of the last readings, each a mean of its own stretch of time
-  std::size_t history_size_ = 0;     ///< those without a gap up to the last
-  std::size_t next_ = 0;
+  GustVariances along_, across_;  ///< what each octave of the noise has of it
+  std::shared_ptr<SiteSpectrum> site_;
+  SiteTeacher teacher_;
   std::size_t since_kept_ = 0;  ///< readings
   double fitted_s_ = 0.0;       ///< time since the last fit
 };

@@ -160,8 +160,8 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
     const double time_scale_s = kShortestTimeScale_s * std::pow(kLongestTimeScale_s / kShortestTimeScale_s,
                                                                 static_cast<double>(step) / kTimeScaleSteps);
     std::array<double, kScales> log_shape{};
-    double level = prior_.weight * log_prior;
-    double total = prior_.weight;
+    double level = prior_.intensity_weight * log_prior;
+    double total = prior_.intensity_weight;
     for (std::size_t scale = 0; scale < used; ++scale) {
       if (weight[scale] == 0.0) continue;
       log_shape[scale] =
@@ -170,7 +170,8 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
       total += weight[scale];
     }
     level /= total;
-    double cost = prior_.weight * (square(level - log_prior) + square(std::log(time_scale_s / prior_time_s)));
+    double cost = prior_.intensity_weight * square(level - log_prior) +
+                  prior_.weight * square(std::log(time_scale_s / prior_time_s));
     for (std::size_t scale = 0; scale < used; ++scale) {
       cost += weight[scale] * square(log_variance[scale] - log_shape[scale] - level);
     }
@@ -184,6 +185,11 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
   }
   interval_s_ = interval_s;
   scales_used_ = used;
+}
+
+double TurbulenceFit::expected(double tau_s) const noexcept {
+  return square(turbulence_.intensity) * von_karman_haar_variance(tau_s / turbulence_.time_scale_s) *
+         correction(kStrongestAt / tau_s);
 }
 
 double TurbulenceFit::correction(double frequency_hz) const noexcept {

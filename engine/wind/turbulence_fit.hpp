@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace yuragi {
@@ -15,7 +16,8 @@ struct Turbulence {
 struct TurbulencePrior {
   double intensity = 0.2;  ///< standard deviation over the mean speed
   double length_m = 57.0;  ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
-  double weight = 10.0;    ///< it counts as so many independent observations
+  double weight = 10.0;    ///< the length counts as so many independent observations
+  double intensity_weight = 10.0;  ///< and the intensity
 };
 
 /// Fits turbulence to the readings of one component as they come: a rolling fit that knows the past alone.
@@ -44,6 +46,15 @@ class TurbulenceFit {
   void fit(double interval_s, double speed_m_s) noexcept;
 
   Turbulence turbulence() const noexcept { return turbulence_; }
+
+  /// How many differences of a scale (below kScales) are remembered, counted as independent ones.
+  double observations(std::size_t scale) const noexcept { return std::ldexp(counts_[scale], -static_cast<int>(scale)); }
+  /// The mean square of the differences of a scale, as they were added; 0 where none is.
+  double measured(std::size_t scale) const noexcept {
+    return counts_[scale] > 0.0 ? squares_[scale] / counts_[scale] : 0.0;
+  }
+  /// What the fit says the mean square of differences between neighbouring means over tau_s (above 0) is.
+  double expected(double tau_s) const noexcept;
 
   /// By how much the measured power differs from von Karman's at a frequency: 1 where nothing is known.
   double correction(double frequency_hz) const noexcept;

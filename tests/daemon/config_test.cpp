@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/gust_length.hpp"
+#include "daemon/site_octaves.hpp"
 
 namespace yuragi {
 namespace {
@@ -132,6 +133,22 @@ TEST(Config, GustsReachAsFarAsTheHeightOfASensorSaysUnlessTheirLengthIsSet) {
   const Config set = parse_config("[wind]\ndefault_length = 40\n" + sensors, "test");
   for (const SensorConfig& sensor : set.sensors) EXPECT_EQ(gust_length_m(set, sensor), 40.0) << sensor.name;
   EXPECT_EQ(default_gust_length_m(set), 40.0);
+}
+
+TEST(Config, TheOctavesOfASiteAreARowOfDecibels) {
+  const Config config = parse_config("[wind]\nsite_octaves = \"+1.2 -0.4 3\"\n", "test");
+  const SiteSpectrum::Decibels octaves_db = make_site_spectrum(config)->octaves_db();
+  EXPECT_NEAR(octaves_db[0], 1.2, 1e-9);
+  EXPECT_NEAR(octaves_db[1], -0.4, 1e-9);
+  EXPECT_NEAR(octaves_db[2], 3.0, 1e-9);
+  EXPECT_NEAR(octaves_db[6], 3.0, 1e-9);
+  EXPECT_EQ(site_octaves_text(std::vector<double>{1.2, -0.4, 3.0}), "+1.2 -0.4 +3.0");
+  EXPECT_TRUE(parse_site_octaves(" ")->empty());
+  for (const char* wrong : {"1.2 x", "11", "nan", "+-1", "1 2 3 4 5 6 7 8", "1,2"}) {
+    EXPECT_THAT(mistakes_of("[wind]\nsite_octaves = \"" + std::string(wrong) + "\"\n"),
+                StartsWith("wall.toml:2:16: wind.site_octaves: "))
+        << wrong;
+  }
 }
 
 TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {

@@ -187,6 +187,35 @@ TEST_F(SiteFileTest, TheSiteIsRememberedOverARestart) {
   EXPECT_EQ(log.count("remembers 3 h"), 1);
 }
 
+TEST_F(SiteFileTest, TheSitesGustsAreRememberedOverARestart) {
+  const auto learnt = std::make_shared<SiteSpectrum>();
+  for (int i = 0; i < 1000; ++i) learnt->learn(1, 3.0, 14.0);
+  {
+    // A gain is not needed for that.
+    ShaperBench wall("site_file = \"" + file_.string() + "\"\n");
+    wall.shaper.keep_site_file(learnt);
+    wall.after(2.0);
+  }
+  const ToldLog log;
+  const auto known = std::make_shared<SiteSpectrum>();
+  ShaperBench wall("site_file = \"" + file_.string() + "\"\n");
+  wall.shaper.keep_site_file(known);
+  EXPECT_EQ(known->octaves_db(), learnt->octaves_db());
+  EXPECT_EQ(log.count("of the site's gusts"), 1);
+}
+
+TEST_F(SiteFileTest, AFileFromBeforeGustsWereLearntIsStillRead) {
+  std::string times;
+  for (std::size_t bin = 0; bin < SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
+  std::ofstream(file_) << "{\"seconds_at_each_speed\": [" << times << "]}";
+  const ToldLog log;
+  const auto gusts = std::make_shared<SiteSpectrum>();
+  ShaperBench wall(with_file());
+  wall.shaper.keep_site_file(gusts);
+  EXPECT_EQ(log.count("of the site's wind"), 1);
+  EXPECT_EQ(gusts->octaves_db(), SiteSpectrum::Decibels{});
+}
+
 TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
   for (const char* wrong : {"", "{", "[]", "{\"seconds_at_each_speed\": 3}", "{\"seconds_at_each_speed\": [1, \"x\"]}",
                             "{\"seconds_at_each_speed\": [1, 2]}", "{\"seconds_at_each_speed\": [-1e999]}"}) {
