@@ -4,6 +4,7 @@
 //
 //   xvfb-run -a film_strip RECORDING.windlog STRIP.png --from 600 --camera 350,12,20 --camera 0,89,12
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -36,6 +37,7 @@ struct StripOptions {
 };
 
 constexpr int kGap_px = 4;
+constexpr double kBefore_s = 120.0;  // the recording is heard from so long before the first picture
 
 /// "HEADING,PITCH,DISTANCE" around the middle of what is shown, a little above the ground.
 OrbitCamera camera_of(const std::string& text) {
@@ -89,10 +91,14 @@ void make_strip(const StripOptions& options) {
 
   const Config config = options.config.empty() ? default_config() : load_config(options.config);
   const double tick_s = 1.0 / config.animation.number("rate");
+  const double start_s = std::max(0.0, options.from_s - kBefore_s);
+  const double first_s = options.from_s - start_s;
+  PlayerOptions player;
+  player.playback.start = fmt::format("{}", start_s);
   int taken = 0;
   PoseMoment moment;
   const UseTick take = [&](double time_s, const Animation& animation) {
-    if (taken == options.moments || time_s < options.from_s + taken * options.step_s - 0.5 * tick_s) return;
+    if (taken == options.moments || time_s < first_s + taken * options.step_s - 0.5 * tick_s) return;
     if (taken == 0) {
       stage.set_scenes(animation.describe().scenes);
       moment = rest_moment(stage.scenes());
@@ -104,7 +110,7 @@ void make_strip(const StripOptions& options) {
     }
     ++taken;
   };
-  replay_in_lockstep(config, options.recording, {}, options.from_s + options.moments * options.step_s, {}, take);
+  replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take);
   if (taken < options.moments) {
     throw std::runtime_error(fmt::format("{} ends after {} of {} pictures", options.recording, taken, options.moments));
   }
