@@ -33,7 +33,8 @@ struct StripOptions {
   int columns = 4;
   int width_px = 400;
   int height_px = 225;
-  std::vector<std::string> cameras{"350,14,20", "0,89,12"};
+  double contrast = 0.0;
+  std::vector<std::string> cameras{"350,14,20", "0,60,26"};
 };
 
 constexpr int kGap_px = 4;
@@ -51,6 +52,44 @@ OrbitCamera camera_of(const std::string& text) {
   return camera;
 }
 
+using Picture = std::vector<std::uint8_t>;
+
+/// Shows more of what changes: each picture gets `contrast` times what it differs from the mean of all, in squares of
+/// kSquare_px, so that gusts are seen and not single blades.
+void stretch(std::vector<Picture>& pictures, int width_px, double contrast) {
+  constexpr std::size_t kSquare_px = 8;
+  const auto width = static_cast<std::size_t>(width_px);
+  const std::size_t height = pictures.front().size() / (3 * width);
+  for (std::size_t top = 0; top < height; top += kSquare_px) {
+    for (std::size_t left = 0; left < width; left += kSquare_px) {
+      const auto each = [&](Picture& picture, const auto& use) {
+        for (std::size_t y = top; y < std::min(height, top + kSquare_px); ++y) {
+          for (std::size_t i = 3 * (y * width + left); i < 3 * (y * width + std::min(width, left + kSquare_px)); ++i) {
+            use(picture[i]);
+          }
+        }
+      };
+      std::vector<double> sums(pictures.size());
+      double mean = 0.0;
+      double values = 0.0;
+      for (std::size_t i = 0; i < pictures.size(); ++i) {
+        each(pictures[i], [&](std::uint8_t value) {
+          sums[i] += value;
+          values += 1.0;
+        });
+        mean += sums[i];
+      }
+      mean /= values;
+      for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const double more = contrast * (sums[i] * static_cast<double>(pictures.size()) / values - mean);
+        each(pictures[i], [&](std::uint8_t& value) {
+          value = static_cast<std::uint8_t>(std::clamp(std::round(value + more), 0.0, 255.0));
+        });
+      }
+    }
+  }
+}
+
 /// Small pictures side by side, on black.
 class Sheet {
  public:
@@ -62,7 +101,7 @@ class Sheet {
         height_px_((count + columns_ - 1) / columns_ * cell_height_px_ - kGap_px),
         rgb_(3 * static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_)) {}
 
-  void put(int number, const std::vector<std::uint8_t>& picture) {
+  void put(int number, const Picture& picture) {
     const auto line = 3 * static_cast<std::size_t>(cell_width_px_ - kGap_px);
     auto from = picture.begin();
     for (int y = 0; y < cell_height_px_ - kGap_px; ++y, from += static_cast<std::ptrdiff_t>(line)) {
@@ -75,7 +114,7 @@ class Sheet {
 
  private:
   int columns_, cell_width_px_, cell_height_px_, width_px_, height_px_;
-  std::vector<std::uint8_t> rgb_;
+  Picture rgb_;
 };
 
 void make_strip(const StripOptions& options) {
@@ -96,6 +135,7 @@ void make_strip(const StripOptions& options) {
   PlayerOptions player;
   player.playback.start = fmt::format("{}", start_s);
   int taken = 0;
+  std::vector<std::vector<Picture>> pictures(cameras.size());
   PoseMoment moment;
   const UseTick take = [&](double time_s, const Animation& animation) {
     if (taken == options.moments || time_s < first_s + taken * options.step_s - 0.5 * tick_s) return;
@@ -106,13 +146,19 @@ void make_strip(const StripOptions& options) {
     for (std::size_t scene = 0; scene < moment.poses.size(); ++scene) moment.poses[scene] = *animation.poses()[scene];
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       stage.draw(moment, cameras[i], target);
-      sheet.put(static_cast<int>(i) * rows * options.columns + taken, target.read_rgb());
+      pictures[i].push_back(target.read_rgb());
     }
     ++taken;
   };
   replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take);
   if (taken < options.moments) {
     throw std::runtime_error(fmt::format("{} ends after {} of {} pictures", options.recording, taken, options.moments));
+  }
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (options.contrast > 0.0) stretch(pictures[i], options.width_px, options.contrast);
+    for (int number = 0; number < taken; ++number) {
+      sheet.put(static_cast<int>(i) * rows * options.columns + number, pictures[i][static_cast<std::size_t>(number)]);
+    }
   }
   sheet.write(options.picture);
 }
@@ -132,6 +178,8 @@ int main(int argc, char** argv) {
     app.add_option("--columns", options.columns)->check(CLI::Range(1, 100))->capture_default_str();
     app.add_option("--width", options.width_px, "of a picture, pixels")->check(CLI::Range(16, 4096));
     app.add_option("--height", options.height_px)->check(CLI::Range(16, 4096));
+    app.add_option("--contrast", options.contrast, "add so many times what changes from picture to picture")
+        ->check(CLI::Range(0.0, 100.0));
     app.add_option("--camera", options.cameras, "HEADING,PITCH,DISTANCE as yuragi-viewer has it; can be given again")
         ->allow_extra_args(false);
     CLI11_PARSE(app, argc, argv);
