@@ -33,7 +33,7 @@ struct StripOptions {
   int columns = 4;
   int width_px = 400;
   int height_px = 225;
-  double contrast = 0.0;
+  bool is_lean_shown = false;
   std::vector<std::string> cameras{"350,14,20", "0,60,26"};
 };
 
@@ -54,41 +54,65 @@ OrbitCamera camera_of(const std::string& text) {
 
 using Picture = std::vector<std::uint8_t>;
 
-/// Shows more of what changes: each picture gets `contrast` times what it differs from the mean of all, in squares of
-/// kSquare_px, so that gusts are seen and not single blades.
-void stretch(std::vector<Picture>& pictures, int width_px, double contrast) {
-  constexpr std::size_t kSquare_px = 8;
-  const auto width = static_cast<std::size_t>(width_px);
-  const std::size_t height = pictures.front().size() / (3 * width);
-  for (std::size_t top = 0; top < height; top += kSquare_px) {
-    for (std::size_t left = 0; left < width; left += kSquare_px) {
-      const auto each = [&](Picture& picture, const auto& use) {
-        for (std::size_t y = top; y < std::min(height, top + kSquare_px); ++y) {
-          for (std::size_t i = 3 * (y * width + left); i < 3 * (y * width + std::min(width, left + kSquare_px)); ++i) {
-            use(picture[i]);
-          }
-        }
-      };
-      std::vector<double> sums(pictures.size());
-      double mean = 0.0;
-      double values = 0.0;
-      for (std::size_t i = 0; i < pictures.size(); ++i) {
-        each(pictures[i], [&](std::uint8_t value) {
-          sums[i] += value;
-          values += 1.0;
-        });
-        mean += sums[i];
-      }
-      mean /= values;
-      for (std::size_t i = 0; i < pictures.size(); ++i) {
-        const double more = contrast * (sums[i] * static_cast<double>(pictures.size()) / values - mean);
-        each(pictures[i], [&](std::uint8_t& value) {
-          value = static_cast<std::uint8_t>(std::clamp(std::round(value + more), 0.0, 255.0));
-        });
-      }
+/// How far the blades of a meadow lean, seen from above, north upward: means over squares of its ground.
+class LeanMap {
+ public:
+  explicit LeanMap(const StrandSkeleton& meadow) : meadow_(meadow) {
+    for (std::size_t i = 0; i < meadow.strand_count; ++i) {
+      reach_m_ = std::max({reach_m_, std::abs(meadow.root_x_m[i]), std::abs(meadow.root_z_m[i])});
     }
   }
-}
+
+  void add(const StrandPose& pose) {
+    std::vector<double> sums(kCells * kCells), counts(kCells * kCells);
+    for (std::size_t i = 0; i < meadow_.strand_count; ++i) {
+      const std::size_t cell = cell_of(meadow_.root_z_m[i]) * kCells + cell_of(meadow_.root_x_m[i]);
+      sums[cell] += static_cast<double>(std::hypot(pose.bend_east_rad[i], pose.bend_south_rad[i]));
+      counts[cell] += 1.0;
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
+    leans_.push_back(std::move(sums));
+  }
+
+  /// The pictures, all with the same colours: dark where blades stand, pale where they lean most.
+  std::vector<Picture> pictures(int width_px, int height_px) const {
+    double least = 1e9;
+    double most = 0.0;
+    for (const std::vector<double>& lean : leans_) {
+      least = std::min(least, *std::ranges::min_element(lean));
+      most = std::max(most, *std::ranges::max_element(lean));
+    }
+    std::vector<Picture> result;
+    for (const std::vector<double>& lean : leans_) {
+      Picture& picture = result.emplace_back();
+      for (int y = 0; y < height_px; ++y) {
+        for (int x = 0; x < width_px; ++x) {
+          const auto column = std::floor((x - (width_px - height_px) / 2.0) * kCells / height_px);
+          const bool is_ground = column >= 0.0 && column < kCells;
+          const auto row = static_cast<std::size_t>(y) * kCells / static_cast<std::size_t>(height_px);
+          const double part =
+              is_ground ? (lean[row * kCells + static_cast<std::size_t>(column)] - least) / (most - least) : 0.0;
+          for (const double bright : {255.0, 250.0, 200.0}) {
+            picture.push_back(is_ground ? static_cast<std::uint8_t>(20.0 + part * (bright - 20.0)) : 0);
+          }
+        }
+      }
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t kCells = 45;
+
+  std::size_t cell_of(float at_m) const {
+    const float part = (at_m / reach_m_ + 1.0F) / 2.0F;
+    return std::min(static_cast<std::size_t>(part * static_cast<float>(kCells)), kCells - 1);
+  }
+
+  const StrandSkeleton& meadow_;
+  float reach_m_ = 0.1F;
+  std::vector<std::vector<double>> leans_;  // a moment each
+};
 
 /// Small pictures side by side, on black.
 class Sheet {
@@ -126,7 +150,8 @@ void make_strip(const StripOptions& options) {
   for (const std::string& text : options.cameras) cameras.push_back(camera_of(text));
   // Each camera's block begins with a row of its own.
   const int rows = (options.moments + options.columns - 1) / options.columns;
-  Sheet sheet(options, static_cast<int>(cameras.size()) * rows * options.columns);
+  const int blocks = static_cast<int>(cameras.size()) + (options.is_lean_shown ? 1 : 0);
+  Sheet sheet(options, blocks * rows * options.columns);
 
   const Config config = options.config.empty() ? default_config() : load_config(options.config);
   const double tick_s = 1.0 / config.animation.number("rate");
@@ -136,26 +161,29 @@ void make_strip(const StripOptions& options) {
   player.playback.start = fmt::format("{}", start_s);
   int taken = 0;
   std::vector<std::vector<Picture>> pictures(cameras.size());
+  std::optional<LeanMap> lean;
   PoseMoment moment;
   const UseTick take = [&](double time_s, const Animation& animation) {
     if (taken == options.moments || time_s < first_s + taken * options.step_s - 0.5 * tick_s) return;
     if (taken == 0) {
       stage.set_scenes(animation.describe().scenes);
       moment = rest_moment(stage.scenes());
+      if (options.is_lean_shown) lean.emplace(std::get<StrandSkeleton>(stage.scenes()[0].skeleton));
     }
     for (std::size_t scene = 0; scene < moment.poses.size(); ++scene) moment.poses[scene] = *animation.poses()[scene];
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       stage.draw(moment, cameras[i], target);
       pictures[i].push_back(target.read_rgb());
     }
+    if (lean) lean->add(std::get<StrandPose>(moment.poses[0]));
     ++taken;
   };
   replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take);
   if (taken < options.moments) {
     throw std::runtime_error(fmt::format("{} ends after {} of {} pictures", options.recording, taken, options.moments));
   }
+  if (lean) pictures.push_back(lean->pictures(options.width_px, options.height_px));
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    if (options.contrast > 0.0) stretch(pictures[i], options.width_px, options.contrast);
     for (int number = 0; number < taken; ++number) {
       sheet.put(static_cast<int>(i) * rows * options.columns + number, pictures[i][static_cast<std::size_t>(number)]);
     }
@@ -178,8 +206,7 @@ int main(int argc, char** argv) {
     app.add_option("--columns", options.columns)->check(CLI::Range(1, 100))->capture_default_str();
     app.add_option("--width", options.width_px, "of a picture, pixels")->check(CLI::Range(16, 4096));
     app.add_option("--height", options.height_px)->check(CLI::Range(16, 4096));
-    app.add_option("--contrast", options.contrast, "add so many times what changes from picture to picture")
-        ->check(CLI::Range(0.0, 100.0));
+    app.add_flag("--lean", options.is_lean_shown, "and how far the first scene's blades lean, as a map");
     app.add_option("--camera", options.cameras, "HEADING,PITCH,DISTANCE as yuragi-viewer has it; can be given again")
         ->allow_extra_args(false);
     CLI11_PARSE(app, argc, argv);
