@@ -74,10 +74,19 @@ class LeanMap {
     leans_.push_back(std::move(sums));
   }
 
+  /// Takes out what a place has in all moments: blades differ.
+  void take_out_means() {
+    for (std::size_t cell = 0; cell < kCells * kCells; ++cell) {
+      double mean = 0.0;
+      for (const std::vector<double>& lean : leans_) mean += lean[cell] / static_cast<double>(leans_.size());
+      for (std::vector<double>& lean : leans_) lean[cell] -= mean;
+    }
+  }
+
   /// The pictures, all with the same colours: dark where blades stand, pale where they lean most.
   std::vector<Picture> pictures(int width_px, int height_px) const {
     double least = 1e9;
-    double most = 0.0;
+    double most = -1e9;
     for (const std::vector<double>& lean : leans_) {
       least = std::min(least, *std::ranges::min_element(lean));
       most = std::max(most, *std::ranges::max_element(lean));
@@ -182,6 +191,7 @@ void make_strip(const StripOptions& options) {
   if (taken < options.moments) {
     throw std::runtime_error(fmt::format("{} ends after {} of {} pictures", options.recording, taken, options.moments));
   }
+  if (lean) lean->take_out_means();
   if (lean) pictures.push_back(lean->pictures(options.width_px, options.height_px));
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     for (int number = 0; number < taken; ++number) {
