@@ -19,7 +19,7 @@ std::uint64_t hash_poses(std::uint64_t hash, std::span<const Pose* const> poses)
 
 LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
                                   const PlayerOptions& options, double duration_s,
-                                  const std::function<void(double)>& progress) {
+                                  const std::function<void(double)>& progress, const UseTick& use) {
   WindlogPlayer player(recording, options, Instant{});
   const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
   Animation animation(config, gusts);
@@ -57,6 +57,7 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
     const WindState& state = wind.state;
     animation.step(wind, 1.0 / rate_hz);
     result.pose_hash = hash_poses(result.pose_hash, animation.poses());
+    if (use) use(now_s, animation);
     ++result.ticks;
     if (state.source == WindSource::kLive) {
       const double speed_m_s = speed_of(state.wind);
