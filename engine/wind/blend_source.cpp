@@ -61,7 +61,7 @@ TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSe
   TurbulencePrior prior{.intensity = blend.climate.turbulence_intensity, .length_m = blend.length_m};
   if (settings.length_m > 0.0) {
     prior.length_m = settings.length_m;
-    prior.weight = kOwnLengthWeight;
+    prior.length_weight = kOwnLengthWeight;
     prior.intensity_weight = kOwnLengthIntensityWeight;
   }
   return prior;

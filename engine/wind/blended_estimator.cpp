@@ -28,6 +28,9 @@ constexpr double kLeastShare = 1e-9;
 constexpr double kStrengthMemory_s = 1.0;
 /// And how fast they lose what is known of them follows the turbulence that is fitted.
 constexpr double kCoherenceMemory_s = 10.0;
+/// The noise's eddies turn over at half of their own rate. At the full rate two places 60 m apart on the line of the
+/// wind have less in common than GustCoherence leaves them of what was measured; frozen, they have more.
+constexpr double kTurnoverRate = 0.5;
 /// Waves shorter than so many of its samples are faded out of the tape, over the octave above them.
 constexpr double kLeastSamplesAWave = 4.0;
 /// How far the windward edge moves with a wider scene, over how far the wind goes.
@@ -276,7 +279,7 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   const Turbulence now = turbulence();
   const double length_m = now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s);
   noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
-                eddy_turnover_m23_s(now.intensity * heard.speed_m_s, length_m));
+                kTurnoverRate * eddy_turnover_m23_s(now.intensity * heard.speed_m_s, length_m));
 
   // The tapes go the same way.
   const double way_m = advection_m_s_ * dt_s;

@@ -171,7 +171,7 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
     }
     level /= total;
     double cost = prior_.intensity_weight * square(level - log_prior) +
-                  prior_.weight * square(std::log(time_scale_s / prior_time_s));
+                  prior_.length_weight * square(std::log(time_scale_s / prior_time_s));
     for (std::size_t scale = 0; scale < used; ++scale) {
       cost += weight[scale] * square(log_variance[scale] - log_shape[scale] - level);
     }

@@ -14,9 +14,9 @@ struct Turbulence {
 
 /// What a fit believes before it has seen anything, and goes back to where it sees little.
 struct TurbulencePrior {
-  double intensity = 0.2;  ///< standard deviation over the mean speed
-  double length_m = 57.0;  ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
-  double weight = 10.0;    ///< the length counts as so many independent observations
+  double intensity = 0.2;       ///< standard deviation over the mean speed
+  double length_m = 57.0;       ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
+  double length_weight = 10.0;  ///< the length counts as so many independent observations
   double intensity_weight = 10.0;  ///< and the intensity
 };
 

@@ -104,9 +104,10 @@ class Ground {
 
  private:
   /// The wind of this tick, to be read at places.
-  GroundWind over_the_ground() { return estimator_.ground(); }
+  GroundWind over_the_ground() { return written_to(tapes_, {{}, estimator_.ground(), estimator_.stroke()}); }
 
   BlendedEstimator estimator_;
+  WindTapes tapes_;
   std::vector<FeltWind> places_;
   FeltWind at_sensor_;
 };

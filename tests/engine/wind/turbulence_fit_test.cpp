@@ -79,7 +79,7 @@ TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
       for (std::size_t k = 0; k < kPerReading; ++k) sum += static_cast<double>(noise.values[i + k]);
       readings.push_back(7.0 + 0.3 * 7.0 * sum / kPerReading);
     }
-    TurbulenceFit fit({.intensity = 0.1, .length_m = 200.0, .weight = 3.0}, 1e9);
+    TurbulenceFit fit({.intensity = 0.1, .length_m = 200.0, .length_weight = 3.0, .intensity_weight = 3.0}, 1e9);
     feed(fit, readings, 7.0);
     fit.fit(1.0, 7.0);
     EXPECT_NEAR(fit.turbulence().intensity, 0.3, 0.03) << seed;
@@ -89,7 +89,7 @@ TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
 }
 
 TEST(TurbulenceFit, BelievesItsPriorWhileItHasSeenNothingAndAgainWhenAllIsForgotten) {
-  const TurbulencePrior prior{.intensity = 0.17, .length_m = 57.0, .weight = 10.0};
+  const TurbulencePrior prior{.intensity = 0.17, .length_m = 57.0, .length_weight = 10.0, .intensity_weight = 10.0};
   TurbulenceFit fit(prior, 600.0);
   fit.fit(1.0, 5.7);
   EXPECT_NEAR(fit.turbulence().intensity, 0.17, 1e-9);
