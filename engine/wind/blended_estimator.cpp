@@ -529,11 +529,17 @@ SourceReport BlendedEstimator::report(std::size_t index) const noexcept {
 }
 
 Turbulence BlendedEstimator::turbulence() const noexcept {
+  double left = 1.0;
+  Turbulence sum{.intensity = 0.0, .time_scale_s = 0.0};
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    if (choice_.word(i) >= 0.5) return sources_[i].turbulence();
+    const double word = std::min(choice_.word(i), left);
+    left -= word;
+    sum.intensity += word * sources_[i].turbulence().intensity;
+    sum.time_scale_s += word * sources_[i].turbulence().time_scale_s;
   }
-  return {settings_.climate.turbulence_intensity,
-          settings_.length_m / std::max(settings_.climate.mean_speed_m_s, kLeastSpeed_m_s)};
+  sum.intensity += left * settings_.climate.turbulence_intensity;
+  sum.time_scale_s += left * settings_.length_m / std::max(settings_.climate.mean_speed_m_s, kLeastSpeed_m_s);
+  return sum;
 }
 
 }  // namespace yuragi

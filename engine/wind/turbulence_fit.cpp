@@ -118,15 +118,17 @@ TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s) : pr
   turbulence_ = {prior_.intensity, 8.0};
 }
 
-void TurbulenceFit::add(std::size_t scale, double difference) noexcept {
-  if (scale >= kScales || !std::isfinite(difference)) return;
-  squares_[scale] += square(difference);
+void TurbulenceFit::add(std::size_t scale, double difference, double weight) noexcept {
+  if (scale >= kScales || !std::isfinite(difference) || !std::isfinite(weight)) return;
+  squares_[scale] += weight * square(difference);
+  weights_[scale] += weight;
   counts_[scale] += 1.0;
 }
 
 void TurbulenceFit::forget(double dt_s) noexcept {
   const double kept = std::exp(-std::max(dt_s, 0.0) / memory_s_);
   for (double& sum : squares_) sum *= kept;
+  for (double& weight : weights_) weight *= kept;
   for (double& count : counts_) count *= kept;
 }
 
@@ -148,7 +150,7 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
       independent[scale] = 0.0;
       continue;
     }
-    log_variance[scale] = std::log(squares_[scale] / counts_[scale]);
+    log_variance[scale] = std::log(squares_[scale] / weights_[scale]);
     weight[scale] = independent[scale] / (1.0 + independent[scale] / kMostObservations);
   }
 

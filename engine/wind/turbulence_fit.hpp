@@ -36,8 +36,9 @@ class TurbulenceFit {
 
   TurbulenceFit(const TurbulencePrior& prior, double memory_s);
 
-  /// A difference between two neighbouring means of 2^scale readings each, over the mean speed.
-  void add(std::size_t scale, double difference) noexcept;
+  /// A difference between two neighbouring means of 2^scale readings each, over the mean speed; `weight` (0 or more):
+  /// how much it counts in the scale's mean square.
+  void add(std::size_t scale, double difference, double weight = 1.0) noexcept;
 
   /// What has been added fades: so much time has gone by.
   void forget(double dt_s) noexcept;
@@ -51,7 +52,7 @@ class TurbulenceFit {
   double observations(std::size_t scale) const noexcept { return std::ldexp(counts_[scale], -static_cast<int>(scale)); }
   /// The mean square of the differences of a scale, as they were added; 0 where none is.
   double measured(std::size_t scale) const noexcept {
-    return counts_[scale] > 0.0 ? squares_[scale] / counts_[scale] : 0.0;
+    return weights_[scale] > 0.0 ? squares_[scale] / weights_[scale] : 0.0;
   }
   /// What the fit says the mean square of differences between neighbouring means over tau_s (above 0) is.
   double expected(double tau_s) const noexcept;
@@ -62,7 +63,7 @@ class TurbulenceFit {
  private:
   TurbulencePrior prior_;
   double memory_s_;
-  std::array<double, kScales> squares_{};
+  std::array<double, kScales> squares_{}, weights_{};
   std::array<double, kScales> counts_{};
   Turbulence turbulence_;
   std::array<double, kScales> log_correction_{};

@@ -41,9 +41,9 @@ void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, b
     WindVector older{};
     for (std::size_t back = count; back < 2 * count; ++back) older = older + reading(back);
     const WindVector difference = 1.0 / (static_cast<double>(count) * speed_m_s) * (newer - older);
-    along_.add(scale, limited(difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s));
+    along_.add(scale, limited(difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s), speed_m_s);
     if (!tells_across) continue;
-    across_.add(scale, limited(difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s));
+    across_.add(scale, limited(difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s), speed_m_s);
   }
 }
 

@@ -12,7 +12,10 @@ namespace yuragi {
 /// The turbulence that the readings of one source show, along the wind and across it: of the last readings the
 /// differences between the mean of 2^s and that of as many before, each a part of the mean speed.
 ///
-/// A difference counts as at most the mean speed: a wind that rises out of a calm differs by many times the mean that
+/// Each difference counts as much as the speed that it is a part of: in weak wind the parts are large and move little,
+/// and a fit in which all count alike makes the gusts of the stronger wind behind it too strong.
+///
+/// A difference is at most the mean speed: a wind that rises out of a calm differs by many times the mean that
 /// it rises from, which tells how fast that mean follows and not how strong the gusts are. Allocates at construction
 /// only. Thread-safe: no. Realtime-safe: yes.
 class WindTurbulence {
