@@ -13,9 +13,10 @@ namespace yuragi {
 ///
 ///     w = (C + N)^-1 c,
 ///
-/// c_i how coherent sensor i is with the place, C_ij with each other, N a small nugget that grows without bound while a
-/// sensor's presence fades: who comes or goes moves nothing at once. Known is w' C w of the power, at most all of it.
-/// One lane a wave: all lanes are computed side by side.
+/// c_i how coherent sensor i is with the place, C_ij with each other, N a small nugget. Of one that comes or goes they
+/// are the mean of those with it and those without it, by its presence, so that nothing moves at once, however alike
+/// two sensors are. Known is w' C w of the power, at most all of it. One lane a wave: all lanes are computed side by
+/// side.
 ///
 /// Thread-safe: reading, yes. Realtime-safe: yes.
 template <std::size_t lanes>
@@ -29,7 +30,7 @@ class GustKriging {
                const std::array<float, lanes>& loss_per_m) noexcept {
     count_ = pens.size();
     for (std::size_t i = 0; i < count_; ++i) {
-      root_presence_[i] = static_cast<float>(std::sqrt(std::clamp(pens[i].presence, 0.0, 1.0)));
+      presence_[i] = std::clamp(pens[i].presence, 0.0, 1.0);
       for (std::size_t j = 0; j < count_; ++j) {
         const double east_m = pens[i].east_m - pens[j].east_m;
         const double north_m = pens[j].south_m - pens[i].south_m;
@@ -40,7 +41,15 @@ class GustKriging {
         }
       }
     }
-    for (std::size_t lane = 0; lane < lanes; ++lane) invert(lane);
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = 0; j < count_; ++j) inverse_[i][j].fill(0.0F);
+    }
+    for (unsigned there = 0; there < 1U << count_; ++there) {
+      double part = 1.0;
+      for (std::size_t i = 0; i < count_; ++i) part *= is_among(there, i) ? presence_[i] : 1.0 - presence_[i];
+      if (part == 0.0) continue;
+      for (std::size_t lane = 0; lane < lanes; ++lane) add_inverse(there, part, lane);
+    }
   }
 
   /// The weights of the sensors at a place, and by what they are limited: coherent[i] is c_i.
@@ -75,17 +84,17 @@ class GustKriging {
  private:
   static constexpr double kNugget = 0.001;
 
-  /// S (S (C + N) S)^-1 S, S the roots of the presences: with N = nugget + (1 - presence) / presence, the diagonal of
-  /// what is inverted is 1 + nugget presence, however small a presence is. Gauss and Jordan; it is positive definite.
-  void invert(std::size_t lane) noexcept {
+  static bool is_among(unsigned there, std::size_t i) noexcept { return (there >> i & 1U) != 0; }
+
+  /// Adds `part` of (C + N)^-1 of those sensors that are `there`. Gauss and Jordan; it is positive definite.
+  void add_inverse(unsigned there, double part, std::size_t lane) noexcept {
     std::array<std::array<double, kMost>, kMost> left{}, right{};
     for (std::size_t i = 0; i < count_; ++i) {
       for (std::size_t j = 0; j < count_; ++j) {
-        const auto roots = static_cast<double>(root_presence_[i] * root_presence_[j]);
-        left[i][j] = roots * static_cast<double>(coherence_[i][j][lane]);
+        if (is_among(there, i) && is_among(there, j)) left[i][j] = static_cast<double>(coherence_[i][j][lane]);
       }
-      left[i][i] = 1.0 + kNugget * static_cast<double>(root_presence_[i] * root_presence_[i]);
-      right[i][i] = 1.0;
+      left[i][i] = 1.0 + kNugget;
+      right[i][i] = is_among(there, i) ? 1.0 : 0.0;
     }
     for (std::size_t pivot = 0; pivot < count_; ++pivot) {
       const double scale = 1.0 / left[pivot][pivot];
@@ -104,13 +113,13 @@ class GustKriging {
     }
     for (std::size_t i = 0; i < count_; ++i) {
       for (std::size_t j = 0; j < count_; ++j) {
-        inverse_[i][j][lane] = root_presence_[i] * static_cast<float>(right[i][j]) * root_presence_[j];
+        inverse_[i][j][lane] += static_cast<float>(part * right[i][j]);
       }
     }
   }
 
   std::size_t count_ = 0;
-  std::array<float, kMost> root_presence_{};
+  std::array<double, kMost> presence_{};
   std::array<std::array<Lanes, kMost>, kMost> coherence_{}, inverse_{};
 };
 

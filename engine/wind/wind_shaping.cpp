@@ -102,6 +102,8 @@ void WindShaping::apply_gains(DrivingWind& wind) const noexcept {
   wind.ground = gain * wind.ground;
   if (settings_.gusts == 1.0) return;
   wind.ground.gust_gain = settings_.gusts;
+  const WindVector way = noise_->everywhere(wind.ground.gusts);
+  wind.ground.everywhere = wind.ground.everywhere + (settings_.gusts - 1.0) * way;
   for (float& deviation : wind.ground.gusts.along_m_s) deviation *= static_cast<float>(settings_.gusts);
   for (float& deviation : wind.ground.gusts.across_m_s) deviation *= static_cast<float>(settings_.gusts);
   wind.state.wind = wind_where_measured(wind.ground, wind.stroke, *noise_);

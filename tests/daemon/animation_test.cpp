@@ -1,6 +1,7 @@
 #include "daemon/animation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -8,12 +9,18 @@
 #include "daemon/sensor_hub.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/pose_hash.hpp"
+#include "tests/support/stroke_run.hpp"
 
 namespace yuragi {
 namespace {
 
 constexpr double kTick_s = 1.0 / 60.0;
-constexpr WindVector kBreeze{5.0, 1.0};
+
+/// A wind that nobody measures: the same everywhere.
+DrivingWind everywhere(WindVector wind) {
+  return {.state = {.wind = wind}, .ground = wind};
+}
+const DrivingWind kBreeze = everywhere({5.0, 1.0});
 
 Config installation(const std::string& first, const std::string& second) {
   const std::string small = "[[scene]]\nkind = \"grass\"\nblades_across = 12\nblades_deep = 8\n";
@@ -59,7 +66,7 @@ TEST(AnimationTest, GainIsAFactorOnTheWindThatASceneFeels) {
   Animation other = animation_of(installation("", ""));
   for (int tick = 0; tick < 90; ++tick) {
     one.step(kBreeze, kTick_s);
-    other.step(2.0 * kBreeze, kTick_s);
+    other.step(everywhere({10.0, 2.0}), kTick_s);
   }
   EXPECT_EQ(pose_hash(kPoseHashSeed, *one.poses()[0]), pose_hash(kPoseHashSeed, *other.poses()[0]));
   EXPECT_GT(largest(*one.poses()[0]), 0.1F);
@@ -71,7 +78,7 @@ TEST(AnimationTest, PosesDoNotDependOnHowManyThreadsShareATick) {
     Config config = installation("", "");
     config.animation.set("threads", threads);
     Animation animation = animation_of(config);
-    for (int tick = 0; tick < 30; ++tick) animation.step(WindVector{6.0, 2.0}, 1.0 / 60.0);
+    for (int tick = 0; tick < 30; ++tick) animation.step(everywhere({6.0, 2.0}), kTick_s);
     std::uint64_t hash = kPoseHashSeed;
     for (const Pose* pose : animation.poses()) hash = pose_hash(hash, *pose);
     return hash;
@@ -139,6 +146,63 @@ TEST(AnimationTest, AFadeOfNoTimeIsDoneAtTheNextTickAndASceneThatIsNotThereIsIgn
   animation.step(kBreeze, kTick_s);
   EXPECT_EQ(animation.opacities()[0], 1.0F);
   EXPECT_EQ(animation.opacities()[1], 0.0F);
+}
+
+/// A wind toward north of 6 m/s that is measured 20 m south of the middle, with a gust after 20 s.
+class MeasuredGust {
+ public:
+  MeasuredGust() { run_.blow({0.0, 6.0}); }
+  DrivingWind next() {
+    const bool is_gust = ++tick_ > 20 * 60;
+    run_.step([is_gust](std::size_t, WindSample& now) { now.north_m_s[3] = is_gust ? 4.0F : 0.0F; });
+    return {.state = {.wind = run_.wind()}, .ground = run_.wind(), .stroke = run_.stroke()};
+  }
+
+ private:
+  StrokeRun run_{{{0.0, 20.0}}};
+  int tick_ = 0;
+};
+
+TEST(AnimationTest, AMeasuredGustReachesASceneAfterItsWay) {
+  Animation animation = animation_of(installation("z = 16", "z = -14"));
+  ASSERT_GT(animation.reach_m(), 16.0);
+  MeasuredGust wind;
+  std::array<float, 2> steady{};
+  std::array<int, 2> reached_at{};
+  for (int tick = 0; tick < 32 * 60; ++tick) {
+    animation.step(wind.next(), kTick_s);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const float bend = largest(*animation.poses()[i]);
+      if (tick == 20 * 60 - 1) steady[i] = bend;
+      if (tick >= 20 * 60 && reached_at[i] == 0 && bend > 1.2F * steady[i]) reached_at[i] = tick;
+    }
+  }
+  ASSERT_GT(reached_at[0], 0);
+  ASSERT_GT(reached_at[1], 0);
+  EXPECT_NEAR((reached_at[0] - 20 * 60) * kTick_s, 4.0 / 6.0, 0.5) << "and what a scene needs to bend";
+  EXPECT_NEAR((reached_at[1] - reached_at[0]) * kTick_s, 30.0 / 6.0, 0.3);
+}
+
+TEST(AnimationTest, WhatIsMeasuredMovesScenesAlikeHoweverManyThreadsThereAre) {
+  const auto hash_with = [](std::int64_t threads) {
+    Config config = installation("z = 16", "z = -14");
+    config.animation.set("threads", threads);
+    Animation animation = animation_of(config);
+    MeasuredGust wind;
+    for (int tick = 0; tick < 22 * 60; ++tick) animation.step(wind.next(), kTick_s);
+    std::uint64_t hash = kPoseHashSeed;
+    for (const Pose* pose : animation.poses()) hash = pose_hash(hash, *pose);
+    return hash;
+  };
+  EXPECT_EQ(hash_with(3), hash_with(1));
+}
+
+TEST(AnimationTest, GainIsAFactorOnTheWindThatIsMeasured) {
+  Animation without = animation_of(installation("gain = 0", "gain = 1"));
+  MeasuredGust wind;
+  for (int tick = 0; tick < 60; ++tick) without.step(wind.next(), kTick_s);
+  EXPECT_EQ(largest(*without.poses()[0]), 0.0F);
+  EXPECT_GT(largest(*without.poses()[1]), 0.0F);
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/pose/kinematics.hpp"
 #include "engine/scenes/scene.hpp"
 #include "tests/support/gusty_wind.hpp"
+#include "tests/support/stroke_run.hpp"
 
 namespace {
 
@@ -61,6 +63,27 @@ TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
       EXPECT_TRUE(kinematics.run(scene->pose()));
     }
     EXPECT_EQ(allocations, before) << description->name;
+  }
+}
+
+TEST(SceneAllocationTest, NoSceneAllocatesInATickUnderAWindThatIsMeasuredAtOneOrSeveralPlaces) {
+  for (const std::size_t pens : {1U, 3U}) {
+    StrokeRun run(std::vector<WindVector>(pens, WindVector{0.0, 20.0}));
+    WindTapes tapes;
+    const StrokeRun::Set measure = steady_gusts(0.3, 0.7);
+    for (const SceneDescription* description : scene_table()) {
+      const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(),
+                                           {.seed = 1, .gusts = shared_gusts()});
+      GustyWind wind({0.0, 7.0}, 0.4F);
+      const std::size_t before = allocations;
+      for (std::uint64_t tick = 0; tick < 20; ++tick) {
+        run.step(measure);
+        const GroundWind ground =
+            written_to(tapes, {.state = {}, .ground = wind.step(1.0 / 60.0), .stroke = run.stroke()});
+        scene->tick(ground, 1.0 / 60.0);
+      }
+      EXPECT_EQ(allocations, before) << description->name << ", " << pens;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include "engine/scenes/scene.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/gusty_wind.hpp"
+#include "tests/support/stroke_run.hpp"
 
 namespace yuragi {
 namespace {
@@ -193,6 +195,75 @@ TEST(WindGrid, GustsAreInFifthsOfTheWind) {
         0.6 * static_cast<double>(places.east_m_s[i + 3]) - 0.8 * static_cast<double>(places.south_m_s[i + 3]);
     EXPECT_NEAR(gusts[i], std::clamp(along_m_s - 5.0, -3.0, 3.0), 1e-3);  // a fifth of 5 m/s is 1
   }
+}
+
+/// A wind toward north of 6 m/s that has been measured for half a minute south of the places, and stands still now.
+struct MeasuredGround {
+  explicit MeasuredGround(std::vector<WindVector> pens, float noise_m_s) : run(std::move(pens)) {
+    run.blow({0.0, 6.0});
+    for (int tick = 0; tick < 1800; ++tick) {
+      run.tick(tapes, [tick](std::size_t pen, WindSample& now) {
+        for (std::size_t band = 2; band < 8; ++band) {
+          const double phase = 2.0 * std::numbers::pi * OctaveFollower::centre_hz(band) * tick * StrokeRun::kTick_s +
+                               static_cast<double>(pen);
+          now.north_m_s[band] = static_cast<float>(0.5 * std::sin(phase));
+          now.east_m_s[band] = static_cast<float>(0.3 * std::cos(phase));
+        }
+        now.known_along.fill(0.7F);
+        now.known_across.fill(0.5F);
+      });
+    }
+    ground.gusts.ahead = {0.0, 1.0};
+    ground.gusts.carried = shared_gusts()->begin(5);
+    ground.gusts.along_m_s.fill(noise_m_s);
+    ground.gusts.across_m_s.fill(noise_m_s);
+    ground.tapes = &tapes;
+  }
+  StrokeRun run;
+  WindTapes tapes;
+  GroundWind ground;
+};
+
+TEST(WindGrid, EachPlaceHasWhatWasMeasuredForIt) {
+  const std::vector<std::vector<WindVector>> pens = {{{-17.0, 30.0}}, {{-25.0, 25.0}, {-10.0, 8.0}}};
+  for (const auto& of_pens : pens) {
+    for (const float noise_m_s : {0.0F, 0.3F}) {
+      MeasuredGround measured(of_pens, noise_m_s);
+      Places places(7.0);
+      WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
+      for (int tick = 0; tick < 240; ++tick) grid.step(measured.ground, kGridTick_s);
+      grid.sample(0, places.east_m_s, places.south_m_s);
+      const GroundWind expected = held(measured.ground, 0.5);
+      double squares = 0.0;
+      double scatter = 0.0;
+      for (std::size_t i = 0; i < places.x_m.size(); ++i) {
+        const WindVector there =
+            expected.at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
+        squares += std::pow(static_cast<double>(places.east_m_s[i]) - there.u_m_s, 2) +
+                   std::pow(-static_cast<double>(places.south_m_s[i]) - there.v_m_s, 2);
+        scatter += std::pow(there.u_m_s, 2) + std::pow(there.v_m_s - 6.0, 2);
+      }
+      EXPECT_GT(scatter, 0.02 * static_cast<double>(places.x_m.size()));
+      EXPECT_LT(squares, 0.02 * scatter) << of_pens.size() << " pens, noise of " << noise_m_s << " m/s";
+    }
+  }
+}
+
+TEST(SceneWind, WithoutNoiseASceneFeelsWhatWasMeasuredAndOfTheMeanAloneNothingElse) {
+  MeasuredGround measured({{0.0, 30.0}}, 0.4F);
+  const ScenePlacement placement{};
+  SceneWind all(placement);
+  SceneWind mean(placement, nullptr, WindPart::kMean);
+  for (int tick = 0; tick < 240; ++tick) {
+    all.step(measured.ground, kGridTick_s);
+    mean.step(measured.ground, kGridTick_s);
+  }
+  const WindVector expected = measured.ground.measured_at(0.0, 0.0);
+  EXPECT_NEAR(all.east_m_s(), expected.u_m_s, 1e-3);
+  EXPECT_NEAR(-all.south_m_s(), expected.v_m_s, 1e-3);
+  EXPECT_GT(speed_of(expected - WindVector{0.0, 6.0}), 0.03);
+  EXPECT_NEAR(mean.east_m_s(), 0.0, 1e-3);
+  EXPECT_NEAR(-mean.south_m_s(), 6.0, 1e-3);
 }
 
 }  // namespace
