@@ -1,11 +1,22 @@
 #include "daemon/animation.hpp"
 
+#include <algorithm>
+
+#include "daemon/fallback_recording.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi {
+namespace {
+
+/// No more places than sensors can write: a tape is half a megabyte.
+std::size_t most_pens(const Config& config) {
+  return std::min(WindStroke::kMostPens, config.sensors.size() + (has_fallback(config) ? 1 : 0));
+}
+
+}  // namespace
 
 Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts)
-    : pool_(static_cast<std::size_t>(config.animation.integer("threads"))) {
+    : pool_(static_cast<std::size_t>(config.animation.integer("threads"))), tapes_(most_pens(config)) {
   for (const SceneConfig& scene : config.scenes) {
     const ScenePlacement placement{.x_m = scene.values.number("x"),
                                    .y_m = scene.values.number("y"),

@@ -24,15 +24,22 @@ NoiseTile2 tile_of(RealFft& fft) {
 }  // namespace
 
 Result<TurningNoise2, NoiseError> make_turning_noise_2d(const NoiseSpec& spec) {
+  return TurningNoiseMaker().make(spec);
+}
+
+Result<TurningNoise2, NoiseError> TurningNoiseMaker::make(const NoiseSpec& spec) {
   if (const auto error = check_noise(2, spec)) return *error;
-  RealFft fft(2, spec.size);
+  RealFft& fft = transforms_.try_emplace(spec.size, 2, spec.size).first->second;
   fill_spectrum(fft, spec);
-  std::vector<std::complex<double>> turned(fft.spectrum().begin(), fft.spectrum().end());
   const std::vector<std::int8_t> signs = turning_signs(fft, spec.seed, spec.from_cycles, spec.to_cycles);
-  for (std::size_t i = 0; i < turned.size(); ++i) turned[i] *= std::complex<double>(0.0, -signs[i]);
+  turned_.clear();
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    if (signs[i] != 0) turned_.emplace_back(i, fft.spectrum()[i] * std::complex<double>(0.0, -signs[i]));
+  }
 
   TurningNoise2 noise{tile_of(fft), {}};
-  std::ranges::copy(turned, fft.spectrum().begin());
+  std::ranges::fill(fft.spectrum(), std::complex<double>());
+  for (const auto& [i, mode] : turned_) fft.spectrum()[i] = mode;
   noise.quarter = tile_of(fft);
   return noise;
 }

@@ -1,5 +1,12 @@
 #pragma once
 
+#include <complex>
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "engine/fft/real_fft.hpp"
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
@@ -21,5 +28,16 @@ struct TurningNoise2 {
 /// turn: spec.to_cycles is at most half the size, else they are missing in `quarter`. Set-up work; allocates.
 /// Thread-safe: yes. Realtime-safe: no. Fails as make_noise_2d(). Source: wind.md 1 (non-frozen turbulence).
 Result<TurningNoise2, NoiseError> make_turning_noise_2d(const NoiseSpec& spec);
+
+/// The same for many noises one after the other, to the same bits: it keeps the transforms, whose memory is half of the
+/// cost of a noise. Set-up work; allocates. Thread-safe: no. Realtime-safe: no.
+class TurningNoiseMaker {
+ public:
+  Result<TurningNoise2, NoiseError> make(const NoiseSpec& spec);
+
+ private:
+  std::map<std::size_t, RealFft> transforms_;  ///< by their size
+  std::vector<std::pair<std::size_t, std::complex<double>>> turned_;
+};
 
 }  // namespace yuragi

@@ -50,6 +50,9 @@ class GustNodes {
     return tile_octave % GustNoise::kTileOctaves < GustNoise::kLongOctaves;
   }
 
+  /// Is an octave of the tiles read at all?
+  bool is_held(std::size_t tile_octave) const noexcept { return held_[tile_octave] > 0.0F; }
+
   /// Reads the gusts of a moment, with weights for each octave: one for each node, or for each coarse node.
   void read(const GustNoise::Moment& moment, const GustWeights& weights = {}) noexcept;
 

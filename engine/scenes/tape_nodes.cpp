@@ -1,37 +1,50 @@
 #include "engine/scenes/tape_nodes.hpp"
 
+#include <algorithm>
+
 namespace yuragi {
 
-TapeNodes::TapeNodes(const GustNodes& nodes) : known_(nodes.x_m().size()), gain_(nodes.x_m().size(), 1.0) {
+TapeNodes::TapeNodes(const GustNodes& nodes) : known_(nodes.x_m().size()), gain_(nodes.x_m().size()) {
+  // A cache line between two octaves: arrays whole pages apart drive each other out of the cache.
+  constexpr std::size_t kLine = 64 / sizeof(float);
+  const auto padded = [](std::size_t count) { return (count / kLine + 2) * kLine; };
+  const std::size_t fine = nodes.x_m().size();
+  factors_.resize(2 * kTileOctaveCount * padded(fine));
+  float* next = factors_.data();
+  const auto part = [&](std::size_t count) {
+    const std::span<float> factors(next, count);
+    next += padded(count);
+    return factors;
+  };
   for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
-    const std::size_t count = GustNodes::is_coarse(i) ? nodes.coarse_x_m().size() : nodes.x_m().size();
-    along_[i].resize(count);
-    across_[i].resize(count);
-    weights_.along[i] = along_[i];
-    weights_.across[i] = across_[i];
-  }
-}
-
-void TapeNodes::keep(const WindTapes::Reading& reading, bool is_coarse, std::size_t node) noexcept {
-  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
-    if (GustNodes::is_coarse(i) != is_coarse) continue;
-    along_[i][node] = reading.noise_along[i];
-    across_[i][node] = reading.noise_across[i];
+    if (!nodes.is_held(i)) continue;
+    const bool is_coarse = GustNodes::is_coarse(i);
+    WindTapes::NoiseLeft& left = is_coarse ? coarse_left_ : left_;
+    for (auto* octaves : {&left.along, &left.across}) {
+      (*octaves)[i] = part(is_coarse ? nodes.coarse_x_m().size() : fine);
+    }
+    weights_.along[i] = left.along[i];
+    weights_.across[i] = left.across[i];
   }
 }
 
 void TapeNodes::read(const GroundWind& wind, const GustNodes& nodes) noexcept {
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    const double east_m = nodes.x_m()[i];
-    const double south_m = nodes.z_m()[i];
-    const WindTapes::Reading reading = wind.tapes->at(east_m, south_m);
-    known_[i] = wind.measured(reading, east_m, south_m);
-    gain_[i] = reading.gain;
-    keep(reading, false, i);
+  constexpr std::size_t kAtOnce = 128;
+  std::array<WindTapes::Known, kAtOnce> readings;
+  WindTapes::NoiseLeft left = left_;
+  for (std::size_t begin = 0; begin < known_.size(); begin += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, known_.size() - begin);
+    wind.tapes->read(nodes.x_m().subspan(begin, count), nodes.z_m().subspan(begin, count),
+                     std::span(readings).first(count), left);
+    for (std::size_t i = 0; i < count; ++i) {
+      known_[begin + i] = wind.measured(readings[i], nodes.x_m()[begin + i], nodes.z_m()[begin + i]);
+      gain_[begin + i] = readings[i].gain;
+    }
+    for (auto* octaves : {&left.along, &left.across}) {
+      for (std::span<float>& octave : *octaves) octave = octave.empty() ? octave : octave.subspan(count);
+    }
   }
-  for (std::size_t i = 0; i < nodes.coarse_x_m().size(); ++i) {
-    keep(wind.tapes->at(nodes.coarse_x_m()[i], nodes.coarse_z_m()[i]), true, i);
-  }
+  wind.tapes->read(nodes.coarse_x_m(), nodes.coarse_z_m(), {}, coarse_left_);
 }
 
 }  // namespace yuragi

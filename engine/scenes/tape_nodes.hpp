@@ -30,11 +30,10 @@ class TapeNodes {
   const GustWeights& weights() const noexcept { return weights_; }
 
  private:
-  void keep(const WindTapes::Reading& reading, bool is_coarse, std::size_t node) noexcept;
-
   std::vector<WindVector> known_;
   std::vector<double> gain_;
-  std::array<std::vector<float>, kTileOctaveCount> along_, across_;
+  std::vector<float> factors_;  ///< of the octaves that are held, along and across, one behind the other
+  WindTapes::NoiseLeft left_, coarse_left_;
   GustWeights weights_;
 };
 

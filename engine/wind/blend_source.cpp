@@ -29,21 +29,24 @@ constexpr double kFitEvery_s = 1.0;
 constexpr double kOwnLengthWeight = 5.0;
 constexpr double kOwnLengthIntensityWeight = 1.0;
 
-double sinc(double x) noexcept {
-  const double angle = std::numbers::pi * x;
-  return std::abs(angle) < 1e-6 ? 1.0 : std::sin(angle) / angle;
-}
-
 /// The weight of a band while a source that tells of so long a time at once speaks as it should.
 double full_trust_at(double frequency_hz, double interval_s) noexcept {
   const double ratio = frequency_hz * interval_s / kHalfTrustTimesInterval;
   return 1.0 / (1.0 + ratio * ratio * ratio * ratio);
 }
 
+/// The mean of a wave over so many of its cycles, that have passed: how high it is, and how much later.
+std::complex<double> mean_of_past(double cycles) noexcept {
+  const double angle_rad = std::numbers::pi * cycles;
+  const double sine = std::sin(angle_rad);
+  const double height = std::abs(angle_rad) < 1e-6 ? 1.0 : sine / angle_rad;
+  return {height * std::cos(angle_rad), -height * sine};
+}
+
 /// A mean over `averaging_s`, held for `interval_s`: what both leave of a wave, and how much later it is.
 std::complex<double> averaged_and_held(double frequency_hz, double averaging_s, double interval_s) noexcept {
-  const double passed = sinc(frequency_hz * averaging_s) * sinc(frequency_hz * interval_s);
-  return std::polar(1.0, -std::numbers::pi * frequency_hz * (averaging_s + interval_s)) * passed;
+  const std::complex<double> held = mean_of_past(frequency_hz * interval_s);
+  return held * (averaging_s == interval_s ? held : mean_of_past(frequency_hz * averaging_s));
 }
 
 BandWeights full_trust_of(double interval_s) noexcept {
@@ -211,10 +214,8 @@ void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& p
   }
 }
 
-SourceResponse BlendSource::response(double frequency_hz, const OctaveFollower::Response& response,
-                                     const BandWeights& weights) const noexcept {
-  const std::complex<double> along =
-      averaged_and_held(frequency_hz, averaging_s(), interval_s_) * response.weighted(weights);
+SourceResponse BlendSource::passed_of(double frequency_hz) const noexcept {
+  const std::complex<double> along = averaged_and_held(frequency_hz, averaging_s(), interval_s_);
   if (!has_vane()) return {along, 0.0};
   const std::complex<double> vane(1.0, 2.0 * std::numbers::pi * frequency_hz * direction_.memory_s());
   return {along, along / vane};

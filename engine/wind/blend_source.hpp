@@ -63,10 +63,9 @@ class BlendSource {
   /// What its averaging and the holding of its readings leave of a wave in the middle of each band.
   const BandWeights& passed() const noexcept { return passed_; }
 
-  /// What is in its bands, weighted so, of a wave of the real wind: what its averaging, the holding of its readings,
-  /// its vane and the bands leave. `response`: of the follower at this frequency.
-  SourceResponse response(double frequency_hz, const OctaveFollower::Response& response,
-                          const BandWeights& weights) const noexcept;
+  /// What its averaging, the holding of its readings and its vane leave of a wave of the real wind: times what its
+  /// bands pass of it (OctaveFollower::Response), that is what it says of it.
+  SourceResponse passed_of(double frequency_hz) const noexcept;
   /// How far a wave of this frequency is believed while it speaks on time.
   double trust_at(double frequency_hz) const noexcept;
 

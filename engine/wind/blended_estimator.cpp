@@ -22,6 +22,8 @@ constexpr double kTurnRate_hz = 0.1;
 constexpr double kIntervalsOfAGust = 3.0;
 /// A low pass has done 98 % of its way after 4 time constants.
 constexpr double kPlaneRateTimesHandover = 4.0;
+/// Sources at a place of their own count at least so much there.
+constexpr double kLeastWord = 1e-6;
 /// Less than this is nothing.
 constexpr double kLeastShare = 1e-9;
 /// How fast the strength of the gusts follows what it should be.
@@ -61,11 +63,13 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
       choice_(completed(settings.sources, source_count), settings.handover_s, settings.return_after_s),
       plane_(completed(settings.sources, source_count)),
       places_(completed(settings.sources, source_count)),
-      pens_(places_.count(), Pen{.shares = std::vector<BandWeights>(source_count)}),
+      pens_(places_.count(),
+            Pen{.shares = std::vector<BandWeights>(source_count), .written = std::vector<BandWeights>(source_count)}),
       shares_(source_count),
       words_(source_count),
       level_shares_(source_count),
-      place_weights_(source_count) {
+      place_weights_(source_count),
+      passed_(source_count) {
   settings_.sources.resize(source_count);
   ground_.slope = plane_.ends();
   ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
@@ -157,9 +161,12 @@ void BlendedEstimator::share_at(std::size_t index) noexcept {
     all += choice_.word(i);
     if (places_.pen_of(i) == index) pen.word += choice_.word(i);
   }
-  const double times = pen.word > kLeastShare ? all / pen.word : 0.0;
+  // Where none of them counts at present, they are written all the same: nothing leaps when one begins to count.
+  const double own = pens_.size() == 1 ? 0.0 : kLeastWord;
+  const double sum = pen.word + own * static_cast<double>(places_.sources_at(index));
+  const double times = sum > kLeastShare ? all / sum : 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    words_[i] = places_.pen_of(i) == index ? times * choice_.word(i) : 0.0;
+    words_[i] = places_.pen_of(i) == index ? times * (choice_.word(i) + own) : 0.0;
     pen.shares[i][0] = shares_[i].middle;
   }
   for (std::size_t level = 1; level <= kBands; ++level) {
@@ -251,17 +258,13 @@ double BlendedEstimator::trust() const noexcept {
 }
 
 /// All that is said at one place adds up by amplitude.
-BlendedEstimator::Power BlendedEstimator::power_heard(double frequency_hz, const OctaveFollower::Response& bands,
-                                                      const Pen& pen, const BandWeights* fade) const noexcept {
+BlendedEstimator::Power BlendedEstimator::power_heard(const OctaveFollower::Response& bands,
+                                                      std::span<const BandWeights> shares) const noexcept {
   SourceResponse sum;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    BandWeights weights = pen.shares[i];
-    if (fade != nullptr) {
-      for (std::size_t level = 1; level <= kBands; ++level) weights[level] *= (*fade)[level];
-    }
-    const SourceResponse response = sources_[i].response(frequency_hz, bands, weights);
-    sum.along += response.along;
-    sum.across += response.across;
+    const std::complex<double> in_bands = bands.weighted(shares[i]);
+    sum.along += passed_[i].along * in_bands;
+    sum.across += passed_[i].across * in_bands;
   }
   return {std::clamp(std::norm(sum.along), 0.0, 1.0), std::clamp(std::norm(sum.across), 0.0, 1.0)};
 }
@@ -340,7 +343,9 @@ void BlendedEstimator::write_gusts() noexcept {
       WindVector gust;
       for (std::size_t i = 0; i < sources_.size(); ++i) {
         const double share = pens_[p].shares[i][level];
-        pen.weights[level] += share * (level == 0 ? 1.0 : fade_[level]);
+        const double written = share * (level == 0 ? 1.0 : fade_[level]);
+        pens_[p].written[i][level] = written;
+        pen.weights[level] += written;
         if (level > 0 && share > 0.0) gust = gust + share * said(i, level);
       }
       if (level == 0) continue;
@@ -401,10 +406,11 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, floa
   const bool is_way = octave < GustNoise::kFirstTileOctave;
   const double known_hz = is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2;
   const OctaveFollower::Response bands(known_hz);
+  for (std::size_t i = 0; i < sources_.size(); ++i) passed_[i] = sources_[i].passed_of(known_hz);
   if (is_way) {
     Power known;
     for (const Pen& pen : pens_) {
-      const Power here = power_heard(known_hz, bands, pen, nullptr);
+      const Power here = power_heard(bands, pen.shares);
       known.along += part_of(pen) * here.along;
       known.across += part_of(pen) * here.across;
     }
@@ -418,8 +424,8 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, floa
   const std::size_t lane = octave - GustNoise::kFirstTileOctave;
   stroke_.octave_hz[lane] = static_cast<float>(known_hz);
   for (std::size_t p = 0; p < pens_.size(); ++p) {
-    const Power now = power_heard(known_hz, bands, pens_[p], nullptr);
-    const Power written = is_fading_ ? power_heard(known_hz, bands, pens_[p], &fade_) : now;
+    const Power now = power_heard(bands, pens_[p].shares);
+    const Power written = is_fading_ ? power_heard(bands, pens_[p].written) : now;
     WindPen& pen = stroke_.pens[p];
     approach(pen.now.known_along[lane], now.along);
     approach(pen.now.known_across[lane], now.across);

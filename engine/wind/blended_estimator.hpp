@@ -78,8 +78,9 @@ class BlendedEstimator final : public WindEstimator {
 
   /// What is written at one place.
   struct Pen {
-    std::vector<BandWeights> shares;  ///< of each source: of the mean, and of the bands at this place
-    double word = 0.0;                ///< of its sources, of that of all
+    std::vector<BandWeights> shares;   ///< of each source: of the mean, and of the bands at this place
+    std::vector<BandWeights> written;  ///< as far as the tape can hold them
+    double word = 0.0;                 ///< of its sources, of that of all
   };
 
   /// What all sources together say of the mean, and how far it is to be believed.
@@ -111,8 +112,7 @@ class BlendedEstimator final : public WindEstimator {
   void write_gusts() noexcept;
   void weigh_gusts(const Heard& heard, double dt_s) noexcept;
   void weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept;
-  Power power_heard(double frequency_hz, const OctaveFollower::Response& bands, const Pen& pen,
-                    const BandWeights* fade) const noexcept;
+  Power power_heard(const OctaveFollower::Response& bands, std::span<const BandWeights> shares) const noexcept;
   double part_of(const Pen& pen) const noexcept;
   void show(const Heard& heard) noexcept;
   double variance_share(std::size_t source, double frequency_hz, const Heard& heard) const noexcept;
@@ -139,7 +139,8 @@ class BlendedEstimator final : public WindEstimator {
   std::vector<Share> shares_;
   std::vector<double> words_, level_shares_;
   std::vector<PlaceWeights> place_weights_;
-  BandWeights fade_{};  ///< what the tape can hold of each band
+  std::vector<SourceResponse> passed_;  ///< at the octave at hand
+  BandWeights fade_{};                  ///< what the tape can hold of each band
   bool is_fading_ = false;
 };
 

@@ -46,13 +46,13 @@ struct GroundWind {
   /// mean, and what is longer than the ground.
   WindVector smooth_at(double east_m, double south_m) const noexcept {
     return tapes == nullptr ? everywhere + slope.at(east_m, south_m)
-                            : smooth(tapes->at(east_m, south_m), east_m, south_m);
+                            : smooth(tapes->known_at(east_m, south_m), east_m, south_m);
   }
 
   /// The same with the gusts that were measured, without those of the noise.
   WindVector measured_at(double east_m, double south_m) const noexcept {
     return tapes == nullptr ? everywhere + slope.at(east_m, south_m)
-                            : measured(tapes->at(east_m, south_m), east_m, south_m);
+                            : measured(tapes->known_at(east_m, south_m), east_m, south_m);
   }
 
   /// The wind at a place.
@@ -62,10 +62,10 @@ struct GroundWind {
   }
 
   // The same three of a reading of the tapes at that place.
-  WindVector smooth(const WindTapes::Reading& reading, double east_m, double south_m) const noexcept {
+  WindVector smooth(const WindTapes::Known& reading, double east_m, double south_m) const noexcept {
     return reading.gain * (gain * (reading.mean + gust_gain * reading.way) + slope.at(east_m, south_m) + breeze);
   }
-  WindVector measured(const WindTapes::Reading& reading, double east_m, double south_m) const noexcept {
+  WindVector measured(const WindTapes::Known& reading, double east_m, double south_m) const noexcept {
     return smooth(reading, east_m, south_m) + (reading.gain * gain * gust_gain) * reading.gusts;
   }
   WindVector at(const GustNoise& noise, const WindTapes::Reading& reading, double east_m,

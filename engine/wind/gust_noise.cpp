@@ -142,13 +142,14 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
 
 GustNoise::Octaves GustNoise::make_octaves(const GustNoiseSettings& settings, std::uint64_t seed) {
   Octaves component;
+  TurningNoiseMaker turning;
   for (std::size_t chain = 0; chain < 2; ++chain) {
     const std::uint64_t chain_seed = seed + 100 * chain;
     for (std::size_t i = 0; i < kTileOctaves; ++i) {
       const NoiseSpec spec = tile_octave(i, settings.samples, chain_seed + i);
       NoiseTile2& tile = component.tiles[chain * kTileOctaves + i];
       if (settings.evolves) {
-        TurningNoise2 noise = make_turning_noise_2d(spec).value();
+        TurningNoise2 noise = turning.make(spec).value();
         NoiseTile2& quarter = component.quarters[chain * kTileOctaves + i];
         tile = std::move(noise.first);
         quarter = std::move(noise.quarter);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -25,6 +26,9 @@ class PenPlaces {
   std::size_t count() const noexcept { return places_.size(); }
   const Place& place(std::size_t pen) const noexcept { return places_[pen]; }
   std::size_t pen_of(std::size_t source) const noexcept { return pens_[source]; }
+  std::size_t sources_at(std::size_t pen) const noexcept {
+    return static_cast<std::size_t>(std::ranges::count(pens_, pen));
+  }
 
  private:
   std::size_t pen_for(const BlendSourceSettings& source);

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <span>
 #include <vector>
 
+#include "engine/base/simd_row.hpp"
 #include "engine/wind/gust_kriging.hpp"
+#include "engine/wind/tape_kernels.hpp"
 #include "engine/wind/wind_stroke.hpp"
 #include "engine/wind/wind_tape.hpp"
 
@@ -30,10 +32,11 @@ namespace yuragi {
 /// causal low passes lose, so that a place 7 m beside the sensor lags by up to 0.6 s.
 ///
 /// Owns the tapes. The table of losses over distance is renewed by a few rows a tick. Thread-safe: reading, yes.
-/// Realtime-safe: all but construction.
+/// Realtime-safe: all but construction. Every SIMD row computes the same bits.
 class WindTapes {
  public:
-  WindTapes();
+  /// Tapes for so many pens; what further ones write is not kept.
+  explicit WindTapes(std::size_t most_pens = WindStroke::kMostPens, SimdRow row = best_simd_row());
 
   /// Takes a tick's stroke in. A way that goes back begins anew.
   void write(const WindStroke& stroke) noexcept;
@@ -42,13 +45,27 @@ class WindTapes {
   bool is_written() const noexcept { return pen_count_ > 0; }
 
   /// What is known at a place.
-  struct Reading {
-    WindVector mean, way, gusts;                ///< gusts: all measured bands, with what they have kept
-    double gain = 1.0;                          ///< of the ceiling, when this wind was measured
+  struct Known {
+    WindVector mean, way, gusts;  ///< gusts: all measured bands, with what they have kept
+    double gain = 1.0;            ///< of the ceiling, when this wind was measured
+  };
+  /// And what is left of the noise.
+  struct Reading : Known {
     OctaveLanes noise_along{}, noise_across{};  ///< factors on each octave of the tiles, 0 to 1
   };
   /// Metres east and south of the middle of the scenes.
   Reading at(double east_m, double south_m) const noexcept;
+  /// The same without the noise.
+  Known known_at(double east_m, double south_m) const noexcept;
+
+  /// What is left of the noise at many places: for each octave of the tiles a factor for each place; empty: not asked
+  /// for. An octave is asked for along and across.
+  struct NoiseLeft {
+    std::array<std::span<float>, kTileOctaveCount> along, across;
+  };
+  /// The same at many places, to the same bits; `known` may be empty. All others are as many.
+  void read(std::span<const double> east_m, std::span<const double> south_m, std::span<Known> known,
+            const NoiseLeft& left) const noexcept;
   /// The same where a sample was taken, at that moment.
   static Reading at_pen(const WindSample& now) noexcept;
 
@@ -73,21 +90,28 @@ class WindTapes {
   struct Found {
     WindTape::Place place;
     double distance_m = 0.0;  ///< by which gusts are lost
+    double from_pen_m = 0.0;  ///< the same by the place alone: how far from the pen it is, along and across the wind
     float kept = 1.0F;        ///< less at the end of the tape
   };
   Found find(std::size_t tape, double east_m, double south_m) const noexcept;
-  void keep(std::size_t row) noexcept;
+  void keep(std::size_t first_row, std::size_t count) noexcept;
   void renew_rows(bool all) noexcept;
-  Reading at_one(const Found& found) const noexcept;
+  TapeKernelPlace on_tape(const Found& found) const noexcept;
+  static Known slow_part(const WindTape::Place& place) noexcept;
+  void read_one_tape(std::span<const double> east_m, std::span<const double> south_m, std::span<Known> known,
+                     TapeKernelArguments& arguments) const noexcept;
+  BandLanes bands_kept(std::size_t tape, double distance_m) const noexcept;
+  OctaveLanes octaves_kept(std::size_t tape, double distance_m) const noexcept;
   Reading at_several(double east_m, double south_m) const noexcept;
 
+  const TapeKernels* kernels_;
   std::vector<WindTape> tapes_;
   std::size_t pen_count_ = 0;
   WindStroke stroke_;
   BandLanes band_loss_per_m_{};
   OctaveLanes octave_loss_per_m_{};
   std::array<std::array<Kept, kRows>, WindStroke::kMostPens> kept_{};  ///< of each tape
-  std::uint64_t tick_ = 0;
+  std::size_t next_row_ = 0;                                           ///< to be renewed
   GustKriging<kBandLanes> band_kriging_;
   GustKriging<kOctaveLanes> octave_kriging_;
 };

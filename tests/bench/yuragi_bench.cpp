@@ -22,6 +22,8 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/pose/quantise.hpp"
 #include "engine/scenes/meadow.hpp"
+#include "engine/scenes/wind_grid.hpp"
+#include "tests/bench/bench_wind.hpp"
 #include "tests/bench/plain_strands.hpp"
 #include "tests/bench/table1.hpp"
 #include "tests/bench/workload.hpp"
@@ -92,6 +94,19 @@ std::unique_ptr<PlainStrands> make_plain(const Skeleton& skeleton) {
                                         make_noise_2d({.size = 512, .seed = 2}).value(), 256.0, 414.0);
 }
 
+/// A grid of the wind over a square meadow.
+struct BenchGrid {
+  BenchGrid(double side_m, SimdRow row, const std::shared_ptr<const GustNoise>& gusts, bool has_tape)
+      : wind(gusts, has_tape), grid(gusts, places(side_m), places(side_m), row) {}
+  /// Two places, in opposite corners.
+  static std::vector<float> places(double side_m) {
+    return {static_cast<float>(-0.5 * side_m), static_cast<float>(0.5 * side_m)};
+  }
+
+  BenchWind wind;
+  WindGrid grid;
+};
+
 /// Collects the fastest time of each benchmark, and says on standard error how far it is.
 class FastestReporter final : public benchmark::BenchmarkReporter {
  public:
@@ -147,6 +162,11 @@ std::vector<Target> targets_of(const Times& times) {
              at("two threads/alone") / at("two threads/shared"), 1.7, true);
   add_target("grass 1,000,000: a second thread, times faster paced at 60 Hz ",
              at("two threads/alone, paced") / at("two threads/shared, paced"), 0.0, true);
+  for (const std::string side : {"7 m", "60 m"}) {
+    add_target("wind grid of " + side + ": a step with the tape over one without",
+               at("wind grid " + side + "/with tape") / at("wind grid " + side + "/without"), 1.6);
+  }
+  add_target("wind, what is measured: a tick of the estimator, us", at("wind/estimator") * 1e6, 10.0);
   add_target("quantising a bend or a way, ns", at("quantise/bends") * 1e9 / static_cast<double>(kQuantised), 0.25);
   const double small = at("grass 10,000/total") / 1e4;
   const double middle = at("grass/total") / 1e5;
@@ -216,6 +236,30 @@ int run(int argc, char** argv) {
   for (std::size_t i = 0; i < kQuantised; ++i) angles_rad.push_back(std::sin(0.37F * static_cast<float>(i)));
   std::vector<std::int16_t> units(angles_rad.size());
   add("quantise/bends", [&angles_rad, &units, row] { quantise(angles_rad, units, row); });
+
+  // A step of the grid of the wind with the tape and without; writing the tape, once a tick for all scenes; one place
+  // of it; and the estimator's tick, with one sensor.
+  std::vector<std::unique_ptr<BenchGrid>> grids;
+  for (const double side_m : {7.0, 60.0}) {
+    for (const bool has_tape : {true, false}) {
+      BenchGrid& one = *grids.emplace_back(std::make_unique<BenchGrid>(side_m, row, gusts, has_tape));
+      const std::string name = side_m < 10.0 ? "wind grid 7 m" : "wind grid 60 m";
+      add(name + (has_tape ? "/with tape" : "/without"),
+          [&one, wind = one.wind.next()] { one.grid.step(wind, kBenchTick_s); });
+    }
+  }
+  BenchWind& taped = grids.front()->wind;
+  add("wind/write", [&taped] { taped.write(); });
+  add("wind/smooth at a place", [wind = taped.next()] { benchmark::DoNotOptimize(wind.smooth_at(1.0, 2.0)); });
+  add("wind/measured at a place", [wind = taped.next()] { benchmark::DoNotOptimize(wind.measured_at(1.0, 2.0)); });
+  add("wind/at a place", [wind = taped.next(), &gusts] { benchmark::DoNotOptimize(wind.at(*gusts, 1.0, 2.0)); });
+  MeasuredWind measured(gusts, BenchWind::kBreeze);
+  for (int tick = 0; tick < 600; ++tick) measured.step();
+  add("wind/estimator", [&measured] { benchmark::DoNotOptimize(measured.step()); });
+  add("wind/copy", [wind = measured.step()] {
+    const DrivingWind copy = wind;
+    benchmark::DoNotOptimize(&copy);
+  });
 
   // A second thread, on the largest meadow: back to back, and a frame at a time 60 times a second.
   WorkerPool pool(2);

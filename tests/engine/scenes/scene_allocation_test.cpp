@@ -8,6 +8,7 @@
 #include "engine/pose/kinematics.hpp"
 #include "engine/scenes/scene.hpp"
 #include "tests/support/gusty_wind.hpp"
+#include "tests/support/measured_wind.hpp"
 #include "tests/support/stroke_run.hpp"
 
 namespace {
@@ -54,12 +55,15 @@ TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
     const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(),
                                          {.seed = 1, .gusts = shared_gusts()});
     GustyWind wind({5.0, 2.0}, 0.4F);
+    MeasuredWind measured(shared_gusts(), {5.0, 2.0});
+    WindTapes tapes(1);
     Kinematics kinematics(scene->skeleton());
     EXPECT_GT(allocations, 0U) << "the counter does not count";
 
     const std::size_t before = allocations;
     for (std::uint64_t tick = 0; tick < 20; ++tick) {
       scene->tick(wind.step(1.0 / 60.0), 1.0 / 60.0);
+      scene->tick(written_to(tapes, measured.step()), 1.0 / 60.0);
       EXPECT_TRUE(kinematics.run(scene->pose()));
     }
     EXPECT_EQ(allocations, before) << description->name;

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+
+// Between WindTapes and its kernel; nobody else needs this.
+
+namespace yuragi {
+
+constexpr std::size_t kTapeBandLanes = 16;
+constexpr std::size_t kTapeOctaveLanes = 32;
+
+/// What a place reads: two samples of a tape, two rows of what is kept over distance, and how far between them.
+struct TapeKernelPlace {
+  const float* first = nullptr;   ///< lanes of WindSample: bands east, bands north, octaves along, octaves across
+  const float* second = nullptr;  ///< the same
+  const float* near = nullptr;    ///< lanes of what is kept: bands, octaves
+  const float* far = nullptr;
+  float fraction = 0.0F;  ///< from the first to the second
+  float row_fraction = 0.0F;
+  float kept = 1.0F;  ///< besides
+};
+
+/// Where the octave numbered `octave` goes: a value for each place.
+struct TapeKernelOctave {
+  std::size_t octave = 0;
+  float* along = nullptr;
+  float* across = nullptr;
+};
+
+struct TapeKernelArguments {
+  std::size_t count = 0;  ///< of places
+  const TapeKernelPlace* places = nullptr;
+  float* east_m_s = nullptr;  ///< null: not asked for
+  float* north_m_s = nullptr;
+  std::size_t octave_count = 0;
+  TapeKernelOctave octaves[kTapeOctaveLanes] = {};
+};
+
+struct TapeKernels {
+  /// The gusts at one place.
+  void (*gusts)(const TapeKernelPlace&, float* east_m_s, float* north_m_s) noexcept;
+  /// The factors on all lanes of octaves at one place.
+  void (*octaves)(const TapeKernelPlace&, float* along, float* across) noexcept;
+  /// Both at many places, to the same bits.
+  void (*many)(const TapeKernelArguments&) noexcept;
+};
+extern const TapeKernels tape_kernels_x86_64;
+extern const TapeKernels tape_kernels_x86_64_v3;
+extern const TapeKernels tape_kernels_x86_64_v4;
+
+}  // namespace yuragi
