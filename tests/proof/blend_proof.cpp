@@ -36,10 +36,10 @@ struct Bounds {
 };
 constexpr Bounds kQuick = {1.5, 0.85, 1.1, 0.01};
 constexpr Bounds kSlow = {4.0, 0.7, 1.3, 0.03};
-/// Of what passes along the ground, far from the sensor; variance over that at the sensor.
+/// Of what passes along the ground, far from the sensor: octaves over those at the sensor, variance over the record's.
 constexpr double kBladeOctave_db = 4.0;
-constexpr double kLeastBladeVariance = 0.88;
-constexpr double kMostBladeVariance = 1.10;
+constexpr double kLeastBladeVariance = 0.85;
+constexpr double kMostBladeVariance = 1.15;
 /// Above kToHz, of a quick sensor: to kFastHz and from there on, over the record with its folding taken out.
 constexpr double kFastHz = 2.4;
 constexpr double kFast_db = 4.0;
@@ -163,12 +163,11 @@ void judge(const BlendComparison& blend, Verdict& verdict) {
   for (std::size_t i = 0; i < kBlades.size(); ++i) {
     const PlaceComparison& blade = blend.blades[i];
     const double octaves_db = furthest_apart(blade.octaves, blend.signal.octaves);
-    const double variance = blade.variance / blend.signal.variance;
-    verdict.check(octaves_db <= kBladeOctave_db && is_within(variance, kLeastBladeVariance, kMostBladeVariance),
-                  fmt::format("blade {} ({:g} m east, {:g} m south) against the sensor's place: octaves within {:g} "
-                              "dB: {:.2f}; variance {:g} to {:g}: {:.3f}",
+    verdict.check(octaves_db <= kBladeOctave_db && is_within(blade.variance, kLeastBladeVariance, kMostBladeVariance),
+                  fmt::format("blade {} ({:g} m east, {:g} m south): octaves within {:g} dB of the sensor's place: "
+                              "{:.2f}; variance {:g} to {:g} of the record's: {:.3f}",
                               i + 1, kBlades[i].east_m, kBlades[i].south_m, kBladeOctave_db, octaves_db,
-                              kLeastBladeVariance, kMostBladeVariance, variance));
+                              kLeastBladeVariance, kMostBladeVariance, blade.variance));
   }
 }
 
