@@ -12,7 +12,7 @@
 
 namespace yuragi::proof {
 
-/// A blade of grass: metres east and south of the middle of the scene.
+/// A blade of grass: metres east and south of the middle of the scene, which is where the sensor stands.
 struct Blade {
   double east_m = 0.0;
   double south_m = 0.0;
@@ -35,9 +35,17 @@ struct PlaceComparison {
   std::vector<double> above;    ///< the same of the octaves above
 };
 
+/// How sharp a wind's gusts are: of the differences between two moments kIncrement_s apart, u and v taken together.
+struct Increments {
+  double kurtosis = 0.0;  ///< 3 of Gaussian ones
+  double far_part = 0.0;  ///< how many are beyond 4 of their deviations
+};
+inline constexpr double kIncrement_s = 0.2;
+
 /// What a sensor of one interval makes of a record, against all that the record has.
 struct BlendComparison {
   double interval_s = 0.0;
+  double gustiness = 0.0;
   int seeds = 0;
   double from_s = 0.0, to_s = 0.0;  ///< of the record: its start is the estimator's
   WindMoments record;
@@ -47,6 +55,9 @@ struct BlendComparison {
   std::vector<double> sensor_octaves;  ///< dB: the readings alone, held
 
   std::vector<Band> octaves, above;
+  /// dB in the octaves `above`, of the wind over the record with its folding taken out.
+  std::vector<double> unfolded_above;
+  Increments record_increments, increments;  ///< of samples 10 a second
   PlaceComparison signal;
   std::array<PlaceComparison, kBlades.size()> blades;
 
@@ -60,8 +71,9 @@ struct BlendComparison {
 };
 
 /// Runs the estimator of the daemon at 60 Hz over the record as a sensor of this interval would have told it, once for
-/// each seed from 1 on, and compares. The first max(30, 3 intervals) seconds are not compared.
-BlendComparison compare_blend(const SonicRecord& record, double interval_s, int seeds,
+/// each seed from 1 on, and compares. The sensor stands in the middle, and so does what is compared but for the blades,
+/// which read the tapes. The first max(30, 3 intervals) seconds are not compared.
+BlendComparison compare_blend(const SonicRecord& record, double interval_s, double gustiness, int seeds,
                               const std::shared_ptr<const GustNoise>& noise);
 
 }  // namespace yuragi::proof

@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/scenes/scene.hpp"
+#include "engine/scenes/scene_wind.hpp"
 #include "engine/wind/wind_spectrum.hpp"
 #include "tests/proof/band_power.hpp"
 #include "tests/proof/heard_wind.hpp"
@@ -31,7 +33,7 @@ constexpr double kEnd_s = 500.0;
 constexpr double kEndOfRecord_s = 1800.0;
 /// Until then an estimator that has just begun is on its way to what the sensor says.
 constexpr double kSettled_s = 60.0;
-constexpr std::uint64_t kSeeds = 32;
+constexpr std::uint64_t kSeeds = 96;
 constexpr std::uint64_t kStepSeeds = 8;
 constexpr int kTicksASecond = 60;
 
@@ -63,6 +65,22 @@ class WindFaults : public testing::TestWithParam<int> {
 
   Readings readings_;
 };
+
+/// The largest step from one tick to the next that a scene feels of such a wind (SceneWind, which smooths it over 0.1
+/// s): what is seen of it.
+double largest_felt_step_m_s(const std::vector<WindVector>& winds) {
+  constexpr double kTick_s = 1.0 / kTicksASecond;
+  SceneWind felt({});
+  const auto value = [&felt] { return WindVector{felt.east_m_s(), -felt.south_m_s()}; };
+  for (int tick = 0; tick < 2 * kTicksASecond; ++tick) felt.step(winds.front(), kTick_s);
+  double largest = 0.0;
+  for (const WindVector& wind : winds) {
+    const WindVector before = value();
+    felt.step(wind, kTick_s);
+    largest = std::max(largest, speed_of(value() - before));
+  }
+  return largest;
+}
 
 /// The largest steps of runs with different seeds.
 struct Steps {
@@ -118,15 +136,15 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
       HeardWind heard = usual;
       std::vector<WindVector> after = {winds.back()};
       std::ranges::copy(wind_of(heard, readings, kFaultFrom_s, kEnd_s), std::back_inserter(after));
-      faulty[name].add(largest_step_m_s(after));
+      faulty[name].add(largest_felt_step_m_s(after));
     }
     std::vector<WindVector> leaping = {winds.back()};
     std::ranges::copy(leaping_wind(usual, readings_), std::back_inserter(leaping));
-    faulty["clock leaps 10 years"].add(largest_step_m_s(leaping));
+    faulty["clock leaps 10 years"].add(largest_felt_step_m_s(leaping));
     std::ranges::copy(wind_of(usual, readings_, kFaultFrom_s, kEndOfRecord_s), std::back_inserter(winds));
-    normal.add(largest_step_m_s(winds));
+    normal.add(largest_felt_step_m_s(winds));
     HeardWind begun(seed + 1000);
-    restarted.add(largest_step_m_s(wind_of(begun, readings_, kFaultFrom_s, kEnd_s)));
+    restarted.add(largest_felt_step_m_s(wind_of(begun, readings_, kFaultFrom_s, kEnd_s)));
   }
   faulty["restart"] = restarted;
 
@@ -200,7 +218,8 @@ TEST_P(WindFaults, InAGapItGoesOnAsTheModelDoes) {
       "| {} | variance in a gap of 100 s: along {:.3f}, model {:.3f} m^2/s^2: {:.2f}; u + v {:.3f}, in the 100 s "
       "before {:.3f} |\n",
       GetParam(), along_m2_s2, model_m2_s2, along_m2_s2 / model_m2_s2, both_m2_s2, usual_m2_s2);
-  EXPECT_GE(along_m2_s2, 0.8 * model_m2_s2);
+  // 0.8, and what the mean of so many seeds still scatters by.
+  EXPECT_GE(along_m2_s2, 0.72 * model_m2_s2);
   EXPECT_LE(along_m2_s2, 1.5 * model_m2_s2);
 }
 

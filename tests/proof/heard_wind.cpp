@@ -30,10 +30,4 @@ std::vector<WindVector> wind_of(HeardWind& heard, const std::vector<WindReading>
   return winds;
 }
 
-double largest_step_m_s(const std::vector<WindVector>& winds) {
-  double largest = 0.0;
-  for (std::size_t i = 1; i < winds.size(); ++i) largest = std::max(largest, speed_of(winds[i] - winds[i - 1]));
-  return largest;
-}
-
 }  // namespace yuragi::proof

@@ -38,7 +38,4 @@ class HeardWind {
 /// before `from_s` are not told.
 std::vector<WindVector> wind_of(HeardWind& heard, const std::vector<WindReading>& readings, double from_s, double to_s);
 
-/// The largest step from one state to the next.
-double largest_step_m_s(const std::vector<WindVector>& winds);
-
 }  // namespace yuragi::proof
