@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -25,19 +27,23 @@ class GustKriging {
   static constexpr std::size_t kMost = WindStroke::kMostPens;
   using Lanes = std::array<float, lanes>;
 
-  /// What changes with the wind alone, not from place to place: for these sensors, in waves that lose so much a metre.
-  void prepare(std::span<const WindPen> pens, WindVector ahead, const GustCoherence& coherence,
-               const std::array<float, lanes>& loss_per_m) noexcept {
+  /// What changes with the wind alone, not from place to place: for these sensors. `coherent(i, distance_m)`: what is
+  /// left of the gusts of sensor i at so many metres of the law's distance, for each lane.
+  template <class Coherent>
+  void prepare(std::span<const WindPen> pens, WindVector ahead, const GustCoherence& law, Coherent coherent) noexcept {
     count_ = pens.size();
     for (std::size_t i = 0; i < count_; ++i) {
       presence_[i] = std::clamp(pens[i].presence, 0.0, 1.0);
-      for (std::size_t j = 0; j < count_; ++j) {
+      coherence_[i][i].fill(1.0F);
+      for (std::size_t j = 0; j < i; ++j) {
         const double east_m = pens[i].east_m - pens[j].east_m;
         const double north_m = pens[j].south_m - pens[i].south_m;
-        const double distance_m = coherence.distance_m(east_m * ahead.u_m_s + north_m * ahead.v_m_s,
-                                                       north_m * ahead.u_m_s - east_m * ahead.v_m_s);
+        const double distance_m =
+            law.distance_m(east_m * ahead.u_m_s + north_m * ahead.v_m_s, north_m * ahead.u_m_s - east_m * ahead.v_m_s);
+        const Lanes one = coherent(i, distance_m);
+        const Lanes other = coherent(j, distance_m);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-          coherence_[i][j][lane] = static_cast<float>(std::exp(-distance_m * static_cast<double>(loss_per_m[lane])));
+          coherence_[i][j][lane] = coherence_[j][i][lane] = std::sqrt(one[lane] * other[lane]);
         }
       }
     }

@@ -88,8 +88,10 @@ void WindTapes::write(const WindStroke& stroke) noexcept {
   renew_rows(is_new);
   if (pen_count_ == 1) return;
   const std::span pens(stroke_.pens.data(), pen_count_);
-  band_kriging_.prepare(pens, stroke.ahead, stroke.coherence, band_loss_per_m_);
-  octave_kriging_.prepare(pens, stroke.ahead, stroke.coherence, octave_loss_per_m_);
+  band_kriging_.prepare(pens, stroke.ahead, stroke.coherence,
+                        [this](std::size_t tape, double distance_m) { return bands_kept(tape, distance_m); });
+  octave_kriging_.prepare(pens, stroke.ahead, stroke.coherence,
+                          [this](std::size_t tape, double distance_m) { return octaves_kept(tape, distance_m); });
 }
 
 void WindTapes::renew_rows(bool all) noexcept {
@@ -284,7 +286,7 @@ BandLanes WindTapes::bands_kept(std::size_t tape, double distance_m) const noexc
   return result;
 }
 
-/// The same of each octave of the noise.
+/// Of each octave of the noise, as the bands keep it.
 OctaveLanes WindTapes::octaves_kept(std::size_t tape, double distance_m) const noexcept {
   const Row row = row_of(distance_m);
   const OctaveLanes& near = kept_[tape][row.below].octaves;

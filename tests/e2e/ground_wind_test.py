@@ -37,6 +37,7 @@ SILENCE_SEEDS = 3  # for each of the others: what noise does in 100 s scatters
 # The figures are those of gusts as the climate has them, and of no site.
 CONFIG = f"""[wind]
 default_length = {LENGTH_M}
+gustiness = 0.0
 [[sensor]]
 driver = "synthetic"
 """
@@ -229,10 +230,10 @@ def report_meadows(report, bench, found):
     for size, least, most in ((7, 0.93, 1.07), (60, 0.88, 1.10)):
         ratios = [figures["variance"][1:] / figures["variance"][0] for (_, _, at), figures in found.items() if at == size]
         report.add(f"variance over that at the sensor, {size} m", ratios, least, most)
-    for name, size, most in ((STEADY, 7, 0.9), (STEADY, 60, 3.5), (GUSTY, 7, 3.3), (GUSTY, 60, 4.0)):
+    for name, size, most in ((STEADY, 7, 1.6), (STEADY, 60, 3.5), (GUSTY, 7, 3.3), (GUSTY, 60, 4.0)):
         decibels = [10 * np.log10(found[name, t, size]["octaves"][1:] / found[name, t, size]["octaves"][0]) for t in INTERVALS_S]
         report.add(f"octaves against the sensor's, {short[name]}, {size} m, dB", decibels, -most, most, "{:+.2f}")
-    for name, most in ((STEADY, 0.01), (GUSTY, 0.07)):
+    for name, most in ((STEADY, 0.02), (GUSTY, 0.08)):
         record = np.mean(np.hypot(*bench.record[name][BEGIN_S * gw.RATE_HZ :].T))
         ratios = [figures["speed"] / record for (at, _, _), figures in found.items() if at == name]
         report.add(f"mean speed over the record's, {short[name]}", ratios, 1 - most, 1 + most)
@@ -275,7 +276,7 @@ def report_told(report, bench, found):
     report.add("told place: variance 2, 7, 20 m before it",
                [figures["variance"][1:] / figures["variance"][0] for figures in found.values()], 0.9, 1.1)
     report.add("told place: octaves 2, 7, 20 m before it, dB",
-               [10 * np.log10(figures["octaves"][1:] / figures["octaves"][0]) for figures in found.values()], -1.5, 1.5, "{:+.2f}")
+               [10 * np.log10(figures["octaves"][1:] / figures["octaves"][0]) for figures in found.values()], -2.0, 2.0, "{:+.2f}")
     record = bench.record[STEADY]
     ahead, speed = direction_of(record)
     intensity = np.std(record @ ahead) / speed

@@ -58,7 +58,13 @@ struct Layout {
     return weights(kriging);
   }
   AllWaves weights(Kriging& kriging) const {
-    kriging.prepare(pens, ahead, law, loss_per_m);
+    kriging.prepare(pens, ahead, law, [this](std::size_t, double distance_m) {
+      Kriging::Lanes left{};
+      for (std::size_t wave = 0; wave < kWaves; ++wave) {
+        left[wave] = static_cast<float>(std::exp(-distance_m * static_cast<double>(loss_per_m[wave])));
+      }
+      return left;
+    });
     AllWaves coherent{};
     for (std::size_t i = 0; i < pens.size(); ++i) {
       for (std::size_t wave = 0; wave < kWaves; ++wave) coherent[i][wave] = static_cast<float>(to_place(i, wave));

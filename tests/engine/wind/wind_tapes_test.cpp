@@ -270,7 +270,7 @@ TEST(WindTapesOfSeveral, SideBySideEachHasTheWindThatItMeasures) {
   expect_each_has_its_own({{-12.0, 4.0}, {0.0, 4.0}, {30.0, 4.0}});
 }
 
-TEST(WindTapesOfSeveral, DISABLED_BehindEachOtherEachHasTheWindThatItMeasures) {
+TEST(WindTapesOfSeveral, BehindEachOtherEachHasTheWindThatItMeasures) {
   expect_each_has_its_own({{0.0, 15.0}, {0.0, -15.0}});
   expect_each_has_its_own({{-12.0, 4.0}, {9.0, -6.0}, {0.0, 15.0}});
 }
@@ -361,7 +361,7 @@ TEST(WindTapes, WhateverIsWrittenIsReadAsFiniteNumbers) {
 }
 
 // A pen whose sensors have said nothing yet loses nothing of what they say next.
-TEST(WindTapes, DISABLED_AtThePenAllIsKnownAtOnceWhenASensorBeginsToSpeak) {
+TEST(WindTapes, AtThePenAllIsKnownAtOnceWhenASensorBeginsToSpeak) {
   StrokeRun run({{0.0, 0.0}});
   WindTapes tapes;
   run.pen(0).weights.fill(0.0);
