@@ -56,7 +56,7 @@ C_LIBRARIES = "modbus hidapi libusb portaudio sqlite3.h mosquitto.h lo umockdev.
 # The operating system's own headers.
 POSIX = set(
     "arpa dlfcn.h fcntl.h ifaddrs.h linux net netdb.h netinet poll.h pthread.h sched.h signal.h spawn.h sys sysexits.h"
-    " termios.h time.h unistd.h".split()
+    " termios.h time.h unistd.h malloc.h".split()
 )
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"(?P<own>[^"]+)"|<(?P<outside>[^>]+)>)')

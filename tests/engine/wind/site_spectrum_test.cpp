@@ -13,7 +13,7 @@
 namespace yuragi {
 namespace {
 
-constexpr double kDay_s = 86400.0;
+constexpr double kSiteDay_s = 86400.0;
 
 double db_of(double power) {
   return 10.0 * std::log10(power);
@@ -35,11 +35,11 @@ TEST(SiteSpectrum, IsBelievedByAndByAndForgottenOverDays) {
     last_db = now_db;
   }
   EXPECT_NEAR(last_db, 4.0 * 1400.0 / 2000.0, 0.05);
-  for (double time_s = 0.0; time_s < 2.0 * kDay_s; time_s += 14.0) site.learn(1, 4.0, 14.0);
+  for (double time_s = 0.0; time_s < 2.0 * kSiteDay_s; time_s += 14.0) site.learn(1, 4.0, 14.0);
   EXPECT_NEAR(site.octaves_db()[1], 4.0, 0.05);
-  for (double time_s = 0.0; time_s < 10.0 * kDay_s; time_s += 14.0) site.learn(1, -2.0, 14.0);
+  for (double time_s = 0.0; time_s < 10.0 * kSiteDay_s; time_s += 14.0) site.learn(1, -2.0, 14.0);
   EXPECT_NEAR(site.octaves_db()[1], -2.0, 0.4);
-  EXPECT_LE(site.known_s()[1], 3.0 * kDay_s * 1.001);
+  EXPECT_LE(site.known_s()[1], 3.0 * kSiteDay_s * 1.001);
 }
 
 TEST(SiteSpectrum, CorrectsWhatASourceDoesNotTellItself) {
@@ -66,7 +66,7 @@ TEST(SiteSpectrum, IsBoundedWhateverItIsTold) {
   site.learn(SiteSpectrum::kOctaves, 3.0, 14.0);
   site.learn(0, 3.0, 0.0);
   EXPECT_EQ(site.known_s()[0], 0.0);
-  for (double time_s = 0.0; time_s < kDay_s; time_s += 14.0) site.learn(2, -300.0, 14.0);
+  for (double time_s = 0.0; time_s < kSiteDay_s; time_s += 14.0) site.learn(2, -300.0, 14.0);
   EXPECT_EQ(site.octaves_db()[2], -SiteSpectrum::kMost_db);
   site.expect(std::vector<double>(20, 500.0));
   EXPECT_LE(site.octaves_db()[0], SiteSpectrum::kMost_db);

@@ -165,7 +165,7 @@ TEST(WindTape, ALeapOfTheWayIsAStraightLine) {
 /// The largest step at any of some places, from tick to tick, of a wave of this length in ticks that is written while
 /// the wind's speed is what `speed_m_s` says.
 void expect_no_jumps(const std::function<double(int tick)>& speed_m_s) {
-  constexpr double kTick_s = 1.0 / 60.0;
+  constexpr double kTapeTick_s = 1.0 / 60.0;
   WindTape tape;
   double way_m = 0.0;
   const std::vector<double> places_m = {0.0, 0.05, 0.13, 0.249, 0.25, 0.251, 0.4, 1.0, 7.7, 60.0};
@@ -180,12 +180,12 @@ void expect_no_jumps(const std::function<double(int tick)>& speed_m_s) {
   };
   double steepest_per_m = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
-    const double step_m = speed_m_s(tick) * kTick_s;
+    const double step_m = speed_m_s(tick) * kTapeTick_s;
     way_m += step_m;
     const double value = std::sin(2.0 * std::numbers::pi * tick / 120.0);
     if (tick > 0) {
       largest_written = std::max(largest_written, std::abs(value - written_before));
-      steepest_per_m = std::max(steepest_per_m, std::abs(value - written_before) / (slowest_m_s(tick) * kTick_s));
+      steepest_per_m = std::max(steepest_per_m, std::abs(value - written_before) / (slowest_m_s(tick) * kTapeTick_s));
     }
     written_before = value;
     tape.write(pen_of(value), way_m);
