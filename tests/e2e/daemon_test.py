@@ -184,8 +184,8 @@ class DaemonTest(unittest.TestCase):
         sensor = '[[sensor]]\nname = "%s"\ndriver = "synthetic"\n'
         path = self.file("wall.toml", sensor % "roof" + "[sensor.blend]\nx = -12\nlead = 5\n" + sensor % "mast")
         said = run("check-config", path).stdout
-        self.assertIn("sensor roof (synthetic), 12 m west of the middle of the scenes, taken 5 m upwind of there\n", said)
-        self.assertIn("sensor mast (synthetic), at the windward edge of the scenes\n", said)
+        self.assertIn("sensor roof (synthetic), 12 m west of the middle of the scenes, taken 5 m upwind of there, ", said)
+        self.assertIn("sensor mast (synthetic), at the windward edge of the scenes, ", said)
         full = self.file("full.toml", run("check-config", "--full", path).stdout)
         self.assertEqual(run("check-config", full).stdout.splitlines()[1:], said.splitlines()[1:])
         self.assertIn("left out: its gusts enter at the windward edge of the scenes", run("describe").stdout)
@@ -334,7 +334,8 @@ port = {port}
         replayed = re.search(r"replayed   mean (\S+) m/s, max (\S+) m/s", table)
         self.assertEqual(recorded.groups(), ("7.02", "11.27"))
         self.assertAlmostEqual(float(replayed.group(1)), 7.02, delta=0.05)
-        self.assertAlmostEqual(float(replayed.group(2)), 11.27, delta=0.4)
+        # Gusts of less than two metres, of which readings of 10 Hz do not tell, are made up on top of theirs.
+        self.assertAlmostEqual(float(replayed.group(2)), 11.27, delta=0.8)
 
     def test_a_replay_at_a_pace_ends_with_its_recording(self):
         log = self.file("storm.windlog")

@@ -350,7 +350,7 @@ def all_figures(bench, seeds):
 def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("yuragi")
-    options.add_argument("--seeds", type=int, default=3)
+    options.add_argument("--seeds", type=int, default=5)
     options.add_argument("--table", action="store_true")
     options.add_argument("--records", type=pathlib.Path,
                          default=pathlib.Path(__file__).resolve().parents[3] / "shared/data/sonic")
