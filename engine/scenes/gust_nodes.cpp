@@ -127,7 +127,8 @@ void GustNodes::read(const GustNoise::Moment& moment, GustNoise::Component compo
 void GustNodes::add_coarse() noexcept {
   const std::size_t coarse_columns = line_envelope_.size();
   for (std::size_t line = 0; line < lines_.size(); ++line) {
-    const auto [north, z_fraction] = lines_[line];
+    const std::size_t north = lines_[line].first;
+    const float z_fraction = lines_[line].fraction;
     for (std::size_t column = 0; column < coarse_columns; ++column) {
       const std::size_t here = north * coarse_columns + column;
       const std::size_t south = here + (envelope_.size() > coarse_columns ? coarse_columns : 0);
@@ -139,7 +140,8 @@ void GustNodes::add_coarse() noexcept {
       line_envelope_[column] = at(envelope_);
     }
     for (std::size_t column = 0; column < columns_.size(); ++column) {
-      const auto [west, x_fraction] = columns_[column];
+      const std::size_t west = columns_[column].first;
+      const float x_fraction = columns_[column].fraction;
       const std::size_t east = std::min(west + 1, coarse_columns - 1);
       const auto at = [&](const std::vector<float>& values) {
         return values[west] + x_fraction * (values[east] - values[west]);
