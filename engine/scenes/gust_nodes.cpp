@@ -71,7 +71,7 @@ GustNodes::GustNodes(std::shared_ptr<const GustNoise> gusts, const GroundNodes& 
 
   const double cell_m = std::max(nodes.cell_x_m, nodes.cell_z_m);
   for (std::size_t i = 0; i < held_.size(); ++i) {
-    const double shortest_m = 2.0 * std::numbers::pi / gusts_->octaves()[2 * GustNoise::kWayOctaves + i].to_rad_m;
+    const double shortest_m = 2.0 * std::numbers::pi / gusts_->octaves()[GustNoise::kFirstTileOctave + i].to_rad_m;
     held_[i] = is_coarse(i) ? 1.0F : static_cast<float>(std::clamp(std::log2(0.5 * shortest_m / cell_m), 0.0, 1.0));
   }
 }

@@ -94,9 +94,8 @@ void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
     const auto along = static_cast<double>(gusts_.along_m_s()[i]);
     const auto across = static_cast<double>(gusts_.across_m_s()[i]);
     const WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
-    const WindVector here = wind.tapes != nullptr
-                                ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
-                                : wind.everywhere + wind.slope.at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
+    const WindVector here = wind.tapes != nullptr ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
+                                                  : wind.untaped_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
     const WindVector felt = SceneWind::cut(here);
     east_.target[i] = static_cast<float>(felt.u_m_s);
     south_.target[i] = static_cast<float>(-felt.v_m_s);

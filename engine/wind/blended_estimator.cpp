@@ -7,8 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "engine/wind/wind_profile.hpp"
-
 namespace yuragi {
 namespace {
 
@@ -312,10 +310,15 @@ double BlendedEstimator::gust_length_m(const Heard& heard) const noexcept {
   return length_m / all;
 }
 
-/// Where each pen stands: at the windward edge of the scenes, or where its sensor does, and how far its sensors count.
+/// Where each pen stands: at the windward edge of the scenes, or where its sensor does, how far its sensors count, and
+/// its part of the wind that is shown.
 void BlendedEstimator::place_pens() noexcept {
   double largest = kLeastShare;
-  for (const Pen& pen : pens_) largest = std::max(largest, pen.word);
+  double all = 0.0;
+  for (const Pen& pen : pens_) {
+    largest = std::max(largest, pen.word);
+    all += pen.word;
+  }
   const WindVector ahead = stroke_.ahead;
   for (std::size_t i = 0; i < pens_.size(); ++i) {
     const PenPlaces::Place& place = places_.place(i);
@@ -323,6 +326,7 @@ void BlendedEstimator::place_pens() noexcept {
     WindPen& pen = stroke_.pens[i];
     pen.east_m = place.east_m - upwind_m * ahead.u_m_s;
     pen.south_m = place.south_m + upwind_m * ahead.v_m_s;
+    pen.part = all > kLeastShare ? pens_[i].word / all : 1.0 / static_cast<double>(pens_.size());
     pen.presence = std::clamp(2.0 * pens_[i].word / largest, 0.0, 1.0);
     pen.now.east_m = pen.east_m - stroke_.carried_east_m;
     pen.now.south_m = pen.south_m - stroke_.carried_south_m;
@@ -409,10 +413,10 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, floa
   for (std::size_t i = 0; i < sources_.size(); ++i) passed_[i] = sources_[i].passed_of(known_hz);
   if (is_way) {
     Power known;
-    for (const Pen& pen : pens_) {
-      const Power here = power_heard(bands, pen.shares);
-      known.along += part_of(pen) * here.along;
-      known.across += part_of(pen) * here.across;
+    for (std::size_t p = 0; p < pens_.size(); ++p) {
+      const Power here = power_heard(bands, pens_[p].shares);
+      known.along += stroke_.pens[p].part * here.along;
+      known.across += stroke_.pens[p].part * here.across;
     }
     approach(along_m_s, deviation((1.0 - known.along) * variance_along));
     approach(across_m_s, deviation((1.0 - known.across) * variance_across));
@@ -434,13 +438,6 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, floa
   }
 }
 
-/// A place's part of the wind that is shown.
-double BlendedEstimator::part_of(const Pen& pen) const noexcept {
-  double all = 0.0;
-  for (const Pen& other : pens_) all += other.word;
-  return all > kLeastShare ? pen.word / all : 1.0 / static_cast<double>(pens_.size());
-}
-
 GustNoise::Moment BlendedEstimator::gusts_at(std::size_t pen) const noexcept {
   return ground_.left_of(WindTapes::at_pen(stroke_.pens[pen].now));
 }
@@ -453,7 +450,6 @@ void BlendedEstimator::show(const Heard& heard) noexcept {
   double told = 0.0;
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     WindPen& pen = stroke_.pens[p];
-    pen.part = part_of(pens_[p]);
     if (!places_.place(p).is_edge) told += pen.part;
     pen.now.mean = heard.mean;
     pen.now.way = way;

@@ -113,7 +113,6 @@ class BlendedEstimator final : public WindEstimator {
   void weigh_gusts(const Heard& heard, double dt_s) noexcept;
   void weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept;
   Power power_heard(const OctaveFollower::Response& bands, std::span<const BandWeights> shares) const noexcept;
-  double part_of(const Pen& pen) const noexcept;
   void show(const Heard& heard) noexcept;
   double variance_share(std::size_t source, double frequency_hz, const Heard& heard) const noexcept;
 

@@ -45,21 +45,22 @@ struct GroundWind {
   /// The wind at a place (metres east and south of the middle of the scenes) without the gusts that pass there: its
   /// mean, and what is longer than the ground.
   WindVector smooth_at(double east_m, double south_m) const noexcept {
-    return tapes == nullptr ? everywhere + slope.at(east_m, south_m)
-                            : smooth(tapes->known_at(east_m, south_m), east_m, south_m);
+    return tapes == nullptr ? untaped_at(east_m, south_m) : smooth(tapes->known_at(east_m, south_m), east_m, south_m);
   }
 
   /// The same with the gusts that were measured, without those of the noise.
   WindVector measured_at(double east_m, double south_m) const noexcept {
-    return tapes == nullptr ? everywhere + slope.at(east_m, south_m)
-                            : measured(tapes->known_at(east_m, south_m), east_m, south_m);
+    return tapes == nullptr ? untaped_at(east_m, south_m) : measured(tapes->known_at(east_m, south_m), east_m, south_m);
   }
 
   /// The wind at a place.
   WindVector at(const GustNoise& noise, double east_m, double south_m) const noexcept {
-    return tapes == nullptr ? everywhere + slope.at(east_m, south_m) + noise.local(gusts, east_m, south_m)
+    return tapes == nullptr ? untaped_at(east_m, south_m) + noise.local(gusts, east_m, south_m)
                             : at(noise, tapes->at(east_m, south_m), east_m, south_m);
   }
+
+  /// Without tapes: what a place has besides its own gusts.
+  WindVector untaped_at(double east_m, double south_m) const noexcept { return everywhere + slope.at(east_m, south_m); }
 
   // The same three of a reading of the tapes at that place.
   WindVector smooth(const WindTapes::Known& reading, double east_m, double south_m) const noexcept {

@@ -26,7 +26,7 @@ GustVariances gust_variances(const GustNoise& noise, double intensity, double le
   const auto& octaves = noise.octaves();
   for (std::size_t which = 0; which < 2; ++which) {
     const std::size_t way = which * GustNoise::kWayOctaves;
-    const std::size_t tile = 2 * GustNoise::kWayOctaves + which * GustNoise::kTileOctaves;
+    const std::size_t tile = GustNoise::kFirstTileOctave + which * GustNoise::kTileOctaves;
     // What is too long for the tiles is the way's. Its first octave stands for all that is longer, too.
     const double longest_rad_m = octaves[tile].from_rad_m;
     const double scale = (1.0 - above(longest_rad_m)) / along_way(0.0, longest_rad_m);

@@ -41,8 +41,8 @@ class TileCuts {
   void add(const GustNoise::Moment& gusts, double speed_m_s, double step_hz, std::vector<double>& density,
            double weight) const {
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      const auto along_m_s = static_cast<double>(gusts.along_m_s[2 * GustNoise::kWayOctaves + i]);
-      const auto across_m_s = static_cast<double>(gusts.across_m_s[2 * GustNoise::kWayOctaves + i]);
+      const auto along_m_s = static_cast<double>(gusts.along_m_s[GustNoise::kFirstTileOctave + i]);
+      const auto across_m_s = static_cast<double>(gusts.across_m_s[GustNoise::kFirstTileOctave + i]);
       const double variance = along_m_s * along_m_s + across_m_s * across_m_s;
       const double unit_hz = from_rad_m(i) * speed_m_s / (2.0 * std::numbers::pi);
       for (auto k = static_cast<std::size_t>(kToHz / step_hz); k < density.size(); ++k) {
@@ -58,7 +58,7 @@ class TileCuts {
   using Cut = std::array<double, kPoints>;  ///< one-sided density at k / k0 from 0 to 2, of variance 1
 
   double from_rad_m(std::size_t tile_octave) const {
-    return noise_.octaves()[2 * GustNoise::kWayOctaves + tile_octave].from_rad_m;
+    return noise_.octaves()[GustNoise::kFirstTileOctave + tile_octave].from_rad_m;
   }
 
   /// Of an octave whose longest waves have `cycles` a sample.

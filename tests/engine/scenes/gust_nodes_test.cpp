@@ -22,8 +22,8 @@ GustNoise::Moment gusts_at_nodes(float gustiness = 0.0F) {
   GustNoise::Moment gusts = gusty.step(100.0).gusts;
   for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
     const bool is_held = i % GustNoise::kTileOctaves < GustNoise::kTileOctaves - GustNoise::kShortOctaves;
-    if (!is_held) gusts.along_m_s[2 * GustNoise::kWayOctaves + i] = 0.0F;
-    if (!is_held) gusts.across_m_s[2 * GustNoise::kWayOctaves + i] = 0.0F;
+    if (!is_held) gusts.along_m_s[GustNoise::kFirstTileOctave + i] = 0.0F;
+    if (!is_held) gusts.across_m_s[GustNoise::kFirstTileOctave + i] = 0.0F;
   }
   gusts.gustiness = gustiness;
   return gusts;
@@ -55,7 +55,7 @@ TEST(GustNodes, WithoutSlowGustsItIsExact) {
   GustNoise::Moment gusts = gusts_at_nodes();
   gusts.ahead = {0.0, 1.0};
   for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
-    if (GustNodes::is_coarse(i)) gusts.along_m_s[2 * GustNoise::kWayOctaves + i] = 0.0F;
+    if (GustNodes::is_coarse(i)) gusts.along_m_s[GustNoise::kFirstTileOctave + i] = 0.0F;
   }
   nodes.read(gusts);
   for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
@@ -79,7 +79,7 @@ TEST(GustNodes, WeightsWeakenAnOctavePlaceByPlace) {
     plain.read(gusts);
     const std::vector<float> with(plain.along_m_s().begin(), plain.along_m_s().end());
     const std::vector<float> across(plain.across_m_s().begin(), plain.across_m_s().end());
-    gusts.along_m_s[2 * GustNoise::kWayOctaves + octave] = 0.0F;
+    gusts.along_m_s[GustNoise::kFirstTileOctave + octave] = 0.0F;
     plain.read(gusts);
     for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
       EXPECT_EQ(weighted.across_m_s()[i], across[i]);

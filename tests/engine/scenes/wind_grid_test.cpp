@@ -42,7 +42,7 @@ struct Places {
 /// The part of an octave that nodes so far apart hold: all of waves of four cells, nothing of those of two.
 double held_part(std::size_t tile_octave, double cell_m) {
   const double shortest_m =
-      2.0 * std::numbers::pi / shared_gusts()->octaves()[2 * GustNoise::kWayOctaves + tile_octave].to_rad_m;
+      2.0 * std::numbers::pi / shared_gusts()->octaves()[GustNoise::kFirstTileOctave + tile_octave].to_rad_m;
   return std::clamp(std::log2(shortest_m / (2.0 * cell_m)), 0.0, 1.0);
 }
 
@@ -50,8 +50,8 @@ double held_part(std::size_t tile_octave, double cell_m) {
 GroundWind held(GroundWind wind, double cell_m) {
   for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
     const auto part = static_cast<float>(held_part(i, cell_m));
-    wind.gusts.along_m_s[2 * GustNoise::kWayOctaves + i] *= part;
-    wind.gusts.across_m_s[2 * GustNoise::kWayOctaves + i] *= part;
+    wind.gusts.along_m_s[GustNoise::kFirstTileOctave + i] *= part;
+    wind.gusts.across_m_s[GustNoise::kFirstTileOctave + i] *= part;
   }
   return wind;
 }

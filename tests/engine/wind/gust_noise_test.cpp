@@ -33,12 +33,12 @@ TEST(GustNoise, CoversTheWavesFromTheWayToTheTileWithoutAGap) {
   };
   for (std::size_t which = 0; which < 2; ++which) {
     const double way_ends = follow(which * GustNoise::kWayOctaves, GustNoise::kWayOctaves);
-    const std::size_t tile = 2 * GustNoise::kWayOctaves + which * GustNoise::kTileOctaves;
+    const std::size_t tile = GustNoise::kFirstTileOctave + which * GustNoise::kTileOctaves;
     EXPECT_NEAR(way_ends / octaves[tile].from_rad_m, 1.0, 1e-12);
     const double shortest_m = 2.0 * std::numbers::pi / follow(tile, GustNoise::kTileOctaves);
     EXPECT_NEAR(shortest_m, which == 0 ? 0.25 : 0.25 * std::numbers::phi, 1e-9);
   }
-  EXPECT_NEAR(octaves[2 * GustNoise::kWayOctaves].from_rad_m, 2.0 * std::numbers::pi / 2048.0, 1e-12);
+  EXPECT_NEAR(octaves[GustNoise::kFirstTileOctave].from_rad_m, 2.0 * std::numbers::pi / 2048.0, 1e-12);
 }
 
 /// Places that fill the plane evenly: multiples of two irrational numbers. Many periods of the longest tile.
@@ -61,7 +61,7 @@ TEST(GustNoise, EachOctaveHasMeanZeroAndVarianceOneOverTheGround) {
       squares.across[o] += values.across[o] * values.across[o];
     }
   }
-  for (std::size_t o = 2 * GustNoise::kWayOctaves; o < GustNoise::kOctaves; ++o) {
+  for (std::size_t o = GustNoise::kFirstTileOctave; o < GustNoise::kOctaves; ++o) {
     EXPECT_NEAR(sum.along[o] / kPlaces, 0.0F, 0.04F) << o;
     EXPECT_NEAR(squares.along[o] / kPlaces, 1.0F, 0.05F) << o;
     EXPECT_NEAR(squares.across[o] / kPlaces, 1.0F, 0.05F) << o;
@@ -70,7 +70,7 @@ TEST(GustNoise, EachOctaveHasMeanZeroAndVarianceOneOverTheGround) {
 
 TEST(GustNoise, TheWayHasVarianceOneInEachOctave) {
   GustNoise::Carried carried;
-  std::array<double, 2 * GustNoise::kWayOctaves> squares{};
+  std::array<double, GustNoise::kFirstTileOctave> squares{};
   constexpr int kMoments = 20000;
   for (int i = 0; i < kMoments; ++i) {
     gust_noise().carry(carried, 30.0, 40.0, 17.3);
@@ -145,7 +145,7 @@ TEST(GustNoise, TheWayIsTheSameEverywhereAndTheTilesTravelWithTheWind) {
   const GustNoise::Values downwind = gust_noise().at(carried, 10.0 + 180.0, 20.0 - 120.0);
   const GustNoise::Values elsewhere = gust_noise().at(carried, -40.0, 7.0);
   for (std::size_t o = 0; o < GustNoise::kOctaves; ++o) {
-    if (o < 2 * GustNoise::kWayOctaves) {
+    if (o < GustNoise::kFirstTileOctave) {
       EXPECT_EQ(downwind.along[o], elsewhere.along[o]) << o;
     } else {
       EXPECT_NEAR(before.along[o], downwind.along[o], 1e-3F) << "what was here is there now: " << o;
@@ -218,7 +218,7 @@ TEST(GustNoise, KeepsItsVarianceWhileItsEddiesTurn) {
         squares[o] += static_cast<double>(values.along[o] * values.along[o]) / kPlaces;
       }
     }
-    for (std::size_t o = 2 * GustNoise::kWayOctaves; o < GustNoise::kOctaves; ++o) {
+    for (std::size_t o = GustNoise::kFirstTileOctave; o < GustNoise::kOctaves; ++o) {
       EXPECT_NEAR(squares[o], 1.0, 0.12) << "octave " << o << ", step " << step;
     }
   }
@@ -237,7 +237,7 @@ TEST(GustNoise, AGustDoesNotComeBackUnchangedWhenItsTileHasWrapped) {
   double evolving_power = 0.0;
   double power = 0.0;
   for (std::size_t i = GustNoise::kLongOctaves; i < GustNoise::kTileOctaves - GustNoise::kShortOctaves; ++i) {
-    const std::size_t octave = 2 * GustNoise::kWayOctaves + i;
+    const std::size_t octave = GustNoise::kFirstTileOctave + i;
     const double weight = std::pow(2.0, -2.0 / 3.0 * static_cast<double>(i));
     power += weight;
     frozen_power += weight * octave_likeness(evolving_gusts(), {}, frozen, octave);
@@ -256,7 +256,7 @@ TEST(GustNoise, EvolvingDoesNotMoveIt) {
   // other unlike it, 1.4 apart. Octaves of less than four waves a tile have too few for their signs to even out.
   for (std::size_t i = 2; i < GustNoise::kTileOctaves; ++i) {
     if (i == GustNoise::kLongOctaves) continue;
-    const std::size_t octave = 2 * GustNoise::kWayOctaves + i;
+    const std::size_t octave = GustNoise::kFirstTileOctave + i;
     const double from_rad_m = evolving_gusts().octaves()[octave].from_rad_m;
     const double rate_rad_s = kTurnover_m23_s * std::pow(std::numbers::sqrt2 * from_rad_m, 2.0 / 3.0);
     GustNoise::Carried turned;
@@ -285,7 +285,7 @@ TEST(GustNoise, WithoutGustinessAllPlacesHaveTheirGustsUnchanged) {
   EXPECT_EQ(gust_noise().envelope(gusts, 12.0, 34.0), 1.0F);
   const GustNoise::Values values = gust_noise().at({}, 12.0, 34.0);
   float along = 0.0F;
-  for (std::size_t o = 2 * GustNoise::kWayOctaves; o < GustNoise::kOctaves; ++o) {
+  for (std::size_t o = GustNoise::kFirstTileOctave; o < GustNoise::kOctaves; ++o) {
     along += gusts.along_m_s[o] * values.along[o];
   }
   EXPECT_EQ(gust_noise().local(gusts, 12.0, 34.0).v_m_s, static_cast<double>(along));
