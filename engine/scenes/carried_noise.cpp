@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "engine/math/philox.hpp"
+#include "engine/noise/unit_reading.hpp"
 #include "engine/operators/sample_job.hpp"
 #include "engine/operators/shift_job.hpp"
 
@@ -51,10 +53,17 @@ double steepest_slope(const NoiseTile2& tile, double period_m) noexcept {
 }
 
 CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::uint64_t which, double period_m) {
-  NoiseTile2 noise =
-      make_noise_2d({.size = spec.samples, .beta = spec.beta, .meaning = spec.meaning, .seed = spec.seed ^ which})
-          .value();
-  Tile tile{.noise = BandLimitedTile2(std::move(noise)), .period_m = period_m};
+  const bool is_band = spec.shortest_m > 0.0;
+  NoiseTile2 noise = make_noise_2d({.size = spec.samples,
+                                    .beta = spec.beta,
+                                    .meaning = spec.meaning,
+                                    .seed = spec.seed ^ which,
+                                    .from_cycles = period_m / spec.longest_m,
+                                    .to_cycles = period_m / spec.shortest_m})
+                         .value();
+  if (is_band) scale_to_unit_reading(noise);
+  Tile tile{.noise = is_band ? BandLimitedTile2(std::move(noise), 1) : BandLimitedTile2(std::move(noise)),
+            .period_m = period_m};
   for (std::size_t level = 0; level < tile.noise.level_count(); ++level) {
     tile.steepest_per_m.push_back(steepest_slope(tile.noise.level(level), period_m));
     if (level == 0) continue;
@@ -82,6 +91,20 @@ CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
     lowest_ += weight * lowest;
     highest_ += weight * highest;
   }
+}
+
+CarriedNoiseSpec CarriedNoise::band(double shortest_m, double longest_m, std::uint64_t seed) {
+  constexpr double kLongestWaves = 8.0;
+  constexpr double kSamplesAWave = 4.5;
+  const double period_m = kLongestWaves * longest_m;
+  // The second tile is larger by the golden ratio, and has as many samples.
+  const auto samples = static_cast<std::size_t>(std::ceil(kSamplesAWave * kPeriodRatio * period_m / shortest_m));
+  return {.period_m = period_m,
+          .samples = std::bit_ceil(samples),
+          .beta = 1.0,
+          .shortest_m = shortest_m,
+          .longest_m = longest_m,
+          .seed = seed};
 }
 
 CarriedPlaces CarriedNoise::places(std::span<const float> x_m, std::span<const float> z_m) const {

@@ -20,6 +20,10 @@ struct CarriedNoiseSpec {
   double beta = 5.0 / 3.0;
   BetaMeaning meaning = BetaMeaning::kTransect;
   bool has_two_tiles = true;  ///< false: one tile, the paper's letter
+  /// Only waves of these lengths, at least an octave apart, metres; 0 and infinity: all that the tile has. A band has
+  /// variance 1 as it is read, and is not cut by the tick rate: keep its shortest waves above twice what a tick passes.
+  double shortest_m = 0.0;
+  double longest_m = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 0;
 };
 
@@ -38,11 +42,11 @@ struct CarriedPlaces {
 /// use them. Mean 0, variance 1.
 ///
 /// Two tiles are added: the second is turned by one radian and its period is that of the first times the golden ratio,
-/// so that the sum has no period and no repeat is seen (method, decision 7). Both have the same spectrum in rad/m, and
-/// both are carried by the same wind. Both are band-limited by the tick rate (BandLimitedTile2): in a storm what is too
-/// fine to be shown fades out, and nothing jitters from tick to tick. Allocates when it is made and in places(), never
-/// afterwards. May throw std::bad_alloc, and what make_noise_2d says.
-/// Thread-safe: sample() among themselves, yes. Realtime-safe: shift() and sample().
+/// so that the sum has no period and no repeat is seen. Both have the same spectrum in rad/m, and both are carried by
+/// the same wind. Both are band-limited by the tick rate (BandLimitedTile2): in a storm what is too fine to be shown
+/// fades out, and nothing jitters from tick to tick. Allocates when it is made and in places(), never afterwards. May
+/// throw std::bad_alloc, and what make_noise_2d says. Thread-safe: sample() among themselves, yes. Realtime-safe:
+/// shift() and sample().
 class CarriedNoise {
  public:
   explicit CarriedNoise(const CarriedNoiseSpec& spec);
@@ -63,6 +67,10 @@ class CarriedNoise {
   /// speed_m_s and changes by at most step_m_s: what the tiles' steepest slopes give for the way, and for a change of
   /// the band limit the most by which two levels differ; and never more than from the lowest value to the highest.
   double largest_change(double speed_m_s, double step_m_s, double dt_s) const noexcept;
+
+  /// The spec of a band of waves for whatever flutters: 1/f along a line, in tiles of eight of the longest waves with
+  /// 4.5 samples or more to the shortest.
+  static CarriedNoiseSpec band(double shortest_m, double longest_m, std::uint64_t seed);
 
   /// Between these its values are.
   double lowest() const noexcept { return lowest_; }
