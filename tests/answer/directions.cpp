@@ -15,7 +15,8 @@ constexpr int kRecordTicks = 1200;
 /// Joints are computed, and the direction taken, at every so many ticks.
 constexpr int kEvery = 12;
 
-/// The angle between downwind and the scene's direction, degrees.
+/// The angle between downwind and the scene's direction, degrees; 0 where the wind is mostly what it does not give way
+/// to.
 double turn_deg(const SceneTable& table, std::size_t beaufort_index, double direction_deg, std::uint64_t seed) {
   const std::unique_ptr<Scene> scene = make_scene(table, seed);
   const std::unique_ptr<Meter> meter = table.make_meter(scene->skeleton());
@@ -33,6 +34,9 @@ double turn_deg(const SceneTable& table, std::size_t beaufort_index, double dire
     const WindVector air = wind.at_origin();
     blown = {blown.east + air.u_m_s, blown.south - air.v_m_s};
   }
+  const double all = blown.length();
+  blown.east *= table.gives_way_along_east;
+  if (blown.length() < 0.5 * all) return 0.0;
   const double along = pointed.dot(blown);
   const double across = pointed.dot(blown.aside());
   return std::abs(std::atan2(across, along)) / kRadPerDeg;

@@ -52,6 +52,8 @@ struct SceneTable {
   std::array<Figures, kBeauforts> (*further)(const SceneTable& table, std::uint64_t seed) = nullptr;
   /// How far from downwind it may point; 0: its direction is not asked for.
   double largest_turn_deg = 15.0;
+  /// How much of the wind along east it gives way to: less than 1 for what hangs along a rail from west to east.
+  double gives_way_along_east = 1.0;
 };
 
 /// All tables.
@@ -59,8 +61,11 @@ const std::vector<SceneTable>& scene_tables();
 
 // One a file.
 SceneTable flag_table();
+SceneTable curtain_table();
+SceneTable banner_table();
 SceneTable tree_table();
 SceneTable zelkova_table();
 SceneTable poplar_table();
+SceneTable grass_table();
 
 }  // namespace yuragi::answer

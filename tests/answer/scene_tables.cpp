@@ -3,7 +3,8 @@
 namespace yuragi::answer {
 
 const std::vector<SceneTable>& scene_tables() {
-  static const std::vector<SceneTable> kTables = {flag_table(), tree_table(), zelkova_table(), poplar_table()};
+  static const std::vector<SceneTable> kTables = {flag_table(),    curtain_table(), banner_table(), tree_table(),
+                                                  zelkova_table(), poplar_table(),  grass_table()};
   return kTables;
 }
 

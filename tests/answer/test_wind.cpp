@@ -48,7 +48,7 @@ std::shared_ptr<const GustNoise> test_gusts() {
 }
 
 std::uint64_t wind_seed(std::size_t beaufort_index) noexcept {
-  constexpr std::array<std::uint64_t, kBeauforts> kSeeds = {1, 1, 1, 1};
+  constexpr std::array<std::uint64_t, kBeauforts> kSeeds = {6, 1, 29, 29};
   return kSeeds[beaufort_index];
 }
 
