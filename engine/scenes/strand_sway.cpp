@@ -12,11 +12,18 @@
 #include "engine/operators/bending_job.hpp"
 #include "engine/operators/local_bending_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
+#include "engine/scenes/strand_part.hpp"
 
 namespace yuragi {
 namespace {
 
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
+/// The canopy's waves, the shortest and the longest; the part of the wind's speed that they run with; and how many
+/// standard deviations they reach.
+constexpr std::array kCanopyWaves_m = {2.0, 6.0};
+constexpr double kCanopyCarry = 0.65;
+constexpr double kLargestCanopyWave = 2.2;
+
 constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
 
 double largest_of(std::span<const float> values) {
@@ -41,7 +48,10 @@ StrandSway::OwnGusts::OwnGusts(const StrandSwaySpec& spec, std::span<const float
 StrandSway::OutsideGusts::OutsideGusts(const StrandSkeleton& strands, const SceneSetup& setup)
     : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row),
       east_m_s(strands.padded_count(), 0.0F),
-      south_m_s(strands.padded_count(), 0.0F) {}
+      south_m_s(strands.padded_count(), 0.0F),
+      canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ stream_id("canopy waves"))),
+      places(canopy.places(strands.root_x_m, strands.root_z_m)),
+      strength(strands.padded_count(), 1.0F) {}
 
 StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
                        std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup)
@@ -64,28 +74,31 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
 
 void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
   wind_.step(wind, dt_s);
-  if (outside_) return outside_->grid.step(wind, dt_s);
+  if (outside_) {
+    outside_->grid.step(wind, dt_s);
+    outside_->canopy.shift(kCanopyCarry * wind_.east_m_s(), kCanopyCarry * wind_.south_m_s(), dt_s);
+    return;
+  }
   // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
   own_->noise.shift(spec_.carry * wind_.east_m_s(), spec_.carry * wind_.south_m_s(), dt_s);
   own_->way.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
 }
 
-template <class Value>
-std::span<Value> StrandSway::of_part(Part part, std::span<Value> values) const noexcept {
-  const std::size_t blocks = values.size() / kStrandsPerBlock;
-  const std::size_t begin = part.begin(blocks) * kStrandsPerBlock;
-  return values.subspan(begin, part.end(blocks) * kStrandsPerBlock - begin);
-}
-
 void StrandSway::sample_part(Part part) noexcept {
   if (outside_) {
-    // The wind at each strand.
-    const std::span<float> east_m_s = of_part(part, std::span(outside_->east_m_s));
+    // The wind at each strand, and by how much the canopy's waves vary it.
+    const std::span<float> east_m_s = strands_of(part, std::span(outside_->east_m_s));
     const auto first = static_cast<std::size_t>(east_m_s.data() - outside_->east_m_s.data());
-    return outside_->grid.sample(first, east_m_s, of_part(part, std::span(outside_->south_m_s)));
+    outside_->grid.sample(first, east_m_s, strands_of(part, std::span(outside_->south_m_s)));
+    if (spec_.canopy_waves > 0.0) {
+      const auto largest = static_cast<float>(spec_.canopy_waves * kLargestCanopyWave);
+      outside_->canopy.sample(outside_->places, row_, strands_of(part, std::span(outside_->strength)),
+                              static_cast<float>(spec_.canopy_waves), 1.0F, 1.0F - largest, 1.0F + largest, first);
+    }
+    return;
   }
   // How strong the wind is at each strand, as a factor.
-  const std::span<float> strength = of_part(part, std::span(own_->strength));
+  const std::span<float> strength = strands_of(part, std::span(own_->strength));
   const auto first = static_cast<std::size_t>(strength.data() - own_->strength.data());
   own_->noise.sample(own_->places, row_, strength, static_cast<float>(spec_.turbulence), 1.0F, 0.0F,
                      std::numeric_limits<float>::infinity(), first);
@@ -93,14 +106,15 @@ void StrandSway::sample_part(Part part) noexcept {
 
 void StrandSway::project_part(Part part, double dt_s) noexcept {
   StrandPose& pose = *std::get_if<StrandPose>(&pose_);
-  const std::span<const float> flexibility = of_part(part, std::span<const float>(flexibility_));
-  const std::span<float> bend_east_rad = of_part(part, std::span(pose.bend_east_rad));
-  const std::span<float> bend_south_rad = of_part(part, std::span(pose.bend_south_rad));
+  const std::span<const float> flexibility = strands_of(part, std::span<const float>(flexibility_));
+  const std::span<float> bend_east_rad = strands_of(part, std::span(pose.bend_east_rad));
+  const std::span<float> bend_south_rad = strands_of(part, std::span(pose.bend_south_rad));
 
   // The wind bends the strand toward where it blows.
   if (outside_) {
-    LocalBendingJob{.wind_east_m_s = of_part(part, std::span<const float>(outside_->east_m_s)),
-                    .wind_south_m_s = of_part(part, std::span<const float>(outside_->south_m_s)),
+    LocalBendingJob{.wind_east_m_s = strands_of(part, std::span<const float>(outside_->east_m_s)),
+                    .wind_south_m_s = strands_of(part, std::span<const float>(outside_->south_m_s)),
+                    .strength = strands_of(part, std::span<const float>(outside_->strength)),
                     .flexibility = flexibility,
                     .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
                     .max_bend_rad = spec_.max_bend_rad,
@@ -113,7 +127,7 @@ void StrandSway::project_part(Part part, double dt_s) noexcept {
     const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
     BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
                .wind_south_m_s = wind_speed * wind_.south_m_s(),
-               .strength = of_part(part, std::span<const float>(own_->strength)),
+               .strength = strands_of(part, std::span<const float>(own_->strength)),
                .flexibility = flexibility,
                .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
                .max_bend_rad = spec_.max_bend_rad,
@@ -137,7 +151,13 @@ void StrandSway::project_part(Part part, double dt_s) noexcept {
 /// The largest change in a tick of wind * gust * strength, m/s.
 double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
   const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
-  if (outside_) return wind_step_m_s;
+  if (outside_) {
+    const double largest_wave = spec_.canopy_waves * kLargestCanopyWave;
+    const double wave_step =
+        spec_.canopy_waves *
+        outside_->canopy.largest_change(kCanopyCarry * kStrongestSceneWind_m_s, kCanopyCarry * wind_step_m_s, dt_s);
+    return wind_step_m_s * (1.0 + largest_wave) + kStrongestSceneWind_m_s * std::min(wave_step, 2.0 * largest_wave);
+  }
   const double largest_strength = 1.0 + spec_.turbulence * std::max(own_->noise.highest(), 0.0);
   const double largest_gust = 1.0 + spec_.gust_strength * own_->largest_along;
   const double carried_m_s = spec_.carry * kStrongestSceneWind_m_s;
@@ -175,6 +195,9 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
        "own gusts: how much the wind differs from place to place: its standard deviation, as a part of it"},
       {"gust_strength", "", defaults.gust_strength, 0, 2,
        "own gusts: how much it swells along its path, in the same measure; a wind with gusts swells enough"},
+      {"canopy_waves", "", defaults.canopy_waves, 0, 0.4,
+       "outside gusts: how much waves of the stand's own, 2 to 6 m long, vary the wind: the bands that run over a "
+       "meadow"},
       {"hybrid", "", defaults.hybrid, 0, 1,
        "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
       {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20, "how fast a strand sways by itself"},
@@ -208,6 +231,7 @@ StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t see
           .damping_ratio = values.number("damping"),
           .carry = values.number("carry"),
           .has_own_gusts = has_own_gusts,
+          .canopy_waves = values.number("canopy_waves"),
           .noise = {.period_m = values.number("tile_period"),
                     .beta = values.number("beta"),
                     .meaning = is_radial ? BetaMeaning::kRadial : BetaMeaning::kTransect,
