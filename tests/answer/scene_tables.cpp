@@ -1,0 +1,10 @@
+#include "tests/answer/scene_table.hpp"
+
+namespace yuragi::answer {
+
+const std::vector<SceneTable>& scene_tables() {
+  static const std::vector<SceneTable> kTables = {flag_table(), tree_table(), zelkova_table(), poplar_table()};
+  return kTables;
+}
+
+}  // namespace yuragi::answer
