@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,9 @@
 namespace yuragi {
 namespace {
 
+/// Strands sway by themselves at rates that differ by so much at most.
+constexpr double kPaceSpread = 0.15;
+
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
 /// The canopy's waves, the shortest and the longest; the part of the wind's speed that they run with; and how many
 /// standard deviations they reach.
@@ -25,6 +29,19 @@ constexpr double kCanopyCarry = 0.65;
 constexpr double kLargestCanopyWave = 2.2;
 
 constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
+
+/// The shorter, the faster: each strand's own rate against that of one of mean length.
+std::vector<float> natural_rates_hz(const StrandSkeleton& strands, double mean_hz) {
+  const auto all = std::span(strands.link_length_m).first(strands.strand_count);
+  const double mean_m =
+      std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(std::max<std::size_t>(all.size(), 1));
+  std::vector<float> rates_hz(strands.padded_count(), static_cast<float>(mean_hz));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double faster = std::clamp(mean_m / static_cast<double>(all[i]), 1.0 - kPaceSpread, 1.0 + kPaceSpread);
+    rates_hz[i] = static_cast<float>(mean_hz * faster);
+  }
+  return rates_hz;
+}
 
 double largest_of(std::span<const float> values) {
   return values.empty() ? 0.0 : static_cast<double>(*std::max_element(values.begin(), values.end()));
@@ -60,6 +77,8 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
       wind_(setup.placement, setup.gusts),
       flexibility_(std::move(flexibility)),
       oscillators_(flexibility_.size()),
+      natural_hz_(natural_rates_hz(strands, spec.natural_hz)),
+      steps_(flexibility_.size()),
       largest_flexibility_(largest_of(flexibility_)),
       lever_m_(largest_of(strands.link_length_m) * (static_cast<double>(strands.links_per_strand) + 1.0) / 2.0),
       skeleton_(std::move(strands)),
@@ -72,7 +91,17 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
   }
 }
 
+/// Each strand's step for ticks of dt_s; that hardly ever changes.
+void StrandSway::set_pace(double dt_s) noexcept {
+  if (dt_s == steps_dt_s_) return;
+  steps_dt_s_ = dt_s;
+  for (std::size_t i = 0; i < natural_hz_.size(); ++i) {
+    steps_.set(i, OscillatorStep::exact(static_cast<double>(natural_hz_[i]), spec_.damping_ratio, dt_s));
+  }
+}
+
 void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
+  set_pace(dt_s);
   wind_.step(wind, dt_s);
   if (outside_) {
     outside_->grid.step(wind, dt_s);
@@ -104,7 +133,7 @@ void StrandSway::sample_part(Part part) noexcept {
                      std::numeric_limits<float>::infinity(), first);
 }
 
-void StrandSway::project_part(Part part, double dt_s) noexcept {
+void StrandSway::project_part(Part part, double) noexcept {
   StrandPose& pose = *std::get_if<StrandPose>(&pose_);
   const std::span<const float> flexibility = strands_of(part, std::span<const float>(flexibility_));
   const std::span<float> bend_east_rad = strands_of(part, std::span(pose.bend_east_rad));
@@ -138,7 +167,7 @@ void StrandSway::project_part(Part part, double dt_s) noexcept {
   }
 
   // And the strand, a damped oscillator, follows, overshoots, and sways on.
-  OscillatorJob{.step = OscillatorStep::exact(spec_.natural_hz, spec_.damping_ratio, dt_s),
+  OscillatorJob{.steps = &steps_,
                 .blend = spec_.hybrid,
                 .row = row_,
                 .oscillators = &oscillators_,
@@ -175,7 +204,8 @@ double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
   const double bend_rad = std::min(spec_.max_bend_rad * steepest * s, 2.0 * spec_.max_bend_rad);
   const double swaying_rad =
       std::min(OscillatorStep::largest_gain(spec_.damping_ratio) * bend_rad,
-               OscillatorStep::largest_rate_per_s(spec_.natural_hz, spec_.damping_ratio) * dt_s * spec_.max_bend_rad);
+               OscillatorStep::largest_rate_per_s((1.0 + kPaceSpread) * spec_.natural_hz, spec_.damping_ratio) * dt_s *
+                   spec_.max_bend_rad);
   return lever_m_ * ((1.0 - spec_.hybrid) * bend_rad + spec_.hybrid * swaying_rad);
 }
 
@@ -200,7 +230,8 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
        "meadow"},
       {"hybrid", "", defaults.hybrid, 0, 1,
        "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
-      {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20, "how fast a strand sways by itself"},
+      {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20,
+       "how fast a strand of mean length sways by itself; shorter ones are up to 15 % faster"},
       {"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that dies away: the damping ratio"},
       {"carry", "", defaults.carry, 0, 1, "the noise travels with this part of the wind's speed"},
       {"tile_period", "m", defaults.noise.period_m, 0.5, 4096,

@@ -24,8 +24,8 @@ struct StrandSwaySpec {
   double half_bend_speed_m_s = 7.0;
   double turbulence = 0.4;      ///< own gusts: how much the wind differs from place to place, as a part of it
   double gust_strength = 0.2;   ///< own gusts: how much it swells along its way, in the same measure
-  double hybrid = 0.6;          ///< 0: the noise alone; 1: each strand a damped oscillator
-  double natural_hz = 2.0;      ///< of the oscillators
+  double hybrid = 1.0;          ///< 0: the noise alone; 1: each strand a damped oscillator
+  double natural_hz = 2.0;      ///< of an oscillator of mean length; longer strands are slower
   double damping_ratio = 0.2;   ///< above 0, below 1
   double carry = 1.0;           ///< the noise goes with this part of the wind's speed: in a coat the air is slower
   bool has_own_gusts = false;   ///< and not those of the wind outside, where the setup has these
@@ -100,6 +100,7 @@ class StrandSway final : public Scene {
   };
 
   double largest_bend_input_step(double dt_s) const noexcept;
+  void set_pace(double dt_s) noexcept;
 
   SimdRow row_;
   StrandSwaySpec spec_;
@@ -109,6 +110,9 @@ class StrandSway final : public Scene {
 
   std::vector<float> flexibility_;
   Oscillators oscillators_;
+  std::vector<float> natural_hz_;
+  OscillatorSteps steps_;
+  double steps_dt_s_ = 0.0;  ///< the tick that steps_ are for
   double largest_flexibility_ = 0.0, lever_m_ = 0.0;
   Skeleton skeleton_;
   Pose pose_;
