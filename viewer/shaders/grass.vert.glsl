@@ -41,10 +41,13 @@ void main() {
   // Light: the sun from this side or through the blade, the sky, and a sheen along it, which is what shows the wind's waves.
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
-  float deep = smoothstep(0.0, 1.0, t);                  // into the light, out of the shade of its neighbours
+  // Into the light, out of the shade of its neighbours: of an upright stand one sees the dark between the blades, of
+  // one that the wind has laid over their lit sides.
+  float laid = smoothstep(0.05, 0.95, 1.0 - along.y);
+  float deep = smoothstep(0.0, 1.0, t) * (0.46 + 2.8 * laid * laid);
   vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint_facing.rgb, 0.12 + 0.88 * t);
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
-  vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.75 + 0.25 * normal.y);
+  vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
   sum += kSunLight * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
   float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));
   float sheen = sqrt(max(1.0 - sheen_side * sheen_side, 0.0));
@@ -52,7 +55,7 @@ void main() {
   sheen *= sheen;
   sheen *= sheen;
   sheen *= sheen;
-  sum += kSunLight * vec3(0.075, 0.078, 0.060) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+  sum += kSunLight * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.10 + 1.6 * laid * laid);
 
   shade = seen(sum, place);
 }
