@@ -41,10 +41,7 @@ void main() {
   // Light: the sun from this side or through the blade, the sky, and a sheen along it, which is what shows the wind's waves.
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
-  // Into the light, out of the shade of its neighbours: of an upright stand one sees the dark between the blades, of
-  // one that the wind has laid over their lit sides.
-  float laid = smoothstep(0.05, 0.95, 1.0 - along.y);
-  float deep = smoothstep(0.0, 1.0, t) * (0.46 + 2.8 * laid * laid);
+  float deep = smoothstep(0.0, 1.0, t);                  // into the light, out of the shade of its neighbours
   vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint_facing.rgb, 0.12 + 0.88 * t);
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
   vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
@@ -55,7 +52,12 @@ void main() {
   sheen *= sheen;
   sheen *= sheen;
   sheen *= sheen;
-  sum += kSunLight * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.10 + 1.6 * laid * laid);
+  sum += kSunLight * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+
+  // Of an upright stand one sees the dark between the blades, of one that the wind has laid over their lit sides: by how
+  // far this blade is laid over (the sine of its chord), since its neighbours are, too.
+  vec3 chord = joint(0, strand, links - 1) - root_width.xyz;
+  sum *= exp2(4.0 * (length(chord.xz) / length(chord) - 0.60));
 
   shade = seen(sum, place);
 }
