@@ -7,18 +7,18 @@
 namespace yuragi::answer {
 namespace {
 
+std::size_t ticks_in(double seconds) {
+  return static_cast<std::size_t>(std::llround(seconds * kRate_hz));
+}
+
+}  // namespace
+
 const SceneDescription& described(std::string_view name) {
   for (const SceneDescription* scene : scene_table()) {
     if (scene->name == name) return *scene;
   }
   throw std::invalid_argument("no scene is called " + std::string(name));
 }
-
-std::size_t ticks_in(double seconds) {
-  return static_cast<std::size_t>(std::llround(seconds * kRate_hz));
-}
-
-}  // namespace
 
 std::unique_ptr<Scene> make_scene(const SceneTable& table, std::uint64_t seed) {
   const SceneDescription& scene = described(table.scene);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
+#include <string_view>
 
 #include "engine/pose/kinematics.hpp"
 #include "engine/scenes/scene.hpp"
@@ -11,6 +11,9 @@
 #include "tests/answer/wind_record.hpp"
 
 namespace yuragi::answer {
+
+/// The scene that scene_table() has under this name. Throws std::invalid_argument without one.
+const SceneDescription& described(std::string_view name);
 
 /// The scene of a table, made as the daemon makes it, with the gusts of the wind that it will be given.
 std::unique_ptr<Scene> make_scene(const SceneTable& table, std::uint64_t seed);

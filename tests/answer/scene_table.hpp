@@ -50,6 +50,8 @@ struct SceneTable {
   std::unique_ptr<Meter> (*make_meter)(const Skeleton& skeleton);
   /// Figures of records of their own (a step to calm, say), by Beaufort number; none: null.
   std::array<Figures, kBeauforts> (*further)(const SceneTable& table, std::uint64_t seed) = nullptr;
+  /// Adds to the figures of a Beaufort number, further ones among them, what follows from several; none: null.
+  void (*derive)(Figures& figures) = nullptr;
   /// How far from downwind it may point; 0: its direction is not asked for.
   double largest_turn_deg = 15.0;
   /// How much of the wind along east it gives way to: less than 1 for what hangs along a rail from west to east.
@@ -67,5 +69,8 @@ SceneTable tree_table();
 SceneTable zelkova_table();
 SceneTable poplar_table();
 SceneTable grass_table();
+SceneTable fur_table();
+SceneTable flame_table();
+SceneTable ripple_table();
 
 }  // namespace yuragi::answer

@@ -4,7 +4,8 @@ namespace yuragi::answer {
 
 const std::vector<SceneTable>& scene_tables() {
   static const std::vector<SceneTable> kTables = {flag_table(),    curtain_table(), banner_table(), tree_table(),
-                                                  zelkova_table(), poplar_table(),  grass_table()};
+                                                  zelkova_table(), poplar_table(),  grass_table(),  fur_table(),
+                                                  flame_table(),   ripple_table()};
   return kTables;
 }
 

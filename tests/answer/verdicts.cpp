@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/answer/scene_run.hpp"
+
 namespace yuragi::answer {
 namespace {
 
@@ -102,6 +104,9 @@ std::string_view verdict_text(Verdict verdict) {
 std::vector<JudgedRow> judge(const SceneTable& table, const MeasuredScene& measured,
                              const std::array<bool, kBeauforts>& is_asked) {
   std::vector<Bound> bounds(kCommonBounds.begin(), kCommonBounds.end());
+  if (described(table.scene).is_still_in_calm) {
+    bounds.push_back({"in calm: numbers of the pose that differ from rest", "", 0, {{at_most(0), kAny, kAny, kAny}}});
+  }
   if (table.largest_turn_deg > 0.0) {
     const Range turn = at_most(table.largest_turn_deg);
     bounds.push_back({"from downwind, at most of 8 directions", "deg", 1, {{kAny, turn, turn, turn}}});

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/plot.hpp"
+#include "tests/answer/calm.hpp"
 #include "tests/answer/directions.hpp"
 #include "tests/answer/scene_run.hpp"
 #include "tests/answer/scene_table.hpp"
@@ -90,8 +91,11 @@ void record(std::vector<Asked>& all, const std::array<bool, kBeauforts>& is_aske
     }
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].table->further == nullptr) continue;
-    tasks.emplace_back([&, i] { further[i] = all[i].table->further(*all[i].table, options.seed); });
+    tasks.emplace_back([&, i] {
+      const SceneTable& table = *all[i].table;
+      if (table.further != nullptr) further[i] = table.further(table, options.seed);
+      append(further[i][0], calm_figures(table, options.seed));
+    });
   }
   run_all(tasks, options.threads);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -99,6 +103,7 @@ void record(std::vector<Asked>& all, const std::array<bool, kBeauforts>& is_aske
       if (!all[i].measured[number]) continue;
       append(*all[i].measured[number], further[i][number]);
       append(*all[i].measured[number], turns[i][number]);
+      if (all[i].table->derive != nullptr) all[i].table->derive(*all[i].measured[number]);
     }
   }
 }
