@@ -33,7 +33,7 @@ namespace {
 
 /// The strokes' waves, the shortest and the longest; how many standard deviations they reach; and across the wind
 /// against along it.
-constexpr std::array kStrokeWaves_m = {0.25, 0.75};
+constexpr std::array kStrokeWaves_m = {0.25, 0.6};
 constexpr double kLargestStroke = 2.2;
 constexpr double kStrokeAcross = 0.5;
 
@@ -71,9 +71,9 @@ const std::array kRetiredFurParameters = {
     RetiredParameter{"gusts", "is gone: gusts are longer than a body, so all hairs have those of the wind outside"},
     RetiredParameter{"turbulence", "is now strokes: by how many degrees hairs part"},
     RetiredParameter{"gust_strength", "is gone: the wind's own gusts swell enough"},
-    RetiredParameter{"tile_period", "is gone: strokes are 0.25 to 0.75 m long"},
+    RetiredParameter{"tile_period", "is gone: strokes are 0.25 to 0.6 m long"},
     RetiredParameter{"tiles", "is gone: strokes never repeat"},
-    RetiredParameter{"beta", "is gone: strokes are a band of waves, 0.25 to 0.75 m long"},
+    RetiredParameter{"beta", "is gone: strokes are a band of waves, 0.25 to 0.6 m long"},
     RetiredParameter{"beta_meaning", "is gone, like beta"},
 };
 
