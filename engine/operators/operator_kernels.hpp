@@ -57,6 +57,10 @@ struct OscillatorKernelArguments {
   float q_from_v = 0.0F;
   float v_from_e = 0.0F;
   float v_from_v = 0.0F;
+  const float* each_q_from_e = nullptr;  ///< the same of each oscillator, for step_each
+  const float* each_q_from_v = nullptr;
+  const float* each_v_from_e = nullptr;
+  const float* each_v_from_v = nullptr;
   float blend = 0.0F;
   float* value = nullptr;
   float* rate = nullptr;
@@ -79,7 +83,8 @@ extern const BendingKernels bending_kernels_x86_64_v3;
 extern const BendingKernels bending_kernels_x86_64_v4;
 
 struct OscillatorKernels {
-  void (*step)(const OscillatorKernelArguments&) noexcept;
+  void (*step)(const OscillatorKernelArguments&) noexcept;       ///< all alike
+  void (*step_each)(const OscillatorKernelArguments&) noexcept;  ///< each in its own way
 };
 extern const OscillatorKernels oscillator_kernels_x86_64;
 extern const OscillatorKernels oscillator_kernels_x86_64_v3;
