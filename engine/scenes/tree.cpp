@@ -85,8 +85,8 @@ const std::array kTreeParameters = {
               {},
               "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
               kTreeBetaMeanings},
-    Parameter{"leaf_lean", "deg", 25.0, 0, 120, "how far the strongest wind turns the softest leaf, on average"},
-    Parameter{"half_lean_speed", "m/s", 4.0, 0.1, 60, "the wind that turns leaves half as far"},
+    Parameter{"leaf_lean", "deg", 50.0, 0, 120, "how far the strongest wind turns the softest leaf, on average"},
+    Parameter{"half_lean_speed", "m/s", 8.0, 0.1, 60, "the wind that turns leaves half as far"},
     Parameter{"leaf_flutter", "deg", 28.0, 0, 60,
               "how far the liveliest leaves (a poplar's) flutter in a strong wind: the standard deviation"},
 };
@@ -100,9 +100,9 @@ constexpr double kSidelessWind_m_s = 1.0;
 /// Below this the mean wind is no measure of its gusts.
 constexpr double kCalm_m_s = 0.3;
 
-/// The standard deviation of BranchForceJob's noise in a usual wind, of turbulence intensity 0.2: 0.4 in a weak wind,
-/// where the force goes with the square of the speed, and 0.25 in a storm.
-constexpr double kUsualNoise = 0.32;
+/// The standard deviation of BranchForceJob's noise in a usual wind, of turbulence intensity 0.2 and with the crown's
+/// own gusts: 0.45 in a weak wind, where the force goes with the square of the speed, and 0.3 in a storm.
+constexpr double kUsualNoise = 0.4;
 
 // The threshold of the split: it rises from -1.5 standard deviations of the noise at the windward side to 1.5 at the
 // lee side, and the step there is one wide.

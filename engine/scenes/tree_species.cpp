@@ -10,10 +10,10 @@ constexpr std::array kSpecies = {
     // Spreading and domed.
     TreeSpecies{
         .name = "cherry",
-        .sway_deg = {0.8, 2.9, 7.5},
+        .sway_deg = {1.0, 3.4, 9.5},
         .beta_horizontal = 0.1,
         .thinness_power = 0.7,
-        .petiole = 0.22,
+        .petiole = 0.8,
         .flutter = 0.5,
         .flutter_speed_m_s = 5.0,
         .habit = {.height_m = 8.0,
@@ -27,10 +27,10 @@ constexpr std::array kSpecies = {
     // A vase: a fan of steep limbs from a short trunk, which arch outward at their tips.
     TreeSpecies{
         .name = "zelkova",
-        .sway_deg = {0.92, 3.3, 8.6},
+        .sway_deg = {1.15, 3.9, 10.9},
         .beta_horizontal = 0.15,
         .thinness_power = 0.8,
-        .petiole = 0.28,
+        .petiole = 0.9,
         .flutter = 0.57,
         .flutter_speed_m_s = 4.5,
         .habit = {.height_m = 11.0,
@@ -44,7 +44,7 @@ constexpr std::array kSpecies = {
     // A narrow column.
     TreeSpecies{
         .name = "poplar",
-        .sway_deg = {1.2, 2.6, 7.5},
+        .sway_deg = {1.5, 3.1, 9.5},
         .beta_horizontal = 0.1,
         .thinness_power = 0.6,
         .petiole = 1.0,
