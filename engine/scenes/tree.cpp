@@ -98,7 +98,7 @@ constexpr double kWindSideFloor = 0.4;
 constexpr double kSidelessWind_m_s = 1.0;
 
 /// Below this the mean wind is no measure of its gusts.
-constexpr double kCalm_m_s = 0.3;
+constexpr double kLeastMean_m_s = 0.3;
 
 /// The standard deviation of BranchForceJob's noise in a usual wind, of turbulence intensity 0.2 and with the crown's
 /// own gusts: 0.45 in a weak wind, where the force goes with the square of the speed, and 0.3 in a storm.
@@ -111,7 +111,7 @@ constexpr double kThreshold = -1.5 * kUsualNoise - kThresholdRise * kWindSideFlo
 constexpr double kSplitWidth = kUsualNoise;
 
 /// Beyond it the tree's own gusts are cut, in standard deviations; and the finer noises of crown and leaves.
-constexpr double kLargestGust = 3.0;
+constexpr double kLargestOwnGust = 3.0;
 constexpr double kLargestFine = 2.2;
 
 /// Gusts that differ within less than this move a crown as one.
@@ -501,7 +501,7 @@ void Tree::blow_on(Wood& wood) noexcept {
     }
     return;
   }
-  const auto largest_own = static_cast<float>(kLargestGust * turbulence_);
+  const auto largest_own = static_cast<float>(kLargestOwnGust * turbulence_);
   noise_.sample(wood.places, row_, wood.noise, static_cast<float>(turbulence_), 0.0F, -largest_own, largest_own);
   const auto east_m_s = static_cast<float>(wind_.east_m_s());
   const auto south_m_s = static_cast<float>(wind_.south_m_s());
@@ -516,7 +516,7 @@ void Tree::sample_wood(Wood& wood) noexcept {
   blow_on(wood);
   const BranchForceJob force{.mean_m_s = wind_.speed_m_s(),
                              .streamline_speed_m_s = streamline_speed_m_s_,
-                             .calm_m_s = kCalm_m_s,
+                             .calm_m_s = kLeastMean_m_s,
                              .row = row_,
                              .wind_east_m_s = wood.east_m_s,
                              .wind_south_m_s = wood.south_m_s,
@@ -597,8 +597,8 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   double gust = 1.0 + crown_gusts_ * kLargestFine;
   double gust_step = crown_gusts_ * change(crown_noise_, kCrownCarry, kLargestFine);
   if (!outside_) {
-    gust += turbulence_ * kLargestGust;
-    gust_step += turbulence_ * change(noise_, 1.0, kLargestGust);
+    gust += turbulence_ * kLargestOwnGust;
+    gust_step += turbulence_ * change(noise_, 1.0, kLargestOwnGust);
   }
   const double step_m_s = wind_step_m_s * gust + kStrongestSceneWind_m_s * gust_step;
 
