@@ -618,14 +618,20 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   return leaves_.largest_give * leaf_lean_rad_ * lean_step + leaves_.liveliest * leaf_flutter_rad_ * flutter_step;
 }
 
+const std::array kRetiredTreeParameters = {
+    RetiredParameter{"half_tilt_speed", "is now streamline_speed, and flexibility says how far wood bends"},
+    RetiredParameter{"half_flutter_speed", "is now half_lean_speed; how soon leaves flutter is their species' own"},
+};
+
 }  // namespace
 
 extern const SceneDescription kTreeScene;
-const SceneDescription kTreeScene = {.name = "tree",
-                                     .summary = "a tree in the wind: branches sway, leaves flutter",
-                                     .parameters = kTreeParameters,
-                                     .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                       return std::unique_ptr<Scene>(std::make_unique<Tree>(values, setup));
-                                     }};
+const SceneDescription kTreeScene = {
+    .name = "tree",
+    .summary = "a tree in the wind: branches sway, leaves flutter",
+    .parameters = kTreeParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Tree>(values, setup)); },
+    .retired = kRetiredTreeParameters};
 
 }  // namespace yuragi
