@@ -34,7 +34,7 @@ struct Options {
   std::uint64_t seed = 1;
   unsigned threads = std::max(std::thread::hardware_concurrency(), 1U);
   bool is_json = false;
-  std::string save, from, plot;
+  std::string record, from, plot;
 };
 
 /// What is recorded and judged of a scene.
@@ -163,6 +163,13 @@ int measure(const Options& options) {
     load(all, options.from);
   }
 
+  if (!options.record.empty()) {
+    nlohmann::json figures = nlohmann::json::array();
+    for (const Asked& asked : all) figures.push_back(to_json(*asked.table, asked.measured, {}));
+    std::ofstream(options.record) << figures.dump(1) << '\n';
+    return 0;
+  }
+
   nlohmann::json json = nlohmann::json::array();
   std::size_t failed = 0;
   std::size_t judged = 0;
@@ -174,7 +181,6 @@ int measure(const Options& options) {
     if (!options.is_json) fmt::print("{}\n", table_text(*asked.table, rows, is_asked));
     if (!options.plot.empty()) draw(asked, options.plot);
   }
-  if (!options.save.empty()) std::ofstream(options.save) << json.dump(1) << '\n';
   if (options.is_json) {
     fmt::print("{}\n", json.dump(1));
   } else {
@@ -195,7 +201,7 @@ int run(int argc, char** argv) {
       "  yuragi-answer                                  all tables\n"
       "  yuragi-answer --scene flag --beaufort 3        a column of one\n"
       "  yuragi-answer --scene tree --plot /tmp         and a picture of the first minute, /tmp/tree.png\n"
-      "  yuragi-answer --save figures.json              and keep the figures, to be judged later:\n"
+      "  yuragi-answer --record figures.json            keeps the figures, to be judged later:\n"
       "  yuragi-answer --from figures.json --scene fur\n"
       "A cell is the value, its bounds, and ok, LOW, HIGH or NONE (it could not be measured); without bounds it is "
       "only\n"
@@ -216,8 +222,9 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_flag("--json", options.is_json, "prints JSON instead of tables");
-  app.add_option("--save", options.save, "writes the same JSON into a file");
-  app.add_option("--from", options.from, "judges what --save has kept, and records nothing")->check(CLI::ExistingFile);
+  app.add_option("--record", options.record, "writes the figures into a file, and judges nothing");
+  app.add_option("--from", options.from, "judges what --record has kept, and records nothing")
+      ->check(CLI::ExistingFile);
   app.add_option("--plot", options.plot, "draws a picture a scene into this folder")->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
   return measure(options);
