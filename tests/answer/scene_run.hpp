@@ -39,6 +39,9 @@ struct WindChoice {
   std::uint64_t seed = 1;  ///< above 1: another stretch of the noise, and another model of the scene
 };
 
+/// The wind of a record, from the beginning of its start.
+TestWind record_wind(std::size_t beaufort_index, const WindChoice& choice);
+
 /// Records a scene in the test wind of a Beaufort number, and looks at it.
 SceneRecord record_scene(const SceneTable& table, std::size_t beaufort_index, const RecordLength& length,
                          const WindChoice& choice);

@@ -37,7 +37,7 @@ struct Options {
   bool is_json = false;
   bool is_long = false;
   bool has_further_winds = false;
-  std::string record, from, plot;
+  std::string record, from, plot, wind_file;
 };
 
 /// What is recorded and judged of a scene.
@@ -228,6 +228,27 @@ int measure_further_winds(const Options& options) {
   return failed == 0 ? 0 : 1;
 }
 
+/// The wind of a Beaufort number's record and its start, as a table of a sensor that speaks ten times a second.
+int write_wind(const Options& options) {
+  if (options.beauforts.size() != 1) throw std::runtime_error("--write-wind asks for one --beaufort");
+  const auto found = std::find(kBeaufort.begin(), kBeaufort.end(), options.beauforts.front());
+  const auto number = static_cast<std::size_t>(std::distance(kBeaufort.begin(), found));
+  TestWind wind = record_wind(number, options.wind);
+  RecordLength length = usual_length(number);
+  if (options.duration_s > 0.0) length.record_s = options.duration_s;
+  constexpr int kTicksAReading = 6;
+  const auto ticks = static_cast<int>((length.start_s + length.record_s) * kRate_hz);
+  std::ofstream file(options.wind_file);
+  file << "time_s,u_m_s,v_m_s\n";
+  for (int tick = 0; tick < ticks; ++tick) {
+    wind.step(kTick_s);
+    if (tick % kTicksAReading != 0) continue;
+    const WindVector now = wind.at_origin();
+    file << fmt::format("{:.1f},{:.4f},{:.4f}\n", tick * kTick_s, now.u_m_s, now.v_m_s);
+  }
+  return file ? 0 : 1;
+}
+
 /// Ten minutes of each scene: does anything come again?
 int seek_repeats(Options options) {
   if (options.duration_s == 0.0) options.duration_s = 600.0;
@@ -301,8 +322,11 @@ int run(int argc, char** argv) {
   app.add_option("--record", options.record, "writes the figures into a file, and judges nothing");
   app.add_option("--from", options.from, "judges what --record has kept, and records nothing")
       ->check(CLI::ExistingFile);
+  app.add_option("--write-wind", options.wind_file,
+                 "writes the wind of a --beaufort as a CSV table, for the daemon: yuragi import, yuragi replay");
   app.add_option("--plot", options.plot, "draws a picture a scene into this folder")->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
+  if (!options.wind_file.empty()) return write_wind(options);
   if (options.is_long) return seek_repeats(options);
   if (options.has_further_winds) return measure_further_winds(options);
   return measure(options);
