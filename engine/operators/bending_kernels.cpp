@@ -46,9 +46,6 @@ void bend_locally(const LocalBendingKernelArguments& in) noexcept {
   }
 }
 
-/// So small a square, (m/s)^2, has no direction that could be seen.
-constexpr float kNoDirection = 1e-12F;
-
 void bend_coat(const CoatBendingKernelArguments& in) noexcept {
   const CoatBendingKernelArguments arguments = in;
   const float* const normal_x = arguments.normal_x;
@@ -61,11 +58,11 @@ void bend_coat(const CoatBendingKernelArguments& in) noexcept {
   const float wind_east = arguments.wind_east_m_s;
   const float wind_south = arguments.wind_south_m_s;
   const float wind_square = wind_east * wind_east + wind_south * wind_south;
+  const float toward_east = wind_east * arguments.per_speed_s_m;
+  const float toward_south = wind_south * arguments.per_speed_s_m;
   for (std::size_t i = 0; i < arguments.count; ++i) {
     // The wind along the skin.
     const float outward = wind_east * normal_x[i] + wind_south * normal_z[i];
-    const float east = wind_east - outward * normal_x[i];
-    const float south = wind_south - outward * normal_z[i];
     const float left = wind_square - outward * outward;
     const float square = left > 0.0F ? left : 0.0F;
     const float per_m_s = arguments.half_bends_per_m_s * flexibility[i];
@@ -76,9 +73,8 @@ void bend_coat(const CoatBendingKernelArguments& in) noexcept {
     const float exposure = 1.0F - arguments.sheltered * (lee > 0.0F ? lee : 0.0F);
     const float along = share * (arguments.max_bend_rad * exposure + arguments.stroke_rad * stroke_along[i]);
     const float across = share * arguments.stroke_rad * stroke_across[i];
-    const float per_speed = 1.0F / std::sqrt(square + kNoDirection);
-    out_east[i] = per_speed * (along * east - across * south);
-    out_south[i] = per_speed * (along * south + across * east);
+    out_east[i] = along * toward_east - across * toward_south;
+    out_south[i] = along * toward_south + across * toward_east;
   }
 }
 

@@ -10,8 +10,9 @@ namespace yuragi {
 
 /// BendingJob for hairs on a body: the wind strokes along the skin, and opens partings.
 ///
-/// With n the skin's outward normal at a hair, the wind there is u_t = u - (u . n) n: what blows into the skin bends
-/// nothing. The hair bends toward the horizontal part of u_t (a pose turns about level axes), by
+/// With n the skin's outward normal at a hair, the wind along the skin there is u_t = u - (u . n) n: what blows into
+/// the skin bends nothing. The turn about a level axis that lays a hair from n toward u_t points downwind, wherever on
+/// the body it grows. So it bends downwind by
 ///
 ///   s^2 / (1 + s^2) (max_bend e + stroke * stroke_along)    s = |u_t| flexibility / half_bend_speed
 ///

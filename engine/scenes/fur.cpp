@@ -33,7 +33,7 @@ namespace {
 
 /// The strokes' waves, the shortest and the longest; how many standard deviations they reach; and across the wind
 /// against along it.
-constexpr std::array kStrokeWaves_m = {0.25, 0.75};
+constexpr std::array kStrokeWaves_m = {0.25, 0.6};
 constexpr double kLargestStroke = 2.2;
 constexpr double kStrokeAcross = 0.5;
 
@@ -65,6 +65,16 @@ const std::array kFurParameters = {
               "0: hairs follow the wind at once; 1: each is a damped oscillator that sways on"},
     Parameter{"natural_frequency", "Hz", 4.0, 0.1, 20, "how fast a hair sways by itself"},
     Parameter{"damping", "", 0.35, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+};
+
+const std::array kRetiredFurParameters = {
+    RetiredParameter{"gusts", "is gone: gusts are longer than a body, so all hairs have those of the wind outside"},
+    RetiredParameter{"turbulence", "is now strokes: by how many degrees hairs part"},
+    RetiredParameter{"gust_strength", "is gone: the wind's own gusts swell enough"},
+    RetiredParameter{"tile_period", "is gone: strokes are 0.25 to 0.6 m long"},
+    RetiredParameter{"tiles", "is gone: strokes never repeat"},
+    RetiredParameter{"beta", "is gone: strokes are a band of waves, 0.25 to 0.6 m long"},
+    RetiredParameter{"beta_meaning", "is gone, like beta"},
 };
 
 /// The skin's normals turn as the coat does.
@@ -159,7 +169,7 @@ class Fur final : public Scene {
         .run();
   }
 
-  /// With s the wind along the skin in half-bend speeds, the bend is s^2/(1+s^2) (max e + strokes) toward it. The slope
+  /// With s the wind along the skin in half-bend speeds, the bend is s^2/(1+s^2) (max e + strokes) downwind. The slope
   /// of s^2/(1+s^2) in its direction over s, as a vector, is at most 3 sqrt(3)/8; the exposure e changes by at most
   /// `sheltered` times the turn of the wind, |du|/|u|, which s^2/(1+s^2) holds to half of `sheltered` over s; and
   /// strokes change by what their noise does. A projection onto the skin changes by no more than what it is of. Never
@@ -237,11 +247,12 @@ class Fur final : public Scene {
 }  // namespace
 
 extern const SceneDescription kFurScene;
-const SceneDescription kFurScene = {.name = "fur",
-                                    .summary = "a coat on a curved body: the wind parts it and strokes over it",
-                                    .parameters = kFurParameters,
-                                    .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                      return std::unique_ptr<Scene>(std::make_unique<Fur>(values, setup));
-                                    }};
+const SceneDescription kFurScene = {
+    .name = "fur",
+    .summary = "a coat on a curved body: the wind parts it and strokes over it",
+    .parameters = kFurParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Fur>(values, setup)); },
+    .retired = kRetiredFurParameters};
 
 }  // namespace yuragi

@@ -80,8 +80,8 @@ TEST(CoatBendingJobTest, IsTheFormulaInVectors) {
     const double exposure = 1.0 - 0.6 * std::max(out / speed, 0.0);
     const double along = share * (job.max_bend_rad * exposure + job.stroke_rad * static_cast<double>(hairs.along[i]));
     const double across = share * job.stroke_rad * static_cast<double>(hairs.across[i]);
-    EXPECT_NEAR(hairs.bend_east[i], (along * tx - across * tz) / tangent, 2e-5);
-    EXPECT_NEAR(hairs.bend_south[i], (along * tz + across * tx) / tangent, 2e-5);
+    EXPECT_NEAR(hairs.bend_east[i], (along * 6.0 - across * 3.0) / speed, 2e-5);
+    EXPECT_NEAR(hairs.bend_south[i], (along * 3.0 + across * 6.0) / speed, 2e-5);
   }
 }
 
