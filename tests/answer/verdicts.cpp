@@ -80,7 +80,7 @@ std::string range_text(const Range& range, int decimals) {
 
 std::string cell_text(const Judged& cell, int decimals) {
   const std::string value = cell.value ? fmt::format("{:.{}f}", *cell.value, decimals) : "-";
-  return fmt::format("{:>8} {:<12} {:<5}", value, range_text(cell.range, decimals), verdict_text(cell.verdict));
+  return fmt::format("{:>8} {:<13} {:<4}", value, range_text(cell.range, decimals), verdict_text(cell.verdict));
 }
 
 }  // namespace
