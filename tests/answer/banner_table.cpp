@@ -47,16 +47,16 @@ class BannerMeter final : public Meter {
     for (const Joint joint : {Joint::kQuarter, Joint::kHalf, Joint::kLate, Joint::kTip}) {
       edge_hz.push_back(welch.of(across_m(joint)).centroid_hz(kAcrossFrom_hz));
     }
-    const auto quick_m = [&](Joint joint) { return welch.of(across_m(joint)).deviation_above(kAcrossFrom_hz); };
-    const Lag lag = lag_of(slope(Joint::kHalf, Joint::kHalfNext), slope(Joint::kLate, Joint::kLateNext), kRate_hz,
-                           -kLongestLag_s, kLongestLag_s);
+    const auto quick_sd_m = [&](Joint joint) { return welch.of(across_m(joint)).deviation_above(kAcrossFrom_hz); };
+    // Of ways aside, not of slopes down the thread: a wave that grows slopes with a phase of its own.
+    const Lag lag = lag_of(quick_m(Joint::kHalf), quick_m(Joint::kLate), kRate_hz, -kLongestLag_s, kLongestLag_s);
     return {
         {"arm against the wind of 3 s, rms", arm_against_wind_deg(wind)},
-        {"free corner across, sd / width", quick_m(Joint::kTip) / width_m_},
+        {"free corner across, sd / width", quick_sd_m(Joint::kTip) / width_m_},
         {"free edge > 0.3 Hz, centroid", median(edge_hz)},
         {"phase speed / U", sides_.speed_m_s(lag) / wind.mean_speed_m_s()},
         {"correlation at that lag", lag.correlation},
-        {"growth: mid height over the bottom", quick_m(Joint::kHalf) / quick_m(Joint::kTip)},
+        {"growth: mid height over the bottom", quick_sd_m(Joint::kHalf) / quick_sd_m(Joint::kTip)},
         {"free corner, speed", sides_.tracks().speed_m_s(sides_.at(kFree, Joint::kTip), kRate_hz)},
     };
   }
@@ -107,12 +107,8 @@ class BannerMeter final : public Meter {
     return across;
   }
 
-  Series slope(Joint from, Joint to) const {
-    Series slope = across_m(to);
-    const Series before = across_m(from);
-    for (std::size_t k = 0; k < slope.size(); ++k) slope[k] -= before[k];
-    return high_passed(slope, kRate_hz, kAcrossFrom_hz);
-  }
+  /// The part of it that is quicker than the turns of the whole.
+  Series quick_m(Joint joint) const { return high_passed(across_m(joint), kRate_hz, kAcrossFrom_hz); }
 
   /// Against the wind's mean of the 3 s about each moment.
   double arm_against_wind_deg(const WindRecord& wind) const {

@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "tests/answer/scene_run.hpp"
 #include "tests/answer/scene_table.hpp"
 #include "tests/answer/spectra.hpp"
+#include "tests/answer/swing.hpp"
 
 // A curtain hangs from a rail across the wind; L is its height. Its chord is the balance of the wind's force on its
 // face and its weight. Left to itself it swings as a hanging chain, at 1.2024 sqrt(g / L) / 2 pi (Bernoulli), 0.387 Hz
@@ -188,37 +188,6 @@ class CurtainMeter final : public Meter {
   ClothThreads threads_;
   Hem hem_;
 };
-
-/// A swing that dies away: the time from its first turning point to its second is half a period of it, and what is left
-/// of its amplitude says its damping ratio.
-struct Swing {
-  double frequency_hz = std::numeric_limits<double>::quiet_NaN();
-  double damping = std::numeric_limits<double>::quiet_NaN();
-};
-
-/// Of a way that has come to rest at its end. The turning points are those after it first passes its rest.
-Swing swing_of(const Series& way_m, double rate_hz) {
-  const auto off_m = [&](std::size_t i) { return static_cast<double>(way_m[i] - way_m.back()); };
-  const double sign = off_m(0) < 0.0 ? -1.0 : 1.0;
-  std::vector<std::size_t> turns;
-  std::size_t i = 0;
-  while (i < way_m.size() && sign * off_m(i) > 0.0) ++i;
-  double side = -sign;
-  while (turns.size() < 2 && i < way_m.size()) {
-    std::size_t top = i;
-    for (; i < way_m.size() && side * off_m(i) >= 0.0; ++i) {
-      if (side * off_m(i) > side * off_m(top)) top = i;
-    }
-    turns.push_back(top);
-    side = -side;
-  }
-  Swing swing;
-  if (turns.size() < 2 || off_m(turns[1]) == 0.0) return swing;
-  swing.frequency_hz = 0.5 * rate_hz / static_cast<double>(turns[1] - turns[0]);
-  const double left = std::log(std::abs(off_m(turns[0]) / off_m(turns[1])));  // logarithmic decrement of half a period
-  swing.damping = left / std::hypot(left, 3.141592653589793);
-  return swing;
-}
 
 /// Blown out by a steady gentle breeze, then left to itself.
 std::array<Figures, kBeauforts> curtain_after_a_step(const SceneTable& table, std::uint64_t seed) {

@@ -10,8 +10,8 @@ namespace yuragi::answer {
 namespace {
 
 constexpr int kDirections = 8;
-constexpr int kStartTicks = 600;
-constexpr int kRecordTicks = 1200;
+constexpr int kTurnStartTicks = 600;
+constexpr int kTurnRecordTicks = 1200;
 /// Joints are computed, and the direction taken, at every so many ticks.
 constexpr int kEvery = 12;
 
@@ -25,9 +25,9 @@ double turn_deg(const SceneTable& table, std::size_t beaufort_index, double dire
                                .direction_deg = direction_deg,
                                .seed = wind_seed(beaufort_index) + seed - 1});
   Horizontal pointed, blown;
-  for (int tick = 0; tick < kStartTicks + kRecordTicks; ++tick) {
+  for (int tick = 0; tick < kTurnStartTicks + kTurnRecordTicks; ++tick) {
     scene->tick(wind.step(kTick_s), kTick_s);
-    if (tick < kStartTicks || tick % kEvery != 0) continue;
+    if (tick < kTurnStartTicks || tick % kEvery != 0) continue;
     joints.run(scene->pose());
     const Horizontal way = meter->direction(scene->pose(), joints);
     pointed = {pointed.east + way.east, pointed.south + way.south};

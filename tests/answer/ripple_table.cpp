@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <memory>
 #include <numbers>
 #include <variant>
 #include <vector>
 
-#include "engine/fft/real_fft.hpp"
 #include "tests/answer/scene_table.hpp"
 #include "tests/answer/spectra.hpp"
+#include "tests/answer/wave_field.hpp"
 
 // Water. Sources of the bounds: the mean square slope of a clean surface is 0.003 + 0.00512 U, that along the wind 1.2
 // to 1.5 times that across it (Cox and Munk 1954), waves finer than this grid's counted; and waves on deep water go at
@@ -29,97 +28,6 @@ constexpr std::array kRippleBounds = {
 /// Slopes are taken at every so many ticks, and waves at that tick and the next.
 constexpr std::size_t kSlopeTicks = 15;
 constexpr std::size_t kWaveTicks = 30;
-
-/// Waves of a square of water by wave vector: how strong they are, and how their phases go on in a tick.
-class WaveField {
- public:
-  WaveField(std::size_t size, double edge_m)
-      : fft_(2, size),
-        edge_m_(edge_m),
-        power_(fft_.spectrum().size(), 0.0),
-        turn_(power_.size()),
-        first_(power_.size()) {
-    for (std::size_t i = 0; i < size; ++i) {
-      window_.push_back(0.5 *
-                        (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(size))));
-    }
-  }
-
-  /// Heights, row by row; `is_second`: a tick after the ones before.
-  void take(const std::vector<double>& heights_m, bool is_second) {
-    const std::size_t size = fft_.size();
-    for (std::size_t row = 0; row < size; ++row) {
-      for (std::size_t column = 0; column < size; ++column) {
-        fft_.samples()[row * size + column] = heights_m[row * size + column] * window_[row] * window_[column];
-      }
-    }
-    fft_.forward();
-    for (std::size_t i = 0; i < power_.size(); ++i) {
-      const std::complex<double> mode = fft_.spectrum()[i];
-      power_[i] += std::norm(mode);
-      if (is_second) {
-        turn_[i] += std::conj(first_[i]) * mode;
-      } else {
-        first_[i] = mode;
-      }
-    }
-  }
-
-  struct Strongest {
-    double length_m = 0.0;
-    double speed_m_s = 0.0;
-  };
-
-  /// The strongest waves: the ring of wave vectors with most power, and its two neighbours. Their speed is the mean of
-  /// frequency over wavenumber of those that go within 60 degrees of downwind, weighted by power.
-  Strongest strongest(Horizontal downwind) const {
-    const std::size_t size = fft_.size();
-    std::vector<double> rings(size / 2, 0.0);
-    for_each_mode([&](std::size_t i, double x, double z) {
-      const auto ring = static_cast<std::size_t>(std::lround(std::hypot(x, z)));
-      if (ring < rings.size()) rings[ring] += power_[i];
-    });
-    // Ring 0 is the mean, and leaks into ring 1.
-    const auto top =
-        static_cast<std::size_t>(std::distance(rings.begin(), std::max_element(rings.begin() + 2, rings.end())));
-
-    double power = 0.0, cycles = 0.0, going = 0.0, speed_m_s = 0.0;
-    for_each_mode([&](std::size_t i, double x, double z) {
-      const double length = std::hypot(x, z);
-      const auto ring = static_cast<std::size_t>(std::lround(length));
-      if (ring + 1 < top || ring > top + 1) return;
-      power += power_[i];
-      cycles += power_[i] * length;
-      const double ahead = (x * downwind.east + z * downwind.south) / length;
-      if (std::abs(ahead) < 0.5) return;
-      // A wave cos(k x - w t) turns its mode by -w a tick; seen from the mirror image of its vector, by w.
-      const double frequency_rad_s = -std::arg(turn_[i]) * kRate_hz * (ahead < 0.0 ? -1.0 : 1.0);
-      going += power_[i];
-      speed_m_s += power_[i] * frequency_rad_s / (2.0 * std::numbers::pi * length / edge_m_);
-    });
-    return {edge_m_ * power / cycles, speed_m_s / going};
-  }
-
- private:
-  /// Calls visit(index, cycles an edge to the east, and to the south).
-  template <class Visit>
-  void for_each_mode(const Visit& visit) const {
-    const std::size_t size = fft_.size();
-    const std::size_t half = fft_.row_modes();
-    for (std::size_t row = 0; row < size; ++row) {
-      const double z = static_cast<double>(row) - (row > size / 2 ? static_cast<double>(size) : 0.0);
-      for (std::size_t column = 0; column < half; ++column) {
-        if (row == 0 && column == 0) continue;
-        visit(row * half + column, static_cast<double>(column), z);
-      }
-    }
-  }
-
-  mutable RealFft fft_;
-  double edge_m_;
-  std::vector<double> window_, power_;
-  std::vector<std::complex<double>> turn_, first_;
-};
 
 class RippleMeter final : public Meter {
  public:
@@ -174,7 +82,7 @@ class RippleMeter final : public Meter {
       : size_(water.columns),
         pitch_m_(static_cast<double>(water.rest_x_m[1] - water.rest_x_m[0])),
         heights_m_(size_ * size_, 0.0),
-        waves_(size_, pitch_m_ * static_cast<double>(size_)) {}
+        waves_(size_, pitch_m_ * static_cast<double>(size_), kRate_hz) {}
 
   static double dispersion_m_s(double length_m) {
     constexpr double kGravity_m_s2 = 9.81;

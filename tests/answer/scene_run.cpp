@@ -30,13 +30,18 @@ RecordLength usual_length(std::size_t beaufort_index) {
   return {.record_s = kBeaufort[beaufort_index] < 2 ? 600.0 : 300.0};
 }
 
+TestWind record_wind(std::size_t beaufort_index, const WindChoice& choice) {
+  return TestWind(test_gusts(), {.speed_m_s = choice.speed * kMeanSpeed_m_s[beaufort_index],
+                                 .intensity = choice.intensity,
+                                 .seed = wind_seed(beaufort_index) + choice.seed - 1});
+}
+
 SceneRecord record_scene(const SceneTable& table, std::size_t beaufort_index, const RecordLength& length,
-                         std::uint64_t seed) {
-  const std::unique_ptr<Scene> scene = make_scene(table, seed);
+                         const WindChoice& choice) {
+  const std::unique_ptr<Scene> scene = make_scene(table, choice.seed);
   const std::unique_ptr<Meter> meter = table.make_meter(scene->skeleton());
   Kinematics joints(scene->skeleton());
-  TestWind wind(test_gusts(),
-                {.speed_m_s = kMeanSpeed_m_s[beaufort_index], .seed = wind_seed(beaufort_index) + seed - 1});
+  TestWind wind = record_wind(beaufort_index, choice);
   for (std::size_t tick = 0; tick < ticks_in(length.start_s); ++tick) scene->tick(wind.step(kTick_s), kTick_s);
 
   WindRecord record;
@@ -48,8 +53,9 @@ SceneRecord record_scene(const SceneTable& table, std::size_t beaufort_index, co
   }
 
   SceneRecord result{.figures = meter->figures(record), .traces = meter->traces(record)};
-  result.figures.push_back({"wind, mean / U", record.mean_speed_m_s() / kMeanSpeed_m_s[beaufort_index]});
-  result.figures.push_back({"wind, intensity", record.intensity()});
+  result.figures.push_back(
+      {"wind, mean / U", record.mean_speed_m_s() / (choice.speed * kMeanSpeed_m_s[beaufort_index])});
+  result.figures.push_back({"wind, intensity / 0.2", record.intensity() / choice.intensity});
   result.figures.push_back(
       {"largest step of a joint / its bound", meter->largest_step_m() / scene->largest_joint_step_m(kTick_s)});
   result.traces.insert(result.traces.begin(), {"wind", "m/s", record.speed_m_s()});

@@ -32,9 +32,18 @@ struct SceneRecord {
   std::vector<Trace> traces;  ///< the wind's speed first
 };
 
-/// Records a scene in the test wind of a Beaufort number, and looks at it. `seed` is added to the wind's own and given
-/// to the scene.
+/// How the wind differs from the test wind of a Beaufort number.
+struct WindChoice {
+  double speed = 1.0;  ///< times the number's mean
+  double intensity = 0.2;
+  std::uint64_t seed = 1;  ///< above 1: another stretch of the noise, and another model of the scene
+};
+
+/// The wind of a record, from the beginning of its start.
+TestWind record_wind(std::size_t beaufort_index, const WindChoice& choice);
+
+/// Records a scene in the test wind of a Beaufort number, and looks at it.
 SceneRecord record_scene(const SceneTable& table, std::size_t beaufort_index, const RecordLength& length,
-                         std::uint64_t seed);
+                         const WindChoice& choice);
 
 }  // namespace yuragi::answer

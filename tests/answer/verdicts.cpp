@@ -16,7 +16,7 @@ constexpr std::string_view kQuotient = " / the number before";
 /// What is asked of every record: that its wind is the test wind, and that joints keep their bound.
 const std::array kCommonBounds = {
     Bound{"wind, mean / U", "", 3, {{{0.9, 1.1}, {0.9, 1.1}, {0.9, 1.1}, {0.9, 1.1}}}},
-    Bound{"wind, intensity", "", 3, {{{0.15, 0.25}, {0.15, 0.25}, {0.15, 0.25}, {0.15, 0.25}}}},
+    Bound{"wind, intensity / 0.2", "", 3, {{{0.75, 1.25}, {0.75, 1.25}, {0.75, 1.25}, {0.75, 1.25}}}},
     Bound{"largest step of a joint / its bound", "", 3, {{at_most(1), at_most(1), at_most(1), at_most(1)}}},
 };
 
@@ -80,7 +80,7 @@ std::string range_text(const Range& range, int decimals) {
 
 std::string cell_text(const Judged& cell, int decimals) {
   const std::string value = cell.value ? fmt::format("{:.{}f}", *cell.value, decimals) : "-";
-  return fmt::format("{:>8} {:<12} {:<5}", value, range_text(cell.range, decimals), verdict_text(cell.verdict));
+  return fmt::format("{:>8} {:<13} {:<4}", value, range_text(cell.range, decimals), verdict_text(cell.verdict));
 }
 
 }  // namespace

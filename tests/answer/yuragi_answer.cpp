@@ -18,6 +18,7 @@
 #include "daemon/plot.hpp"
 #include "tests/answer/calm.hpp"
 #include "tests/answer/directions.hpp"
+#include "tests/answer/repeats.hpp"
 #include "tests/answer/scene_run.hpp"
 #include "tests/answer/scene_table.hpp"
 #include "tests/answer/verdicts.hpp"
@@ -31,10 +32,12 @@ struct Options {
   std::vector<std::string> scenes;
   std::vector<int> beauforts;
   double duration_s = 0.0;
-  std::uint64_t seed = 1;
+  WindChoice wind;
   unsigned threads = std::max(std::thread::hardware_concurrency(), 1U);
   bool is_json = false;
-  std::string save, from, plot;
+  bool is_long = false;
+  bool has_further_winds = false;
+  std::string record, from, plot, wind_file;
 };
 
 /// What is recorded and judged of a scene.
@@ -83,18 +86,18 @@ void record(std::vector<Asked>& all, const std::array<bool, kBeauforts>& is_aske
       tasks.emplace_back([&, number, i] {
         RecordLength length = usual_length(number);
         if (options.duration_s > 0.0) length.record_s = options.duration_s;
-        SceneRecord found = record_scene(*all[i].table, number, length, options.seed);
+        SceneRecord found = record_scene(*all[i].table, number, length, options.wind);
         all[i].measured[number] = std::move(found.figures);
         all[i].traces[number] = std::move(found.traces);
       });
-      tasks.emplace_back([&, number, i] { turns[i][number] = turn_figures(*all[i].table, number, options.seed); });
+      tasks.emplace_back([&, number, i] { turns[i][number] = turn_figures(*all[i].table, number, options.wind.seed); });
     }
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     tasks.emplace_back([&, i] {
       const SceneTable& table = *all[i].table;
-      if (table.further != nullptr) further[i] = table.further(table, options.seed);
-      append(further[i][0], calm_figures(table, options.seed));
+      if (table.further != nullptr) further[i] = table.further(table, options.wind.seed);
+      append(further[i][0], calm_figures(table, options.wind.seed));
     });
   }
   run_all(tasks, options.threads);
@@ -143,7 +146,7 @@ void load(std::vector<Asked>& all, const std::string& file) {
   }
 }
 
-int measure(const Options& options) {
+std::vector<Asked> asked_scenes(const Options& options) {
   std::vector<Asked> all;
   for (const SceneTable& table : scene_tables()) {
     const auto& names = options.scenes;
@@ -151,16 +154,32 @@ int measure(const Options& options) {
       all.push_back({.table = &table, .measured = {}, .traces = {}});
     }
   }
+  return all;
+}
+
+std::array<bool, kBeauforts> asked_numbers(const Options& options) {
   std::array<bool, kBeauforts> is_asked{};
   for (std::size_t number = 0; number < kBeauforts; ++number) {
     const auto& numbers = options.beauforts;
     is_asked[number] = numbers.empty() || std::find(numbers.begin(), numbers.end(), kBeaufort[number]) != numbers.end();
   }
+  return is_asked;
+}
 
+/// The tables, each cell judged.
+int measure(const Options& options) {
+  std::vector<Asked> all = asked_scenes(options);
+  const std::array<bool, kBeauforts> is_asked = asked_numbers(options);
   if (options.from.empty()) {
     record(all, is_asked, options);
   } else {
     load(all, options.from);
+  }
+  if (!options.record.empty()) {
+    nlohmann::json figures = nlohmann::json::array();
+    for (const Asked& asked : all) figures.push_back(to_json(*asked.table, asked.measured, {}));
+    std::ofstream(options.record) << figures.dump(1) << '\n';
+    return 0;
   }
 
   nlohmann::json json = nlohmann::json::array();
@@ -174,7 +193,6 @@ int measure(const Options& options) {
     if (!options.is_json) fmt::print("{}\n", table_text(*asked.table, rows, is_asked));
     if (!options.plot.empty()) draw(asked, options.plot);
   }
-  if (!options.save.empty()) std::ofstream(options.save) << json.dump(1) << '\n';
   if (options.is_json) {
     fmt::print("{}\n", json.dump(1));
   } else {
@@ -182,6 +200,75 @@ int measure(const Options& options) {
                                    : fmt::format("{} of {} figures are not within their bounds", failed, judged));
   }
   return failed == 0 && judged > 0 ? 0 : 1;
+}
+
+/// The winds that the bounds are made for: what fails in each, but for the wind's own scatter.
+int measure_further_winds(const Options& options) {
+  const std::array<bool, kBeauforts> is_asked = asked_numbers(options);
+  std::size_t failed = 0;
+  for (const double speed : {0.9, 1.0, 1.1}) {
+    for (const double intensity : {0.15, 0.2, 0.25}) {
+      Options here = options;
+      here.wind.speed = speed;
+      here.wind.intensity = intensity;
+      std::vector<Asked> all = asked_scenes(here);
+      record(all, is_asked, here);
+      fmt::print("wind of {:g} times the mean, intensity {:g}\n", speed, intensity);
+      for (const Asked& asked : all) {
+        std::vector<JudgedRow> rows = judge(*asked.table, asked.measured, is_asked);
+        std::erase_if(
+            rows, [](const JudgedRow& row) { return row.bound.figure.starts_with("wind, ") || failures({row}) == 0; });
+        failed += failures(rows);
+        if (!rows.empty()) fmt::print("{}", table_text(*asked.table, rows, is_asked));
+      }
+      std::fflush(stdout);
+    }
+  }
+  fmt::print("{}\n", failed == 0 ? "all figures are within their bounds" : fmt::format("{} are not", failed));
+  return failed == 0 ? 0 : 1;
+}
+
+/// The wind of a Beaufort number's record and its start, as a table of a sensor that speaks ten times a second.
+int write_wind(const Options& options) {
+  if (options.beauforts.size() != 1) throw std::runtime_error("--write-wind asks for one --beaufort");
+  const auto found = std::find(kBeaufort.begin(), kBeaufort.end(), options.beauforts.front());
+  const auto number = static_cast<std::size_t>(std::distance(kBeaufort.begin(), found));
+  TestWind wind = record_wind(number, options.wind);
+  RecordLength length = usual_length(number);
+  if (options.duration_s > 0.0) length.record_s = options.duration_s;
+  constexpr int kTicksAReading = 6;
+  const auto ticks = static_cast<int>((length.start_s + length.record_s) * kRate_hz);
+  std::ofstream file(options.wind_file);
+  file << "time_s,u_m_s,v_m_s\n";
+  for (int tick = 0; tick < ticks; ++tick) {
+    wind.step(kTick_s);
+    if (tick % kTicksAReading != 0) continue;
+    const WindVector now = wind.at_origin();
+    file << fmt::format("{:.1f},{:.4f},{:.4f}\n", tick * kTick_s, now.u_m_s, now.v_m_s);
+  }
+  return file ? 0 : 1;
+}
+
+/// Ten minutes of each scene: does anything come again?
+int seek_repeats(Options options) {
+  if (options.duration_s == 0.0) options.duration_s = 600.0;
+  std::vector<Asked> all = asked_scenes(options);
+  record(all, asked_numbers(options), options);
+  std::size_t found = 0;
+  for (const Asked& asked : all) {
+    for (std::size_t number = 0; number < kBeauforts; ++number) {
+      for (const Trace& trace : asked.traces[number]) {
+        const Repeat repeat = largest_repeat(trace.values, kRate_hz, kSwing_s);
+        const bool is_repeat = repeat.correlation >= kRepeats;
+        found += is_repeat ? 1U : 0U;
+        fmt::print("{:<8} Beaufort {}  {:<28} largest correlation with itself {:5.2f}, {:6.1f} s later  {}\n",
+                   asked.table->name, kBeaufort[number], trace.name, repeat.correlation, repeat.lag_s,
+                   is_repeat ? "REPEATS" : "ok");
+      }
+    }
+  }
+  fmt::print("{}\n", found == 0 ? "nothing repeats" : fmt::format("{} repeat", found));
+  return found == 0 ? 0 : 1;
 }
 
 int run(int argc, char** argv) {
@@ -195,8 +282,10 @@ int run(int argc, char** argv) {
       "  yuragi-answer                                  all tables\n"
       "  yuragi-answer --scene flag --beaufort 3        a column of one\n"
       "  yuragi-answer --scene tree --plot /tmp         and a picture of the first minute, /tmp/tree.png\n"
-      "  yuragi-answer --save figures.json              and keep the figures, to be judged later:\n"
+      "  yuragi-answer --record figures.json            keeps the figures, to be judged later:\n"
       "  yuragi-answer --from figures.json --scene fur\n"
+      "  yuragi-answer --long --scene grass             does anything come again in ten minutes?\n"
+      "  yuragi-answer --further-winds                  minutes of work: are the bounds kept in other winds too?\n"
       "A cell is the value, its bounds, and ok, LOW, HIGH or NONE (it could not be measured); without bounds it is "
       "only\n"
       "shown. `sd` is a standard deviation; `L` a cloth's length; `U` the record's mean wind; \"the number before\" "
@@ -209,17 +298,37 @@ int run(int argc, char** argv) {
       ->check(CLI::IsMember(std::vector<int>(kBeaufort.begin(), kBeaufort.end())));
   app.add_option("--duration", options.duration_s, "of a record, s; by default 300, and 600 at Beaufort 1")
       ->check(CLI::Range(60.0, 7200.0));
-  app.add_option("--seed", options.seed, "another wind and another model for each; bounds are for 1")
+  app.add_option("--seed", options.wind.seed, "another wind and another model for each; bounds are for 1")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  app.add_option("--speed", options.wind.speed, "times the mean wind of each number; bounds are for 0.9 to 1.1")
+      ->check(CLI::Range(0.1, 3.0))
+      ->capture_default_str();
+  app.add_option("--intensity", options.wind.intensity, "of its turbulence; bounds are for 0.15 to 0.25")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  app.add_flag(
+      "--further-winds", options.has_further_winds,
+      "goes through the nine winds of 0.9, 1 and 1.1 times the mean and intensities of 0.15, 0.2 and 0.25, and\n"
+      "prints what fails in them");
+  app.add_flag("--long", options.is_long,
+               "records ten minutes instead, and seeks what comes again: the largest correlation of each trace with\n"
+               "itself, from 10 s to 5 min later")
+      ->excludes("--further-winds");
   app.add_option("--threads", options.threads, "how many records at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_flag("--json", options.is_json, "prints JSON instead of tables");
-  app.add_option("--save", options.save, "writes the same JSON into a file");
-  app.add_option("--from", options.from, "judges what --save has kept, and records nothing")->check(CLI::ExistingFile);
+  app.add_option("--record", options.record, "writes the figures into a file, and judges nothing");
+  app.add_option("--from", options.from, "judges what --record has kept, and records nothing")
+      ->check(CLI::ExistingFile);
+  app.add_option("--write-wind", options.wind_file,
+                 "writes the wind of a --beaufort as a CSV table, for the daemon: yuragi import, yuragi replay");
   app.add_option("--plot", options.plot, "draws a picture a scene into this folder")->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
+  if (!options.wind_file.empty()) return write_wind(options);
+  if (options.is_long) return seek_repeats(options);
+  if (options.has_further_winds) return measure_further_winds(options);
   return measure(options);
 }
 
