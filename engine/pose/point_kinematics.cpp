@@ -36,6 +36,9 @@ SurfaceKinematicsJob::Problem SurfaceKinematicsJob::validate() const noexcept {
     if (array->size() != count) return Problem::kSkeletonSize;
   }
   if (pose->displacement_m.size() != count) return Problem::kPoseSize;
+  for (const auto* array : {&pose->row_east_m, &pose->row_south_m, &pose->row_drop_m}) {
+    if (array->size() != (skeleton->moves_rows ? skeleton->rows : 0)) return Problem::kPoseSize;
+  }
   return points->size() == count ? Problem::kNone : Problem::kPointsSize;
 }
 
@@ -51,6 +54,19 @@ SurfaceKinematicsJob::Problem SurfaceKinematicsJob::run() const noexcept {
   move(skeleton->rest_x_m.data(), skeleton->normal_x.data());
   move(skeleton->rest_y_m.data(), skeleton->normal_y.data());
   move(skeleton->rest_z_m.data(), skeleton->normal_z.data());
+  if (!skeleton->moves_rows) return Problem::kNone;
+
+  out = points->data().data();
+  const auto move_rows = [&out, this](const std::vector<float>& ways_m, float sign) {
+    for (const float way_m : ways_m) {
+      const float moved_m = sign * way_m;
+      for (std::size_t i = 0; i < skeleton->columns; ++i) out[i] += moved_m;
+      out += skeleton->columns;
+    }
+  };
+  move_rows(pose->row_east_m, 1.0F);
+  move_rows(pose->row_drop_m, -1.0F);
+  move_rows(pose->row_south_m, 1.0F);
   return Problem::kNone;
 }
 

@@ -93,19 +93,26 @@ struct TreePose {
 
 /// A surface whose points move along their normals, and which may glow: water, a flame. A grid of columns x rows
 /// points; point (column, row) stands at row * columns + column. All float vectors have columns * rows elements.
+///
+/// A closed one is a ring of points in each row, around a body; or several rings, one within another, the outermost
+/// first, of columns / shells points each: nested bodies.
 struct SurfaceSkeleton {
   std::size_t columns = 0;
   std::size_t rows = 0;
-  bool is_closed = false;  ///< the last column is followed by the first, around a body
+  bool is_closed = false;   ///< the last column of a shell is followed by its first, around a body
+  std::size_t shells = 1;   ///< of a closed surface: rings a row. At least 1, and columns are a multiple of it
+  bool moves_rows = false;  ///< its poses move rows as wholes, besides the points
   std::vector<float> rest_x_m, rest_y_m, rest_z_m;
   std::vector<float> normal_x, normal_y, normal_z;  ///< unit vectors
   std::vector<std::uint8_t> ramp_rgba;  ///< 256 colours of 4 bytes (sRGB, straight alpha) for `heat`; empty: no heat
 };
 
-/// How far each point is moved along its normal, and where its colour stands on the ramp.
+/// How far each point is moved along its normal, and where its colour stands on the ramp; and how far all points of a
+/// row are moved besides, in the world: what bends a body's axis.
 struct SurfacePose {
-  std::vector<float> displacement_m;  ///< columns * rows elements
-  std::vector<float> heat;            ///< 0 to 1; as many, or none where there is no ramp
+  std::vector<float> displacement_m;                       ///< columns * rows elements
+  std::vector<float> heat;                                 ///< 0 to 1; as many, or none where there is no ramp
+  std::vector<float> row_east_m, row_south_m, row_drop_m;  ///< rows elements (drop: downward), or none: moves_rows
 };
 
 /// The kinds of skeleton, and the pose that goes with each, in the same order.

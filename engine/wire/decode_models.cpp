@@ -162,6 +162,9 @@ bool read(const fb::SurfaceSkeleton& from, SurfaceSkeleton& to) {
   to.columns = from.columns();
   to.rows = from.rows();
   to.is_closed = from.is_closed();
+  to.shells = from.shells();
+  to.moves_rows = from.moves_rows();
+  if (to.shells < 1 || to.columns % to.shells != 0) return false;
   const Layout all{.columns = to.columns, .rows = to.rows};
   const std::size_t ramp_bytes = size_of(from.ramp_rgba());
   if (!is_grid(all.columns, all.rows, all.stride) || (ramp_bytes != 0 && ramp_bytes != kRampBytes) ||
@@ -217,10 +220,14 @@ bool read(const fb::TreePose& from, TreePose& to) {
 bool read(const fb::SurfacePose& from, SurfacePose& to) {
   const Layout all{.columns = size_of(from.displacement())};
   const Layout glowing{.columns = size_of(from.heat()) == 0 ? 0 : all.columns};
+  const Layout rows{.columns = size_of(from.row_east())};
   return is_way_step(from.step_m()) && all.columns <= kMaxStrands &&
          read_units(from.displacement(), all, from.step_m(), to.displacement_m) &&
          read_array(from.heat(), glowing, to.heat,
-                    [](std::uint8_t colour) { return static_cast<float>(colour) / 255.0f; });
+                    [](std::uint8_t colour) { return static_cast<float>(colour) / 255.0f; }) &&
+         rows.columns <= all.columns && read_units(from.row_east(), rows, from.step_m(), to.row_east_m) &&
+         read_units(from.row_south(), rows, from.step_m(), to.row_south_m) &&
+         read_units(from.row_drop(), rows, from.step_m(), to.row_drop_m);
 }
 
 template <class Kind, class Any, class Table>

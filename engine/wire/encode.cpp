@@ -91,7 +91,8 @@ flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const Su
   const auto ramp = add_values(builder, skeleton.ramp_rgba, skeleton.ramp_rgba.size());
   return fb::CreateSurfaceSkeleton(builder, static_cast<std::uint32_t>(skeleton.columns),
                                    static_cast<std::uint32_t>(skeleton.rows), skeleton.is_closed, rest_x, rest_y,
-                                   rest_z, normal_x, normal_y, normal_z, ramp);
+                                   rest_z, normal_x, normal_y, normal_z, ramp,
+                                   static_cast<std::uint32_t>(skeleton.shells), skeleton.moves_rows);
 }
 
 /// The schema's kinds are those of skeleton.hpp, in the same order.

@@ -68,7 +68,13 @@ struct FrameEncoder::Builder {
     std::uint8_t* heat = nullptr;
     const auto colours = buffer.CreateUninitializedVector(pose.heat.size(), &heat);
     quantise_heat(pose.heat, {heat, pose.heat.size()});
-    return fb::CreateSurfacePose(buffer, step_m, displacement, colours);
+    const auto add_rows = [&](const std::vector<float>& way_m) {
+      return way_m.empty() ? Units() : add_ways(way_m, step_m, way_m.size(), 1, way_m.size());
+    };
+    const auto east = add_rows(pose.row_east_m);
+    const auto south = add_rows(pose.row_south_m);
+    const auto drop = add_rows(pose.row_drop_m);
+    return fb::CreateSurfacePose(buffer, step_m, displacement, colours, east, south, drop);
   }
 
   flatbuffers::Offset<fb::ScenePose> add_scene(const Pose& pose, const Skeleton& skeleton, float opacity) {

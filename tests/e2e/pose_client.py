@@ -375,10 +375,13 @@ class Tree:
 
 
 class Displacements:
-    """A SurfacePose: how far each point is moved along its normal, in metres, and its colour on the ramp."""
+    """A SurfacePose: how far each point is moved along its normal, in metres, and its colour on the ramp; and how far the points of
+    each row are moved besides."""
 
     def __init__(self, table):
         self.displacement_m = table.StepM() * numbers(table.DisplacementAsNumpy())
+        east, south, drop = (numbers(a) for a in (table.RowEastAsNumpy(), table.RowSouthAsNumpy(), table.RowDropAsNumpy()))
+        self.row_m = table.StepM() * np.stack([east, -drop, south], axis=1)
         self.heat = numbers(table.HeatAsNumpy()).astype(int)
 
 
@@ -387,6 +390,7 @@ class Surface:
 
     def __init__(self, table):
         self.columns, self.rows = table.Columns(), table.Rows()
+        self.shells, self.moves_rows = table.Shells(), table.MovesRows()
         self.rest_m = vectors(table.RestXMAsNumpy(), table.RestYMAsNumpy(), table.RestZMAsNumpy())
         self.normal = vectors(table.NormalXAsNumpy(), table.NormalYAsNumpy(), table.NormalZAsNumpy())
         self.ramp_rgba = numbers(table.RampRgbaAsNumpy()).reshape(-1, 4)
@@ -400,6 +404,8 @@ class Surface:
             yield "its arrays have not columns * rows points"
         if not is_unit(self.normal):
             yield "a normal is no unit vector"
+        if self.shells < 1 or self.columns % self.shells:
+            yield "its columns are no whole rings"
         if len(self.ramp_rgba) not in (0, 256):
             yield f"the ramp has {len(self.ramp_rgba)} colours"
 
@@ -408,11 +414,13 @@ class Surface:
             isinstance(moved, Displacements)
             and len(moved.displacement_m) == self.nodes
             and len(moved.heat) == (self.nodes if len(self.ramp_rgba) else 0)
+            and len(moved.row_m) == (self.rows if self.moves_rows else 0)
         )
 
     def points_m(self, moved):
         """Every point, row after row."""
-        return self.rest_m + moved.displacement_m[:, None] * self.normal
+        points_m = self.rest_m + moved.displacement_m[:, None] * self.normal
+        return points_m + np.repeat(moved.row_m, self.columns, axis=0) if self.moves_rows else points_m
 
     def pose_faults(self, moved):
         if not np.all(np.isfinite(moved.displacement_m)):
