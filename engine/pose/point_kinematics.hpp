@@ -59,8 +59,7 @@ struct GridKinematicsJob {
 };
 
 /// The one forward kinematics of a surface: a point is at its place at rest, moved along its normal by its
-/// displacement, and then as its row is (x by row_east_m, y by -row_drop_m, z by row_south_m), where rows are moved.
-/// Otherwise as GridKinematicsJob.
+/// displacement, and then as its row is, where rows are moved (SurfacePose). Otherwise as GridKinematicsJob.
 struct SurfaceKinematicsJob {
   const SurfaceSkeleton* skeleton = nullptr;
   const SurfacePose* pose = nullptr;

@@ -37,6 +37,8 @@ void for_each_array(AnyPose& pose, Visit&& visit) {
     visit(std::span(pose.row_east_m));
     visit(std::span(pose.row_south_m));
     visit(std::span(pose.row_drop_m));
+    visit(std::span(pose.row_slope_east));
+    visit(std::span(pose.row_slope_south));
   }
 }
 

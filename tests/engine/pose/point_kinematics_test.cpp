@@ -15,7 +15,8 @@ SurfaceSkeleton nested_rings() {
   surface.rows = 3;
   surface.is_closed = true;
   surface.shells = 2;
-  surface.moves_rows = true;
+  surface.axis_x_m = {0.0F, 0.5F, 0.0F};
+  surface.axis_z_m = {0.0F, 0.0F, 0.25F};
   for (std::size_t i = 0; i < 12; ++i) {
     surface.rest_x_m.push_back(i % 2 == 0 ? 1.0F : -1.0F);
     surface.rest_y_m.push_back(static_cast<float>(i / 4));
@@ -37,13 +38,20 @@ TEST(SurfaceKinematics, APointGoesAlongItsNormalAndThenWithItsRow) {
   moved.row_east_m = {0.0F, 2.0F, 4.0F};
   moved.row_south_m = {0.0F, -1.0F, -3.0F};
   moved.row_drop_m = {0.0F, 0.5F, 1.5F};
+  moved.row_slope_east = {0.0F, 0.5F, 1.0F};
+  moved.row_slope_south = {0.0F, 0.25F, -0.5F};
   Kinematics kinematics(skeleton);
   ASSERT_TRUE(kinematics.run(pose));
   for (std::size_t i = 0; i < 12; ++i) {
     const JointPosition at = kinematics.joint(i);
-    EXPECT_FLOAT_EQ(at.x_m, surface.rest_x_m[i] + 0.6F * moved.displacement_m[i] + moved.row_east_m[i / 4]) << i;
-    EXPECT_FLOAT_EQ(at.y_m, surface.rest_y_m[i] - moved.row_drop_m[i / 4]) << i;
-    EXPECT_FLOAT_EQ(at.z_m, surface.rest_z_m[i] - 0.8F * moved.displacement_m[i] + moved.row_south_m[i / 4]) << i;
+    const std::size_t row = i / 4;
+    const float x_m = surface.rest_x_m[i] + 0.6F * moved.displacement_m[i];
+    const float z_m = surface.rest_z_m[i] - 0.8F * moved.displacement_m[i];
+    const float down_m = moved.row_slope_east[row] * (x_m - surface.axis_x_m[row]) +
+                         moved.row_slope_south[row] * (z_m - surface.axis_z_m[row]);
+    EXPECT_FLOAT_EQ(at.x_m, x_m + moved.row_east_m[row]) << i;
+    EXPECT_FLOAT_EQ(at.y_m, surface.rest_y_m[i] - moved.row_drop_m[row] - down_m) << i;
+    EXPECT_FLOAT_EQ(at.z_m, z_m + moved.row_south_m[row]) << i;
   }
 }
 
@@ -57,7 +65,9 @@ TEST(SurfaceKinematics, RowsMoveWhereTheSkeletonSaysSoAndNowhereElse) {
   EXPECT_FALSE(fits(one_missing, skeleton));
   EXPECT_FALSE(Kinematics(skeleton).run(one_missing));
 
-  std::get<SurfaceSkeleton>(skeleton).moves_rows = false;
+  std::get<SurfaceSkeleton>(skeleton).axis_x_m.clear();
+  EXPECT_FALSE(Kinematics(skeleton).run(with_rows)) << "half an axis";
+  std::get<SurfaceSkeleton>(skeleton).axis_z_m.clear();
   const Pose without = rest_pose(skeleton);
   EXPECT_TRUE(std::get<SurfacePose>(without).row_east_m.empty());
   EXPECT_TRUE(Kinematics(skeleton).run(without));

@@ -199,7 +199,8 @@ void expect_that_it_goes_on_working(const Bytes& stream) {
     const Skeleton& skeleton = now.scenes.scenes[scene].skeleton;
     Pose pose = now.frame.poses[scene];
     if (auto* surface = std::get_if<SurfacePose>(&pose)) {
-      for (auto* rows : {&surface->row_east_m, &surface->row_south_m, &surface->row_drop_m}) {
+      for (auto* rows : {&surface->row_east_m, &surface->row_south_m, &surface->row_drop_m, &surface->row_slope_east,
+                         &surface->row_slope_south}) {
         std::fill(rows->begin(), rows->end(), 0.0F);
       }
     }
