@@ -25,11 +25,20 @@ constexpr std::string_view kJudgeKey = "judge";
 std::vector<Parameter> parameters_of(const DriverDescription& driver) {
   return {driver.parameters.begin(), driver.parameters.end()};
 }
+
 std::vector<Parameter> parameters_of(const SceneDescription& scene) {
   std::vector<Parameter> all(scene.parameters.begin(), scene.parameters.end());
   const std::span<const Parameter> common = common_scene_parameters();
   all.insert(all.end(), common.begin(), common.end());
   return all;
+}
+
+/// And what it held once.
+std::span<const RetiredParameter> retired_of(const DriverDescription&) {
+  return {};
+}
+std::span<const RetiredParameter> retired_of(const SceneDescription& scene) {
+  return scene.retired;
 }
 
 /// A TOML value as a parameter's; nothing for dates, arrays and tables, which no parameter takes.
@@ -180,7 +189,8 @@ class ConfigReader {
 
   /// The values of one table; keys in `aside` are read elsewhere.
   ParameterValues read_values(const toml::table& table, const std::string& prefix,
-                              std::span<const Parameter> parameters, const std::set<std::string_view>& aside) {
+                              std::span<const Parameter> parameters, const std::set<std::string_view>& aside,
+                              std::span<const RetiredParameter> retired = {}) {
     // One key at a time, so that each mistake is told, at its own place.
     ParameterValues::Map good;
     for (const auto& [key, node] : table) {
@@ -188,6 +198,11 @@ class ConfigReader {
       const std::optional<ParameterValue> value = to_parameter_value(node);
       if (!value) {
         mistake(node.source(), prefix + std::string(key.str()), "takes one value: true, a number or a text");
+        continue;
+      }
+      const auto gone = std::ranges::find(retired, key.str(), &RetiredParameter::name);
+      if (gone != retired.end()) {
+        mistake(node.source(), prefix + std::string(key.str()), std::string(gone->now));
         continue;
       }
       const ParameterValues::Map one{{std::string(key.str()), *value}};
@@ -224,7 +239,8 @@ class ConfigReader {
       if (list == "sensor") aside.insert(kCalibrationKey);
       if (list == "sensor") aside.insert(kJudgeKey);
       if (list == "sensor") aside.insert(kBlendKey);
-      const ParameterValues values = read_values(*entry, prefix, parameters_of(*description), aside);
+      const ParameterValues values =
+          read_values(*entry, prefix, parameters_of(*description), aside, retired_of(*description));
       use(name, description, values, *entry);
     }
   }

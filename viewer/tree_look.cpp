@@ -39,7 +39,8 @@ void describe_part(const GlVertexArray& array, const GlBuffer& buffer, const std
   glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(TreePart), at(offsetof(TreePart, facing)));
   glVertexAttribIPointer(3, 1, GL_UNSIGNED_INT, sizeof(TreePart), at(offsetof(TreePart, strand)));
   glVertexAttribIPointer(4, 1, GL_INT, sizeof(TreePart), at(offsetof(TreePart, root_at)));
-  for (GLuint attribute = 0; attribute < 5; ++attribute) {
+  glVertexAttribPointer(5, 3, GL_FLOAT, GL_FALSE, sizeof(TreePart), at(offsetof(TreePart, rest)));
+  for (GLuint attribute = 0; attribute < 6; ++attribute) {
     glEnableVertexAttribArray(attribute);
     glVertexAttribDivisor(attribute, 1);
   }

@@ -16,6 +16,7 @@ const glm::vec3 kBark(0.085F, 0.062F, 0.045F);
 const glm::vec3 kTwig(0.095F, 0.066F, 0.040F);
 
 constexpr double kLeafTilt_rad = 0.75;  // how far, at most about, a leaf's upper side is turned from the sky
+constexpr float kOutward = 0.8F;        // and how much out of the crown, where the light is, against that
 
 struct LeafTints {
   glm::vec3 deep;
@@ -32,6 +33,28 @@ LeafTints tints_of(Foliage foliage) {
       break;
   }
   return {{0.050F, 0.118F, 0.020F}, {0.150F, 0.225F, 0.038F}};
+}
+
+/// Where a strand leads to at rest, from foot to tip.
+glm::vec3 rest_direction(const StrandSkeleton& strands, std::size_t i) {
+  const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
+  const glm::vec3 curl(strands.curl_x[i], strands.curl_y[i], strands.curl_z[i]);
+  glm::vec3 sum(0.0F);
+  for (std::size_t link = 0; link < strands.links_per_strand; ++link) {
+    const float curled_rad = static_cast<float>(link) * strands.rest_curl_rad[i];
+    sum += std::cos(curled_rad) * rest + std::sin(curled_rad) * curl;
+  }
+  const float length = glm::length(sum);
+  return length > 1e-3F ? sum / length : rest;
+}
+
+/// The middle of where the strands stand.
+glm::vec3 middle_of(const StrandSkeleton& strands) {
+  glm::vec3 sum(0.0F);
+  for (std::size_t i = 0; i < strands.strand_count; ++i) {
+    sum += glm::vec3(strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]);
+  }
+  return sum / static_cast<float>(std::max<std::size_t>(strands.strand_count, 1));
 }
 
 std::array<float, 3> array_of(const glm::vec3& v) {
@@ -62,6 +85,7 @@ std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Fo
   const RandomStream chance(level, stream_id("viewer tree"));
   const StrandSkeleton& strands = from.strands;
   std::vector<TreePart> parts(strands.strand_count);
+  const glm::vec3 middle_m = middle_of(strands);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto [first, second] = chance.uniform_pair(2 * i);
     const auto [third, fourth] = chance.uniform_pair(2 * i + 1);
@@ -84,7 +108,10 @@ std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Fo
     if (from.is_leaves) {
       const double tilt = 2.0 * kLeafTilt_rad * fourth;
       const glm::vec3 up(std::sin(tilt) * std::cos(bearing), std::cos(tilt), std::sin(tilt) * std::sin(bearing));
-      part.facing = array_of(up);
+      const glm::vec3 from_middle_m = glm::vec3(part.root_m[0], part.root_m[1], part.root_m[2]) - middle_m;
+      const glm::vec3 outward = from_middle_m / std::max(glm::length(from_middle_m), 0.1F);
+      part.facing = array_of(glm::normalize(up + kOutward * outward));
+      part.rest = array_of(rest_direction(strands, i));
       part.tint = array_of(light * glm::mix(tints.deep, tints.fresh, static_cast<float>(first)));
     } else {
       // The seam's side: any that the branch does not lead to.

@@ -21,6 +21,7 @@ struct TreePart {
   std::array<float, 3> tint{};    ///< linear light
   float tip_radius_m = 0.0F;
   std::array<float, 3> facing{};  ///< of a leaf: what its upper side is turned to; of a branch: aside of it
+  std::array<float, 3> rest{};    ///< of a leaf: where it leads to at rest, from foot to tip; a unit vector
   std::uint32_t strand = 0;
   std::int32_t root_at =
       -1;  ///< where in the array the x of the joint is that it grows from; below 0: it stands on the ground

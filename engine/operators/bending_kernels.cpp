@@ -31,11 +31,12 @@ void bend_locally(const LocalBendingKernelArguments& in) noexcept {
   const LocalBendingKernelArguments arguments = in;
   const float* const wind_east = arguments.wind_east_m_s;
   const float* const wind_south = arguments.wind_south_m_s;
+  const float* const strength = arguments.strength;
   const float* const flexibility = arguments.flexibility;
   float* const __restrict east = arguments.out_east_rad;
   float* const __restrict south = arguments.out_south_rad;
   for (std::size_t i = 0; i < arguments.count; ++i) {
-    const float per_m_s = arguments.half_bends_per_m_s * flexibility[i];
+    const float per_m_s = arguments.half_bends_per_m_s * strength[i] * flexibility[i];
     const float blowing = per_m_s * std::sqrt(wind_east[i] * wind_east[i] + wind_south[i] * wind_south[i]);
     const float s = blowing < kLargest ? blowing : kLargest;
     // s^2 / (1 + s^2) over the speed: no division by a speed that may be 0.
@@ -45,8 +46,40 @@ void bend_locally(const LocalBendingKernelArguments& in) noexcept {
   }
 }
 
+void bend_coat(const CoatBendingKernelArguments& in) noexcept {
+  const CoatBendingKernelArguments arguments = in;
+  const float* const normal_x = arguments.normal_x;
+  const float* const normal_z = arguments.normal_z;
+  const float* const stroke_along = arguments.stroke_along;
+  const float* const stroke_across = arguments.stroke_across;
+  const float* const flexibility = arguments.flexibility;
+  float* const __restrict out_east = arguments.out_east_rad;
+  float* const __restrict out_south = arguments.out_south_rad;
+  const float wind_east = arguments.wind_east_m_s;
+  const float wind_south = arguments.wind_south_m_s;
+  const float wind_square = wind_east * wind_east + wind_south * wind_south;
+  const float toward_east = wind_east * arguments.per_speed_s_m;
+  const float toward_south = wind_south * arguments.per_speed_s_m;
+  for (std::size_t i = 0; i < arguments.count; ++i) {
+    // The wind along the skin.
+    const float outward = wind_east * normal_x[i] + wind_south * normal_z[i];
+    const float left = wind_square - outward * outward;
+    const float square = left > 0.0F ? left : 0.0F;
+    const float per_m_s = arguments.half_bends_per_m_s * flexibility[i];
+    const float s_square = per_m_s * per_m_s * square;
+    const float share = 1.0F - 1.0F / (1.0F + s_square);
+
+    const float lee = outward * arguments.per_speed_s_m;
+    const float exposure = 1.0F - arguments.sheltered * (lee > 0.0F ? lee : 0.0F);
+    const float along = share * (arguments.max_bend_rad * exposure + arguments.stroke_rad * stroke_along[i]);
+    const float across = share * arguments.stroke_rad * stroke_across[i];
+    out_east[i] = along * toward_east - across * toward_south;
+    out_south[i] = along * toward_south + across * toward_east;
+  }
+}
+
 }  // namespace
 
-const BendingKernels YURAGI_ROW_NAME(bending_kernels) = {bend, bend_locally};
+const BendingKernels YURAGI_ROW_NAME(bending_kernels) = {bend, bend_locally, bend_coat};
 
 }  // namespace yuragi

@@ -1,6 +1,7 @@
 #include "engine/operators/crown_kernels.hpp"
 
 #include "engine/base/kernel.hpp"
+#include "engine/operators/streamlined_drag.hpp"
 
 namespace yuragi {
 namespace {
@@ -28,37 +29,82 @@ void split(const SplitKernelArguments& arguments) noexcept {
   }
 }
 
-/// x where it is small, and never beyond 1.
-[[gnu::always_inline]] inline float saturated(float x) noexcept {
-  return x / __builtin_sqrtf(1.0F + x * x);
+void force(const ForceKernelArguments& arguments) noexcept {
+  const ForceKernelArguments in = arguments;
+  float* const __restrict noise = in.noise;
+  float* const __restrict toward_east = in.toward_east;
+  float* const __restrict toward_south = in.toward_south;
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const float east = in.wind_east_m_s[i];
+    const float south = in.wind_south_m_s[i];
+    const float square = east * east + south * south;
+    const float speed_square = square * (in.per_streamline_speed * in.per_streamline_speed);
+    noise[i] = streamlined_drag(speed_square) * in.per_mean_force - 1.0F;
+    const float per_length = 1.0F / __builtin_sqrtf(square + in.calm_square);
+    toward_east[i] = east * per_length;
+    toward_south[i] = south * per_length;
+  }
+}
+
+/// x where it is small, and never beyond `limit`. (Of 0 within 0 it is 0.)
+[[gnu::always_inline]] inline float capped(float x, float limit) noexcept {
+  return x * (limit / __builtin_sqrtf(limit * limit + x * x + 1e-30F));
 }
 
 void tilt(const TiltKernelArguments& arguments) noexcept {
   const TiltKernelArguments in = arguments;
-  float* const __restrict east = in.out_east_rad;
-  float* const __restrict south = in.out_south_rad;
+  float* const __restrict out_east = in.out_east_rad;
+  float* const __restrict out_south = in.out_south_rad;
   for (std::size_t i = 0; i < in.count; ++i) {
-    const float wind = in.gain[i] * in.response / in.distance[i];
-    const float along = in.max_tilt_rad * saturated(wind * (in.vertical[i] + in.alpha_vertical));
-    const float across = in.max_swing_rad * saturated(wind * (in.horizontal[i] + in.beta_horizontal));
-    east[i] = in.toward_east * along - in.toward_south * across;
-    south[i] = in.toward_south * along + in.toward_east * across;
+    const float reach = in.force * in.gain[i] / in.distance[i];
+    const float along = capped(reach * (in.vertical[i] + in.alpha_vertical), in.max_tilt_rad);
+    const float across = capped(reach * (in.horizontal[i] + in.beta_horizontal), in.max_swing_rad);
+    const float east = in.toward_east[i];
+    const float south = in.toward_south[i];
+    out_east[i] = east * along - south * across;
+    out_south[i] = south * along + east * across;
+  }
+}
+
+void answer(const LeafKernelArguments& arguments) noexcept {
+  const LeafKernelArguments in = arguments;
+  float* const __restrict lean_east = in.out_lean_east_rad;
+  float* const __restrict lean_south = in.out_lean_south_rad;
+  float* const __restrict flutter = in.out_flutter_rad;
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const float east = in.wind_east_m_s[i];
+    const float south = in.wind_south_m_s[i];
+    const float square = east * east + south * south;
+    const float s_square = square * (in.per_half_lean_speed * in.per_half_lean_speed);
+    const float lean = in.lean_rad * in.per_half_lean_speed * (__builtin_sqrtf(s_square) / (1.0F + s_square));
+    lean_east[i] = lean * east;
+    lean_south[i] = lean * south;
+    const float base = 1.0F + in.eighth_per_flutter_square * square;
+    const float power_2 = base * base;
+    const float power_4 = power_2 * power_2;
+    flutter[i] = in.flutter_rad * (1.0F - 1.0F / (power_4 * power_4));
   }
 }
 
 void flutter(const FlutterKernelArguments& arguments) noexcept {
   const FlutterKernelArguments in = arguments;
-  float* const __restrict east = in.out_east_rad;
-  float* const __restrict south = in.out_south_rad;
-  for (std::size_t i = 0; i < in.count; ++i) {
-    const float bend = in.lean_rad + in.flutter_rad * in.noise[i];
-    east[i] = bend * (in.toward_east * in.along[i] - in.toward_south * in.across[i]);
-    south[i] = bend * (in.toward_south * in.along[i] + in.toward_east * in.across[i]);
+  float* const __restrict out_east = in.out_east_rad;
+  float* const __restrict out_south = in.out_south_rad;
+  for (std::size_t spray = 0; spray < in.sprays; ++spray) {
+    const std::uint32_t place = in.place[spray];
+    const float lean_east = in.lean_east_rad[place];
+    const float lean_south = in.lean_south_rad[place];
+    const float flutter = in.flutter_rad[place];
+    for (std::size_t i = 16 * spray; i < 16 * spray + 16; ++i) {
+      const float to_and_fro = flutter * in.noise[i];
+      out_east[i] = in.give[i] * lean_east + to_and_fro * in.axis_east[i];
+      out_south[i] = in.give[i] * lean_south + to_and_fro * in.axis_south[i];
+    }
   }
 }
 
 }  // namespace
 
-const CrownKernels YURAGI_ROW_NAME(crown_kernels) = {split, tilt, flutter};
+const CrownKernels YURAGI_ROW_NAME(crown_kernels) = {split, force, tilt, answer, flutter};
 
 }  // namespace yuragi

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -8,21 +9,23 @@
 
 namespace yuragi {
 
-/// The projection operator of leaves: each leans with the wind and flutters by its noise, as much as its petiole lets
-/// it (Chiba, section 3.3). The bend, in StrandPose's meaning, is flexibility (lean + flutter noise) W, W = s^2 / (1 +
-/// s^2) with s = wind / half_flutter_speed, toward where the wind blows to, turned by the leaf's own twist (its cosine
-/// and sine), since no two leaves stand alike. Calm gives (0, 0). m/s, radians. All spans have the same size; the
-/// outputs overlap nothing else. Owns nothing. Thread-safe: jobs with different outputs, yes. Realtime-safe: yes. Every
-/// SIMD row computes the same bits. Cost: about 0.5 ns a leaf (x86-64-v3).
+/// The projection operator of leaves: each leans with the wind in the place of its spray, as far as its petiole gives
+/// way, and flutters to and fro across an axis of its own by its noise (Chiba, section 3.3). The bend, in StrandPose's
+/// meaning, is give lean + flutter noise axis, with lean and flutter of LeafResponseJob. Sprays are of kLeavesOfASpray
+/// leaves each, which follow one another. Radians. The spans of the leaves have the same size, as do those of the
+/// places; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with different outputs, yes.
+/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.5 ns a leaf (x86-64-v3).
 struct FlutterJob {
-  double wind_east_m_s = 0.0;
-  double wind_south_m_s = 0.0;
-  std::span<const float> noise;  ///< at each leaf
-  std::span<const float> along;  ///< compliance of each petiole: 1 is that of the softest
-  std::span<const float> across;
-  double half_flutter_speed_m_s = 5.0;  ///< at least 0.01
-  double lean_rad = 0.4;
-  double flutter_rad = 0.3;                   ///< for a noise of 1
+  static constexpr std::size_t kLeavesOfASpray = 16;
+
+  std::span<const float> lean_east_rad;  ///< in each place
+  std::span<const float> lean_south_rad;
+  std::span<const float> flutter_rad;    ///< for a noise of 1
+  std::span<const std::uint32_t> place;  ///< of each spray
+  std::span<const float> noise;          ///< at each leaf
+  std::span<const float> give;           ///< of its petiole
+  std::span<const float> axis_east;      ///< to where a noise above 0 bends it; its length is how lively it is
+  std::span<const float> axis_south;
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   std::span<float> bend_east_rad;
@@ -30,10 +33,8 @@ struct FlutterJob {
 
   enum class Problem : std::uint8_t {
     kNone,
-    kWindNotFinite,     ///< or so strong (1e154 m/s) that its square is not
-    kHalfFlutterSpeed,  ///< not a number of at least 0.01 m/s
-    kAngles,            ///< lean or flutter is not finite
-    kSizesDiffer,
+    kSizesDiffer,  ///< or there are not as many leaves as in whole sprays
+    kPlace,        ///< of a spray, that is not there
     kRowNotRunnable,
   };
   [[nodiscard]] Problem validate() const noexcept;

@@ -18,8 +18,8 @@ LocalBendingJob::Problem LocalBendingJob::validate() const noexcept {
   if (!std::isfinite(half_bend_speed_m_s) || half_bend_speed_m_s < kSmallestSpeed_m_s) return Problem::kHalfBendSpeed;
   if (!(max_bend_rad >= 0.0 && max_bend_rad <= kPi)) return Problem::kMaxBend;
   const std::size_t count = flexibility.size();
-  if (wind_east_m_s.size() != count || wind_south_m_s.size() != count || bend_east_rad.size() != count ||
-      bend_south_rad.size() != count) {
+  if (wind_east_m_s.size() != count || wind_south_m_s.size() != count || strength.size() != count ||
+      bend_east_rad.size() != count || bend_south_rad.size() != count) {
     return Problem::kSizesDiffer;
   }
   if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
@@ -33,6 +33,7 @@ LocalBendingJob::Problem LocalBendingJob::run() const noexcept {
       {.count = flexibility.size(),
        .wind_east_m_s = wind_east_m_s.data(),
        .wind_south_m_s = wind_south_m_s.data(),
+       .strength = strength.data(),
        .flexibility = flexibility.data(),
        .half_bends_per_m_s = static_cast<float>(1.0 / half_bend_speed_m_s),
        .max_bend_rad = static_cast<float>(max_bend_rad),

@@ -44,9 +44,28 @@ struct LocalBendingKernelArguments {
   std::size_t count = 0;
   const float* wind_east_m_s = nullptr;
   const float* wind_south_m_s = nullptr;
+  const float* strength = nullptr;
   const float* flexibility = nullptr;
   float half_bends_per_m_s = 0.0F;
   float max_bend_rad = 0.0F;
+  float* out_east_rad = nullptr;
+  float* out_south_rad = nullptr;
+};
+
+struct CoatBendingKernelArguments {
+  std::size_t count = 0;
+  float wind_east_m_s = 0.0F;
+  float wind_south_m_s = 0.0F;
+  float per_speed_s_m = 0.0F;  ///< 1 / the wind's speed; 0 in calm air
+  const float* normal_x = nullptr;
+  const float* normal_z = nullptr;
+  const float* stroke_along = nullptr;
+  const float* stroke_across = nullptr;
+  const float* flexibility = nullptr;
+  float half_bends_per_m_s = 0.0F;
+  float max_bend_rad = 0.0F;
+  float stroke_rad = 0.0F;
+  float sheltered = 0.0F;
   float* out_east_rad = nullptr;
   float* out_south_rad = nullptr;
 };
@@ -57,6 +76,10 @@ struct OscillatorKernelArguments {
   float q_from_v = 0.0F;
   float v_from_e = 0.0F;
   float v_from_v = 0.0F;
+  const float* each_q_from_e = nullptr;  ///< the same of each oscillator, for step_each
+  const float* each_q_from_v = nullptr;
+  const float* each_v_from_e = nullptr;
+  const float* each_v_from_v = nullptr;
   float blend = 0.0F;
   float* value = nullptr;
   float* rate = nullptr;
@@ -73,13 +96,15 @@ extern const SampleKernels sample_kernels_x86_64_v4;
 struct BendingKernels {
   void (*bend)(const BendingKernelArguments&) noexcept;
   void (*bend_locally)(const LocalBendingKernelArguments&) noexcept;
+  void (*bend_coat)(const CoatBendingKernelArguments&) noexcept;
 };
 extern const BendingKernels bending_kernels_x86_64;
 extern const BendingKernels bending_kernels_x86_64_v3;
 extern const BendingKernels bending_kernels_x86_64_v4;
 
 struct OscillatorKernels {
-  void (*step)(const OscillatorKernelArguments&) noexcept;
+  void (*step)(const OscillatorKernelArguments&) noexcept;       ///< all alike
+  void (*step_each)(const OscillatorKernelArguments&) noexcept;  ///< each in its own way
 };
 extern const OscillatorKernels oscillator_kernels_x86_64;
 extern const OscillatorKernels oscillator_kernels_x86_64_v3;

@@ -38,15 +38,30 @@ double OscillatorStep::largest_rate_per_s(double natural_hz, double damping_rati
   return 2.0 * first_peak / (1.0 - std::exp(-kPi * damping_ratio / root));
 }
 
+void OscillatorSteps::set(std::size_t i, const OscillatorStep& step) noexcept {
+  q_from_e[i] = static_cast<float>(step.q_from_e);
+  q_from_v[i] = static_cast<float>(step.q_from_v);
+  v_from_e[i] = static_cast<float>(step.v_from_e);
+  v_from_v[i] = static_cast<float>(step.v_from_v);
+}
+
 OscillatorJob::Problem OscillatorJob::validate() const noexcept {
   if (oscillators == nullptr) return Problem::kNoOscillators;
   if (!std::isfinite(step.q_from_e + step.q_from_v + step.v_from_e + step.v_from_v)) return Problem::kStepNotFinite;
   if (!(blend >= 0.0 && blend <= 1.0)) return Problem::kBlend;
   const std::size_t count = east.size();
   if (south.size() != count) return Problem::kSizesDiffer;
+  const auto has_room = [this, count](const std::vector<float>& array) {
+    return array.size() >= first && array.size() - first >= count;
+  };
   for (const auto* array :
        {&oscillators->value_east, &oscillators->rate_east, &oscillators->value_south, &oscillators->rate_south}) {
-    if (array->size() < first || array->size() - first < count) return Problem::kSizesDiffer;
+    if (!has_room(*array)) return Problem::kSizesDiffer;
+  }
+  if (steps != nullptr) {
+    for (const auto* array : {&steps->q_from_e, &steps->q_from_v, &steps->v_from_e, &steps->v_from_v}) {
+      if (!has_room(*array)) return Problem::kSizesDiffer;
+    }
   }
   if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
   return Problem::kNone;
@@ -65,12 +80,19 @@ OscillatorJob::Problem OscillatorJob::run() const noexcept {
                                       .value = oscillators->value_east.data() + first,
                                       .rate = oscillators->rate_east.data() + first,
                                       .driven = east.data()};
+  if (steps != nullptr) {
+    arguments.each_q_from_e = steps->q_from_e.data() + first;
+    arguments.each_q_from_v = steps->q_from_v.data() + first;
+    arguments.each_v_from_e = steps->v_from_e.data() + first;
+    arguments.each_v_from_v = steps->v_from_v.data() + first;
+  }
   const OscillatorKernels& kernels = kOscillatorRows[row.value_or(best_simd_row())];
-  kernels.step(arguments);
+  auto* const go_on = steps != nullptr ? kernels.step_each : kernels.step;
+  go_on(arguments);
   arguments.value = oscillators->value_south.data() + first;
   arguments.rate = oscillators->rate_south.data() + first;
   arguments.driven = south.data();
-  kernels.step(arguments);
+  go_on(arguments);
   return Problem::kNone;
 }
 

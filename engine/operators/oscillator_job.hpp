@@ -30,6 +30,17 @@ struct OscillatorStep {
   static double largest_rate_per_s(double natural_hz, double damping_ratio) noexcept;
 };
 
+/// The same for oscillators that each sway at a pace of their own: an element for each of them.
+struct OscillatorSteps {
+  explicit OscillatorSteps(std::size_t count = 0)
+      : q_from_e(count), q_from_v(count), v_from_e(count), v_from_v(count) {}
+
+  /// Element i goes on by this (finite) step. Thread-safe: on different elements, yes. Realtime-safe: yes.
+  void set(std::size_t i, const OscillatorStep& step) noexcept;
+
+  std::vector<float> q_from_e, q_from_v, v_from_e, v_from_v;
+};
+
 /// Where many oscillators are, two axes each, and how fast they go; all at rest at first.
 struct Oscillators {
   explicit Oscillators(std::size_t count = 0)
@@ -48,20 +59,21 @@ struct Oscillators {
 /// on different elements, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.5 ns an element
 /// (x86-64-v3).
 struct OscillatorJob {
-  OscillatorStep step;
+  OscillatorStep step = {};                   ///< of all, if they sway alike
+  const OscillatorSteps* steps = nullptr;     ///< of each, if they do not: in place of `step`
   double blend = 1.0;                         ///< h: 0, the noise alone, to 1, the oscillator alone
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   Oscillators* oscillators = nullptr;
-  std::size_t first = 0;  ///< which oscillator the first element of `east` and `south` drives
+  std::size_t first = 0;  ///< which oscillator, and element of `steps`, goes with the first of `east` and `south`
   std::span<float> east = {};
   std::span<float> south = {};
 
   enum class Problem : std::uint8_t {
     kNone,
     kNoOscillators,
-    kStepNotFinite,
-    kBlend,  ///< not a number from 0 to 1
+    kStepNotFinite,  ///< `step`; those of `steps` are not looked at
+    kBlend,          ///< not a number from 0 to 1
     kSizesDiffer,
     kRowNotRunnable,
   };

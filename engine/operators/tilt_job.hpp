@@ -14,28 +14,29 @@ namespace yuragi {
 ///   theta = W_speed (N_vertical + alpha_vertical) / dist_to_wind_side
 ///   phi   = W_direction + W_speed (N_horizontal + beta_horizontal) / dist_to_wind_side
 ///
-/// To make that a matter of numbers without units which saturates, W_speed is s^2 / (1 + s^2), s = wind /
-/// half_tilt_speed; the distance is in radii of the tree (WindSideJob); and what is added to the rest pose's own angles
-/// goes through x / sqrt(1 + x^2) before it becomes one: a bend of at most max_tilt along the wind from the first line,
-/// and of at most max_swing across it (to the right of where it blows to) from the second, since a pose has no turn
-/// about the vertical. The gain, (root thickness / thickness)^p over that of the thinnest branch, multiplies both. Calm
-/// gives (0, 0).
+/// W_speed is the force of the mean wind and the noise that of its gusts (BranchForceJob): with an alpha of 1 theta
+/// goes with the whole force at the branch. W_direction is where the wind blows to there. The distance is in radii of
+/// the tree (WindSideJob). The gain is the branch's own, in radians for a force of 1: the thinner the wood, the more.
+/// What is added to the rest pose's angles goes through x / sqrt(1 + (x / max)^2): up to some ten degrees it is x, and
+/// no wind bends a branch by more than max_tilt along the wind from the first line, nor than max_swing across it (to
+/// the right of where it blows to) from the second, since a pose has no turn about the vertical. Where the wind blows
+/// nowhere, the bend is exactly (0, 0).
 ///
-/// m/s, radians. All spans have the same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with
+/// Radians. All spans have the same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with
 /// different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 1 ns a branch
 /// (x86-64-v3).
 struct TiltJob {
-  double wind_east_m_s = 0.0;
-  double wind_south_m_s = 0.0;
-  std::span<const float> vertical;    ///< N_vertical at each branch
+  double force = 0.0;                  ///< W_speed: 0 to 1e6
+  std::span<const float> toward_east;  ///< at each branch, where the wind blows to: no longer than 1
+  std::span<const float> toward_south;
+  std::span<const float> vertical;    ///< N_vertical
   std::span<const float> horizontal;  ///< N_horizontal
   std::span<const float> distance;    ///< above 0
-  std::span<const float> gain;        ///< 0 to 1
-  double half_tilt_speed_m_s = 10.0;  ///< at least 0.01
-  double alpha_vertical = 0.0;
+  std::span<const float> gain;        ///< rad
+  double alpha_vertical = 1.0;
   double beta_horizontal = 0.0;
-  double max_tilt_rad = 0.6;                  ///< 0 to pi
-  double max_swing_rad = 0.6;                 ///< 0 to pi
+  double max_tilt_rad = 1.0;                  ///< 0 to pi
+  double max_swing_rad = 1.0;                 ///< 0 to pi
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   std::span<float> bend_east_rad;
@@ -43,8 +44,7 @@ struct TiltJob {
 
   enum class Problem : std::uint8_t {
     kNone,
-    kWindNotFinite,  ///< or so strong (1e154 m/s) that its square is not
-    kHalfTiltSpeed,  ///< not a number of at least 0.01 m/s
+    kForce,          ///< not a number from 0 to 1e6
     kConstants,      ///< alpha or beta is not finite
     kLargestAngles,  ///< max_tilt or max_swing is not a number from 0 to pi
     kSizesDiffer,

@@ -48,8 +48,8 @@ NoiseTile2 coat_noise(const CoatSpec& spec, std::string_view property) {
 
 Coat make_coat(const CoatSpec& spec) {
   const std::size_t count = spec.hairs_along * spec.hairs_around;
-  Coat coat{blank_strands(count, spec.links), {}, {}, {}};
-  for (auto* array : {&coat.place_x_m, &coat.place_z_m, &coat.flexibility}) {
+  Coat coat{blank_strands(count, spec.links), {}, {}, {}, {}, {}};
+  for (auto* array : {&coat.place_x_m, &coat.place_z_m, &coat.normal_x, &coat.normal_z, &coat.flexibility}) {
     array->assign(coat.skeleton.padded_count(), 0.0F);
   }
   const NoiseTile2 parting_noise = coat_noise(spec, "coat parting");
@@ -64,6 +64,8 @@ Coat make_coat(const CoatSpec& spec) {
     const std::size_t along = hair / spec.hairs_around;
     const std::size_t around = hair % spec.hairs_around;
     const auto [stray_u, stray_v] = random.uniform_pair(hair);
+    // Once around the body is once around the noises: no seam runs along it.
+    const std::size_t on_noise = around * parting_noise.size / spec.hairs_around;
 
     // Place: even steps in height along the axis are even areas of a sphere (Archimedes), and nearly so here.
     const double u = 2.0 * (static_cast<double>(along) + stray_u) / static_cast<double>(spec.hairs_along) - 1.0;
@@ -77,11 +79,11 @@ Coat make_coat(const CoatSpec& spec) {
     const Vector wish = {-1.0, -0.55, 0.0};
     const Vector along_body = sum(wish, scaled(-dot(wish, normal), normal));
     const Vector flat = dot(along_body, along_body) > 1e-3 ? unit(along_body) : unit(cross(normal, {0.0, 0.0, 1.0}));
-    const double parting_rad = spec.parting_deg * kRadPerDeg * static_cast<double>(parting_noise.at(along, around));
+    const double parting_rad = spec.parting_deg * kRadPerDeg * static_cast<double>(parting_noise.at(along, on_noise));
     const Vector combed = sum(scaled(std::cos(parting_rad), flat), scaled(std::sin(parting_rad), cross(normal, flat)));
     const double lie_rad =
         kRadPerDeg *
-        std::clamp(spec.lie_deg * (1.0 + 0.15 * static_cast<double>(lie_noise.at(along, around))), 0.0, 85.0);
+        std::clamp(spec.lie_deg * (1.0 + 0.15 * static_cast<double>(lie_noise.at(along, on_noise))), 0.0, 85.0);
     const Vector rest = sum(scaled(std::cos(lie_rad), normal), scaled(std::sin(lie_rad), combed));
     const Vector curl = sum(scaled(-std::sin(lie_rad), normal), scaled(std::cos(lie_rad), combed));
 
@@ -97,13 +99,16 @@ Coat make_coat(const CoatSpec& spec) {
     skeleton.curl_z[hair] = static_cast<float>(curl[2]);
 
     const double longer =
-        std::clamp(1.0 + spec.length_variation * static_cast<double>(length_noise.at(along, around)), 0.4, 1.8);
+        std::clamp(1.0 + spec.length_variation * static_cast<double>(length_noise.at(along, on_noise)), 0.4, 1.8);
     const auto links = static_cast<double>(spec.links);
     skeleton.link_length_m[hair] = static_cast<float>(spec.length_m * longer / links);
     skeleton.rest_curl_rad[hair] = static_cast<float>(spec.curl_deg * kRadPerDeg / links);
     coat.flexibility[hair] = static_cast<float>(longer);
     coat.place_x_m[hair] = static_cast<float>(root[0]);
-    coat.place_z_m[hair] = static_cast<float>((turn_rad - kPi) * 0.5 * (b_m + c_m));
+    const double from_ridge_rad = turn_rad < kPi ? turn_rad : turn_rad - 2.0 * kPi;
+    coat.place_z_m[hair] = static_cast<float>(from_ridge_rad * 0.5 * (b_m + c_m));
+    coat.normal_x[hair] = static_cast<float>(normal[0]);
+    coat.normal_z[hair] = static_cast<float>(normal[2]);
   }
   return coat;
 }

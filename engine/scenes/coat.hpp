@@ -27,7 +27,8 @@ struct CoatSpec {
 /// Hairs on a body, where each reads the wind, and how easily each is bent.
 struct Coat {
   StrandSkeleton skeleton;
-  std::vector<float> place_x_m, place_z_m;  ///< on the body, unrolled: along it, and around it from its ridge
+  std::vector<float> place_x_m, place_z_m;  ///< on the body, unrolled: along it, and around it from its ridge to +z
+  std::vector<float> normal_x, normal_z;    ///< of the skin, outward
   std::vector<float> flexibility;           ///< 1 on average. padded_count() elements, like all here
 };
 

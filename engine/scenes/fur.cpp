@@ -1,49 +1,94 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/operators/coat_bending_job.hpp"
+#include "engine/operators/oscillator_job.hpp"
+#include "engine/pose/pose_arrays.hpp"
+#include "engine/scenes/carried_noise.hpp"
 #include "engine/scenes/coat.hpp"
 #include "engine/scenes/placement.hpp"
 #include "engine/scenes/scene.hpp"
-#include "engine/scenes/strand_sway.hpp"
+#include "engine/scenes/scene_wind.hpp"
+#include "engine/scenes/strand_part.hpp"
 
-// Fur in the wind (Chiba, section 3.1): a coat on a curved body, and the wind that passes over it (StrandSway, which
-// says how). Against grass: the noise is smooth (a large beta) and small, and travels slowly, as air does in a coat.
+// Fur in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine for
+// fluctuation phenomena" (Iwate University), section 3.1: a coat on a curved body.
+//
+//   shift    the wind carries a small noise through the coat, more slowly than it blows: strokes        CarriedNoise
+//   sample   each hair reads it where it grows, twice, far apart: along the wind and across it          CarriedNoise
+//   project  the wind along the skin lays the hair over, and the strokes open partings               CoatBendingJob
+//            and it overshoots and sways on, a damped oscillator                                      OscillatorJob
+//
+// The gusts of the wind outside are longer than a body: all hairs have the wind of the scene's place.
 
 namespace yuragi {
 namespace {
 
-/// 16 m in 512 samples are cells of 3 cm: a lock of the coat.
-constexpr StrandSwaySpec kFurSway = {.max_bend_rad = 0.9,
-                                     .half_bend_speed_m_s = 8.0,
-                                     .turbulence = 0.6,
-                                     .gust_strength = 0.2,
-                                     .hybrid = 0.4,
-                                     .natural_hz = 4.0,
-                                     .damping_ratio = 0.35,
-                                     .carry = 0.06,
-                                     .has_own_gusts = true,
-                                     .noise = {.period_m = 16.0, .beta = 2.5}};
+/// The strokes' waves, the shortest and the longest; how many standard deviations they reach; and across the wind
+/// against along it.
+constexpr std::array kStrokeWaves_m = {0.25, 0.6};
+constexpr double kLargestStroke = 2.2;
+constexpr double kStrokeAcross = 0.5;
 
-std::vector<Parameter> fur_parameters() {
-  std::vector<Parameter> parameters = {
-      {"hairs_along", "", std::int64_t{200}, 1, 4096, "rows of hairs from one end of the body to the other"},
-      {"hairs_around", "", std::int64_t{150}, 1, 4096, "hairs in a row around the body"},
-      {"links", "", std::int64_t{10}, 1, 64, "links of a hair"},
-      {"body_length", "m", 1.6, 0.05, 20, "the body from end to end; it lies from west to east"},
-      {"body_height", "m", 0.8, 0.05, 20, "the body from the ground up"},
-      {"body_width", "m", 0.7, 0.05, 20, "the body from flank to flank"},
-      {"hair_length", "m", 0.09, 0.002, 1, "length of a hair, on average"},
-      {"hair_length_variation", "", 0.2, 0, 0.5, "standard deviation of the length, as a part of it"},
-      {"lie", "deg", 55.0, 0, 85, "how far a hair's foot lies over in calm air"},
-      {"curl", "deg", 30.0, 0, 180, "how much farther it curls to its tip"},
-      {"parting", "deg", 20.0, 0, 90, "standard deviation of where hairs lie to"},
-  };
-  for (const Parameter& parameter : strand_sway_parameters(kFurSway)) parameters.push_back(parameter);
-  return parameters;
+/// Where the coat reads its strokes for the second time: as good as another noise.
+constexpr float kElsewhere_m = 1618.034F;
+
+/// How much less the wind bends hairs on the side that faces away from it.
+constexpr double kSheltered = 0.6;
+
+const std::array kFurParameters = {
+    Parameter{"hairs_along", "", std::int64_t{200}, 1, 4096, "rows of hairs from one end of the body to the other"},
+    Parameter{"hairs_around", "", std::int64_t{150}, 1, 4096, "hairs in a row around the body"},
+    Parameter{"links", "", std::int64_t{10}, 1, 64, "links of a hair"},
+    Parameter{"body_length", "m", 1.6, 0.05, 20, "the body from end to end; it lies from west to east"},
+    Parameter{"body_height", "m", 0.8, 0.05, 20, "the body from the ground up"},
+    Parameter{"body_width", "m", 0.7, 0.05, 20, "the body from flank to flank"},
+    Parameter{"hair_length", "m", 0.09, 0.002, 1, "length of a hair, on average"},
+    Parameter{"hair_length_variation", "", 0.2, 0, 0.5, "standard deviation of the length, as a part of it"},
+    Parameter{"lie", "deg", 55.0, 0, 85, "how far a hair's foot lies over in calm air"},
+    Parameter{"curl", "deg", 30.0, 0, 180, "how much farther it curls to its tip"},
+    Parameter{"parting", "deg", 20.0, 0, 90, "standard deviation of where hairs lie to"},
+    Parameter{"max_bend", "deg", 80.0, 0, 170, "how far the strongest wind lays a tip over"},
+    Parameter{"half_bend_speed", "m/s", 5.5, 0.1, 60, "the wind along the skin that bends a tip half as far"},
+    Parameter{"strokes", "deg", 16.0, 0, 60,
+              "how much a strong wind's strokes bend hairs besides: partings that open, run on and close"},
+    Parameter{"carry", "", 0.15, 0, 1, "strokes run over the coat with this part of the wind's speed"},
+    Parameter{"fastest_stroke", "m/s", 1.5, 0.01, 20, "and never faster than this, however strong the wind"},
+    Parameter{"hybrid", "", 1.0, 0, 1,
+              "0: hairs follow the wind at once; 1: each is a damped oscillator that sways on"},
+    Parameter{"natural_frequency", "Hz", 4.0, 0.1, 20, "how fast a hair sways by itself"},
+    Parameter{"damping", "", 0.35, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+};
+
+const std::array kRetiredFurParameters = {
+    RetiredParameter{"gusts", "is gone: gusts are longer than a body, so all hairs have those of the wind outside"},
+    RetiredParameter{"turbulence", "is now strokes: by how many degrees hairs part"},
+    RetiredParameter{"gust_strength", "is gone: the wind's own gusts swell enough"},
+    RetiredParameter{"tile_period", "is gone: strokes are 0.25 to 0.6 m long"},
+    RetiredParameter{"tiles", "is gone: strokes never repeat"},
+    RetiredParameter{"beta", "is gone: strokes are a band of waves, 0.25 to 0.6 m long"},
+    RetiredParameter{"beta_meaning", "is gone, like beta"},
+};
+
+/// The skin's normals turn as the coat does.
+void turn(const ScenePlacement& placement, Coat& coat) {
+  const double heading_rad = placement.heading_deg * kRadPerDeg;
+  const double cosine = std::cos(heading_rad);
+  const double sine = std::sin(heading_rad);
+  for (std::size_t i = 0; i < coat.normal_x.size(); ++i) {
+    const auto x = static_cast<double>(coat.normal_x[i]);
+    const auto z = static_cast<double>(coat.normal_z[i]);
+    coat.normal_x[i] = static_cast<float>(x * cosine - z * sine);
+    coat.normal_z[i] = static_cast<float>(x * sine + z * cosine);
+  }
 }
-const std::vector<Parameter> kFurParameters = fur_parameters();
 
 Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
   Coat coat = make_coat({.hairs_along = static_cast<std::size_t>(values.integer("hairs_along")),
@@ -59,21 +104,155 @@ Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
                          .parting_deg = values.number("parting"),
                          .seed = setup.seed});
   place(setup.placement, coat.skeleton);
+  turn(setup.placement, coat);
   return coat;
 }
 
-std::unique_ptr<Scene> make_fur(const ParameterValues& values, const SceneSetup& setup) {
-  Coat coat = placed_coat(values, setup);
-  return std::make_unique<StrandSway>(coat.skeleton, coat.place_x_m, coat.place_z_m, std::move(coat.flexibility),
-                                      strand_sway_spec(values, setup.seed ^ stream_id("wind in the fur")), setup);
-}
+class Fur final : public Scene {
+ public:
+  Fur(const ParameterValues& values, const SceneSetup& setup) : Fur(placed_coat(values, setup), values, setup) {}
+
+  const Skeleton& skeleton() const noexcept override { return skeleton_; }
+  const Pose& pose() const noexcept override { return pose_; }
+
+  void shift(const GroundWind& wind, double dt_s) noexcept override {
+    wind_.step(wind, dt_s);
+    // Strokes run over the coat as it lies unrolled: along the body, and around it.
+    const double speed_m_s = wind_.speed_m_s();
+    const double carry = speed_m_s > 0.0 ? std::min(carry_, fastest_stroke_m_s_ / speed_m_s) : 0.0;
+    const double east_m_s = carry * wind_.east_m_s();
+    const double south_m_s = carry * wind_.south_m_s();
+    strokes_.shift(heading_cos_ * east_m_s + heading_sin_ * south_m_s,
+                   heading_cos_ * south_m_s - heading_sin_ * east_m_s, dt_s);
+  }
+
+  void sample() noexcept override { sample_part({}); }
+  void project(double dt_s) noexcept override { project_part({}, dt_s); }
+
+  void sample_part(Part part) noexcept override {
+    const auto read = [&](const CarriedPlaces& places, std::vector<float>& all, double scale) {
+      const std::span<float> out = strands_of(part, std::span(all));
+      const auto largest = static_cast<float>(scale * kLargestStroke);
+      strokes_.sample(places, row_, out, static_cast<float>(scale), 0.0F, -largest, largest,
+                      static_cast<std::size_t>(out.data() - all.data()));
+    };
+    read(places_, along_, 1.0);
+    read(elsewhere_, across_, kStrokeAcross);
+  }
+
+  void project_part(Part part, double dt_s) noexcept override {
+    StrandPose& pose = *std::get_if<StrandPose>(&pose_);
+    const std::span<float> bend_east_rad = strands_of(part, std::span(pose.bend_east_rad));
+    const std::span<float> bend_south_rad = strands_of(part, std::span(pose.bend_south_rad));
+    CoatBendingJob{.wind_east_m_s = wind_.east_m_s(),
+                   .wind_south_m_s = wind_.south_m_s(),
+                   .normal_x = strands_of(part, std::span<const float>(normal_x_)),
+                   .normal_z = strands_of(part, std::span<const float>(normal_z_)),
+                   .stroke_along = strands_of(part, std::span<const float>(along_)),
+                   .stroke_across = strands_of(part, std::span<const float>(across_)),
+                   .flexibility = strands_of(part, std::span<const float>(flexibility_)),
+                   .half_bend_speed_m_s = half_bend_speed_m_s_,
+                   .max_bend_rad = max_bend_rad_,
+                   .stroke_rad = stroke_rad_,
+                   .sheltered = kSheltered,
+                   .row = row_,
+                   .bend_east_rad = bend_east_rad,
+                   .bend_south_rad = bend_south_rad}
+        .run();
+    OscillatorJob{.step = OscillatorStep::exact(natural_hz_, damping_ratio_, dt_s),
+                  .blend = hybrid_,
+                  .row = row_,
+                  .oscillators = &oscillators_,
+                  .first = static_cast<std::size_t>(bend_east_rad.data() - pose.bend_east_rad.data()),
+                  .east = bend_east_rad,
+                  .south = bend_south_rad}
+        .run();
+  }
+
+  /// With s the wind along the skin in half-bend speeds, the bend is s^2/(1+s^2) (max e + strokes) downwind. The slope
+  /// of s^2/(1+s^2) in its direction over s, as a vector, is at most 3 sqrt(3)/8; the exposure e changes by at most
+  /// `sheltered` times the turn of the wind, |du|/|u|, which s^2/(1+s^2) holds to half of `sheltered` over s; and
+  /// strokes change by what their noise does. A projection onto the skin changes by no more than what it is of. Never
+  /// more than from one extreme to the other; an oscillator and the joints as in StrandSway.
+  double largest_joint_step_m(double dt_s) const noexcept override {
+    const double largest_stroke = std::hypot(1.0, kStrokeAcross) * kLargestStroke;
+    const double largest_bend_rad = max_bend_rad_ + stroke_rad_ * largest_stroke;
+    const double s = largest_flexibility_ / half_bend_speed_m_s_ * SceneWind::largest_step_m_s(dt_s);
+    const double slope = 3.0 * std::numbers::sqrt3 / 8.0 * largest_bend_rad + 0.5 * kSheltered * max_bend_rad_;
+    const double stroke_step =
+        std::hypot(1.0, kStrokeAcross) * strokes_.largest_change(fastest_stroke_m_s_, fastest_stroke_m_s_, dt_s);
+    const double bend_rad =
+        std::min(slope * s + stroke_rad_ * std::min(stroke_step, 2.0 * largest_stroke), 2.0 * largest_bend_rad);
+    const double swaying_rad =
+        std::min(OscillatorStep::largest_gain(damping_ratio_) * bend_rad,
+                 OscillatorStep::largest_rate_per_s(natural_hz_, damping_ratio_) * dt_s * largest_bend_rad);
+    return lever_m_ * ((1.0 - hybrid_) * bend_rad + hybrid_ * swaying_rad);
+  }
+
+ private:
+  Fur(Coat coat, const ParameterValues& values, const SceneSetup& setup)
+      : row_(setup.row),
+        max_bend_rad_(values.number("max_bend") * kRadPerDeg),
+        half_bend_speed_m_s_(values.number("half_bend_speed")),
+        stroke_rad_(values.number("strokes") * kRadPerDeg),
+        carry_(values.number("carry")),
+        fastest_stroke_m_s_(values.number("fastest_stroke")),
+        hybrid_(values.number("hybrid")),
+        natural_hz_(values.number("natural_frequency")),
+        damping_ratio_(values.number("damping")),
+        heading_cos_(std::cos(setup.placement.heading_deg * kRadPerDeg)),
+        heading_sin_(std::sin(setup.placement.heading_deg * kRadPerDeg)),
+        wind_(setup.placement, setup.gusts),
+        strokes_(
+            CarriedNoise::band(kStrokeWaves_m[0], kStrokeWaves_m[1], setup.seed ^ stream_id("strokes over the coat"))),
+        places_(strokes_.places(coat.place_x_m, coat.place_z_m)),
+        elsewhere_(places_elsewhere(coat)),
+        along_(coat.place_x_m.size(), 0.0F),
+        across_(coat.place_x_m.size(), 0.0F),
+        normal_x_(std::move(coat.normal_x)),
+        normal_z_(std::move(coat.normal_z)),
+        flexibility_(std::move(coat.flexibility)),
+        oscillators_(flexibility_.size()),
+        largest_flexibility_(static_cast<double>(*std::max_element(flexibility_.begin(), flexibility_.end()))),
+        lever_m_(static_cast<double>(
+                     *std::max_element(coat.skeleton.link_length_m.begin(), coat.skeleton.link_length_m.end())) *
+                 (static_cast<double>(coat.skeleton.links_per_strand) + 1.0) / 2.0),
+        skeleton_(std::move(coat.skeleton)),
+        pose_(rest_pose(skeleton_)) {}
+
+  CarriedPlaces places_elsewhere(const Coat& coat) const {
+    std::vector<float> x_m = coat.place_x_m;
+    for (float& x : x_m) x += kElsewhere_m;
+    return strokes_.places(x_m, coat.place_z_m);
+  }
+
+  SimdRow row_;
+  double max_bend_rad_, half_bend_speed_m_s_, stroke_rad_;
+  double carry_, fastest_stroke_m_s_;
+  double hybrid_, natural_hz_, damping_ratio_;
+  double heading_cos_, heading_sin_;
+
+  SceneWind wind_;
+  CarriedNoise strokes_;
+  CarriedPlaces places_, elsewhere_;   ///< of each hair on the coat
+  std::vector<float> along_, across_;  ///< what it reads there
+  std::vector<float> normal_x_, normal_z_;
+  std::vector<float> flexibility_;
+  Oscillators oscillators_;
+  double largest_flexibility_, lever_m_;
+  Skeleton skeleton_;
+  Pose pose_;
+};
 
 }  // namespace
 
 extern const SceneDescription kFurScene;
-const SceneDescription kFurScene = {.name = "fur",
-                                    .summary = "a coat on a curved body: the wind parts it and strokes over it",
-                                    .parameters = kFurParameters,
-                                    .make = make_fur};
+const SceneDescription kFurScene = {
+    .name = "fur",
+    .summary = "a coat on a curved body: the wind parts it and strokes over it",
+    .parameters = kFurParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Fur>(values, setup)); },
+    .retired = kRetiredFurParameters};
 
 }  // namespace yuragi

@@ -75,6 +75,12 @@ struct SceneSetup {
   std::shared_ptr<const GustNoise> gusts = nullptr;
 };
 
+/// A parameter that a scene had once.
+struct RetiredParameter {
+  std::string_view name;
+  std::string_view now;  ///< what to write in its place, or why nothing is needed: "is now strokes, ..."
+};
+
 /// A kind of scene: one constant `kXScene` in its own file, listed in engine/scenes/CMakeLists.txt.
 struct SceneDescription {
   std::string_view name;
@@ -84,6 +90,7 @@ struct SceneDescription {
   std::unique_ptr<Scene> (*make)(const ParameterValues& values, const SceneSetup& setup);
   /// Calm air from the start keeps it in its rest pose, bit for bit. What burns is not still.
   bool is_still_in_calm = true;
+  std::span<const RetiredParameter> retired = {};
 };
 
 /// Every kind of scene (generated).

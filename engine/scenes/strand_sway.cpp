@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -12,12 +13,35 @@
 #include "engine/operators/bending_job.hpp"
 #include "engine/operators/local_bending_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
+#include "engine/scenes/strand_part.hpp"
 
 namespace yuragi {
 namespace {
 
+/// Strands sway by themselves at rates that differ by so much at most.
+constexpr double kPaceSpread = 0.15;
+
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
+/// The canopy's waves, the shortest and the longest; the part of the wind's speed that they run with; and how many
+/// standard deviations they reach.
+constexpr std::array kCanopyWaves_m = {2.0, 6.0};
+constexpr double kCanopyCarry = 0.65;
+constexpr double kLargestCanopyWave = 2.2;
+
 constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
+
+/// The shorter, the faster: each strand's own rate against that of one of mean length.
+std::vector<float> natural_rates_hz(const StrandSkeleton& strands, double mean_hz) {
+  const auto all = std::span(strands.link_length_m).first(strands.strand_count);
+  const double mean_m =
+      std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(std::max<std::size_t>(all.size(), 1));
+  std::vector<float> rates_hz(strands.padded_count(), static_cast<float>(mean_hz));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double faster = std::clamp(mean_m / static_cast<double>(all[i]), 1.0 - kPaceSpread, 1.0 + kPaceSpread);
+    rates_hz[i] = static_cast<float>(mean_hz * faster);
+  }
+  return rates_hz;
+}
 
 double largest_of(std::span<const float> values) {
   return values.empty() ? 0.0 : static_cast<double>(*std::max_element(values.begin(), values.end()));
@@ -41,7 +65,10 @@ StrandSway::OwnGusts::OwnGusts(const StrandSwaySpec& spec, std::span<const float
 StrandSway::OutsideGusts::OutsideGusts(const StrandSkeleton& strands, const SceneSetup& setup)
     : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row),
       east_m_s(strands.padded_count(), 0.0F),
-      south_m_s(strands.padded_count(), 0.0F) {}
+      south_m_s(strands.padded_count(), 0.0F),
+      canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ stream_id("canopy waves"))),
+      places(canopy.places(strands.root_x_m, strands.root_z_m)),
+      strength(strands.padded_count(), 1.0F) {}
 
 StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
                        std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup)
@@ -50,6 +77,8 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
       wind_(setup.placement, setup.gusts),
       flexibility_(std::move(flexibility)),
       oscillators_(flexibility_.size()),
+      natural_hz_(natural_rates_hz(strands, spec.natural_hz)),
+      steps_(flexibility_.size()),
       largest_flexibility_(largest_of(flexibility_)),
       lever_m_(largest_of(strands.link_length_m) * (static_cast<double>(strands.links_per_strand) + 1.0) / 2.0),
       skeleton_(std::move(strands)),
@@ -62,45 +91,59 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
   }
 }
 
+/// Each strand's step for ticks of dt_s; that hardly ever changes.
+void StrandSway::set_pace(double dt_s) noexcept {
+  if (dt_s == steps_dt_s_) return;
+  steps_dt_s_ = dt_s;
+  for (std::size_t i = 0; i < natural_hz_.size(); ++i) {
+    steps_.set(i, OscillatorStep::exact(static_cast<double>(natural_hz_[i]), spec_.damping_ratio, dt_s));
+  }
+}
+
 void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
+  set_pace(dt_s);
   wind_.step(wind, dt_s);
-  if (outside_) return outside_->grid.step(wind, dt_s);
+  if (outside_) {
+    outside_->grid.step(wind, dt_s);
+    outside_->canopy.shift(kCanopyCarry * wind_.east_m_s(), kCanopyCarry * wind_.south_m_s(), dt_s);
+    return;
+  }
   // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
   own_->noise.shift(spec_.carry * wind_.east_m_s(), spec_.carry * wind_.south_m_s(), dt_s);
   own_->way.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
 }
 
-template <class Value>
-std::span<Value> StrandSway::of_part(Part part, std::span<Value> values) const noexcept {
-  const std::size_t blocks = values.size() / kStrandsPerBlock;
-  const std::size_t begin = part.begin(blocks) * kStrandsPerBlock;
-  return values.subspan(begin, part.end(blocks) * kStrandsPerBlock - begin);
-}
-
 void StrandSway::sample_part(Part part) noexcept {
   if (outside_) {
-    // The wind at each strand.
-    const std::span<float> east_m_s = of_part(part, std::span(outside_->east_m_s));
+    // The wind at each strand, and by how much the canopy's waves vary it.
+    const std::span<float> east_m_s = strands_of(part, std::span(outside_->east_m_s));
     const auto first = static_cast<std::size_t>(east_m_s.data() - outside_->east_m_s.data());
-    return outside_->grid.sample(first, east_m_s, of_part(part, std::span(outside_->south_m_s)));
+    outside_->grid.sample(first, east_m_s, strands_of(part, std::span(outside_->south_m_s)));
+    if (spec_.canopy_waves > 0.0) {
+      const auto largest = static_cast<float>(spec_.canopy_waves * kLargestCanopyWave);
+      outside_->canopy.sample(outside_->places, row_, strands_of(part, std::span(outside_->strength)),
+                              static_cast<float>(spec_.canopy_waves), 1.0F, 1.0F - largest, 1.0F + largest, first);
+    }
+    return;
   }
   // How strong the wind is at each strand, as a factor.
-  const std::span<float> strength = of_part(part, std::span(own_->strength));
+  const std::span<float> strength = strands_of(part, std::span(own_->strength));
   const auto first = static_cast<std::size_t>(strength.data() - own_->strength.data());
   own_->noise.sample(own_->places, row_, strength, static_cast<float>(spec_.turbulence), 1.0F, 0.0F,
                      std::numeric_limits<float>::infinity(), first);
 }
 
-void StrandSway::project_part(Part part, double dt_s) noexcept {
+void StrandSway::project_part(Part part, double) noexcept {
   StrandPose& pose = *std::get_if<StrandPose>(&pose_);
-  const std::span<const float> flexibility = of_part(part, std::span<const float>(flexibility_));
-  const std::span<float> bend_east_rad = of_part(part, std::span(pose.bend_east_rad));
-  const std::span<float> bend_south_rad = of_part(part, std::span(pose.bend_south_rad));
+  const std::span<const float> flexibility = strands_of(part, std::span<const float>(flexibility_));
+  const std::span<float> bend_east_rad = strands_of(part, std::span(pose.bend_east_rad));
+  const std::span<float> bend_south_rad = strands_of(part, std::span(pose.bend_south_rad));
 
   // The wind bends the strand toward where it blows.
   if (outside_) {
-    LocalBendingJob{.wind_east_m_s = of_part(part, std::span<const float>(outside_->east_m_s)),
-                    .wind_south_m_s = of_part(part, std::span<const float>(outside_->south_m_s)),
+    LocalBendingJob{.wind_east_m_s = strands_of(part, std::span<const float>(outside_->east_m_s)),
+                    .wind_south_m_s = strands_of(part, std::span<const float>(outside_->south_m_s)),
+                    .strength = strands_of(part, std::span<const float>(outside_->strength)),
                     .flexibility = flexibility,
                     .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
                     .max_bend_rad = spec_.max_bend_rad,
@@ -113,7 +156,7 @@ void StrandSway::project_part(Part part, double dt_s) noexcept {
     const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
     BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
                .wind_south_m_s = wind_speed * wind_.south_m_s(),
-               .strength = of_part(part, std::span<const float>(own_->strength)),
+               .strength = strands_of(part, std::span<const float>(own_->strength)),
                .flexibility = flexibility,
                .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
                .max_bend_rad = spec_.max_bend_rad,
@@ -124,7 +167,7 @@ void StrandSway::project_part(Part part, double dt_s) noexcept {
   }
 
   // And the strand, a damped oscillator, follows, overshoots, and sways on.
-  OscillatorJob{.step = OscillatorStep::exact(spec_.natural_hz, spec_.damping_ratio, dt_s),
+  OscillatorJob{.steps = &steps_,
                 .blend = spec_.hybrid,
                 .row = row_,
                 .oscillators = &oscillators_,
@@ -137,7 +180,13 @@ void StrandSway::project_part(Part part, double dt_s) noexcept {
 /// The largest change in a tick of wind * gust * strength, m/s.
 double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
   const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
-  if (outside_) return wind_step_m_s;
+  if (outside_) {
+    const double largest_wave = spec_.canopy_waves * kLargestCanopyWave;
+    const double wave_step =
+        spec_.canopy_waves *
+        outside_->canopy.largest_change(kCanopyCarry * kStrongestSceneWind_m_s, kCanopyCarry * wind_step_m_s, dt_s);
+    return wind_step_m_s * (1.0 + largest_wave) + kStrongestSceneWind_m_s * std::min(wave_step, 2.0 * largest_wave);
+  }
   const double largest_strength = 1.0 + spec_.turbulence * std::max(own_->noise.highest(), 0.0);
   const double largest_gust = 1.0 + spec_.gust_strength * own_->largest_along;
   const double carried_m_s = spec_.carry * kStrongestSceneWind_m_s;
@@ -155,7 +204,8 @@ double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
   const double bend_rad = std::min(spec_.max_bend_rad * steepest * s, 2.0 * spec_.max_bend_rad);
   const double swaying_rad =
       std::min(OscillatorStep::largest_gain(spec_.damping_ratio) * bend_rad,
-               OscillatorStep::largest_rate_per_s(spec_.natural_hz, spec_.damping_ratio) * dt_s * spec_.max_bend_rad);
+               OscillatorStep::largest_rate_per_s((1.0 + kPaceSpread) * spec_.natural_hz, spec_.damping_ratio) * dt_s *
+                   spec_.max_bend_rad);
   return lever_m_ * ((1.0 - spec_.hybrid) * bend_rad + spec_.hybrid * swaying_rad);
 }
 
@@ -175,9 +225,13 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
        "own gusts: how much the wind differs from place to place: its standard deviation, as a part of it"},
       {"gust_strength", "", defaults.gust_strength, 0, 2,
        "own gusts: how much it swells along its path, in the same measure; a wind with gusts swells enough"},
+      {"canopy_waves", "", defaults.canopy_waves, 0, 0.4,
+       "outside gusts: how much waves of the stand's own, 2 to 6 m long, vary the wind: the bands that run over a "
+       "meadow"},
       {"hybrid", "", defaults.hybrid, 0, 1,
        "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
-      {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20, "how fast a strand sways by itself"},
+      {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20,
+       "how fast a strand of mean length sways by itself; shorter ones are up to 15 % faster"},
       {"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that dies away: the damping ratio"},
       {"carry", "", defaults.carry, 0, 1, "the noise travels with this part of the wind's speed"},
       {"tile_period", "m", defaults.noise.period_m, 0.5, 4096,
@@ -208,6 +262,7 @@ StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t see
           .damping_ratio = values.number("damping"),
           .carry = values.number("carry"),
           .has_own_gusts = has_own_gusts,
+          .canopy_waves = values.number("canopy_waves"),
           .noise = {.period_m = values.number("tile_period"),
                     .beta = values.number("beta"),
                     .meaning = is_radial ? BetaMeaning::kRadial : BetaMeaning::kTransect,

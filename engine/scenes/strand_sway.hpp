@@ -24,24 +24,30 @@ struct StrandSwaySpec {
   double half_bend_speed_m_s = 7.0;
   double turbulence = 0.4;      ///< own gusts: how much the wind differs from place to place, as a part of it
   double gust_strength = 0.2;   ///< own gusts: how much it swells along its way, in the same measure
-  double hybrid = 0.6;          ///< 0: the noise alone; 1: each strand a damped oscillator
-  double natural_hz = 2.0;      ///< of the oscillators
+  double hybrid = 1.0;          ///< 0: the noise alone; 1: each strand a damped oscillator
+  double natural_hz = 2.0;      ///< of an oscillator of mean length; longer strands are slower
   double damping_ratio = 0.2;   ///< above 0, below 1
   double carry = 1.0;           ///< the noise goes with this part of the wind's speed: in a coat the air is slower
   bool has_own_gusts = false;   ///< and not those of the wind outside, where the setup has these
+  double canopy_waves = 0.15;   ///< beside the gusts outside: how much the stand's own waves vary the wind, as a part
   CarriedNoiseSpec noise = {};  ///< the wind on the ground
 };
 
 /// Strands in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine
-/// for fluctuation phenomena" (Iwate University), section 3.1 and figure 7: what grass and fur have in common.
+/// for fluctuation phenomena" (Iwate University), section 3.1 and figure 7.
 ///
 ///   shift    the wind carries a 2-D noise, "the wind on the ground", over the strands          CarriedNoise
 ///   sample   each strand reads it where it stands, scaled to a strength of the wind            CarriedNoise
 ///   project  a 1-D noise (LineCut) gives Wind-speed, the strength along the wind; both bend    BendingJob
 ///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
 ///
-/// Where the wind brings gusts of its own (SceneSetup::gusts), these are the wind on the ground, and the scene adds
-/// none: each strand reads the wind where it stands (WindGrid), and is bent by it (LocalBendingJob).
+/// Where the wind brings gusts of its own (SceneSetup::gusts), these are the wind on the ground: each strand reads the
+/// wind where it stands (WindGrid), and is bent by it (LocalBendingJob). Over a few metres those gusts hardly differ;
+/// what is seen as bands that run over a stand are waves of its own, born where the wind is slowed at the tops of the
+/// plants and a few times as long as these are high (Raupach, Finnigan and Brunet 1996, "Coherent eddies and turbulence
+/// in vegetation canopies"). They are a band of noise that varies the wind on its way, and run at 0.65 of the wind 10 m
+/// up, 1.8 times that at the tops (Finnigan 2000, "Turbulence in plant canopies"). In nature they are longer across the
+/// wind than along it; these are not, since a tile cannot turn with the wind.
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: a tick.
 class StrandSway final : public Scene {
@@ -62,17 +68,14 @@ class StrandSway final : public Scene {
 
   /// With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
   /// toward the wind: its slope over s, as a vector, is at most 3 sqrt(3)/8 max, so in a tick it changes by at most
-  /// that times the largest changes of wind, strength and noise at their largest other factors (of the wind alone,
-  /// where the gusts are in it), and never by more than from one extreme to the other. An oscillator moves by at most
-  /// its largest gain times that, and by at most what its largest rate gives for a bend that never exceeds max. A joint
-  /// moves by at most half the strand's length (and a link) times that, since link i of n turns by i/n of the bend.
+  /// that times the largest changes of wind, strength and noise at their largest other factors (of the wind and the
+  /// canopy's waves, where the gusts are in the wind), and never by more than from one extreme to the other. An
+  /// oscillator moves by at most its largest gain times that, and by at most what its largest rate gives for a bend
+  /// that never exceeds max. A joint moves by at most half the strand's length (and a link) times that, since link i of
+  /// n turns by i/n of the bend.
   double largest_joint_step_m(double dt_s) const noexcept override;
 
  private:
-  /// The part's strands, in whole blocks, of any array that has an element for each.
-  template <class Value>
-  std::span<Value> of_part(Part part, std::span<Value> values) const noexcept;
-
   /// The scene's own gusts.
   struct OwnGusts {
     OwnGusts(const StrandSwaySpec& spec, std::span<const float> place_x_m, std::span<const float> place_z_m);
@@ -91,9 +94,13 @@ class StrandSway final : public Scene {
 
     WindGrid grid;
     std::vector<float> east_m_s, south_m_s;  ///< each strand's wind
+    CarriedNoise canopy;
+    CarriedPlaces places;
+    std::vector<float> strength;  ///< of that wind, by the canopy's waves
   };
 
   double largest_bend_input_step(double dt_s) const noexcept;
+  void set_pace(double dt_s) noexcept;
 
   SimdRow row_;
   StrandSwaySpec spec_;
@@ -103,6 +110,9 @@ class StrandSway final : public Scene {
 
   std::vector<float> flexibility_;
   Oscillators oscillators_;
+  std::vector<float> natural_hz_;
+  OscillatorSteps steps_;
+  double steps_dt_s_ = 0.0;  ///< the tick that steps_ are for
   double largest_flexibility_ = 0.0, lever_m_ = 0.0;
   Skeleton skeleton_;
   Pose pose_;

@@ -9,11 +9,12 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/operators/branch_force_job.hpp"
 #include "engine/operators/flutter_job.hpp"
+#include "engine/operators/leaf_response_job.hpp"
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/operators/split_job.hpp"
 #include "engine/operators/tilt_job.hpp"
-#include "engine/operators/wind_response.hpp"
 #include "engine/operators/wind_side_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/scenes/carried_noise.hpp"
@@ -27,13 +28,22 @@
 // A tree in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine for
 // fluctuation phenomena" (Iwate University), section 3.3 and figures 12 and 13:
 //
-//   shift    the wind carries the noise on the ground, and a finer one through the leaves            CarriedNoise
-//   sample   each branch reads the one, each leaf the other                                          CarriedNoise
-//            how far each branch is from the windward side                                           WindSideJob
-//            what is above a threshold that rises from there moves it up and down, the rest sideways SplitJob
-//   project  the two tilt the branch: theta and phi                                                  TiltJob
-//            and it overshoots and sways on, a damped oscillator                                     OscillatorJob
-//            a leaf leans and flutters as its petiole lets it                                        FlutterJob
+//   shift    the wind carries its gusts over the ground, more slowly a finer noise through the crown,
+//            and the finest along the leaves                                                          CarriedNoise
+//   sample   the wind at each branch, and how hard it pulls there, against the mean wind              BranchForceJob
+//            how far each branch is from the windward side                                            WindSideJob
+//            what is above a threshold that rises from there moves it up and down, the rest sideways  SplitJob
+//            how leaves answer the wind at each twig, and the noise that each leaf reads              LeafResponseJob
+//   project  the two parts tilt the branch: theta and phi                                             TiltJob
+//            which overshoots and sways on at a pace of its own, a damped oscillator                  OscillatorJob
+//            a leaf leans and flutters as its petiole lets it                                         FlutterJob
+//
+// What a tree is like in the wind, from which the figures come: de Langre 2008, "Effects of wind on plants" (drag and
+// streamlining); James, Haritos and Ades 2006, "Mechanical stability of trees under dynamic loads", and Jackson and
+// others 2019, "An architectural understanding of natural sway frequencies in trees" (each branch has its own frequency
+// and damping); Raupach, Finnigan and Brunet 1996, "Coherent eddies and turbulence in vegetation canopies" (the gusts
+// that arise in the crown); Tadrist and others 2018, "Foliage motion under wind, from leaf flutter to branch
+// buffeting".
 
 namespace yuragi {
 namespace {
@@ -50,15 +60,20 @@ const std::array kTreeParameters = {
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
     Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
-    Parameter{"max_tilt", "deg", 45.0, 0, 120, "how far the strongest wind bends the thinnest twig"},
-    Parameter{"max_swing", "deg", 45.0, 0, 120, "and how far sideways"},
-    Parameter{"half_tilt_speed", "m/s", 10.0, 0.1, 60, "the wind that wood answers half to"},
-    Parameter{"turbulence", "", 0.5, 0, 2,
-              "how much branches answer to its gusts: in a wind of turbulence intensity 0.2, the standard deviation"},
-    Parameter{"hybrid", "", 0.7, 0, 1, "0: wood follows the noise alone; 1: each branch is a damped oscillator"},
+    Parameter{"flexibility", "", 1.0, 0, 10, "how far wood bends: 2 bends it twice as far as its species does, 0 not"},
+    Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
+              "the wind in which the crown begins to fold: the lower, the less a storm bends wood beyond a breeze"},
+    Parameter{"max_tilt", "deg", 60.0, 0, 120, "no wind bends a branch farther than this along the wind"},
+    Parameter{"max_swing", "deg", 60.0, 0, 120, "nor farther than this sideways"},
+    Parameter{"crown_gusts", "", 0.12, 0, 1,
+              "gusts that arise in the crown, as a part of the wind: the stronger, the less its limbs move as one"},
+    Parameter{"turbulence", "", 0.2, 0, 2,
+              "gusts of its own where the wind brings none: their standard deviation, as a part of the wind"},
+    Parameter{"hybrid", "", 1.0, 0, 1, "0: wood follows the gusts alone; 1: each branch is a damped oscillator"},
     Parameter{"natural_frequency", "Hz", 0.5, 0.05, 5,
-              "how fast the trunk sways by itself; limbs twice, twigs 4 times"},
-    Parameter{"damping", "", 0.15, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+              "how fast the trunk sways by itself; limbs about twice as fast, twigs 4 times, short ones faster"},
+    Parameter{"damping", "", 0.12, 0.02, 0.75,
+              "how soon that dies away: the damping ratio; that of twigs is a quarter more"},
     Parameter{"tile_period", "m", 64.0, 4, 4096, "after how many metres the wind on the ground repeats; 128 samples"},
     Parameter{"tiles", "", std::int64_t{2}, 1, 2, "2: a second tile hides the repeat; 1: the paper's letter"},
     Parameter{"beta", "", 5.0 / 3.0, kMinTransectBeta2, 4,
@@ -70,9 +85,10 @@ const std::array kTreeParameters = {
               {},
               "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
               kTreeBetaMeanings},
-    Parameter{"leaf_lean", "deg", 25.0, 0, 120, "how far the strongest wind turns the softest leaf, on average"},
-    Parameter{"leaf_flutter", "deg", 18.0, 0, 60, "and how much to and fro: the standard deviation"},
-    Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that leaves answer half to"},
+    Parameter{"leaf_lean", "deg", 50.0, 0, 120, "how far the strongest wind turns the softest leaf, on average"},
+    Parameter{"half_lean_speed", "m/s", 8.0, 0.1, 60, "the wind that turns leaves half as far"},
+    Parameter{"leaf_flutter", "deg", 28.0, 0, 60,
+              "how far the liveliest leaves (a poplar's) flutter in a strong wind: the standard deviation"},
 };
 
 /// The paper's dist_to_wind_side, in radii of the tree, is never below this.
@@ -81,27 +97,58 @@ constexpr double kWindSideFloor = 0.4;
 /// A wind much below this has no windward side.
 constexpr double kSidelessWind_m_s = 1.0;
 
-// The threshold of the split, in standard deviations of the noise: it rises from -1.5 at the windward side to 1.5 at
-// the lee side, and the step there is one wide.
-constexpr double kThresholdRise = 3.0 / (2.0 - kWindSideFloor);
-constexpr double kThreshold = -1.5 - kThresholdRise * kWindSideFloor;
-constexpr double kSplitWidth = 1.0;
+/// Below this the mean wind is no measure of its gusts.
+constexpr double kCalm_m_s = 0.3;
 
-/// Beyond it the noise is cut, in standard deviations.
-constexpr double kLargestNoise = 3.0;
+/// The standard deviation of BranchForceJob's noise in a usual wind, of turbulence intensity 0.2 and with the crown's
+/// own gusts: 0.45 in a weak wind, where the force goes with the square of the speed, and 0.3 in a storm.
+constexpr double kUsualNoise = 0.4;
+
+// The threshold of the split: it rises from -1.5 standard deviations of the noise at the windward side to 1.5 at the
+// lee side, and the step there is one wide.
+constexpr double kThresholdRise = 3.0 * kUsualNoise / (2.0 - kWindSideFloor);
+constexpr double kThreshold = -1.5 * kUsualNoise - kThresholdRise * kWindSideFloor;
+constexpr double kSplitWidth = kUsualNoise;
+
+/// Beyond it the tree's own gusts are cut, in standard deviations; and the finer noises of crown and leaves.
+constexpr double kLargestGust = 3.0;
+constexpr double kLargestFine = 2.2;
 
 /// Gusts that differ within less than this move a crown as one.
 constexpr double kCrownCell_m = 1.0;
 
-// The noise that leaves read. It goes with the wind, but never as fast as 2.6 m/s, up to which 60 ticks a second show
-// its finest waves, of 18 cm (14 a second), and one layer of it is read. Its period is that of a crown, and it is
-// small: read ten thousand times a tick, it stays in the fastest cache.
-constexpr CarriedNoiseSpec kLeafNoise = {.period_m = 8.0, .samples = 64, .beta = 1.0, .has_two_tiles = false};
-constexpr double kLargestLeafNoiseSpeed_m_s = 2.6;
+// The gusts that arise in the crown: as long as limbs are, and carried at half the speed of the wind outside.
+constexpr double kCrownShortest_m = 1.5;
+constexpr double kCrownLongest_m = 5.0;
+constexpr double kCrownCarry = 0.5;
 
-/// How much further along x and z leaves read for each metre that they are up: those one above the other differ too.
+/// How much faster limbs and twigs sway than the trunk, and how much more that is damped.
+constexpr std::array<double, 3> kPace = {1.0, 2.0, 4.0};
+constexpr std::array<double, 3> kDamping = {1.0, 1.0, 1.25};
+
+// A branch sways the faster the shorter it is against the median of its kind: by the power of 3/4, up to 30 percent.
+constexpr double kPacePower = 0.75;
+constexpr double kLargestPace = 1.3;
+
+// The noise that leaves read. Its waves, as long as some leaves of a spray, go along it at a speed that rises with the
+// wind but slowly, so that leaves flutter at 2 to 6 Hz: 0.75 (2.5 + 0.22 u) u / (u + 0.2), u in m/s.
+constexpr double kLeafShortest_m = 0.4;
+constexpr double kLeafLongest_m = 0.9;
+
+/// That speed over the wind's.
+double leaf_carry(double wind_m_s) {
+  return 0.75 * (2.5 + 0.22 * wind_m_s) / (wind_m_s + 0.2);
+}
+
+// It goes at an angle to the wind whose tangent is the golden section, so that it closes on itself as late as one tile
+// can, also where the wind blows along the tile for hours. (Its cosine and sine, rounded as everywhere.)
+constexpr double kLeafTurnCos = 0.8506508083520400;
+constexpr double kLeafTurnSin = 0.5257311121191336;
+
+/// How much further along x and z what is read in the crown is for each metre up: what is one above the other differs.
 constexpr std::array<double, 2> kHeightSkew = {0.5, 0.7};
 
+/// How far the axis of a leaf's flutter is turned at most from its own direction.
 constexpr double kLargestTwist_rad = 40.0 * kRadPerDeg;
 
 const TreeSpecies& species_of(const ParameterValues& values) {
@@ -131,48 +178,71 @@ CarriedNoiseSpec tree_wind_noise(const ParameterValues& values, std::uint64_t se
           .seed = seed ^ stream_id("tree wind on the ground")};
 }
 
+/// Read ten thousand times a tick: one small tile, which stays in the fast caches.
 CarriedNoiseSpec leaf_noise(std::uint64_t seed) {
-  CarriedNoiseSpec spec = kLeafNoise;
-  spec.seed = seed ^ stream_id("tree wind in the leaves");
-  return spec;
+  return {.period_m = 12.8,
+          .samples = 128,
+          .beta = 1.0,
+          .has_two_tiles = false,
+          .shortest_m = kLeafShortest_m,
+          .longest_m = kLeafLongest_m,
+          .seed = seed ^ stream_id("tree wind in the leaves")};
 }
 
 /// One generation of wood: where its branches stand, and what they read.
 struct Wood {
   std::size_t level = 0;
-  double natural_hz = 1.0;
-  CarriedPlaces places;               ///< of the middle of each branch
-  std::size_t first_on_grid = 0;      ///< the same on the grid of the wind outside
-  std::vector<float> side_x, side_z;  ///< the same from the tree's middle, in its radii
-  std::vector<float> gain;
-  double largest_gain = 0.0;
+  std::size_t count = 0;
+  double largest_hz = 0.0;
+  double damping_ratio = 0.0;
+  CarriedPlaces places, crown_places;  ///< of the middle of each branch, on the ground and in the crown
+  std::size_t first_on_grid = 0;       ///< the same on the grid of the wind outside
+  std::vector<float> side_x, side_z;   ///< the same from the tree's middle, in its radii
+  std::vector<float> gain;             ///< rad
+  std::vector<float> natural_hz;
 
-  std::vector<float> distance, noise, vertical, horizontal;
+  std::vector<float> east_m_s, south_m_s, gust;  ///< the wind there
+  std::vector<float> distance, noise, toward_east, toward_south, vertical, horizontal;
+  double force = 0.0;  ///< of the mean wind, over the mean distance
+  OscillatorSteps steps;
   Oscillators oscillators;
 };
 
-/// The leaves, and how each gives way along the wind and across it.
+/// The leaves, how each gives way and flutters, and how they answer the wind at each twig.
 struct Foliage {
   CarriedPlaces places;
-  std::vector<float> along, across;
-  double largest_compliance = 0.0;
+  std::vector<std::uint32_t> twig;  ///< of each spray
+  std::vector<float> give, axis_east, axis_south;
+  double largest_give = 0.0;
+  double liveliest = 0.0;
 
+  std::vector<float> lean_east_rad, lean_south_rad, flutter_rad;  ///< at each twig
   std::vector<float> noise;
 };
 
-/// Where the middle of a strand is on the ground, at rest: x, z.
-std::array<float, 2> middle_of(const StrandSkeleton& strands, std::size_t strand) {
+/// Where the middle of a strand is at rest.
+struct StrandMiddle {
+  double x_m, y_m, z_m;
+};
+
+StrandMiddle middle_of(const StrandSkeleton& strands, std::size_t strand) {
   const auto number = [strand](const std::vector<float>& array) { return static_cast<double>(array[strand]); };
-  double x_m = number(strands.root_x_m);
-  double z_m = number(strands.root_z_m);
+  StrandMiddle middle{number(strands.root_x_m), number(strands.root_y_m), number(strands.root_z_m)};
   for (std::size_t link = 0; link < (strands.links_per_strand + 1) / 2; ++link) {
     const double curled_rad = static_cast<double>(link) * number(strands.rest_curl_rad);
     const double along_m = number(strands.link_length_m) * std::cos(curled_rad);
     const double across_m = number(strands.link_length_m) * std::sin(curled_rad);
-    x_m += along_m * number(strands.rest_x) + across_m * number(strands.curl_x);
-    z_m += along_m * number(strands.rest_z) + across_m * number(strands.curl_z);
+    middle.x_m += along_m * number(strands.rest_x) + across_m * number(strands.curl_x);
+    middle.y_m += along_m * number(strands.rest_y) + across_m * number(strands.curl_y);
+    middle.z_m += along_m * number(strands.rest_z) + across_m * number(strands.curl_z);
   }
-  return {static_cast<float>(x_m), static_cast<float>(z_m)};
+  return middle;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 class Tree final : public Scene {
@@ -183,35 +253,51 @@ class Tree final : public Scene {
   const Pose& pose() const noexcept override { return pose_; }
 
   void shift(const GroundWind& wind, double dt_s) noexcept override {
-    // The wind carries both noises on.
+    // The wind carries all noises on.
     wind_.step(wind, dt_s);
-    leaf_wind_.step(wind, dt_s);
+    middle_wind_.step(wind, dt_s);
     if (outside_) {
       outside_->step(wind, dt_s);
     } else {
       noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
     }
-    const double slowed = kLargestLeafNoiseSpeed_m_s / (kLargestLeafNoiseSpeed_m_s + wind_.speed_m_s());
-    leaf_noise_.shift(slowed * wind_.east_m_s(), slowed * wind_.south_m_s(), dt_s);
+    const double east_m_s = middle_wind_.east_m_s();
+    const double south_m_s = middle_wind_.south_m_s();
+    crown_noise_.shift(kCrownCarry * east_m_s, kCrownCarry * south_m_s, dt_s);
+    const double carry = leaf_carry(middle_wind_.speed_m_s());
+    leaf_noise_.shift(carry * (kLeafTurnCos * east_m_s - kLeafTurnSin * south_m_s),
+                      carry * (kLeafTurnSin * east_m_s + kLeafTurnCos * south_m_s), dt_s);
   }
 
   void sample() noexcept override {
     for (Wood& wood : wood_) sample_wood(wood);
-    const auto largest = static_cast<float>(kLargestNoise);
+    LeafResponseJob{.wind_east_m_s = wood_[kTwigs].east_m_s,
+                    .wind_south_m_s = wood_[kTwigs].south_m_s,
+                    .half_lean_speed_m_s = half_lean_speed_m_s_,
+                    .flutter_speed_m_s = species_.flutter_speed_m_s,
+                    .lean_rad = leaf_lean_rad_,
+                    .flutter_rad = leaf_flutter_rad_,
+                    .row = row_,
+                    .lean_east_rad = leaves_.lean_east_rad,
+                    .lean_south_rad = leaves_.lean_south_rad,
+                    .flutter_rad_each = leaves_.flutter_rad}
+        .run();
+    const auto largest = static_cast<float>(kLargestFine);
     leaf_noise_.sample(leaves_.places, row_, leaves_.noise, 1.0F, 0.0F, -largest, largest);
   }
 
   void project(double dt_s) noexcept override {
     auto& levels = std::get_if<TreePose>(&pose_)->levels;
-    for (Wood& wood : wood_) project_wood(wood, dt_s, levels[wood.level]);
-    FlutterJob{.wind_east_m_s = leaf_wind_.east_m_s(),
-               .wind_south_m_s = leaf_wind_.south_m_s(),
+    set_pace(dt_s);
+    for (Wood& wood : wood_) project_wood(wood, levels[wood.level]);
+    FlutterJob{.lean_east_rad = leaves_.lean_east_rad,
+               .lean_south_rad = leaves_.lean_south_rad,
+               .flutter_rad = leaves_.flutter_rad,
+               .place = leaves_.twig,
                .noise = leaves_.noise,
-               .along = leaves_.along,
-               .across = leaves_.across,
-               .half_flutter_speed_m_s = half_flutter_speed_m_s_,
-               .lean_rad = leaf_lean_rad_,
-               .flutter_rad = leaf_flutter_rad_,
+               .give = leaves_.give,
+               .axis_east = leaves_.axis_east,
+               .axis_south = leaves_.axis_south,
                .row = row_,
                .bend_east_rad = levels[kLeaves].bend_east_rad,
                .bend_south_rad = levels[kLeaves].bend_south_rad}
@@ -231,26 +317,29 @@ class Tree final : public Scene {
   /// Where branches are on the ground, x and z.
   using Places = std::array<std::vector<float>, 2>;
 
-  void add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest_m, const ScenePlacement& placement,
-                Places& all_m);
+  void add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m);
   void add_leaves(const TreeLevel& level, std::uint64_t seed);
+  void set_pace(double dt_s) noexcept;
   void sample_wood(Wood& wood) noexcept;
-  void project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept;
+  void blow_on(Wood& wood) noexcept;
+  void project_wood(Wood& wood, StrandPose& pose) noexcept;
   double largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept;
   double largest_leaf_step_rad(double dt_s) const noexcept;
 
   SimdRow row_;
   const TreeSpecies& species_;
-  double max_tilt_rad_, max_swing_rad_, half_tilt_speed_m_s_;
-  double turbulence_;
+  double flexibility_, streamline_speed_m_s_;
+  double max_tilt_rad_, max_swing_rad_;
+  double crown_gusts_, turbulence_;
   double hybrid_, natural_hz_, damping_ratio_;
-  double leaf_lean_rad_, leaf_flutter_rad_, half_flutter_speed_m_s_;
+  double leaf_lean_rad_, leaf_flutter_rad_, half_lean_speed_m_s_;
 
-  SceneWind wind_;       ///< without the gusts, which differ from branch to branch
-  SceneWind leaf_wind_;  ///< in the tree's middle
-  CarriedNoise noise_, leaf_noise_;
+  SceneWind wind_;         ///< without the gusts, which differ from branch to branch
+  SceneWind middle_wind_;  ///< with those of the tree's middle
+  CarriedNoise noise_, crown_noise_, leaf_noise_;
   std::optional<WindGrid> outside_;  ///< the wind at each branch, where it brings its gusts; noise_ is not read then
   std::array<Wood, kLeaves> wood_;
+  double pace_dt_s_ = 0.0;  ///< of the ticks that the oscillators' steps are for
   Foliage leaves_;
   std::array<double, kMaxTreeLevels> levers_m_;
   Skeleton skeleton_;
@@ -260,35 +349,33 @@ class Tree final : public Scene {
 Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup)
     : row_(setup.row),
       species_(species_of(values)),
+      flexibility_(values.number("flexibility")),
+      streamline_speed_m_s_(values.number("streamline_speed")),
       max_tilt_rad_(values.number("max_tilt") * kRadPerDeg),
       max_swing_rad_(values.number("max_swing") * kRadPerDeg),
-      half_tilt_speed_m_s_(values.number("half_tilt_speed")),
+      crown_gusts_(values.number("crown_gusts")),
       turbulence_(values.number("turbulence")),
       hybrid_(values.number("hybrid")),
       natural_hz_(values.number("natural_frequency")),
       damping_ratio_(values.number("damping")),
       leaf_lean_rad_(values.number("leaf_lean") * kRadPerDeg),
-      leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg),
-      half_flutter_speed_m_s_(values.number("half_flutter_speed")),
+      leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg * species_.flutter),
+      half_lean_speed_m_s_(values.number("half_lean_speed")),
       wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
-      leaf_wind_(setup.placement, setup.gusts),
+      middle_wind_(setup.placement, setup.gusts),
       noise_(tree_wind_noise(values, setup.seed)),
+      crown_noise_(
+          CarriedNoise::band(kCrownShortest_m, kCrownLongest_m, setup.seed ^ stream_id("tree gusts in the crown"))),
       leaf_noise_(leaf_noise(setup.seed)),
       levers_m_(tree_levers_m(tree)) {
-  // The thinnest wood has gain 1.
-  const TreeLevel& twigs = tree.levels[kTwigs];
-  const auto last_twig = twigs.base_radius_m.begin() + static_cast<std::ptrdiff_t>(twigs.strands.strand_count);
-  const float thinnest_m = *std::min_element(twigs.base_radius_m.begin(), last_twig);
   Places places_m;
-  for (std::size_t level = 0; level < kLeaves; ++level) {
-    add_wood(tree, level, static_cast<double>(thinnest_m), setup.placement, places_m);
-  }
+  for (std::size_t level = 0; level < kLeaves; ++level) add_wood(tree, level, setup.placement, places_m);
   if (setup.gusts) outside_.emplace(setup.gusts, places_m[0], places_m[1], setup.row, kCrownCell_m);
 
   // Places from the tree's middle, in its radii.
   float radius_m = 1e-3F;
   for (const Wood& wood : wood_) {
-    for (std::size_t i = 0; i < tree.levels[wood.level].strands.strand_count; ++i) {
+    for (std::size_t i = 0; i < wood.count; ++i) {
       radius_m = std::max(radius_m, std::hypot(wood.side_x[i], wood.side_z[i]));
     }
   }
@@ -303,35 +390,56 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
   pose_ = rest_pose(skeleton_);
 }
 
-void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, double thinnest_m, const ScenePlacement& placement,
-                    Places& all_m) {
+void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m) {
   const StrandSkeleton& strands = tree.levels[level].strands;
-  const std::size_t count = strands.padded_count();
+  const std::size_t padded = strands.padded_count();
   Wood& wood = wood_[level];
   wood.level = level;
-  wood.natural_hz = natural_hz_ * static_cast<double>(1U << level);
+  wood.count = strands.strand_count;
+  wood.damping_ratio = kDamping[level] * damping_ratio_;
+
+  // Thickness and length against the median branch of its kind say how far it bends, and how fast it sways.
+  std::vector<double> thickness_m;
+  std::vector<double> length_m;
+  for (std::size_t i = 0; i < wood.count; ++i) {
+    thickness_m.push_back(static_cast<double>(tree.levels[level].base_radius_m[i]));
+    length_m.push_back(static_cast<double>(strands.link_length_m[i]));
+  }
+  const double median_thickness_m = median(thickness_m);
+  const double median_length_m = median(length_m);
 
   std::vector<float> x_m;
   std::vector<float> z_m;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [middle_x_m, middle_z_m] = middle_of(strands, i);
-    x_m.push_back(middle_x_m);
-    z_m.push_back(middle_z_m);
-    const bool is_there = i < strands.strand_count;
-    wood.side_x.push_back(is_there ? static_cast<float>(static_cast<double>(middle_x_m) - placement.x_m) : 0.0F);
-    wood.side_z.push_back(is_there ? static_cast<float>(static_cast<double>(middle_z_m) - placement.z_m) : 0.0F);
+  std::vector<float> crown_x_m;
+  std::vector<float> crown_z_m;
+  for (std::size_t i = 0; i < padded; ++i) {
+    const bool is_there = i < wood.count;
+    const StrandMiddle middle = middle_of(strands, i);
+    x_m.push_back(static_cast<float>(middle.x_m));
+    z_m.push_back(static_cast<float>(middle.z_m));
+    crown_x_m.push_back(static_cast<float>(middle.x_m + kHeightSkew[0] * middle.y_m));
+    crown_z_m.push_back(static_cast<float>(middle.z_m + kHeightSkew[1] * middle.y_m));
+    wood.side_x.push_back(is_there ? static_cast<float>(middle.x_m - placement.x_m) : 0.0F);
+    wood.side_z.push_back(is_there ? static_cast<float>(middle.z_m - placement.z_m) : 0.0F);
 
-    const double thickness = static_cast<double>(tree.levels[level].base_radius_m[i]) / thinnest_m;
-    const double gain = is_there ? std::pow(std::max(thickness, 1.0), -species_.thinness_power) : 0.0;
-    wood.gain.push_back(static_cast<float>(gain));
-    wood.largest_gain = std::max(wood.largest_gain, gain);
+    const double thinness = is_there ? std::pow(median_thickness_m / thickness_m[i], species_.thinness_power) : 0.0;
+    wood.gain.push_back(static_cast<float>(flexibility_ * species_.sway_deg[level] * kRadPerDeg * thinness));
+    const double pace = is_there ? std::pow(median_length_m / length_m[i], kPacePower) : 1.0;
+    const double hz = natural_hz_ * kPace[level] * std::clamp(pace, 1.0 / kLargestPace, kLargestPace);
+    wood.natural_hz.push_back(static_cast<float>(hz));
+    wood.largest_hz = std::max(wood.largest_hz, hz);
   }
   wood.places = noise_.places(x_m, z_m);
+  wood.crown_places = crown_noise_.places(crown_x_m, crown_z_m);
   wood.first_on_grid = all_m[0].size();
   all_m[0].insert(all_m[0].end(), x_m.begin(), x_m.end());
   all_m[1].insert(all_m[1].end(), z_m.begin(), z_m.end());
-  for (auto* array : {&wood.distance, &wood.noise, &wood.vertical, &wood.horizontal}) array->assign(count, 0.0F);
-  wood.oscillators = Oscillators(count);
+  for (auto* array : {&wood.east_m_s, &wood.south_m_s, &wood.gust, &wood.distance, &wood.noise, &wood.toward_east,
+                      &wood.toward_south, &wood.vertical, &wood.horizontal}) {
+    array->assign(padded, 0.0F);
+  }
+  wood.steps = OscillatorSteps(padded);
+  wood.oscillators = Oscillators(padded);
 }
 
 void Tree::add_leaves(const TreeLevel& level, std::uint64_t seed) {
@@ -343,17 +451,79 @@ void Tree::add_leaves(const TreeLevel& level, std::uint64_t seed) {
     const auto y_m = static_cast<double>(strands.root_y_m[i]);
     x_m.push_back(static_cast<float>(static_cast<double>(strands.root_x_m[i]) + kHeightSkew[0] * y_m));
     z_m.push_back(static_cast<float>(static_cast<double>(strands.root_z_m[i]) + kHeightSkew[1] * y_m));
-    const double compliance = species_.petiole * (0.7 + 0.6 * random.uniform(2 * i));
+    if (i % FlutterJob::kLeavesOfASpray == 0) leaves_.twig.push_back(i < strands.strand_count ? level.parent[i] : 0);
+
+    const double liveliness = 0.7 + 0.6 * random.uniform(2 * i);
+    leaves_.give.push_back(static_cast<float>(species_.petiole * liveliness));
+    leaves_.largest_give = std::max(leaves_.largest_give, species_.petiole * liveliness);
+    leaves_.liveliest = std::max(leaves_.liveliest, liveliness);
+
+    // It nods, about an axis across its own direction; one that hangs straight down, to wherever.
     const double twist_rad = kLargestTwist_rad * (2.0 * random.uniform(2 * i + 1) - 1.0);
-    leaves_.along.push_back(static_cast<float>(compliance * std::cos(twist_rad)));
-    leaves_.across.push_back(static_cast<float>(compliance * std::sin(twist_rad)));
-    leaves_.largest_compliance = std::max(leaves_.largest_compliance, compliance);
+    const auto rest_x = static_cast<double>(strands.rest_x[i]);
+    const auto rest_z = static_cast<double>(strands.rest_z[i]);
+    const double level_part = std::sqrt(rest_x * rest_x + rest_z * rest_z);
+    const double x = level_part > 1e-6 ? rest_x / level_part : 1.0;
+    const double z = level_part > 1e-6 ? rest_z / level_part : 0.0;
+    leaves_.axis_east.push_back(static_cast<float>(liveliness * (std::cos(twist_rad) * x - std::sin(twist_rad) * z)));
+    leaves_.axis_south.push_back(static_cast<float>(liveliness * (std::sin(twist_rad) * x + std::cos(twist_rad) * z)));
   }
   leaves_.places = leaf_noise_.places(x_m, z_m);
   leaves_.noise.assign(strands.padded_count(), 0.0F);
+  for (auto* array : {&leaves_.lean_east_rad, &leaves_.lean_south_rad, &leaves_.flutter_rad}) {
+    array->assign(wood_[kTwigs].east_m_s.size(), 0.0F);
+  }
+}
+
+/// How each branch sways on in ticks of dt_s: computed anew only where that is another than before.
+void Tree::set_pace(double dt_s) noexcept {
+  if (dt_s == pace_dt_s_) return;
+  pace_dt_s_ = dt_s;
+  for (Wood& wood : wood_) {
+    for (std::size_t i = 0; i < wood.natural_hz.size(); ++i) {
+      wood.steps.set(i, OscillatorStep::exact(static_cast<double>(wood.natural_hz[i]), wood.damping_ratio, dt_s));
+    }
+  }
+}
+
+/// The wind at each branch: that of the ground there, or the same everywhere with the tree's own gusts; and the gusts
+/// that arise in the crown.
+void Tree::blow_on(Wood& wood) noexcept {
+  const auto largest = static_cast<float>(kLargestFine * crown_gusts_);
+  crown_noise_.sample(wood.crown_places, row_, wood.gust, static_cast<float>(crown_gusts_), 1.0F, 1.0F - largest,
+                      1.0F + largest);
+  if (outside_) {
+    outside_->sample(wood.first_on_grid, wood.east_m_s, wood.south_m_s);
+    for (std::size_t i = 0; i < wood.gust.size(); ++i) {
+      const float gust = std::max(wood.gust[i], 0.0F);
+      wood.east_m_s[i] *= gust;
+      wood.south_m_s[i] *= gust;
+    }
+    return;
+  }
+  const auto largest_own = static_cast<float>(kLargestGust * turbulence_);
+  noise_.sample(wood.places, row_, wood.noise, static_cast<float>(turbulence_), 0.0F, -largest_own, largest_own);
+  const auto east_m_s = static_cast<float>(wind_.east_m_s());
+  const auto south_m_s = static_cast<float>(wind_.south_m_s());
+  for (std::size_t i = 0; i < wood.gust.size(); ++i) {
+    const float gust = std::max(wood.gust[i] + wood.noise[i], 0.0F);
+    wood.east_m_s[i] = gust * east_m_s;
+    wood.south_m_s[i] = gust * south_m_s;
+  }
 }
 
 void Tree::sample_wood(Wood& wood) noexcept {
+  blow_on(wood);
+  const BranchForceJob force{.mean_m_s = wind_.speed_m_s(),
+                             .streamline_speed_m_s = streamline_speed_m_s_,
+                             .calm_m_s = kCalm_m_s,
+                             .row = row_,
+                             .wind_east_m_s = wood.east_m_s,
+                             .wind_south_m_s = wood.south_m_s,
+                             .noise = wood.noise,
+                             .toward_east = wood.toward_east,
+                             .toward_south = wood.toward_south};
+  force.run();
   WindSideJob{.wind_east_m_s = wind_.east_m_s(),
               .wind_south_m_s = wind_.south_m_s(),
               .calm_m_s = kSidelessWind_m_s,
@@ -362,34 +532,30 @@ void Tree::sample_wood(Wood& wood) noexcept {
               .place_z = wood.side_z,
               .distance = wood.distance}
       .run();
-
-  const auto largest = static_cast<float>(kLargestNoise * turbulence_);
-  if (outside_) {
-    outside_->sample_gusts(wood.first_on_grid, wood.noise, static_cast<float>(kLargestNoise));
-    for (float& noise : wood.noise) noise *= static_cast<float>(turbulence_);
-  } else {
-    noise_.sample(wood.places, row_, wood.noise, static_cast<float>(turbulence_), 0.0F, -largest, largest);
-  }
+  // Those on the windward side bend more than the mean of their kind, those on the lee side less.
+  double nearness = 0.0;
+  for (std::size_t i = 0; i < wood.count; ++i) nearness += 1.0 / static_cast<double>(wood.distance[i]);
+  wood.force = static_cast<double>(force.mean_force()) * static_cast<double>(wood.count) / nearness;
   SplitJob{.noise = wood.noise,
            .ramp = wood.distance,
-           .threshold = kThreshold * turbulence_,
-           .threshold_rise = kThresholdRise * turbulence_,
-           .width = std::max(kSplitWidth * turbulence_, 1e-6),
+           .threshold = kThreshold,
+           .threshold_rise = kThresholdRise,
+           .width = kSplitWidth,
            .row = row_,
            .above = wood.vertical,
            .below = wood.horizontal}
       .run();
 }
 
-void Tree::project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept {
-  TiltJob{.wind_east_m_s = wind_.east_m_s(),
-          .wind_south_m_s = wind_.south_m_s(),
+void Tree::project_wood(Wood& wood, StrandPose& pose) noexcept {
+  TiltJob{.force = wood.force,
+          .toward_east = wood.toward_east,
+          .toward_south = wood.toward_south,
           .vertical = wood.vertical,
           .horizontal = wood.horizontal,
           .distance = wood.distance,
           .gain = wood.gain,
-          .half_tilt_speed_m_s = half_tilt_speed_m_s_,
-          .alpha_vertical = species_.alpha_vertical,
+          .alpha_vertical = 1.0,
           .beta_horizontal = species_.beta_horizontal,
           .max_tilt_rad = max_tilt_rad_,
           .max_swing_rad = max_swing_rad_,
@@ -397,7 +563,7 @@ void Tree::project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept {
           .bend_east_rad = pose.bend_east_rad,
           .bend_south_rad = pose.bend_south_rad}
       .run();
-  OscillatorJob{.step = OscillatorStep::exact(wood.natural_hz, damping_ratio_, dt_s),
+  OscillatorJob{.steps = &wood.steps,
                 .blend = hybrid_,
                 .row = row_,
                 .oscillators = &wood.oscillators,
@@ -406,57 +572,43 @@ void Tree::project_wood(Wood& wood, double dt_s, StrandPose& pose) noexcept {
       .run();
 }
 
-// How far the bend of a branch may change in a tick. Along the wind it is max_tilt x / sqrt(1 + x^2), x = gain W
-// (N_vertical + alpha) / dist, at most k where W is 1; nowhere steeper than max_tilt over x:
-//
-//   wind      s changes by ds. As a vector along the wind the bend is nowhere steeper over s than 1.02 sqrt(k) max_tilt
-//             (x = k s^2/(1 + s^2); that slope is at most 2 sqrt(k x) / (1 + x^2)^1.5), nor than 0.65 k max_tilt
-//   noise     each part of the split changes by no more than noise and threshold together
-//   distance  the unit vector of WindSideJob changes by at most dU / U, W / U is at most 1 / (2 half_tilt_speed), and
-//             a place is within 1 of the middle: ds / 2 in all, times the threshold's rise and the slope of 1 / dist
-//
-// and by no more than from one extreme G to the other, 2 G. Across the wind it is the same with its own numbers. An
-// oscillator moves by at most its largest gain times that, and by at most what its largest rate gives for a bend that
-// never exceeds G.
+// How far the bend of a branch may change in a tick. TiltJob gives no bend beyond G = hypot(max_tilt, max_swing),
+// whatever wind and noises do: so by itself it changes by no more than 2 G, from one extreme to the other, and an
+// oscillator that it drives, whatever course it takes, by no more than the oscillator's largest rate for such a drive.
 double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept {
-  const double ds = SceneWind::largest_step_m_s(dt_s) / half_tilt_speed_m_s_;
-  const double largest_noise = kLargestNoise * turbulence_;
-  const double dn =
-      outside_ ? 2.0 * largest_noise
-               : turbulence_ * noise_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
-  const double dd = 0.5 * ds;  // with W in it
-
-  // The parts along the wind and across it: how far they may change, and how large they may be.
-  double step_rad = 0.0;
-  double largest_rad = 0.0;
-  const auto add_part = [&](double constant, double max_rad) {
-    const double over_distance = wood.largest_gain / kWindSideFloor;
-    const double k = over_distance * (largest_noise + constant);
-    const double part_rad = max_rad * k / std::sqrt(1.0 + k * k);
-    const double from_wind = std::min(WindResponse::kSteepest * k, 1.02 * std::sqrt(k)) * ds;
-    const double from_noise = over_distance * (dn + kThresholdRise * turbulence_ * dd);
-    const double from_distance = k / kWindSideFloor * dd;
-    step_rad += max_rad * (from_wind + from_noise + from_distance);
-    largest_rad = std::hypot(largest_rad, part_rad);
-  };
-  add_part(species_.alpha_vertical, max_tilt_rad_);
-  add_part(species_.beta_horizontal, max_swing_rad_);
-  step_rad = std::min(step_rad, 2.0 * largest_rad);
-
+  const double largest_rad = std::hypot(max_tilt_rad_, max_swing_rad_);
   const double swayed_rad =
-      std::min(OscillatorStep::largest_gain(damping_ratio_) * step_rad,
-               OscillatorStep::largest_rate_per_s(wood.natural_hz, damping_ratio_) * dt_s * largest_rad);
-  return (1.0 - hybrid_) * step_rad + hybrid_ * swayed_rad;
+      OscillatorStep::largest_rate_per_s(wood.largest_hz, wood.damping_ratio) * dt_s * largest_rad;
+  return (1.0 - hybrid_) * 2.0 * largest_rad + hybrid_ * swayed_rad;
 }
 
-// compliance (lean + flutter noise) W as a vector: its slope over s is at most 0.65, over the noise flutter.
+// The bend of a leaf is give lean W + axis flutter V noise, W and V being how it answers the wind u at its twig, 0
+// to 1. u is that of the ground (at most L, and changing by at most dL a tick: SceneWind, WindGrid) times a factor for
+// the crown's gusts and the tree's own, each the noise (cut at n, and changing by at most its CarriedNoise says) times
+// its deviation d. So u is at most L (1 + sum of d n), and changes by at most dL (1 + sum of d n) + L (sum of d dn).
+// W and V are nowhere steeper over u than LeafResponseJob says, and the leaves' noise is cut and carried as the others.
+// Neither part changes by more than from one extreme to the other.
 double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
-  const double ds = SceneWind::largest_step_m_s(dt_s) / half_flutter_speed_m_s_;
-  const double largest = leaf_lean_rad_ + kLargestNoise * leaf_flutter_rad_;
-  const double carried_step_m_s = std::min(SceneWind::largest_step_m_s(dt_s), 2.0 * kLargestLeafNoiseSpeed_m_s);
-  const double dn = leaf_noise_.largest_change(kLargestLeafNoiseSpeed_m_s, carried_step_m_s, dt_s);
-  const double step = std::min(largest * WindResponse::kSteepest * ds + leaf_flutter_rad_ * dn, 2.0 * largest);
-  return leaves_.largest_compliance * step;
+  const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
+  const auto change = [&](const CarriedNoise& noise, double carry, double largest) {
+    const double noise_step = noise.largest_change(carry * kStrongestSceneWind_m_s, carry * wind_step_m_s, dt_s);
+    return std::min(noise_step, 2.0 * largest);
+  };
+  double gust = 1.0 + crown_gusts_ * kLargestFine;
+  double gust_step = crown_gusts_ * change(crown_noise_, kCrownCarry, kLargestFine);
+  if (!outside_) {
+    gust += turbulence_ * kLargestGust;
+    gust_step += turbulence_ * change(noise_, 1.0, kLargestGust);
+  }
+  const double step_m_s = wind_step_m_s * gust + kStrongestSceneWind_m_s * gust_step;
+
+  // The noise of the leaves goes the fastest in the strongest wind.
+  const double noise_step = change(leaf_noise_, leaf_carry(kStrongestSceneWind_m_s), kLargestFine);
+  const double lean_step = std::min(LeafResponseJob::kSteepestLean * step_m_s / half_lean_speed_m_s_, 2.0);
+  const double flutter_step =
+      std::min(LeafResponseJob::kSteepestFlutter * step_m_s / species_.flutter_speed_m_s * kLargestFine + noise_step,
+               2.0 * kLargestFine);
+  return leaves_.largest_give * leaf_lean_rad_ * lean_step + leaves_.liveliest * leaf_flutter_rad_ * flutter_step;
 }
 
 }  // namespace

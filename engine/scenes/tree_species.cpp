@@ -10,10 +10,12 @@ constexpr std::array kSpecies = {
     // Spreading and domed.
     TreeSpecies{
         .name = "cherry",
-        .petiole = 0.22,
-        .alpha_vertical = 0.35,
+        .sway_deg = {1.0, 3.4, 9.5},
         .beta_horizontal = 0.1,
         .thinness_power = 0.7,
+        .petiole = 0.8,
+        .flutter = 0.5,
+        .flutter_speed_m_s = 5.0,
         .habit = {.height_m = 8.0,
                   .trunk_share = 0.5,
                   .limb = {.first_at = 0.4, .angle_deg = {75, 25}, .length_share = {0.55, 0.42}, .lift_deg = 25},
@@ -25,10 +27,12 @@ constexpr std::array kSpecies = {
     // A vase: a fan of steep limbs from a short trunk, which arch outward at their tips.
     TreeSpecies{
         .name = "zelkova",
-        .petiole = 0.28,
-        .alpha_vertical = 0.45,
+        .sway_deg = {1.15, 3.9, 10.9},
         .beta_horizontal = 0.15,
         .thinness_power = 0.8,
+        .petiole = 0.9,
+        .flutter = 0.57,
+        .flutter_speed_m_s = 4.5,
         .habit = {.height_m = 11.0,
                   .trunk_share = 0.36,
                   .limb = {.first_at = 0.55, .angle_deg = {42, 10}, .length_share = {0.62, 0.66}, .lift_deg = -25},
@@ -40,10 +44,12 @@ constexpr std::array kSpecies = {
     // A narrow column.
     TreeSpecies{
         .name = "poplar",
-        .petiole = 1.0,
-        .alpha_vertical = 0.5,
+        .sway_deg = {1.5, 3.1, 9.5},
         .beta_horizontal = 0.1,
         .thinness_power = 0.6,
+        .petiole = 1.0,
+        .flutter = 1.0,
+        .flutter_speed_m_s = 1.8,
         .habit = {.height_m = 15.0,
                   .trunk_share = 0.92,
                   .limb = {.first_at = 0.12, .angle_deg = {34, 18}, .length_share = {0.24, 0.1}, .lift_deg = 22},

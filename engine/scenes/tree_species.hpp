@@ -10,10 +10,12 @@ namespace yuragi {
 /// What trees of a species have in common: how they grow, and how they answer the wind (Chiba, section 3.3).
 struct TreeSpecies {
   std::string_view name;
-  double petiole;          ///< how far its leaves give way, against the softest
-  double alpha_vertical;   ///< of the paper's theta (TiltJob)
-  double beta_horizontal;  ///< of the paper's phi
-  double thinness_power;   ///< p: the thinner wood sways the more, by (root thickness / thickness)^p
+  std::array<double, 3> sway_deg;  ///< how far trunk, limbs and twigs bend in a wind of force 1 (streamlined_drag)
+  double beta_horizontal;          ///< of the paper's phi (TiltJob)
+  double thinness_power;           ///< p: of branches of a kind, the thinner sway the more, by (thickness)^-p
+  double petiole;                  ///< how far its leaves give way, against the softest
+  double flutter;                  ///< how far they flutter in a strong wind, against the liveliest
+  double flutter_speed_m_s;        ///< the wind in which they flutter by 0.63 of that
   TreeHabit habit;
 };
 

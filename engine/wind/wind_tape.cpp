@@ -60,15 +60,4 @@ void WindTape::write(const WindPen& pen, double way_m) noexcept {
   one_back_ = between(sample(number), sample(number + 1), place - below);
 }
 
-WindTape::Place WindTape::back(double way_m) const noexcept {
-  const double left_m = kLength_m - 2.0 * kStep_m - way_m;
-  // Near the pen what is measured now counts, so that nothing jumps when a sample is finished.
-  if (way_m < kStep_m) return {&now_, &one_back_, way_m / kStep_m, left_m};
-  const double oldest = static_cast<double>(newest_ - kSamples + 1);
-  const double place = std::max((way_m_ - way_m) / kStep_m, oldest);
-  const double below = std::min(std::floor(place), static_cast<double>(newest_ - 1));
-  const auto number = static_cast<std::int64_t>(below);
-  return {&sample(number), &sample(number + 1), std::min(place - below, 1.0), left_m};
-}
-
 }  // namespace yuragi

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -32,7 +33,16 @@ class WindTape {
     double fraction = 0.0;
     double left_m = 0.0;  ///< to the end of the tape; below 0: the last sample stands for what is beyond
   };
-  Place back(double way_m) const noexcept;
+  Place back(double way_m) const noexcept {
+    const double left_m = kLength_m - 2.0 * kStep_m - way_m;
+    // Near the pen what is measured now counts, so that nothing jumps when a sample is finished.
+    if (way_m < kStep_m) return {&now_, &one_back_, way_m / kStep_m, left_m};
+    const double place = std::max((way_m_ - way_m) / kStep_m, static_cast<double>(newest_ - kSamples + 1));
+    auto number = static_cast<std::int64_t>(place);  // toward zero
+    number -= static_cast<double>(number) > place ? 1 : 0;
+    number = std::min(number, newest_ - 1);
+    return {&sample(number), &sample(number + 1), std::min(place - static_cast<double>(number), 1.0), left_m};
+  }
 
  private:
   const WindSample& sample(std::int64_t number) const noexcept {

@@ -60,7 +60,7 @@ double WindTapes::distance_of(std::size_t row) noexcept {
 
 /// Rows stand on a straight line within an octave of the distance: its exponent and the first bits of its mantissa say
 /// which they are.
-WindTapes::Row WindTapes::row_of(double distance_m) noexcept {
+inline WindTapes::Row WindTapes::row_of(double distance_m) noexcept {
   constexpr float kShortest_m = 1.0F / 32.0F;
   static_assert(kFirstOctave == -5 && kRowsAnOctave == 4);
   const auto distance = static_cast<float>(distance_m);
@@ -130,7 +130,7 @@ void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
   }
 }
 
-WindTapes::Found WindTapes::find(std::size_t tape, double east_m, double south_m) const noexcept {
+inline WindTapes::Found WindTapes::find(std::size_t tape, double east_m, double south_m) const noexcept {
   const WindPen& pen = stroke_.pens[tape];
   const double downwind_m = dot_product(east_m - pen.east_m, pen.south_m - south_m, stroke_.ahead);
   Found found{.place = tapes_[tape].back(std::max(downwind_m, 0.0))};
@@ -151,9 +151,16 @@ WindTapes::Found WindTapes::find(std::size_t tape, double east_m, double south_m
   const double away_m = std::sqrt(away_east_m * away_east_m + away_north_m * away_north_m);
   found.distance_m = stroke_.coherence.distance_m(std::max(downwind_m, 0.0), away_m) + std::max(-downwind_m, 0.0);
   found.kept = static_cast<float>(std::clamp(found.place.left_m / kTapeEnd_m, 0.0, 1.0));
-  const double beside_m = (east_m - pen.east_m) * stroke_.ahead.v_m_s - (pen.south_m - south_m) * stroke_.ahead.u_m_s;
-  found.from_pen_m = std::min(stroke_.coherence.distance_m(downwind_m, beside_m), found.distance_m);
   return found;
+}
+
+/// By which gusts would be lost by the place alone: how far from the pen it is, along and across the wind.
+double WindTapes::from_pen_m(std::size_t tape, double east_m, double south_m) const noexcept {
+  const WindPen& pen = stroke_.pens[tape];
+  const double north_m = pen.south_m - south_m;
+  const double downwind_m = dot_product(east_m - pen.east_m, north_m, stroke_.ahead);
+  const double beside_m = (east_m - pen.east_m) * stroke_.ahead.v_m_s - north_m * stroke_.ahead.u_m_s;
+  return stroke_.coherence.distance_m(downwind_m, beside_m);
 }
 
 WindTapes::Reading WindTapes::at(double east_m, double south_m) const noexcept {
@@ -311,8 +318,9 @@ WindTapes::Reading WindTapes::at_several(double east_m, double south_m) const no
   for (std::size_t tape = 0; tape < pen_count_; ++tape) {
     const Found found = find(tape, east_m, south_m);
     samples[tape] = between(*found.place.first, *found.place.second, found.place.fraction);
-    bands[tape] = bands_kept(tape, found.from_pen_m);
-    octaves[tape] = octaves_kept(tape, found.from_pen_m);
+    const double alone_m = std::min(from_pen_m(tape, east_m, south_m), found.distance_m);
+    bands[tape] = bands_kept(tape, alone_m);
+    octaves[tape] = octaves_kept(tape, alone_m);
     bands_left[tape] = part_of(bands_kept(tape, found.distance_m), bands[tape], found.kept);
     octaves_left[tape] = part_of(octaves_kept(tape, found.distance_m), octaves[tape], found.kept);
     const double counts = std::max(stroke_.pens[tape].presence, 1e-9) / (kNearby_m + found.distance_m);

@@ -90,10 +90,10 @@ class WindTapes {
   struct Found {
     WindTape::Place place;
     double distance_m = 0.0;  ///< by which gusts are lost
-    double from_pen_m = 0.0;  ///< the same by the place alone: how far from the pen it is, along and across the wind
     float kept = 1.0F;        ///< less at the end of the tape
   };
   Found find(std::size_t tape, double east_m, double south_m) const noexcept;
+  double from_pen_m(std::size_t tape, double east_m, double south_m) const noexcept;
   void keep(std::size_t first_row, std::size_t count) noexcept;
   void renew_rows(bool all) noexcept;
   TapeKernelPlace on_tape(const Found& found) const noexcept;

@@ -55,6 +55,11 @@ name = "meadow"
   EXPECT_EQ(config.scenes[0].name, "meadow");
 }
 
+TEST(Config, AParameterThatASceneHadOnceIsToldWithWhatItIsNow) {
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"fur\"\nturbulence = 0.5\n"),
+              StartsWith("wall.toml:3:14: scene.turbulence: is now strokes"));
+}
+
 TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
   EXPECT_THAT(mistakes_of("[animation]\nrate = 1000\n"),
               StartsWith("wall.toml:2:8: animation.rate: is 1000; allowed: number from 1 to 240 Hz"));

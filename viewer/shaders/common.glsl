@@ -40,7 +40,8 @@ vec3 finish(vec3 light) {
 vec3 seen(vec3 light, vec3 place_m) {
   vec3 ray = place_m - eye_m.xyz;
   float distance_m = length(ray);
-  return finish(mix(light, air_light(normalize(vec3(ray.x, 0.02 * distance_m, ray.z))), haze(distance_m)));
+  // Level, and shorter the steeper one looks down: seen from straight above there is no glow of the sun in it.
+  return finish(mix(light, air_light(vec3(ray.x / distance_m, 0.02, ray.z / distance_m)), haze(distance_m)));
 }
 
 // The light of the sky, and what turf throws back of it, on something that faces so.

@@ -44,7 +44,7 @@ void main() {
   float deep = smoothstep(0.0, 1.0, t);                  // into the light, out of the shade of its neighbours
   vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint_facing.rgb, 0.12 + 0.88 * t);
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
-  vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.75 + 0.25 * normal.y);
+  vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
   sum += kSunLight * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
   float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));
   float sheen = sqrt(max(1.0 - sheen_side * sheen_side, 0.0));
@@ -52,7 +52,12 @@ void main() {
   sheen *= sheen;
   sheen *= sheen;
   sheen *= sheen;
-  sum += kSunLight * vec3(0.075, 0.078, 0.060) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+  sum += kSunLight * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+
+  // Of an upright stand one sees the dark between the blades, of one that the wind has laid over their lit sides: by how
+  // far this blade is laid over (the sine of its chord), since its neighbours are, too.
+  vec3 chord = joint(0, strand, links - 1) - root_width.xyz;
+  sum *= exp2(4.0 * (length(chord.xz) / length(chord) - 0.60));
 
   shade = seen(sum, place);
 }

@@ -1,4 +1,4 @@
-// What moves a tree's crown: WindSideJob, SplitJob, TiltJob, FlutterJob.
+// What moves a tree's crown: WindSideJob, SplitJob, BranchForceJob, TiltJob, LeafResponseJob, FlutterJob.
 
 #include <cmath>
 #include <limits>
@@ -8,8 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/philox.hpp"
+#include "engine/operators/branch_force_job.hpp"
 #include "engine/operators/flutter_job.hpp"
+#include "engine/operators/leaf_response_job.hpp"
 #include "engine/operators/split_job.hpp"
+#include "engine/operators/streamlined_drag.hpp"
 #include "engine/operators/tilt_job.hpp"
 #include "engine/operators/wind_side_job.hpp"
 #include "tests/support/bits.hpp"
@@ -227,29 +230,143 @@ TEST(SplitJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(parts.above[i] + parts.below[i], 0.0F);
 }
 
+// ---- BranchForceJob
+
+TEST(StreamlinedDragTest, GrowsWithTheSquareAndThenByVogelsExponent) {
+  for (const double speed : {0.0, 0.01, 0.3, 1.0, 2.5, 10.0, 1e3}) {
+    const double exact = speed * speed * std::pow(1.0 + speed * speed, -0.375);
+    EXPECT_NEAR(streamlined_drag(static_cast<float>(speed * speed)), exact, 1e-6 * exact);
+  }
+  const auto exponent_at = [](float speed) {
+    return std::log(streamlined_drag(1.0201F * speed * speed) / streamlined_drag(speed * speed)) / std::log(1.01F);
+  };
+  EXPECT_NEAR(exponent_at(0.03F), 2.0F, 0.01F);
+  EXPECT_NEAR(exponent_at(300.0F), 1.25F, 0.01F);
+}
+
+/// Winds at many branches, and room for what comes of them.
+struct Gusts {
+  explicit Gusts(std::size_t count)
+      : east_m_s(normal_numbers(count, 5.0, 1)),
+        south_m_s(normal_numbers(count, 5.0, 2)),
+        noise(count),
+        toward_east(count),
+        toward_south(count) {}
+
+  BranchForceJob job(double mean_m_s) {
+    return {.mean_m_s = mean_m_s,
+            .wind_east_m_s = east_m_s,
+            .wind_south_m_s = south_m_s,
+            .noise = noise,
+            .toward_east = toward_east,
+            .toward_south = toward_south};
+  }
+
+  std::vector<float> east_m_s, south_m_s, noise, toward_east, toward_south;
+};
+
+TEST_P(CrownJobsOnEachRow, ForceComputesTheSameBitsAsTheBaseRow) {
+  for (const std::size_t count : {1U, 7U, 16U, 100U, 1003U}) {
+    Gusts expected(count);
+    Gusts found(count);
+    BranchForceJob base = expected.job(6.0);
+    BranchForceJob job = found.job(6.0);
+    base.row = SimdRow::kX86_64;
+    job.row = GetParam();
+    EXPECT_EQ(base.run(), BranchForceJob::Problem::kNone);
+    EXPECT_EQ(job.run(), BranchForceJob::Problem::kNone);
+    EXPECT_EQ(bits_of(found.noise), bits_of(expected.noise));
+    EXPECT_EQ(bits_of(found.toward_east), bits_of(expected.toward_east));
+    EXPECT_EQ(bits_of(found.toward_south), bits_of(expected.toward_south));
+  }
+}
+
+TEST(BranchForceJobTest, TellsTheForceAgainstThatOfTheMeanWindAndWhereItPullsTo) {
+  Gusts gusts(200);
+  const auto drag_of = [](double speed_m_s) {
+    const double square = speed_m_s * speed_m_s / 36.0;
+    return square / std::pow(1.0 + square, 0.375);
+  };
+  for (const double mean_m_s : {4.0, 0.1}) {
+    const BranchForceJob job = gusts.job(mean_m_s);
+    job.run();
+    const double mean_force = drag_of(std::max(mean_m_s, 0.3));
+    EXPECT_NEAR(job.mean_force(), mean_force, 1e-6 * mean_force);
+    for (std::size_t i = 0; i < 200; ++i) {
+      const auto east = static_cast<double>(gusts.east_m_s[i]);
+      const auto south = static_cast<double>(gusts.south_m_s[i]);
+      const double force = drag_of(std::hypot(east, south)) / mean_force;
+      EXPECT_NEAR(gusts.noise[i], force - 1.0, 1e-5 * force + 1e-6);
+      EXPECT_NEAR(gusts.toward_east[i], east / std::sqrt(east * east + south * south + 0.09), 1e-6);
+      EXPECT_NEAR(gusts.toward_south[i], south / std::sqrt(east * east + south * south + 0.09), 1e-6);
+    }
+  }
+}
+
+TEST(BranchForceJobTest, CalmPullsNowhereAndAWindAsTheMeanIsNoNoise) {
+  Gusts gusts(2);
+  gusts.east_m_s = {0.0F, 3.0F};
+  gusts.south_m_s = {0.0F, 4.0F};
+  gusts.job(5.0).run();
+  EXPECT_EQ(gusts.noise[0], -1.0F);
+  EXPECT_EQ(gusts.toward_east[0], 0.0F);
+  EXPECT_EQ(gusts.toward_south[0], 0.0F);
+  EXPECT_NEAR(gusts.noise[1], 0.0F, 1e-6F);
+}
+
+TEST(BranchForceJobTest, SaysWhatIsWrongAndThenDoesNothing) {
+  using Problem = BranchForceJob::Problem;
+  Gusts gusts(10);
+  EXPECT_EQ(gusts.job(1.0).validate(), Problem::kNone);
+  for (const double wrong : {-1.0, 1e7, kNotANumber}) {
+    EXPECT_EQ(gusts.job(wrong).run(), Problem::kMean);
+    BranchForceJob job = gusts.job(1.0);
+    job.streamline_speed_m_s = wrong;
+    EXPECT_EQ(job.run(), Problem::kStreamlineSpeed);
+    job = gusts.job(1.0);
+    job.calm_m_s = wrong;
+    EXPECT_EQ(job.run(), Problem::kCalmSpeed);
+  }
+  for (int which = 0; which < 4; ++which) {
+    BranchForceJob job = gusts.job(1.0);
+    if (which == 0) job.wind_east_m_s = job.wind_east_m_s.first(9);
+    if (which == 1) job.wind_south_m_s = job.wind_south_m_s.first(9);
+    if (which == 2) job.toward_east = job.toward_east.first(9);
+    if (which == 3) job.toward_south = job.toward_south.first(9);
+    EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  }
+  for (const float noise : gusts.noise) EXPECT_EQ(noise, 0.0F);
+}
+
 // ---- TiltJob
 
 constexpr double kMaxTilt_rad = 0.6;
-constexpr double kMaxSwing_rad = 0.4;
+constexpr double kMaxSwing_rad = 0.5;
 
-/// Branches of many kinds, and room for their bends.
+/// Branches of many kinds in winds of many directions, and room for their bends.
 struct Branches {
   explicit Branches(std::size_t count)
       : vertical(normal_numbers(count, 0.5, 1)),
         horizontal(normal_numbers(count, 0.5, 2)),
         distance(uniform_numbers(count, 0.4, 2.0, 3)),
-        gain(uniform_numbers(count, 0.1, 1.0, 4)),
+        gain(uniform_numbers(count, 0.01, 0.3, 4)),
         east(count),
-        south(count) {}
+        south(count) {
+    for (const float azimuth_rad : uniform_numbers(count, 0.0, 6.28, 5)) {
+      toward_east.push_back(std::sin(azimuth_rad));
+      toward_south.push_back(-std::cos(azimuth_rad));
+    }
+  }
 
-  TiltJob job(double azimuth_rad, double speed_m_s) {
-    return {.wind_east_m_s = speed_m_s * std::sin(azimuth_rad),
-            .wind_south_m_s = -speed_m_s * std::cos(azimuth_rad),
+  TiltJob job(double force) {
+    return {.force = force,
+            .toward_east = toward_east,
+            .toward_south = toward_south,
             .vertical = vertical,
             .horizontal = horizontal,
             .distance = distance,
             .gain = gain,
-            .alpha_vertical = 0.4,
+            .alpha_vertical = 0.9,
             .beta_horizontal = 0.1,
             .max_tilt_rad = kMaxTilt_rad,
             .max_swing_rad = kMaxSwing_rad,
@@ -257,15 +374,15 @@ struct Branches {
             .bend_south_rad = south};
   }
 
-  std::vector<float> vertical, horizontal, distance, gain, east, south;
+  std::vector<float> toward_east, toward_south, vertical, horizontal, distance, gain, east, south;
 };
 
 TEST_P(CrownJobsOnEachRow, TiltComputesTheSameBitsAsTheBaseRow) {
   for (const std::size_t count : {1U, 7U, 16U, 100U, 1003U}) {
     Branches expected(count);
     Branches found(count);
-    TiltJob base = expected.job(0.7, 8.0);
-    TiltJob job = found.job(0.7, 8.0);
+    TiltJob base = expected.job(0.7);
+    TiltJob job = found.job(0.7);
     base.row = SimdRow::kX86_64;
     job.row = GetParam();
     EXPECT_EQ(base.run(), TiltJob::Problem::kNone);
@@ -277,104 +394,232 @@ TEST_P(CrownJobsOnEachRow, TiltComputesTheSameBitsAsTheBaseRow) {
 
 TEST(TiltJobTest, FollowsThePapersFormulas) {
   Branches branches(200);
-  const double azimuth_rad = 0.7;
-  TiltJob job = branches.job(azimuth_rad, 8.0);
-  job.run();
-  const double s = 8.0 / job.half_tilt_speed_m_s;
-  const double wind = s * s / (1.0 + s * s);
-  const auto saturated = [](double x) { return x / std::sqrt(1.0 + x * x); };
+  branches.job(1.3).run();
+  const auto capped = [](double x, double most) { return x / std::sqrt(1.0 + (x / most) * (x / most)); };
   for (std::size_t i = 0; i < 200; ++i) {
     const auto number = [i](const std::vector<float>& values) { return static_cast<double>(values[i]); };
-    const double x = wind * number(branches.gain) / number(branches.distance);
-    const double along = kMaxTilt_rad * saturated(x * (number(branches.vertical) + 0.4));
-    const double across = kMaxSwing_rad * saturated(x * (number(branches.horizontal) + 0.1));
-    EXPECT_NEAR(branches.east[i], along * std::sin(azimuth_rad) + across * std::cos(azimuth_rad), 1e-6);
-    EXPECT_NEAR(branches.south[i], -along * std::cos(azimuth_rad) + across * std::sin(azimuth_rad), 1e-6);
+    const double reach = 1.3 * number(branches.gain) / number(branches.distance);
+    const double along = capped(reach * (number(branches.vertical) + 0.9), kMaxTilt_rad);
+    const double across = capped(reach * (number(branches.horizontal) + 0.1), kMaxSwing_rad);
+    const double east = number(branches.toward_east);
+    const double south = number(branches.toward_south);
+    EXPECT_NEAR(branches.east[i], along * east - across * south, 1e-6);
+    EXPECT_NEAR(branches.south[i], along * south + across * east, 1e-6);
   }
 }
 
-TEST(TiltJobTest, CalmIsExactlyNoBendAndNoWindTiltsBeyondTheLargest) {
+TEST(TiltJobTest, AWindThatBlowsNowhereIsExactlyNoBendAndNoForceTiltsBeyondTheLargest) {
   Branches branches(200);
-  branches.job(0.3, 1e100).run();
+  branches.job(1e6).run();
   for (std::size_t i = 0; i < 200; ++i) {
     EXPECT_LE(static_cast<double>(std::hypot(branches.east[i], branches.south[i])),
               std::hypot(kMaxTilt_rad, kMaxSwing_rad) + 1e-6);
     EXPECT_NE(branches.east[i], 0.0F);
   }
-  branches.job(0.3, 0.0).run();
+  branches.toward_east.assign(200, 0.0F);
+  branches.toward_south.assign(200, 0.0F);
+  branches.job(1e6).run();
   for (std::size_t i = 0; i < 200; ++i) {
     EXPECT_EQ(branches.east[i], 0.0F);
     EXPECT_EQ(branches.south[i], 0.0F);
   }
 }
 
+TEST(TiltJobTest, WhatMayNotBendDoesNot) {
+  Branches branches(20);
+  TiltJob job = branches.job(1.0);
+  job.max_tilt_rad = job.max_swing_rad = 0.0;
+  EXPECT_EQ(job.run(), TiltJob::Problem::kNone);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(std::hypot(branches.east[i], branches.south[i]), 0.0F);
+}
+
 TEST(TiltJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   using Problem = TiltJob::Problem;
   Branches branches(10);
-  EXPECT_EQ(branches.job(0.0, 1.0).validate(), Problem::kNone);
-  EXPECT_EQ(branches.job(0.0, kNotANumber).run(), Problem::kWindNotFinite);
-  EXPECT_EQ(branches.job(0.0, 1e200).run(), Problem::kWindNotFinite);
-  TiltJob job = branches.job(0.0, 1.0);
-  job.half_tilt_speed_m_s = 0.0;
-  EXPECT_EQ(job.run(), Problem::kHalfTiltSpeed);
-  job = branches.job(0.0, 1.0);
+  EXPECT_EQ(branches.job(1.0).validate(), Problem::kNone);
+  for (const double wrong : {-0.1, 2e6, kNotANumber}) EXPECT_EQ(branches.job(wrong).run(), Problem::kForce);
+  TiltJob job = branches.job(1.0);
   job.alpha_vertical = kNotANumber;
   EXPECT_EQ(job.run(), Problem::kConstants);
-  job = branches.job(0.0, 1.0);
+  job = branches.job(1.0);
   job.beta_horizontal = kNotANumber;
   EXPECT_EQ(job.run(), Problem::kConstants);
   for (const double angle_rad : {-0.1, 3.2, kNotANumber}) {
-    job = branches.job(0.0, 1.0);
+    job = branches.job(1.0);
     job.max_tilt_rad = angle_rad;
     EXPECT_EQ(job.run(), Problem::kLargestAngles);
-    job = branches.job(0.0, 1.0);
+    job = branches.job(1.0);
     job.max_swing_rad = angle_rad;
     EXPECT_EQ(job.run(), Problem::kLargestAngles);
   }
-  for (int which = 0; which < 5; ++which) {
-    job = branches.job(0.0, 1.0);
+  for (int which = 0; which < 7; ++which) {
+    job = branches.job(1.0);
     if (which == 0) job.horizontal = job.horizontal.first(9);
     if (which == 1) job.distance = job.distance.first(9);
     if (which == 2) job.gain = job.gain.first(9);
     if (which == 3) job.bend_east_rad = job.bend_east_rad.first(9);
     if (which == 4) job.bend_south_rad = job.bend_south_rad.first(9);
+    if (which == 5) job.toward_east = job.toward_east.first(9);
+    if (which == 6) job.toward_south = job.toward_south.first(9);
     EXPECT_EQ(job.run(), Problem::kSizesDiffer);
   }
   for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(branches.east[i], 0.0F);
 }
 
-// ---- FlutterJob
+// ---- LeafResponseJob
 
-/// Leaves of many kinds, and room for their bends.
-struct Leaves {
-  explicit Leaves(std::size_t count)
-      : noise(normal_numbers(count, 1.0, 1)),
-        along(uniform_numbers(count, 0.5, 1.0, 2)),
-        across(uniform_numbers(count, -0.5, 0.5, 3)),
-        east(count),
-        south(count) {}
+/// Winds at many places, and room for how leaves answer them.
+struct LeafPlaces {
+  explicit LeafPlaces(std::size_t count)
+      : east_m_s(normal_numbers(count, 5.0, 1)),
+        south_m_s(normal_numbers(count, 5.0, 2)),
+        lean_east(count),
+        lean_south(count),
+        flutter(count) {}
 
-  FlutterJob job(double east_m_s, double south_m_s) {
+  LeafResponseJob job() {
     return {.wind_east_m_s = east_m_s,
             .wind_south_m_s = south_m_s,
-            .noise = noise,
-            .along = along,
-            .across = across,
             .lean_rad = 0.4,
             .flutter_rad = 0.3,
+            .lean_east_rad = lean_east,
+            .lean_south_rad = lean_south,
+            .flutter_rad_each = flutter};
+  }
+
+  std::vector<float> east_m_s, south_m_s, lean_east, lean_south, flutter;
+};
+
+TEST_P(CrownJobsOnEachRow, LeafResponseComputesTheSameBitsAsTheBaseRow) {
+  for (const std::size_t count : {1U, 7U, 16U, 100U, 1003U}) {
+    LeafPlaces expected(count);
+    LeafPlaces found(count);
+    LeafResponseJob base = expected.job();
+    LeafResponseJob job = found.job();
+    base.row = SimdRow::kX86_64;
+    job.row = GetParam();
+    EXPECT_EQ(base.run(), LeafResponseJob::Problem::kNone);
+    EXPECT_EQ(job.run(), LeafResponseJob::Problem::kNone);
+    EXPECT_EQ(bits_of(found.lean_east), bits_of(expected.lean_east));
+    EXPECT_EQ(bits_of(found.lean_south), bits_of(expected.lean_south));
+    EXPECT_EQ(bits_of(found.flutter), bits_of(expected.flutter));
+  }
+}
+
+TEST(LeafResponseJobTest, LeansWithTheWindAndFluttersTheMoreTheStrongerItIs) {
+  LeafPlaces places(200);
+  places.job().run();
+  for (std::size_t i = 0; i < 200; ++i) {
+    const auto east = static_cast<double>(places.east_m_s[i]);
+    const auto south = static_cast<double>(places.south_m_s[i]);
+    const double speed_m_s = std::hypot(east, south);
+    const double s = speed_m_s / 4.0;
+    const double lean = 0.4 * s * s / (1.0 + s * s) / speed_m_s;
+    EXPECT_NEAR(places.lean_east[i], lean * east, 1e-6);
+    EXPECT_NEAR(places.lean_south[i], lean * south, 1e-6);
+    const double q = speed_m_s * speed_m_s / 25.0;
+    EXPECT_NEAR(places.flutter[i], 0.3 * (1.0 - std::pow(1.0 + q / 8.0, -8.0)), 1e-6);
+    EXPECT_NEAR(places.flutter[i], 0.3 * (1.0 - std::exp(-q)), 0.033 * 0.3);
+  }
+}
+
+TEST(LeafResponseJobTest, IsNowhereSteeperThanItSays) {
+  LeafPlaces places(6000);
+  for (std::size_t i = 0; i < 6000; ++i) places.east_m_s[i] = 0.005F * static_cast<float>(i);
+  places.south_m_s.assign(6000, 0.0F);
+  places.job().run();
+  double lean = 0.0;
+  double flutter = 0.0;
+  for (std::size_t i = 1; i < 6000; ++i) {
+    lean = std::max(lean, static_cast<double>(places.lean_east[i] - places.lean_east[i - 1]) / 0.4 / (0.005 / 4.0));
+    flutter = std::max(flutter, static_cast<double>(places.flutter[i] - places.flutter[i - 1]) / 0.3 / (0.005 / 5.0));
+  }
+  EXPECT_NEAR(lean, LeafResponseJob::kSteepestLean, 2e-3);
+  EXPECT_NEAR(flutter, LeafResponseJob::kSteepestFlutter, 2e-3);
+}
+
+TEST(LeafResponseJobTest, CalmIsExactlyNothingAndNoWindIsTooStrong) {
+  LeafPlaces places(2);
+  places.east_m_s = {0.0F, 1e6F};
+  places.south_m_s = {0.0F, 1e6F};
+  places.job().run();
+  EXPECT_EQ(places.lean_east[0], 0.0F);
+  EXPECT_EQ(places.lean_south[0], 0.0F);
+  EXPECT_EQ(places.flutter[0], 0.0F);
+  EXPECT_NEAR(std::hypot(places.lean_east[1], places.lean_south[1]), 0.4F, 1e-6F);
+  EXPECT_EQ(places.flutter[1], 0.3F);
+}
+
+TEST(LeafResponseJobTest, SaysWhatIsWrongAndThenDoesNothing) {
+  using Problem = LeafResponseJob::Problem;
+  LeafPlaces places(10);
+  EXPECT_EQ(places.job().validate(), Problem::kNone);
+  for (const double wrong : {0.001, -1.0, 1e7, kNotANumber}) {
+    LeafResponseJob job = places.job();
+    job.half_lean_speed_m_s = wrong;
+    EXPECT_EQ(job.run(), Problem::kSpeeds);
+    job = places.job();
+    job.flutter_speed_m_s = wrong;
+    EXPECT_EQ(job.run(), Problem::kSpeeds);
+  }
+  LeafResponseJob job = places.job();
+  job.lean_rad = kNotANumber;
+  EXPECT_EQ(job.run(), Problem::kAngles);
+  job = places.job();
+  job.flutter_rad = kNotANumber;
+  EXPECT_EQ(job.run(), Problem::kAngles);
+  for (int which = 0; which < 4; ++which) {
+    job = places.job();
+    if (which == 0) job.wind_south_m_s = job.wind_south_m_s.first(9);
+    if (which == 1) job.lean_east_rad = job.lean_east_rad.first(9);
+    if (which == 2) job.lean_south_rad = job.lean_south_rad.first(9);
+    if (which == 3) job.flutter_rad_each = job.flutter_rad_each.first(9);
+    EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  }
+  for (const float flutter : places.flutter) EXPECT_EQ(flutter, 0.0F);
+}
+
+// ---- FlutterJob
+
+/// Sprays of leaves at five places, and room for their bends.
+struct Leaves {
+  explicit Leaves(std::size_t sprays)
+      : lean_east(normal_numbers(5, 0.3, 1)),
+        lean_south(normal_numbers(5, 0.3, 2)),
+        flutter(uniform_numbers(5, 0.0, 0.3, 3)),
+        noise(normal_numbers(16 * sprays, 1.0, 4)),
+        give(uniform_numbers(16 * sprays, 0.5, 1.0, 5)),
+        axis_east(uniform_numbers(16 * sprays, -1.0, 1.0, 6)),
+        axis_south(uniform_numbers(16 * sprays, -1.0, 1.0, 7)),
+        east(16 * sprays),
+        south(16 * sprays) {
+    for (std::size_t i = 0; i < sprays; ++i) place.push_back(static_cast<std::uint32_t>(i * 3 % 5));
+  }
+
+  FlutterJob job() {
+    return {.lean_east_rad = lean_east,
+            .lean_south_rad = lean_south,
+            .flutter_rad = flutter,
+            .place = place,
+            .noise = noise,
+            .give = give,
+            .axis_east = axis_east,
+            .axis_south = axis_south,
             .bend_east_rad = east,
             .bend_south_rad = south};
   }
 
-  std::vector<float> noise, along, across, east, south;
+  std::vector<float> lean_east, lean_south, flutter;
+  std::vector<std::uint32_t> place;
+  std::vector<float> noise, give, axis_east, axis_south, east, south;
 };
 
 TEST_P(CrownJobsOnEachRow, FlutterComputesTheSameBitsAsTheBaseRow) {
-  for (const std::size_t count : {1U, 7U, 16U, 100U, 1003U}) {
-    Leaves expected(count);
-    Leaves found(count);
-    FlutterJob base = expected.job(3.0, -4.0);
-    FlutterJob job = found.job(3.0, -4.0);
+  for (const std::size_t sprays : {1U, 7U, 100U}) {
+    Leaves expected(sprays);
+    Leaves found(sprays);
+    FlutterJob base = expected.job();
+    FlutterJob job = found.job();
     base.row = SimdRow::kX86_64;
     job.row = GetParam();
     EXPECT_EQ(base.run(), FlutterJob::Problem::kNone);
@@ -384,52 +629,37 @@ TEST_P(CrownJobsOnEachRow, FlutterComputesTheSameBitsAsTheBaseRow) {
   }
 }
 
-TEST(FlutterJobTest, LeansAndFluttersAlongTheWindAndAcrossIt) {
-  Leaves leaves(100);
-  FlutterJob job = leaves.job(0.0, 1.0);  // toward south: west is on the right
-  job.half_flutter_speed_m_s = 1.0;
-  job.run();
-  for (std::size_t i = 0; i < 100; ++i) {
-    const float bend_rad = 0.5F * (0.4F + 0.3F * leaves.noise[i]);
-    EXPECT_NEAR(leaves.south[i], bend_rad * leaves.along[i], 1e-6F);
-    EXPECT_NEAR(leaves.east[i], -bend_rad * leaves.across[i], 1e-6F);
-  }
-}
-
-TEST(FlutterJobTest, CalmIsExactlyNoBend) {
-  Leaves leaves(100);
-  leaves.job(5.0, 5.0).run();
-  leaves.job(0.0, 0.0).run();
-  for (std::size_t i = 0; i < 100; ++i) {
-    EXPECT_EQ(leaves.east[i], 0.0F);
-    EXPECT_EQ(leaves.south[i], 0.0F);
+TEST(FlutterJobTest, LeansAsItsPlaceAndFluttersAlongItsOwnAxis) {
+  Leaves leaves(10);
+  leaves.job().run();
+  for (std::size_t i = 0; i < 160; ++i) {
+    const std::size_t place = leaves.place[i / 16];
+    const float to_and_fro = leaves.flutter[place] * leaves.noise[i];
+    EXPECT_NEAR(leaves.east[i], leaves.give[i] * leaves.lean_east[place] + to_and_fro * leaves.axis_east[i], 1e-6F);
+    EXPECT_NEAR(leaves.south[i], leaves.give[i] * leaves.lean_south[place] + to_and_fro * leaves.axis_south[i], 1e-6F);
   }
 }
 
 TEST(FlutterJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   using Problem = FlutterJob::Problem;
-  Leaves leaves(10);
-  EXPECT_EQ(leaves.job(1.0, 1.0).validate(), Problem::kNone);
-  EXPECT_EQ(leaves.job(kNotANumber, 1.0).run(), Problem::kWindNotFinite);
-  EXPECT_EQ(leaves.job(1.0, 1e200).run(), Problem::kWindNotFinite);
-  FlutterJob job = leaves.job(1.0, 1.0);
-  job.half_flutter_speed_m_s = 0.001;
-  EXPECT_EQ(job.run(), Problem::kHalfFlutterSpeed);
-  job = leaves.job(1.0, 1.0);
-  job.lean_rad = kNotANumber;
-  EXPECT_EQ(job.run(), Problem::kAngles);
-  job = leaves.job(1.0, 1.0);
-  job.flutter_rad = kNotANumber;
-  EXPECT_EQ(job.run(), Problem::kAngles);
-  for (int which = 0; which < 4; ++which) {
-    job = leaves.job(1.0, 1.0);
-    if (which == 0) job.along = job.along.first(9);
-    if (which == 1) job.across = job.across.first(9);
-    if (which == 2) job.bend_east_rad = job.bend_east_rad.first(9);
-    if (which == 3) job.bend_south_rad = job.bend_south_rad.first(9);
-    EXPECT_EQ(job.run(), Problem::kSizesDiffer);
+  Leaves leaves(2);
+  EXPECT_EQ(leaves.job().validate(), Problem::kNone);
+  for (int which = 0; which < 9; ++which) {
+    FlutterJob job = leaves.job();
+    if (which == 0) job.lean_east_rad = job.lean_east_rad.first(4);
+    if (which == 1) job.lean_south_rad = job.lean_south_rad.first(4);
+    if (which == 2) job.place = job.place.first(1);
+    if (which == 3) job.noise = job.noise.first(31);
+    if (which == 4) job.give = job.give.first(31);
+    if (which == 5) job.axis_east = job.axis_east.first(31);
+    if (which == 6) job.axis_south = job.axis_south.first(31);
+    if (which == 7) job.bend_east_rad = job.bend_east_rad.first(31);
+    if (which == 8) job.bend_south_rad = job.bend_south_rad.first(31);
+    EXPECT_EQ(job.run(), Problem::kSizesDiffer) << which;
   }
-  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(leaves.east[i], 0.0F);
+  leaves.place[1] = 5;
+  EXPECT_EQ(leaves.job().run(), Problem::kPlace);
+  for (const float bend : leaves.east) EXPECT_EQ(bend, 0.0F);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ struct BlownStrands {
     for (std::size_t i = 0; i < count; ++i) {
       east.push_back(static_cast<float>(40.0 * (random.uniform(3 * i) - 0.5)));
       south.push_back(static_cast<float>(40.0 * (random.uniform(3 * i + 1) - 0.5)));
+      strength.push_back(static_cast<float>(0.6 + 0.8 * random.uniform(count + i)));
       flexibility.push_back(static_cast<float>(0.3 + 1.5 * random.uniform(3 * i + 2)));
     }
   }
@@ -28,6 +29,7 @@ struct BlownStrands {
   LocalBendingJob job() {
     return {.wind_east_m_s = east,
             .wind_south_m_s = south,
+            .strength = strength,
             .flexibility = flexibility,
             .half_bend_speed_m_s = 7.0,
             .max_bend_rad = 1.4,
@@ -35,7 +37,7 @@ struct BlownStrands {
             .bend_south_rad = bend_south};
   }
 
-  std::vector<float> east, south, flexibility, bend_east, bend_south;
+  std::vector<float> east, south, strength, flexibility, bend_east, bend_south;
 };
 
 class LocalBendingOnEachRow : public EachSimdRow {};
@@ -60,12 +62,11 @@ TEST(LocalBendingJobTest, BendsAsBendingJobDoesInThatWind) {
   BlownStrands strands(300);
   ASSERT_EQ(strands.job().run(), LocalBendingJob::Problem::kNone);
   for (std::size_t i = 0; i < 300; ++i) {
-    const float strength = 1.0F;
     float east_rad = 0.0F;
     float south_rad = 0.0F;
     BendingJob{.wind_east_m_s = static_cast<double>(strands.east[i]),
                .wind_south_m_s = static_cast<double>(strands.south[i]),
-               .strength = std::span(&strength, 1),
+               .strength = std::span(strands.strength).subspan(i, 1),
                .flexibility = std::span(strands.flexibility).subspan(i, 1),
                .half_bend_speed_m_s = 7.0,
                .max_bend_rad = 1.4,

@@ -141,6 +141,38 @@ TEST(OscillatorTest, ComesToRestInCalm) {
   EXPECT_EQ(q.back(), 0.0F);
 }
 
+/// Many that each have a pace of their own.
+OscillatorSteps paces(std::size_t count) {
+  OscillatorSteps steps(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    steps.set(i, OscillatorStep::exact(0.5 + 0.1 * static_cast<double>(i), 0.1, kOscillatorTick_s));
+  }
+  return steps;
+}
+
+TEST(OscillatorTest, EachAtItsOwnPaceGoesAsItWouldAlone) {
+  constexpr std::size_t kCount = 21;
+  const auto drive = [](int tick, std::size_t i) { return tick < 90 ? 0.1F * static_cast<float>(i + 1) : 0.0F; };
+  const OscillatorSteps steps = paces(kCount);
+  const auto all = swing({.steps = &steps}, kCount, 240, drive);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const OscillatorJob alone{.step =
+                                  OscillatorStep::exact(0.5 + 0.1 * static_cast<double>(i), 0.1, kOscillatorTick_s)};
+    const auto one = swing(alone, 1, 240, [&drive, i](int tick, std::size_t) { return drive(tick, i); });
+    for (std::size_t tick = 0; tick < one.size(); ++tick) ASSERT_EQ(all[tick * kCount + i], one[tick]) << i;
+  }
+}
+
+TEST_P(OscillatorOnEachRow, EachAtItsOwnPaceComputesTheSameBitsAsTheBaseRow) {
+  const auto drive = [](int tick, std::size_t i) { return tick % 17 < 8 ? 0.3F : -0.01F * static_cast<float>(i); };
+  const OscillatorSteps steps = paces(37);
+  OscillatorJob job{.steps = &steps, .blend = 0.7};
+  job.row = SimdRow::kX86_64;
+  const auto base = swing(job, 37, 200, drive);
+  job.row = GetParam();
+  EXPECT_EQ(bits_of(swing(job, 37, 200, drive)), bits_of(base));
+}
+
 TEST(OscillatorTest, SaysWhatIsWrongAndThenDoesNothing) {
   Oscillators oscillators(3);
   std::vector<float> east(3, 1.0F);
@@ -167,6 +199,10 @@ TEST(OscillatorTest, SaysWhatIsWrongAndThenDoesNothing) {
   Oscillators too_few(2);
   job = good;
   job.oscillators = &too_few;
+  EXPECT_EQ(job.run(), OscillatorJob::Problem::kSizesDiffer);
+  const OscillatorSteps too_few_steps(2);
+  job = good;
+  job.steps = &too_few_steps;
   EXPECT_EQ(job.run(), OscillatorJob::Problem::kSizesDiffer);
   job = good;
   job.first = 1;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -89,6 +90,44 @@ TEST(FurTest, LinksKeepTheirLengthTo1e5) {
   }
 }
 
+TEST(FurTest, StrokesRunOverTheRidgeWithoutASeam) {
+  const auto scene = fur();
+  for (int tick = 0; tick < 600; ++tick) scene->tick(WindVector{0.0, -8.0}, 1.0 / 60.0);
+  const auto& pose = std::get<StrandPose>(scene->pose());
+  double largest_rad = 0.0;
+  // The first and the last hair of a ring stand to either side of the ridge.
+  for (std::size_t ring = 40; ring < 160; ++ring) {
+    const std::size_t first = 150 * ring;
+    largest_rad = std::max(
+        largest_rad, static_cast<double>(std::hypot(pose.bend_east_rad[first] - pose.bend_east_rad[first + 149],
+                                                    pose.bend_south_rad[first] - pose.bend_south_rad[first + 149])));
+  }
+  EXPECT_LT(largest_rad, 12.0 * kRadPerDeg);
+}
+
+TEST(FurTest, PartingsOpenInTheWind) {
+  const auto spread_deg = [](double speed_m_s) {
+    const auto scene = fur();
+    for (int tick = 0; tick < 600; ++tick) scene->tick(WindVector{0.0, -speed_m_s}, 1.0 / 60.0);
+    const auto& pose = std::get<StrandPose>(scene->pose());
+    double sum = 0.0;
+    double squares = 0.0;
+    // Near the ridge, where the skin is level and the bend would be the same.
+    std::size_t count = 0;
+    for (std::size_t ring = 70; ring < 130; ++ring) {
+      for (std::size_t hair = 0; hair < 8; ++hair, ++count) {
+        const auto bend = static_cast<double>(pose.bend_south_rad[150 * ring + hair]);
+        sum += bend;
+        squares += bend * bend;
+      }
+    }
+    const double mean = sum / static_cast<double>(count);
+    return std::sqrt(squares / static_cast<double>(count) - mean * mean) / kRadPerDeg;
+  };
+  EXPECT_LT(spread_deg(0.9), 1.0);
+  EXPECT_GT(spread_deg(9.4), 6.0);
+}
+
 TEST(FurTest, IsStrokedMoreByMoreWindUntilItLiesFlat) {
   double before = 0.0;
   for (const double speed_m_s : {1.0, 3.0, 6.0, 12.0, 24.0, 48.0}) {
@@ -103,7 +142,7 @@ TEST(FurTest, IsStrokedMoreByMoreWindUntilItLiesFlat) {
       }
     }
     EXPECT_GT(mean_rad, before);
-    EXPECT_LT(mean_rad, 0.9);
+    EXPECT_LT(mean_rad, 80.0 * kRadPerDeg);
     before = mean_rad;
   }
 }

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "engine/base/part.hpp"
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi {
+
+/// A part's strands, in whole blocks, of any array that has an element for each.
+template <class Value>
+std::span<Value> strands_of(Part part, std::span<Value> values) noexcept {
+  const std::size_t blocks = values.size() / kStrandsPerBlock;
+  const std::size_t begin = part.begin(blocks) * kStrandsPerBlock;
+  return values.subspan(begin, part.end(blocks) * kStrandsPerBlock - begin);
+}
+
+}  // namespace yuragi
