@@ -42,9 +42,10 @@ struct ClothSpreadKernelArguments {
   float* fine = nullptr;
 };
 
-/// out += sum of weight[i] * row[i]
+/// out += sum of weight[i] * row[i], or out = base + that sum.
 struct ClothAddKernelArguments {
   std::size_t count = 0;
+  const float* base = nullptr;
   const float* row[4] = {};
   float weight[4] = {};
   float* out = nullptr;
@@ -54,6 +55,7 @@ struct ClothDynamicsKernels {
   void (*step)(const ClothDynamicsKernelArguments&) noexcept;
   void (*spread)(const ClothSpreadKernelArguments&) noexcept;
   void (*add)(const ClothAddKernelArguments&) noexcept;
+  void (*add_to_base)(const ClothAddKernelArguments&) noexcept;
 };
 extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64;
 extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64_v3;

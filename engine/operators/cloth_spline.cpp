@@ -6,6 +6,7 @@
 
 #include "engine/base/kernel.hpp"
 #include "engine/operators/cloth_dynamics_kernels.hpp"
+#include "engine/pose/skeleton.hpp"
 
 namespace yuragi {
 namespace {
@@ -34,16 +35,16 @@ Taps taps_at(double place, std::size_t last) {
 
 }  // namespace
 
-ClothSpline::ClothSpline(const CoarseCloth& coarse, std::size_t columns, std::size_t links)
-    : width_(2 * padded_to_blocks(columns)), links_(links), coarse_links_(coarse.links()) {
+ClothSpline::ClothSpline(const ClothKnots& knots, std::size_t columns, std::size_t links)
+    : knots_(knots), width_(2 * padded_to_blocks(columns)), links_(links) {
   // The first ghost is coarse column 0, so the first column of the cloth is at 1.
   const std::size_t stride = width_ / 2;
   const double coarse_per_fine =
-      static_cast<double>(coarse.columns() - 1) / static_cast<double>(std::max<std::size_t>(columns - 1, 1));
+      static_cast<double>(knots.columns - 1) / static_cast<double>(std::max<std::size_t>(columns - 1, 1));
   std::vector<Taps> taps;
   for (std::size_t i = 0; i < stride; ++i) {
     const double column = static_cast<double>(std::min(i, columns - 1));
-    taps.push_back(taps_at(1.0 + coarse_per_fine * column, coarse.columns() + 1));
+    taps.push_back(taps_at(1.0 + coarse_per_fine * column, knots.columns + 1));
   }
 
   // As many taps for each block as the widest needs, and none beyond the coarse row's end.
@@ -55,7 +56,7 @@ ClothSpline::ClothSpline(const CoarseCloth& coarse, std::size_t columns, std::si
   }
   weights_.assign(blocks * taps_ * kStrandsPerBlock, 0.0F);
   for (std::size_t block = 0; block < blocks; ++block) {
-    first_.push_back(std::min(taps[block * kStrandsPerBlock].at[0], coarse.stride() - taps_));
+    first_.push_back(std::min(taps[block * kStrandsPerBlock].at[0], knots.stride - taps_));
     for (std::size_t i = 0; i < kStrandsPerBlock; ++i) {
       const Taps& of = taps[block * kStrandsPerBlock + i];
       for (std::size_t tap = 0; tap < 4; ++tap) {
@@ -63,18 +64,19 @@ ClothSpline::ClothSpline(const CoarseCloth& coarse, std::size_t columns, std::si
       }
     }
   }
-  spread_.assign(coarse_links_ * width_, 0.0F);
+  spread_.assign(knots.links * width_, 0.0F);
 }
 
-void ClothSpline::spread(const CoarseCloth& coarse, SimdRow row) noexcept {
+void ClothSpline::spread(std::span<const float> leans, SimdRow row) noexcept {
+  if (leans.size() != knots_.size()) return;
   const auto spread_row = kSplineRows[row].spread;
   const std::size_t stride = width_ / 2;
-  for (std::size_t line = 0; line < 2 * coarse_links_; ++line) {
+  for (std::size_t line = 0; line < 2 * knots_.links; ++line) {
     spread_row({.blocks = stride / kStrandsPerBlock,
                 .taps = taps_,
                 .first = first_.data(),
                 .weights = weights_.data(),
-                .coarse = coarse.lean().data() + line * coarse.stride(),
+                .coarse = leans.data() + line * knots_.stride,
                 .fine = spread_.data() + line * stride});
   }
 }
@@ -82,6 +84,7 @@ void ClothSpline::spread(const CoarseCloth& coarse, SimdRow row) noexcept {
 ClothSplineJob::Problem ClothSplineJob::validate() const noexcept {
   if (spline == nullptr) return Problem::kNoSpline;
   if (!std::isfinite(share)) return Problem::kShareNotFinite;
+  if (!base.empty() && base.size() != spline->width_) return Problem::kSizesDiffer;
   if (out.size() % spline->width_ != 0 || first_link + out.size() / spline->width_ > spline->links_) {
     return Problem::kSizesDiffer;
   }
@@ -92,15 +95,17 @@ ClothSplineJob::Problem ClothSplineJob::validate() const noexcept {
 ClothSplineJob::Problem ClothSplineJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
-  const auto add = kSplineRows[row.value_or(best_simd_row())].add;
+  const ClothDynamicsKernels& kernels = kSplineRows[row.value_or(best_simd_row())];
+  const auto add = base.empty() ? kernels.add : kernels.add_to_base;
   const std::size_t width = spline->width_;
-  const double coarse_per_fine = static_cast<double>(spline->coarse_links_) / static_cast<double>(spline->links_);
+  const double coarse_per_fine = static_cast<double>(spline->knots_.links) / static_cast<double>(spline->links_);
   for (std::size_t i = 0; i < out.size() / width; ++i) {
     // A lean is that of a link's middle.
     const Taps taps =
-        taps_at((static_cast<double>(first_link + i) + 0.5) * coarse_per_fine - 0.5, spline->coarse_links_ - 1);
+        taps_at((static_cast<double>(first_link + i) + 0.5) * coarse_per_fine - 0.5, spline->knots_.links - 1);
     const auto coarse = [&](std::size_t tap) { return spline->spread_.data() + taps.at[tap] * width; };
     add({.count = width,
+         .base = base.data(),
          .row = {coarse(0), coarse(1), coarse(2), coarse(3)},
          .weight = {share * taps.weight[0], share * taps.weight[1], share * taps.weight[2], share * taps.weight[3]},
          .out = out.data() + i * width});

@@ -2,37 +2,52 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "engine/base/parameter.hpp"
 #include "engine/base/simd_row.hpp"
 #include "engine/scenes/carried_noise.hpp"
 
 namespace yuragi {
 
-/// The noise that moves a cloth: one that the wind carries over it (CarriedNoise). Each column reads it where it is;
-/// and the whole cloth reads it once, far away, for what sways it as one: another noise, as good as independent.
-/// Numbers from -1 to 1. Allocates when it is made. Thread-safe: no. Realtime-safe: yes.
+/// Where a ClothNoise is read.
+struct ClothPlaces {
+  CarriedPlaces here;
+  CarriedPlaces behind;  ///< half a wave behind; empty: only `here` counts
+};
+
+/// The waves that run over a cloth: a noise of one band of wavelengths (CarriedNoise::band) that is carried along, and
+/// brought smoothly within kLargest. Its coordinates are those of the caller, metres along the cloth or over the
+/// ground. Mean 0, variance somewhat below 1. Allocates when it is made and in places(). Thread-safe: no.
+/// Realtime-safe: shift() and sample().
 class ClothNoise {
  public:
-  /// Reads `tile_period` and `beta` of the scene's parameters; x and z: where the columns are on the noise.
-  ClothNoise(const ParameterValues& values, std::uint64_t seed, std::span<const float> x_m, std::span<const float> z_m,
-             SimdRow row);
+  /// Never farther from 0 than this: what is beyond comes ever closer to it.
+  static constexpr double kLargest = 2.2;
 
-  /// The noise goes on as the wind goes in dt_s.
-  void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept {
-    noise_.shift(toward_x_m_s, toward_z_m_s, dt_s);
-  }
+  /// Waves of shortest_m to longest_m, at least an octave apart.
+  ClothNoise(double shortest_m, double longest_m, std::uint64_t seed, SimdRow row);
 
-  /// One value a column.
-  void sample(std::span<float> out) const noexcept;
+  /// Where it is to be read, so that its waves go in all directions.
+  ClothPlaces places(std::span<const float> x_m, std::span<const float> z_m) const;
 
-  /// One value for the whole cloth.
-  float swell() const noexcept;
+  /// Where it is to be read, so that its waves run along x: what counts is by how much it differs from half a wave
+  /// behind. Waves that lie nearly along x, which a line along x reads as long ones, are missing.
+  ClothPlaces places_along_x(std::span<const float> x_m, std::span<const float> z_m);
+
+  /// It is carried toward +x and +z for dt_s.
+  void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept;
+
+  /// One value a place.
+  void sample(const ClothPlaces& places, std::span<float> out) noexcept;
+
+  /// No more than this does a value change in a tick, while it is carried at no more than speed_m_s.
+  double largest_change(double speed_m_s, double dt_s) const noexcept;
 
  private:
   SimdRow row_;
+  double half_wave_m_;
   CarriedNoise noise_;
-  CarriedPlaces columns_, swell_;
+  std::vector<float> behind_;
 };
 
 }  // namespace yuragi
