@@ -211,17 +211,8 @@ void add(const ClothAddKernelArguments& arguments) noexcept {
   }
 }
 
-void add_to_base(const ClothAddKernelArguments& arguments) noexcept {
-  const ClothAddKernelArguments in = arguments;
-  float* const __restrict out = in.out;
-  for (std::size_t i = 0; i < in.count; ++i) {
-    out[i] = in.base[i] + ((in.weight[0] * in.row[0][i] + in.weight[1] * in.row[1][i]) +
-                           (in.weight[2] * in.row[2][i] + in.weight[3] * in.row[3][i]));
-  }
-}
-
 }  // namespace
 
-const ClothDynamicsKernels YURAGI_ROW_NAME(cloth_dynamics_kernels) = {step, spread, add, add_to_base};
+const ClothDynamicsKernels YURAGI_ROW_NAME(cloth_dynamics_kernels) = {step, spread, add};
 
 }  // namespace yuragi

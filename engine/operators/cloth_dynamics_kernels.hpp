@@ -42,10 +42,9 @@ struct ClothSpreadKernelArguments {
   float* fine = nullptr;
 };
 
-/// out += sum of weight[i] * row[i], or out = base + that sum.
+/// out += sum of weight[i] * row[i]
 struct ClothAddKernelArguments {
   std::size_t count = 0;
-  const float* base = nullptr;
   const float* row[4] = {};
   float weight[4] = {};
   float* out = nullptr;
@@ -55,7 +54,6 @@ struct ClothDynamicsKernels {
   void (*step)(const ClothDynamicsKernelArguments&) noexcept;
   void (*spread)(const ClothSpreadKernelArguments&) noexcept;
   void (*add)(const ClothAddKernelArguments&) noexcept;
-  void (*add_to_base)(const ClothAddKernelArguments&) noexcept;
 };
 extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64;
 extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64_v3;

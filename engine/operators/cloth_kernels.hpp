@@ -6,7 +6,7 @@
 
 namespace yuragi {
 
-/// One row of values: out = base + newer_gain * newer + older_gain * older.
+/// One row of values, between two others: out = base + newer_gain * newer + older_gain * older.
 struct PropagationKernelArguments {
   std::size_t count = 0;
   const float* base = nullptr;

@@ -36,7 +36,7 @@ ClothThreads make_threads(std::size_t links, float link_length_m, std::span<cons
 struct ClothProjectionJob {
   const ClothThreads* threads = nullptr;
   std::size_t first_link = 0;
-  std::span<const float> lean;                ///< a row a link: east of all columns, then south, rest included; finite
+  std::span<const float> lean;         ///< a row a link: east of all columns, then south, rest included; finite
   std::span<const float> edge_m = {};  ///< the fixed edge's offset from rest, x of all columns, then y, z; none: 0
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 

@@ -6,12 +6,14 @@
 
 #include "engine/base/kernel.hpp"
 #include "engine/operators/cloth_dynamics_kernels.hpp"
+#include "engine/operators/cloth_kernels.hpp"
 #include "engine/pose/skeleton.hpp"
 
 namespace yuragi {
 namespace {
 
 constexpr KernelRows<ClothDynamicsKernels> kSplineRows = YURAGI_KERNEL_ROWS(cloth_dynamics_kernels);
+constexpr KernelRows<ClothKernels> kLineRows = YURAGI_KERNEL_ROWS(cloth_kernels);
 
 /// Where four neighbouring values weigh how much; values outside [0, last] are taken as the one at the end.
 struct Taps {
@@ -84,7 +86,6 @@ void ClothSpline::spread(std::span<const float> leans, SimdRow row) noexcept {
 ClothSplineJob::Problem ClothSplineJob::validate() const noexcept {
   if (spline == nullptr) return Problem::kNoSpline;
   if (!std::isfinite(share)) return Problem::kShareNotFinite;
-  if (!base.empty() && base.size() != spline->width_) return Problem::kSizesDiffer;
   if (out.size() % spline->width_ != 0 || first_link + out.size() / spline->width_ > spline->links_) {
     return Problem::kSizesDiffer;
   }
@@ -95,8 +96,7 @@ ClothSplineJob::Problem ClothSplineJob::validate() const noexcept {
 ClothSplineJob::Problem ClothSplineJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
-  const ClothDynamicsKernels& kernels = kSplineRows[row.value_or(best_simd_row())];
-  const auto add = base.empty() ? kernels.add : kernels.add_to_base;
+  const auto add = kSplineRows[row.value_or(best_simd_row())].add;
   const std::size_t width = spline->width_;
   const double coarse_per_fine = static_cast<double>(spline->knots_.links) / static_cast<double>(spline->links_);
   for (std::size_t i = 0; i < out.size() / width; ++i) {
@@ -105,9 +105,42 @@ ClothSplineJob::Problem ClothSplineJob::run() const noexcept {
         taps_at((static_cast<double>(first_link + i) + 0.5) * coarse_per_fine - 0.5, spline->knots_.links - 1);
     const auto coarse = [&](std::size_t tap) { return spline->spread_.data() + taps.at[tap] * width; };
     add({.count = width,
-         .base = base.data(),
          .row = {coarse(0), coarse(1), coarse(2), coarse(3)},
          .weight = {share * taps.weight[0], share * taps.weight[1], share * taps.weight[2], share * taps.weight[3]},
+         .out = out.data() + i * width});
+  }
+  return Problem::kNone;
+}
+
+ClothLineJob::Problem ClothLineJob::validate() const noexcept {
+  if (spline == nullptr) return Problem::kNoSpline;
+  const std::size_t width = spline->width_;
+  if (base.size() != width || out.size() % width != 0 || first_link + out.size() / width > spline->links_) {
+    return Problem::kSizesDiffer;
+  }
+  if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
+  return Problem::kNone;
+}
+
+ClothLineJob::Problem ClothLineJob::run() const noexcept {
+  const Problem problem = validate();
+  if (problem != Problem::kNone) return problem;
+  const auto mix = kLineRows[row.value_or(best_simd_row())].propagate;
+  const std::size_t width = spline->width_;
+  const double last = static_cast<double>(spline->knots_.links) - 1.0;
+  const double coarse_per_fine = static_cast<double>(spline->knots_.links) / static_cast<double>(spline->links_);
+  for (std::size_t i = 0; i < out.size() / width; ++i) {
+    // A lean is that of a link's middle.
+    const double place = std::clamp((static_cast<double>(first_link + i) + 0.5) * coarse_per_fine - 0.5, 0.0, last);
+    const auto knot = static_cast<std::size_t>(place);
+    const std::size_t next = std::min(knot + 1, spline->knots_.links - 1);
+    const auto part = static_cast<float>(place - static_cast<double>(knot));
+    mix({.count = width,
+         .base = base.data(),
+         .newer = spline->spread_.data() + knot * width,
+         .older = spline->spread_.data() + next * width,
+         .newer_gain = 1.0F - part,
+         .older_gain = part,
          .out = out.data() + i * width});
   }
   return Problem::kNone;

@@ -22,10 +22,11 @@ struct ClothKnots {
   std::size_t size() const noexcept { return 2 * links * stride; }
 };
 
-/// The way from a coarse grid of leans to those of all links: a uniform cubic B-spline in both directions (de Boor
-/// 1978, "A practical guide to splines"). Smooth to the second derivative, and a mean with weights of at least 0, so
-/// that it never exceeds or outpaces what it goes through. Holds the weights, and the coarse rows spread over all
-/// columns. Allocates when it is made. Thread-safe: no. Realtime-safe: spread().
+/// The way from a coarse grid of leans to those of all links: across the threads a uniform cubic B-spline (de Boor
+/// 1978, "A practical guide to splines"), and along them such a spline too (ClothSplineJob), or straight lines
+/// (ClothLineJob). A mean with weights of at least 0, so that it never exceeds or outpaces what it goes through. Holds
+/// the weights, and the coarse rows spread over all columns. Allocates when it is made. Thread-safe: no. Realtime-safe:
+/// spread().
 class ClothSpline {
  public:
   ClothSpline(const ClothKnots& knots, std::size_t columns, std::size_t links);
@@ -36,6 +37,7 @@ class ClothSpline {
 
  private:
   friend struct ClothSplineJob;
+  friend struct ClothLineJob;
 
   ClothKnots knots_;
   std::size_t width_, links_;
@@ -45,20 +47,39 @@ class ClothSpline {
   std::vector<float> spread_;       ///< a row a coarse link
 };
 
-/// out = base + share * the spline's leans, of the links from first_link on: a row a link, east of all columns, then
-/// south. `base` is one such row, the same for all links; without one, they are added to what is in `out`. Leans of 0
-/// change no bit. Owns nothing. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes
-/// the same bits. Cost: about 0.15 ns a value (x86-64-v3).
+/// out += share * the spline's leans, of the links from first_link on: a row a link, east of all columns, then south.
+/// Smooth to the second derivative in both directions. Leans of 0 change no bit. Owns nothing. Thread-safe: jobs with
+/// different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.15 ns a value
+/// (x86-64-v3).
 struct ClothSplineJob {
   const ClothSpline* spline = nullptr;
-  std::span<const float> base = {};  ///< a row, or none; overlaps no other
-  float share = 1.0F;                ///< finite
+  float share = 1.0F;  ///< finite
   std::size_t first_link = 0;
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   std::span<float> out;
 
   enum class Problem : std::uint8_t { kNone, kNoSpline, kShareNotFinite, kSizesDiffer, kRowNotRunnable };
+  [[nodiscard]] Problem validate() const noexcept;
+
+  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  Problem run() const noexcept;
+};
+
+/// out = base + the spline's leans, of the links from first_link on, as ClothSplineJob's; but straight from knot to
+/// knot along the threads, and level before the first and behind the last. What they add up to is smooth still, for a
+/// lean is a direction. `base` is one row, the same for all links. Leans of 0 give `base` to the bit. Owns nothing.
+/// Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about
+/// 0.1 ns a value (x86-64-v3).
+struct ClothLineJob {
+  const ClothSpline* spline = nullptr;
+  std::span<const float> base;
+  std::size_t first_link = 0;
+  std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
+
+  std::span<float> out;  ///< overlaps no other
+
+  enum class Problem : std::uint8_t { kNone, kNoSpline, kSizesDiffer, kRowNotRunnable };
   [[nodiscard]] Problem validate() const noexcept;
 
   /// Does the work, if validate() has nothing against it; returns what validate() says.

@@ -10,9 +10,9 @@
 #include "engine/math/trig.hpp"
 #include "engine/operators/wind_response.hpp"
 #include "engine/scenes/cloth.hpp"
-#include "engine/scenes/cloth_noise.hpp"
 #include "engine/scenes/cloth_strength.hpp"
 #include "engine/scenes/cloth_swing.hpp"
+#include "engine/scenes/cloth_waves.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 
@@ -59,10 +59,11 @@ constexpr double kFastestBannerWave_m_s = 12.0;
 /// The longest waves over the shortest.
 constexpr double kBannerBand = 2.0;
 
-/// A wave's front goes down from the pole to the free side: a metre to the side is read as so much farther up, and as
-/// so far aside on the noise.
+/// The free side is so much ahead of the pole, of its distance from it: a wave's front goes up to the free side.
 constexpr double kSlant = 0.35;
-constexpr double kWidthOnNoise = 0.3;
+
+/// In the longest wave.
+constexpr double kBannerKnotsAWave = 28.0;
 
 /// Half of the waves' height is reached so far below the arm, as a part of the banner's height (and 0.4 of it at most,
 /// where nothing below holds it).
@@ -87,8 +88,8 @@ ClothSpec banner_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("height"),
           .is_first_column_fixed = true,
-          .knots_across_m = 0.05,
-          .knots_along_m = std::min(0.06, values.number("wave_length") / 40.0),
+          .knots_across_m = values.number("width") / 5.0,
+          .knots_along_m = values.number("wave_length") / kBannerKnotsAWave,
           .hybrid = values.number("hybrid"),
           .normal_drag_per_m = 0.6 * drag_per_m(kDragHalfSpeed_m_s),
           .skin_drag_per_m = 0.05 * drag_per_m(kDragHalfSpeed_m_s),
@@ -128,9 +129,9 @@ class Banner final : public Scene {
   void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
-    waves_.shift(std::min(wave_speed_ * wind_.speed_m_s(), kFastestBannerWave_m_s), 0.0, dt_s);
+    waves_.shift(std::min(wave_speed_ * wind_.speed_m_s(), kFastestBannerWave_m_s), dt_s);
   }
-  void sample() noexcept override { waves_.sample(places_, wave_); }
+  void sample() noexcept override { waves_.sample(); }
 
   void project(double dt_s) noexcept override {
     turn_arm(dt_s);
@@ -149,7 +150,7 @@ class Banner final : public Scene {
       if (row == 0) continue;
       float* const lean_east = lean.data() + (row - 1) * 2 * stride;
       float* const lean_south = lean_east + stride;
-      for (std::size_t i = 0; i < stride; ++i) {
+      for (std::size_t i = 0; i < from_pole_.size(); ++i) {
         const float ahead = per_link_m_ * (row_here_.ahead_m[i] - row_above_.ahead_m[i]);
         const float aside = per_link_m_ * (row_here_.aside_m[i] - row_above_.aside_m[i]);
         const float half = 1.0F / (1.0F + __builtin_sqrtf(1.0F + (ahead * ahead + aside * aside)));
@@ -161,7 +162,7 @@ class Banner final : public Scene {
     // The hybrid's cloth is in the air as its own frame has it, which turns with the arm.
     const auto [sine, cosine] = sin_cos(static_cast<float>(turned_rad_));
     const ClothTurn turn{static_cast<double>(sine), static_cast<double>(cosine)};
-    for (std::size_t i = 0; i < stride; ++i) gusts_[i] = wave_[i] * static_cast<float>(1.0 / ClothNoise::kLargest);
+    std::fill(gusts_.begin(), gusts_.end(), waves_.values()[0] * static_cast<float>(1.0 / ClothNoise::kLargest));
     cloth_.blow(turn.cosine * wind_.east_m_s() + turn.sine * wind_.south_m_s(),
                 turn.cosine * wind_.south_m_s() - turn.sine * wind_.east_m_s(), gusts_);
     cloth_.project(dt_s, 1.0, turn);
@@ -182,28 +183,29 @@ class Banner final : public Scene {
         wave_speed_(values.number("wave_speed")),
         arm_(turned(setup.placement, 1.0, 0.0)),
         wind_(setup.placement, setup.gusts),
-        waves_(values.number("wave_length") / kBannerBand, values.number("wave_length"),
-               setup.seed ^ stream_id("banner noise"), setup.row),
         cloth_(banner_spec(values), edge, setup.row),
         knot_link_m_(values.number("height") / static_cast<double>(cloth_.knots().links)),
         per_link_m_(static_cast<float>(1.0 / knot_link_m_)),
-        wave_((cloth_.knots().links + 1) * cloth_.knots().stride),
+        waves_(values.number("wave_length") / kBannerBand, values.number("wave_length"),
+               {.first_m = 0.0,
+                .step_m = knot_link_m_,
+                .rows = cloth_.knots().links + 2 + static_cast<std::size_t>(kSlant * 2.0 * width_m_ / knot_link_m_),
+                .across_m = kOneColumn},
+               setup.seed ^ stream_id("banner noise"), setup.row),
         gusts_(cloth_.knots().stride),
         row_above_{gusts_, gusts_},
         row_here_{gusts_, gusts_} {
-    std::vector<float> down_m;
-    std::vector<float> aside_m;
     for (std::size_t row = 0; row <= cloth_.knots().links; ++row) {
       const double down = static_cast<double>(row) / static_cast<double>(cloth_.knots().links);
       growth_.push_back(static_cast<float>((1.0 + kHeldByArm) * down / (down + kHeldByArm)));
-      for (std::size_t i = 0; i < gusts_.size(); ++i) {
-        const double from_pole_m = cloth_.across(i) * width_m_;
-        down_m.push_back(static_cast<float>(down * values.number("height") + kSlant * from_pole_m));
-        aside_m.push_back(static_cast<float>(kWidthOnNoise * from_pole_m));
-      }
     }
-    for (std::size_t i = 0; i < gusts_.size(); ++i) from_pole_.push_back(static_cast<float>(cloth_.across(i)));
-    places_ = waves_.places_along_x(down_m, aside_m);
+    for (std::size_t i = 0; i < cloth_.knots().columns + 2; ++i) {
+      const double from_pole = std::max(cloth_.across(i), 0.0);
+      const double rows = kSlant * from_pole * width_m_ / knot_link_m_;
+      from_pole_.push_back(static_cast<float>(from_pole));
+      ahead_rows_.push_back(static_cast<std::size_t>(rows));
+      ahead_part_.push_back(static_cast<float>(rows - std::floor(rows)));
+    }
   }
 
   /// The vane, whose torque goes with the sine of half the angle: so that it turns about from wherever it points.
@@ -233,13 +235,15 @@ class Banner final : public Scene {
   /// A row of knots: from the pole on, each step of the cloth is turned by the angle there.
   void lay_out(std::size_t row, float bow, float wave) noexcept {
     const float growth = growth_[row];
-    const float* const noise = wave_.data() + row * gusts_.size();
+    const float* const waves = waves_.values().data() + row;
     const auto half_step_m = static_cast<float>(0.5 * width_m_ / static_cast<double>(cloth_.knots().columns - 1));
     float ahead_m = 0.0F;
     float aside_m = 0.0F;
     SinCos<float> before{0.0F, 1.0F};  // on the pole
-    for (std::size_t i = 2; i < gusts_.size(); ++i) {
-      const auto here = sin_cos(from_pole_[i] * growth * (bow + wave * noise[i]));
+    for (std::size_t i = 2; i < from_pole_.size(); ++i) {
+      const float* const near = waves + ahead_rows_[i];
+      const float noise = near[0] + ahead_part_[i] * (near[1] - near[0]);
+      const auto here = sin_cos(from_pole_[i] * growth * (bow + wave * noise));
       ahead_m += half_step_m * (before.cos + here.cos);
       aside_m += half_step_m * (before.sin + here.sin);
       row_here_.ahead_m[i] = ahead_m;
@@ -249,6 +253,7 @@ class Banner final : public Scene {
   }
 
   static constexpr double kAtRest = 1e-9;
+  static constexpr std::array kOneColumn = {0.0F};
 
   double width_m_;
   bool turns_;
@@ -260,14 +265,14 @@ class Banner final : public Scene {
 
   SceneWind wind_;
   ClothStrength strength_;
-  ClothNoise waves_;
   Cloth cloth_;
   double knot_link_m_;
   float per_link_m_;
-  ClothPlaces places_;
-  std::vector<float> wave_;       ///< a row of knots a joint between their links
-  std::vector<float> growth_;     ///< of each such row
-  std::vector<float> from_pole_;  ///< 0 on the pole, 1 at the free side
+  ClothWaves waves_;                     ///< down the pole, and on
+  std::vector<float> growth_;            ///< of each row of joints between the knots' links
+  std::vector<float> from_pole_;         ///< of each knot column: 0 on the pole, 1 at the free side
+  std::vector<std::size_t> ahead_rows_;  ///< how far ahead of the pole the waves are there: rows, and part of the next
+  std::vector<float> ahead_part_;
   std::vector<float> gusts_;
   Row row_above_, row_here_;
 

@@ -37,12 +37,11 @@ double edge_length_m(const ClothEdge& edge) {
   return std::hypot(way_m(edge.x_m), way_m(edge.y_m), way_m(edge.z_m));
 }
 
-/// Columns fill whole blocks, since a block costs as much as one column of it.
 ClothKnots cloth_knots(const ClothSpec& spec, const ClothEdge& edge) {
   const auto wanted = static_cast<std::size_t>(std::ceil(edge_length_m(edge) / spec.knots_across_m));
   const auto links = static_cast<std::size_t>(std::ceil(spec.length_m / spec.knots_along_m));
-  const std::size_t stride = padded_to_blocks(std::min(wanted + 1, edge.columns) + 2);
-  return {.columns = std::min(stride - 2, edge.columns),
+  const std::size_t stride = padded_to_blocks(std::clamp<std::size_t>(wanted + 1, 2, edge.columns) + 2);
+  return {.columns = std::clamp<std::size_t>(wanted + 1, 2, edge.columns),
           .links = std::clamp<std::size_t>(links, 1, spec.rows - 1),
           .stride = stride};
 }
@@ -182,7 +181,7 @@ void Cloth::project(double dt_s, double rest_kept, ClothTurn turn) noexcept {
     }
   }
   spline_.spread(turned(lean_, knots_.stride, turn), row_);
-  turn_edge(turn);
+  if (spec_.is_first_column_fixed) turn_edge(turn);
 
   // Of the rest lean the dynamics keep all. Rest alone is what the projection knows as rest, to the bit.
   const auto kept = static_cast<float>(1.0 - (1.0 - spec_.hybrid) * (1.0 - rest_kept));
@@ -199,7 +198,7 @@ void Cloth::project(double dt_s, double rest_kept, ClothTurn turn) noexcept {
   // From the fixed edge on, band by band.
   for (std::size_t link = 0; link < threads_.links; link += kBandLinks) {
     const std::span band = std::span(links_).first(std::min(kBandLinks, threads_.links - link) * 2 * stride);
-    ClothSplineJob{.spline = &spline_, .base = base_, .first_link = link, .row = row_, .out = band}.run();
+    ClothLineJob{.spline = &spline_, .base = base_, .first_link = link, .row = row_, .out = band}.run();
     if (is_hybrid) {
       ClothSplineJob{
           .spline = &dynamics_, .share = static_cast<float>(spec_.hybrid), .first_link = link, .row = row_, .out = band}

@@ -47,7 +47,7 @@ struct ClothTurn {
 /// A cloth that hangs by an edge: the paper's 2-D links (Chiba, section 3.2). A scene says on a coarse grid how the
 /// links lean, by what the wind and its noise make of them, and the cloth projects it:
 ///
-///   spread    a spline goes through the knots' leans              ClothSplineJob
+///   spread    a spline goes through the knots' leans              ClothSpline, ClothLineJob
 ///   project   links turn by their lean, and add up to offsets     ClothProjectionJob
 ///
 /// And where `hybrid` is above 0, a coarse cloth moves as weight, inertia and air have it (ClothDynamicsJob); its leans
@@ -88,7 +88,7 @@ class Cloth {
   void blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept;
 
   /// Goes on by dt_s. `rest_kept`: how much of its rest lean the cloth keeps (folds that the wind blows smooth), 0 to
-  /// 1. `turn`: of the whole cloth about its first fixed joint.
+  /// 1. `turn`: of the whole cloth about its first column, where that is fixed.
   void project(double dt_s, double rest_kept = 1.0, ClothTurn turn = {}) noexcept;
 
   /// The bound of a tick in which no knot's lean, nor what is kept of the rest lean, changes by more than `lean_step`

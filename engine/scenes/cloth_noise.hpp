@@ -1,53 +1,52 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "engine/base/simd_row.hpp"
 #include "engine/scenes/carried_noise.hpp"
 
 namespace yuragi {
 
-/// Where a ClothNoise is read.
-struct ClothPlaces {
-  CarriedPlaces here;
-  CarriedPlaces behind;  ///< half a wave behind; empty: only `here` counts
-};
-
-/// The waves that run over a cloth: a noise of one band of wavelengths (CarriedNoise::band) that is carried along, and
-/// brought smoothly within kLargest. Its coordinates are those of the caller, metres along the cloth or over the
-/// ground. Mean 0, variance somewhat below 1. Allocates when it is made and in places(). Thread-safe: no.
-/// Realtime-safe: shift() and sample().
+/// A noise of one band of wavelengths (CarriedNoise::band) that is carried over a cloth, or over the ground below it.
+/// Mean 0. Its coordinates are the caller's, metres. Allocates when it is made and in places(). Thread-safe: no.
+/// Realtime-safe: the rest.
 class ClothNoise {
  public:
-  /// Never farther from 0 than this: what is beyond comes ever closer to it.
-  static constexpr double kLargest = 2.2;
-
   /// Waves of shortest_m to longest_m, at least an octave apart.
   ClothNoise(double shortest_m, double longest_m, std::uint64_t seed, SimdRow row);
 
-  /// Where it is to be read, so that its waves go in all directions.
-  ClothPlaces places(std::span<const float> x_m, std::span<const float> z_m) const;
-
-  /// Where it is to be read, so that its waves run along x: what counts is by how much it differs from half a wave
-  /// behind. Waves that lie nearly along x, which a line along x reads as long ones, are missing.
-  ClothPlaces places_along_x(std::span<const float> x_m, std::span<const float> z_m);
+  /// Where it is to be read.
+  CarriedPlaces places(std::span<const float> x_m, std::span<const float> z_m) const;
 
   /// It is carried toward +x and +z for dt_s.
   void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept;
 
-  /// One value a place.
-  void sample(const ClothPlaces& places, std::span<float> out) noexcept;
+  /// One value a place, of variance 1.
+  void read(const CarriedPlaces& places, std::span<float> out) const noexcept;
+  /// The same, saturated: of variance near 0.8.
+  void sample(const CarriedPlaces& places, std::span<float> out) const noexcept;
 
-  /// No more than this does a value change in a tick, while it is carried at no more than speed_m_s.
+  /// No more than this does a value that is read, or sampled, change in a tick, while it is carried at no more than
+  /// speed_m_s.
+  double largest_read_change(double speed_m_s, double dt_s) const noexcept;
   double largest_change(double speed_m_s, double dt_s) const noexcept;
+
+  /// What is saturated is never farther from 0 than this.
+  static constexpr double kLargest = 2.2;
+
+  /// 2.2 tanh(value / 2.2) by its continued fraction, which reaches 2.2 at three times that. Its slope is 1 at most.
+  static float saturated(float value) noexcept {
+    constexpr auto kMost = static_cast<float>(kLargest);
+    const float x = std::clamp(value * (1.0F / kMost), -3.0F, 3.0F);
+    const float square = x * x;
+    return kMost * x * (27.0F + square) / (27.0F + 9.0F * square);
+  }
 
  private:
   SimdRow row_;
-  double half_wave_m_;
   CarriedNoise noise_;
-  std::vector<float> behind_;
 };
 
 }  // namespace yuragi

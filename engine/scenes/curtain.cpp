@@ -299,7 +299,7 @@ class Curtain final : public Scene {
   ClothStrength strength_;
   ClothNoise gust_noise_, hem_noise_;
   Cloth cloth_;
-  ClothPlaces gust_places_, hem_places_;
+  CarriedPlaces gust_places_, hem_places_;
   std::vector<float> gust_, flutter_now_;  ///< each knot column's, like the next
   std::vector<float> out_;                 ///< how far it is blown out: a tangent
   std::vector<double> side_;               ///< its part of the wind's force

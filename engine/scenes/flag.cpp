@@ -8,8 +8,8 @@
 #include "engine/math/trig.hpp"
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/scenes/cloth.hpp"
-#include "engine/scenes/cloth_noise.hpp"
 #include "engine/scenes/cloth_strength.hpp"
+#include "engine/scenes/cloth_waves.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 
@@ -79,13 +79,16 @@ constexpr double kEdgeBegins = 0.6;
 /// top to bottom nearly straight.
 constexpr double kHeightOnNoise = 0.3;
 
+/// In the longest; the edge's shortest waves then have five.
+constexpr double kKnotsAWave = 32.0;
+
 constexpr double kLiftDamping = 0.7;
 
 ClothSpec flag_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("length"),
           .knots_across_m = 0.1,
-          .knots_along_m = std::min(0.05, values.number("wave_length") / 60.0),
+          .knots_along_m = values.number("wave_length") / kKnotsAWave,
           .hybrid = values.number("hybrid"),
           .normal_drag_per_m = 4.0 * drag_per_m(values.number("half_lift_speed")),
           .skin_drag_per_m = 1.0 * drag_per_m(values.number("half_lift_speed"))};
@@ -133,13 +136,13 @@ class Flag final : public Scene {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
     const double speed_m_s = std::min(wave_speed_ * wind_.speed_m_s(), kFastestWave_m_s);
-    waves_.shift(speed_m_s, 0.0, dt_s);
-    edge_waves_.shift(speed_m_s, 0.0, dt_s);
+    waves_.shift(speed_m_s, dt_s);
+    edge_waves_.shift(speed_m_s, dt_s);
   }
 
   void sample() noexcept override {
-    waves_.sample(wave_places_, wave_);
-    edge_waves_.sample(edge_places_, edge_wave_);
+    waves_.sample();
+    edge_waves_.sample();
   }
 
   void project(double dt_s) noexcept override {
@@ -160,15 +163,19 @@ class Flag final : public Scene {
     const float wave_share = cloth_.wave_share();
     const std::size_t stride = cloth_.knots().stride;
     const std::span<float> lean = cloth_.lean();
+    const std::size_t edge_begins = cloth_.knots().links - edge_rad_.size();
     for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
-      const float angle_rad = wave_rad_[link] * strength;
-      const float edge_angle_rad = edge_rad_[link] * strength;
-      const float* const wave = wave_.data() + link * stride;
-      const float* const edge_wave = edge_wave_.data() + link * stride;
+      const std::span<const float> wave = waves_.values().subspan(link * stride, stride);
+      for (std::size_t i = 0; i < stride; ++i) angle_rad_[i] = wave_rad_[link] * strength * wave[i];
+      if (link >= edge_begins) {
+        const std::size_t row = link - edge_begins;
+        const std::span<const float> edge_wave = edge_waves_.values().subspan(row * stride, stride);
+        for (std::size_t i = 0; i < stride; ++i) angle_rad_[i] += edge_rad_[row] * strength * edge_wave[i];
+      }
       float* const lean_east = lean.data() + link * 2 * stride;
       float* const lean_south = lean_east + stride;
       for (std::size_t i = 0; i < stride; ++i) {
-        const auto [sine, cosine] = sin_cos(angle_rad * wave[i] + edge_angle_rad * edge_wave[i]);
+        const auto [sine, cosine] = sin_cos(angle_rad_[i]);
         const float ahead = sway_share + wave_share * (cosine - 1.0F);
         const float aside = wave_share * sine;
         lean_east[i] = ahead * east - aside * south;
@@ -179,7 +186,8 @@ class Flag final : public Scene {
     // It gives up its droop and its folds as it is lifted, by the square of the lift's cosine.
     const double square = lift_east_.value * lift_east_.value + lift_south_.value * lift_south_.value;
     const double cosine = (1.0 - square) / (1.0 + square);
-    for (std::size_t i = 0; i < stride; ++i) gusts_[i] = wave_[i] * static_cast<float>(1.0 / ClothNoise::kLargest);
+    for (std::size_t i = 0; i < stride; ++i)
+      gusts_[i] = waves_.values()[i] * static_cast<float>(1.0 / ClothNoise::kLargest);
     cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), gusts_);
     cloth_.project(dt_s, cosine * cosine);
   }
@@ -208,29 +216,41 @@ class Flag final : public Scene {
         edge_flutter_(values.number("edge_flutter")),
         longest_rest_(std::hypot(lean_of_deg(values.number("droop")), lean_of_deg(values.number("fold_angle")))),
         wind_(setup.placement, setup.gusts),
-        waves_(values.number("wave_length") / kWaveBand, values.number("wave_length"),
+        cloth_(flag_spec(values), edge, setup.row),
+        down_m_(heights_m(cloth_, values.number("hoist"))),
+        waves_(values.number("wave_length") / kWaveBand, values.number("wave_length"), wave_grid(values, 0.0),
                setup.seed ^ stream_id("flag noise"), setup.row),
         edge_waves_(kEdgeWaves * values.number("wave_length") / kWaveBand, kEdgeWaves * values.number("wave_length"),
-                    setup.seed ^ stream_id("flag edge noise"), setup.row),
-        cloth_(flag_spec(values), edge, setup.row),
-        wave_(cloth_.knots().size() / 2),
-        edge_wave_(wave_.size()),
+                    wave_grid(values, kEdgeBegins), setup.seed ^ stream_id("flag edge noise"), setup.row),
+        angle_rad_(cloth_.knots().stride),
         gusts_(cloth_.knots().stride) {
-    // Along the flag, and down it.
-    std::vector<float> along_m;
-    std::vector<float> down_m;
     for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
       const double along = cloth_.along(link);
       wave_rad_.push_back(static_cast<float>(flutter_rad_ * std::pow(along, values.number("growth"))));
-      edge_rad_.push_back(static_cast<float>(flutter_rad_ * edge_flutter_ *
-                                             std::max((along - kEdgeBegins) / (1.0 - kEdgeBegins), 0.0)));
-      for (std::size_t i = 0; i < cloth_.knots().stride; ++i) {
-        along_m.push_back(static_cast<float>(along * values.number("length")));
-        down_m.push_back(static_cast<float>(kHeightOnNoise * cloth_.across(i) * values.number("hoist")));
-      }
+      if (along < kEdgeBegins) continue;
+      edge_rad_.push_back(
+          static_cast<float>(flutter_rad_ * edge_flutter_ * (along - kEdgeBegins) / (1.0 - kEdgeBegins)));
     }
-    wave_places_ = waves_.places_along_x(along_m, down_m);
-    edge_places_ = edge_waves_.places(along_m, down_m);
+  }
+
+  /// How far below the top each knot column is, as the noise reads it.
+  static std::vector<float> heights_m(const Cloth& cloth, double hoist_m) {
+    std::vector<float> down_m;
+    for (std::size_t i = 0; i < cloth.knots().stride; ++i) {
+      down_m.push_back(static_cast<float>(kHeightOnNoise * cloth.across(i) * hoist_m));
+    }
+    return down_m;
+  }
+
+  /// The knots from `begins` on, as a part of the way to the fly.
+  ClothWaveGrid wave_grid(const ParameterValues& values, double begins) const {
+    std::size_t first = 0;
+    while (cloth_.along(first) < begins) ++first;
+    const double length_m = values.number("length");
+    return {.first_m = cloth_.along(first) * length_m,
+            .step_m = length_m / static_cast<double>(cloth_.knots().links),
+            .rows = cloth_.knots().links - first,
+            .across_m = down_m_};
   }
 
   double half_lift_speed_m_s_;
@@ -244,11 +264,11 @@ class Flag final : public Scene {
   SceneWind wind_;
   ClothStrength strength_;
   Lift lift_east_, lift_south_;  ///< leans
-  ClothNoise waves_, edge_waves_;
   Cloth cloth_;
+  std::vector<float> down_m_;
+  ClothWaves waves_, edge_waves_;           ///< of all knots, and of those near the fly
   std::vector<float> wave_rad_, edge_rad_;  ///< each knot link's, of waves of height 1 at full strength
-  ClothPlaces wave_places_, edge_places_;
-  std::vector<float> wave_, edge_wave_;  ///< each knot's
+  std::vector<float> angle_rad_;
   std::vector<float> gusts_;
 };
 

@@ -233,38 +233,78 @@ TEST(ClothSplineTest, StaysBetweenTheCoarseLeansAndFollowsThem) {
   EXPECT_NEAR(out[(2 * fine_link + 1) * stride + kFineColumns / 2], coarse_lean, 0.1F * std::abs(coarse_lean));
 }
 
-TEST(ClothSplineTest, GoesThroughTheLeansOfAnyKnotsOnABaseOrOnWhatIsThere) {
-  // Leans that grow evenly across and along: so does what goes through them, but at the ends of the threads.
-  const ClothKnots knots{.columns = 6, .links = 9, .stride = 16};
-  constexpr std::size_t kColumns = 26;
-  constexpr std::size_t kLinks = 36;
-  std::vector<float> leans(knots.size());
-  for (std::size_t link = 0; link < knots.links; ++link) {
-    for (std::size_t i = 0; i < knots.stride; ++i) {
-      leans[link * 2 * knots.stride + i] = 0.1F * static_cast<float>(i) + 0.2F * static_cast<float>(link);
-      leans[(link * 2 + 1) * knots.stride + i] = -0.3F * static_cast<float>(i);
-    }
-  }
-  ClothSpline spline(knots, kColumns, kLinks);
-  spline.spread(leans, SimdRow::kX86_64);
-  const std::size_t width = 2 * padded_to_blocks(kColumns);
-  std::vector<float> base(width, 0.5F);
-  std::vector<float> out(kLinks * width);
-  ASSERT_EQ((ClothSplineJob{.spline = &spline, .base = base, .out = out}.run()), ClothSplineJob::Problem::kNone);
-  for (std::size_t link = 8; link < kLinks - 8; ++link) {
-    for (std::size_t column = 0; column < kColumns; ++column) {
-      const double knot = 1.0 + static_cast<double>(column) / 5.0;
-      const double knot_link = (static_cast<double>(link) + 0.5) / 4.0 - 0.5;
-      EXPECT_NEAR(out[link * width + column], 0.5 + 0.1 * knot + 0.2 * knot_link, 1e-5);
-      EXPECT_NEAR(out[link * width + width / 2 + column], 0.5 - 0.3 * knot, 1e-5);
+/// Leans of some knots that grow evenly across and along.
+struct EvenLeans {
+  EvenLeans() : leans(knots.size()) {
+    for (std::size_t link = 0; link < knots.links; ++link) {
+      for (std::size_t i = 0; i < knots.stride; ++i) {
+        leans[link * 2 * knots.stride + i] = 0.1F * static_cast<float>(i) + 0.2F * static_cast<float>(link);
+        leans[(link * 2 + 1) * knots.stride + i] = -0.3F * static_cast<float>(i);
+      }
     }
   }
 
-  std::vector<float> there(kLinks * width, 0.5F);
-  ASSERT_EQ((ClothSplineJob{.spline = &spline, .out = there}.run()), ClothSplineJob::Problem::kNone);
-  EXPECT_EQ(there, out);
-  EXPECT_EQ((ClothSplineJob{.spline = &spline, .base = std::span(base).first(3), .out = out}.run()),
-            ClothSplineJob::Problem::kSizesDiffer);
+  static constexpr std::size_t kColumns = 26;
+  static constexpr std::size_t kLinks = 36;
+  ClothKnots knots{.columns = 6, .links = 9, .stride = 16};
+  std::vector<float> leans;
+};
+
+TEST(ClothSplineTest, GoesThroughTheLeansOfAnyKnots) {
+  const EvenLeans even;
+  ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
+  spline.spread(even.leans, SimdRow::kX86_64);
+  const std::size_t stride = padded_to_blocks(EvenLeans::kColumns);
+  std::vector<float> curved(EvenLeans::kLinks * 2 * stride, 0.5F);
+  std::vector<float> straight(curved.size());
+  const std::vector<float> base(2 * stride, 0.5F);
+  ASSERT_EQ((ClothSplineJob{.spline = &spline, .out = curved}.run()), ClothSplineJob::Problem::kNone);
+  ASSERT_EQ((ClothLineJob{.spline = &spline, .base = base, .out = straight}.run()), ClothLineJob::Problem::kNone);
+  for (std::size_t link = 0; link < EvenLeans::kLinks; ++link) {
+    for (std::size_t column = 0; column < EvenLeans::kColumns; ++column) {
+      const double knot = 1.0 + static_cast<double>(column) / 5.0;
+      const double knot_link = std::clamp((static_cast<double>(link) + 0.5) / 4.0 - 0.5, 0.0, 8.0);
+      const std::size_t at = 2 * link * stride + column;
+      EXPECT_NEAR(straight[at], 0.5 + 0.1 * knot + 0.2 * knot_link, 1e-5);
+      EXPECT_NEAR(straight[at + stride], 0.5 - 0.3 * knot, 1e-5);
+      if (link < 8 || link >= EvenLeans::kLinks - 8) continue;  // the spline bends before a thread's ends
+      EXPECT_NEAR(curved[at], straight[at], 1e-5);
+      EXPECT_NEAR(curved[at + stride], straight[at + stride], 1e-5);
+    }
+  }
+}
+
+TEST(ClothSplineTest, LinesOfNoLeanAreTheBaseOnEveryRow) {
+  const EvenLeans even;
+  ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
+  const std::size_t width = 2 * padded_to_blocks(EvenLeans::kColumns);
+  std::vector<float> base(width);
+  for (std::size_t i = 0; i < width; ++i) base[i] = 0.01F * static_cast<float>(i) - 0.2F;
+  std::vector<float> out(3 * width);
+  ASSERT_EQ((ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .out = out}.run()),
+            ClothLineJob::Problem::kNone);
+  for (std::size_t i = 0; i < out.size(); ++i) EXPECT_EQ(out[i], base[i % width]);
+
+  spline.spread(even.leans, SimdRow::kX86_64);
+  std::vector<float> expected(out.size());
+  ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .row = SimdRow::kX86_64, .out = expected}.run();
+  for (const SimdRow row : kSimdRows) {
+    if (!is_runnable(row)) continue;
+    ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .row = row, .out = out}.run();
+    EXPECT_EQ(bits_of(out), bits_of(expected));
+  }
+}
+
+TEST(ClothSplineTest, ALineJobSaysWhatIsWrong) {
+  using Problem = ClothLineJob::Problem;
+  const EvenLeans even;
+  const ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
+  std::vector<float> out(2 * padded_to_blocks(EvenLeans::kColumns));
+  const std::vector<float> base = out;
+  EXPECT_EQ((ClothLineJob{.base = base, .out = out}.run()), Problem::kNoSpline);
+  EXPECT_EQ((ClothLineJob{.spline = &spline, .base = {}, .out = out}.run()), Problem::kSizesDiffer);
+  EXPECT_EQ((ClothLineJob{.spline = &spline, .base = base, .first_link = EvenLeans::kLinks, .out = out}.run()),
+            Problem::kSizesDiffer);
 }
 
 TEST(ClothDynamicsTest, SaysWhatIsWrongAndThenDoesNothing) {

@@ -1,6 +1,7 @@
 // What the motions of cloths are made of: the waves, how strong they are, and what swings.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -8,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/operators/oscillator_job.hpp"
-#include "engine/scenes/cloth_noise.hpp"
 #include "engine/scenes/cloth_strength.hpp"
 #include "engine/scenes/cloth_swing.hpp"
+#include "engine/scenes/cloth_waves.hpp"
 
 namespace yuragi {
 namespace {
@@ -20,10 +21,10 @@ constexpr std::size_t kClothPlaces = 20'000;
 constexpr double kApart_m = 0.05;
 
 /// A line along x.
-std::vector<float> along_x(double from_m = 0.0) {
+std::vector<float> along_x() {
   std::vector<float> x_m(kClothPlaces);
   for (std::size_t i = 0; i < kClothPlaces; ++i) {
-    x_m[i] = static_cast<float>(from_m + kApart_m * static_cast<double>(i));
+    x_m[i] = static_cast<float>(kApart_m * static_cast<double>(i));
   }
   return x_m;
 }
@@ -43,50 +44,61 @@ double long_part(const std::vector<float>& values, double length_m) {
   return slow / all;
 }
 
+/// The waves along that line.
+ClothWaves waves_along_x() {
+  static constexpr std::array kNoneAside = {0.0F};
+  return {
+      1.2, 2.4, {.first_m = 0.0, .step_m = kApart_m, .rows = kClothPlaces, .across_m = kNoneAside}, 3, best_simd_row()};
+}
+
+void expect_saturated(std::span<const float> values) {
+  double squares = 0.0;
+  for (const float value : values) {
+    EXPECT_LE(std::abs(value), static_cast<float>(ClothNoise::kLargest));
+    squares += static_cast<double>(value * value);
+  }
+  EXPECT_NEAR(squares / kClothPlaces, 0.8, 0.15);  // 2.2 tanh(n / 2.2) of a normal n has 0.77
+}
+
 TEST(ClothNoise, StaysWithinItsLargestAndHasVarianceNearOne) {
-  ClothNoise noise(1.2, 2.4, 3, best_simd_row());
-  const std::vector<float> z_m(kClothPlaces, 0.3F);
-  for (const ClothPlaces& places : {noise.places(along_x(), z_m), noise.places_along_x(along_x(), z_m)}) {
-    std::vector<float> values(kClothPlaces);
-    noise.sample(places, values);
-    double squares = 0.0;
-    for (const float value : values) {
-      EXPECT_LE(std::abs(value), static_cast<float>(ClothNoise::kLargest));
-      squares += static_cast<double>(value * value);
-    }
-    EXPECT_NEAR(squares / kClothPlaces, 0.8, 0.15);  // 2.2 tanh(n / 2.2) of a normal n has 0.77
+  const ClothNoise noise(1.2, 2.4, 3, best_simd_row());
+  std::vector<float> values(kClothPlaces);
+  noise.sample(noise.places(along_x(), std::vector<float>(kClothPlaces, 0.3F)), values);
+  expect_saturated(values);
+}
+
+TEST(ClothNoise, IsSaturatedAsByAHyperbolicTangent) {
+  for (float value = -8.0F; value < 8.0F; value += 0.01F) {
+    EXPECT_NEAR(ClothNoise::saturated(value), 2.2 * std::tanh(static_cast<double>(value) / 2.2), 0.06);
+    EXPECT_LE(ClothNoise::saturated(value + 0.01F) - ClothNoise::saturated(value), 0.01F + 1e-6F);
   }
 }
 
-TEST(ClothNoise, AlongXHasFewLongWaves) {
-  ClothNoise noise(1.2, 2.4, 3, best_simd_row());
-  const std::vector<float> z_m(kClothPlaces, 0.0F);
+TEST(ClothWaves, HaveTheVarianceOfANoiseButFewLongWaves) {
+  const ClothNoise noise(1.2, 2.4, 3, best_simd_row());
   std::vector<float> any(kClothPlaces);
-  std::vector<float> running(kClothPlaces);
-  noise.sample(noise.places(along_x(), z_m), any);
-  noise.sample(noise.places_along_x(along_x(), z_m), running);
+  noise.sample(noise.places(along_x(), std::vector<float>(kClothPlaces, 0.0F)), any);
+  ClothWaves waves = waves_along_x();
+  waves.sample();
+  expect_saturated(waves.values());
+  const std::vector<float> running(waves.values().begin(), waves.values().end());
   EXPECT_LT(long_part(running, 4.8), 0.25 * long_part(any, 4.8));
 }
 
-TEST(ClothNoise, IsCarriedAndChangesNoFasterThanItSays) {
-  ClothNoise noise(1.2, 2.4, 3, best_simd_row());
-  const std::vector<float> z_m(kClothPlaces, 0.0F);
-  const ClothPlaces here = noise.places_along_x(along_x(), z_m);
-  const ClothPlaces downwind = noise.places_along_x(along_x(6.0), z_m);
-  std::vector<float> before(kClothPlaces);
-  std::vector<float> last(kClothPlaces);
-  std::vector<float> now(kClothPlaces);
-  noise.sample(here, before);
-  last = before;
-  const double bound = noise.largest_change(6.0, kPartTick_s);
+TEST(ClothWaves, RunAlongAndChangeNoFasterThanTheySay) {
+  ClothWaves waves = waves_along_x();
+  waves.sample();
+  const std::vector<float> before(waves.values().begin(), waves.values().end());
+  std::vector<float> last = before;
+  const double bound = waves.largest_change(6.0, kPartTick_s);
   for (int tick = 0; tick < 60; ++tick) {
-    noise.shift(6.0, 0.0, kPartTick_s);
-    noise.sample(here, now);
-    for (std::size_t i = 0; i < kClothPlaces; ++i) ASSERT_LE(std::abs(now[i] - last[i]), bound);
-    last = now;
+    waves.shift(6.0, kPartTick_s);
+    waves.sample();
+    for (std::size_t i = 0; i < kClothPlaces; ++i) ASSERT_LE(std::abs(waves.values()[i] - last[i]), bound);
+    last.assign(waves.values().begin(), waves.values().end());
   }
-  noise.sample(downwind, now);
-  for (std::size_t i = 0; i < kClothPlaces; i += 50) EXPECT_NEAR(now[i], before[i], 2e-3);
+  constexpr std::size_t kRun = 120;  // 6 m
+  for (std::size_t i = kRun; i < kClothPlaces; i += 50) EXPECT_NEAR(last[i], before[i - kRun], 2e-3);
   EXPECT_LT(bound, 2.0 * ClothNoise::kLargest);
 }
 
