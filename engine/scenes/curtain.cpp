@@ -93,7 +93,7 @@ constexpr double kSideForce = 0.75;
 ClothSpec curtain_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("height"),
-          .knots_across_m = std::min(0.12, values.number("wave_length") / 20.0),
+          .knots_across_m = std::min(0.12, values.number("wave_length") / 16.0),
           .knots_along_m = values.number("height") / 24.0,
           .hybrid = values.number("hybrid"),
           .normal_drag_per_m = drag_per_m(values.number("half_sway_speed")),
