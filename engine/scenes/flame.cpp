@@ -351,6 +351,13 @@ class Flame final : public Scene {
   FlameBody body_;  ///< but for its surface, which is in skeleton_
 };
 
+const std::array kRetiredFlameParameters = {
+    RetiredParameter{
+        "max_lean",
+        "is now exposure: how much of the wind reaches the flame, which leans as far as fires were measured to"},
+    RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches the flame"},
+};
+
 }  // namespace
 
 extern const SceneDescription kFlameScene;
@@ -360,6 +367,7 @@ const SceneDescription kFlameScene = {
     .parameters = kFlameParameters,
     .make = [](const ParameterValues& values,
                const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Flame>(values, setup)); },
-    .is_still_in_calm = false};
+    .is_still_in_calm = false,
+    .retired = kRetiredFlameParameters};
 
 }  // namespace yuragi

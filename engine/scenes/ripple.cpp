@@ -286,14 +286,20 @@ class Ripple final : public Scene {
   Pose pose_;
 };
 
+const std::array kRetiredRippleParameters = {
+    RetiredParameter{"height", "is now steepness: the slope of the waves, as a part of what was measured at sea"},
+    RetiredParameter{"half_speed", "is now onset: the wind from which on the water is rough"},
+};
+
 }  // namespace
 
 extern const SceneDescription kRippleScene;
-const SceneDescription kRippleScene = {.name = "ripple",
-                                       .summary = "water under the wind: waves rise, and gusts roughen it as they pass",
-                                       .parameters = kRippleParameters,
-                                       .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                         return std::unique_ptr<Scene>(std::make_unique<Ripple>(values, setup));
-                                       }};
+const SceneDescription kRippleScene = {
+    .name = "ripple",
+    .summary = "water under the wind: waves rise, and gusts roughen it as they pass",
+    .parameters = kRippleParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Ripple>(values, setup)); },
+    .retired = kRetiredRippleParameters};
 
 }  // namespace yuragi
