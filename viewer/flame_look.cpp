@@ -1,7 +1,6 @@
 #include "viewer/flame_look.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include <glm/geometric.hpp>
 
@@ -66,13 +65,13 @@ FlameLook::FlameLook(const SurfaceSkeleton& surface)
   set_sampler(program_, "ramp", 0);
   glUniform1i(glGetUniformLocation(program_.name(), "is_closed"), surface.is_closed ? 1 : 0);
 
+  glUniform1i(glGetUniformLocation(program_.name(), "columns"), static_cast<GLint>(surface.columns));
+  glUniform1i(glGetUniformLocation(program_.name(), "rows"), static_cast<GLint>(surface.rows));
+
   const Bounds bounds = bounds_of(surface);
-  const glm::vec3 middle = (bounds.low_m + bounds.high_m) / 2.0F;
-  const float height_m = bounds.high_m.y - bounds.low_m.y;
-  glUniform2f(glGetUniformLocation(program_.name(), "range_m"), bounds.low_m.y, height_m);
-  glUseProgram(glow_program_.name());
-  glUniform4f(glGetUniformLocation(glow_program_.name(), "ball_m"), middle.x, bounds.low_m.y + 0.35F * height_m,
-              middle.z, kGlowPerHeight * height_m);
+  glow_radius_m_ = kGlowPerHeight * (bounds.high_m.y - bounds.low_m.y);
+  glow_middle_m_ = (bounds.low_m + bounds.high_m) / 2.0F;
+  glow_ball_place_ = glGetUniformLocation(glow_program_.name(), "ball_m");
   glow_strength_place_ = glGetUniformLocation(glow_program_.name(), "strength");
 }
 
@@ -82,8 +81,17 @@ void FlameLook::move_to(const Pose& pose) {
   if (job.run() != SurfaceKinematicsJob::Problem::kNone || burning->heat.size() != points_.size()) return;
   sheet_.move_to(std::as_const(points_).data());
   sheet_.set_level(burning->heat);
-  strength_ = std::accumulate(burning->heat.begin(), burning->heat.end(), 0.0F) /
-              static_cast<float>(std::max<std::size_t>(1, burning->heat.size()));
+
+  // It glows from where the heat is.
+  float heat = 0.0F;
+  glm::vec3 sum_m(0.0F);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const JointPosition at = points_.point(i);
+    heat += burning->heat[i];
+    sum_m += burning->heat[i] * glm::vec3(at.x_m, at.y_m, at.z_m);
+  }
+  strength_ = heat / static_cast<float>(std::max<std::size_t>(1, burning->heat.size()));
+  if (heat > 0.0F) glow_middle_m_ = sum_m / heat;
 }
 
 void FlameLook::draw(const View&) {
@@ -98,10 +106,11 @@ void FlameLook::draw_light() {
   glBlendFunc(GL_ONE, GL_ONE);
   glUseProgram(glow_program_.name());
   glUniform1f(glow_strength_place_, strength_);
+  glUniform4f(glow_ball_place_, glow_middle_m_.x, glow_middle_m_.y, glow_middle_m_.z, glow_radius_m_);
   glBindVertexArray(no_attributes_.name());
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 
-  // The far side of a body before the near one.
+  // The far side of a body before the near one, and what is within a shell between its two sides.
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glUseProgram(program_.name());
   glActiveTexture(GL_TEXTURE0);
@@ -109,9 +118,9 @@ void FlameLook::draw_light() {
   if (surface_->is_closed) {
     glEnable(GL_CULL_FACE);
     glCullFace(GL_FRONT);
-    sheet_.draw();
+    for (std::size_t shell = 0; shell < sheet_.shells(); ++shell) sheet_.draw_shell(shell);
     glCullFace(GL_BACK);
-    sheet_.draw();
+    for (std::size_t shell = sheet_.shells(); shell-- > 0;) sheet_.draw_shell(shell);
     glDisable(GL_CULL_FACE);
   } else {
     sheet_.draw();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <glm/vec3.hpp>
+
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/grid_sheet.hpp"
 #include "viewer/look.hpp"
@@ -26,8 +28,11 @@ class FlameLook : public Look {
   GlTexture ramp_;
   GlProgram program_;
   GlProgram glow_program_;
+  GLint glow_ball_place_ = -1;
   GLint glow_strength_place_ = -1;
   GlVertexArray no_attributes_;
+  glm::vec3 glow_middle_m_{0.0F};
+  float glow_radius_m_ = 1.0F;
   float strength_ = 0.0F;  // of the glow: the mean heat
 };
 

@@ -37,22 +37,26 @@ GridLayout layout_of(const GridSkeleton& cloth) {
   return {cloth.columns, cloth.rows, cloth.stride(), false};
 }
 GridLayout layout_of(const SurfaceSkeleton& surface) {
-  return {surface.columns, surface.rows, surface.columns, surface.is_closed};
+  return {surface.columns, surface.rows, surface.columns, surface.is_closed, surface.is_closed ? surface.shells : 1};
 }
 
 std::vector<std::uint32_t> grid_triangles(const GridLayout& layout) {
   std::vector<std::uint32_t> indices;
-  if (layout.columns < 2 || layout.rows < 2) return indices;
-  const std::size_t cells = layout.is_closed ? layout.columns : layout.columns - 1;
-  indices.reserve(6 * cells * (layout.rows - 1));
-  for (std::size_t row = 0; row + 1 < layout.rows; ++row) {
-    for (std::size_t column = 0; column < cells; ++column) {
-      const std::size_t next = (column + 1) % layout.columns;
-      const auto here = static_cast<std::uint32_t>(row * layout.stride + column);
-      const auto beside = static_cast<std::uint32_t>(row * layout.stride + next);
-      const auto below = static_cast<std::uint32_t>((row + 1) * layout.stride + column);
-      const auto across = static_cast<std::uint32_t>((row + 1) * layout.stride + next);
-      indices.insert(indices.end(), {here, beside, below, below, beside, across});
+  const std::size_t columns = layout.columns / layout.shells;
+  if (columns < 2 || layout.rows < 2) return indices;
+  const std::size_t cells = layout.is_closed ? columns : columns - 1;
+  indices.reserve(6 * layout.shells * cells * (layout.rows - 1));
+  for (std::size_t shell = 0; shell < layout.shells; ++shell) {
+    for (std::size_t row = 0; row + 1 < layout.rows; ++row) {
+      const std::size_t first = row * layout.stride + shell * columns;
+      for (std::size_t column = 0; column < cells; ++column) {
+        const std::size_t next = (column + 1) % columns;
+        const auto here = static_cast<std::uint32_t>(first + column);
+        const auto beside = static_cast<std::uint32_t>(first + next);
+        const auto below = static_cast<std::uint32_t>(first + layout.stride + column);
+        const auto across = static_cast<std::uint32_t>(first + layout.stride + next);
+        indices.insert(indices.end(), {here, beside, below, below, beside, across});
+      }
     }
   }
   return indices;
@@ -65,9 +69,12 @@ void grid_normals(const GridLayout& layout, std::span<const float> points, std::
   float* const nx = normals.data();
   float* const ny = nx + size;
   float* const nz = ny + size;
-  const std::size_t last = layout.columns - 1;
-  for (std::size_t row = 0; row < layout.rows; ++row) {
-    const std::size_t first = row * layout.stride;
+  const std::size_t columns = layout.columns / layout.shells;
+  if (columns == 0) return;
+  const std::size_t last = columns - 1;
+  for (std::size_t ring = 0; ring < layout.rows * layout.shells; ++ring) {
+    const std::size_t row = ring / layout.shells;
+    const std::size_t first = row * layout.stride + ring % layout.shells * columns;
     const std::size_t up = row > 0 ? layout.stride : 0;
     const std::size_t down = row + 1 < layout.rows ? layout.stride : 0;
     const auto write = [&](std::size_t i, std::size_t left, std::size_t right) {

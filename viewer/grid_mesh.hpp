@@ -13,14 +13,15 @@ struct GridLayout {
   std::size_t columns = 0;
   std::size_t rows = 0;
   std::size_t stride = 0;
-  bool is_closed = false;  ///< the last column is followed by the first
+  bool is_closed = false;  ///< the last column of a shell is followed by its first
+  std::size_t shells = 1;  ///< the columns are so many rings, one within another
 
   std::size_t size() const { return rows * stride; }
 };
 GridLayout layout_of(const GridSkeleton& cloth);
 GridLayout layout_of(const SurfaceSkeleton& surface);
 
-/// Two triangles for each cell, three indices of points each, all the same way round.
+/// Two triangles for each cell, three indices of points each, all the same way round; shell after shell.
 std::vector<std::uint32_t> grid_triangles(const GridLayout& layout);
 
 /// A unit normal for each point, smooth over the grid: across what leads from the point's neighbour before to the one

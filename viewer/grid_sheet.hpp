@@ -18,8 +18,13 @@ class GridSheet {
   /// Takes the points where they stand now: all x, then all y, then all z.
   void move_to(std::span<const float> points);
 
+  std::size_t shells() const { return layout_.shells; }
+
   /// Draws all triangles with the program in use.
   void draw() const;
+
+  /// Draws those of one shell.
+  void draw_shell(std::size_t shell) const;
 
   /// One more number for each point: attribute 6.
   void set_level(std::span<const float> levels);

@@ -68,7 +68,9 @@ function(yuragi_kernel target source)
     add_library(${object} OBJECT ${source})
     target_link_libraries(${object} PRIVATE yuragi_flags)
     target_compile_definitions(${object} PRIVATE YURAGI_SIMD_ROW=${row})
-    target_compile_options(${object} PRIVATE -O3 ${flags_${row}})
+    # gcc gives a loop over many arrays up if it must check more than 10 pairs of them for overlap.
+    target_compile_options(${object} PRIVATE -O3 ${flags_${row}}
+      $<$<CXX_COMPILER_ID:GNU>:--param=vect-max-version-for-alias-checks=64>)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
   endforeach()
 endfunction()

@@ -59,7 +59,7 @@ struct GridKinematicsJob {
 };
 
 /// The one forward kinematics of a surface: a point is at its place at rest, moved along its normal by its
-/// displacement. Otherwise as GridKinematicsJob.
+/// displacement, and then as its row is, where rows are moved (SurfacePose). Otherwise as GridKinematicsJob.
 struct SurfaceKinematicsJob {
   const SurfaceSkeleton* skeleton = nullptr;
   const SurfacePose* pose = nullptr;

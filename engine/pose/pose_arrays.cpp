@@ -22,7 +22,14 @@ TreePose rest_pose_of(const TreeSkeleton& tree) {
 
 SurfacePose rest_pose_of(const SurfaceSkeleton& surface) {
   const std::size_t count = surface.columns * surface.rows;
-  return {std::vector<float>(count), std::vector<float>(surface.ramp_rgba.empty() ? 0 : count)};
+  const std::vector<float> rows(surface.moves_rows() ? surface.rows : 0);
+  return {std::vector<float>(count),
+          std::vector<float>(surface.ramp_rgba.empty() ? 0 : count),
+          rows,
+          rows,
+          rows,
+          rows,
+          rows};
 }
 
 bool is_pose_of(const StrandPose& pose, const StrandSkeleton& strands) noexcept {
@@ -41,7 +48,10 @@ bool is_pose_of(const TreePose& pose, const TreeSkeleton& tree) noexcept {
 
 bool is_pose_of(const SurfacePose& pose, const SurfaceSkeleton& surface) noexcept {
   const std::size_t count = surface.columns * surface.rows;
-  return pose.displacement_m.size() == count && pose.heat.size() == (surface.ramp_rgba.empty() ? 0 : count);
+  const std::size_t rows = surface.moves_rows() ? surface.rows : 0;
+  return pose.displacement_m.size() == count && pose.heat.size() == (surface.ramp_rgba.empty() ? 0 : count) &&
+         pose.row_east_m.size() == rows && pose.row_south_m.size() == rows && pose.row_drop_m.size() == rows &&
+         pose.row_slope_east.size() == rows && pose.row_slope_south.size() == rows;
 }
 
 std::size_t node_count_of(const StrandSkeleton& strands) noexcept {

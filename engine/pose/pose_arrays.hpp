@@ -34,6 +34,11 @@ void for_each_array(AnyPose& pose, Visit&& visit) {
   } else {
     visit(std::span(pose.displacement_m));
     visit(std::span(pose.heat));
+    visit(std::span(pose.row_east_m));
+    visit(std::span(pose.row_south_m));
+    visit(std::span(pose.row_drop_m));
+    visit(std::span(pose.row_slope_east));
+    visit(std::span(pose.row_slope_south));
   }
 }
 

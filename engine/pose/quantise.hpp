@@ -13,6 +13,9 @@ namespace yuragi {
 /// 1 m blade by less than 0.1 mm.
 inline constexpr float kBendStep_rad = 0x1.921fb6p1F / 32767.0F;
 
+/// And of the slope of a row: the range is +-4, steeper than any row.
+inline constexpr float kSlopeStep = 4.0F / 32767.0F;
+
 /// Angles (radians) to units of kBendStep_rad: rounded to the nearest, halves to even; what is beyond +-pi becomes
 /// +-32767, NaN becomes 0. Both spans have the same size and do not overlap. `row` is one that is_runnable(); unset:
 /// the widest. Every row gives the same bits. Thread-safe and realtime-safe: yes. Cost: 0.04 to 0.2 ns a value.
@@ -22,7 +25,7 @@ void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units,
 /// And back. Both spans have the same size. Thread-safe and realtime-safe: yes.
 void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad) noexcept;
 
-/// Ways (metres) to units of step_m (above 0), in the same manner. Thread-safe and realtime-safe: yes.
+/// Ways (metres), or slopes, to units of step_m (above 0), in the same manner. Thread-safe and realtime-safe: yes.
 void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::int16_t> units,
                    std::optional<SimdRow> row = std::nullopt) noexcept;
 

@@ -51,13 +51,14 @@ struct StrandPose {
 struct GridSkeleton {
   std::size_t columns = 0;
   std::size_t rows = 0;
-  bool is_first_column_fixed = false;  ///< a banner's pole, besides the cross-arm
+  bool is_first_column_fixed = false;  ///< a banner's pole: it stays, and the cross-arm may turn about it
   std::vector<float> rest_x_m, rest_y_m, rest_z_m;
 
   std::size_t stride() const { return padded_to_blocks(columns); }
 };
 
-/// How far each joint is from its place at rest, in the skeleton's layout. Zero is the rest pose; fixed joints stay 0.
+/// How far each joint is from its place at rest, in the skeleton's layout. Zero is the rest pose. The fixed edge stays
+/// 0; but where the first column is fixed, that stays 0 and the edge may turn about it.
 struct GridPose {
   std::vector<float> offset_x_m, offset_y_m, offset_z_m;
 };
@@ -93,19 +94,35 @@ struct TreePose {
 
 /// A surface whose points move along their normals, and which may glow: water, a flame. A grid of columns x rows
 /// points; point (column, row) stands at row * columns + column. All float vectors have columns * rows elements.
+///
+/// A closed one is a ring of points in each row, around a body; or several rings, one within another, the outermost
+/// first, of columns / shells points each: nested bodies.
 struct SurfaceSkeleton {
   std::size_t columns = 0;
   std::size_t rows = 0;
-  bool is_closed = false;  ///< the last column is followed by the first, around a body
+  bool is_closed = false;  ///< the last column of a shell is followed by its first, around a body
+  std::size_t shells = 1;  ///< of a closed surface: rings a row. At least 1, and columns are a multiple of it
   std::vector<float> rest_x_m, rest_y_m, rest_z_m;
   std::vector<float> normal_x, normal_y, normal_z;  ///< unit vectors
   std::vector<std::uint8_t> ramp_rgba;  ///< 256 colours of 4 bytes (sRGB, straight alpha) for `heat`; empty: no heat
+  /// The middle of each row at rest, where poses move whole rows (rows elements); otherwise none.
+  std::vector<float> axis_x_m, axis_z_m;
+
+  bool moves_rows() const { return !axis_x_m.empty(); }
 };
 
-/// How far each point is moved along its normal, and where its colour stands on the ramp.
+/// How far each point is moved along its normal, and where its colour stands on the ramp; and how each row is moved
+/// besides, in the world, as a body bends.
+///
+/// All points of a row go by (row_east_m, -row_drop_m, row_south_m), and the row, which was level, slopes: a point that
+/// is x east and z south of the row's middle goes down by row_slope_east x + row_slope_south z. (A body whose rows
+/// slope by the tangent of half the angle that its axis leans is as thick across the axis as it was.)
 struct SurfacePose {
   std::vector<float> displacement_m;  ///< columns * rows elements
   std::vector<float> heat;            ///< 0 to 1; as many, or none where there is no ramp
+  // rows elements each, or none where rows do not move.
+  std::vector<float> row_east_m, row_south_m, row_drop_m;
+  std::vector<float> row_slope_east, row_slope_south;
 };
 
 /// The kinds of skeleton, and the pose that goes with each, in the same order.

@@ -9,9 +9,12 @@
 #include "engine/base/units.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/math/trig.hpp"
+#include "engine/noise/line_cut.hpp"
 #include "engine/operators/displacement_job.hpp"
 #include "engine/operators/threshold_ramp_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
+#include "engine/scenes/flame_axis.hpp"
 #include "engine/scenes/flame_body.hpp"
 #include "engine/scenes/layered_noise.hpp"
 #include "engine/scenes/scene.hpp"
@@ -21,44 +24,61 @@
 //
 //   shift    two noises rise, one faster than the other, so that tongues change as they rise        LayeredNoise
 //   sample   the noise shows only above a threshold that rises from the foot to the top             ThresholdRampJob
-//   project  what shows is the heat, which indexes a color ramp; the shape's points are moved       DisplacementJob
-//            along their normals by the same noise
+//   project  what shows is the heat, which indexes a color ramp; the body's points are moved        DisplacementJob
+//            along their normals by the same noise, and its rows by the wind                        FlameAxis
 //
-// The wind leans the flame: by tan(max_lean) U^2 / (U^2 + half_speed^2) of a point's height, less near the foot, and
-// with a little inertia. The panel's picture is sheared, and only by the wind along the panel; the body's points move
-// along their normals as far as the shear takes them.
+// A body is three shells, one within another. Inside it is hotter: there the threshold is lower. One noise is read at
+// east and height of a point, the other at south and height, so that there is no seam and the shells burn together.
+//
+// It puffs: a fire draws its air in gulps, 1.5 / sqrt(width) a second (Cetegen and Ahmed 1993, Experiments on the
+// periodic instability of buoyant plumes and pool fires), and each gulp rises as a wave that lowers the threshold. Wind
+// breaks that up.
 //
 // A flame burns in calm air too. Its rest pose is the body, or the panel, upright and not yet lit (no heat); it catches
-// fire in the first seconds. In calm air it burns upright. (is_still_in_calm is false.)
+// fire in the first seconds. In calm air it burns upright. (is_still_in_calm is false.) The panel feels the wind along
+// it, and shows the bent flame as it would be seen.
 //
 // Heat changes in a tick of dt by at most 1.5 / edge (the soft edge's slope) times the change of noise minus threshold:
-// the layers' largest change while they rise by rise_speed dt and are leaned, (last - first) times the change of
-// `along`, and what catching fire does, w dt / e of the whole range of thresholds.
+// the layers' largest change while they rise by rise_speed dt, what a puff of 2 pi f dt does, and what catching fire
+// does, w dt / e of the whole range of thresholds.
 
 namespace yuragi {
 namespace {
 
-/// A layer of noise comes round after this time, whatever the speed: 64 samples in 150 ticks of 1/60 s, so that nothing
-/// is finer than what the ticks show (|k| U < pi rate). The second comes round sooner, and has fewer samples.
-constexpr double kRound_s = 2.5;
-constexpr std::size_t kFirstSamples = 64;
-constexpr std::size_t kSecondSamples = 32;
-constexpr double kSecondRound_s = kRound_s / std::numbers::phi;
+/// A tile is crossed by the rising gas in so many seconds: its samples are 0.04 s apart, so that nothing is finer than
+/// what ticks of 1/60 s show (|k| U < pi rate). It lies at a slant, so that nothing repeats after that time.
+constexpr double kCrossed_s = 10.24;
+constexpr std::size_t kNoiseSamples = 256;
+constexpr double kFewestWaves = 28.0;  ///< a tile: no tongue is longer than nine tenths of a metre at 2.5 m/s
 constexpr double kSecondFaster = 1.25;
 
-/// The thresholds at the foot and at the top, and the soft edge, in standard deviations of the noise.
-constexpr double kFootThreshold = -2.8;
-constexpr double kTopThreshold = 1.3;
-constexpr double kEdge = 2.4;
+/// How much of a tile the flame is wide. Its height is rise_speed's: tongues are four times as long as they are wide.
+constexpr double kWidthOfTile = 0.078125;
+
+/// The thresholds at the foot and at the top, and the soft edge, in standard deviations of the noise. Up the flame they
+/// rise as the cube of the height; at the foot of the inner shells they are lower by so much, at the top by nothing.
+constexpr double kFootThreshold = -2.7;
+constexpr double kTopThreshold = 1.5;
+constexpr double kEdge = 4.5;
+constexpr std::array<double, 3> kHotter = {0.0, 0.9, 1.8};
+constexpr double kHotterPanel = 0.9;
+
+/// What puffing lowers the threshold by at most, for a standard deviation of the whole heat of 1 (a part of its mean).
+/// Measured.
+constexpr double kPuff = 16.5;
+/// It grows as it rises, until this part of the way.
+constexpr double kPuffGrown = 0.6;
+/// A puff's pace wanders by a tenth, within seconds; and the wind that halves its power.
+constexpr double kPuff_hz_sqrt_m = 1.5;
+constexpr double kPaceWanders = 0.1;
+constexpr double kPacePeriod_s = 60.0;
+constexpr double kPuffless_m_s = 8.0;
 
 /// How fast a flame catches fire.
-constexpr double kKindle_rad_s = 2.5;
+constexpr double kKindle_rad_s = 1.8;
 
-/// How fast it follows the wind.
-constexpr double kLean_rad_s = 6.0;
-
-/// A lean below this is none: it moves nothing, and is not worth a denormal number.
-constexpr double kUpright = 1e-12;
+/// The axis sways by so much of `flicker`, a lean.
+constexpr double kWobblePerFlicker = 0.2;
 
 /// A point is never moved farther inward than this part of its distance from the axis.
 constexpr float kInward = 0.9F;
@@ -73,28 +93,68 @@ const std::array kFlameParameters = {
               "shape"s,
               {},
               {},
-              "texture: colors on an upright panel; shape: a body that the noise displaces",
+              "texture: colors on an upright panel; shape: a body of three shells that the noise displaces",
               kFlameForms},
-    Parameter{"columns", "", std::int64_t{128}, 8, 1000, "points across the panel, or around the body"},
-    Parameter{"rows", "", std::int64_t{96}, 8, 1000, "points from the foot to the top"},
-    Parameter{"height", "m", 1.2, 0.05, 50, "of the flame in calm air"},
-    Parameter{"width", "m", 0.5, 0.02, 20, "of its thickest part"},
-    Parameter{"rise_speed", "m/s", 1.4, 0.05, 20, "how fast its tongues rise"},
-    Parameter{"flicker", "", 0.3, 0, 0.8, "how far the noise moves the shape, as a part of its radius"},
-    Parameter{"max_lean", "deg", 45.0, 0, 60, "how far the strongest wind leans it"},
-    Parameter{"half_speed", "m/s", 4.0, 0.1, 60, "the wind that leans it half as far"},
+    Parameter{"columns", "", std::int64_t{126}, 9, 1000,
+              "points across the panel; of a body, around its three shells together: more is smoother"},
+    Parameter{"rows", "", std::int64_t{96}, 8, 1000, "points from the foot to the top: more shows finer tongues"},
+    Parameter{"height", "m", 1.2, 0.05, 50, "of the flame in calm air; in a wind it is shorter"},
+    Parameter{"width", "m", 0.5, 0.02, 20, "of its thickest part; a wider fire leans less, and puffs more slowly"},
+    Parameter{"rise_speed", "m/s", 2.5, 0.05, 20,
+              "how fast its tongues rise, and a gust bends it from the foot upward"},
+    Parameter{"flicker", "", 0.3, 0, 0.8,
+              "how far the noise moves the shape, as a part of its radius, and lets it sway: 0 burns like a candle"},
+    Parameter{
+        "puffing", "", 0.13, 0, 0.4,
+        "how much brighter and darker the whole flame gets twice a second as it breathes: its standard deviation, "
+        "as a part of its light"},
+    Parameter{"exposure", "", 1.0, 0, 3,
+              "how much of the wind reaches it: 1 lets it lean as a fire in the open does, less stands as if behind a "
+              "screen, 0 never leans"},
     Parameter{"beta", "", 3.0, 1, 6, "exponent of the noise's spectrum, 1/f^beta: less is rougher"},
 };
 
-/// The noises stretch along the way that they rise, and fit around the body with no seam.
-std::array<NoiseLayerSpec, 2> flame_layers(const ParameterValues& values, double around_m, std::uint64_t seed) {
-  const double rise_m_s = values.number("rise_speed");
-  const auto noise = [&](std::size_t size, std::uint64_t which) {
-    return NoiseSpec{.size = size, .beta = values.number("beta"), .seed = seed ^ which, .integral_scale = 0.1};
+/// The points' coordinates along the tiles: two noises at right angles to each other through a body, both across a
+/// panel.
+struct FlamePlaces {
+  std::vector<float> first_m, second_m;
+};
+FlamePlaces places_on_tiles(const FlameBody& body, double across) {
+  FlamePlaces places{body.east_m, body.is_panel ? body.east_m : body.south_m};
+  for (auto* all_m : {&places.first_m, &places.second_m}) {
+    for (float& at_m : *all_m) at_m = static_cast<float>(across * static_cast<double>(at_m));
+  }
+  return places;
+}
+
+std::array<NoiseLayerSpec, 2> flame_layers(const ParameterValues& values, std::uint64_t seed) {
+  const double period_m = values.number("rise_speed") * kCrossed_s;
+  const auto layer = [&](std::uint64_t which, double longer, float weight) {
+    return NoiseLayerSpec{.noise = {.size = kNoiseSamples,
+                                    .beta = values.number("beta"),
+                                    .seed = seed ^ which,
+                                    .from_cycles = kFewestWaves},
+                          .period_x_m = longer * period_m,
+                          .period_z_m = longer * period_m,
+                          .weight = weight,
+                          .turn_cos = LineCut::kEast,
+                          .turn_sin = LineCut::kSouth};
   };
-  return {
-      {{noise(kFirstSamples, stream_id("flame")), around_m, rise_m_s * kRound_s, 0.8F},
-       {noise(kSecondSamples, stream_id("flame tongues")), around_m, rise_m_s * kSecondFaster * kSecondRound_s, 0.6F}}};
+  return {layer(stream_id("flame"), 1.0, 0.8F), layer(stream_id("flame tongues"), kSecondFaster, 0.6F)};
+}
+
+LayeredNoise flame_noise(const FlameBody& body, const ParameterValues& values, double across, std::uint64_t seed) {
+  const FlamePlaces places = places_on_tiles(body, across);
+  std::array<NoiseLayerSpec, 2> layers = flame_layers(values, seed);
+  layers[1].x_m = places.second_m;
+  return {layers, places.first_m, body.up_m};
+}
+
+/// A noise of a tenth of a wave a second and less, for the puffs' pace.
+NoiseTile1 pace_of_puffs(std::uint64_t seed) {
+  return make_noise_1d(
+             {.size = 256, .beta = 1.0, .seed = seed ^ stream_id("flame pace"), .from_cycles = 2.0, .to_cycles = 40.0})
+      .value();
 }
 
 class Flame final : public Scene {
@@ -104,8 +164,7 @@ class Flame final : public Scene {
                                .columns = static_cast<std::size_t>(values.integer("columns")),
                                .rows = static_cast<std::size_t>(values.integer("rows")),
                                .height_m = values.number("height"),
-                               .width_m = values.number("width"),
-                               .largest_lean = std::tan(values.number("max_lean") * kRadPerDeg)},
+                               .width_m = values.number("width")},
                               setup.placement),
               values, setup) {}
 
@@ -115,120 +174,178 @@ class Flame final : public Scene {
   void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     kindled_.step(1.0, kKindle_rad_s, dt_s);
-    const double speed_m_s = wind_.speed_m_s();
-    const double lean_s_m = largest_lean_ * speed_m_s / (speed_m_s * speed_m_s + half_speed_m_s_ * half_speed_m_s_);
-    follow(lean_east_, lean_s_m * wind_.east_m_s(), dt_s);
-    follow(lean_south_, lean_s_m * wind_.south_m_s(), dt_s);
+    double east_m_s = exposure_ * wind_.east_m_s();
+    double south_m_s = exposure_ * wind_.south_m_s();
+    if (body_.is_panel) {  // it feels the wind along it
+      const double along_m_s = east_m_s * body_.panel_east + south_m_s * body_.panel_south;
+      east_m_s = along_m_s;
+      south_m_s = 0.0;
+    }
+    axis_.step(east_m_s, south_m_s, dt_s);
 
     noise_.shift(0, 0.0, rise_m_s_ * dt_s);
     noise_.shift(1, 0.0, kSecondFaster * rise_m_s_ * dt_s);
+    pace_at_.add(dt_s, kPacePeriod_s);
+    puffed_ += puff_hz_ * (1.0 + kPaceWanders * static_cast<double>(read_noise(pace_, pace_at_.phase()))) * dt_s;
+    puffed_ -= std::floor(puffed_);
+    const double calmer = std::sqrt(east_m_s * east_m_s + south_m_s * south_m_s) / kPuffless_m_s;
+    puff_ = kPuff * puffing_ / std::sqrt(1.0 + calmer * calmer);
   }
 
   void sample() noexcept override {
-    lean(lean_east_.value, lean_south_.value);
+    SurfacePose& pose = *std::get_if<SurfacePose>(&pose_);
+    if (body_.is_panel) {
+      axis_.write({bent_m_, unseen_, drop_m_, unseen_, unseen_});
+      show_on_panel();
+    } else {
+      axis_.write({pose.row_east_m, pose.row_south_m, pose.row_drop_m, pose.row_slope_east, pose.row_slope_south});
+      show_on_shells();
+    }
     noise_.sample(row_, values_);
 
     // As the flame kindles the thresholds come down from where nothing shows.
-    const double unlit = (1.0 - kindled_.value) * (noise_.highest() - kFootThreshold);
+    const double unlit = (1.0 - kindled_.value) * (noise_.highest() - kFootThreshold + kHotter.back() + puff_);
     ThresholdRampJob{.noise = values_,
                      .along = along_,
                      .first_threshold = static_cast<float>(kFootThreshold + unlit),
                      .last_threshold = static_cast<float>(kTopThreshold + unlit),
                      .edge = static_cast<float>(kEdge),
                      .row = row_,
-                     .level = std::get_if<SurfacePose>(&pose_)->heat}
+                     .level = pose.heat}
         .run();
   }
 
   void project(double /*dt_s*/) noexcept override {
     if (body_.is_panel) return;  // its colors are all that there is to it
 
-    // The shape's points move along their normals, by the noise and to where they lean.
+    // The shape's points move along their normals, by the noise.
     std::vector<float>& displacement_m = std::get_if<SurfacePose>(&pose_)->displacement_m;
     DisplacementJob{.noise = values_,
-                    .share = body_.radius_m,
+                    .share = body_.moved_m,
                     .amplitude_m = kindled_.value * flicker_,
                     .row = row_,
                     .displacement_m = displacement_m}
         .run();
-    for (std::size_t i = 0; i < leaned_m_.size(); ++i) {
-      displacement_m[i] = std::max(displacement_m[i] + leaned_m_[i], -kInward * body_.radius_m[i]);
+    for (std::size_t i = 0; i < displacement_m.size(); ++i) {
+      displacement_m[i] = std::max(displacement_m[i], -kInward * body_.radius_m[i]);
     }
   }
 
-  /// The panel's points do not move at all. The body's move by kindled flicker radius noise + lean lever, cut inward,
-  /// which makes no step larger. In a tick `kindled` changes by at most w dt / e, the noise by what rises past, and the
-  /// lean, which follows a target that is never longer than tan(max_lean), by at most that times 2 w dt / e.
+  /// The panel's points do not move at all. The body's move by no more than kindled flicker radius noise, cut inward,
+  /// which makes no step larger, and with their row; up and down also with its slope, by their distance from the axis.
+  /// In a tick `kindled` changes by at most w dt / e, the noise by what rises past.
   double largest_joint_step_m(double dt_s) const noexcept override {
     if (body_.is_panel) return 0.0;
     const double kindled_step = std::min(kKindle_rad_s * dt_s / std::numbers::e, 1.0);
     const double largest_noise = std::max(noise_.highest(), -noise_.lowest());
     const double noise_step = noise_.largest_change(0, 0.0, rise_m_s_ * dt_s) +
                               noise_.largest_change(1, 0.0, kSecondFaster * rise_m_s_ * dt_s);
-    const double lean_step = largest_lean_ * std::min(2.0 * kLean_rad_s * dt_s / std::numbers::e, 2.0);
-    return flicker_ * body_.largest_radius_m * (noise_step + kindled_step * largest_noise) +
-           lean_step * body_.largest_lever_m;
+    const double step_m = flicker_ * body_.largest_radius_m * (noise_step + kindled_step * largest_noise);
+    const double farthest_m = body_.largest_radius_m * (1.0 + flicker_ * largest_noise);
+    return step_m * (1.0 + axis_.largest_slope()) + farthest_m * axis_.largest_slope_step(dt_s) +
+           axis_.largest_step_m(dt_s);
   }
 
  private:
   Flame(FlameBody body, const ParameterValues& values, const SceneSetup& setup)
       : row_(setup.row),
         rise_m_s_(values.number("rise_speed")),
+        height_m_(values.number("height")),
+        width_m_(values.number("width")),
         flicker_(values.number("flicker")),
-        largest_lean_(std::tan(values.number("max_lean") * kRadPerDeg)),
-        half_speed_m_s_(values.number("half_speed")),
+        puffing_(values.number("puffing")),
+        exposure_(values.number("exposure")),
+        puff_hz_(kPuff_hz_sqrt_m / std::sqrt(values.number("width"))),
+        across_(kWidthOfTile * kCrossed_s * values.number("rise_speed") / values.number("width")),
         wind_(setup.placement, setup.gusts),
-        noise_(flame_layers(values, body.around_m, setup.seed), body.across_m, body.up_m),
-        values_(body.across_m.size(), 0.0F),
-        along_(body.across_m.size(), 0.0F),
-        leaned_m_(body.across_m.size(), 0.0F),
+        axis_({.rows = body.surface.rows,
+               .height_m = values.number("height") * static_cast<double>(body.along.back()),
+               .felt_at_m = values.number("height") / 2.0,
+               .foot_m = values.number("width"),
+               .rise_m_s = values.number("rise_speed"),
+               .wobble = kWobblePerFlicker * values.number("flicker"),
+               .strongest_m_s = kStrongestSceneWind_m_s * values.number("exposure"),
+               .seed = setup.seed}),
+        noise_(flame_noise(body, values, across_, setup.seed)),
+        pace_(pace_of_puffs(setup.seed)),
+        values_(body.east_m.size(), 0.0F),
+        along_(body.east_m.size(), 0.0F),
+        bent_m_(body.is_panel ? body.surface.rows : 0),
+        drop_m_(bent_m_.size()),
+        unseen_(bent_m_.size()),
         skeleton_(std::move(body.surface)),
         pose_(rest_pose(skeleton_)),
         body_(std::move(body)) {}
 
-  static void follow(CriticallyDamped& lean, double target, double dt_s) noexcept {
-    lean.step(target, kLean_rad_s, dt_s);
-    if (target == 0.0 && std::abs(lean.value) < kUpright && std::abs(lean.rate_per_s) < kUpright) lean = {};
+  /// Where a part of the flame, `v` of the way from its foot to its top, is along the rising threshold. The foot of a
+  /// puff's wave leaves the flame's foot as its top reaches the next one's.
+  double along_at(double v, double hotter) const noexcept {
+    double wave = puffed_ - v * height_m_ * puff_hz_ / rise_m_s_;
+    wave -= std::floor(wave);
+    const auto sine = static_cast<double>(sin_cos(static_cast<float>(2.0 * kPi * wave)).sin);
+    const double grown = std::min(v / kPuffGrown, 1.0);
+    return v * v * v - (puff_ * grown * sine + hotter * std::max(1.0 - v, 0.0)) / (kTopThreshold - kFootThreshold);
   }
 
-  /// Leans the flame: where each point is along the rising threshold, and how far the shape's points are moved by it.
-  /// `east` and `south` are the lean's tangent.
-  void lean(double east, double south) noexcept {
+  /// Where each point of the body is along the rising threshold.
+  void show_on_shells() noexcept {
     const auto& surface = *std::get_if<SurfaceSkeleton>(&skeleton_);
+    const std::size_t around = surface.columns / surface.shells;
+    float* along = along_.data();
     for (std::size_t row = 0; row < surface.rows; ++row) {
+      for (std::size_t shell = 0; shell < surface.shells; ++shell, along += around) {
+        std::fill(along, along + around,
+                  static_cast<float>(along_at(static_cast<double>(body_.along[row]), kHotter[shell])));
+      }
+    }
+  }
+
+  /// The same for the panel: at each height it shows the part of the bent flame that is as high, where it is.
+  void show_on_panel() noexcept {
+    const auto& surface = *std::get_if<SurfaceSkeleton>(&skeleton_);
+    const auto up_m = [this](std::size_t row) { return static_cast<double>(body_.along[row]) * height_m_; };
+    const auto high_m = [&](std::size_t row) { return up_m(row) - static_cast<double>(drop_m_[row]); };
+    std::size_t part = 0;  // of the axis: the last whose end is not higher
+    for (std::size_t row = 0; row < surface.rows; ++row) {
+      while (part + 2 < surface.rows && high_m(part + 1) <= up_m(row)) ++part;
+      const double link_m = std::max(high_m(part + 1) - high_m(part), 1e-6);
+      const double fraction = std::max((up_m(row) - high_m(part)) / link_m, 0.0);
+      const double within = std::min(fraction, 1.0);
+      const double v = static_cast<double>(body_.along[part]) +
+                       fraction * static_cast<double>(body_.along[part + 1] - body_.along[part]);
+      const double way_m =
+          static_cast<double>(bent_m_[part]) + within * static_cast<double>(bent_m_[part + 1] - bent_m_[part]);
       const std::size_t first = row * surface.columns;
-      const double lever_m = static_cast<double>(body_.lever_m[row]);
-      if (body_.is_panel) {
-        const double way_m = lever_m * (east * body_.panel_east + south * body_.panel_south);
-        noise_.lean(first, surface.columns, -way_m);
-        for (std::size_t i = first; i < first + surface.columns; ++i) {
-          const float side = (body_.across_m[i] - static_cast<float>(way_m)) * body_.per_half_width_m[row];
-          along_[i] = body_.along[row] + side * side;
-        }
-      } else {
-        const auto east_m = static_cast<float>(lever_m * east);
-        const auto south_m = static_cast<float>(lever_m * south);
-        const float all_m = std::sqrt(east_m * east_m + south_m * south_m);
-        for (std::size_t i = first; i < first + surface.columns; ++i) {
-          leaned_m_[i] = surface.normal_x[i] * east_m + surface.normal_z[i] * south_m;
-          // Upwind of a leaning flame and beside it there is less to see.
-          along_[i] = body_.along[row] + (all_m - leaned_m_[i]) * body_.per_height_m;
-        }
+      noise_.lean(first, surface.columns, -across_ * way_m);
+      const auto middle = static_cast<float>(along_at(v, kHotterPanel));
+      const auto per_half_width = static_cast<float>(1.6 / (width_m_ * (1.0 - 0.5 * std::min(v, 1.0))));
+      for (std::size_t i = first; i < first + surface.columns; ++i) {
+        const float side = (body_.east_m[i] - static_cast<float>(way_m)) * per_half_width;
+        along_[i] = middle + side * side;
       }
     }
   }
 
   SimdRow row_;
   double rise_m_s_;
+  double height_m_;
+  double width_m_;
   double flicker_;
-  double largest_lean_;
-  double half_speed_m_s_;
+  double puffing_;
+  double exposure_;
+  double puff_hz_;
+  double across_;  ///< of a tile's metres in one across the flame
 
   SceneWind wind_;
-  CriticallyDamped kindled_;                 ///< 0 unlit, 1 burning
-  CriticallyDamped lean_east_, lean_south_;  ///< tangents
+  CriticallyDamped kindled_;  ///< 0 unlit, 1 burning
+  FlameAxis axis_;
   LayeredNoise noise_;
-  std::vector<float> values_, along_, leaned_m_;  ///< a point each
+  NoiseTile1 pace_;
+  TorusTravel pace_at_;
+  double puffed_ = 0.0;                          ///< puffs, their whole number left out
+  double puff_ = 0.0;                            ///< what one lowers the threshold by at most
+  std::vector<float> values_, along_;            ///< a point each
+  std::vector<float> bent_m_, drop_m_, unseen_;  ///< of the panel's flame, a row each
   Skeleton skeleton_;
   Pose pose_;
   FlameBody body_;  ///< but for its surface, which is in skeleton_
@@ -239,7 +356,7 @@ class Flame final : public Scene {
 extern const SceneDescription kFlameScene;
 const SceneDescription kFlameScene = {
     .name = "flame",
-    .summary = "a flame: tongues of noise rise, and the wind leans it",
+    .summary = "a flame: tongues of noise rise, it breathes, and the wind lays it over",
     .parameters = kFlameParameters,
     .make = [](const ParameterValues& values,
                const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Flame>(values, setup)); },

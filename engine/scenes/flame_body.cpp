@@ -12,11 +12,17 @@
 namespace yuragi {
 namespace {
 
-/// A panel is higher than its flame, whose last tongues go out above it.
+/// A panel is higher than its flame, whose last tongues go out above it, and wide enough for one that leans: the most
+/// that FlameInWind lets it reach to a side is two thirds of its height.
 constexpr double kPanelHeight = 1.35;
+constexpr double kPanelReach = 0.7;
 
 /// A body is this much of sqrt(v) (1 - v) of its half width thick, v from foot to top: as thick as it says at a third.
 constexpr double kThickest = 1.5 * 1.7320508075688772;
+
+/// The noise moves the foot by so much of what it moves the rest, from this part of the height on.
+constexpr double kSteadyFoot = 0.25;
+constexpr double kFreeAt = 0.5;
 
 /// A color of the ramp: where it stands, and red, green, blue and alpha (sRGB, straight alpha).
 struct RampColor {
@@ -57,66 +63,76 @@ void add_point(SurfaceSkeleton& surface, std::array<double, 3> place_m, std::arr
   surface.normal_z.push_back(static_cast<float>(normal[2]));
 }
 
+void add_flame_point(std::array<double, 3> place_m, std::array<double, 3> normal, double radius_m, double moved_m,
+                     FlameBody& body) {
+  add_point(body.surface, place_m, normal);
+  body.east_m.push_back(static_cast<float>(place_m[0]));
+  body.up_m.push_back(static_cast<float>(place_m[1]));
+  body.south_m.push_back(static_cast<float>(place_m[2]));
+  body.radius_m.push_back(static_cast<float>(radius_m));
+  body.moved_m.push_back(static_cast<float>(moved_m));
+}
+
 void add_panel_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
-  const double half_m = 0.75 * spec.width_m + spec.largest_lean * spec.height_m;
+  const double half_m = 0.75 * spec.width_m + kPanelReach * spec.height_m;
   for (std::size_t column = 0; column < spec.columns; ++column) {
     const double across_m = (2.0 * static_cast<double>(column) / static_cast<double>(spec.columns - 1) - 1.0) * half_m;
-    add_point(body.surface, {across_m, up_m, 0.0}, {0.0, 0.0, 1.0});
-    body.across_m.push_back(static_cast<float>(across_m));
-    body.up_m.push_back(static_cast<float>(up_m));
-    body.radius_m.push_back(0.0F);
+    add_flame_point({across_m, up_m, 0.0}, {0.0, 0.0, 1.0}, 0.0, 0.0, body);
   }
 }
 
 void add_body_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
   const double v = up_m / spec.height_m;
-  const double radius_m = kThickest * 0.5 * spec.width_m * std::sqrt(v) * (1.0 - v);
-
-  // The normal stands across the outline, whose radius grows by d radius / d up; at the foot it points down.
   const double root = std::max(std::sqrt(v), 1e-6);
-  const double growth = kThickest * 0.5 * spec.width_m * (0.5 / root - 1.5 * root) / spec.height_m;
-  const double length = std::sqrt(1.0 + growth * growth);
-  for (std::size_t column = 0; column < spec.columns; ++column) {
-    const double part = static_cast<double>(column) / static_cast<double>(spec.columns);
-    const SinCos around = sin_cos(static_cast<float>(2.0 * kPi * part));
-    const auto x = static_cast<double>(around.cos);
-    const auto z = static_cast<double>(around.sin);
-    add_point(body.surface, {radius_m * x, up_m, radius_m * z}, {x / length, -growth / length, z / length});
-    body.across_m.push_back(static_cast<float>(part * body.around_m));
-    body.up_m.push_back(static_cast<float>(up_m));
-    body.radius_m.push_back(static_cast<float>(radius_m));
+  const std::size_t around = body.surface.columns / kFlameShells.size();
+  for (const double part : kFlameShells) {
+    const double half_m = 0.5 * part * spec.width_m;
+    const double radius_m = half_m * flame_width_at(v);
+    const double moved_m = radius_m * std::min(kSteadyFoot + v * (1.0 - kSteadyFoot) / kFreeAt, 1.0);
+
+    // The normal stands across the outline, whose radius grows by d radius / d up; at the foot it points down.
+    const double growth = kThickest * half_m * (0.5 / root - 1.5 * root) / spec.height_m;
+    const double length = std::sqrt(1.0 + growth * growth);
+    for (std::size_t column = 0; column < around; ++column) {
+      const SinCos turn =
+          sin_cos(static_cast<float>(2.0 * kPi * static_cast<double>(column) / static_cast<double>(around)));
+      const auto x = static_cast<double>(turn.cos);
+      const auto z = static_cast<double>(turn.sin);
+      add_flame_point({radius_m * x, up_m, radius_m * z}, {x / length, -growth / length, z / length}, radius_m, moved_m,
+                      body);
+    }
+    body.largest_radius_m = std::max(body.largest_radius_m, radius_m);
   }
-  body.largest_radius_m = std::max(body.largest_radius_m, radius_m);
 }
 
 }  // namespace
 
+double flame_width_at(double along) noexcept {
+  const double v = std::clamp(along, 0.0, 1.0);
+  return kThickest * std::sqrt(v) * (1.0 - v);
+}
+
 FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement) {
   FlameBody body;
   body.is_panel = spec.is_panel;
-  body.surface.columns = spec.columns;
+  const std::size_t shells = spec.is_panel ? 1 : kFlameShells.size();
+  body.surface.columns = spec.columns - spec.columns % shells;
   body.surface.rows = spec.rows;
   body.surface.is_closed = !spec.is_panel;
+  body.surface.shells = shells;
+  body.surface.axis_x_m.assign(spec.is_panel ? 0 : spec.rows, 0.0F);
+  body.surface.axis_z_m = body.surface.axis_x_m;
   body.surface.ramp_rgba = flame_ramp();
-  body.around_m = kPi * spec.width_m;
-  body.per_height_m = static_cast<float>(1.0 / spec.height_m);
 
   const double top_m = spec.is_panel ? kPanelHeight * spec.height_m : spec.height_m;
   for (std::size_t row = 0; row < spec.rows; ++row) {
     const double up_m = top_m * static_cast<double>(row) / static_cast<double>(spec.rows - 1);
-    const double v = up_m / spec.height_m;
     if (spec.is_panel) {
       add_panel_row(spec, up_m, body);
     } else {
       add_body_row(spec, up_m, body);
     }
-    body.along.push_back(static_cast<float>(v));
-
-    // A leaning flame is bent: its foot stays where it is.
-    const double lever_m = up_m * (0.4 + 0.6 * std::min(v, 1.0));
-    body.lever_m.push_back(static_cast<float>(lever_m));
-    body.largest_lever_m = std::max(body.largest_lever_m, lever_m);
-    body.per_half_width_m.push_back(static_cast<float>(1.6 / (spec.width_m * (1.0 - 0.5 * std::min(v, 1.0)))));
+    body.along.push_back(static_cast<float>(up_m / spec.height_m));
   }
 
   place(placement, body.surface);

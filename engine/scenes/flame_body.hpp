@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -8,35 +9,37 @@
 
 namespace yuragi {
 
+/// A body of flame is nested shells, of these parts of its width, from the outermost inward.
+inline constexpr std::array<double, 3> kFlameShells = {1.0, 0.65, 0.35};
+
 /// What a flame's body is like.
 struct FlameBodySpec {
-  bool is_panel = false;  ///< a flat upright panel for a picture of the flame, and not its own shape
-  std::size_t columns = 96;
+  bool is_panel = false;     ///< a flat upright panel for a picture of the flame, and not its own shape
+  std::size_t columns = 96;  ///< points across the panel; of a body, around all of its shells together
   std::size_t rows = 96;
-  double height_m = 1.2;      ///< of the flame
-  double width_m = 0.5;       ///< of its thickest part
-  double largest_lean = 1.0;  ///< its tangent: the panel is wide enough for it
+  double height_m = 1.2;  ///< of the flame
+  double width_m = 0.5;   ///< of its thickest part
 };
 
 /// The surface that a flame is shown on, and what its operators need to know of each point or row.
 ///
 /// A panel stands along the scene's east and faces its south, with the flame in its middle. A body is closed around its
-/// axis, round, pointed at the foot and at the top, and thickest at a third of its height. Rows go from the foot up;
-/// columns from west to east, or around from the east by the south.
+/// axis, round, pointed at the foot and at the top, and thickest at a third of its height; its rows move. Rows go from
+/// the foot up; columns from west to east, or around from the east by the south, shell by shell.
 struct FlameBody {
   SurfaceSkeleton surface;
   bool is_panel = false;
-  double around_m = 1.0;                ///< after how much of across_m the body closes; of a panel: its noise's period
-  std::vector<float> across_m, up_m;    ///< of each point, along the surface: from the middle or around; from the foot
-  std::vector<float> radius_m;          ///< of each point from the axis; of a panel none
-  std::vector<float> along;             ///< of each row, from the foot (0) to the flame's top (1)
-  std::vector<float> lever_m;           ///< of each row: how far a lean of tangent 1 moves it
-  std::vector<float> per_half_width_m;  ///< of each row of a panel: 1 / half the flame's width there
-  float per_height_m = 1.0F;            ///< 1 / the flame's height
+  std::vector<float> east_m, south_m, up_m;  ///< of each point at rest, from the foot's middle, before it is placed
+  std::vector<float> radius_m;               ///< of each point from the axis; of a panel none
+  std::vector<float> moved_m;                ///< how much of it the noise moves: less near the foot
+  std::vector<float> along;                  ///< of each row, from the foot (0) to the flame's top (1)
   double largest_radius_m = 0.0;
-  double largest_lever_m = 0.0;
   double panel_east = 1.0, panel_south = 0.0;  ///< unit vector along the panel, in the world
 };
+
+/// How much of a flame's width is left at a height, `along` from the foot (0) to the top (1): 1 at a third. As a body
+/// has it. Thread-safe and realtime-safe: yes.
+double flame_width_at(double along) noexcept;
 
 /// Lays a flame out on the ground around the world's origin, and places it. Allocates; may throw std::bad_alloc.
 /// Thread-safe: yes. Realtime-safe: no.

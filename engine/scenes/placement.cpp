@@ -53,6 +53,9 @@ void place(const ScenePlacement& placement, TreeSkeleton& tree) noexcept {
 void place(const ScenePlacement& placement, SurfaceSkeleton& surface) noexcept {
   turn_and_move(placement, surface.rest_x_m, surface.rest_y_m, surface.rest_z_m);
   turn(placement, surface.normal_x, surface.normal_z);
+  turn(placement, surface.axis_x_m, surface.axis_z_m);
+  move(placement.x_m, surface.axis_x_m);
+  move(placement.z_m, surface.axis_z_m);
 }
 
 }  // namespace yuragi

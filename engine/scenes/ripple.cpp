@@ -13,19 +13,24 @@
 #include "engine/scenes/carried_noise.hpp"
 #include "engine/scenes/layered_noise.hpp"
 #include "engine/scenes/placement.hpp"
+#include "engine/scenes/rough_water.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 #include "engine/scenes/wind_grid.hpp"
 
 // Ripples on water (Chiba, section 2-2: displacement): a surface whose points shifted noise moves along their normals.
 //
-//   shift    two fields of waves go downwind at their own speed, to either side of the wind, so that      LayeredNoise
-//            their sum changes as it goes; gusts go with the wind                                         CarriedNoise
-//   sample   the waves at each point, and how hard the gust over it blows                                 (both)
-//   project  each point moves along its normal, by an amplitude that the wind raises DisplacementJob
+//   shift    two fields of waves go downwind at their own speed, to either side of the wind, so that   LayeredNoise
+//            their sum changes as it goes; how steep the water is follows the wind over each place     RoughWater
+//   sample   the waves at each point, and how steep they are there                                     (both)
+//   project  each point moves along its normal, as far as makes waves so steep                         DisplacementJob
 //
-// In calm air the amplitude is 0 and the water flat. It follows height U^2 / (U^2 + half_speed^2), and takes its time,
-// as waves do.
+// In calm air the water is flat. From about 1 m/s on the variance of its slope is that which was measured on the sea
+// (Cox and Munk 1954), or a part of it, for a grid does not hold the finest waves: its height grows as the root of the
+// wind. Where a gust touches the water it is steeper, mirrors less of the low, bright sky, and is darker: a cat's paw.
+//
+// Short waves come first, long ones with the wind: from 1 to 8 m/s the variance goes over from the short field to the
+// long one.
 
 namespace yuragi {
 namespace {
@@ -33,56 +38,59 @@ namespace {
 constexpr std::size_t kWaveSamples = 512;
 constexpr double kWavesPerTile = 16.0;  ///< so a wave has 32 samples
 
+/// No wave is longer than this times the strongest: it would go faster than the field that carries it.
+constexpr double kLongest = 1.5;
+
 /// Two octaves of the finest are left out: what is shorter than a sixth of a wave. It would be too fine for the grid,
 /// and would show the samples; what is left goes slowly enough for the ticks (|k| U < pi rate from wave_length 0.1 m
 /// on).
 constexpr std::size_t kWaveBand = 2;
 
 constexpr double kGravity_m_s2 = 9.81;
+constexpr double kTension_m3_s2 = 7.3e-5;  ///< of clean water, over its density
 
 /// The second field of waves is shorter than the first.
 constexpr double kShorter = 1.0 / std::numbers::phi;
-
-/// 1 / sqrt(2): the variances of the two add up to 1.
-constexpr float kHalfOfBoth = 0x1.6a09e6p-1F;
 
 /// Where the two fields go, 25 degrees to either side of the wind: cosine and sine.
 constexpr double kCrossingCos = 0x1.d0079302dd767p-1;
 constexpr double kCrossingSin = 0x1.b0c2d77379853p-2;
 
-/// How fast waves build up and die away.
-constexpr double kBuildUp_rad_s = 1.5;
-
 /// Below this wind (m/s) waves slow down, so that there is no direction to be known in calm air.
 constexpr double kSlow_m_s = 0.5;
 
-/// What is left of an amplitude that has died away: it moves nothing, and is not worth a denormal number.
-constexpr double kFlat = 1e-12;
-
-/// The gusts' own samples are as far apart.
+/// Where the water feels the wind: so far apart, or farther.
 constexpr double kFinestCell_m = 0.5;
 
-/// Beyond it gusts from outside roughen the water no more, in standard deviations of a usual wind.
-constexpr float kLargestGust = 3.0F;
+/// The long field's part of the height's variance, in a wind of so much.
+constexpr double kShortWind_m_s = 1.0;
+constexpr double kLongWind_m_s = 8.0;
+constexpr double kLeastLong = 0.2;
+constexpr double kMostLong = 0.8;
+
+/// Gusts of the water's own, where the wind brings none: their standard deviation, as a part of the wind.
+constexpr double kOwnGusts = 0.2;
 
 const std::array kRippleParameters = {
     Parameter{"columns", "", std::int64_t{200}, 2, 1000, "points from west to east"},
     Parameter{"rows", "", std::int64_t{200}, 2, 1000, "points from north to south"},
     Parameter{"width", "m", 8.0, 0.1, 200, "the water from west to east"},
     Parameter{"depth", "m", 8.0, 0.1, 200, "the water from north to south"},
-    Parameter{"height", "m", 0.04, 0, 2, "of the waves in the strongest wind: their standard deviation"},
+    Parameter{"steepness", "", 0.6, 0, 3,
+              "of the waves: the variance of their slope, as a part of the sea's: 0.6 leaves out the finest, which the "
+              "grid cannot hold; more is choppier"},
     Parameter{"wave_length", "m", 1.2, 0.3, 100, "of the strongest waves; it sets their speed too, as on deep water"},
-    Parameter{"half_speed", "m/s", 5.0, 0.1, 60, "the wind that raises waves to half their height"},
-    Parameter{"gustiness", "", 0.35, 0, 2,
-              "how much the waves differ where gusts pass: the gusts' standard deviation, as a part of the wind"},
+    Parameter{"onset", "m/s", 1.2, 0.1, 20, "the wind that raises the first ripples: a weaker one leaves a mirror"},
+    Parameter{"gustiness", "", 1.0, 0, 3,
+              "how much darker and rougher the water is where gusts pass: 1 as it is, 0 everywhere the same"},
     Parameter{"beta", "", 4.0, 2, 6, "exponent of the waves' spectrum beyond the strongest: less is rougher"},
 };
 
 /// A level grid around the world's origin, rows along x from north to south.
-SurfaceSkeleton level_water(const ParameterValues& values) {
+SurfaceSkeleton level_water(const ParameterValues& values, std::size_t columns, std::size_t rows) {
   SurfaceSkeleton water;
-  water.columns = static_cast<std::size_t>(values.integer("columns"));
-  water.rows = static_cast<std::size_t>(values.integer("rows"));
+  water.columns = columns;
+  water.rows = rows;
   const auto at = [](std::size_t index, std::size_t count, double extent_m) {
     return static_cast<float>((static_cast<double>(index) / static_cast<double>(count - 1) - 0.5) * extent_m);
   };
@@ -100,10 +108,31 @@ SurfaceSkeleton level_water(const ParameterValues& values) {
   return water;
 }
 
-SurfaceSkeleton placed_water(const ParameterValues& values, const ScenePlacement& placement) {
-  SurfaceSkeleton water = level_water(values);
+SurfaceSkeleton placed_water(const ParameterValues& values, std::size_t columns, std::size_t rows,
+                             const ScenePlacement& placement) {
+  SurfaceSkeleton water = level_water(values, columns, rows);
   place(placement, water);
   return water;
+}
+
+RoughWaterSpec roughness_of(const ParameterValues& values) {
+  return {.columns = static_cast<std::size_t>(values.integer("columns")),
+          .rows = static_cast<std::size_t>(values.integer("rows")),
+          .width_m = values.number("width"),
+          .depth_m = values.number("depth"),
+          .finest_cell_m = kFinestCell_m,
+          .part = values.number("steepness"),
+          .onset_m_s = values.number("onset")};
+}
+
+/// The speed of waves on deep water, which gravity and the surface's tension drive.
+double wave_speed(double length_m) {
+  const double per_rad_m = length_m / (2.0 * std::numbers::pi);
+  return std::sqrt(kGravity_m_s2 * per_rad_m + kTension_m3_s2 / per_rad_m);
+}
+
+double square_of(double value) {
+  return value * value;
 }
 
 /// The two fields. Beyond the strongest wave, of length wave_length, their spectrum falls as 1/f^beta, and before it
@@ -114,17 +143,22 @@ std::array<NoiseLayerSpec, 2> wave_layers(const ParameterValues& values, std::ui
   const double period_m = kWavesPerTile * values.number("wave_length");
   const double scale = 1.0 / (kWavesPerTile * 2.0 * std::numbers::pi * std::sqrt(beta) * 1.339);
   const auto waves = [&](std::uint64_t which) {
-    return NoiseSpec{.size = kWaveSamples, .beta = beta, .seed = seed ^ which, .integral_scale = scale};
+    return NoiseSpec{.size = kWaveSamples,
+                     .beta = beta,
+                     .seed = seed ^ which,
+                     .integral_scale = scale,
+                     .from_cycles = kWavesPerTile / kLongest};
   };
-  return {
-      {{waves(stream_id("ripple waves")), period_m, period_m, kHalfOfBoth, kWaveBand},
-       {waves(stream_id("ripple crossing waves")), kShorter * period_m, kShorter * period_m, kHalfOfBoth, kWaveBand}}};
+  return {{{waves(stream_id("ripple waves")), period_m, period_m, 1.0F, kWaveBand},
+           {waves(stream_id("ripple crossing waves")), kShorter * period_m, kShorter * period_m, 1.0F, kWaveBand}}};
 }
 
 class Ripple final : public Scene {
  public:
   Ripple(const ParameterValues& values, const SceneSetup& setup)
-      : Ripple(placed_water(values, setup.placement), values, setup) {}
+      : Ripple(placed_water(values, static_cast<std::size_t>(values.integer("columns")),
+                            static_cast<std::size_t>(values.integer("rows")), setup.placement),
+               values, setup) {}
 
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
@@ -134,7 +168,7 @@ class Ripple final : public Scene {
     const double east_m_s = wind_.east_m_s();
     const double south_m_s = wind_.south_m_s();
 
-    // Waves go at their own speed, the two fields to either side of the wind; gusts go with it.
+    // Waves go at their own speed, the two fields to either side of the wind.
     const double square = east_m_s * east_m_s + south_m_s * south_m_s;
     const double speed_per_wind = 1.0 / std::sqrt(square + kSlow_m_s * kSlow_m_s);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -143,94 +177,111 @@ class Ripple final : public Scene {
       waves_.shift(i, way * (kCrossingCos * east_m_s - sine * south_m_s),
                    way * (sine * east_m_s + kCrossingCos * south_m_s));
     }
+    const double speed_m_s = std::sqrt(square);
+    const double longer = std::clamp((speed_m_s - kShortWind_m_s) / (kLongWind_m_s - kShortWind_m_s), 0.0, 1.0);
+    long_part_.step(longer, RoughWater::kBuildUp_rad_s, dt_s);
     if (outside_) {
       outside_->step(wind, dt_s);
+      feel_gusts_outside();
     } else {
       gusts_.shift(east_m_s, south_m_s, dt_s);
+      gusts_.sample(gust_places_, row_, node_wind_m_s_, static_cast<float>(kOwnGusts * gustiness_ * speed_m_s),
+                    static_cast<float>(speed_m_s), 0.0F);
     }
+    rough_.step(node_wind_m_s_, dt_s);
   }
 
   void sample() noexcept override {
+    const double long_part = kLeastLong + (kMostLong - kLeastLong) * long_part_.value;
+    waves_.set_weight(0, static_cast<float>(std::sqrt(long_part)));
+    waves_.set_weight(1, static_cast<float>(std::sqrt(1.0 - long_part)));
+    height_per_slope_m_ = 1.0 / std::sqrt(long_part * square_of(waves_.slope_rms_per_m(0)) +
+                                          (1.0 - long_part) * square_of(waves_.slope_rms_per_m(1)));
     waves_.sample(row_, noise_);
-    if (!outside_) {
-      gusts_.sample(gust_places_, row_, share_, static_cast<float>(gustiness_), 1.0F, 0.0F);
-      return;
-    }
-    outside_->sample_gusts(0, share_, kLargestGust);
-    for (float& share : share_) share = std::max(1.0F + static_cast<float>(gustiness_) * share, 0.0F);
+    rough_.sample(row_, slope_);
   }
 
-  void project(double dt_s) noexcept override {
-    // The wind raises the waves.
-    const double square = wind_.speed_m_s() * wind_.speed_m_s();
-    amplitude_m_.step(height_m_ * square / (square + half_speed_m_s_ * half_speed_m_s_), kBuildUp_rad_s, dt_s);
-    if (square == 0.0 && amplitude_m_.value < kFlat && std::abs(amplitude_m_.rate_per_s) < kFlat) amplitude_m_ = {};
+  void project(double /*dt_s*/) noexcept override {
     DisplacementJob{.noise = noise_,
-                    .share = share_,
-                    .amplitude_m = amplitude_m_.value,
+                    .share = slope_,
+                    .amplitude_m = height_per_slope_m_,
                     .row = row_,
                     .displacement_m = std::get_if<SurfacePose>(&pose_)->displacement_m}
         .run();
   }
 
-  /// A point is moved by amplitude * share * waves. In a tick the amplitude, which follows a target from 0 to height,
-  /// changes by at most height w dt / e (CriticallyDamped); the gusts by what the strongest wind carries past; the
-  /// waves by what goes past at their own speed. Each times the others at their largest.
+  /// A point is moved by slope noise / k, where the noise is the sum of w_i n_i, w_i^2 being the parts p and 1 - p of
+  /// its variance, and k^2 = p k_1^2 + (1 - p) k_2^2: at least k_1^2, of the long field. In a tick the slope changes as
+  /// RoughWater has it; the waves by what goes past at their own speed; p by d = 0.6 w dt / e, and with it each w_i by
+  /// at most d / (2 sqrt(0.2)), and 1 / k by at most d (k_2^2 - k_1^2) / (2 k_1^3). Each times the others at their
+  /// largest.
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double largest_wave = std::max(waves_.highest(), -waves_.lowest());
-    const double largest_gust = outside_ ? static_cast<double>(kLargestGust) : std::max(gusts_.highest(), 0.0);
-    const double largest_share = 1.0 + gustiness_ * largest_gust;
-    double wave_step = 0.0;
+    const double followed = std::min(RoughWater::kBuildUp_rad_s * dt_s / std::numbers::e, 1.0);
+    const double part_step = (kMostLong - kLeastLong) * followed;
+    double wave_step = part_step / (2.0 * std::sqrt(kLeastLong)) * largest_wave;
     for (std::size_t i = 0; i < 2; ++i) {
       wave_step += waves_.largest_change(i, wave_speed_m_s_[i] * dt_s, wave_speed_m_s_[i] * dt_s);
     }
-    const double gust_step =
-        outside_ ? 2.0 * largest_gust
-                 : gusts_.largest_change(kStrongestSceneWind_m_s, SceneWind::largest_step_m_s(dt_s), dt_s);
-    const double share_step = std::min(gustiness_ * gust_step, largest_share);
-    const double amplitude_step = std::min(kBuildUp_rad_s * dt_s / std::numbers::e, 1.0);
-    return height_m_ *
-           (amplitude_step * largest_share * largest_wave + share_step * largest_wave + largest_share * wave_step);
+    const double long_per_m = waves_.slope_rms_per_m(0);
+    const double short_per_m = waves_.slope_rms_per_m(1);
+    const double height_step_m = part_step * std::abs(square_of(short_per_m) - square_of(long_per_m)) /
+                                 (2.0 * long_per_m * square_of(long_per_m));
+    return rough_.largest_slope() * ((followed * largest_wave + wave_step) / long_per_m + height_step_m * largest_wave);
   }
 
  private:
   Ripple(SurfaceSkeleton water, const ParameterValues& values, const SceneSetup& setup)
       : row_(setup.row),
-        height_m_(values.number("height")),
-        half_speed_m_s_(values.number("half_speed")),
         gustiness_(values.number("gustiness")),
+        wave_speed_m_s_{wave_speed(values.number("wave_length")), wave_speed(kShorter * values.number("wave_length"))},
         wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
         waves_(wave_layers(values, setup.seed), water.rest_x_m, water.rest_z_m, water.columns),
         gusts_({.has_two_tiles = false, .seed = setup.seed ^ stream_id("ripple gusts")}),
-        gust_places_(gusts_.places(water.rest_x_m, water.rest_z_m)),
+        rough_(roughness_of(values)),
         noise_(water.rest_x_m.size(), 0.0F),
-        share_(water.rest_x_m.size(), 0.0F),
+        slope_(water.rest_x_m.size(), 0.0F),
         skeleton_(std::move(water)),
         pose_(rest_pose(skeleton_)) {
-    const SurfaceSkeleton& surface = *std::get_if<SurfaceSkeleton>(&skeleton_);
+    const SurfaceSkeleton nodes = placed_water(values, rough_.node_columns(), rough_.node_rows(), setup.placement);
+    const std::size_t count = nodes.rest_x_m.size();
+    node_wind_m_s_.assign(count, 0.0F);
     if (setup.gusts) {
-      outside_.emplace(setup.gusts, surface.rest_x_m, surface.rest_z_m, setup.row, kFinestCell_m, surface.columns);
+      outside_.emplace(setup.gusts, nodes.rest_x_m, nodes.rest_z_m, setup.row, kFinestCell_m, nodes.columns);
+      node_east_m_s_.assign(count, 0.0F);
+      node_south_m_s_.assign(count, 0.0F);
+    } else {
+      gust_places_ = gusts_.places(nodes.rest_x_m, nodes.rest_z_m);
     }
+  }
 
-    // On deep water a wave's speed is sqrt(g length / 2 pi).
-    const double length_m = values.number("wave_length");
-    wave_speed_m_s_ = {std::sqrt(kGravity_m_s2 * length_m / (2.0 * std::numbers::pi)),
-                       std::sqrt(kGravity_m_s2 * kShorter * length_m / (2.0 * std::numbers::pi))};
+  /// The wind over each node: the mean, and `gustiness` of what the wind there has besides.
+  void feel_gusts_outside() noexcept {
+    outside_->sample(0, node_east_m_s_, node_south_m_s_);
+    const auto part = static_cast<float>(gustiness_);
+    const auto east_m_s = static_cast<float>(wind_.east_m_s());
+    const auto south_m_s = static_cast<float>(wind_.south_m_s());
+    for (std::size_t i = 0; i < node_wind_m_s_.size(); ++i) {
+      const float here_east_m_s = east_m_s + part * (node_east_m_s_[i] - east_m_s);
+      const float here_south_m_s = south_m_s + part * (node_south_m_s_[i] - south_m_s);
+      node_wind_m_s_[i] = std::sqrt(here_east_m_s * here_east_m_s + here_south_m_s * here_south_m_s);
+    }
   }
 
   SimdRow row_;
-  double height_m_;
-  double half_speed_m_s_;
   double gustiness_;
-  std::array<double, 2> wave_speed_m_s_{};
+  std::array<double, 2> wave_speed_m_s_;
 
   SceneWind wind_;
-  CriticallyDamped amplitude_m_;
-  LayeredNoise waves_;
-  CarriedNoise gusts_;               ///< of its own
-  std::optional<WindGrid> outside_;  ///< and those of the wind outside, where there are any
+  CriticallyDamped long_part_;  ///< 0: as in a light wind, to 1
+  LayeredNoise waves_;          ///< the long field and the short one
+  CarriedNoise gusts_;          ///< of its own
   CarriedPlaces gust_places_;
-  std::vector<float> noise_, share_;  ///< a point each
+  std::optional<WindGrid> outside_;  ///< and the wind outside over the nodes, where there is one
+  RoughWater rough_;
+  std::vector<float> node_wind_m_s_, node_east_m_s_, node_south_m_s_;  ///< a node of rough_ each
+  double height_per_slope_m_ = 0.0;
+  std::vector<float> noise_, slope_;  ///< a point each
   Skeleton skeleton_;
   Pose pose_;
 };

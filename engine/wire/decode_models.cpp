@@ -18,6 +18,7 @@ constexpr float kMaxExtent_m = 1e6f;
 constexpr float kMaxAngle_rad = 2.0f * std::numbers::pi_v<float>;
 constexpr float kMaxBendStep_rad = 1e-3f;
 constexpr float kMaxWayStep_m = 1.0f;
+constexpr float kMaxSlopeStep = 1.0f;
 constexpr float kUnitTolerance = 1e-2f;
 constexpr float kMaxUnitComponent = 2.0f;  // before is_unit() looks at all three
 constexpr std::size_t kRampBytes = std::size_t{4} * 256;
@@ -162,6 +163,8 @@ bool read(const fb::SurfaceSkeleton& from, SurfaceSkeleton& to) {
   to.columns = from.columns();
   to.rows = from.rows();
   to.is_closed = from.is_closed();
+  to.shells = from.shells();
+  if (to.shells < 1 || to.columns % to.shells != 0) return false;
   const Layout all{.columns = to.columns, .rows = to.rows};
   const std::size_t ramp_bytes = size_of(from.ramp_rgba());
   if (!is_grid(all.columns, all.rows, all.stride) || (ramp_bytes != 0 && ramp_bytes != kRampBytes) ||
@@ -175,6 +178,10 @@ bool read(const fb::SurfaceSkeleton& from, SurfaceSkeleton& to) {
   for (std::size_t i = 0; i < to.normal_x.size(); ++i) {
     if (!is_unit(to.normal_x[i], to.normal_y[i], to.normal_z[i])) return false;
   }
+  const Layout axis{.columns = size_of(from.axis_x_m()) == 0 ? 0 : to.rows};
+  if (!read_numbers(from.axis_x_m(), axis, kMaxExtent_m, to.axis_x_m) ||
+      !read_numbers(from.axis_z_m(), axis, kMaxExtent_m, to.axis_z_m))
+    return false;
   if (ramp_bytes > 0) to.ramp_rgba.assign(from.ramp_rgba()->begin(), from.ramp_rgba()->end());
   return true;
 }
@@ -214,13 +221,24 @@ bool read(const fb::TreePose& from, TreePose& to) {
   return true;
 }
 
+bool is_slope_step(float step) {
+  return step > 0.0f && step <= kMaxSlopeStep;
+}
+
 bool read(const fb::SurfacePose& from, SurfacePose& to) {
   const Layout all{.columns = size_of(from.displacement())};
   const Layout glowing{.columns = size_of(from.heat()) == 0 ? 0 : all.columns};
+  const Layout rows{.columns = size_of(from.row_east())};
   return is_way_step(from.step_m()) && all.columns <= kMaxStrands &&
          read_units(from.displacement(), all, from.step_m(), to.displacement_m) &&
          read_array(from.heat(), glowing, to.heat,
-                    [](std::uint8_t colour) { return static_cast<float>(colour) / 255.0f; });
+                    [](std::uint8_t colour) { return static_cast<float>(colour) / 255.0f; }) &&
+         rows.columns <= all.columns && (rows.columns == 0 || is_slope_step(from.slope_step())) &&
+         read_units(from.row_east(), rows, from.step_m(), to.row_east_m) &&
+         read_units(from.row_south(), rows, from.step_m(), to.row_south_m) &&
+         read_units(from.row_drop(), rows, from.step_m(), to.row_drop_m) &&
+         read_units(from.row_slope_east(), rows, from.slope_step(), to.row_slope_east) &&
+         read_units(from.row_slope_south(), rows, from.slope_step(), to.row_slope_south);
 }
 
 template <class Kind, class Any, class Table>

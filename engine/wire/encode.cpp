@@ -89,9 +89,12 @@ flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const Su
   const auto normal_y = add(skeleton.normal_y);
   const auto normal_z = add(skeleton.normal_z);
   const auto ramp = add_values(builder, skeleton.ramp_rgba, skeleton.ramp_rgba.size());
+  const auto axis_x = add_values(builder, skeleton.axis_x_m, skeleton.axis_x_m.size());
+  const auto axis_z = add_values(builder, skeleton.axis_z_m, skeleton.axis_z_m.size());
   return fb::CreateSurfaceSkeleton(builder, static_cast<std::uint32_t>(skeleton.columns),
                                    static_cast<std::uint32_t>(skeleton.rows), skeleton.is_closed, rest_x, rest_y,
-                                   rest_z, normal_x, normal_y, normal_z, ramp);
+                                   rest_z, normal_x, normal_y, normal_z, ramp,
+                                   static_cast<std::uint32_t>(skeleton.shells), axis_x, axis_z);
 }
 
 /// The schema's kinds are those of skeleton.hpp, in the same order.

@@ -68,7 +68,17 @@ struct FrameEncoder::Builder {
     std::uint8_t* heat = nullptr;
     const auto colours = buffer.CreateUninitializedVector(pose.heat.size(), &heat);
     quantise_heat(pose.heat, {heat, pose.heat.size()});
-    return fb::CreateSurfacePose(buffer, step_m, displacement, colours);
+    if (!surface.moves_rows()) return fb::CreateSurfacePose(buffer, step_m, displacement, colours);
+    const auto add_rows = [&](const std::vector<float>& values, float step) {
+      return add_ways(values, step, surface.rows, 1, surface.rows);
+    };
+    const auto east = add_rows(pose.row_east_m, step_m);
+    const auto south = add_rows(pose.row_south_m, step_m);
+    const auto drop = add_rows(pose.row_drop_m, step_m);
+    const auto slope_east = add_rows(pose.row_slope_east, kSlopeStep);
+    const auto slope_south = add_rows(pose.row_slope_south, kSlopeStep);
+    return fb::CreateSurfacePose(buffer, step_m, displacement, colours, east, south, drop, kSlopeStep, slope_east,
+                                 slope_south);
   }
 
   flatbuffers::Offset<fb::ScenePose> add_scene(const Pose& pose, const Skeleton& skeleton, float opacity) {

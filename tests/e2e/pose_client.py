@@ -375,10 +375,15 @@ class Tree:
 
 
 class Displacements:
-    """A SurfacePose: how far each point is moved along its normal, in metres, and its colour on the ramp."""
+    """A SurfacePose: how far each point is moved along its normal, in metres, and its colour on the ramp; and how far the points of
+    each row are moved besides."""
 
     def __init__(self, table):
         self.displacement_m = table.StepM() * numbers(table.DisplacementAsNumpy())
+        east, south, drop = (numbers(a) for a in (table.RowEastAsNumpy(), table.RowSouthAsNumpy(), table.RowDropAsNumpy()))
+        self.row_m = table.StepM() * np.stack([east, -drop, south], axis=1)
+        slopes = [numbers(a) for a in (table.RowSlopeEastAsNumpy(), table.RowSlopeSouthAsNumpy())]
+        self.row_slope = table.SlopeStep() * np.stack(slopes, axis=1)
         self.heat = numbers(table.HeatAsNumpy()).astype(int)
 
 
@@ -387,6 +392,8 @@ class Surface:
 
     def __init__(self, table):
         self.columns, self.rows = table.Columns(), table.Rows()
+        self.shells = table.Shells()
+        self.axis_m = vectors(table.AxisXMAsNumpy(), table.AxisZMAsNumpy())
         self.rest_m = vectors(table.RestXMAsNumpy(), table.RestYMAsNumpy(), table.RestZMAsNumpy())
         self.normal = vectors(table.NormalXAsNumpy(), table.NormalYAsNumpy(), table.NormalZAsNumpy())
         self.ramp_rgba = numbers(table.RampRgbaAsNumpy()).reshape(-1, 4)
@@ -400,6 +407,10 @@ class Surface:
             yield "its arrays have not columns * rows points"
         if not is_unit(self.normal):
             yield "a normal is no unit vector"
+        if self.shells < 1 or self.columns % self.shells:
+            yield "its columns are no whole rings"
+        if len(self.axis_m) not in (0, self.rows):
+            yield "its axis has not as many points as there are rows"
         if len(self.ramp_rgba) not in (0, 256):
             yield f"the ramp has {len(self.ramp_rgba)} colours"
 
@@ -408,11 +419,18 @@ class Surface:
             isinstance(moved, Displacements)
             and len(moved.displacement_m) == self.nodes
             and len(moved.heat) == (self.nodes if len(self.ramp_rgba) else 0)
+            and len(moved.row_m) == len(moved.row_slope) == len(self.axis_m)
         )
 
     def points_m(self, moved):
         """Every point, row after row."""
-        return self.rest_m + moved.displacement_m[:, None] * self.normal
+        points_m = self.rest_m + moved.displacement_m[:, None] * self.normal
+        if len(self.axis_m) == 0:
+            return points_m
+        of_row = np.repeat(np.arange(self.rows), self.columns)
+        from_axis_m = points_m[:, [0, 2]] - self.axis_m[of_row]
+        points_m[:, 1] -= np.sum(moved.row_slope[of_row] * from_axis_m, axis=1)
+        return points_m + moved.row_m[of_row]
 
     def pose_faults(self, moved):
         if not np.all(np.isfinite(moved.displacement_m)):

@@ -1,19 +1,19 @@
 // A flame's own light, through the ramp; it hides little of what is behind it.
 uniform sampler2D ramp;  // 256 colours, as a screen shows them, straight alpha
 uniform int is_closed;
-uniform vec2 range_m;    // height of the foot above the ground, and of the whole above it
 
 in vec3 place_m;
 in vec3 normal;
 in float heat;
+in float along;  // the flame: 0 at its foot, 1 at its top
 out vec4 color;
 
 void main() {
-  vec4 hot = texture(ramp, vec2((clamp(heat, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5));
-
-  // A body of flame is thin where one looks along its skin.
+  // A body of flame is thin where one looks along its skin, and redder there.
   float facing = abs(dot(normalize(normal), normalize(place_m - eye_m.xyz)));
-  float thick = is_closed == 1 ? 0.75 * smoothstep(0.05, 0.75, facing) : 1.0;
-  float share = hot.a * thick * smoothstep(0.0, 0.12, (place_m.y - range_m.x) / range_m.y);
+  float thick = is_closed == 1 ? smoothstep(0.0, 0.8, facing) : 1.0;
+  float seen_heat = clamp(heat, 0.0, 1.0) * mix(0.55, 1.0, thick);
+  vec4 hot = texture(ramp, vec2((seen_heat * 255.0 + 0.5) / 256.0, 0.5));
+  float share = hot.a * (is_closed == 1 ? 0.45 : 1.0) * thick * smoothstep(0.0, 0.12, along);
   color = vec4(hot.rgb * share, 0.60 * share);
 }

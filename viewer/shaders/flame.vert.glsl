@@ -9,10 +9,15 @@ layout(location = 6) in float level;
 out vec3 place_m;
 out vec3 normal;
 out float heat;
+out float along;
+
+uniform int columns;
+uniform int rows;
 
 void main() {
   place_m = vec3(x_m, y_m, z_m);
   normal = vec3(normal_x, normal_y, normal_z);
   heat = level;
+  along = float(gl_VertexID / columns) / float(max(rows - 1, 1));
   gl_Position = to_clip * vec4(place_m, 1.0);
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -92,7 +93,7 @@ TEST_P(FlameForms, IsUnlitAndUprightAtRestAndThenCatchesFireWithoutAJump) {
       step += static_cast<double>(std::abs(now[i] - before[i])) / static_cast<double>(now.size());
       total += static_cast<double>(now[i]) / static_cast<double>(now.size());
     }
-    ASSERT_LT(step, 0.03);
+    ASSERT_LT(step, 0.05);
     before = now;
   }
   EXPECT_GT(total, 0.02);
@@ -129,17 +130,17 @@ TEST_P(FlameForms, ItsTonguesRise) {
   double down = 0.0;
   for (int moment = 0; moment < 100; ++moment) {
     const std::vector<float> before = flame_pose_of(*scene).heat;
-    run_flame(*scene, {}, 3);  // 7 cm in 1/20 s at 1.4 m/s: four or five rows
+    run_flame(*scene, {}, 2);  // 8 cm in 1/30 s at 2.5 m/s: five rows of the body, and four of the panel
     const std::vector<float>& now = flame_pose_of(*scene).heat;
     for (std::size_t row = 10; row < 50; ++row) {
       for (std::size_t column = 0; column < columns; ++column) {
         const auto at = [&](const std::vector<float>& heat, std::size_t r) {
           // against its own mean over the neighbourhood, so that the ramp itself does not count
           return static_cast<double>(heat[r * columns + column]) -
-                 0.5 * static_cast<double>(heat[(r - 5) * columns + column] + heat[(r + 5) * columns + column]);
+                 0.5 * static_cast<double>(heat[(r - 8) * columns + column] + heat[(r + 8) * columns + column]);
         };
-        up += at(before, row) * at(now, row + 4);
-        down += at(before, row + 4) * at(now, row);
+        up += at(before, row) * at(now, row + 5);
+        down += at(before, row + 5) * at(now, row);
       }
     }
   }
@@ -147,17 +148,113 @@ TEST_P(FlameForms, ItsTonguesRise) {
   EXPECT_GT(up, 2.0 * down);
 }
 
+double tilt_rad(const Heat& heat) {
+  return std::atan2(heat.east_m, heat.up_m);
+}
+
 TEST_P(FlameForms, StandsUprightInCalmAirAndLeansFurtherTheMoreItBlows) {
-  double before_m = 0.04;  // the noise itself strays so far
-  EXPECT_LT(std::abs(mean_heat(*flame(GetParam()), {}).east_m), before_m);
-  for (const double speed_m_s : {3.0, 8.0, 30.0}) {
+  EXPECT_LT(std::abs(mean_heat(*flame(GetParam()), {}).east_m), 0.04);  // the noise itself strays so far
+  double before_rad = 0.1;
+  for (const double speed_m_s : {1.0, 3.0, 8.0, 30.0}) {
     const Heat heat = mean_heat(*flame(GetParam()), {speed_m_s, 0.0});
-    EXPECT_GT(heat.east_m, before_m) << speed_m_s;
+    EXPECT_GT(tilt_rad(heat), before_rad) << speed_m_s;
     EXPECT_NEAR(heat.south_m, 0.0, 0.04);
-    before_m = heat.east_m;
+    before_rad = tilt_rad(heat);
   }
-  // It saturates: no storm leans it further.
-  EXPECT_LT(mean_heat(*flame(GetParam()), {60.0, 0.0}).east_m, 1.1 * before_m + 0.01);
+  EXPECT_LT(tilt_rad(mean_heat(*flame(GetParam()), {60.0, 0.0})), std::numbers::pi / 2.0) << "no storm lays it flat";
+
+  // Where less of the wind reaches it, it leans less; where nothing does, not at all.
+  const Heat sheltered = mean_heat(*flame(GetParam(), {{"exposure", 0.3}}), {8.0, 0.0});
+  EXPECT_LT(tilt_rad(sheltered), tilt_rad(mean_heat(*flame(GetParam()), {3.0, 0.0})));
+  EXPECT_LT(std::abs(mean_heat(*flame(GetParam(), {{"exposure", 0.0}}), {8.0, 0.0}).east_m), 0.04);
+}
+
+TEST_P(FlameForms, BreathesTwiceASecondAndTheLessTheMoreItBlows) {
+  // The whole heat by 1.5 / sqrt(0.5 m) = 2.12 Hz, against frequencies beside it; 40 s, by Hann's window.
+  const auto breath = [](const std::string& form, double puffing, WindVector wind, double hz) {
+    const auto scene = flame(form, {{"puffing", puffing}});
+    run_flame(*scene, wind, 300);
+    double cosine = 0.0;
+    double sine = 0.0;
+    double total = 0.0;
+    for (int tick = 0; tick < 2400; ++tick) {
+      run_flame(*scene, wind, 1);
+      const double heat = heat_of(*scene).mean;
+      const double weight = 1.0 - std::cos(2.0 * std::numbers::pi * tick / 2400.0);
+      cosine += weight * heat * std::cos(2.0 * std::numbers::pi * hz * tick / 60.0);
+      sine += weight * heat * std::sin(2.0 * std::numbers::pi * hz * tick / 60.0);
+      total += weight * heat;
+    }
+    return std::hypot(cosine, sine) / total;
+  };
+  const auto strongest = [&](double puffing, WindVector wind, double from_hz) {
+    double most = 0.0;
+    for (int i = 0; i < 16; ++i) most = std::max(most, breath(GetParam(), puffing, wind, from_hz + 0.025 * i));
+    return most;
+  };
+  const double still = strongest(0.13, {}, 1.95);
+  EXPECT_GT(still, 3.0 * strongest(0.13, {}, 1.0));
+  EXPECT_GT(still, 3.0 * strongest(0.13, {}, 3.0));
+  EXPECT_GT(still, 3.0 * strongest(0.0, {}, 1.95));
+  EXPECT_LT(strongest(0.13, {30.0, 0.0}, 1.95), 0.5 * still);
+}
+
+TEST(FlameTest, ItsInnerShellsAreHotterAndNarrower) {
+  const auto scene = flame("shape");
+  const SurfaceSkeleton& body = body_of(*scene);
+  ASSERT_EQ(body.shells, 3U);
+  const std::size_t around = body.columns / 3;
+  std::array<double, 3> heat{};
+  for (int moment = 0; moment < 40; ++moment) {
+    run_flame(*scene, {5.0, 0.0}, 15);
+    for (std::size_t i = 0; i < body.columns * body.rows / 2; ++i) {
+      heat[i % body.columns / around] += static_cast<double>(flame_pose_of(*scene).heat[i]);
+    }
+  }
+  EXPECT_GT(heat[1], 1.1 * heat[0]);
+  EXPECT_GT(heat[2], 1.1 * heat[1]);
+  const std::size_t middle = body.rows / 3 * body.columns;
+  for (std::size_t shell = 1; shell < 3; ++shell) {
+    const double part =
+        static_cast<double>(std::hypot(body.rest_x_m[middle + shell * around], body.rest_z_m[middle + shell * around]) /
+                            std::hypot(body.rest_x_m[middle], body.rest_z_m[middle]));
+    EXPECT_NEAR(part, shell == 1 ? 0.65 : 0.35, 1e-5);
+  }
+}
+
+TEST(FlameTest, ItDoesNotRepeat) {
+  // The heat of a few places of the outermost shell, every tenth of a second for ten minutes: no later stretch of it is
+  // like the first four seconds.
+  const auto scene = flame("shape", {{"puffing", 0.0}});
+  run_flame(*scene, {}, 300);
+  const std::size_t columns = body_of(*scene).columns;
+  std::vector<std::array<double, 6>> heats;
+  std::array<double, 6> mean{};
+  for (int moment = 0; moment < 6000; ++moment) {
+    run_flame(*scene, {}, 6);
+    std::array<double, 6>& now = heats.emplace_back();
+    for (std::size_t i = 0; i < 6; ++i) {
+      now[i] = static_cast<double>(flame_pose_of(*scene).heat[(18 + i / 3 * 6) * columns + i % 3 * 5]);
+      mean[i] += now[i] / 6000.0;
+    }
+  }
+  const auto likeness = [&](std::size_t lag) {
+    double both = 0.0;
+    double first = 0.0;
+    double second = 0.0;
+    for (std::size_t moment = 0; moment < 40; ++moment) {
+      for (std::size_t i = 0; i < 6; ++i) {
+        const double a = heats[moment][i] - mean[i];
+        const double b = heats[moment + lag][i] - mean[i];
+        both += a * b;
+        first += a * a;
+        second += b * b;
+      }
+    }
+    return both / std::sqrt(first * second);
+  };
+  for (std::size_t lag = 10; lag + 40 < heats.size(); ++lag)
+    ASSERT_LT(likeness(lag), 0.75) << "after " << 0.1 * static_cast<double>(lag) << " s";
 }
 
 TEST(FlameTest, ATurnedWindTurnsTheLeanOfTheShape) {
@@ -214,14 +311,15 @@ TEST(FlameTest, ABodyHasNoSeamWhereItCloses) {
   const auto scene = flame("shape");
   run_flame(*scene, {}, 180);
   const std::size_t columns = body_of(*scene).columns;
-  std::vector<double> jump(columns, 0.0);
+  const std::size_t around = columns / body_of(*scene).shells;
+  std::vector<double> jump(around, 0.0);
   for (int moment = 0; moment < 60; ++moment) {
     run_flame(*scene, {}, 15);
     const std::vector<float>& heat = flame_pose_of(*scene).heat;
     for (std::size_t i = 0; i < heat.size(); ++i) {
-      const std::size_t next = i % columns + 1 == columns ? i + 1 - columns : i + 1;
+      const std::size_t next = i % around + 1 == around ? i + 1 - around : i + 1;
       const auto step = static_cast<double>(heat[next] - heat[i]);
-      jump[i % columns] += step * step;
+      jump[i % around] += step * step;
     }
   }
   const double seam = jump.back();
@@ -230,7 +328,7 @@ TEST(FlameTest, ABodyHasNoSeamWhereItCloses) {
 }
 
 TEST(FlameTest, APointIsNeverMovedThroughTheAxis) {
-  const auto scene = flame("shape", {{"flicker", 0.8}, {"max_lean", 60.0}});
+  const auto scene = flame("shape", {{"flicker", 0.8}});
   const SurfaceSkeleton& body = body_of(*scene);
   for (std::uint64_t tick = 0; tick < 300; ++tick) {
     scene->tick(5.0 * scripted_wind(tick), kFlameTick_s);
@@ -241,7 +339,8 @@ TEST(FlameTest, APointIsNeverMovedThroughTheAxis) {
 }
 
 TEST(FlameTest, HeatGoesOnWithoutAJumpWhateverTheWindDoes) {
-  // In a tenth of the time it changes about a tenth as much. (The wind reverses each quarter of a second.)
+  // In a tenth of the time it changes about a tenth as much. (The wind reverses each quarter of a second, and the panel
+  // shows a flame that lies now to the left, now to the right.)
   const auto largest_heat_step = [](const std::string& form, int ticks_per_s) {
     const auto scene = flame(form);
     float largest = 0.0F;
@@ -256,7 +355,7 @@ TEST(FlameTest, HeatGoesOnWithoutAJumpWhateverTheWindDoes) {
   };
   for (const std::string form : {"texture", "shape"}) {
     const float at_60_hz = largest_heat_step(form, 60);
-    EXPECT_LT(at_60_hz, 0.6F) << form;
+    EXPECT_LT(at_60_hz, form == "texture" ? 0.8F : 0.6F) << form;
     EXPECT_LT(largest_heat_step(form, 600), 0.2F * at_60_hz) << form;
   }
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "engine/scenes/scene.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
+#include "tests/support/gusty_wind.hpp"
 #include "tests/support/scripted_wind.hpp"
 
 namespace yuragi {
@@ -83,20 +85,54 @@ TEST(RippleTest, IsFlatInCalmAirAndGrowsFlatAgain) {
   EXPECT_EQ(pose_hash(0, scene->pose()), pose_hash(0, rest_pose(scene->skeleton())));
 }
 
-TEST(RippleTest, WavesGrowWithTheWindAndSaturate) {
-  double before = 0.0;
-  std::vector<double> heights_m;
-  for (const double speed_m_s : {1.0, 2.0, 4.0, 8.0, 16.0, 30.0, 60.0}) {
-    // The same waves for each wind: no gusts, and where the waves are does not depend on the wind's speed, or hardly.
+/// The mean square of the slope of a surface of `columns` points a row, `pitch_m` apart.
+double mean_square_slope(const std::vector<float>& heights_m, std::size_t columns, double pitch_m) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i + columns < heights_m.size(); ++i) {
+    if (i % columns == columns - 1) continue;
+    const double along = static_cast<double>(heights_m[i + 1]) - static_cast<double>(heights_m[i]);
+    const double across = static_cast<double>(heights_m[i + columns]) - static_cast<double>(heights_m[i]);
+    squares += (along * along + across * across) / (pitch_m * pitch_m);
+    count += 1.0;
+  }
+  return squares / count;
+}
+
+TEST(RippleTest, WavesAreAsSteepAsTheSeasOrAPartOfIt) {
+  // A grid of 4 cm, no gusts; the mean over ten moments and 8 m of water.
+  for (const double steepness : {0.6, 0.3}) {
+    const auto scene = kRippleScene.make(
+        ParameterValues::resolve(kRippleScene.parameters, {{"gustiness", 0.0}, {"steepness", steepness}}).value(),
+        {.seed = 1});
+    for (const double speed_m_s : {1.0, 2.0, 5.0, 15.0, 40.0}) {
+      run_ripple(*scene, over_water(1.0, speed_m_s), 400);
+      double mean = 0.0;
+      for (int moment = 0; moment < 10; ++moment) {
+        run_ripple(*scene, over_water(1.0, speed_m_s), 40);
+        mean += mean_square_slope(heights_of(*scene), 200, 8.0 / 199.0) / 10.0;
+      }
+      const double onset = 1.0 - std::exp(-std::pow(speed_m_s / 1.2, 4.0));
+      const double sea = (0.003 + 0.00512 * speed_m_s) * onset;
+      EXPECT_NEAR(mean / (steepness * sea), 0.92, 0.15) << speed_m_s;  // a grid is less steep than what it is of
+    }
+  }
+}
+
+TEST(RippleTest, WavesAreLongerInAStrongerWind) {
+  // By their height for a slope.
+  double before_m = 0.0;
+  for (const double speed_m_s : {1.5, 4.0, 8.0}) {
     const auto scene = ripple({{"gustiness", 0.0}});
     run_ripple(*scene, over_water(1.0, speed_m_s), 600);
-    heights_m.push_back(rms(heights_of(*scene)));
-    EXPECT_GT(heights_m.back(), before) << speed_m_s;
-    before = 0.9 * heights_m.back();
+    double height_per_slope_m = 0.0;
+    for (int moment = 0; moment < 10; ++moment) {
+      run_ripple(*scene, over_water(1.0, speed_m_s), 40);
+      height_per_slope_m += rms(heights_of(*scene)) / std::sqrt(mean_square_slope(heights_of(*scene), 64, 0.1));
+    }
+    EXPECT_GT(height_per_slope_m, 1.05 * before_m) << speed_m_s;
+    before_m = height_per_slope_m;
   }
-  EXPECT_GT(heights_m[3], 5.0 * heights_m[0]);
-  EXPECT_LT(heights_m[6], 1.2 * heights_m[5]);
-  EXPECT_LT(heights_m[6], 1.5 * 0.04);
 }
 
 TEST(RippleTest, WavesTravelDownwindAtTheirOwnSpeedWhateverTheWinds) {
@@ -165,7 +201,38 @@ TEST(RippleTest, GustsRoughenTheWaterHereAndThere) {
     const auto [least, most] = std::minmax_element(squares.begin(), squares.end());
     return *most / *least;
   };
-  EXPECT_GT(unevenness(0.5), 1.5 * unevenness(0.0));
+  EXPECT_GT(unevenness(3.0), 1.5 * unevenness(0.0));
+}
+
+TEST(RippleTest, TheWindsGustsRoughenTheWaterWhereTheyAre) {
+  // How steep each quarter of a pond of 60 m is goes with the wind there.
+  const auto scene = ripple({{"width", 60.0}, {"depth", 60.0}}, {.seed = 1, .gusts = shared_gusts()});
+  GustyWind wind({4.0, 0.0}, 0.5F);
+  double both = 0.0;
+  double first = 0.0;
+  double second = 0.0;
+  for (int moment = 0; moment < 60; ++moment) {
+    for (int tick = 0; tick < 60; ++tick) scene->tick(wind.step(kRippleTick_s), kRippleTick_s);
+    std::array<double, 4> steep{};
+    std::array<double, 4> blows{};
+    for (std::size_t i = 0; i < 4096; ++i) {
+      const auto height_m = static_cast<double>(heights_of(*scene)[i]);
+      steep[i / 2048 * 2 + i % 64 / 32] += height_m * height_m;
+    }
+    for (std::size_t i = 0; i < 256; ++i) {
+      const double east_m = -30.0 + 4.0 * static_cast<double>(i % 16);
+      const double south_m = -30.0 + 4.0 * static_cast<double>(i / 16);
+      blows[i / 128 * 2 + i % 16 / 8] += speed_of(wind.wind().at(*shared_gusts(), east_m, south_m));
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double a = 4.0 * steep[i] / (steep[0] + steep[1] + steep[2] + steep[3]) - 1.0;
+      const double b = 4.0 * blows[i] / (blows[0] + blows[1] + blows[2] + blows[3]) - 1.0;
+      both += a * b;
+      first += a * a;
+      second += b * b;
+    }
+  }
+  EXPECT_GT(both / std::sqrt(first * second), 0.4);
 }
 
 TEST(LayeredNoiseTest, AGridIsReadToTheSameBitsAsItsPlacesWhetherItLiesAlongTheAxesOrNot) {

@@ -181,9 +181,16 @@ TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
 TEST(HostileBytes, SurfacesOutOfBoundsAreRefused) {
   ASSERT_TRUE(kinds_with<SurfaceSkeleton>(4, [](auto&) {}).has_value());
   const std::vector<std::function<void(SurfaceSkeleton&)>> changes{
-      [](auto& s) { s.rest_y_m[5] = kNan; },     [](auto& s) { s.normal_x[5] += 0.5f; },
-      [](auto& s) { s.normal_z[5] = kNan; },     [](auto& s) { s.ramp_rgba.pop_back(); },
+      [](auto& s) { s.rest_y_m[5] = kNan; },
+      [](auto& s) { s.normal_x[5] += 0.5f; },
+      [](auto& s) { s.normal_z[5] = kNan; },
+      [](auto& s) { s.ramp_rgba.pop_back(); },
       [](auto& s) { s.ramp_rgba.resize(2048); },
+      [](auto& s) { s.shells = 0; },
+      [](auto& s) { s.shells = 4; },  // of 15 columns
+      [](auto& s) { s.axis_x_m.pop_back(); },
+      [](auto& s) { s.axis_z_m.clear(); },
+      [](auto& s) { s.axis_z_m[3] = kNan; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i)
     EXPECT_EQ(kinds_with<SurfaceSkeleton>(4, changes[i]).error(), WireError::kInconsistent) << i;
@@ -334,13 +341,23 @@ TEST(HostileBytes, WaysOfAnAbsurdStepOrOfUnequalLengthsAreRefused) {
   for (const std::uint32_t columns : {0u, 5u, 13u, ~0u}) EXPECT_FALSE(grid(columns, 1e-4f, 12).has_value()) << columns;
   EXPECT_FALSE(grid(4, 1e-4f, 11).has_value());
 
-  const auto surface = [](float step_m, std::size_t heats) {
+  const auto surface = [](float step_m, std::size_t heats, std::size_t rows = 0, std::size_t last_rows = 0,
+                          float slope_step = 1e-4f) {
     return decode_pose(fb::Pose_SurfacePose, 1.0f, [&](auto& builder) {
       const auto ways = builder.CreateVector(std::vector<std::int16_t>(12));
       const auto heat = builder.CreateVector(std::vector<std::uint8_t>(heats));
-      return fb::CreateSurfacePose(builder, step_m, ways, heat).Union();
+      const auto row_ways = builder.CreateVector(std::vector<std::int16_t>(rows));
+      const auto last = builder.CreateVector(std::vector<std::int16_t>(last_rows));
+      return fb::CreateSurfacePose(builder, step_m, ways, heat, row_ways, row_ways, row_ways, slope_step, row_ways,
+                                   last)
+          .Union();
     });
   };
+  ASSERT_TRUE(surface(1e-4f, 12, 4, 4).has_value());
+  EXPECT_FALSE(surface(1e-4f, 12, 4, 3).has_value());
+  EXPECT_FALSE(surface(1e-4f, 12, 4, 0).has_value());
+  EXPECT_FALSE(surface(1e-4f, 12, 13, 13).has_value()) << "more rows than points";
+  for (const float step : {0.0f, 2.0f, kNan}) EXPECT_FALSE(surface(1e-4f, 12, 4, 4, step).has_value()) << step;
   ASSERT_TRUE(surface(1e-4f, 12).has_value());
   ASSERT_TRUE(surface(1e-4f, 0).has_value());
   EXPECT_FALSE(surface(kNan, 12).has_value());

@@ -130,6 +130,9 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
     EXPECT_EQ(b.columns, a.columns);
     EXPECT_EQ(b.rows, a.rows);
     EXPECT_EQ(b.is_closed, a.is_closed);
+    EXPECT_EQ(b.shells, a.shells);
+    EXPECT_EQ(b.axis_x_m, a.axis_x_m);
+    EXPECT_EQ(b.axis_z_m, a.axis_z_m);
     EXPECT_EQ(b.rest_x_m, a.rest_x_m);
     EXPECT_EQ(b.rest_z_m, a.rest_z_m);
     EXPECT_EQ(b.normal_y, a.normal_y);

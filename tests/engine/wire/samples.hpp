@@ -122,12 +122,17 @@ inline TreePose swayed(const TreeSkeleton& tree, float largest_rad = 0.8f) {
   return pose;
 }
 
-/// A bowl that may glow.
-inline SurfaceSkeleton bowl(bool glows, std::size_t columns = 13, std::size_t rows = 7) {
+/// A bowl; or three, one within another, that glow and whose rows move.
+inline SurfaceSkeleton bowl(bool glows, std::size_t columns = 15, std::size_t rows = 7) {
   SurfaceSkeleton surface;
   surface.columns = columns;
   surface.rows = rows;
   surface.is_closed = glows;
+  surface.shells = glows ? 3 : 1;
+  if (glows) {
+    surface.axis_x_m.assign(rows, 5.0f);
+    surface.axis_z_m.assign(rows, 0.25f);
+  }
   for (std::size_t i = 0; i < columns * rows; ++i) {
     const float around = 6.28f * static_cast<float>(i % columns) / static_cast<float>(columns);
     const std::size_t row = i / columns;
@@ -145,7 +150,14 @@ inline SurfaceSkeleton bowl(bool glows, std::size_t columns = 13, std::size_t ro
 
 inline SurfacePose risen(const SurfaceSkeleton& surface) {
   const std::size_t count = surface.columns * surface.rows;
-  SurfacePose pose{.displacement_m = scattered(count, 0.5f, 6), .heat = {}};
+  const std::size_t rows = surface.moves_rows() ? surface.rows : 0;
+  SurfacePose pose{.displacement_m = scattered(count, 0.5f, 6),
+                   .heat = {},
+                   .row_east_m = scattered(rows, 0.7f, 8),
+                   .row_south_m = scattered(rows, 0.7f, 9),
+                   .row_drop_m = scattered(rows, 0.7f, 10),
+                   .row_slope_east = scattered(rows, 1.1f, 11),
+                   .row_slope_south = scattered(rows, 1.1f, 12)};
   if (surface.ramp_rgba.empty()) return pose;
   pose.heat = scattered(count, 0.5f, 7);
   for (float& heat : pose.heat) heat += 0.5f;

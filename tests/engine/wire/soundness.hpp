@@ -52,6 +52,9 @@ inline bool is_sound(const TreeSkeleton& tree) {
 
 inline bool is_sound(const SurfaceSkeleton& s) {
   const std::size_t count = s.columns * s.rows;
+  if (s.shells < 1 || s.columns % s.shells != 0) return false;
+  const std::size_t axis = s.moves_rows() ? s.rows : 0;
+  if (!are_numbers(s.axis_x_m, axis) || !are_numbers(s.axis_z_m, axis)) return false;
   return count <= wire::kMaxStrands && are_numbers(s.rest_x_m, count) && are_numbers(s.rest_y_m, count) &&
          are_numbers(s.rest_z_m, count) && are_numbers(s.normal_x, count) && are_numbers(s.normal_y, count) &&
          are_numbers(s.normal_z, count) && (s.ramp_rgba.empty() || s.ramp_rgba.size() == 1024);
@@ -73,7 +76,11 @@ inline bool is_sound(const Pose& pose) {
   if (const auto* grid = std::get_if<GridPose>(&pose))
     return grid->offset_x_m.size() == grid->offset_y_m.size() && grid->offset_x_m.size() == grid->offset_z_m.size();
   if (const auto* surface = std::get_if<SurfacePose>(&pose))
-    return surface->heat.empty() || surface->heat.size() == surface->displacement_m.size();
+    return (surface->heat.empty() || surface->heat.size() == surface->displacement_m.size()) &&
+           surface->row_south_m.size() == surface->row_east_m.size() &&
+           surface->row_drop_m.size() == surface->row_east_m.size() &&
+           surface->row_slope_east.size() == surface->row_east_m.size() &&
+           surface->row_slope_south.size() == surface->row_east_m.size();
   const PoseArrays<const float> arrays(pose);  // of strands and trees: pairs of one length
   for (std::size_t i = 0; i + 1 < arrays.size(); i += 2) {
     if (arrays[i].size() != arrays[i + 1].size()) return false;
