@@ -8,7 +8,6 @@
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/math/trig.hpp"
-#include "engine/operators/wind_response.hpp"
 #include "engine/scenes/cloth.hpp"
 #include "engine/scenes/cloth_strength.hpp"
 #include "engine/scenes/cloth_swing.hpp"
@@ -211,19 +210,22 @@ class Banner final : public Scene {
   /// The vane, whose torque goes with the sine of half the angle: so that it turns about from wherever it points.
   void turn_arm(double dt_s) noexcept {
     const double speed_m_s = wind_.speed_m_s();
-    const WindResponse wind = WindResponse::to(wind_.east_m_s(), wind_.south_m_s(), kArmHalfSpeed_m_s);
+    const double per_speed_s_m = speed_m_s > 0.0 ? 1.0 / speed_m_s : 0.0;
+    const double toward_east = wind_.east_m_s() * per_speed_s_m;
+    const double toward_south = wind_.south_m_s() * per_speed_s_m;
     const auto [sine, cosine] = sin_cos(static_cast<float>(turned_rad_));
     const double arm_east = static_cast<double>(cosine) * arm_.east - static_cast<double>(sine) * arm_.south;
     const double arm_south = static_cast<double>(sine) * arm_.east + static_cast<double>(cosine) * arm_.south;
-    const double ahead = arm_east * wind.toward_east + arm_south * wind.toward_south;
-    const double aside = arm_east * wind.toward_south - arm_south * wind.toward_east;
+    const double ahead = arm_east * toward_east + arm_south * toward_south;
+    const double aside = arm_east * toward_south - arm_south * toward_east;
     const double side = std::clamp(aside / kFullBelly, -1.0, 1.0);
     cross_.step(side, kBellyOmega_rad_s, dt_s);
     if (!(speed_m_s > 0.0) && std::abs(cross_.value) + std::abs(cross_.rate_per_s) < kAtRest) cross_ = {};
     if (!turns_) return;
 
     const double way_rad = speed_m_s > 0.0 ? std::copysign(std::sqrt(std::max(2.0 - 2.0 * ahead, 0.0)), aside) : 0.0;
-    const double hz = kArmHz * wind.strength;
+    const double square = speed_m_s * speed_m_s;
+    const double hz = kArmHz * square / (square + kArmHalfSpeed_m_s * kArmHalfSpeed_m_s);
     const double turn_rad_s =
         vane_.pull(way_rad, hz, 4.0 * kPi * hz * kArmDamping + kArmFriction_per_s, kFastestTurn_rad_s, dt_s);
     turned_rad_ += turn_rad_s * dt_s;

@@ -72,8 +72,8 @@ constexpr double kHemWaves = 0.6;
 
 /// Of a hanging chain: its first frequency over sqrt(g / L) / 2 pi (half the first zero of the Bessel function J0), and
 /// the second over the first. How much of a column's swing is in the second.
-constexpr double kFirstMode = 1.2024127788478890;
-constexpr double kSecondPerFirst = 2.2954172674276943;
+constexpr double kChainFirstMode = 1.2024127788478890;
+constexpr double kChainSecondPerFirst = 2.2954172674276943;
 constexpr double kSecondShare = 0.2;
 
 /// tan(a) of a part of the curtain: nothing blows or swings it farther (78.7 degrees), or faster.
@@ -93,7 +93,7 @@ constexpr double kSideForce = 0.75;
 ClothSpec curtain_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("height"),
-          .knots_across_m = std::min(0.12, values.number("wave_length") / 20.0),
+          .knots_across_m = std::min(0.12, values.number("wave_length") / 16.0),
           .knots_along_m = values.number("height") / 24.0,
           .hybrid = values.number("hybrid"),
           .normal_drag_per_m = drag_per_m(values.number("half_sway_speed")),
@@ -178,7 +178,7 @@ class Curtain final : public Scene {
       const double target =
           side_[i] * across_m_s * per_speed * blown_out(load * (1.0 + bulges_ * static_cast<double>(gust_[i])));
       swing(first_[i], first_[i].value, target, first_hz_, dt_s);
-      swing(second_[i], first_[i].value, target, kSecondPerFirst * first_hz_, dt_s);
+      swing(second_[i], first_[i].value, target, kChainSecondPerFirst * first_hz_, dt_s);
       const double out = (1.0 - kSecondShare) * first_[i].value + kSecondShare * second_[i].value;
       out_[i] = static_cast<float>(out);
       mean += out / static_cast<double>(stride);
@@ -236,7 +236,7 @@ class Curtain final : public Scene {
         half_flutter_speed_m_s_(values.number("half_flutter_speed")),
         wave_speed_(values.number("wave_speed")),
         damping_(values.number("damping")),
-        first_hz_(kFirstMode * std::sqrt(kCurtainGravity_m_s2 / values.number("height")) / (2.0 * kPi)),
+        first_hz_(kChainFirstMode * std::sqrt(kCurtainGravity_m_s2 / values.number("height")) / (2.0 * kPi)),
         calm_delay_s_(2.0 * std::sqrt(values.number("height") / kCurtainGravity_m_s2)),
         along_(turned(setup.placement, 1.0, 0.0)),
         wind_(setup.placement, setup.gusts),

@@ -71,9 +71,9 @@ const std::array kFlagParameters = {
 constexpr double kFastestWave_m_s = 12.0;
 
 /// The longest waves over the shortest, the edge's longest over the longest, and where along the flag the edge begins.
-constexpr double kWaveBand = 2.0;
-constexpr double kEdgeWaves = 1.0 / 3.0;
-constexpr double kEdgeBegins = 0.6;
+constexpr double kFlagBand = 2.0;
+constexpr double kFlagEdgeWaves = 1.0 / 3.0;
+constexpr double kFlagEdgeBegins = 0.6;
 
 /// How much the noise changes from the top to the bottom, against its change along the flag: a wave's front goes from
 /// top to bottom nearly straight.
@@ -82,7 +82,7 @@ constexpr double kHeightOnNoise = 0.3;
 /// In the longest; the edge's shortest waves then have five.
 constexpr double kKnotsAWave = 32.0;
 
-constexpr double kLiftDamping = 0.7;
+constexpr double kFlagLiftDamping = 0.7;
 
 ClothSpec flag_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
@@ -123,11 +123,11 @@ class Flag final : public Scene {
   const Pose& pose() const noexcept override { return cloth_.pose(); }
 
   double largest_joint_step_m(double dt_s) const noexcept override {
-    const double lift_step = OscillatorStep::largest_rate_per_s(lift_hz_, kLiftDamping) * dt_s;
+    const double lift_step = OscillatorStep::largest_rate_per_s(lift_hz_, kFlagLiftDamping) * dt_s;
     const double noise_step = waves_.largest_change(kFastestWave_m_s, dt_s) +
                               edge_flutter_ * edge_waves_.largest_change(kFastestWave_m_s, dt_s) +
                               (1.0 + edge_flutter_) * ClothNoise::kLargest * ClothStrength::largest_step(dt_s);
-    const double longest = OscillatorStep::largest_gain(kLiftDamping);
+    const double longest = OscillatorStep::largest_gain(kFlagLiftDamping);
     return cloth_.largest_joint_step_m(dt_s,
                                        lift_step * (1.0 + 2.0 * longest_rest_) + longest * flutter_rad_ * noise_step);
   }
@@ -152,7 +152,7 @@ class Flag final : public Scene {
     const double tangent = s * s;
     const double half_tangent = tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
     const double per_speed = speed_m_s > 0.0 ? half_tangent / speed_m_s : 0.0;
-    const OscillatorStep step = OscillatorStep::exact(lift_hz_, kLiftDamping, dt_s);
+    const OscillatorStep step = OscillatorStep::exact(lift_hz_, kFlagLiftDamping, dt_s);
     lift_east_.step(wind_.east_m_s() * per_speed, step);
     lift_south_.step(wind_.south_m_s() * per_speed, step);
 
@@ -218,18 +218,19 @@ class Flag final : public Scene {
         wind_(setup.placement, setup.gusts),
         cloth_(flag_spec(values), edge, setup.row),
         down_m_(heights_m(cloth_, values.number("hoist"))),
-        waves_(values.number("wave_length") / kWaveBand, values.number("wave_length"), wave_grid(values, 0.0),
+        waves_(values.number("wave_length") / kFlagBand, values.number("wave_length"), wave_grid(values, 0.0),
                setup.seed ^ stream_id("flag noise"), setup.row),
-        edge_waves_(kEdgeWaves * values.number("wave_length") / kWaveBand, kEdgeWaves * values.number("wave_length"),
-                    wave_grid(values, kEdgeBegins), setup.seed ^ stream_id("flag edge noise"), setup.row),
+        edge_waves_(kFlagEdgeWaves * values.number("wave_length") / kFlagBand,
+                    kFlagEdgeWaves * values.number("wave_length"), wave_grid(values, kFlagEdgeBegins),
+                    setup.seed ^ stream_id("flag edge noise"), setup.row),
         angle_rad_(cloth_.knots().stride),
         gusts_(cloth_.knots().stride) {
     for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
       const double along = cloth_.along(link);
       wave_rad_.push_back(static_cast<float>(flutter_rad_ * std::pow(along, values.number("growth"))));
-      if (along < kEdgeBegins) continue;
+      if (along < kFlagEdgeBegins) continue;
       edge_rad_.push_back(
-          static_cast<float>(flutter_rad_ * edge_flutter_ * (along - kEdgeBegins) / (1.0 - kEdgeBegins)));
+          static_cast<float>(flutter_rad_ * edge_flutter_ * (along - kFlagEdgeBegins) / (1.0 - kFlagEdgeBegins)));
     }
   }
 

@@ -1,4 +1,4 @@
-// What the motions of cloths are made of: the waves, how strong they are, and what swings.
+// What the motions of cloths are made of: waves, how strong they are, and what swings.
 
 #include <algorithm>
 #include <array>
@@ -68,7 +68,8 @@ TEST(ClothNoise, StaysWithinItsLargestAndHasVarianceNearOne) {
 }
 
 TEST(ClothNoise, IsSaturatedAsByAHyperbolicTangent) {
-  for (float value = -8.0F; value < 8.0F; value += 0.01F) {
+  for (int i = -800; i < 800; ++i) {
+    const float value = 0.01F * static_cast<float>(i);
     EXPECT_NEAR(ClothNoise::saturated(value), 2.2 * std::tanh(static_cast<double>(value) / 2.2), 0.06);
     EXPECT_LE(ClothNoise::saturated(value + 0.01F) - ClothNoise::saturated(value), 0.01F + 1e-6F);
   }
