@@ -105,7 +105,7 @@ std::vector<JudgedRow> judge(const SceneTable& table, const MeasuredScene& measu
                              const std::array<bool, kBeauforts>& is_asked) {
   std::vector<Bound> bounds(kCommonBounds.begin(), kCommonBounds.end());
   if (described(table.scene).is_still_in_calm) {
-    bounds.push_back({"in calm: numbers of the pose that differ from rest", "", 0, {{at_most(0), kAny, kAny, kAny}}});
+    bounds.push_back({"in calm: numbers off the rest pose", "", 0, {{at_most(0), kAny, kAny, kAny}}});
   }
   if (table.largest_turn_deg > 0.0) {
     const Range turn = at_most(table.largest_turn_deg);
