@@ -360,13 +360,6 @@ class Flame final : public Scene {
   FlameBody body_;  ///< but for its surface, which is in skeleton_
 };
 
-const std::array kRetiredFlameParameters = {
-    RetiredParameter{
-        "max_lean",
-        "is now exposure: how much of the wind reaches the flame, which leans as far as fires were measured to"},
-    RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches the flame"},
-};
-
 }  // namespace
 
 extern const SceneDescription kFlameScene;

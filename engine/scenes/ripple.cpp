@@ -291,11 +291,6 @@ class Ripple final : public Scene {
   Pose pose_;
 };
 
-const std::array kRetiredRippleParameters = {
-    RetiredParameter{"height", "is now steepness: the slope of the waves, as a part of what was measured at sea"},
-    RetiredParameter{"half_speed", "is now onset: the wind from which on the water is rough"},
-};
-
 }  // namespace
 
 extern const SceneDescription kRippleScene;
