@@ -40,13 +40,15 @@ struct StripOptions {
 constexpr int kGap_px = 4;
 constexpr double kBefore_s = 120.0;  // the recording is heard from so long before the first picture
 
-/// "HEADING,PITCH,DISTANCE" around the middle of what is shown, a little above the ground.
+/// "HEADING,PITCH,DISTANCE" around the middle of what is shown, a little above the ground; or with ",HEIGHT" that high.
 OrbitCamera camera_of(const std::string& text) {
   CameraPlace place;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf", &place.heading_deg, &place.pitch_deg, &place.distance_m) != 3) {
-    throw std::runtime_error("--camera: is \"" + text + "\"; allowed: HEADING,PITCH,DISTANCE");
+  double height_m = 0.4;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf", &place.heading_deg, &place.pitch_deg, &place.distance_m, &height_m) <
+      3) {
+    throw std::runtime_error("--camera: is \"" + text + "\"; allowed: HEADING,PITCH,DISTANCE or with ,HEIGHT behind");
   }
-  place.target_m.y = 0.4;
+  place.target_m.y = static_cast<float>(height_m);
   OrbitCamera camera;
   camera.frame(place);
   return camera;
@@ -217,7 +219,8 @@ int main(int argc, char** argv) {
     app.add_option("--width", options.width_px, "of a picture, pixels")->check(CLI::Range(16, 4096));
     app.add_option("--height", options.height_px)->check(CLI::Range(16, 4096));
     app.add_flag("--lean", options.is_lean_shown, "and how far the first scene's blades lean, as a map");
-    app.add_option("--camera", options.cameras, "HEADING,PITCH,DISTANCE as yuragi-viewer has it; can be given again")
+    app.add_option("--camera", options.cameras,
+                   "HEADING,PITCH,DISTANCE[,HEIGHT] as yuragi-viewer has it; can be given again")
         ->allow_extra_args(false);
     CLI11_PARSE(app, argc, argv);
     make_strip(options);
