@@ -283,14 +283,25 @@ class Banner final : public Scene {
   double turned_rad_ = 0.0;  ///< of the arm, clockwise from rest
 };
 
+const std::array kRetiredBannerParameters = {
+    RetiredParameter{"max_sway", "is now belly: how far a wind from the side bows the free side"},
+    RetiredParameter{"half_sway_speed", "is now half_flutter_speed"},
+    RetiredParameter{"travel_time", "is now wave_speed: waves run down at a part of the wind's speed"},
+    RetiredParameter{"tile_period", "is now wave_length, of the longest waves"},
+    RetiredParameter{"growth", "is gone: waves grow from the pole and from the arm"},
+    RetiredParameter{"quickness", "is gone: the cloth follows its waves at once"},
+    RetiredParameter{"beta", "is gone: waves are a band of lengths, see wave_length"},
+};
+
 }  // namespace
 
 extern const SceneDescription kBannerScene;
-const SceneDescription kBannerScene = {.name = "banner",
-                                       .summary = "a nobori, held by its pole and cross-arm, that flutters in the wind",
-                                       .parameters = kBannerParameters,
-                                       .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                         return std::unique_ptr<Scene>(std::make_unique<Banner>(values, setup));
-                                       }};
+const SceneDescription kBannerScene = {
+    .name = "banner",
+    .summary = "a nobori, held by its pole and cross-arm, that flutters in the wind",
+    .parameters = kBannerParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Banner>(values, setup)); },
+    .retired = kRetiredBannerParameters};
 
 }  // namespace yuragi

@@ -311,14 +311,23 @@ class Curtain final : public Scene {
   std::vector<float> flutter_down_;    ///< each knot's
 };
 
+const std::array kRetiredCurtainParameters = {
+    RetiredParameter{"quickness", "is now damping: how soon the curtain swings out"},
+    RetiredParameter{"travel_time", "is gone: waves go down as the cloth's height and weight have it"},
+    RetiredParameter{"tile_period", "is now wave_length, of the longest bulges"},
+    RetiredParameter{"growth", "is gone: the hem's weight shapes the cloth"},
+    RetiredParameter{"beta", "is gone: bulges are a band of lengths, see wave_length"},
+};
+
 }  // namespace
 
 extern const SceneDescription kCurtainScene;
-const SceneDescription kCurtainScene = {.name = "curtain",
-                                        .summary = "a curtain that billows, and waves that run down and along it",
-                                        .parameters = kCurtainParameters,
-                                        .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                          return std::unique_ptr<Scene>(std::make_unique<Curtain>(values, setup));
-                                        }};
+const SceneDescription kCurtainScene = {
+    .name = "curtain",
+    .summary = "a curtain that billows, and waves that run down and along it",
+    .parameters = kCurtainParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Curtain>(values, setup)); },
+    .retired = kRetiredCurtainParameters};
 
 }  // namespace yuragi

@@ -273,14 +273,23 @@ class Flag final : public Scene {
   std::vector<float> gusts_;
 };
 
+const std::array kRetiredFlagParameters = {
+    RetiredParameter{"max_lift", "is now half_lift_speed: a storm lifts a flag as far as its weight lets it"},
+    RetiredParameter{"quickness", "is now lift_rate, in Hz: how fast the flag swings back"},
+    RetiredParameter{"travel_time", "is now wave_speed: waves run to the fly at a part of the wind's speed"},
+    RetiredParameter{"tile_period", "is now wave_length, of the longest waves"},
+    RetiredParameter{"beta", "is gone: waves are a band of lengths, see wave_length"},
+};
+
 }  // namespace
 
 extern const SceneDescription kFlagScene;
-const SceneDescription kFlagScene = {.name = "flag",
-                                     .summary = "a flag that hangs limp in calm air, and flies downwind of its pole",
-                                     .parameters = kFlagParameters,
-                                     .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                       return std::unique_ptr<Scene>(std::make_unique<Flag>(values, setup));
-                                     }};
+const SceneDescription kFlagScene = {
+    .name = "flag",
+    .summary = "a flag that hangs limp in calm air, and flies downwind of its pole",
+    .parameters = kFlagParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Flag>(values, setup)); },
+    .retired = kRetiredFlagParameters};
 
 }  // namespace yuragi
