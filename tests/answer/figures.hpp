@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ struct Figure {
   double value = 0.0;
 };
 using Figures = std::vector<Figure>;
+
+/// The one of this name.
+std::optional<double> value_of(const Figures& figures, std::string_view name);
 
 /// What a figure may be, both limits included. None: it is shown, and not judged.
 struct Range {

@@ -21,11 +21,7 @@ const std::array kCommonBounds = {
 };
 
 std::optional<double> value_of(const std::optional<Figures>& figures, std::string_view name) {
-  if (!figures) return std::nullopt;
-  for (const Figure& figure : *figures) {
-    if (figure.name == name) return figure.value;
-  }
-  return std::nullopt;
+  return figures ? answer::value_of(*figures, name) : std::nullopt;
 }
 
 /// The value of a row at a Beaufort number; of a quotient nothing where one of its two was not recorded.
