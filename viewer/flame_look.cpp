@@ -66,6 +66,7 @@ FlameLook::FlameLook(const SurfaceSkeleton& surface)
   glUniform1i(glGetUniformLocation(program_.name(), "is_closed"), surface.is_closed ? 1 : 0);
 
   glUniform1i(glGetUniformLocation(program_.name(), "columns"), static_cast<GLint>(surface.columns));
+  glUniform1i(glGetUniformLocation(program_.name(), "shells"), static_cast<GLint>(sheet_.shells()));
   glUniform1i(glGetUniformLocation(program_.name(), "rows"), static_cast<GLint>(surface.rows));
 
   const Bounds bounds = bounds_of(surface);

@@ -11,6 +11,7 @@
 #include "engine/math/philox.hpp"
 #include "engine/math/trig.hpp"
 #include "engine/noise/line_cut.hpp"
+#include "engine/noise/unit_reading.hpp"
 #include "engine/operators/displacement_job.hpp"
 #include "engine/operators/threshold_ramp_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
@@ -57,7 +58,7 @@ constexpr double kWidthOfTile = 0.078125;
 
 /// The thresholds at the foot and at the top, and the soft edge, in standard deviations of the noise. Up the flame they
 /// rise as the cube of the height; at the foot of the inner shells they are lower by so much, at the top by nothing.
-constexpr double kFootThreshold = -2.7;
+constexpr double kFootThreshold = -3.1;
 constexpr double kTopThreshold = 1.5;
 constexpr double kEdge = 4.5;
 constexpr std::array<double, 3> kHotter = {0.0, 0.9, 1.8};
@@ -65,13 +66,13 @@ constexpr double kHotterPanel = 0.9;
 
 /// What puffing lowers the threshold by at most, for a standard deviation of the whole heat of 1 (a part of its mean).
 /// Measured.
-constexpr double kPuff = 16.5;
+constexpr double kPuff = 15.5;
 /// It grows as it rises, until this part of the way.
 constexpr double kPuffGrown = 0.6;
 /// A puff's pace wanders by a tenth, within seconds; and the wind that halves its power.
 constexpr double kPuff_hz_sqrt_m = 1.5;
 constexpr double kPaceWanders = 0.1;
-constexpr double kPacePeriod_s = 60.0;
+constexpr double kPacePeriod_s = 50.0;
 constexpr double kPuffless_m_s = 8.0;
 
 /// How fast a flame catches fire.
@@ -114,6 +115,11 @@ const std::array kFlameParameters = {
     Parameter{"beta", "", 3.0, 1, 6, "exponent of the noise's spectrum, 1/f^beta: less is rougher"},
 };
 
+constexpr std::array kRetiredFlameParameters = {
+    RetiredParameter{"max_lean", "is now exposure: it lies over as fires of its size do; below 1 it leans less"},
+    RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches it"},
+};
+
 /// The points' coordinates along the tiles: two noises at right angles to each other through a body, both across a
 /// panel.
 struct FlamePlaces {
@@ -150,11 +156,14 @@ LayeredNoise flame_noise(const FlameBody& body, const ParameterValues& values, d
   return {layers, places.first_m, body.up_m};
 }
 
-/// A noise of a tenth of a wave a second and less, for the puffs' pace.
-NoiseTile1 pace_of_puffs(std::uint64_t seed) {
-  return make_noise_1d(
-             {.size = 256, .beta = 1.0, .seed = seed ^ stream_id("flame pace"), .from_cycles = 2.0, .to_cycles = 40.0})
-      .value();
+/// A noise for the puffs' pace, with waves of one to twelve seconds and more, for it is read along a line.
+NoiseTile2 pace_of_puffs(std::uint64_t seed) {
+  NoiseTile2 pace =
+      make_noise_2d(
+          {.size = 128, .beta = 1.0, .seed = seed ^ stream_id("flame pace"), .from_cycles = 4.0, .to_cycles = 48.0})
+          .value();
+  scale_to_unit_reading(pace);
+  return pace;
 }
 
 class Flame final : public Scene {
@@ -340,8 +349,8 @@ class Flame final : public Scene {
   CriticallyDamped kindled_;  ///< 0 unlit, 1 burning
   FlameAxis axis_;
   LayeredNoise noise_;
-  NoiseTile1 pace_;
-  TorusTravel pace_at_;
+  NoiseTile2 pace_;
+  LineCut pace_at_;
   double puffed_ = 0.0;                          ///< puffs, their whole number left out
   double puff_ = 0.0;                            ///< what one lowers the threshold by at most
   std::vector<float> values_, along_;            ///< a point each
@@ -360,6 +369,7 @@ const SceneDescription kFlameScene = {
     .parameters = kFlameParameters,
     .make = [](const ParameterValues& values,
                const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Flame>(values, setup)); },
-    .is_still_in_calm = false};
+    .is_still_in_calm = false,
+    .retired = kRetiredFlameParameters};
 
 }  // namespace yuragi

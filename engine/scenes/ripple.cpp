@@ -86,6 +86,11 @@ const std::array kRippleParameters = {
     Parameter{"beta", "", 4.0, 2, 6, "exponent of the waves' spectrum beyond the strongest: less is rougher"},
 };
 
+constexpr std::array kRetiredRippleParameters = {
+    RetiredParameter{"height", "is now steepness: the variance of the slope, as a part of the sea's"},
+    RetiredParameter{"half_speed", "is now onset: the wind that raises the first ripples"},
+};
+
 /// A level grid around the world's origin, rows along x from north to south.
 SurfaceSkeleton level_water(const ParameterValues& values, std::size_t columns, std::size_t rows) {
   SurfaceSkeleton water;
@@ -289,11 +294,12 @@ class Ripple final : public Scene {
 }  // namespace
 
 extern const SceneDescription kRippleScene;
-const SceneDescription kRippleScene = {.name = "ripple",
-                                       .summary = "water under the wind: waves rise, and gusts roughen it as they pass",
-                                       .parameters = kRippleParameters,
-                                       .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                         return std::unique_ptr<Scene>(std::make_unique<Ripple>(values, setup));
-                                       }};
+const SceneDescription kRippleScene = {
+    .name = "ripple",
+    .summary = "water under the wind: waves rise, and gusts roughen it as they pass",
+    .parameters = kRippleParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Ripple>(values, setup)); },
+    .retired = kRetiredRippleParameters};
 
 }  // namespace yuragi

@@ -27,6 +27,38 @@ TEST(GridTriangles, CloseABody) {
   EXPECT_EQ(indices[indices.size() - 5], 0U);
 }
 
+TEST(GridTriangles, CloseEachShellAndLeaveTheSpaceBetweenShellsEmpty) {
+  const GridLayout layout{12, 3, 12, true, 3};
+  const std::vector<std::uint32_t> indices = grid_triangles(layout);
+  ASSERT_EQ(indices.size(), 3U * 3U * 2U * 4U * 2U);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::size_t shell = i / (indices.size() / 3);  // one after the other
+    EXPECT_EQ(indices[i] % 12 / 4, shell);
+  }
+}
+
+TEST(GridNormals, OfEachShellPointAwayFromTheAxisAllAround) {
+  // Two tubes, one within another: the normal of a point is along its radius, across the seam too.
+  const GridLayout layout{24, 4, 24, true, 2};
+  std::vector<float> points(3 * layout.size());
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    const std::size_t column = i % 24;
+    const double angle = 2.0 * kPi * static_cast<double>(column % 12) / 12.0;
+    const double radius = column < 12 ? 1.0 : 0.4;
+    points[i] = static_cast<float>(radius * std::cos(angle));
+    points[layout.size() + i] = static_cast<float>(i / 24);
+    points[2 * layout.size() + i] = static_cast<float>(radius * std::sin(angle));
+  }
+  std::vector<float> normals(points.size());
+  grid_normals(layout, points, normals);
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    const float radius = std::hypot(points[i], points[2 * layout.size() + i]);
+    const float along =
+        (normals[i] * points[i] + normals[2 * layout.size() + i] * points[2 * layout.size() + i]) / radius;
+    EXPECT_NEAR(std::abs(along), 1.0F, 1e-5F) << i;
+  }
+}
+
 TEST(GridTriangles, AreNoneWhereThereIsNoCell) {
   EXPECT_TRUE(grid_triangles({1, 5, 16, false}).empty());
   EXPECT_TRUE(grid_triangles({5, 1, 16, false}).empty());

@@ -96,14 +96,17 @@ std::vector<std::uint8_t> fire_ramp() {
 }
 
 SurfaceSkeleton flame_body(TestPlace place) {
-  constexpr std::size_t kColumns = 48;
-  SurfaceSkeleton flame = surface_of(kColumns, 64, place, [](double column, double up) {
-    const double angle = 2 * kPi * column / kColumns;
-    const double radius_m = 0.22 * std::sqrt(std::max(0.0, 1.0 - up)) * (0.75 + 0.9 * up);
+  constexpr std::size_t kAround = 24;  // two shells
+  SurfaceSkeleton flame = surface_of(2 * kAround, 64, place, [](double column, double up) {
+    const double angle = 2 * kPi * column / kAround;
+    const double radius_m = (column < kAround ? 0.22 : 0.12) * std::sqrt(std::max(0.0, 1.0 - up)) * (0.75 + 0.9 * up);
     return std::array{Point{radius_m * std::cos(angle), 0.5 + 1.2 * up, radius_m * std::sin(angle)},
                       Point{std::cos(angle), 0.0, std::sin(angle)}};
   });
   flame.is_closed = true;
+  flame.shells = 2;
+  flame.axis_x_m.assign(64, static_cast<float>(place.east_m));
+  flame.axis_z_m.assign(64, static_cast<float>(place.south_m));
   flame.ramp_rgba = fire_ramp();
   return flame;
 }
@@ -334,6 +337,12 @@ SurfacePose waves(const SurfaceSkeleton& surface, double time_s, double strength
     const double aside = surface.is_closed ? 0.0 : std::pow(std::abs(x_m) / 0.25, 2.0);
     pose.heat[i] = static_cast<float>(std::clamp(0.95 - 0.85 * up - 0.8 * aside + 0.16 * lick, 0.0, 1.0));
     if (surface.is_closed) pose.displacement_m[i] = static_cast<float>(0.035 * lick * (0.3 + up));
+  }
+  for (std::size_t row = 0; row < pose.row_east_m.size(); ++row) {  // a body leans to the east
+    const double up = static_cast<double>(row) / static_cast<double>(surface.rows - 1);
+    pose.row_east_m[row] = static_cast<float>(0.5 * strength * up);
+    pose.row_drop_m[row] = static_cast<float>(0.2 * strength * up);
+    pose.row_slope_east[row] = static_cast<float>(0.3 * strength);
   }
   return pose;
 }

@@ -10,14 +10,17 @@ out vec3 place_m;
 out vec3 normal;
 out float heat;
 out float along;
+out float inward;
 
 uniform int columns;
 uniform int rows;
+uniform int shells;
 
 void main() {
   place_m = vec3(x_m, y_m, z_m);
   normal = vec3(normal_x, normal_y, normal_z);
   heat = level;
+  inward = shells > 1 ? float(gl_VertexID % columns / (columns / shells)) / float(shells - 1) : 1.0;
   along = float(gl_VertexID / columns) / float(max(rows - 1, 1));
   gl_Position = to_clip * vec4(place_m, 1.0);
 }

@@ -84,7 +84,7 @@ TEST_P(FlameForms, IsUnlitAndUprightAtRestAndThenCatchesFireWithoutAJump) {
   EXPECT_EQ(pose_hash(0, scene->pose()), pose_hash(0, rest_pose(scene->skeleton())));
   std::vector<float> before = flame_pose_of(*scene).heat;
   double total = 0.0;
-  for (int tick = 0; tick < 120; ++tick) {
+  for (int tick = 0; tick < 180; ++tick) {
     run_flame(*scene, {}, 1);
     const std::vector<float>& now = flame_pose_of(*scene).heat;
     double step = 0.0;
@@ -93,7 +93,7 @@ TEST_P(FlameForms, IsUnlitAndUprightAtRestAndThenCatchesFireWithoutAJump) {
       step += static_cast<double>(std::abs(now[i] - before[i])) / static_cast<double>(now.size());
       total += static_cast<double>(now[i]) / static_cast<double>(now.size());
     }
-    ASSERT_LT(step, 0.05);
+    ASSERT_LT(step, 0.1);  // as it flickers when it burns, and no more
     before = now;
   }
   EXPECT_GT(total, 0.02);
