@@ -72,8 +72,12 @@ Bounds bounds_of(const GridSkeleton& cloth) {
   const bool is_hoisted = edge_m.y > std::max(edge_m.x, edge_m.z);
   const float reach_m = (is_hoisted ? kFlyPerLength : kSwingPerLength) * length_m;
   if (is_hoisted) return united(whole, widened(fixed, {reach_m, 0.0F, reach_m}));
-  const float room_m = cloth.is_first_column_fixed ? 0.5F * reach_m : reach_m;
-  return widened(whole, {0.3F * room_m, 0.0F, 0.3F * room_m});
+  if (!cloth.is_first_column_fixed) return widened(whole, {0.3F * reach_m, 0.0F, 0.3F * reach_m});
+
+  // An arm may turn to any side of its pole.
+  const float arm_m = std::hypot(edge_m.x, edge_m.z);
+  const glm::vec3 top = joint_at_rest(cloth, 0, 0);
+  return united(whole, widened({top, top}, {arm_m, 0.0F, arm_m}));
 }
 
 Bounds bounds_of(const TreeSkeleton& tree) {

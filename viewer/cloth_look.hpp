@@ -22,6 +22,7 @@ class ClothLook : public Look {
 
  private:
   const GridSkeleton* cloth_;
+  bool is_vane_;  ///< what holds it turns with its fixed edge
   PointPositions points_;
   GridSheet sheet_;
   Solids holder_;

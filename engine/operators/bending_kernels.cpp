@@ -60,19 +60,24 @@ void bend_coat(const CoatBendingKernelArguments& in) noexcept {
   const float wind_square = wind_east * wind_east + wind_south * wind_south;
   const float toward_east = wind_east * arguments.per_speed_s_m;
   const float toward_south = wind_south * arguments.per_speed_s_m;
+  const float per_speed_s_m = arguments.per_speed_s_m;
+  const float half_bends_per_m_s = arguments.half_bends_per_m_s;
+  const float max_bend_rad = arguments.max_bend_rad;
+  const float stroke_rad = arguments.stroke_rad;
+  const float sheltered = arguments.sheltered;
   for (std::size_t i = 0; i < arguments.count; ++i) {
     // The wind along the skin.
     const float outward = wind_east * normal_x[i] + wind_south * normal_z[i];
     const float left = wind_square - outward * outward;
     const float square = left > 0.0F ? left : 0.0F;
-    const float per_m_s = arguments.half_bends_per_m_s * flexibility[i];
+    const float per_m_s = half_bends_per_m_s * flexibility[i];
     const float s_square = per_m_s * per_m_s * square;
     const float share = 1.0F - 1.0F / (1.0F + s_square);
 
-    const float lee = outward * arguments.per_speed_s_m;
-    const float exposure = 1.0F - arguments.sheltered * (lee > 0.0F ? lee : 0.0F);
-    const float along = share * (arguments.max_bend_rad * exposure + arguments.stroke_rad * stroke_along[i]);
-    const float across = share * arguments.stroke_rad * stroke_across[i];
+    const float lee = outward * per_speed_s_m;
+    const float exposure = 1.0F - sheltered * (lee > 0.0F ? lee : 0.0F);
+    const float along = share * (max_bend_rad * exposure + stroke_rad * stroke_along[i]);
+    const float across = share * stroke_rad * stroke_across[i];
     out_east[i] = along * toward_east - across * toward_south;
     out_south[i] = along * toward_south + across * toward_east;
   }

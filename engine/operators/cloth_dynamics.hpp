@@ -8,6 +8,7 @@
 
 #include "engine/base/simd_row.hpp"
 #include "engine/operators/cloth_projection_job.hpp"
+#include "engine/operators/cloth_spline.hpp"
 
 namespace yuragi {
 
@@ -30,6 +31,7 @@ class CoarseCloth {
   std::size_t rows() const noexcept { return rows_; }
   std::size_t links() const noexcept { return rows_ - 1; }
   std::size_t stride() const noexcept { return stride_; }
+  ClothKnots knots() const noexcept { return {.columns = columns_, .links = links(), .stride = stride_}; }
   bool is_first_column_fixed() const noexcept { return is_first_column_fixed_; }
 
   /// How far each link leans beyond rest (lean.hpp): a row a link, east of all columns, then south, stride() each. The

@@ -7,23 +7,6 @@
 namespace yuragi {
 namespace {
 
-void follow(const FollowKernelArguments& arguments) noexcept {
-  const FollowKernelArguments in = arguments;  // a copy, which no store can be taken for a change of
-  const float* const target = in.target;
-  float* const __restrict value = in.value;
-  float* const __restrict rate_per_s = in.rate_per_s;
-  for (std::size_t i = 0; i < in.count; ++i) {
-    const float distance = value[i] - target[i];
-    const float rate = rate_per_s[i];
-    const float new_value = target[i] + (in.distance_kept * distance + in.distance_from_rate_s * rate);
-    const float new_rate = in.rate_kept * rate - in.rate_from_distance_per_s * distance;
-    const float farther = __builtin_fabsf(new_value) > __builtin_fabsf(new_rate) ? new_value : new_rate;
-    const bool moves = __builtin_fabsf(farther) >= in.at_rest;
-    value[i] = moves ? new_value : 0.0F;
-    rate_per_s[i] = moves ? new_rate : 0.0F;
-  }
-}
-
 void propagate(const PropagationKernelArguments& arguments) noexcept {
   const PropagationKernelArguments in = arguments;
   float* const __restrict out = in.out;
@@ -59,6 +42,6 @@ void hang(const ClothKernelArguments& arguments) noexcept {
 
 }  // namespace
 
-const ClothKernels YURAGI_ROW_NAME(cloth_kernels) = {follow, propagate, hang};
+const ClothKernels YURAGI_ROW_NAME(cloth_kernels) = {propagate, hang};
 
 }  // namespace yuragi

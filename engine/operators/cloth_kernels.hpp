@@ -6,7 +6,7 @@
 
 namespace yuragi {
 
-/// One row of values: out = base + newer_gain * newer + older_gain * older.
+/// One row of values, between two others: out = base + newer_gain * newer + older_gain * older.
 struct PropagationKernelArguments {
   std::size_t count = 0;
   const float* base = nullptr;
@@ -15,19 +15,6 @@ struct PropagationKernelArguments {
   float newer_gain = 0.0F;
   float older_gain = 0.0F;
   float* out = nullptr;
-};
-
-/// FollowJob's step.
-struct FollowKernelArguments {
-  std::size_t count = 0;
-  const float* target = nullptr;
-  float distance_kept = 0.0F;
-  float distance_from_rate_s = 0.0F;
-  float rate_kept = 0.0F;
-  float rate_from_distance_per_s = 0.0F;
-  float at_rest = 0.0F;  ///< what is below is 0
-  float* value = nullptr;
-  float* rate_per_s = nullptr;
 };
 
 /// A band of links, from a row of joints whose offsets are there to those below it.
@@ -43,7 +30,6 @@ struct ClothKernelArguments {
 };
 
 struct ClothKernels {
-  void (*follow)(const FollowKernelArguments&) noexcept;
   void (*propagate)(const PropagationKernelArguments&) noexcept;
   void (*hang)(const ClothKernelArguments&) noexcept;
 };

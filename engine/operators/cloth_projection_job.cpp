@@ -40,6 +40,7 @@ ClothProjectionJob::Problem ClothProjectionJob::validate() const noexcept {
   if (lean.size() % (2 * stride) != 0 || first_link + lean.size() / (2 * stride) > threads->links) {
     return Problem::kLeanSize;
   }
+  if (!edge_m.empty() && edge_m.size() != 3 * stride) return Problem::kEdgeSize;
   for (const auto* array : {&pose->offset_x_m, &pose->offset_y_m, &pose->offset_z_m}) {
     if (array->size() != (threads->links + 1) * stride) return Problem::kPoseSize;
   }
@@ -52,8 +53,14 @@ ClothProjectionJob::Problem ClothProjectionJob::run() const noexcept {
   if (problem != Problem::kNone) return problem;
   const std::size_t stride = threads->stride;
   if (first_link == 0) {
+    const float* from_m = edge_m.empty() ? nullptr : edge_m.data();
     for (auto* offset_m : {&pose->offset_x_m, &pose->offset_y_m, &pose->offset_z_m}) {
-      std::fill_n(offset_m->begin(), stride, 0.0F);
+      if (from_m == nullptr) {
+        std::fill_n(offset_m->begin(), stride, 0.0F);
+      } else {
+        std::copy_n(from_m, stride, offset_m->begin());
+        from_m += stride;
+      }
     }
   }
   const std::size_t from = first_link * stride;

@@ -27,7 +27,7 @@ ClothThreads make_threads(std::size_t links, float link_length_m, std::span<cons
 
 /// The projection of a cloth: points each link to where it leans, and adds the links up from the fixed edge to the
 /// joints' offsets, in GridPose's meaning. Links turn and do not stretch: threads keep their length to rounding (about
-/// 1e-6). The leans of rest give exactly no offset, and the fixed edge never moves.
+/// 1e-6). The leans of rest give exactly no offset, and the fixed edge stays where it is said to be.
 ///
 /// A job does the links from first_link on, as many as `lean` has rows, and takes the joints where they begin from the
 /// pose: so a cloth is done in bands that stay in the nearest cache, from the fixed edge on. With first_link 0 it also
@@ -36,7 +36,8 @@ ClothThreads make_threads(std::size_t links, float link_length_m, std::span<cons
 struct ClothProjectionJob {
   const ClothThreads* threads = nullptr;
   std::size_t first_link = 0;
-  std::span<const float> lean;                ///< a row a link: east of all columns, then south, rest included; finite
+  std::span<const float> lean;         ///< a row a link: east of all columns, then south, rest included; finite
+  std::span<const float> edge_m = {};  ///< the fixed edge's offset from rest, x of all columns, then y, z; none: 0
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   GridPose* pose = nullptr;  ///< (links + 1) * stride joints
@@ -46,6 +47,7 @@ struct ClothProjectionJob {
     kMissingPart,  ///< no threads or no pose
     kThreadsSize,  ///< the stride is not in whole blocks, or an array of the threads has another size
     kLeanSize,     ///< not whole rows, or beyond the last link
+    kEdgeSize,
     kPoseSize,
     kRowNotRunnable,
   };

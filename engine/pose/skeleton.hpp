@@ -51,13 +51,14 @@ struct StrandPose {
 struct GridSkeleton {
   std::size_t columns = 0;
   std::size_t rows = 0;
-  bool is_first_column_fixed = false;  ///< a banner's pole, besides the cross-arm
+  bool is_first_column_fixed = false;  ///< a banner's pole: it stays, and the cross-arm may turn about it
   std::vector<float> rest_x_m, rest_y_m, rest_z_m;
 
   std::size_t stride() const { return padded_to_blocks(columns); }
 };
 
-/// How far each joint is from its place at rest, in the skeleton's layout. Zero is the rest pose; fixed joints stay 0.
+/// How far each joint is from its place at rest, in the skeleton's layout. Zero is the rest pose. The fixed edge stays
+/// 0; but where the first column is fixed, that stays 0 and the edge may turn about it.
 struct GridPose {
   std::vector<float> offset_x_m, offset_y_m, offset_z_m;
 };

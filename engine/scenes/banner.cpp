@@ -1,25 +1,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "engine/base/units.hpp"
+#include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/math/trig.hpp"
 #include "engine/scenes/cloth.hpp"
-#include "engine/scenes/cloth_noise.hpp"
+#include "engine/scenes/cloth_strength.hpp"
+#include "engine/scenes/cloth_swing.hpp"
+#include "engine/scenes/cloth_waves.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 
 // A nobori, the tall banner of festivals and shop fronts, after N. Chiba, "Development of core technology for a
 // noise-based real-time animation engine for fluctuation phenomena" (Iwate University), section 3.2 and figure 11:
 //
-//   shift    the wind carries a 2-D noise along the banner                                          ShiftJob
-//   sample   each column reads it where it hangs                                                   SampleJob
-//   project  a base sway for all of it, and the noise propagates from the cross-arm down, growing  Cloth
+//   shift    waves run down the banner, at a part of the wind's speed                                ShiftJob
+//   sample   each part of the cloth reads them where it is                                           SampleJob
+//   project  they turn the cloth to the sides, from the pole to the free side, and it hangs so       Cloth
 //
-// Row 0 hangs from the cross-arm and the first column is on the pole: neither moves. From the pole to the free side
-// sway and noise grow with the distance, so that the cloth is not torn from it; and the base sway is small, since a
-// thread that is held by its side cannot hang far out.
+// Row 0 hangs from the cross-arm, which with its pole is a vane: it turns downwind as a damped oscillator whose
+// frequency goes with the wind, for its torque goes with the wind's square; in calm air it stays where it was left. The
+// first column is on the pole and never moves. Held by both, the cloth cannot swing out as a whole: a wave turns it by
+// an angle that grows from the pole to the free side and from the arm down, so that along each row it is the integral
+// of that angle's sine that it goes to the side. Threads hang from row to row and keep their length.
+//
+// The bound of largest_joint_step_m. The angle A at the free side is g (A_w S n + 2 belly S c): it changes by at most
+// d_A = A_w (d_n + 2.2 d_S) + 2 belly (d_S + d_c) a tick (ClothNoise, ClothStrength, CriticallyDamped for c, which is
+// within 1). A row's way to the side or back then changes by half the width times d_A at most; a knot's slope by
+// sqrt(2) times twice that, over a knot's link; its lean by half as much as the slope. That is generous, since
+// neighbouring rows go together. The arm turns by no more than kFastestTurn a second.
 
 namespace yuragi {
 namespace {
@@ -30,30 +43,55 @@ const std::array kBannerParameters = {
     Parameter{"width", "m", 0.6, 0.05, 20, "of the cloth"},
     Parameter{"height", "m", 2.7, 0.1, 50, "of the cloth"},
     Parameter{"clearance", "m", 0.5, 0, 50, "between the cloth and the ground"},
-    Parameter{"max_sway", "deg", 10.0, 0, 60, "how far the strongest wind blows the free side out"},
-    Parameter{"max_flutter", "deg", 50.0, 0, 80, "how far the strongest wind makes the free corner flutter"},
-    Parameter{"half_sway_speed", "m/s", 4.5, 0.1, 60, "the wind that moves it half as much"},
-    Parameter{"travel_time", "s", 1.2, 0, 10, "that the noise takes from the cross-arm to the bottom"},
-    Parameter{"growth", "", 0.4, 0, 4, "the noise grows as the way from the cross-arm to this power"},
-    Parameter{"quickness", "rad/s", 18.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"turns", "", true, 0, 0, "the arm turns downwind, as a vane; if not, it points to the scene's east"},
+    Parameter{"belly", "", 0.08, 0, 0.5, "how far a wind from the side bows the free side, as a part of the width"},
+    Parameter{"max_flutter", "deg", 68.0, 0, 80, "how far the strongest waves turn the free corner to the sides"},
+    Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes its waves half as high"},
+    Parameter{"wave_length", "m", 2.4, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
+    Parameter{"wave_speed", "", 0.55, 0, 2, "how fast the waves run down, as a part of the wind's speed"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
-    Parameter{"tile_period", "m", 6.0, 2, 4096, "the longest wave of the noise; 128 samples"},
-    Parameter{"beta", "", 1.3, kMinTransectBeta2, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
+
+/// No wave runs faster: 0.2 m a tick.
+constexpr double kFastestBannerWave_m_s = 12.0;
+
+/// The longest waves over the shortest.
+constexpr double kBannerBand = 2.0;
+
+/// The free side is so much ahead of the pole, of its distance from it: a wave's front goes up to the free side.
+constexpr double kSlant = 0.35;
+
+/// In the longest wave.
+constexpr double kBannerKnotsAWave = 28.0;
+
+/// Half of the waves' height is reached so far below the arm, as a part of the banner's height (and 0.4 of it at most,
+/// where nothing below holds it).
+constexpr double kHeldByArm = 0.4;
+
+/// The vane: its frequency in a strong wind, the wind that turns it half as fast, its damping, and friction.
+constexpr double kArmHz = 0.5;
+constexpr double kArmHalfSpeed_m_s = 0.5;
+constexpr double kArmDamping = 0.7;
+constexpr double kArmFriction_per_s = 1.0;
+constexpr double kFastestTurn_rad_s = 5.0;
+
+/// The wind that would hold it half way up if it hung by its arm alone: the hybrid's.
+constexpr double kDragHalfSpeed_m_s = 4.5;
+
+/// How quickly the belly changes over, and the sine of the wind's angle to the arm that fills it.
+constexpr double kBellyOmega_rad_s = 2.0;
+constexpr double kFullBelly = 0.2;
 
 /// In the hybrid the cloth is taut from the pole to the free side, and by its loops the pole takes most of the wind.
 ClothSpec banner_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("height"),
           .is_first_column_fixed = true,
-          .travel_time_s = values.number("travel_time"),
-          .growth_exponent = values.number("growth"),
-          .quickness_rad_s = values.number("quickness"),
-          .largest_sway = lean_of_deg(values.number("max_sway")),
-          .largest_wave = lean_of_deg(values.number("max_flutter")),
+          .knots_across_m = values.number("width") / 5.0,
+          .knots_along_m = values.number("wave_length") / kBannerKnotsAWave,
           .hybrid = values.number("hybrid"),
-          .normal_drag_per_m = 0.6 * drag_per_m(values.number("half_sway_speed")),
-          .skin_drag_per_m = 0.05 * drag_per_m(values.number("half_sway_speed")),
+          .normal_drag_per_m = 0.6 * drag_per_m(kDragHalfSpeed_m_s),
+          .skin_drag_per_m = 0.05 * drag_per_m(kDragHalfSpeed_m_s),
           .across_stiffness_s2 = 6'000.0};
 }
 
@@ -76,81 +114,194 @@ class Banner final : public Scene {
 
   const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const Pose& pose() const noexcept override { return cloth_.pose(); }
-  double largest_joint_step_m(double dt_s) const noexcept override { return cloth_.largest_joint_step_m(dt_s); }
+
+  double largest_joint_step_m(double dt_s) const noexcept override {
+    const double strength_step = ClothStrength::largest_step(dt_s);
+    const double angle_step =
+        flutter_rad_ * (waves_.largest_change(kFastestBannerWave_m_s, dt_s) + ClothNoise::kLargest * strength_step) +
+        2.0 * belly_ * (strength_step + 2.0 * kBellyOmega_rad_s / std::numbers::e * dt_s);
+    const double side_step_m = 0.5 * width_m_ * angle_step;
+    return cloth_.largest_joint_step_m(dt_s, std::numbers::sqrt2 * side_step_m / knot_link_m_,
+                                       turns_ ? kFastestTurn_rad_s * dt_s : 0.0);
+  }
 
   void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
-    noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
+    strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
+    waves_.shift(std::min(wave_speed_ * wind_.speed_m_s(), kFastestBannerWave_m_s), dt_s);
   }
-  void sample() noexcept override { noise_.sample(flutter_); }
+  void sample() noexcept override { waves_.sample(); }
 
   void project(double dt_s) noexcept override {
-    // How much the wind blows across the banner, and how much it blows at all.
-    const double speed_m_s = wind_.speed_m_s();
-    const double s = speed_m_s / half_sway_speed_m_s_;
-    const double strength = s * s / (1.0 + s * s);
-    const double per_speed = speed_m_s > 0.0 ? strength / speed_m_s : 0.0;
-    const double across = (wind_.south_m_s() * arm_.east - wind_.east_m_s() * arm_.south) * per_speed;
+    turn_arm(dt_s);
+    const auto strength = static_cast<float>(strength_.value());
+    const auto bow = cloth_.sway_share() * static_cast<float>(2.0 * belly_ * cross_.value) * strength;
+    const float wave = cloth_.wave_share() * static_cast<float>(flutter_rad_) * strength;
 
-    // It gives way across itself, more the farther from the pole.
-    const double swell = 0.6 + own_swell_ * static_cast<double>(noise_.swell());
-    const auto sway_across = static_cast<float>(max_sway_ * swell * across);
-    const auto wave_across = static_cast<float>(max_wave_ * strength);
-    const auto across_east = static_cast<float>(-arm_.south);
-    const auto across_south = static_cast<float>(arm_.east);
-    const std::span<float> sway = cloth_.sway();
-    const std::span<float> wave = cloth_.wave();
-    const std::size_t stride = flutter_.size();
-    for (std::size_t column = 0; column < stride; ++column) {
-      const float column_sway = from_pole_[column] * sway_across;
-      const float column_wave = from_pole_[column] * flutter_[column] * wave_across;
-      sway[column] = column_sway * across_east;
-      sway[stride + column] = column_sway * across_south;
-      wave[column] = column_wave * across_east;
-      wave[stride + column] = column_wave * across_south;
+    // Each row of knots from the pole to the free side, then what hangs between it and the row before.
+    const std::size_t stride = cloth_.knots().stride;
+    const std::span<float> lean = cloth_.lean();
+    const auto arm_east = static_cast<float>(arm_.east);
+    const auto arm_south = static_cast<float>(arm_.south);
+    for (std::size_t row = 0; row <= cloth_.knots().links; ++row) {
+      std::swap(row_above_, row_here_);
+      lay_out(row, bow, wave);
+      if (row == 0) continue;
+      float* const lean_east = lean.data() + (row - 1) * 2 * stride;
+      float* const lean_south = lean_east + stride;
+      for (std::size_t i = 0; i < from_pole_.size(); ++i) {
+        const float ahead = per_link_m_ * (row_here_.ahead_m[i] - row_above_.ahead_m[i]);
+        const float aside = per_link_m_ * (row_here_.aside_m[i] - row_above_.aside_m[i]);
+        const float half = 1.0F / (1.0F + __builtin_sqrtf(1.0F + (ahead * ahead + aside * aside)));
+        lean_east[i] = half * (ahead * arm_east - aside * arm_south);
+        lean_south[i] = half * (ahead * arm_south + aside * arm_east);
+      }
     }
-    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), flutter_);
-    cloth_.project(dt_s);
+
+    // The hybrid's cloth is in the air as its own frame has it, which turns with the arm.
+    const auto [sine, cosine] = sin_cos(static_cast<float>(turned_rad_));
+    const ClothTurn turn{static_cast<double>(sine), static_cast<double>(cosine)};
+    std::fill(gusts_.begin(), gusts_.end(), waves_.values()[0] * static_cast<float>(1.0 / ClothNoise::kLargest));
+    cloth_.blow(turn.cosine * wind_.east_m_s() + turn.sine * wind_.south_m_s(),
+                turn.cosine * wind_.south_m_s() - turn.sine * wind_.east_m_s(), gusts_);
+    cloth_.project(dt_s, 1.0, turn);
   }
 
  private:
+  /// Where the knots of a row are: along the arm, and to its side.
+  struct Row {
+    std::vector<float> ahead_m, aside_m;
+  };
+
   Banner(const ClothEdge& edge, const ParameterValues& values, const SceneSetup& setup)
-      : half_sway_speed_m_s_(values.number("half_sway_speed")),
-        max_sway_(lean_of_deg(values.number("max_sway"))),
-        max_wave_(lean_of_deg(values.number("max_flutter"))),
+      : width_m_(values.number("width")),
+        turns_(values.flag("turns")),
+        belly_(values.number("belly")),
+        flutter_rad_(values.number("max_flutter") / ClothNoise::kLargest * kRadPerDeg),
+        half_flutter_speed_m_s_(values.number("half_flutter_speed")),
+        wave_speed_(values.number("wave_speed")),
         arm_(turned(setup.placement, 1.0, 0.0)),
-        own_swell_(setup.gusts ? 0.0 : 0.4),
         wind_(setup.placement, setup.gusts),
-        noise_(values, setup.seed ^ stream_id("banner noise"), edge.x_m, edge.z_m, setup.row),
-        flutter_(edge.stride(), 0.0F),
-        from_pole_(edge.stride(), 0.0F),
-        cloth_(banner_spec(values), edge, setup.row) {
-    for (std::size_t column = 0; column < edge.stride(); ++column) {
-      from_pole_[column] = std::min(static_cast<float>(column) / static_cast<float>(edge.columns - 1), 1.0F);
+        cloth_(banner_spec(values), edge, setup.row),
+        knot_link_m_(values.number("height") / static_cast<double>(cloth_.knots().links)),
+        per_link_m_(static_cast<float>(1.0 / knot_link_m_)),
+        waves_(values.number("wave_length") / kBannerBand, values.number("wave_length"),
+               {.first_m = 0.0,
+                .step_m = knot_link_m_,
+                .rows = cloth_.knots().links + 2 + static_cast<std::size_t>(kSlant * 2.0 * width_m_ / knot_link_m_),
+                .across_m = kOneColumn},
+               setup.seed ^ stream_id("banner noise"), setup.row),
+        gusts_(cloth_.knots().stride),
+        row_above_{gusts_, gusts_},
+        row_here_{gusts_, gusts_} {
+    for (std::size_t row = 0; row <= cloth_.knots().links; ++row) {
+      const double down = static_cast<double>(row) / static_cast<double>(cloth_.knots().links);
+      growth_.push_back(static_cast<float>((1.0 + kHeldByArm) * down / (down + kHeldByArm)));
+    }
+    for (std::size_t i = 0; i < cloth_.knots().columns + 2; ++i) {
+      const double from_pole = std::max(cloth_.across(i), 0.0);
+      const double rows = kSlant * from_pole * width_m_ / knot_link_m_;
+      from_pole_.push_back(static_cast<float>(from_pole));
+      ahead_rows_.push_back(static_cast<std::size_t>(rows));
+      ahead_part_.push_back(static_cast<float>(rows - std::floor(rows)));
     }
   }
 
-  double half_sway_speed_m_s_;
-  double max_sway_;  ///< leans
-  double max_wave_;
-  Turned arm_;  ///< where the cross-arm points to
+  /// The vane, whose torque goes with the sine of half the angle: so that it turns about from wherever it points.
+  void turn_arm(double dt_s) noexcept {
+    const double speed_m_s = wind_.speed_m_s();
+    const double per_speed_s_m = speed_m_s > 0.0 ? 1.0 / speed_m_s : 0.0;
+    const double toward_east = wind_.east_m_s() * per_speed_s_m;
+    const double toward_south = wind_.south_m_s() * per_speed_s_m;
+    const auto [sine, cosine] = sin_cos(static_cast<float>(turned_rad_));
+    const double arm_east = static_cast<double>(cosine) * arm_.east - static_cast<double>(sine) * arm_.south;
+    const double arm_south = static_cast<double>(sine) * arm_.east + static_cast<double>(cosine) * arm_.south;
+    const double ahead = arm_east * toward_east + arm_south * toward_south;
+    const double aside = arm_east * toward_south - arm_south * toward_east;
+    const double side = std::clamp(aside / kFullBelly, -1.0, 1.0);
+    cross_.step(side, kBellyOmega_rad_s, dt_s);
+    if (!(speed_m_s > 0.0) && std::abs(cross_.value) + std::abs(cross_.rate_per_s) < kAtRest) cross_ = {};
+    if (!turns_) return;
 
-  double own_swell_;  ///< how much the whole of it swells by itself; gusts from outside are swell enough
+    const double way_rad = speed_m_s > 0.0 ? std::copysign(std::sqrt(std::max(2.0 - 2.0 * ahead, 0.0)), aside) : 0.0;
+    const double square = speed_m_s * speed_m_s;
+    const double hz = kArmHz * square / (square + kArmHalfSpeed_m_s * kArmHalfSpeed_m_s);
+    const double turn_rad_s =
+        vane_.pull(way_rad, hz, 4.0 * kPi * hz * kArmDamping + kArmFriction_per_s, kFastestTurn_rad_s, dt_s);
+    turned_rad_ += turn_rad_s * dt_s;
+    if (turned_rad_ > kPi) turned_rad_ -= 2.0 * kPi;
+    if (turned_rad_ < -kPi) turned_rad_ += 2.0 * kPi;
+    if (!(speed_m_s > 0.0) && std::abs(vane_.rate_per_s) < kAtRest) vane_.rate_per_s = 0.0;
+  }
+
+  /// A row of knots: from the pole on, each step of the cloth is turned by the angle there.
+  void lay_out(std::size_t row, float bow, float wave) noexcept {
+    const float growth = growth_[row];
+    const float* const waves = waves_.values().data() + row;
+    const auto half_step_m = static_cast<float>(0.5 * width_m_ / static_cast<double>(cloth_.knots().columns - 1));
+    float ahead_m = 0.0F;
+    float aside_m = 0.0F;
+    SinCos<float> before{0.0F, 1.0F};  // on the pole
+    for (std::size_t i = 2; i < from_pole_.size(); ++i) {
+      const float* const near = waves + ahead_rows_[i];
+      const float noise = near[0] + ahead_part_[i] * (near[1] - near[0]);
+      const auto here = sin_cos(from_pole_[i] * growth * (bow + wave * noise));
+      ahead_m += half_step_m * (before.cos + here.cos);
+      aside_m += half_step_m * (before.sin + here.sin);
+      row_here_.ahead_m[i] = ahead_m;
+      row_here_.aside_m[i] = aside_m;
+      before = here;
+    }
+  }
+
+  static constexpr double kAtRest = 1e-9;
+  static constexpr std::array kOneColumn = {0.0F};
+
+  double width_m_;
+  bool turns_;
+  double belly_;        ///< over the width
+  double flutter_rad_;  ///< of the free corner's turns to the sides, where a wave of height 1 passes
+  double half_flutter_speed_m_s_;
+  double wave_speed_;  ///< over the wind's
+  Turned arm_;         ///< where the cross-arm points to at rest
+
   SceneWind wind_;
-  ClothNoise noise_;
-  std::vector<float> flutter_;    ///< each column's noise
-  std::vector<float> from_pole_;  ///< 0 on the pole, 1 at the free side
+  ClothStrength strength_;
   Cloth cloth_;
+  double knot_link_m_;
+  float per_link_m_;
+  ClothWaves waves_;                     ///< down the pole, and on
+  std::vector<float> growth_;            ///< of each row of joints between the knots' links
+  std::vector<float> from_pole_;         ///< of each knot column: 0 on the pole, 1 at the free side
+  std::vector<std::size_t> ahead_rows_;  ///< how far ahead of the pole the waves are there: rows, and part of the next
+  std::vector<float> ahead_part_;
+  std::vector<float> gusts_;
+  Row row_above_, row_here_;
+
+  CriticallyDamped cross_;   ///< -1 to 1: from which side the wind fills the belly
+  ClothSwing vane_;          ///< its rate alone
+  double turned_rad_ = 0.0;  ///< of the arm, clockwise from rest
+};
+
+const std::array kRetiredBannerParameters = {
+    RetiredParameter{"max_sway", "is now belly: how far a wind from the side bows the free side"},
+    RetiredParameter{"half_sway_speed", "is now half_flutter_speed"},
+    RetiredParameter{"travel_time", "is now wave_speed: waves run down at a part of the wind's speed"},
+    RetiredParameter{"tile_period", "is now wave_length, of the longest waves"},
+    RetiredParameter{"growth", "is gone: waves grow from the pole and from the arm"},
+    RetiredParameter{"quickness", "is gone: the cloth follows its waves at once"},
+    RetiredParameter{"beta", "is gone: waves are a band of lengths, see wave_length"},
 };
 
 }  // namespace
 
 extern const SceneDescription kBannerScene;
-const SceneDescription kBannerScene = {.name = "banner",
-                                       .summary = "a nobori, held by its pole and cross-arm, that flutters in the wind",
-                                       .parameters = kBannerParameters,
-                                       .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                         return std::unique_ptr<Scene>(std::make_unique<Banner>(values, setup));
-                                       }};
+const SceneDescription kBannerScene = {
+    .name = "banner",
+    .summary = "a nobori, held by its pole and cross-arm, that flutters in the wind",
+    .parameters = kBannerParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Banner>(values, setup)); },
+    .retired = kRetiredBannerParameters};
 
 }  // namespace yuragi

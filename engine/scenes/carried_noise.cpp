@@ -93,15 +93,17 @@ CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
   }
 }
 
-CarriedNoiseSpec CarriedNoise::band(double shortest_m, double longest_m, std::uint64_t seed) {
+CarriedNoiseSpec CarriedNoise::band(double shortest_m, double longest_m, std::uint64_t seed, bool has_two_tiles) {
   constexpr double kLongestWaves = 8.0;
   constexpr double kSamplesAWave = 4.5;
   const double period_m = kLongestWaves * longest_m;
-  // The second tile is larger by the golden ratio, and has as many samples.
-  const auto samples = static_cast<std::size_t>(std::ceil(kSamplesAWave * kPeriodRatio * period_m / shortest_m));
+  // The second tile is larger, and has as many samples.
+  const double largest_m = has_two_tiles ? kPeriodRatio * period_m : period_m;
+  const auto samples = static_cast<std::size_t>(std::ceil(kSamplesAWave * largest_m / shortest_m));
   return {.period_m = period_m,
           .samples = std::bit_ceil(samples),
           .beta = 1.0,
+          .has_two_tiles = has_two_tiles,
           .shortest_m = shortest_m,
           .longest_m = longest_m,
           .seed = seed};

@@ -69,8 +69,9 @@ class CarriedNoise {
   double largest_change(double speed_m_s, double step_m_s, double dt_s) const noexcept;
 
   /// The spec of a band of waves for whatever flutters: 1/f along a line, in tiles of eight of the longest waves with
-  /// 4.5 samples or more to the shortest.
-  static CarriedNoiseSpec band(double shortest_m, double longest_m, std::uint64_t seed);
+  /// 4.5 samples or more to the shortest. One tile is enough, and read in half the time, where it is larger than what
+  /// reads it, if the waves go along it at no simple slope.
+  static CarriedNoiseSpec band(double shortest_m, double longest_m, std::uint64_t seed, bool has_two_tiles = true);
 
   /// Between these its values are.
   double lowest() const noexcept { return lowest_; }

@@ -3,21 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "engine/base/units.hpp"
-#include "engine/operators/follow_job.hpp"
-#include "engine/operators/propagation_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
-// The bound of largest_joint_step_m, for any wind whatever. A sway that stays within S changes by at most 2 S w / e in
-// a second (follow_job.hpp), a wave that stays within W by 2 W w / e; what is read from its history does not change
-// faster (propagation_history.hpp), and link i takes growth_i of it. The hybrid's leans are two numbers that change by
-// at most R a second each (cloth_dynamics.hpp), and a spline through them does not change faster; they count by h, and
-// the sway then by 1 - h. A lean that changes by d turns its link by at most 2 d (lean.hpp), and a joint moves by no
-// more than the links before it together:
-//   2 length dt ((2 w / e) ((1 - h) S + W mean growth) + h sqrt(2) R).
-// And never by more than from one end of its reach to the other, twice the length.
+// The bound of largest_joint_step_m. A spline through the knots changes by no more than they do. The hybrid's leans
+// are two numbers that change by at most R a second each (cloth_dynamics.hpp), and count by h. A lean that changes by d
+// turns its link by at most 2 d (lean.hpp), and a joint moves by no more than the links before it together:
+//   2 length (lean_step + h sqrt(2) R dt),
+// and by the turn times its distance from the axis, which is that of its fixed joint and its thread's length at most.
+// And never by more than from one end of its reach to the other, twice that distance.
 
 namespace yuragi {
 namespace {
@@ -35,8 +30,26 @@ constexpr double kDetail = 0.4;
 constexpr double kGustAlong = 0.4;
 constexpr double kGustAside = 0.5;
 
-double wave_share(const ClothSpec& spec) {
-  return 1.0 - (1.0 - kDetail) * spec.hybrid;
+double edge_length_m(const ClothEdge& edge) {
+  const auto way_m = [last = edge.columns - 1](const std::vector<float>& at_m) {
+    return static_cast<double>(at_m[last]) - static_cast<double>(at_m[0]);
+  };
+  return std::hypot(way_m(edge.x_m), way_m(edge.y_m), way_m(edge.z_m));
+}
+
+ClothKnots cloth_knots(const ClothSpec& spec, const ClothEdge& edge) {
+  const auto wanted = static_cast<std::size_t>(std::ceil(edge_length_m(edge) / spec.knots_across_m));
+  const auto links = static_cast<std::size_t>(std::ceil(spec.length_m / spec.knots_along_m));
+  const std::size_t stride = padded_to_blocks(std::clamp<std::size_t>(wanted + 1, 2, edge.columns) + 2);
+  return {.columns = std::clamp<std::size_t>(wanted + 1, 2, edge.columns),
+          .links = std::clamp<std::size_t>(links, 1, spec.rows - 1),
+          .stride = stride};
+}
+
+std::vector<float> from_first(const std::vector<float>& at_m) {
+  std::vector<float> way_m = at_m;
+  for (float& each_m : way_m) each_m -= at_m.front();
+  return way_m;
 }
 
 GridSkeleton cloth_skeleton(const ClothSpec& spec, const ClothEdge& edge, const ClothThreads& threads) {
@@ -71,16 +84,6 @@ ClothThreads cloth_threads(const ClothSpec& spec, const ClothEdge& edge) {
   return make_threads(links, static_cast<float>(spec.length_m / static_cast<double>(links)), lean);
 }
 
-std::vector<float> growth_of(const ClothSpec& spec) {
-  std::vector<float> growth(spec.rows - 1);
-  const double last = std::max(static_cast<double>(growth.size()) - 1.0, 1.0);
-  for (std::size_t link = 0; link < growth.size(); ++link) {
-    growth[link] =
-        static_cast<float>(wave_share(spec) * std::pow(static_cast<double>(link) / last, spec.growth_exponent));
-  }
-  return growth;
-}
-
 }  // namespace
 
 ClothEdge::ClothEdge(std::size_t column_count)
@@ -95,28 +98,36 @@ Cloth::Cloth(const ClothSpec& spec, const ClothEdge& edge, SimdRow row)
     : spec_(spec),
       row_(row),
       threads_(cloth_threads(spec, edge)),
-      growth_(growth_of(spec)),
-      target_(4 * threads_.stride, 0.0F),
-      value_(target_.size(), 0.0F),
-      rate_(target_.size(), 0.0F),
-      history_(2 * threads_.stride, spec.travel_time_s),
+      knots_(cloth_knots(spec, edge)),
+      lean_(knots_.size(), 0.0F),
+      spline_(knots_, edge.columns, threads_.links),
       base_(threads_.rest_lean),
-      lean_(kBandLinks * 2 * threads_.stride, 0.0F),
+      links_(kBandLinks * 2 * threads_.stride, 0.0F),
+      from_x_m_(from_first(edge.x_m)),
+      from_z_m_(from_first(edge.z_m)),
+      edge_m_(3 * threads_.stride, 0.0F),
       coarse_(threads_, edge.columns, edge.x_m, edge.y_m, edge.z_m, spec.is_first_column_fixed),
-      spline_(coarse_, edge.columns, threads_.links),
+      dynamics_(coarse_.knots(), edge.columns, threads_.links),
       air_east_m_s_(coarse_.stride(), 0.0F),
       air_south_m_s_(coarse_.stride(), 0.0F),
       skeleton_(cloth_skeleton(spec, edge, threads_)) {
+  turned_.resize(std::max(knots_.size(), coarse_.knots().size()));
   pose_ = rest_pose(skeleton_);
+}
+
+float Cloth::wave_share() const noexcept {
+  return static_cast<float>(1.0 - (1.0 - kDetail) * spec_.hybrid);
 }
 
 void Cloth::blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept {
   if (!(spec_.hybrid > 0.0)) return;
-  const std::size_t columns = std::get_if<GridSkeleton>(&skeleton_)->columns;
-  const std::size_t last = std::max<std::size_t>(coarse_.columns(), 2) - 1;
+  const double knots_in_one = static_cast<double>(knots_.columns - 1) / static_cast<double>(coarse_.columns() - 1);
   for (std::size_t i = 0; i < air_east_m_s_.size(); ++i) {
-    const std::size_t column = std::min(i, last) * (columns - 1) / last;
-    const auto gust = static_cast<double>(gusts[column]);
+    const std::size_t column = std::clamp<std::size_t>(i, 1, coarse_.columns()) - 1;
+    const double at = 1.0 + knots_in_one * static_cast<double>(column);
+    const auto first = std::min(static_cast<std::size_t>(at), knots_.columns);
+    const double part = at - static_cast<double>(first);
+    const double gust = (1.0 - part) * static_cast<double>(gusts[first]) + part * static_cast<double>(gusts[first + 1]);
     const double along = 1.0 + kGustAlong * gust;
     const double aside = kGustAside * gust;
     air_east_m_s_[i] = static_cast<float>(along * wind_east_m_s - aside * wind_south_m_s);
@@ -124,8 +135,31 @@ void Cloth::blow(double wind_east_m_s, double wind_south_m_s, std::span<const fl
   }
 }
 
-void Cloth::project(double dt_s) noexcept {
-  const std::size_t width = history_.width();
+void Cloth::turn_edge(ClothTurn turn) noexcept {
+  const std::size_t stride = threads_.stride;
+  for (std::size_t i = 0; i < stride; ++i) {
+    const auto x_m = static_cast<double>(from_x_m_[i]);
+    const auto z_m = static_cast<double>(from_z_m_[i]);
+    edge_m_[i] = static_cast<float>((turn.cosine - 1.0) * x_m - turn.sine * z_m);
+    edge_m_[2 * stride + i] = static_cast<float>(turn.sine * x_m + (turn.cosine - 1.0) * z_m);
+  }
+}
+
+/// Leans, row by row east of all columns and then south.
+std::span<const float> Cloth::turned(std::span<const float> leans, std::size_t stride, ClothTurn turn) noexcept {
+  const auto sine = static_cast<float>(turn.sine);
+  const auto cosine = static_cast<float>(turn.cosine);
+  for (std::size_t row = 0; row < leans.size(); row += 2 * stride) {
+    for (std::size_t east = row; east < row + stride; ++east) {
+      const std::size_t south = east + stride;
+      turned_[east] = cosine * leans[east] - sine * leans[south];
+      turned_[south] = sine * leans[east] + cosine * leans[south];
+    }
+  }
+  return std::span(turned_).first(leans.size());
+}
+
+void Cloth::project(double dt_s, double rest_kept, ClothTurn turn) noexcept {
   const bool is_hybrid = spec_.hybrid > 0.0;
   if (is_hybrid) {
     ClothDynamicsJob{.air_east_m_s = air_east_m_s_,
@@ -138,51 +172,60 @@ void Cloth::project(double dt_s) noexcept {
                      .row = row_,
                      .cloth = &coarse_}
         .run();
-    spline_.spread(coarse_, row_);
+    dynamics_.spread(turned(coarse_.lean(), coarse_.stride(), turn), row_);
   }
-  FollowJob{.target = target_,
-            .omega_rad_s = spec_.quickness_rad_s,
-            .dt_s = dt_s,
-            .row = row_,
-            .value = value_,
-            .rate_per_s = rate_}
-      .run();
-  history_.push(std::span(value_).last(width), dt_s);
+  if (spec_.is_first_column_fixed) {  // the spline is 0 there
+    for (std::size_t row = 0; row < lean_.size(); row += knots_.stride) {
+      lean_[row] = -lean_[row + 2];
+      lean_[row + 1] = 0.0F;
+    }
+  }
+  spline_.spread(turned(lean_, knots_.stride, turn), row_);
+  if (spec_.is_first_column_fixed) turn_edge(turn);
 
-  // Rest and sway are the base of all links; rest alone is what the projection knows as rest, to the bit.
-  const auto sway_share = static_cast<float>(1.0 - spec_.hybrid);
-  for (std::size_t i = 0; i < width; ++i) base_[i] = threads_.rest_lean[i] + sway_share * value_[i];
+  // Of the rest lean the dynamics keep all. Rest alone is what the projection knows as rest, to the bit.
+  const auto kept = static_cast<float>(1.0 - (1.0 - spec_.hybrid) * (1.0 - rest_kept));
+  const auto sine = static_cast<float>(turn.sine);
+  const auto cosine = static_cast<float>(turn.cosine);
+  const std::size_t stride = threads_.stride;
+  for (std::size_t i = 0; i < stride; ++i) {
+    const float east = kept * threads_.rest_lean[i];
+    const float south = kept * threads_.rest_lean[stride + i];
+    base_[i] = cosine * east - sine * south;
+    base_[stride + i] = sine * east + cosine * south;
+  }
 
   // From the fixed edge on, band by band.
   for (std::size_t link = 0; link < threads_.links; link += kBandLinks) {
-    const std::span band = std::span(lean_).first(std::min(kBandLinks, threads_.links - link) * width);
-    PropagationJob{.history = &history_,
-                   .base = base_,
-                   .growth = growth_,
-                   .travel_time_s = spec_.travel_time_s,
-                   .first_link = link,
-                   .row = row_,
-                   .out = band}
-        .run();
+    const std::span band = std::span(links_).first(std::min(kBandLinks, threads_.links - link) * 2 * stride);
+    ClothLineJob{.spline = &spline_, .base = base_, .first_link = link, .row = row_, .out = band}.run();
     if (is_hybrid) {
       ClothSplineJob{
-          .spline = &spline_, .share = static_cast<float>(spec_.hybrid), .first_link = link, .row = row_, .out = band}
+          .spline = &dynamics_, .share = static_cast<float>(spec_.hybrid), .first_link = link, .row = row_, .out = band}
           .run();
     }
-    ClothProjectionJob{
-        .threads = &threads_, .first_link = link, .lean = band, .row = row_, .pose = std::get_if<GridPose>(&pose_)}
+    ClothProjectionJob{.threads = &threads_,
+                       .first_link = link,
+                       .lean = band,
+                       .edge_m = edge_m_,
+                       .row = row_,
+                       .pose = std::get_if<GridPose>(&pose_)}
         .run();
   }
 }
 
-double Cloth::largest_joint_step_m(double dt_s) const noexcept {
-  const double mean_growth = std::accumulate(growth_.begin(), growth_.end(), 0.0) / static_cast<double>(growth_.size());
-  const double follows_per_s = 2.0 * spec_.quickness_rad_s / std::numbers::e;
-  const double noise_per_s =
-      follows_per_s * ((1.0 - spec_.hybrid) * spec_.largest_sway + mean_growth * spec_.largest_wave);
-  const double lean_per_s = noise_per_s + spec_.hybrid * std::numbers::sqrt2 * kLargestLean_per_s;
+double Cloth::largest_joint_step_m(double dt_s, double lean_step, double turn_step_rad) const noexcept {
+  double edge_reach_m = 0.0;
+  if (turn_step_rad > 0.0) {
+    for (std::size_t i = 0; i < from_x_m_.size(); ++i) {
+      edge_reach_m =
+          std::max(edge_reach_m, std::hypot(static_cast<double>(from_x_m_[i]), static_cast<double>(from_z_m_[i])));
+    }
+  }
+  const double reach_m = edge_reach_m + spec_.length_m;
+  const double step = lean_step + spec_.hybrid * std::numbers::sqrt2 * kLargestLean_per_s * dt_s;
   constexpr double kRounding_m = 1e-5;
-  return 2.0 * spec_.length_m * std::min(lean_per_s * dt_s, 1.0) + kRounding_m;
+  return std::min(2.0 * spec_.length_m * step + turn_step_rad * reach_m, 2.0 * reach_m) + kRounding_m;
 }
 
 Turned turned(const ScenePlacement& placement, double east, double south) noexcept {

@@ -8,7 +8,6 @@
 #include "engine/operators/cloth_dynamics.hpp"
 #include "engine/operators/cloth_projection_job.hpp"
 #include "engine/operators/cloth_spline.hpp"
-#include "engine/operators/propagation_history.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/scenes/scene.hpp"
 
@@ -28,31 +27,33 @@ struct ClothEdge {
 
 /// What is the same for all of a cloth.
 struct ClothSpec {
-  std::size_t rows = 150;  ///< of joints, 2 or more
-  double length_m = 2.0;   ///< of a thread
+  std::size_t rows = 2;   ///< of joints, the fixed edge's among them
+  double length_m = 1.0;  ///< of a thread
   bool is_first_column_fixed = false;
-  double travel_time_s = 1.0;      ///< of the noise, from the fixed edge to the free one
-  double growth_exponent = 1.0;    ///< it grows as the way from the fixed edge to this power
-  double quickness_rad_s = 8.0;    ///< how soon the cloth follows: FollowJob's omega
-  double largest_sway = 0.0;       ///< the longest lean that sway() will ever hold
-  double largest_wave = 0.0;       ///< and wave()
+  double knots_across_m = 0.25;    ///< columns of knots are at most so far apart
+  double knots_along_m = 0.05;     ///< and their links about so long
   double hybrid = 0.0;             ///< 0: the noise alone, bit for bit; 1: dynamics, with the noise as detail
   double normal_drag_per_m = 0.4;  ///< ClothDynamicsJob's, like the next
   double skin_drag_per_m = 0.02;
   double across_stiffness_s2 = 2000.0;
 };
 
-/// A cloth that sways as a whole and that noise runs along, from the fixed edge to the free one: the paper's 2-D links
-/// (Chiba, section 3.2). A scene says what the wind makes of each column, and the cloth projects it:
+/// A turn about the vertical, clockwise seen from above.
+struct ClothTurn {
+  double sine = 0.0;
+  double cosine = 1.0;
+};
+
+/// A cloth that hangs by an edge: the paper's 2-D links (Chiba, section 3.2). A scene says on a coarse grid how the
+/// links lean, by what the wind and its noise make of them, and the cloth projects it:
 ///
-///   follow     sway and wave have inertia                                      FollowJob
-///   propagate  the wave's history runs along the links, growing, on the sway   PropagationJob
-///   project    links turn by their lean, and add up to offsets                 ClothProjectionJob
+///   spread    a spline goes through the knots' leans              ClothSpline, ClothLineJob
+///   project   links turn by their lean, and add up to offsets     ClothProjectionJob
 ///
 /// And where `hybrid` is above 0, a coarse cloth moves as weight, inertia and air have it (ClothDynamicsJob); its leans
-/// (ClothSplineJob) take the place of the sway, and the wave stays as fine detail.
+/// take the place of the sway, and the wave stays as fine detail.
 ///
-/// Targets of 0 from the start give exactly the rest pose. Allocates when it is made. Thread-safe: no. Realtime-safe:
+/// Leans of 0 from the start give exactly the rest pose. Allocates when it is made. Thread-safe: no. Realtime-safe:
 /// project(), yes.
 class Cloth {
  public:
@@ -61,33 +62,56 @@ class Cloth {
   const Skeleton& skeleton() const noexcept { return skeleton_; }
   const Pose& pose() const noexcept { return pose_; }
 
-  /// Where each column shall lean to beyond rest: east of all columns, then south, 2 * stride values each. `sway` is
-  /// for a whole thread at once, `wave` starts at the fixed edge and runs along it.
-  std::span<float> sway() noexcept { return std::span(target_).first(target_.size() / 2); }
-  std::span<float> wave() noexcept { return std::span(target_).last(target_.size() / 2); }
+  /// The coarse grid.
+  const ClothKnots& knots() const noexcept { return knots_; }
+  /// Where on the fixed edge a column of the grid hangs, of stride: 0 with the first thread, 1 with the last; ghosts
+  /// are beyond.
+  double across(std::size_t knot_column) const noexcept {
+    return (static_cast<double>(knot_column) - 1.0) / static_cast<double>(knots_.columns - 1);
+  }
+  /// Where on a thread the middle of a link of the grid is: 0 at the fixed edge, 1 at the free one.
+  double along(std::size_t knot_link) const noexcept {
+    return (static_cast<double>(knot_link) + 0.5) / static_cast<double>(knots_.links);
+  }
 
-  /// The air that the hybrid's cloth is in, m/s: the wind, stronger or weaker and from a little aside where `gusts` (a
-  /// value a column, -1 to 1) are. Does nothing where hybrid is 0.
+  /// What the scene's leans count by: of the cloth's sway as a whole, which the hybrid's dynamics take the place of;
+  /// and of its waves, which stay as detail. Both 1 without the hybrid.
+  float sway_share() const noexcept { return static_cast<float>(1.0 - spec_.hybrid); }
+  float wave_share() const noexcept;
+
+  /// How far each knot's link leans beyond rest, shares counted: to be written before project(). In the cloth's own
+  /// frame, before it is turned.
+  std::span<float> lean() noexcept { return lean_; }
+
+  /// The air that the hybrid's cloth is in, m/s: the wind, stronger or weaker and from a little aside where `gusts` are
+  /// (-1 to 1; a value a column of the knots, stride in all). Does nothing where hybrid is 0.
   void blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept;
 
-  /// Goes on by dt_s toward sway() and wave(), and in the air.
-  void project(double dt_s) noexcept;
+  /// Goes on by dt_s. `rest_kept`: how much of its rest lean the cloth keeps (folds that the wind blows smooth), 0 to
+  /// 1. `turn`: of the whole cloth about its first column, where that is fixed.
+  void project(double dt_s, double rest_kept = 1.0, ClothTurn turn = {}) noexcept;
 
-  /// Derived in cloth.cpp.
-  double largest_joint_step_m(double dt_s) const noexcept;
+  /// The bound of a tick in which no knot's lean, nor what is kept of the rest lean, changes by more than `lean_step`
+  /// together, and the cloth is turned by no more than `turn_step_rad`. Derived in cloth.cpp.
+  double largest_joint_step_m(double dt_s, double lean_step, double turn_step_rad = 0.0) const noexcept;
 
  private:
+  void turn_edge(ClothTurn turn) noexcept;
+  std::span<const float> turned(std::span<const float> leans, std::size_t stride, ClothTurn turn) noexcept;
+
   ClothSpec spec_;
   SimdRow row_;
   ClothThreads threads_;
-  std::vector<float> growth_;        ///< of the noise, for each link
-  std::vector<float> target_;        ///< sway, then wave
-  std::vector<float> value_, rate_;  ///< what follows them
-  PropagationHistory history_;
-  std::vector<float> base_;  ///< of the leans: rest and sway
-  std::vector<float> lean_;  ///< of a band of links
-  CoarseCloth coarse_;
+  ClothKnots knots_;
+  std::vector<float> lean_;  ///< of the knots
   ClothSpline spline_;
+  std::vector<float> turned_;               ///< leans of a coarse grid, in the world
+  std::vector<float> base_;                 ///< what is kept of the rest lean
+  std::vector<float> links_;                ///< the leans of a band of links
+  std::vector<float> from_x_m_, from_z_m_;  ///< the fixed edge at rest, from its first joint on
+  std::vector<float> edge_m_;               ///< the fixed edge's offset: where it may turn
+  CoarseCloth coarse_;
+  ClothSpline dynamics_;
   std::vector<float> air_east_m_s_, air_south_m_s_;
   Pose pose_;
   Skeleton skeleton_;

@@ -1,38 +1,54 @@
 #include "engine/scenes/cloth_noise.hpp"
 
-#include <array>
+#include <algorithm>
+#include <vector>
 
 namespace yuragi {
 namespace {
 
-constexpr std::size_t kClothTileSamples = 128;
-
-/// Of noise of variance 1: what is beyond 2.2 standard deviations is cut.
-constexpr float kClothNoiseScale = 0.45F;
-
-/// Where the whole cloth reads it, far from any column.
-constexpr std::array kSwellPlace_m = {1618.034F, -809.017F};
+// The tiles are read along no simple slope, so that a cloth whose waves always run the same way sees none come round:
+// by 67.5 degrees (cosine and sine), whose slope on the first tile is 1 + sqrt(2), and on the second, which is turned
+// by another radian, is as far from any simple one.
+constexpr double kAlongNoiseX = 0.3826834323650898;
+constexpr double kAlongNoiseZ = 0.9238795325112867;
 
 }  // namespace
 
-ClothNoise::ClothNoise(const ParameterValues& values, std::uint64_t seed, std::span<const float> x_m,
-                       std::span<const float> z_m, SimdRow row)
-    : row_(row),
-      noise_({.period_m = values.number("tile_period"),
-              .samples = kClothTileSamples,
-              .beta = values.number("beta"),
-              .seed = seed}),
-      columns_(noise_.places(x_m, z_m)),
-      swell_(noise_.places(std::span(kSwellPlace_m).first(1), std::span(kSwellPlace_m).last(1))) {}
+ClothNoise::ClothNoise(double shortest_m, double longest_m, std::uint64_t seed, SimdRow row)
+    : row_(row), noise_(CarriedNoise::band(shortest_m, longest_m, seed)) {}
 
-void ClothNoise::sample(std::span<float> out) const noexcept {
-  noise_.sample(columns_, row_, out, kClothNoiseScale, 0.0F, -1.0F, 1.0F);
+CarriedPlaces ClothNoise::places(std::span<const float> x_m, std::span<const float> z_m) const {
+  std::vector<float> noise_x_m(x_m.size());
+  std::vector<float> noise_z_m(z_m.size());
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    const auto x = static_cast<double>(x_m[i]);
+    const auto z = static_cast<double>(z_m[i]);
+    noise_x_m[i] = static_cast<float>(kAlongNoiseX * x - kAlongNoiseZ * z);
+    noise_z_m[i] = static_cast<float>(kAlongNoiseZ * x + kAlongNoiseX * z);
+  }
+  return noise_.places(noise_x_m, noise_z_m);
 }
 
-float ClothNoise::swell() const noexcept {
-  float value = 0.0F;
-  noise_.sample(swell_, row_, std::span(&value, 1), kClothNoiseScale, 0.0F, -1.0F, 1.0F);
-  return value;
+void ClothNoise::shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept {
+  noise_.shift(kAlongNoiseX * toward_x_m_s - kAlongNoiseZ * toward_z_m_s,
+               kAlongNoiseZ * toward_x_m_s + kAlongNoiseX * toward_z_m_s, dt_s);
+}
+
+void ClothNoise::read(const CarriedPlaces& places, std::span<float> out) const noexcept {
+  noise_.sample(places, row_, out);
+}
+
+void ClothNoise::sample(const CarriedPlaces& places, std::span<float> out) const noexcept {
+  read(places, out);
+  for (float& value : out) value = saturated(value);
+}
+
+double ClothNoise::largest_read_change(double speed_m_s, double dt_s) const noexcept {
+  return noise_.largest_change(speed_m_s, 0.0, dt_s);
+}
+
+double ClothNoise::largest_change(double speed_m_s, double dt_s) const noexcept {
+  return std::min(largest_read_change(speed_m_s, dt_s), 2.0 * kLargest);
 }
 
 }  // namespace yuragi

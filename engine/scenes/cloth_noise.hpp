@@ -1,38 +1,52 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
-#include "engine/base/parameter.hpp"
 #include "engine/base/simd_row.hpp"
 #include "engine/scenes/carried_noise.hpp"
 
 namespace yuragi {
 
-/// The noise that moves a cloth: one that the wind carries over it (CarriedNoise). Each column reads it where it is;
-/// and the whole cloth reads it once, far away, for what sways it as one: another noise, as good as independent.
-/// Numbers from -1 to 1. Allocates when it is made. Thread-safe: no. Realtime-safe: yes.
+/// A noise of one band of wavelengths (CarriedNoise::band) that is carried over a cloth, or over the ground below it.
+/// Mean 0. Its coordinates are the caller's, metres. Allocates when it is made and in places(). Thread-safe: no.
+/// Realtime-safe: the rest.
 class ClothNoise {
  public:
-  /// Reads `tile_period` and `beta` of the scene's parameters; x and z: where the columns are on the noise.
-  ClothNoise(const ParameterValues& values, std::uint64_t seed, std::span<const float> x_m, std::span<const float> z_m,
-             SimdRow row);
+  /// Waves of shortest_m to longest_m, at least an octave apart.
+  ClothNoise(double shortest_m, double longest_m, std::uint64_t seed, SimdRow row);
 
-  /// The noise goes on as the wind goes in dt_s.
-  void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept {
-    noise_.shift(toward_x_m_s, toward_z_m_s, dt_s);
+  /// Where it is to be read.
+  CarriedPlaces places(std::span<const float> x_m, std::span<const float> z_m) const;
+
+  /// It is carried toward +x and +z for dt_s.
+  void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept;
+
+  /// One value a place, of variance 1.
+  void read(const CarriedPlaces& places, std::span<float> out) const noexcept;
+  /// The same, saturated: of variance near 0.8.
+  void sample(const CarriedPlaces& places, std::span<float> out) const noexcept;
+
+  /// No more than this does a value that is read, or sampled, change in a tick, while it is carried at no more than
+  /// speed_m_s.
+  double largest_read_change(double speed_m_s, double dt_s) const noexcept;
+  double largest_change(double speed_m_s, double dt_s) const noexcept;
+
+  /// What is saturated is never farther from 0 than this.
+  static constexpr double kLargest = 2.2;
+
+  /// 2.2 tanh(value / 2.2) by its continued fraction, which reaches 2.2 at three times that. Its slope is 1 at most.
+  static float saturated(float value) noexcept {
+    constexpr auto kMost = static_cast<float>(kLargest);
+    const float x = std::clamp(value * (1.0F / kMost), -3.0F, 3.0F);
+    const float square = x * x;
+    return kMost * x * (27.0F + square) / (27.0F + 9.0F * square);
   }
-
-  /// One value a column.
-  void sample(std::span<float> out) const noexcept;
-
-  /// One value for the whole cloth.
-  float swell() const noexcept;
 
  private:
   SimdRow row_;
   CarriedNoise noise_;
-  CarriedPlaces columns_, swell_;
 };
 
 }  // namespace yuragi

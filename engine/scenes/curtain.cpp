@@ -1,22 +1,43 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/operators/propagation_job.hpp"
 #include "engine/scenes/cloth.hpp"
 #include "engine/scenes/cloth_noise.hpp"
+#include "engine/scenes/cloth_strength.hpp"
+#include "engine/scenes/cloth_swing.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 
 // A curtain in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine
 // for fluctuation phenomena" (Iwate University), section 3.2 and figures 9 and 10:
 //
-//   shift    the wind carries a 2-D noise along the curtain: as it blows along it, so the waves run        ShiftJob
-//   sample   each column reads it where it hangs                                                           SampleJob
-//   project  a base sway for the whole cloth, and the noise propagates from the top to the hem, growing    Cloth
+//   shift    the wind carries two 2-D noises over the ground: as it blows along the curtain, so they run    ShiftJob
+//   sample   each part of the curtain reads them where it hangs: gusts, and flutter of the hem              SampleJob
+//   project  the wind blows each part out: the base sway; and the flutter propagates from the top to the    Cloth
+//            hem, growing PropagationJob
+//
+// The wind's force is along the cloth's normal, q of the weight when it hangs: at an angle a to the vertical its normal
+// part is q cos^2 a, that of the weight sin a, so that q cos^2 a = sin a. It blows the curtain out by P = tan a, each
+// column of the knots as a pendulum: a hanging chain's first two modes, 1.2024 sqrt(g / L) / 2 pi and the second 2.295
+// times as fast (D. Bernoulli 1733), faster as the wind tightens it by sqrt(1 + P^2), so that it swings on after a
+// gust. Its hem is heavy: steep above, it hangs nearly upright at the hem. A wave runs down in 2 sqrt(L / g), sooner in
+// a curtain that is blown out.
 //
 // At rest it hangs in gathered folds that open a little toward the hem.
+//
+// The bound of largest_joint_step_m. The knots' P are within kLargestPull and change by at most r = kLargestPull_per_s
+// dt a tick (ClothSwing's limits), P of both axes by at most sqrt(2) r. A lean T / (1 + sqrt(1 + T^2)) changes by at
+// most half of what T does, and T by 0.8 of what P does. The flutter is S n: it changes by d = d_n + 2.2 d_S a tick
+// (ClothNoise, ClothStrength), and its history no faster (propagation_history.hpp), but that the delay changes too:
+// |d delay / dP| is at most 0.2155 of that in calm air, and P changes by r. It adds the flutter times w (1 + l^2), l
+// the sway's lean, below 1, and w half the hem's angle. So a lean changes by at most
+//   0.4 sqrt(2) r (1 + 2 * 2.2 w) + 2 w d (1 + 0.2155 delay kLargestPull_per_s).
 
 namespace yuragi {
 namespace {
@@ -25,30 +46,55 @@ const std::array kCurtainParameters = {
     Parameter{"columns", "", std::int64_t{200}, 2, 4000, "threads from one side to the other"},
     Parameter{"rows", "", std::int64_t{150}, 2, 4000, "joints from the top to the hem"},
     Parameter{"width", "m", 3.0, 0.1, 100, "from one side to the other"},
-    Parameter{"height", "m", 2.4, 0.1, 50, "from the top to the hem"},
+    Parameter{"height", "m", 2.4, 0.1, 50, "from the top to the hem; a longer one swings more slowly"},
     Parameter{"clearance", "m", 0.1, 0, 50, "between the hem and the ground"},
     Parameter{"folds", "", 11.0, 0, 200, "folds that it is gathered in"},
     Parameter{"fold_depth", "m", 0.07, 0, 1, "of a fold, from crest to trough, at the top"},
-    Parameter{"max_sway", "deg", 50.0, 0, 80, "how far the strongest wind blows it up"},
-    Parameter{"max_flutter", "deg", 50.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
-    Parameter{"half_sway_speed", "m/s", 5.0, 0.1, 60, "the wind that moves it half as much"},
+    Parameter{"max_sway", "deg", 75.0, 0, 75, "how far from straight down the strongest wind blows its upper part"},
+    Parameter{"half_sway_speed", "m/s", 5.0, 0.1, 60,
+              "the wind that blows it up to 45 degrees; heavier cloth needs more"},
     Parameter{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
-    Parameter{"travel_time", "s", 0.9, 0, 10, "that the noise takes from the top to the hem"},
-    Parameter{"growth", "", 0.8, 0, 4, "the noise grows as the way from the top to this power"},
-    Parameter{"quickness", "rad/s", 11.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"bulges", "", 0.22, 0, 0.45, "how unequally gusts fill it from place to place; 0: it swings as a board"},
+    Parameter{"max_flutter", "deg", 38.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
+    Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes it flutter half as much"},
+    Parameter{"wave_length", "m", 2.0, 0.2, 100,
+              "of the longest bulges; the hem's waves are somewhat shorter, and shorter ones pass faster"},
+    Parameter{"wave_speed", "", 0.3, 0, 1, "how fast bulges and waves pass, as a part of the wind's speed"},
+    Parameter{"damping", "", 0.3, 0.01, 1, "how soon it hangs still again; 0.1: it swings on for long"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
-    Parameter{"tile_period", "m", 20.0, 2, 4096, "the longest wave of the noise; 128 samples"},
-    Parameter{"beta", "", 5.0 / 3.0, kMinTransectBeta2, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
+
+constexpr double kCurtainGravity_m_s2 = 9.81;
+
+/// The longest waves over the shortest, and those of the hem over the bulges.
+constexpr double kCurtainBand = 3.0;
+constexpr double kHemWaves = 0.6;
+
+/// Of a hanging chain: its first frequency over sqrt(g / L) / 2 pi (half the first zero of the Bessel function J0), and
+/// the second over the first. How much of a column's swing is in the second.
+constexpr double kChainFirstMode = 1.2024127788478890;
+constexpr double kChainSecondPerFirst = 2.2954172674276943;
+constexpr double kSecondShare = 0.2;
+
+/// tan(a) of a part of the curtain: nothing blows or swings it farther (78.7 degrees), or faster.
+constexpr double kLargestPull = 5.0;
+constexpr double kLargestPull_per_s = 20.0;
+
+/// No wave passes faster: 0.1 m a tick, a quarter of the hem's shortest.
+constexpr double kFastestCurtainWave_m_s = 6.0;
+
+/// What hangs at the hem, over the weight of the cloth: as far as s along it, all that is below is (1 - s) of the cloth
+/// and the hem, and the wind pulls at (1 - s) of it.
+constexpr double kHemWeight = 0.25;
+
+/// How much of the wind's force its sides take, which spills past them; the middle takes all.
+constexpr double kSideForce = 0.75;
 
 ClothSpec curtain_spec(const ParameterValues& values) {
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("height"),
-          .travel_time_s = values.number("travel_time"),
-          .growth_exponent = values.number("growth"),
-          .quickness_rad_s = values.number("quickness"),
-          .largest_sway = lean_of_deg(values.number("max_sway")),
-          .largest_wave = lean_of_deg(values.number("max_flutter")),
+          .knots_across_m = std::min(0.12, values.number("wave_length") / 16.0),
+          .knots_along_m = values.number("height") / 24.0,
           .hybrid = values.number("hybrid"),
           .normal_drag_per_m = drag_per_m(values.number("half_sway_speed")),
           .skin_drag_per_m = 0.05 * drag_per_m(values.number("half_sway_speed"))};
@@ -90,79 +136,198 @@ class Curtain final : public Scene {
 
   const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const Pose& pose() const noexcept override { return cloth_.pose(); }
-  double largest_joint_step_m(double dt_s) const noexcept override { return cloth_.largest_joint_step_m(dt_s); }
+
+  double largest_joint_step_m(double dt_s) const noexcept override {
+    const double pull_step = 0.4 * std::numbers::sqrt2 * kLargestPull_per_s * dt_s;
+    const double flutter_step = hem_noise_.largest_change(kFastestCurtainWave_m_s, dt_s) +
+                                ClothNoise::kLargest * ClothStrength::largest_step(dt_s);
+    const double later = 1.0 + 0.2155 * calm_delay_s_ * kLargestPull_per_s;
+    return cloth_.largest_joint_step_m(
+        dt_s, pull_step * (1.0 + 2.0 * ClothNoise::kLargest * flutter_) + 2.0 * flutter_ * flutter_step * later);
+  }
 
   void shift(const GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
-    noise_.shift(wind_.east_m_s(), wind_.south_m_s(), dt_s);
+    strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
+    const double speed_m_s = wind_.speed_m_s();
+    const double share =
+        wave_speed_ * speed_m_s > kFastestCurtainWave_m_s ? kFastestCurtainWave_m_s / speed_m_s : wave_speed_;
+    gust_noise_.shift(share * wind_.east_m_s(), share * wind_.south_m_s(), dt_s);
+    hem_noise_.shift(share * wind_.east_m_s(), share * wind_.south_m_s(), dt_s);
   }
-  void sample() noexcept override { noise_.sample(flutter_); }
+
+  void sample() noexcept override {
+    gust_noise_.sample(gust_places_, gust_);
+    hem_noise_.sample(hem_places_, flutter_now_);
+  }
 
   void project(double dt_s) noexcept override {
-    // How much the wind blows: toward where, across the curtain and, less, along it. Like the drag of the air it grows
-    // with the square of a weak wind, and it saturates: s^2 / (1 + s^2).
-    const double speed_m_s = wind_.speed_m_s();
-    const double s = speed_m_s / half_sway_speed_m_s_;
-    const double strength = s * s / (1.0 + s * s);
-    const double per_speed = speed_m_s > 0.0 ? strength / speed_m_s : 0.0;
-    const double along = (wind_.east_m_s() * along_.east + wind_.south_m_s() * along_.south) * per_speed;
-    const double across = (wind_.south_m_s() * along_.east - wind_.east_m_s() * along_.south) * per_speed;
-    const double swell = 0.7 + own_swell_ * static_cast<double>(noise_.swell());
-    const double sway_along = swell * max_sway_ * give_sideways_ * along;
-    const double sway_across = swell * max_sway_ * across;
-    const auto sway_east = static_cast<float>(sway_along * along_.east - sway_across * along_.south);
-    const auto sway_south = static_cast<float>(sway_along * along_.south + sway_across * along_.east);
-    const auto wave_east = static_cast<float>(-max_wave_ * strength * along_.south);
-    const auto wave_south = static_cast<float>(max_wave_ * strength * along_.east);
+    // The wind that it gives way to, across and along it.
+    const double across_m_s = wind_.south_m_s() * along_.east - wind_.east_m_s() * along_.south;
+    const double along_m_s = give_sideways_ * (wind_.east_m_s() * along_.east + wind_.south_m_s() * along_.south);
+    const double felt_m_s = std::sqrt(across_m_s * across_m_s + along_m_s * along_m_s);
+    const double s = felt_m_s / half_sway_speed_m_s_;
+    const double load = std::numbers::sqrt2 * s * s;
+    const double per_speed = felt_m_s > 0.0 ? 1.0 / felt_m_s : 0.0;
 
-    // All of it sways, and the noise runs down it.
-    const std::span<float> sway = cloth_.sway();
-    const std::span<float> wave = cloth_.wave();
-    const std::size_t stride = flutter_.size();
-    for (std::size_t column = 0; column < stride; ++column) {
-      sway[column] = sway_east;
-      sway[stride + column] = sway_south;
-      wave[column] = flutter_[column] * wave_east;
-      wave[stride + column] = flutter_[column] * wave_south;
+    // Each part of it swings.
+    const std::size_t stride = cloth_.knots().stride;
+    const auto strength = static_cast<float>(strength_.value());
+    double mean = 0.0;
+    for (std::size_t i = 0; i < stride; ++i) {
+      const double target =
+          side_[i] * across_m_s * per_speed * blown_out(load * (1.0 + bulges_ * static_cast<double>(gust_[i])));
+      swing(first_[i], first_[i].value, target, first_hz_, dt_s);
+      swing(second_[i], first_[i].value, target, kChainSecondPerFirst * first_hz_, dt_s);
+      const double out = (1.0 - kSecondShare) * first_[i].value + kSecondShare * second_[i].value;
+      out_[i] = static_cast<float>(out);
+      mean += out / static_cast<double>(stride);
+      flutter_now_[i] *= strength;
     }
-    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), flutter_);
+    swing(sideways_, sideways_.value, along_m_s * per_speed * blown_out(load), first_hz_, dt_s);
+    const auto sideways = static_cast<float>(sideways_.value);
+
+    // The flutter runs down, sooner where the wind tightens the cloth.
+    history_.push(flutter_now_, dt_s);
+    PropagationJob{.history = &history_,
+                   .base = still_,
+                   .growth = growth_,
+                   .travel_time_s = calm_delay_s_ / std::sqrt(std::sqrt(1.0 + mean * mean)),
+                   .row = row_,
+                   .out = flutter_down_}
+        .run();
+
+    const auto along_east = static_cast<float>(along_.east);
+    const auto along_south = static_cast<float>(along_.south);
+    const float sway_share = cloth_.sway_share();
+    const float wave_share = cloth_.wave_share();
+    const std::span<float> lean = cloth_.lean();
+    for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
+      const float shape = shape_[link];
+      const float* const flutter = flutter_down_.data() + link * stride;
+      float* const lean_east = lean.data() + link * 2 * stride;
+      float* const lean_south = lean_east + stride;
+      for (std::size_t i = 0; i < stride; ++i) {
+        const float out = shape * out_[i];
+        const float side = shape * sideways;
+        const float square = out * out + side * side;
+        const float half = 1.0F / (1.0F + __builtin_sqrtf(1.0F + square));
+        // A lean that grows by d turns its link by 2 d / (1 + lean^2).
+        const float wave = wave_share * flutter[i] * (1.0F + half * half * square);
+        const float lean_out = sway_share * half * out + wave;
+        const float lean_side = sway_share * half * side;
+        lean_east[i] = lean_side * along_east - lean_out * along_south;
+        lean_south[i] = lean_side * along_south + lean_out * along_east;
+      }
+    }
+    for (float& gust : gust_) gust *= static_cast<float>(1.0 / ClothNoise::kLargest);
+    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), gust_);
     cloth_.project(dt_s);
   }
 
  private:
   Curtain(const ClothEdge& edge, const ParameterValues& values, const SceneSetup& setup)
-      : half_sway_speed_m_s_(values.number("half_sway_speed")),
+      : row_(setup.row),
+        half_sway_speed_m_s_(values.number("half_sway_speed")),
         give_sideways_(values.number("give_sideways")),
-        max_sway_(lean_of_deg(values.number("max_sway"))),
-        max_wave_(lean_of_deg(values.number("max_flutter"))),
+        largest_sine_(std::sin(values.number("max_sway") * kRadPerDeg)),
+        bulges_(values.number("bulges")),
+        flutter_(0.5 * values.number("max_flutter") / ClothNoise::kLargest * kRadPerDeg),
+        half_flutter_speed_m_s_(values.number("half_flutter_speed")),
+        wave_speed_(values.number("wave_speed")),
+        damping_(values.number("damping")),
+        first_hz_(kChainFirstMode * std::sqrt(kCurtainGravity_m_s2 / values.number("height")) / (2.0 * kPi)),
+        calm_delay_s_(2.0 * std::sqrt(values.number("height") / kCurtainGravity_m_s2)),
         along_(turned(setup.placement, 1.0, 0.0)),
-        own_swell_(setup.gusts ? 0.0 : 0.3),
         wind_(setup.placement, setup.gusts),
-        noise_(values, setup.seed ^ stream_id("curtain noise"), edge.x_m, edge.z_m, setup.row),
-        flutter_(edge.stride(), 0.0F),
-        cloth_(curtain_spec(values), edge, setup.row) {}
+        gust_noise_(values.number("wave_length") / kCurtainBand, values.number("wave_length"),
+                    setup.seed ^ stream_id("curtain gusts"), setup.row),
+        hem_noise_(kHemWaves * values.number("wave_length") / kCurtainBand, kHemWaves * values.number("wave_length"),
+                   setup.seed ^ stream_id("curtain noise"), setup.row),
+        cloth_(curtain_spec(values), edge, setup.row),
+        gust_(cloth_.knots().stride),
+        flutter_now_(gust_.size()),
+        out_(gust_.size()),
+        first_(gust_.size()),
+        second_(gust_.size()),
+        still_(gust_.size()),
+        history_(gust_.size(), calm_delay_s_),
+        flutter_down_(cloth_.knots().size() / 2) {
+    std::vector<float> x_m;
+    std::vector<float> z_m;
+    for (std::size_t i = 0; i < gust_.size(); ++i) {
+      const Turned place = turned(setup.placement, (cloth_.across(i) - 0.5) * values.number("width"), 0.0);
+      x_m.push_back(static_cast<float>(setup.placement.x_m + place.east));
+      z_m.push_back(static_cast<float>(setup.placement.z_m + place.south));
+      side_.push_back(kSideForce + (1.0 - kSideForce) * std::sin(kPi * std::clamp(cloth_.across(i), 0.0, 1.0)));
+    }
+    gust_places_ = gust_noise_.places(x_m, z_m);
+    hem_places_ = hem_noise_.places(x_m, z_m);
+    for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
+      const double left = 1.0 - cloth_.along(link);
+      shape_.push_back(static_cast<float>(left / (left + kHemWeight)));
+      growth_.push_back(static_cast<float>(flutter_ * cloth_.along(link)));
+    }
+  }
 
+  /// tan(a) of q cos^2 a = sin a, for q of at least 0.
+  double blown_out(double load) const noexcept {
+    const double sine = std::min(2.0 * load / (1.0 + std::sqrt(1.0 + 4.0 * load * load)), largest_sine_);
+    return sine / std::sqrt(1.0 - sine * sine);
+  }
+
+  /// `stretched` by so much, it swings faster.
+  void swing(ClothSwing& part, double stretched, double target, double calm_hz, double dt_s) const noexcept {
+    const double hz = calm_hz * std::sqrt(std::sqrt(1.0 + stretched * stretched));
+    part.step(target, hz, 4.0 * kPi * hz * damping_, {kLargestPull, kLargestPull_per_s}, dt_s);
+  }
+
+  SimdRow row_;
   double half_sway_speed_m_s_;
   double give_sideways_;
-  double max_sway_;  ///< leans
-  double max_wave_;
-  Turned along_;  ///< the curtain's own direction, from the first column to the last
+  double largest_sine_;  ///< of the angle that the wind blows it to
+  double bulges_;
+  double flutter_;  ///< a lean: the hem's, where a wave of height 1 passes
+  double half_flutter_speed_m_s_;
+  double wave_speed_;  ///< over the wind's
+  double damping_;
+  double first_hz_;      ///< in calm air
+  double calm_delay_s_;  ///< from the top to the hem
+  Turned along_;         ///< the curtain's own direction, from the first column to the last
 
-  double own_swell_;  ///< how much the whole of it swells by itself; gusts from outside are swell enough
   SceneWind wind_;
-  ClothNoise noise_;
-  std::vector<float> flutter_;  ///< each column's noise
+  ClothStrength strength_;
+  ClothNoise gust_noise_, hem_noise_;
   Cloth cloth_;
+  CarriedPlaces gust_places_, hem_places_;
+  std::vector<float> gust_, flutter_now_;  ///< each knot column's, like the next
+  std::vector<float> out_;                 ///< how far it is blown out: a tangent
+  std::vector<double> side_;               ///< its part of the wind's force
+  std::vector<ClothSwing> first_, second_;
+  ClothSwing sideways_;
+  std::vector<float> still_;
+  PropagationHistory history_;
+  std::vector<float> growth_, shape_;  ///< each knot link's
+  std::vector<float> flutter_down_;    ///< each knot's
+};
+
+const std::array kRetiredCurtainParameters = {
+    RetiredParameter{"quickness", "is now damping: how soon the curtain swings out"},
+    RetiredParameter{"travel_time", "is gone: waves go down as the cloth's height and weight have it"},
+    RetiredParameter{"tile_period", "is now wave_length, of the longest bulges"},
+    RetiredParameter{"growth", "is gone: the hem's weight shapes the cloth"},
+    RetiredParameter{"beta", "is gone: bulges are a band of lengths, see wave_length"},
 };
 
 }  // namespace
 
 extern const SceneDescription kCurtainScene;
-const SceneDescription kCurtainScene = {.name = "curtain",
-                                        .summary = "a curtain that billows, and waves that run down and along it",
-                                        .parameters = kCurtainParameters,
-                                        .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                          return std::unique_ptr<Scene>(std::make_unique<Curtain>(values, setup));
-                                        }};
+const SceneDescription kCurtainScene = {
+    .name = "curtain",
+    .summary = "a curtain that billows, and waves that run down and along it",
+    .parameters = kCurtainParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Curtain>(values, setup)); },
+    .retired = kRetiredCurtainParameters};
 
 }  // namespace yuragi

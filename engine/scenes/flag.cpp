@@ -1,26 +1,47 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/math/trig.hpp"
+#include "engine/operators/oscillator_job.hpp"
 #include "engine/scenes/cloth.hpp"
-#include "engine/scenes/cloth_noise.hpp"
+#include "engine/scenes/cloth_strength.hpp"
+#include "engine/scenes/cloth_waves.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
 
 // A flag on its pole, after N. Chiba, "Development of core technology for a noise-based real-time animation engine for
 // fluctuation phenomena" (Iwate University), section 3.2 and figure 11:
 //
-//   shift    the wind carries a 2-D noise along the flag, at its own speed                          ShiftJob
-//   sample   each column, a thread at its height, reads it                                         SampleJob
-//   project  the wind lifts the flag and turns it downwind: the base sway; and the noise           Cloth
-//            propagates from the hoist to the fly, growing
+//   shift    waves run along the flag, from the hoist to the fly, at a part of the wind's speed        ShiftJob
+//   sample   each link of the cloth reads them where it is                                             SampleJob
+//   project  the wind lifts the flag and turns it downwind: the base sway; and the waves turn its      Cloth
+//            links to the sides, growing toward the fly
+//
+// That they propagate is the shifting operator's work: what a link reads was at the hoist when the waves were as far
+// back as the link is from it, at any speed, also one that changes. So the frequency of the flutter goes with the wind
+// (Taneda 1968, Waving motions of flags; Shelley and Zhang 2011, Flapping and bending bodies interacting with fluid
+// flows: f L / U from 0.35 to 0.6, and amplitudes that grow to the fly), and the waves are not the wind's own gusts,
+// which are longer and slower: a flag flutters by itself.
+//
+// Drag and weight lift it: tan(lift) = (u / u_h)^2, where the drag 0.5 rho C_D u^2 is the weight m g of the cloth: at
+// 3 m/s for light nylon of 0.07 kg/m2 with the C_D of 0.12 of a fluttering flag (Munson and others, Fundamentals of
+// fluid mechanics). It comes and goes as a damped oscillator, so that the flag sinks in a lull and rises with a gust.
 //
 // Row 0 is the hoist, from top to bottom. At rest the flag hangs limp beside its pole, for so does a real one when
 // there is no wind: each thread nearly straight down from where it is fixed, out toward the scene's north by `droop`.
 // It is lifted as a hanging thing is that the wind blows against; and since a limp flag may swing to any side, a wind
 // that turns, or that comes back from elsewhere, takes it along without a jump.
+//
+// The bound of largest_joint_step_m. A link's lean is l = tan(lift / 2) downwind, turned by the wave's angle psi. l is
+// an oscillator that a vector of length 1 at most drives: it is never longer than G = largest_gain and changes by at
+// most R = largest_rate a second (oscillator_job.hpp). psi is A S g n: n changes by at most d_n a tick
+// (ClothNoise::largest_change, carried at no more than the fastest), S by d_S (ClothStrength), and S, g are 1 at most.
+// What is kept of the rest lean is cos^2(lift), which changes by at most 2 a unit of l. So a lean changes by at most
+//   R dt (1 + 2 rest) + G A (d_n + 2.2 d_S).
 
 namespace yuragi {
 namespace {
@@ -34,38 +55,40 @@ const std::array kFlagParameters = {
     Parameter{"droop", "deg", 12.0, 0, 60, "how far from straight down it hangs in calm air"},
     Parameter{"folds", "", 3.5, 0, 50, "folds that it hangs in"},
     Parameter{"fold_angle", "deg", 8.0, 0, 45, "how far the folds stand out to the sides"},
-    Parameter{"max_lift", "deg", 86.0, 0, 90, "how far from straight down the strongest wind lifts it"},
-    Parameter{"max_flutter", "deg", 75.0, 0, 90, "how far the strongest wind makes the fly flutter"},
-    Parameter{"half_lift_speed", "m/s", 3.5, 0.1, 60, "the wind that lifts it half as much"},
-    Parameter{"travel_time", "s", 1.0, 0, 10, "that the noise takes from the hoist to the fly"},
-    Parameter{"growth", "", 0.7, 0, 4, "the noise grows as the way from the hoist to this power"},
-    Parameter{"quickness", "rad/s", 20.0, 0.5, 50, "how quickly it follows; heavier cloth has less"},
+    Parameter{"half_lift_speed", "m/s", 3.0, 0.1, 60, "the wind that lifts it half way; heavier cloth needs more"},
+    Parameter{"lift_rate", "Hz", 1.0, 0.05, 10, "how quickly it rises and sinks; less: it lags behind the gusts"},
+    Parameter{"max_flutter", "deg", 84.0, 0, 120, "how far the strongest waves turn the fly to the sides"},
+    Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes its waves half as high"},
+    Parameter{"wave_length", "m", 2.4, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
+    Parameter{"wave_speed", "", 0.55, 0, 2, "how fast the waves run to the fly, as a part of the wind's speed"},
+    Parameter{"growth", "", 0.8, 0.1, 4,
+              "the waves grow as the way from the hoist to this power; more: a calmer hoist"},
+    Parameter{"edge_flutter", "", 0.25, 0, 1, "how high the short waves near the fly are, as a part of the long ones"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
-    Parameter{"tile_period", "m", 10.0, 2, 4096, "the longest wave of the noise; 128 samples"},
-    Parameter{"beta", "", 1.0, kMinTransectBeta2, 4, "exponent of the noise's spectrum along a line, 1/f^beta"},
 };
 
-/// A part of the flutter lifts and lowers, as cloth that is not quite flat does.
-constexpr double kLiftFlutter = 0.25;
+/// No wave runs faster: 0.2 m a tick, so that the shortest are seen to run, and not to jump.
+constexpr double kFastestWave_m_s = 12.0;
 
-/// Which way the noise's tiles are read along the flag: at no simple slope, so that none comes round (as figure 4a).
-constexpr double kAlongNoiseX = 0.8506508083520399;  // of a golden rectangle's diagonal
-constexpr double kAlongNoiseZ = 0.5257311121191336;
+/// The longest waves over the shortest, the edge's longest over the longest, and where along the flag the edge begins.
+constexpr double kFlagBand = 2.0;
+constexpr double kFlagEdgeWaves = 1.0 / 3.0;
+constexpr double kFlagEdgeBegins = 0.6;
 
 /// How much the noise changes from the top to the bottom, against its change along the flag: a wave's front goes from
 /// top to bottom nearly straight.
 constexpr double kHeightOnNoise = 0.3;
 
+/// In the longest; the edge's shortest waves then have five.
+constexpr double kKnotsAWave = 32.0;
+
+constexpr double kFlagLiftDamping = 0.7;
+
 ClothSpec flag_spec(const ParameterValues& values) {
-  // The sway takes the flag from rest to where it is lifted, so it is no longer than both leans together.
   return {.rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("length"),
-          .travel_time_s = values.number("travel_time"),
-          .growth_exponent = values.number("growth"),
-          .quickness_rad_s = values.number("quickness"),
-          .largest_sway = lean_of_deg(values.number("max_lift")) +
-                          std::hypot(lean_of_deg(values.number("droop")), lean_of_deg(values.number("fold_angle"))),
-          .largest_wave = lean_of_deg(values.number("max_flutter")) * std::hypot(1.0, kLiftFlutter),
+          .knots_across_m = 0.1,
+          .knots_along_m = values.number("wave_length") / kKnotsAWave,
           .hybrid = values.number("hybrid"),
           .normal_drag_per_m = 4.0 * drag_per_m(values.number("half_lift_speed")),
           .skin_drag_per_m = 1.0 * drag_per_m(values.number("half_lift_speed"))};
@@ -98,88 +121,175 @@ class Flag final : public Scene {
 
   const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const Pose& pose() const noexcept override { return cloth_.pose(); }
-  double largest_joint_step_m(double dt_s) const noexcept override { return cloth_.largest_joint_step_m(dt_s); }
+
+  double largest_joint_step_m(double dt_s) const noexcept override {
+    const double lift_step = OscillatorStep::largest_rate_per_s(lift_hz_, kFlagLiftDamping) * dt_s;
+    const double noise_step = waves_.largest_change(kFastestWave_m_s, dt_s) +
+                              edge_flutter_ * edge_waves_.largest_change(kFastestWave_m_s, dt_s) +
+                              (1.0 + edge_flutter_) * ClothNoise::kLargest * ClothStrength::largest_step(dt_s);
+    const double longest = OscillatorStep::largest_gain(kFlagLiftDamping);
+    return cloth_.largest_joint_step_m(dt_s,
+                                       lift_step * (1.0 + 2.0 * longest_rest_) + longest * flutter_rad_ * noise_step);
+  }
 
   void shift(const GroundWind& wind, double dt_s) noexcept override {
-    // A flag stands along the wind, so the noise goes along it as the wind does.
     wind_.step(wind, dt_s);
-    const double speed_m_s = wind_.speed_m_s();
-    noise_.shift(speed_m_s * kAlongNoiseX, speed_m_s * kAlongNoiseZ, dt_s);
+    strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
+    const double speed_m_s = std::min(wave_speed_ * wind_.speed_m_s(), kFastestWave_m_s);
+    waves_.shift(speed_m_s, dt_s);
+    edge_waves_.shift(speed_m_s, dt_s);
   }
-  void sample() noexcept override { noise_.sample(flutter_); }
+
+  void sample() noexcept override {
+    waves_.sample();
+    edge_waves_.sample();
+  }
 
   void project(double dt_s) noexcept override {
-    // How much the wind lifts, and toward where. The flag gives up its droop and its folds as it is lifted.
+    // How far the wind lifts it, as a lean toward where it blows: tan(lift / 2), from tan(lift).
     const double speed_m_s = wind_.speed_m_s();
-    const double swell = static_cast<double>(noise_.swell());
     const double s = speed_m_s / half_lift_speed_m_s_;
-    const double strength = s * s / (1.0 + s * s);
-    const double per_speed = speed_m_s > 0.0 ? strength / speed_m_s : 0.0;
-    const double east = wind_.east_m_s() * per_speed;
-    const double south = wind_.south_m_s() * per_speed;
-    const double lift = max_lift_ * (0.92 + 0.08 * swell);
-    const auto lift_east = static_cast<float>(lift * east);
-    const auto lift_south = static_cast<float>(lift * south);
-    const auto given_up = static_cast<float>(strength);
+    const double tangent = s * s;
+    const double half_tangent = tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
+    const double per_speed = speed_m_s > 0.0 ? half_tangent / speed_m_s : 0.0;
+    const OscillatorStep step = OscillatorStep::exact(lift_hz_, kFlagLiftDamping, dt_s);
+    lift_east_.step(wind_.east_m_s() * per_speed, step);
+    lift_south_.step(wind_.south_m_s() * per_speed, step);
 
-    // All of it is lifted, and the noise runs along it, to both sides of the wind and a little up and down.
-    const auto wave_east = static_cast<float>(max_wave_ * (kLiftFlutter * swell * east - south));
-    const auto wave_south = static_cast<float>(max_wave_ * (kLiftFlutter * swell * south + east));
-    const std::span<float> sway = cloth_.sway();
-    const std::span<float> wave = cloth_.wave();
-    const std::size_t stride = flutter_.size();
-    for (std::size_t column = 0; column < stride; ++column) {
-      sway[column] = lift_east - given_up * rest_east_[column];
-      sway[stride + column] = lift_south - given_up * rest_south_[column];
-      wave[column] = flutter_[column] * wave_east;
-      wave[stride + column] = flutter_[column] * wave_south;
+    const auto east = static_cast<float>(lift_east_.value);
+    const auto south = static_cast<float>(lift_south_.value);
+    const auto strength = static_cast<float>(strength_.value());
+    const float sway_share = cloth_.sway_share();
+    const float wave_share = cloth_.wave_share();
+    const std::size_t stride = cloth_.knots().stride;
+    const std::span<float> lean = cloth_.lean();
+    const std::size_t edge_begins = cloth_.knots().links - edge_rad_.size();
+    for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
+      const std::span<const float> wave = waves_.values().subspan(link * stride, stride);
+      for (std::size_t i = 0; i < stride; ++i) angle_rad_[i] = wave_rad_[link] * strength * wave[i];
+      if (link >= edge_begins) {
+        const std::size_t row = link - edge_begins;
+        const std::span<const float> edge_wave = edge_waves_.values().subspan(row * stride, stride);
+        for (std::size_t i = 0; i < stride; ++i) angle_rad_[i] += edge_rad_[row] * strength * edge_wave[i];
+      }
+      float* const lean_east = lean.data() + link * 2 * stride;
+      float* const lean_south = lean_east + stride;
+      for (std::size_t i = 0; i < stride; ++i) {
+        const auto [sine, cosine] = sin_cos(angle_rad_[i]);
+        const float ahead = sway_share + wave_share * (cosine - 1.0F);
+        const float aside = wave_share * sine;
+        lean_east[i] = ahead * east - aside * south;
+        lean_south[i] = ahead * south + aside * east;
+      }
     }
-    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), flutter_);
-    cloth_.project(dt_s);
+
+    // It gives up its droop and its folds as it is lifted, by the square of the lift's cosine.
+    const double square = lift_east_.value * lift_east_.value + lift_south_.value * lift_south_.value;
+    const double cosine = (1.0 - square) / (1.0 + square);
+    for (std::size_t i = 0; i < stride; ++i)
+      gusts_[i] = waves_.values()[i] * static_cast<float>(1.0 / ClothNoise::kLargest);
+    cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), gusts_);
+    cloth_.project(dt_s, cosine * cosine);
   }
 
  private:
+  /// An oscillator on one axis: OscillatorStep's.
+  struct Lift {
+    double value = 0.0;
+    double rate_per_s = 0.0;
+
+    void step(double target, const OscillatorStep& step) noexcept {
+      constexpr double kAtRest = 1e-9;
+      const double distance = value - target;
+      value = target + step.q_from_e * distance + step.q_from_v * rate_per_s;
+      rate_per_s = step.v_from_e * distance + step.v_from_v * rate_per_s;
+      if (std::abs(value) + std::abs(rate_per_s) < kAtRest) *this = {};
+    }
+  };
+
   Flag(const ClothEdge& edge, const ParameterValues& values, const SceneSetup& setup)
       : half_lift_speed_m_s_(values.number("half_lift_speed")),
-        max_lift_(lean_of_deg(values.number("max_lift"))),
-        max_wave_(lean_of_deg(values.number("max_flutter"))),
-        rest_east_(edge.lean_east),
-        rest_south_(edge.lean_south),
+        lift_hz_(values.number("lift_rate")),
+        flutter_rad_(values.number("max_flutter") / ClothNoise::kLargest * kRadPerDeg),
+        half_flutter_speed_m_s_(values.number("half_flutter_speed")),
+        wave_speed_(values.number("wave_speed")),
+        edge_flutter_(values.number("edge_flutter")),
+        longest_rest_(std::hypot(lean_of_deg(values.number("droop")), lean_of_deg(values.number("fold_angle")))),
         wind_(setup.placement, setup.gusts),
-        noise_(values, setup.seed ^ stream_id("flag noise"), heights_on_noise(edge, -kAlongNoiseZ),
-               heights_on_noise(edge, kAlongNoiseX), setup.row),
-        flutter_(edge.stride(), 0.0F),
-        cloth_(flag_spec(values), edge, setup.row) {}
-
-  /// How far below the top each column is, along one axis of the noise.
-  static std::vector<float> heights_on_noise(const ClothEdge& edge, double axis) {
-    std::vector<float> heights_m = edge.y_m;
-    const float top_m = heights_m.front();
-    for (float& height_m : heights_m) {
-      height_m = static_cast<float>(kHeightOnNoise * axis * static_cast<double>(top_m - height_m));
+        cloth_(flag_spec(values), edge, setup.row),
+        down_m_(heights_m(cloth_, values.number("hoist"))),
+        waves_(values.number("wave_length") / kFlagBand, values.number("wave_length"), wave_grid(values, 0.0),
+               setup.seed ^ stream_id("flag noise"), setup.row),
+        edge_waves_(kFlagEdgeWaves * values.number("wave_length") / kFlagBand,
+                    kFlagEdgeWaves * values.number("wave_length"), wave_grid(values, kFlagEdgeBegins),
+                    setup.seed ^ stream_id("flag edge noise"), setup.row),
+        angle_rad_(cloth_.knots().stride),
+        gusts_(cloth_.knots().stride) {
+    for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
+      const double along = cloth_.along(link);
+      wave_rad_.push_back(static_cast<float>(flutter_rad_ * std::pow(along, values.number("growth"))));
+      if (along < kFlagEdgeBegins) continue;
+      edge_rad_.push_back(
+          static_cast<float>(flutter_rad_ * edge_flutter_ * (along - kFlagEdgeBegins) / (1.0 - kFlagEdgeBegins)));
     }
-    return heights_m;
+  }
+
+  /// How far below the top each knot column is, as the noise reads it.
+  static std::vector<float> heights_m(const Cloth& cloth, double hoist_m) {
+    std::vector<float> down_m;
+    for (std::size_t i = 0; i < cloth.knots().stride; ++i) {
+      down_m.push_back(static_cast<float>(kHeightOnNoise * cloth.across(i) * hoist_m));
+    }
+    return down_m;
+  }
+
+  /// The knots from `begins` on, as a part of the way to the fly.
+  ClothWaveGrid wave_grid(const ParameterValues& values, double begins) const {
+    std::size_t first = 0;
+    while (cloth_.along(first) < begins) ++first;
+    const double length_m = values.number("length");
+    return {.first_m = cloth_.along(first) * length_m,
+            .step_m = length_m / static_cast<double>(cloth_.knots().links),
+            .rows = cloth_.knots().links - first,
+            .across_m = down_m_};
   }
 
   double half_lift_speed_m_s_;
-  double max_lift_;  ///< leans
-  double max_wave_;
-  std::vector<float> rest_east_, rest_south_;  ///< each column's lean at rest
+  double lift_hz_;
+  double flutter_rad_;  ///< of the fly's turns to the sides, where a wave of height 1 passes
+  double half_flutter_speed_m_s_;
+  double wave_speed_;  ///< over the wind's
+  double edge_flutter_;
+  double longest_rest_;  ///< lean at rest
 
   SceneWind wind_;
-  ClothNoise noise_;
-  std::vector<float> flutter_;  ///< each column's noise
+  ClothStrength strength_;
+  Lift lift_east_, lift_south_;  ///< leans
   Cloth cloth_;
+  std::vector<float> down_m_;
+  ClothWaves waves_, edge_waves_;           ///< of all knots, and of those near the fly
+  std::vector<float> wave_rad_, edge_rad_;  ///< each knot link's, of waves of height 1 at full strength
+  std::vector<float> angle_rad_;
+  std::vector<float> gusts_;
+};
+
+const std::array kRetiredFlagParameters = {
+    RetiredParameter{"max_lift", "is now half_lift_speed: a storm lifts a flag as far as its weight lets it"},
+    RetiredParameter{"quickness", "is now lift_rate, in Hz: how fast the flag swings back"},
+    RetiredParameter{"travel_time", "is now wave_speed: waves run to the fly at a part of the wind's speed"},
+    RetiredParameter{"tile_period", "is now wave_length, of the longest waves"},
+    RetiredParameter{"beta", "is gone: waves are a band of lengths, see wave_length"},
 };
 
 }  // namespace
 
 extern const SceneDescription kFlagScene;
-const SceneDescription kFlagScene = {.name = "flag",
-                                     .summary = "a flag that hangs limp in calm air, and flies downwind of its pole",
-                                     .parameters = kFlagParameters,
-                                     .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                       return std::unique_ptr<Scene>(std::make_unique<Flag>(values, setup));
-                                     }};
+const SceneDescription kFlagScene = {
+    .name = "flag",
+    .summary = "a flag that hangs limp in calm air, and flies downwind of its pole",
+    .parameters = kFlagParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Flag>(values, setup)); },
+    .retired = kRetiredFlagParameters};
 
 }  // namespace yuragi

@@ -18,13 +18,17 @@
 namespace yuragi {
 namespace {
 
+/// Which way the ground lies on that noise: so that waves that run along rows of strands never come round.
+constexpr double kGroundOnNoiseX = 0.8506508083520399;  // of a golden rectangle's diagonal
+constexpr double kGroundOnNoiseZ = 0.5257311121191336;
+
 /// Strands sway by themselves at rates that differ by so much at most.
 constexpr double kPaceSpread = 0.15;
 
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
 /// The canopy's waves, the shortest and the longest; the part of the wind's speed that they run with; and how many
 /// standard deviations they reach.
-constexpr std::array kCanopyWaves_m = {2.0, 6.0};
+constexpr std::array kCanopyWaves_m = {2.0, 4.0};
 constexpr double kCanopyCarry = 0.65;
 constexpr double kLargestCanopyWave = 2.2;
 
@@ -41,6 +45,16 @@ std::vector<float> natural_rates_hz(const StrandSkeleton& strands, double mean_h
     rates_hz[i] = static_cast<float>(mean_hz * faster);
   }
   return rates_hz;
+}
+
+/// Where each strand is along an axis of the canopy's noise.
+std::vector<float> canopy_axis(const StrandSkeleton& strands, double x, double z) {
+  std::vector<float> along_m;
+  for (std::size_t i = 0; i < strands.root_x_m.size(); ++i) {
+    along_m.push_back(static_cast<float>(x * static_cast<double>(strands.root_x_m[i]) +
+                                         z * static_cast<double>(strands.root_z_m[i])));
+  }
+  return along_m;
 }
 
 double largest_of(std::span<const float> values) {
@@ -66,8 +80,9 @@ StrandSway::OutsideGusts::OutsideGusts(const StrandSkeleton& strands, const Scen
     : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row),
       east_m_s(strands.padded_count(), 0.0F),
       south_m_s(strands.padded_count(), 0.0F),
-      canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ stream_id("canopy waves"))),
-      places(canopy.places(strands.root_x_m, strands.root_z_m)),
+      canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ stream_id("canopy waves"), false)),
+      places(canopy.places(canopy_axis(strands, kGroundOnNoiseX, -kGroundOnNoiseZ),
+                           canopy_axis(strands, kGroundOnNoiseZ, kGroundOnNoiseX))),
       strength(strands.padded_count(), 1.0F) {}
 
 StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
@@ -105,7 +120,10 @@ void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
   wind_.step(wind, dt_s);
   if (outside_) {
     outside_->grid.step(wind, dt_s);
-    outside_->canopy.shift(kCanopyCarry * wind_.east_m_s(), kCanopyCarry * wind_.south_m_s(), dt_s);
+    const double east_m_s = kCanopyCarry * wind_.east_m_s();
+    const double south_m_s = kCanopyCarry * wind_.south_m_s();
+    outside_->canopy.shift(kGroundOnNoiseX * east_m_s - kGroundOnNoiseZ * south_m_s,
+                           kGroundOnNoiseZ * east_m_s + kGroundOnNoiseX * south_m_s, dt_s);
     return;
   }
   // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
@@ -226,7 +244,7 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
       {"gust_strength", "", defaults.gust_strength, 0, 2,
        "own gusts: how much it swells along its path, in the same measure; a wind with gusts swells enough"},
       {"canopy_waves", "", defaults.canopy_waves, 0, 0.4,
-       "outside gusts: how much waves of the stand's own, 2 to 6 m long, vary the wind: the bands that run over a "
+       "outside gusts: how much waves of the stand's own, 2 to 4 m long, vary the wind: the bands that run over a "
        "meadow"},
       {"hybrid", "", defaults.hybrid, 0, 1,
        "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},

@@ -60,20 +60,24 @@ const std::array kTreeParameters = {
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
     Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
-    Parameter{"flexibility", "", 1.0, 0, 10, "how far wood bends: 2 bends it twice as far as its species does, 0 not"},
+    Parameter{"flexibility", "", 1.0, 0, 10,
+              "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
     Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
               "the wind in which the crown begins to fold: the lower, the less a storm bends wood beyond a breeze"},
     Parameter{"max_tilt", "deg", 60.0, 0, 120, "no wind bends a branch farther than this along the wind"},
     Parameter{"max_swing", "deg", 60.0, 0, 120, "nor farther than this sideways"},
     Parameter{"crown_gusts", "", 0.12, 0, 1,
-              "gusts that arise in the crown, as a part of the wind: the stronger, the less its limbs move as one"},
+              "gusts that arise in the crown, as a part of the wind: the stronger, the less its limbs and leaves move "
+              "as one"},
     Parameter{"turbulence", "", 0.2, 0, 2,
               "gusts of its own where the wind brings none: their standard deviation, as a part of the wind"},
     Parameter{"hybrid", "", 1.0, 0, 1, "0: wood follows the gusts alone; 1: each branch is a damped oscillator"},
     Parameter{"natural_frequency", "Hz", 0.5, 0.05, 5,
-              "how fast the trunk sways by itself; limbs about twice as fast, twigs 4 times, short ones faster"},
-    Parameter{"damping", "", 0.12, 0.02, 0.75,
-              "how soon that dies away: the damping ratio; that of twigs is a quarter more"},
+              "how fast the trunk sways by itself; limbs twice as fast and twigs 4 times, up to 30 percent off by "
+              "their length"},
+    Parameter{"damping", "", 0.12, 0.02, 0.95,
+              "how soon that dies away: the damping ratio; low, and limbs swing on long after a gust; of twigs a "
+              "quarter more"},
     Parameter{"tile_period", "m", 64.0, 4, 4096, "after how many metres the wind on the ground repeats; 128 samples"},
     Parameter{"tiles", "", std::int64_t{2}, 1, 2, "2: a second tile hides the repeat; 1: the paper's letter"},
     Parameter{"beta", "", 5.0 / 3.0, kMinTransectBeta2, 4,
@@ -85,8 +89,10 @@ const std::array kTreeParameters = {
               {},
               "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
               kTreeBetaMeanings},
-    Parameter{"leaf_lean", "deg", 50.0, 0, 120, "how far the strongest wind turns the softest leaf, on average"},
-    Parameter{"half_lean_speed", "m/s", 8.0, 0.1, 60, "the wind that turns leaves half as far"},
+    Parameter{"leaf_lean", "deg", 50.0, 0, 120,
+              "how far a storm turns the softest leaf (a poplar's) downwind; a cherry's by 0.8 of it"},
+    Parameter{"half_lean_speed", "m/s", 8.0, 0.1, 60,
+              "the wind that turns leaves half as far: high, and only storms lay them over"},
     Parameter{"leaf_flutter", "deg", 28.0, 0, 60,
               "how far the liveliest leaves (a poplar's) flutter in a strong wind: the standard deviation"},
 };
@@ -98,7 +104,7 @@ constexpr double kWindSideFloor = 0.4;
 constexpr double kSidelessWind_m_s = 1.0;
 
 /// Below this the mean wind is no measure of its gusts.
-constexpr double kCalm_m_s = 0.3;
+constexpr double kLeastMean_m_s = 0.3;
 
 /// The standard deviation of BranchForceJob's noise in a usual wind, of turbulence intensity 0.2 and with the crown's
 /// own gusts: 0.45 in a weak wind, where the force goes with the square of the speed, and 0.3 in a storm.
@@ -111,7 +117,7 @@ constexpr double kThreshold = -1.5 * kUsualNoise - kThresholdRise * kWindSideFlo
 constexpr double kSplitWidth = kUsualNoise;
 
 /// Beyond it the tree's own gusts are cut, in standard deviations; and the finer noises of crown and leaves.
-constexpr double kLargestGust = 3.0;
+constexpr double kLargestOwnGust = 3.0;
 constexpr double kLargestFine = 2.2;
 
 /// Gusts that differ within less than this move a crown as one.
@@ -125,6 +131,7 @@ constexpr double kCrownCarry = 0.5;
 /// How much faster limbs and twigs sway than the trunk, and how much more that is damped.
 constexpr std::array<double, 3> kPace = {1.0, 2.0, 4.0};
 constexpr std::array<double, 3> kDamping = {1.0, 1.0, 1.25};
+constexpr double kLargestDamping = 0.95;
 
 // A branch sways the faster the shorter it is against the median of its kind: by the power of 3/4, up to 30 percent.
 constexpr double kPacePower = 0.75;
@@ -396,7 +403,7 @@ void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlac
   Wood& wood = wood_[level];
   wood.level = level;
   wood.count = strands.strand_count;
-  wood.damping_ratio = kDamping[level] * damping_ratio_;
+  wood.damping_ratio = std::min(kDamping[level] * damping_ratio_, kLargestDamping);
 
   // Thickness and length against the median branch of its kind say how far it bends, and how fast it sways.
   std::vector<double> thickness_m;
@@ -501,7 +508,7 @@ void Tree::blow_on(Wood& wood) noexcept {
     }
     return;
   }
-  const auto largest_own = static_cast<float>(kLargestGust * turbulence_);
+  const auto largest_own = static_cast<float>(kLargestOwnGust * turbulence_);
   noise_.sample(wood.places, row_, wood.noise, static_cast<float>(turbulence_), 0.0F, -largest_own, largest_own);
   const auto east_m_s = static_cast<float>(wind_.east_m_s());
   const auto south_m_s = static_cast<float>(wind_.south_m_s());
@@ -516,7 +523,7 @@ void Tree::sample_wood(Wood& wood) noexcept {
   blow_on(wood);
   const BranchForceJob force{.mean_m_s = wind_.speed_m_s(),
                              .streamline_speed_m_s = streamline_speed_m_s_,
-                             .calm_m_s = kCalm_m_s,
+                             .calm_m_s = kLeastMean_m_s,
                              .row = row_,
                              .wind_east_m_s = wood.east_m_s,
                              .wind_south_m_s = wood.south_m_s,
@@ -597,8 +604,8 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   double gust = 1.0 + crown_gusts_ * kLargestFine;
   double gust_step = crown_gusts_ * change(crown_noise_, kCrownCarry, kLargestFine);
   if (!outside_) {
-    gust += turbulence_ * kLargestGust;
-    gust_step += turbulence_ * change(noise_, 1.0, kLargestGust);
+    gust += turbulence_ * kLargestOwnGust;
+    gust_step += turbulence_ * change(noise_, 1.0, kLargestOwnGust);
   }
   const double step_m_s = wind_step_m_s * gust + kStrongestSceneWind_m_s * gust_step;
 
@@ -611,14 +618,20 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   return leaves_.largest_give * leaf_lean_rad_ * lean_step + leaves_.liveliest * leaf_flutter_rad_ * flutter_step;
 }
 
+const std::array kRetiredTreeParameters = {
+    RetiredParameter{"half_tilt_speed", "is now streamline_speed, and flexibility says how far wood bends"},
+    RetiredParameter{"half_flutter_speed", "is now half_lean_speed; how soon leaves flutter is their species' own"},
+};
+
 }  // namespace
 
 extern const SceneDescription kTreeScene;
-const SceneDescription kTreeScene = {.name = "tree",
-                                     .summary = "a tree in the wind: branches sway, leaves flutter",
-                                     .parameters = kTreeParameters,
-                                     .make = [](const ParameterValues& values, const SceneSetup& setup) {
-                                       return std::unique_ptr<Scene>(std::make_unique<Tree>(values, setup));
-                                     }};
+const SceneDescription kTreeScene = {
+    .name = "tree",
+    .summary = "a tree in the wind: branches sway, leaves flutter",
+    .parameters = kTreeParameters,
+    .make = [](const ParameterValues& values,
+               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Tree>(values, setup)); },
+    .retired = kRetiredTreeParameters};
 
 }  // namespace yuragi

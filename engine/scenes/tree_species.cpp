@@ -10,7 +10,7 @@ constexpr std::array kSpecies = {
     // Spreading and domed.
     TreeSpecies{
         .name = "cherry",
-        .sway_deg = {1.0, 3.4, 9.5},
+        .sway_deg = {0.95, 3.3, 9.5},
         .beta_horizontal = 0.1,
         .thinness_power = 0.7,
         .petiole = 0.8,
@@ -27,7 +27,7 @@ constexpr std::array kSpecies = {
     // A vase: a fan of steep limbs from a short trunk, which arch outward at their tips.
     TreeSpecies{
         .name = "zelkova",
-        .sway_deg = {1.15, 3.9, 10.9},
+        .sway_deg = {1.1, 3.7, 10.5},
         .beta_horizontal = 0.15,
         .thinness_power = 0.8,
         .petiole = 0.9,
@@ -44,7 +44,7 @@ constexpr std::array kSpecies = {
     // A narrow column.
     TreeSpecies{
         .name = "poplar",
-        .sway_deg = {1.5, 3.1, 9.5},
+        .sway_deg = {1.4, 3.0, 9.2},
         .beta_horizontal = 0.1,
         .thinness_power = 0.6,
         .petiole = 1.0,

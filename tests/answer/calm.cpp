@@ -18,7 +18,7 @@ Figures calm_figures(const SceneTable& table, std::uint64_t seed) {
   for (std::size_t array = 0; array < is.size(); ++array) {
     for (std::size_t i = 0; i < is[array].size(); ++i) moved += is[array][i] == was[array][i] ? 0U : 1U;
   }
-  return {{"in calm: numbers of the pose that differ from rest", static_cast<double>(moved)}};
+  return {{"in calm: numbers off the rest pose", static_cast<double>(moved)}};
 }
 
 }  // namespace yuragi::answer

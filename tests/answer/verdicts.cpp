@@ -80,7 +80,7 @@ std::string range_text(const Range& range, int decimals) {
 
 std::string cell_text(const Judged& cell, int decimals) {
   const std::string value = cell.value ? fmt::format("{:.{}f}", *cell.value, decimals) : "-";
-  return fmt::format("{:>8} {:<12} {:<5}", value, range_text(cell.range, decimals), verdict_text(cell.verdict));
+  return fmt::format("{:>8} {:<13} {:<4}", value, range_text(cell.range, decimals), verdict_text(cell.verdict));
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ std::vector<JudgedRow> judge(const SceneTable& table, const MeasuredScene& measu
                              const std::array<bool, kBeauforts>& is_asked) {
   std::vector<Bound> bounds(kCommonBounds.begin(), kCommonBounds.end());
   if (described(table.scene).is_still_in_calm) {
-    bounds.push_back({"in calm: numbers of the pose that differ from rest", "", 0, {{at_most(0), kAny, kAny, kAny}}});
+    bounds.push_back({"in calm: numbers off the rest pose", "", 0, {{at_most(0), kAny, kAny, kAny}}});
   }
   if (table.largest_turn_deg > 0.0) {
     const Range turn = at_most(table.largest_turn_deg);

@@ -77,7 +77,7 @@ TEST(Verdicts, ATableSaysValueBoundAndVerdict) {
   const std::string text = table_text(table, judge(table, measured, asked), asked);
   EXPECT_THAT(text, HasSubstr("Beaufort 3"));
   EXPECT_THAT(text, HasSubstr("lift, deg"));
-  EXPECT_THAT(text, HasSubstr("80.0 54..72       HIGH"));
+  EXPECT_THAT(text, HasSubstr("80.0 54..72        HIGH"));
 }
 
 TEST(Verdicts, FiguresAreKeptAsJson) {

@@ -227,7 +227,8 @@ class Recorder:
         flag = self.models["flag"]
         self.columns = some(flag.columns, 9)
         self.strands = [some(level.strands.count, most) for level, most in zip(self.models["tree"].levels, (1, 15, 60, 100))]
-        self.blades = some(self.models["grass"].count, 400)
+        # At random, so that some pairs stand in line with any wind.
+        self.blades = np.random.default_rng(1).permutation(self.models["grass"].count)[:600]
         self.time_s, self.wind, self.flag, self.tree, self.grass = [], [], [], [[], [], [], []], []
 
     def take(self, frame):
@@ -268,19 +269,20 @@ def bends_deg(bends, strands):
 
 def record(address, duration_s):
     source = pose_client.SocketBytes(address, 20.0)
-    source.send(pose_client.subscribe_message(client="answer_stream_test.py"))
-    recorder, first_s = None, None
-    for message, _ in pose_client.messages(source):
-        kind, table = pose_client.body_of(message)
-        if kind == "Scenes":
-            recorder = Recorder(pose_client.read_scenes(table))
-        if kind != "Frame":
-            continue
-        first_s = table.TimeS() if first_s is None else first_s
-        if table.TimeS() - first_s >= START_S + duration_s:
-            return recorder
-        if table.TimeS() - first_s >= START_S:
-            recorder.take(table)
+    with source.socket:
+        source.send(pose_client.subscribe_message(client="answer_stream_test.py"))
+        recorder, first_s = None, None
+        for message, _ in pose_client.messages(source):
+            kind, table = pose_client.body_of(message)
+            if kind == "Scenes":
+                recorder = Recorder(pose_client.read_scenes(table))
+            if kind != "Frame":
+                continue
+            first_s = table.TimeS() if first_s is None else first_s
+            if table.TimeS() - first_s >= START_S + duration_s:
+                return recorder
+            if table.TimeS() - first_s >= START_S:
+                recorder.take(table)
     raise EOFError("the stream ended before the record was whole")
 
 

@@ -1,5 +1,8 @@
 #include "viewer/tree_parts.hpp"
 
+#include <array>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "engine/pose/pose_arrays.hpp"
@@ -54,6 +57,34 @@ TEST_F(TreePartsTest, AreOneAStrandWithTheLevelsRadii) {
       EXPECT_EQ(parts[i].base_radius_m, tree_.levels[level].base_radius_m[i]);
     }
   }
+}
+
+TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
+  constexpr std::size_t kLeafLevel = 3;
+  TreeJoints joints(tree_);
+  const auto rest = std::get<TreePose>(rest_pose(tree_));
+  const TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
+  ASSERT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
+  const std::size_t links = tree_.levels[kLeafLevel].strands.links_per_strand;
+  const auto leaves = tree_parts(tree_, kLeafLevel, Foliage::kGreen);
+  std::array<float, 3> middle_m{};
+  for (const TreePart& leaf : leaves) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      middle_m[axis] += leaf.root_m[axis] / static_cast<float>(leaves.size());
+    }
+  }
+  float outward = 0.0F;
+  for (const TreePart& leaf : leaves) {
+    const JointPosition tip = joints.level(kLeafLevel).joint(leaf.strand, links - 1);
+    const std::array<float, 3> way_m = {tip.x_m - leaf.root_m[0], tip.y_m - leaf.root_m[1], tip.z_m - leaf.root_m[2]};
+    const float length_m = std::hypot(way_m[0], way_m[1], way_m[2]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(leaf.rest[axis], way_m[axis] / length_m, 1e-2F);
+      outward += leaf.facing[axis] * (leaf.root_m[axis] - middle_m[axis]);
+    }
+    EXPECT_NEAR(std::hypot(leaf.facing[0], leaf.facing[1], leaf.facing[2]), 1.0F, 1e-5F);
+  }
+  EXPECT_GT(outward / static_cast<float>(leaves.size()), 0.1F);  // metres out of the middle, on average
 }
 
 TEST_F(TreePartsTest, AreGreenUnlessTheirNameSaysOtherwise) {

@@ -2,13 +2,22 @@ layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 facing;
 layout(location = 2) in vec3 paint;
 
+// About the vertical through `axis_m` (x, z): the turn's sine, and its cosine less 1, so that 0 is none.
+uniform vec2 axis_m;
+uniform vec2 turn;
+
 out vec3 place_m;
 out vec3 normal;
 out vec3 tint;
 
+vec3 turned(vec3 way) {
+  return way + vec3(turn.y * way.x - turn.x * way.z, 0.0, turn.x * way.x + turn.y * way.z);
+}
+
 void main() {
-  place_m = place;
-  normal = facing;
+  vec3 axis = vec3(axis_m.x, 0.0, axis_m.y);
+  place_m = axis + turned(place - axis);
+  normal = turned(facing);
   tint = paint;
-  gl_Position = to_clip * vec4(place, 1.0);
+  gl_Position = to_clip * vec4(place_m, 1.0);
 }

@@ -99,10 +99,10 @@ TEST_P(ClothDynamicsOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   EXPECT_EQ(bits_of(cloth.coarse.lean()), bits_of(expected.coarse.lean()));
 
   // And so does the spline through it.
-  ClothSpline expected_spline(expected.coarse, kFineColumns, kFineLinks);
-  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
-  expected_spline.spread(expected.coarse, SimdRow::kX86_64);
-  spline.spread(cloth.coarse, GetParam());
+  ClothSpline expected_spline(expected.coarse.knots(), kFineColumns, kFineLinks);
+  ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
+  expected_spline.spread(expected.coarse.lean(), SimdRow::kX86_64);
+  spline.spread(cloth.coarse.lean(), GetParam());
   std::vector<float> expected_out(kFineLinks * 2 * padded_to_blocks(kFineColumns), 0.5F);
   std::vector<float> out = expected_out;
   ClothSplineJob{.spline = &expected_spline, .share = 0.7F, .row = SimdRow::kX86_64, .out = expected_out}.run();
@@ -200,8 +200,8 @@ TEST(ClothDynamicsTest, FixedEdgesDoNotMove) {
   }
 
   // Nor does the fixed column of what is made from it.
-  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
-  spline.spread(cloth.coarse, SimdRow::kX86_64);
+  ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
+  spline.spread(cloth.coarse.lean(), SimdRow::kX86_64);
   const std::size_t stride = padded_to_blocks(kFineColumns);
   std::vector<float> out(kFineLinks * 2 * stride);
   EXPECT_EQ((ClothSplineJob{.spline = &spline, .out = out}.run()), ClothSplineJob::Problem::kNone);
@@ -213,8 +213,8 @@ TEST(ClothSplineTest, StaysBetweenTheCoarseLeansAndFollowsThem) {
   CoarseSetup cloth;
   cloth.blow(2.0F, 6.0F);
   cloth.go_on(200);
-  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
-  spline.spread(cloth.coarse, SimdRow::kX86_64);
+  ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
+  spline.spread(cloth.coarse.lean(), SimdRow::kX86_64);
   const std::size_t stride = padded_to_blocks(kFineColumns);
   std::vector<float> out(kFineLinks * 2 * stride);
   ClothSplineJob{.spline = &spline, .out = out}.run();
@@ -231,6 +231,80 @@ TEST(ClothSplineTest, StaysBetweenTheCoarseLeansAndFollowsThem) {
                                                   static_cast<double>(cloth.coarse.links()));
   const float coarse_lean = lean[(2 * coarse_link + 1) * cloth.coarse.stride() + cloth.coarse.columns() / 2];
   EXPECT_NEAR(out[(2 * fine_link + 1) * stride + kFineColumns / 2], coarse_lean, 0.1F * std::abs(coarse_lean));
+}
+
+/// Leans of some knots that grow evenly across and along.
+struct EvenLeans {
+  EvenLeans() : leans(knots.size()) {
+    for (std::size_t link = 0; link < knots.links; ++link) {
+      for (std::size_t i = 0; i < knots.stride; ++i) {
+        leans[link * 2 * knots.stride + i] = 0.1F * static_cast<float>(i) + 0.2F * static_cast<float>(link);
+        leans[(link * 2 + 1) * knots.stride + i] = -0.3F * static_cast<float>(i);
+      }
+    }
+  }
+
+  static constexpr std::size_t kColumns = 26;
+  static constexpr std::size_t kLinks = 36;
+  ClothKnots knots{.columns = 6, .links = 9, .stride = 16};
+  std::vector<float> leans;
+};
+
+TEST(ClothSplineTest, GoesThroughTheLeansOfAnyKnots) {
+  const EvenLeans even;
+  ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
+  spline.spread(even.leans, SimdRow::kX86_64);
+  const std::size_t stride = padded_to_blocks(EvenLeans::kColumns);
+  std::vector<float> curved(EvenLeans::kLinks * 2 * stride, 0.5F);
+  std::vector<float> straight(curved.size());
+  const std::vector<float> base(2 * stride, 0.5F);
+  ASSERT_EQ((ClothSplineJob{.spline = &spline, .out = curved}.run()), ClothSplineJob::Problem::kNone);
+  ASSERT_EQ((ClothLineJob{.spline = &spline, .base = base, .out = straight}.run()), ClothLineJob::Problem::kNone);
+  for (std::size_t link = 0; link < EvenLeans::kLinks; ++link) {
+    for (std::size_t column = 0; column < EvenLeans::kColumns; ++column) {
+      const double knot = 1.0 + static_cast<double>(column) / 5.0;
+      const double knot_link = std::clamp((static_cast<double>(link) + 0.5) / 4.0 - 0.5, 0.0, 8.0);
+      const std::size_t at = 2 * link * stride + column;
+      EXPECT_NEAR(straight[at], 0.5 + 0.1 * knot + 0.2 * knot_link, 1e-5);
+      EXPECT_NEAR(straight[at + stride], 0.5 - 0.3 * knot, 1e-5);
+      if (link < 8 || link >= EvenLeans::kLinks - 8) continue;  // the spline bends before a thread's ends
+      EXPECT_NEAR(curved[at], straight[at], 1e-5);
+      EXPECT_NEAR(curved[at + stride], straight[at + stride], 1e-5);
+    }
+  }
+}
+
+TEST(ClothSplineTest, LinesOfNoLeanAreTheBaseOnEveryRow) {
+  const EvenLeans even;
+  ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
+  const std::size_t width = 2 * padded_to_blocks(EvenLeans::kColumns);
+  std::vector<float> base(width);
+  for (std::size_t i = 0; i < width; ++i) base[i] = 0.01F * static_cast<float>(i) - 0.2F;
+  std::vector<float> out(3 * width);
+  ASSERT_EQ((ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .out = out}.run()),
+            ClothLineJob::Problem::kNone);
+  for (std::size_t i = 0; i < out.size(); ++i) EXPECT_EQ(out[i], base[i % width]);
+
+  spline.spread(even.leans, SimdRow::kX86_64);
+  std::vector<float> expected(out.size());
+  ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .row = SimdRow::kX86_64, .out = expected}.run();
+  for (const SimdRow row : kSimdRows) {
+    if (!is_runnable(row)) continue;
+    ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .row = row, .out = out}.run();
+    EXPECT_EQ(bits_of(out), bits_of(expected));
+  }
+}
+
+TEST(ClothSplineTest, ALineJobSaysWhatIsWrong) {
+  using Problem = ClothLineJob::Problem;
+  const EvenLeans even;
+  const ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
+  std::vector<float> out(2 * padded_to_blocks(EvenLeans::kColumns));
+  const std::vector<float> base = out;
+  EXPECT_EQ((ClothLineJob{.base = base, .out = out}.run()), Problem::kNoSpline);
+  EXPECT_EQ((ClothLineJob{.spline = &spline, .base = {}, .out = out}.run()), Problem::kSizesDiffer);
+  EXPECT_EQ((ClothLineJob{.spline = &spline, .base = base, .first_link = EvenLeans::kLinks, .out = out}.run()),
+            Problem::kSizesDiffer);
 }
 
 TEST(ClothDynamicsTest, SaysWhatIsWrongAndThenDoesNothing) {
@@ -257,7 +331,7 @@ TEST(ClothDynamicsTest, SaysWhatIsWrongAndThenDoesNothing) {
   EXPECT_EQ(job.run(), Problem::kSizesDiffer);
   EXPECT_TRUE(cloth.is_at_rest());
 
-  ClothSpline spline(cloth.coarse, kFineColumns, kFineLinks);
+  ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
   std::vector<float> out(2 * padded_to_blocks(kFineColumns));
   EXPECT_EQ((ClothSplineJob{.out = out}.run()), ClothSplineJob::Problem::kNoSpline);
   EXPECT_EQ((ClothSplineJob{.spline = &spline, .share = NAN, .out = out}.run()),

@@ -65,6 +65,31 @@ TEST_P(ClothProjectionJobOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   EXPECT_EQ(bits_of(cloth.pose.offset_z_m), bits_of(expected.pose.offset_z_m));
 }
 
+TEST_P(ClothProjectionJobOnEachRow, AnEdgeThatStandsElsewhereTakesItsThreadsAlong) {
+  HangingCloth cloth(32);
+  HangingCloth moved(32);
+  const std::vector<float> edge_m = HangingCloth::anything(3 * 32, 0.5F, 3);
+  ClothProjectionJob job = cloth.job();
+  job.row = GetParam();
+  ASSERT_EQ(job.run(), ClothProjectionJob::Problem::kNone);
+  ClothProjectionJob moved_job = moved.job();
+  moved_job.row = GetParam();
+  moved_job.edge_m = edge_m;
+  ASSERT_EQ(moved_job.run(), ClothProjectionJob::Problem::kNone);
+  for (std::size_t column = 0; column < 32; ++column) {
+    EXPECT_EQ(moved.pose.offset_y_m[column], edge_m[32 + column]);
+    for (const std::size_t row : {std::size_t{0}, kClothLinks / 2, kClothLinks}) {
+      const std::vector<double> from = cloth.joint(column, row);
+      const std::vector<double> to = moved.joint(column, row);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(to[axis] - from[axis], edge_m[axis * 32 + column], 1e-5);
+      }
+    }
+  }
+  moved_job.edge_m = std::span(edge_m).first(32);
+  EXPECT_EQ(moved_job.run(), ClothProjectionJob::Problem::kEdgeSize);
+}
+
 TEST_P(ClothProjectionJobOnEachRow, TheLeansOfRestAreExactlyNoOffset) {
   HangingCloth cloth(32);
   for (std::size_t link = 0; link < kClothLinks; ++link) {

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/scenes/cloth_noise.hpp"
+
+namespace yuragi {
+
+/// Where the waves of a cloth are read: rows at even steps of the way that they run, in each of them the same columns.
+struct ClothWaveGrid {
+  double first_m = 0.0;  ///< the first row
+  double step_m = 0.1;   ///< above 0
+  std::size_t rows = 1;
+  std::span<const float> across_m;  ///< each column, across the way; at least one
+};
+
+/// Waves that run along a cloth from its fixed edge to its free one: a ClothNoise of which only what runs counts, by
+/// how much it differs from half a wave behind. (Along a line, noise of two dimensions is read with its waves of all
+/// directions, of which those that lie nearly along the line look long and slow: they are taken out.) Mean 0, variance
+/// near 0.8, within ClothNoise::kLargest. Allocates when it is made. Thread-safe: no. Realtime-safe: yes.
+class ClothWaves {
+ public:
+  /// Waves of shortest_m to longest_m, at least an octave apart.
+  ClothWaves(double shortest_m, double longest_m, const ClothWaveGrid& grid, std::uint64_t seed, SimdRow row);
+
+  /// They run on for dt_s, at speed_m_s.
+  void shift(double speed_m_s, double dt_s) noexcept { noise_.shift(speed_m_s, 0.0, dt_s); }
+
+  void sample() noexcept;
+
+  /// What was sampled: row after row, a value a column.
+  std::span<const float> values() const noexcept { return std::span(values_).first(count_); }
+
+  /// No more than this does a value change in a tick, at no more than speed_m_s.
+  double largest_change(double speed_m_s, double dt_s) const noexcept;
+
+ private:
+  ClothNoise noise_;
+  std::size_t count_;   ///< of values
+  std::size_t behind_;  ///< how many values half a wave is
+  CarriedPlaces places_;
+  std::vector<float> values_;
+};
+
+}  // namespace yuragi
