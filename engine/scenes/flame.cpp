@@ -115,6 +115,11 @@ const std::array kFlameParameters = {
     Parameter{"beta", "", 3.0, 1, 6, "exponent of the noise's spectrum, 1/f^beta: less is rougher"},
 };
 
+constexpr std::array kRetiredFlameParameters = {
+    RetiredParameter{"max_lean", "is now exposure: it lies over as fires of its size do; below 1 it leans less"},
+    RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches it"},
+};
+
 /// The points' coordinates along the tiles: two noises at right angles to each other through a body, both across a
 /// panel.
 struct FlamePlaces {
@@ -353,13 +358,6 @@ class Flame final : public Scene {
   Skeleton skeleton_;
   Pose pose_;
   FlameBody body_;  ///< but for its surface, which is in skeleton_
-};
-
-const std::array kRetiredFlameParameters = {
-    RetiredParameter{
-        "max_lean",
-        "is now exposure: how much of the wind reaches the flame, which leans as far as fires were measured to"},
-    RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches the flame"},
 };
 
 }  // namespace

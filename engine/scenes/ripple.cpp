@@ -86,6 +86,11 @@ const std::array kRippleParameters = {
     Parameter{"beta", "", 4.0, 2, 6, "exponent of the waves' spectrum beyond the strongest: less is rougher"},
 };
 
+constexpr std::array kRetiredRippleParameters = {
+    RetiredParameter{"height", "is now steepness: the variance of the slope, as a part of the sea's"},
+    RetiredParameter{"half_speed", "is now onset: the wind that raises the first ripples"},
+};
+
 /// A level grid around the world's origin, rows along x from north to south.
 SurfaceSkeleton level_water(const ParameterValues& values, std::size_t columns, std::size_t rows) {
   SurfaceSkeleton water;
@@ -284,11 +289,6 @@ class Ripple final : public Scene {
   std::vector<float> noise_, slope_;  ///< a point each
   Skeleton skeleton_;
   Pose pose_;
-};
-
-const std::array kRetiredRippleParameters = {
-    RetiredParameter{"height", "is now steepness: the slope of the waves, as a part of what was measured at sea"},
-    RetiredParameter{"half_speed", "is now onset: the wind from which on the water is rough"},
 };
 
 }  // namespace
