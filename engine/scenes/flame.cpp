@@ -327,7 +327,10 @@ class Flame final : public Scene {
       const std::size_t first = row * surface.columns;
       noise_.lean(first, surface.columns, -across_ * way_m);
       const auto middle = static_cast<float>(along_at(v, kHotterPanel));
-      const auto per_half_width = static_cast<float>(1.6 / (width_m_ * (1.0 - 0.5 * std::min(v, 1.0))));
+      // Cut level, a flame that leans is wider.
+      const auto goes_m = static_cast<double>(bent_m_[part + 1] - bent_m_[part]);
+      const double wider = std::sqrt(std::sqrt(1.0 + goes_m * goes_m / (link_m * link_m)));
+      const auto per_half_width = static_cast<float>(1.6 / (wider * width_m_ * (1.0 - 0.5 * std::min(v, 1.0))));
       for (std::size_t i = first; i < first + surface.columns; ++i) {
         const float side = (body_.east_m[i] - static_cast<float>(way_m)) * per_half_width;
         along_[i] = middle + side * side;

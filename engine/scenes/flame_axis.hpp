@@ -51,10 +51,6 @@ class FlameAxis {
  public:
   explicit FlameAxis(const FlameAxisSpec& spec);
 
-  /// u* in a wind of 1 m/s at 10 m over open land: the flame feels what is left of it farther down, by the logarithmic
-  /// profile.
-  double relative_wind_s_m() const noexcept { return relative_wind_s_m_; }
-
   /// Goes on by dt_s (above 0) in this wind (m/s, toward east and south).
   void step(double east_m_s, double south_m_s, double dt_s) noexcept;
 
@@ -79,6 +75,8 @@ class FlameAxis {
   };
 
   FlameAxisSpec spec_;
+  /// u* in a wind of 1 m/s at 10 m over open land: the flame feels what is left of it farther down, by the logarithmic
+  /// profile.
   double relative_wind_s_m_ = 0.0;
   FlameInWind strongest_;
   NoiseTile2 wobble_;

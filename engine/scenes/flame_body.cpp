@@ -87,7 +87,7 @@ void add_body_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
   const std::size_t around = body.surface.columns / kFlameShells.size();
   for (const double part : kFlameShells) {
     const double half_m = 0.5 * part * spec.width_m;
-    const double radius_m = half_m * flame_width_at(v);
+    const double radius_m = half_m * kThickest * std::sqrt(v) * (1.0 - v);
     const double moved_m = radius_m * std::min(kSteadyFoot + v * (1.0 - kSteadyFoot) / kFreeAt, 1.0);
 
     // The normal stands across the outline, whose radius grows by d radius / d up; at the foot it points down.
@@ -106,11 +106,6 @@ void add_body_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
 }
 
 }  // namespace
-
-double flame_width_at(double along) noexcept {
-  const double v = std::clamp(along, 0.0, 1.0);
-  return kThickest * std::sqrt(v) * (1.0 - v);
-}
 
 FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement) {
   FlameBody body;

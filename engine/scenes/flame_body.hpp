@@ -37,10 +37,6 @@ struct FlameBody {
   double panel_east = 1.0, panel_south = 0.0;  ///< unit vector along the panel, in the world
 };
 
-/// How much of a flame's width is left at a height, `along` from the foot (0) to the top (1): 1 at a third. As a body
-/// has it. Thread-safe and realtime-safe: yes.
-double flame_width_at(double along) noexcept;
-
 /// Lays a flame out on the ground around the world's origin, and places it. Allocates; may throw std::bad_alloc.
 /// Thread-safe: yes. Realtime-safe: no.
 FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement);
