@@ -32,10 +32,11 @@ constexpr double kMeanSpeed_m_s = 8.0;
 constexpr double kWave_m_s = 0.01;
 /// Measured and derived delays agree within a quarter of a tick and this part of them.
 constexpr double kTolerance = 0.02;
-/// Grass as it comes: the oscillators of a blade.
+/// Grass as it comes, but for what is not the measured wind (waves of the canopy) and for lengths that differ, and with
+/// them the rates of their oscillators.
 constexpr double kNatural_hz = 2.0;
 constexpr double kDampingRatio = 0.2;
-constexpr double kHybrid = 0.6;
+constexpr double kHybrid = 1.0;
 
 /// A place downwind of the windward edge, where a sensor is taken to stand of which nobody said where it does.
 struct DelayPlace {
@@ -232,7 +233,10 @@ class Passage {
   static std::unique_ptr<Scene> make_grass() {
     const auto is_grass = [](const SceneDescription* kind) { return kind->name == std::string_view("grass"); };
     const SceneDescription& kind = **std::ranges::find_if(scene_table(), is_grass);
-    const ParameterValues::Map small = {{"blades_across", std::int64_t{8}}, {"blades_deep", std::int64_t{8}}};
+    const ParameterValues::Map small = {{"blades_across", std::int64_t{8}},
+                                        {"blades_deep", std::int64_t{8}},
+                                        {"blade_length_variation", 0.0},
+                                        {"canopy_waves", 0.0}};
     return kind.make(ParameterValues::resolve(kind.parameters, small).value(), {.gusts = shared_noise()});
   }
 
