@@ -19,7 +19,14 @@ namespace {
 // rounding decides about bits), and larger by the golden ratio.
 constexpr double kTurnCos = 0x1.14a280fb5068cp-1;
 constexpr double kTurnSin = 0x1.aed548f090ceep-1;
+// A band of one tile: by an angle whose tangent is the golden section.
+constexpr double kGoldenCos = 0.8506508083520399;
+constexpr double kGoldenSin = 0.5257311121191336;
 constexpr double kPeriodRatio = std::numbers::phi;
+
+bool is_lone_band(const CarriedNoiseSpec& spec) {
+  return spec.shortest_m > 0.0 && !spec.has_two_tiles;
+}
 
 double largest_difference(const NoiseTile2& a, const NoiseTile2& b) {
   float largest = 0.0F;
@@ -74,7 +81,9 @@ CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::ui
 }
 
 CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
-    : weight_(spec.has_two_tiles ? 0x1.6a09e6p-1F : 1.0F) {  // 1 / sqrt(2): variances add up to 1
+    : turn_cos_(is_lone_band(spec) ? kGoldenCos : 1.0),
+      turn_sin_(is_lone_band(spec) ? kGoldenSin : 0.0),
+      weight_(spec.has_two_tiles ? 0x1.6a09e6p-1F : 1.0F) {  // 1 / sqrt(2): variances add up to 1
   tiles_.push_back(make_tile(spec, stream_id("first tile"), spec.period_m));
   if (spec.has_two_tiles) tiles_.push_back(make_tile(spec, stream_id("second tile"), spec.period_m * kPeriodRatio));
 
@@ -111,7 +120,7 @@ CarriedNoiseSpec CarriedNoise::band(double shortest_m, double longest_m, std::ui
 
 CarriedPlaces CarriedNoise::places(std::span<const float> x_m, std::span<const float> z_m) const {
   CarriedPlaces places;
-  add_phases(x_m, z_m, 1.0, 0.0, tiles_.front().period_m, places.first_x, places.first_z);
+  add_phases(x_m, z_m, turn_cos_, turn_sin_, tiles_.front().period_m, places.first_x, places.first_z);
   if (tiles_.size() > 1) {
     add_phases(x_m, z_m, kTurnCos, kTurnSin, tiles_.back().period_m, places.second_x, places.second_z);
   }
@@ -120,8 +129,8 @@ CarriedPlaces CarriedNoise::places(std::span<const float> x_m, std::span<const f
 
 void CarriedNoise::shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept {
   const double speed_m_s = std::sqrt(toward_x_m_s * toward_x_m_s + toward_z_m_s * toward_z_m_s);
-  double east_m_s = toward_x_m_s;
-  double south_m_s = toward_z_m_s;
+  double east_m_s = turn_cos_ * toward_x_m_s - turn_sin_ * toward_z_m_s;
+  double south_m_s = turn_sin_ * toward_x_m_s + turn_cos_ * toward_z_m_s;
   for (Tile& tile : tiles_) {
     ShiftJob{.wind_east_m_s = east_m_s,
              .wind_south_m_s = south_m_s,

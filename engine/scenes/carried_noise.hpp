@@ -69,8 +69,9 @@ class CarriedNoise {
   double largest_change(double speed_m_s, double step_m_s, double dt_s) const noexcept;
 
   /// The spec of a band of waves for whatever flutters: 1/f along a line, in tiles of eight of the longest waves with
-  /// 4.5 samples or more to the shortest. One tile is enough, and read in half the time, where it is larger than what
-  /// reads it, if the waves go along it at no simple slope.
+  /// 4.5 samples or more to the shortest. One tile is read in half the time, and enough where it is about as large as
+  /// what reads it: it lies turned by an angle whose tangent is the golden section, so that waves that go east or south
+  /// for hours close on themselves as late as they can.
   static CarriedNoiseSpec band(double shortest_m, double longest_m, std::uint64_t seed, bool has_two_tiles = true);
 
   /// Between these its values are.
@@ -89,7 +90,8 @@ class CarriedNoise {
 
   static Tile make_tile(const CarriedNoiseSpec& spec, std::uint64_t which, double period_m);
 
-  std::vector<Tile> tiles_;  ///< one or two
+  std::vector<Tile> tiles_;     ///< one or two
+  double turn_cos_, turn_sin_;  ///< by which the first is turned
   float weight_;
   double lowest_ = 0.0, highest_ = 0.0;
 };

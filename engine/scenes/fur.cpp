@@ -40,10 +40,6 @@ constexpr double kStrokeAcross = 0.5;
 /// Where the coat reads its strokes for the second time: as good as another noise.
 constexpr float kElsewhere_m = 1618.034F;
 
-/// Which way the coat lies on the noise: so that strokes along the body, or across it, never come round.
-constexpr double kCoatOnNoiseX = 0.8506508083520399;  // of a golden rectangle's diagonal
-constexpr double kCoatOnNoiseZ = 0.5257311121191336;
-
 /// How much less the wind bends hairs on the side that faces away from it.
 constexpr double kSheltered = 0.6;
 
@@ -126,10 +122,8 @@ class Fur final : public Scene {
     const double carry = speed_m_s > 0.0 ? std::min(carry_, fastest_stroke_m_s_ / speed_m_s) : 0.0;
     const double east_m_s = carry * wind_.east_m_s();
     const double south_m_s = carry * wind_.south_m_s();
-    const double along_m_s = heading_cos_ * east_m_s + heading_sin_ * south_m_s;
-    const double around_m_s = heading_cos_ * south_m_s - heading_sin_ * east_m_s;
-    strokes_.shift(kCoatOnNoiseX * along_m_s - kCoatOnNoiseZ * around_m_s,
-                   kCoatOnNoiseZ * along_m_s + kCoatOnNoiseX * around_m_s, dt_s);
+    strokes_.shift(heading_cos_ * east_m_s + heading_sin_ * south_m_s,
+                   heading_cos_ * south_m_s - heading_sin_ * east_m_s, dt_s);
   }
 
   void sample() noexcept override { sample_part({}); }
@@ -211,8 +205,8 @@ class Fur final : public Scene {
         wind_(setup.placement, setup.gusts),
         strokes_(CarriedNoise::band(kStrokeWaves_m[0], kStrokeWaves_m[1],
                                     setup.seed ^ stream_id("strokes over the coat"), false)),
-        places_(places_on_noise(coat, 0.0F)),
-        elsewhere_(places_on_noise(coat, kElsewhere_m)),
+        places_(strokes_.places(coat.place_x_m, coat.place_z_m)),
+        elsewhere_(places_elsewhere(coat)),
         along_(coat.place_x_m.size(), 0.0F),
         across_(coat.place_x_m.size(), 0.0F),
         normal_x_(std::move(coat.normal_x)),
@@ -226,16 +220,10 @@ class Fur final : public Scene {
         skeleton_(std::move(coat.skeleton)),
         pose_(rest_pose(skeleton_)) {}
 
-  CarriedPlaces places_on_noise(const Coat& coat, float from_m) const {
-    std::vector<float> x_m;
-    std::vector<float> z_m;
-    for (std::size_t i = 0; i < coat.place_x_m.size(); ++i) {
-      const auto along_m = static_cast<double>(coat.place_x_m[i] + from_m);
-      const auto around_m = static_cast<double>(coat.place_z_m[i]);
-      x_m.push_back(static_cast<float>(kCoatOnNoiseX * along_m - kCoatOnNoiseZ * around_m));
-      z_m.push_back(static_cast<float>(kCoatOnNoiseZ * along_m + kCoatOnNoiseX * around_m));
-    }
-    return strokes_.places(x_m, z_m);
+  CarriedPlaces places_elsewhere(const Coat& coat) const {
+    std::vector<float> x_m = coat.place_x_m;
+    for (float& x : x_m) x += kElsewhere_m;
+    return strokes_.places(x_m, coat.place_z_m);
   }
 
   SimdRow row_;

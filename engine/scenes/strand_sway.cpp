@@ -18,10 +18,6 @@
 namespace yuragi {
 namespace {
 
-/// Which way the ground lies on that noise: so that waves that run along rows of strands never come round.
-constexpr double kGroundOnNoiseX = 0.8506508083520399;  // of a golden rectangle's diagonal
-constexpr double kGroundOnNoiseZ = 0.5257311121191336;
-
 /// Strands sway by themselves at rates that differ by so much at most.
 constexpr double kPaceSpread = 0.15;
 
@@ -45,16 +41,6 @@ std::vector<float> natural_rates_hz(const StrandSkeleton& strands, double mean_h
     rates_hz[i] = static_cast<float>(mean_hz * faster);
   }
   return rates_hz;
-}
-
-/// Where each strand is along an axis of the canopy's noise.
-std::vector<float> canopy_axis(const StrandSkeleton& strands, double x, double z) {
-  std::vector<float> along_m;
-  for (std::size_t i = 0; i < strands.root_x_m.size(); ++i) {
-    along_m.push_back(static_cast<float>(x * static_cast<double>(strands.root_x_m[i]) +
-                                         z * static_cast<double>(strands.root_z_m[i])));
-  }
-  return along_m;
 }
 
 double largest_of(std::span<const float> values) {
@@ -81,8 +67,7 @@ StrandSway::OutsideGusts::OutsideGusts(const StrandSkeleton& strands, const Scen
       east_m_s(strands.padded_count(), 0.0F),
       south_m_s(strands.padded_count(), 0.0F),
       canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ stream_id("canopy waves"), false)),
-      places(canopy.places(canopy_axis(strands, kGroundOnNoiseX, -kGroundOnNoiseZ),
-                           canopy_axis(strands, kGroundOnNoiseZ, kGroundOnNoiseX))),
+      places(canopy.places(strands.root_x_m, strands.root_z_m)),
       strength(strands.padded_count(), 1.0F) {}
 
 StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
@@ -120,10 +105,7 @@ void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
   wind_.step(wind, dt_s);
   if (outside_) {
     outside_->grid.step(wind, dt_s);
-    const double east_m_s = kCanopyCarry * wind_.east_m_s();
-    const double south_m_s = kCanopyCarry * wind_.south_m_s();
-    outside_->canopy.shift(kGroundOnNoiseX * east_m_s - kGroundOnNoiseZ * south_m_s,
-                           kGroundOnNoiseZ * east_m_s + kGroundOnNoiseX * south_m_s, dt_s);
+    outside_->canopy.shift(kCanopyCarry * wind_.east_m_s(), kCanopyCarry * wind_.south_m_s(), dt_s);
     return;
   }
   // The wind on the ground goes with the wind, and with the way that it has come its strength along it.

@@ -147,11 +147,6 @@ double leaf_carry(double wind_m_s) {
   return 0.75 * (2.5 + 0.22 * wind_m_s) / (wind_m_s + 0.2);
 }
 
-// It goes at an angle to the wind whose tangent is the golden section, so that it closes on itself as late as one tile
-// can, also where the wind blows along the tile for hours. (Its cosine and sine, rounded as everywhere.)
-constexpr double kLeafTurnCos = 0.8506508083520400;
-constexpr double kLeafTurnSin = 0.5257311121191336;
-
 /// How much further along x and z what is read in the crown is for each metre up: what is one above the other differs.
 constexpr std::array<double, 2> kHeightSkew = {0.5, 0.7};
 
@@ -272,8 +267,7 @@ class Tree final : public Scene {
     const double south_m_s = middle_wind_.south_m_s();
     crown_noise_.shift(kCrownCarry * east_m_s, kCrownCarry * south_m_s, dt_s);
     const double carry = leaf_carry(middle_wind_.speed_m_s());
-    leaf_noise_.shift(carry * (kLeafTurnCos * east_m_s - kLeafTurnSin * south_m_s),
-                      carry * (kLeafTurnSin * east_m_s + kLeafTurnCos * south_m_s), dt_s);
+    leaf_noise_.shift(carry * east_m_s, carry * south_m_s, dt_s);
   }
 
   void sample() noexcept override {
