@@ -10,7 +10,7 @@ constexpr std::array kSpecies = {
     // Spreading and domed.
     TreeSpecies{
         .name = "cherry",
-        .sway_deg = {0.95, 3.3, 9.5},
+        .sway_deg = {0.9, 3.3, 8.9},
         .beta_horizontal = 0.1,
         .thinness_power = 0.7,
         .petiole = 0.8,
@@ -27,7 +27,7 @@ constexpr std::array kSpecies = {
     // A vase: a fan of steep limbs from a short trunk, which arch outward at their tips.
     TreeSpecies{
         .name = "zelkova",
-        .sway_deg = {1.1, 3.7, 10.5},
+        .sway_deg = {1.05, 3.7, 9.9},
         .beta_horizontal = 0.15,
         .thinness_power = 0.8,
         .petiole = 0.9,
