@@ -33,7 +33,7 @@ namespace {
 
 /// The strokes' waves, the shortest and the longest; how many standard deviations they reach; and across the wind
 /// against along it.
-constexpr std::array kStrokeWaves_m = {0.25, 0.55};
+constexpr std::array kStrokeWaves_m = {0.24, 0.52};
 constexpr double kLargestStroke = 2.2;
 constexpr double kStrokeAcross = 0.5;
 
@@ -59,7 +59,7 @@ const std::array kFurParameters = {
     Parameter{"half_bend_speed", "m/s", 5.5, 0.1, 60, "the wind along the skin that bends a tip half as far"},
     Parameter{"strokes", "deg", 16.0, 0, 60,
               "how much a strong wind's strokes bend hairs besides: partings that open, run on and close"},
-    Parameter{"carry", "", 0.15, 0, 1, "strokes run over the coat with this part of the wind's speed"},
+    Parameter{"carry", "", 0.145, 0, 1, "strokes run over the coat with this part of the wind's speed"},
     Parameter{"fastest_stroke", "m/s", 1.5, 0.01, 20, "and never faster than this, however strong the wind"},
     Parameter{"hybrid", "", 1.0, 0, 1,
               "0: hairs follow the wind at once; 1: each is a damped oscillator that sways on"},
@@ -71,9 +71,9 @@ const std::array kRetiredFurParameters = {
     RetiredParameter{"gusts", "is gone: gusts are longer than a body, so all hairs have those of the wind outside"},
     RetiredParameter{"turbulence", "is now strokes: by how many degrees hairs part"},
     RetiredParameter{"gust_strength", "is gone: the wind's own gusts swell enough"},
-    RetiredParameter{"tile_period", "is gone: strokes are 0.25 to 0.55 m long"},
+    RetiredParameter{"tile_period", "is gone: strokes are 0.24 to 0.52 m long"},
     RetiredParameter{"tiles", "is gone: strokes never repeat"},
-    RetiredParameter{"beta", "is gone: strokes are a band of waves, 0.25 to 0.55 m long"},
+    RetiredParameter{"beta", "is gone: strokes are a band of waves, 0.24 to 0.52 m long"},
     RetiredParameter{"beta_meaning", "is gone, like beta"},
 };
 
