@@ -46,6 +46,14 @@ void OscillatorSteps::set(std::size_t i, const OscillatorStep& step) noexcept {
   v_from_v[i] = static_cast<float>(step.v_from_v);
 }
 
+void OscillatorSteps::set_pace(std::span<const float> natural_hz, double damping_ratio, double dt_s) noexcept {
+  if (dt_s == dt_s_) return;
+  dt_s_ = dt_s;
+  for (std::size_t i = 0; i < natural_hz.size(); ++i) {
+    set(i, OscillatorStep::exact(static_cast<double>(natural_hz[i]), damping_ratio, dt_s));
+  }
+}
+
 OscillatorJob::Problem OscillatorJob::validate() const noexcept {
   if (oscillators == nullptr) return Problem::kNoOscillators;
   if (!std::isfinite(step.q_from_e + step.q_from_v + step.v_from_e + step.v_from_v)) return Problem::kStepNotFinite;

@@ -38,7 +38,14 @@ struct OscillatorSteps {
   /// Element i goes on by this (finite) step. Thread-safe: on different elements, yes. Realtime-safe: yes.
   void set(std::size_t i, const OscillatorStep& step) noexcept;
 
+  /// All go on by OscillatorStep::exact, each at its own rate (an element each), in ticks of dt_s. The rates are always
+  /// the same: this computes anew only where dt_s is another than before. Thread-safe: no. Realtime-safe: yes.
+  void set_pace(std::span<const float> natural_hz, double damping_ratio, double dt_s) noexcept;
+
   std::vector<float> q_from_e, q_from_v, v_from_e, v_from_v;
+
+ private:
+  double dt_s_ = 0.0;  ///< of set_pace()
 };
 
 /// Where many oscillators are, two axes each, and how fast they go; all at rest at first.

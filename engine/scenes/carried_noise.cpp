@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/math/philox.hpp"
+#include "engine/noise/line_cut.hpp"
 #include "engine/noise/unit_reading.hpp"
 #include "engine/operators/sample_job.hpp"
 #include "engine/operators/shift_job.hpp"
@@ -19,9 +20,6 @@ namespace {
 // rounding decides about bits), and larger by the golden ratio.
 constexpr double kTurnCos = 0x1.14a280fb5068cp-1;
 constexpr double kTurnSin = 0x1.aed548f090ceep-1;
-// A band of one tile: by an angle whose tangent is the golden section.
-constexpr double kGoldenCos = 0.8506508083520399;
-constexpr double kGoldenSin = 0.5257311121191336;
 constexpr double kPeriodRatio = std::numbers::phi;
 
 bool is_lone_band(const CarriedNoiseSpec& spec) {
@@ -81,8 +79,8 @@ CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::ui
 }
 
 CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
-    : turn_cos_(is_lone_band(spec) ? kGoldenCos : 1.0),
-      turn_sin_(is_lone_band(spec) ? kGoldenSin : 0.0),
+    : turn_cos_(is_lone_band(spec) ? LineCut::kEast : 1.0),
+      turn_sin_(is_lone_band(spec) ? LineCut::kSouth : 0.0),
       weight_(spec.has_two_tiles ? 0x1.6a09e6p-1F : 1.0F) {  // 1 / sqrt(2): variances add up to 1
   tiles_.push_back(make_tile(spec, stream_id("first tile"), spec.period_m));
   if (spec.has_two_tiles) tiles_.push_back(make_tile(spec, stream_id("second tile"), spec.period_m * kPeriodRatio));

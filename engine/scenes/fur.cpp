@@ -77,19 +77,6 @@ const std::array kRetiredFurParameters = {
     RetiredParameter{"beta_meaning", "is gone, like beta"},
 };
 
-/// The skin's normals turn as the coat does.
-void turn(const ScenePlacement& placement, Coat& coat) {
-  const double heading_rad = placement.heading_deg * kRadPerDeg;
-  const double cosine = std::cos(heading_rad);
-  const double sine = std::sin(heading_rad);
-  for (std::size_t i = 0; i < coat.normal_x.size(); ++i) {
-    const auto x = static_cast<double>(coat.normal_x[i]);
-    const auto z = static_cast<double>(coat.normal_z[i]);
-    coat.normal_x[i] = static_cast<float>(x * cosine - z * sine);
-    coat.normal_z[i] = static_cast<float>(x * sine + z * cosine);
-  }
-}
-
 Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
   Coat coat = make_coat({.hairs_along = static_cast<std::size_t>(values.integer("hairs_along")),
                          .hairs_around = static_cast<std::size_t>(values.integer("hairs_around")),
@@ -104,7 +91,7 @@ Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
                          .parting_deg = values.number("parting"),
                          .seed = setup.seed});
   place(setup.placement, coat.skeleton);
-  turn(setup.placement, coat);
+  turn(setup.placement, coat.normal_x, coat.normal_z);
   return coat;
 }
 

@@ -6,7 +6,6 @@
 #include "engine/base/units.hpp"
 
 namespace yuragi {
-namespace {
 
 /// x east, z south: clockwise from above turns north (-z) to east (+x).
 void turn(const ScenePlacement& placement, std::span<float> x, std::span<float> z) noexcept {
@@ -20,6 +19,8 @@ void turn(const ScenePlacement& placement, std::span<float> x, std::span<float> 
     z[i] = static_cast<float>(sin * old_x + cos * old_z);
   }
 }
+
+namespace {
 
 void move(double way_m, std::span<float> values_m) noexcept {
   if (way_m == 0.0) return;

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <span>
+
 #include "engine/pose/skeleton.hpp"
 #include "engine/scenes/scene.hpp"
 
 namespace yuragi {
+
+/// Turns directions (or places), their parts east and south, by the heading. Thread-safe and realtime-safe as place().
+void turn(const ScenePlacement& placement, std::span<float> x, std::span<float> z) noexcept;
 
 /// Turns a model that was laid out around the world's origin by its heading, clockwise seen from above, and moves it to
 /// where it stands. No heading and no way change no bit. Thread-safe: different skeletons, yes. Realtime-safe: yes.

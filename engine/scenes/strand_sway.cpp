@@ -91,17 +91,8 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
   }
 }
 
-/// Each strand's step for ticks of dt_s; that hardly ever changes.
-void StrandSway::set_pace(double dt_s) noexcept {
-  if (dt_s == steps_dt_s_) return;
-  steps_dt_s_ = dt_s;
-  for (std::size_t i = 0; i < natural_hz_.size(); ++i) {
-    steps_.set(i, OscillatorStep::exact(static_cast<double>(natural_hz_[i]), spec_.damping_ratio, dt_s));
-  }
-}
-
 void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
-  set_pace(dt_s);
+  steps_.set_pace(natural_hz_, spec_.damping_ratio, dt_s);
   wind_.step(wind, dt_s);
   if (outside_) {
     outside_->grid.step(wind, dt_s);

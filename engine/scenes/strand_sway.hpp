@@ -100,7 +100,6 @@ class StrandSway final : public Scene {
   };
 
   double largest_bend_input_step(double dt_s) const noexcept;
-  void set_pace(double dt_s) noexcept;
 
   SimdRow row_;
   StrandSwaySpec spec_;
@@ -112,7 +111,6 @@ class StrandSway final : public Scene {
   Oscillators oscillators_;
   std::vector<float> natural_hz_;
   OscillatorSteps steps_;
-  double steps_dt_s_ = 0.0;  ///< the tick that steps_ are for
   double largest_flexibility_ = 0.0, lever_m_ = 0.0;
   Skeleton skeleton_;
   Pose pose_;

@@ -289,8 +289,10 @@ class Tree final : public Scene {
 
   void project(double dt_s) noexcept override {
     auto& levels = std::get_if<TreePose>(&pose_)->levels;
-    set_pace(dt_s);
-    for (Wood& wood : wood_) project_wood(wood, levels[wood.level]);
+    for (Wood& wood : wood_) {
+      wood.steps.set_pace(wood.natural_hz, wood.damping_ratio, dt_s);
+      project_wood(wood, levels[wood.level]);
+    }
     FlutterJob{.lean_east_rad = leaves_.lean_east_rad,
                .lean_south_rad = leaves_.lean_south_rad,
                .flutter_rad = leaves_.flutter_rad,
@@ -320,7 +322,6 @@ class Tree final : public Scene {
 
   void add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m);
   void add_leaves(const TreeLevel& level, std::uint64_t seed);
-  void set_pace(double dt_s) noexcept;
   void sample_wood(Wood& wood) noexcept;
   void blow_on(Wood& wood) noexcept;
   void project_wood(Wood& wood, StrandPose& pose) noexcept;
@@ -340,7 +341,6 @@ class Tree final : public Scene {
   CarriedNoise noise_, crown_noise_, leaf_noise_;
   std::optional<WindGrid> outside_;  ///< the wind at each branch, where it brings its gusts; noise_ is not read then
   std::array<Wood, kLeaves> wood_;
-  double pace_dt_s_ = 0.0;  ///< of the ticks that the oscillators' steps are for
   Foliage leaves_;
   std::array<double, kMaxTreeLevels> levers_m_;
   Skeleton skeleton_;
@@ -473,17 +473,6 @@ void Tree::add_leaves(const TreeLevel& level, std::uint64_t seed) {
   leaves_.noise.assign(strands.padded_count(), 0.0F);
   for (auto* array : {&leaves_.lean_east_rad, &leaves_.lean_south_rad, &leaves_.flutter_rad}) {
     array->assign(wood_[kTwigs].east_m_s.size(), 0.0F);
-  }
-}
-
-/// How each branch sways on in ticks of dt_s: computed anew only where that is another than before.
-void Tree::set_pace(double dt_s) noexcept {
-  if (dt_s == pace_dt_s_) return;
-  pace_dt_s_ = dt_s;
-  for (Wood& wood : wood_) {
-    for (std::size_t i = 0; i < wood.natural_hz.size(); ++i) {
-      wood.steps.set(i, OscillatorStep::exact(static_cast<double>(wood.natural_hz[i]), wood.damping_ratio, dt_s));
-    }
   }
 }
 

@@ -19,14 +19,6 @@ constexpr std::size_t kMostNodes = 64;
 /// What is left of a wind that has ceased is nothing: numbers too small are slow.
 constexpr float kNoWind_m_s = 1e-12F;
 
-/// The standard deviation of a usual wind, as a part of its speed.
-constexpr double kUsualTurbulence = 0.2;
-
-ScenePlacement first_of(std::span<const float> x_m, std::span<const float> z_m) {
-  if (x_m.empty()) return {};
-  return {.x_m = static_cast<double>(x_m.front()), .z_m = static_cast<double>(z_m.front())};
-}
-
 /// How many nodes of an axis are read from these places on it: up to the one behind the last place.
 std::size_t nodes_read(std::span<const std::uint32_t> places, std::size_t nodes) {
   if (places.empty()) return 0;
@@ -62,13 +54,7 @@ WindGrid::Layout::Layout(std::span<const float> x_m, std::span<const float> z_m,
 
 WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m,
                    SimdRow row, double finest_cell_m, std::size_t columns)
-    : row_(row),
-      layout_(x_m, z_m, finest_cell_m),
-      gusts_(std::move(gusts), layout_.nodes, row),
-      tape_nodes_(gusts_),
-      east_m_s_(x_m.size()),
-      south_m_s_(x_m.size()),
-      smooth_(first_of(x_m, z_m), nullptr, WindPart::kMean) {
+    : row_(row), layout_(x_m, z_m, finest_cell_m), gusts_(std::move(gusts), layout_.nodes, row), tape_nodes_(gusts_) {
   if (goes_along_axes(x_m, z_m, columns)) {
     column_x_.assign(layout_.place_x.begin(), layout_.place_x.begin() + static_cast<std::ptrdiff_t>(columns));
     for (std::size_t i = 0; i < layout_.place_z.size(); i += columns) row_z_.push_back(layout_.place_z[i]);
@@ -83,8 +69,6 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
 }
 
 void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
-  smooth_.step(wind, dt_s);
-
   // What is known at each node, and the noise that fills the rest: along the mean wind and to the left of it, turned
   // into the world.
   if (wind.tapes != nullptr) tape_nodes_.read(wind, gusts_);
@@ -145,24 +129,6 @@ void WindGrid::read(const Component& component, std::size_t first, std::span<flo
 void WindGrid::sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept {
   read(east_, first, east_m_s);
   read(south_, first, south_m_s);
-}
-
-void WindGrid::sample_gusts(std::size_t first, std::span<float> out, float limit) noexcept {
-  const std::span<float> east_m_s = std::span(east_m_s_).first(out.size());
-  const std::span<float> south_m_s = std::span(south_m_s_).first(out.size());
-  sample(first, east_m_s, south_m_s);
-  const double speed_m_s = smooth_.speed_m_s();
-  if (speed_m_s < static_cast<double>(kNoWind_m_s)) {
-    std::ranges::fill(out, 0.0F);
-    return;
-  }
-  const double per_square = 1.0 / (kUsualTurbulence * speed_m_s * speed_m_s);
-  const auto from_east = static_cast<float>(smooth_.east_m_s() * per_square);
-  const auto from_south = static_cast<float>(smooth_.south_m_s() * per_square);
-  constexpr auto kMean = static_cast<float>(1.0 / kUsualTurbulence);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = std::clamp(east_m_s[i] * from_east + south_m_s[i] * from_south - kMean, -limit, limit);
-  }
 }
 
 }  // namespace yuragi

@@ -37,10 +37,6 @@ class WindGrid {
   /// The wind at as many places as the outputs have, from place `first` on.
   void sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept;
 
-  /// How much stronger its gusts make the wind at each place, from place `first` on, in fifths of the wind without
-  /// them: a noise of variance 1 or less where the turbulence intensity is 0.2. From -limit to limit; 0 in calm.
-  void sample_gusts(std::size_t first, std::span<float> out, float limit) noexcept;
-
  private:
   /// Which nodes there are, and where the places are between them.
   struct Layout {
@@ -63,9 +59,7 @@ class WindGrid {
   GustNodes gusts_;
   TapeNodes tape_nodes_;
   std::vector<std::uint32_t> column_x_, row_z_;  ///< of the places, where they are a grid along the axes; else none
-  std::vector<float> east_m_s_, south_m_s_;      ///< of the places, for sample_gusts()
   Component east_, south_;
-  SceneWind smooth_;  ///< without gusts, in the first place
 };
 
 }  // namespace yuragi

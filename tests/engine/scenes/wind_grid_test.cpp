@@ -104,15 +104,19 @@ TEST(WindGrid, AGridOfPlacesIsReadToTheSameBitsAsEachOfThem) {
       as_grid.step(wind, kGridTick_s);
       as_places.step(wind, kGridTick_s);
     }
-    std::vector<float> of_grid(x_m.size());
-    std::vector<float> of_places(x_m.size());
-    as_grid.sample_gusts(0, of_grid, 3.0F);
-    as_places.sample_gusts(0, of_places, 3.0F);
-    EXPECT_EQ(bits_of(of_grid), bits_of(of_places)) << side_m;
-    EXPECT_NE(of_grid.front(), of_grid.back());
+    std::vector<float> east_of_grid(x_m.size()), south_of_grid(x_m.size());
+    std::vector<float> east_of_places(x_m.size()), south_of_places(x_m.size());
+    const auto expect_the_same = [&] {
+      EXPECT_EQ(bits_of(east_of_grid), bits_of(east_of_places)) << side_m;
+      EXPECT_EQ(bits_of(south_of_grid), bits_of(south_of_places)) << side_m;
+    };
+    as_grid.sample(0, east_of_grid, south_of_grid);
+    as_places.sample(0, east_of_places, south_of_places);
+    expect_the_same();
+    EXPECT_NE(east_of_grid.front(), east_of_grid.back());
     // A part of them is read place by place.
-    as_grid.sample_gusts(70, std::span(of_grid).subspan(70, 100), 3.0F);
-    EXPECT_EQ(bits_of(of_grid), bits_of(of_places)) << side_m;
+    as_grid.sample(70, std::span(east_of_grid).subspan(70, 100), std::span(south_of_grid).subspan(70, 100));
+    expect_the_same();
   }
 }
 
@@ -180,21 +184,6 @@ TEST(WindGrid, IsNeverTooStrongAndNeverTooQuickWhateverComesIn) {
     south_before = places.south_m_s;
   }
   EXPECT_GT(largest_m_s, 0.05 * bound_m_s);
-}
-
-TEST(WindGrid, GustsAreInFifthsOfTheWind) {
-  Places places(7.0);
-  WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
-  const GustyWind gusty({3.0, 4.0}, 0.4F);
-  for (int tick = 0; tick < 240; ++tick) grid.step(gusty.wind(), kGridTick_s);
-  grid.sample(0, places.east_m_s, places.south_m_s);
-  std::vector<float> gusts(places.x_m.size() - 3);
-  grid.sample_gusts(3, gusts, 3.0F);
-  for (std::size_t i = 0; i < gusts.size(); ++i) {
-    const double along_m_s =
-        0.6 * static_cast<double>(places.east_m_s[i + 3]) - 0.8 * static_cast<double>(places.south_m_s[i + 3]);
-    EXPECT_NEAR(gusts[i], std::clamp(along_m_s - 5.0, -3.0, 3.0), 1e-3);  // a fifth of 5 m/s is 1
-  }
 }
 
 /// A wind toward north of 6 m/s that has been measured for half a minute south of the places, and stands still now.
