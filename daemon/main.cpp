@@ -4,8 +4,9 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/config.hpp"
-#include "daemon/exit.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/exit.hpp"
+#include "engine/base/version.hpp"
 
 int main(int argc, char** argv) {
   using namespace yuragi;
@@ -14,7 +15,7 @@ int main(int argc, char** argv) {
         "Yuragi: real wind moves grass, cloth, trees and flames on a wall.\n"
         "Start with `yuragi run`: it needs no sensor and no configuration; watch it with `yuragi-viewer`.",
         "yuragi"};
-    app.set_version_flag("--version", "yuragi " YURAGI_VERSION);
+    app.set_version_flag("--version", std::string("yuragi ") + kVersion);
     app.require_subcommand(1);
     for (const Command* command : command_table()) command->add(app);
     try {

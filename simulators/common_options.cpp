@@ -54,20 +54,10 @@ void CommonOptions::run_simulator(Simulator& simulator) const {
   sim::run(simulator, make_faults(simulator.known_faults()), run);
 }
 
-Address parse_address(const std::string& option, const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  if (colon != std::string::npos && colon > 0) {
-    std::string host = text.substr(0, colon);
-    if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-    const std::string digits = text.substr(colon + 1);
-    const bool is_number =
-        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos;
-    if (const unsigned long port = is_number ? std::stoul(digits) : 65536; port <= 65535) {
-      return {host, static_cast<std::uint16_t>(port)};
-    }
-  }
-  throw CLI::ValidationError(
-      option, "\"" + text + "\" is no address; allowed: HOST:PORT, with a port from 0 (a free one) to 65535");
+Address address_option(const std::string& option, const std::string& text) {
+  const auto address = parse_address(text);
+  if (!address) throw CLI::ValidationError(option, address.error().message + "; port 0 takes a free one");
+  return *address;
 }
 
 }  // namespace yuragi::sim

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/base/address.hpp"
 #include "simulators/played_wind.hpp"
 #include "simulators/simulator.hpp"
 
@@ -34,13 +35,7 @@ struct CommonOptions {
   void run_simulator(Simulator& simulator) const;
 };
 
-/// "HOST:PORT".
-struct Address {
-  std::string host;
-  std::uint16_t port = 0;
-};
-
-/// Reads "HOST:PORT", where an IPv6 address may stand in brackets. Throws CLI::ValidationError, naming `option`.
-Address parse_address(const std::string& option, const std::string& text);
+/// What stands behind an option that takes HOST:PORT. Throws CLI::ValidationError, naming `option`.
+Address address_option(const std::string& option, const std::string& text);
 
 }  // namespace yuragi::sim

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/base/version.hpp"
 #include "simulators/commands.hpp"
 
 namespace {
@@ -13,7 +14,7 @@ constexpr int kExitUnavailable = 69;
 
 int run(int argc, char** argv) {
   CLI::App app{"Simulated wind sensors, which speak the protocols of real ones and can be made to fail.", "yuragi-sim"};
-  app.set_version_flag("--version", "yuragi-sim " YURAGI_VERSION);
+  app.set_version_flag("--version", std::string("yuragi-sim ") + yuragi::kVersion);
   app.require_subcommand(1);
   yuragi::sim::add_microphone_command(app);
   yuragi::sim::add_modbus_command(app);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/wind/synthetic_wind.hpp"
+#include "engine/wind/turbulence/synthetic_wind.hpp"
 #include "simulators/faults.hpp"
 
 namespace yuragi::sim {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <span>
 
-#include "viewer/pose_timeline.hpp"
-#include "viewer/stream_connection.hpp"
+#include "viewer/stream/pose_timeline.hpp"
+#include "viewer/stream/stream_connection.hpp"
 
 struct GLFWwindow;
 

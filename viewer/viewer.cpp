@@ -4,11 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/base/address.hpp"
+#include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/picture_file.hpp"
-#include "viewer/pose_timeline.hpp"
-#include "viewer/stage.hpp"
-#include "viewer/stream_connection.hpp"
+#include "viewer/stream/pose_timeline.hpp"
+#include "viewer/stream/stream_connection.hpp"
 #include "viewer/viewer_exit.hpp"
 #include "viewer/window.hpp"
 
@@ -25,9 +26,10 @@ double now_s() {
 }
 
 StreamOptions address_of(const ViewerOptions& options) {
-  auto address = parse_address(options.connect);
+  const auto address = parse_address(options.connect, wire::kDefaultPort);
   if (!address) throw ViewerExit(EX_USAGE, "--connect: " + address.error().message);
-  return *std::move(address);
+  if (address->port == 0) throw ViewerExit(EX_USAGE, "--connect: nobody can be reached at port 0");
+  return {.host = address->host, .port = address->port};
 }
 
 }  // namespace

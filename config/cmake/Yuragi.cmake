@@ -79,7 +79,7 @@ function(yuragi_kernel target source)
   endforeach()
 endfunction()
 
-# yuragi_table(yuragi_drivers HEADER drivers/driver.hpp TYPE DriverDescription TABLE driver_table ENTRIES modbus_driver ...)
+# yuragi_table(yuragi_drivers HEADER drivers/sensor/driver.hpp TYPE DriverDescription TABLE driver_table ENTRIES modbus_driver ...)
 # Writes the function `std::span<const TYPE* const> TABLE()` over constants `extern const TYPE k<Entry>` of namespace
 # yuragi, one an entry. Static registration would be dropped by the linker; this cannot be.
 function(yuragi_table target)
@@ -108,10 +108,10 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
 endfunction()
 
 # yuragi_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, each of its cases a CTest test. Those of the
-# engine but for its base, in which there are no threads, are labelled `threadless`.
+# engine but for its base and its workers, in which there are no threads, are labelled `threadless`.
 function(yuragi_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
-  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/base")
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
     list(APPEND ARG_LABELS threadless)
   endif()
   add_executable(${name} ${ARG_SOURCES})

@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "daemon/exit.hpp"
-#include "daemon/transports/stream_client.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/stream/stream_client.hpp"
 
 namespace yuragi {
 namespace {

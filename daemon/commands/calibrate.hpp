@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "daemon/calibration_session.hpp"
+#include "daemon/tools/calibration/calibration_session.hpp"
 
 namespace yuragi {
 

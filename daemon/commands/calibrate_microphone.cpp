@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/exit.hpp"
-#include "drivers/microphone_calibration.hpp"
+#include "daemon/settings/exit.hpp"
+#include "drivers/microphone/microphone_calibration.hpp"
 
 namespace yuragi {
 namespace {

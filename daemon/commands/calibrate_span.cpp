@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/exit.hpp"
-#include "drivers/speed_unit.hpp"
+#include "daemon/settings/exit.hpp"
+#include "drivers/sensor/speed_unit.hpp"
 
 namespace yuragi {
 namespace {

@@ -5,10 +5,10 @@
 #include <fmt/core.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/config.hpp"
-#include "daemon/driver_reference.hpp"
-#include "daemon/fallback_recording.hpp"
-#include "daemon/gust_length.hpp"
+#include "daemon/sensing/fallback_recording.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/wind_settings.hpp"
+#include "daemon/tools/sensors/driver_reference.hpp"
 
 namespace yuragi {
 namespace {

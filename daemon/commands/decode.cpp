@@ -13,10 +13,10 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/decode_options.hpp"
-#include "daemon/decode_formats.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/standard_output.hpp"
-#include "daemon/unit_reader.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/standard_output.hpp"
+#include "daemon/tools/decode/decode_formats.hpp"
+#include "daemon/tools/decode/unit_reader.hpp"
 
 namespace yuragi {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "daemon/exit.hpp"
-#include "drivers/line_sensor.hpp"
+#include "daemon/settings/exit.hpp"
+#include "drivers/text/line_sensor.hpp"
 
 namespace yuragi {
 namespace {

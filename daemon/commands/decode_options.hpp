@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "daemon/decode_formats.hpp"
+#include "daemon/tools/decode/decode_formats.hpp"
 #include "engine/base/parameter.hpp"
 
 namespace yuragi {

@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/csv_export.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/output_file.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/output_file.hpp"
+#include "daemon/tools/csv/csv_export.hpp"
 #include "drivers/windlog/log_moment.hpp"
 
 namespace yuragi {

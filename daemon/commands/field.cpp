@@ -15,12 +15,13 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/commands/npy.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/field_frames.hpp"
-#include "daemon/output_file.hpp"
-#include "daemon/plot.hpp"
-#include "daemon/plot_map.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/output_file.hpp"
+#include "daemon/tools/offline/field_frames.hpp"
+#include "daemon/tools/offline/npy.hpp"
+#include "daemon/tools/plot/plot.hpp"
+#include "daemon/tools/plot/plot_map.hpp"
+#include "daemon/tools/plot/plot_script.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
 namespace yuragi {

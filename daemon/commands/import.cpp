@@ -11,10 +11,11 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/csv_import.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/output_file.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/output_file.hpp"
+#include "daemon/tools/csv/csv_import.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
+#include "engine/base/version.hpp"
 
 namespace yuragi {
 
@@ -69,7 +70,7 @@ class Target {
       : writer_(open(file)), configuration_(std::move(configuration)), is_watched_(isatty(STDERR_FILENO) != 0) {}
 
   void take(std::string_view sensor, const WindReading& reading) {
-    if (count_ == 0) must(writer_.begin_session({reading.time, "yuragi " YURAGI_VERSION, configuration_}));
+    if (count_ == 0) must(writer_.begin_session({reading.time, std::string("yuragi ") + kVersion, configuration_}));
     auto known = sensors_.find(sensor);
     if (known == sensors_.end()) {
       const auto id = writer_.add_sensor(sensor, "import", "");

@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/system_clock.hpp"
-#include "drivers/microphone_worker.hpp"
+#include "daemon/sensing/system_clock.hpp"
+#include "daemon/settings/exit.hpp"
+#include "drivers/microphone/microphone_worker.hpp"
 
 namespace yuragi {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/run_options.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/lockstep_replay.hpp"
-#include "daemon/service.hpp"
+#include "daemon/service/service.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/tools/offline/lockstep_replay.hpp"
 
 namespace yuragi {
 namespace {

@@ -11,19 +11,19 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/config.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/gust_length.hpp"
-#include "daemon/output_file.hpp"
-#include "daemon/report/measure_recording.hpp"
-#include "daemon/report/report_figures.hpp"
-#include "daemon/report/report_json.hpp"
-#include "daemon/report/report_page.hpp"
-#include "daemon/report/report_text.hpp"
-#include "daemon/site_octaves.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/output_file.hpp"
+#include "daemon/settings/site_octaves.hpp"
+#include "daemon/settings/wind_settings.hpp"
+#include "daemon/tools/report/measure_recording.hpp"
+#include "daemon/tools/report/report_figures.hpp"
+#include "daemon/tools/report/report_json.hpp"
+#include "daemon/tools/report/report_page.hpp"
+#include "daemon/tools/report/report_text.hpp"
 #include "drivers/windlog/log_moment.hpp"
-#include "engine/wind/blend_source.hpp"
-#include "engine/wind/wind_profile.hpp"
+#include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/turbulence/wind_profile.hpp"
 
 namespace yuragi {
 

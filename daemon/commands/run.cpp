@@ -3,7 +3,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/run_options.hpp"
-#include "daemon/service.hpp"
+#include "daemon/service/service.hpp"
 
 namespace yuragi {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "daemon/config.hpp"
+#include "daemon/settings/config.hpp"
 
 namespace yuragi {
 

@@ -6,7 +6,7 @@
 
 #include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
-#include "daemon/exit.hpp"
+#include "daemon/settings/exit.hpp"
 
 namespace yuragi {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/sensors.hpp"
-#include "daemon/driver_reference.hpp"
-#include "daemon/exit.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/tools/sensors/driver_reference.hpp"
 
 namespace yuragi {
 namespace {

@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "daemon/commands/sensors.hpp"
-#include "daemon/device_list.hpp"
+#include "daemon/tools/sensors/device_list.hpp"
 
 namespace yuragi {
 

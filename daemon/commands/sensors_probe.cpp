@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "daemon/commands/sensors.hpp"
-#include "daemon/exit.hpp"
+#include "daemon/settings/exit.hpp"
 #include "drivers/bus/serial_ports.hpp"
-#include "drivers/modbus_probe.hpp"
+#include "drivers/modbus/modbus_probe.hpp"
 
 namespace yuragi {
 namespace {
@@ -156,7 +156,7 @@ void show_fit(const ModbusHit& hit, const ModbusFit& fit) {
 void show_hit(const ModbusHit& hit, const ModbusProbePlan& plan) {
   end_progress();
   fmt::print("slave {} at {}{}\n", hit.id, describe(hit.line), settings_of(hit.line));
-  if (hit.fits.empty()) fmt::print("  no profile fits: drivers/profiles/README.md says how to write one\n");
+  if (hit.fits.empty()) fmt::print("  no profile fits: drivers/modbus/profiles/README.md says how to write one\n");
   for (const ModbusFit& fit : hit.fits) show_fit(hit, fit);
   if (hit.fits.size() > 1) {
     fmt::print("  Several devices have these registers: take the one whose name stands on yours.\n");

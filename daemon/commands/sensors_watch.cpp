@@ -10,14 +10,14 @@
 
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/sensors.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/raw_text.hpp"
-#include "daemon/sensor_hub.hpp"
-#include "daemon/sensor_table.hpp"
-#include "daemon/standard_output.hpp"
-#include "daemon/system_clock.hpp"
-#include "daemon/transports/stream_client.hpp"
-#include "daemon/wind_shaper.hpp"
+#include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/sensing/system_clock.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/standard_output.hpp"
+#include "daemon/shaping/wind_shaper.hpp"
+#include "daemon/stream/stream_client.hpp"
+#include "daemon/tools/decode/raw_text.hpp"
+#include "daemon/tools/sensors/sensor_table.hpp"
 
 namespace yuragi {
 namespace {

@@ -8,9 +8,10 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/plot.hpp"
-#include "engine/wind/wind_spectrum.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/tools/plot/plot.hpp"
+#include "daemon/tools/plot/plot_script.hpp"
+#include "engine/wind/turbulence/wind_spectrum.hpp"
 
 namespace yuragi {
 

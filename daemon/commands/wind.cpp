@@ -16,13 +16,13 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/config.hpp"
-#include "daemon/exit.hpp"
-#include "daemon/offline_wind.hpp"
-#include "daemon/output_file.hpp"
-#include "daemon/sensor_hub.hpp"
-#include "daemon/shaping_config.hpp"
-#include "engine/wind/blended_estimator.hpp"
+#include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/output_file.hpp"
+#include "daemon/settings/shaping_config.hpp"
+#include "daemon/tools/offline/offline_wind.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 
@@ -88,12 +87,5 @@ class BytePort {
   /// Ends a read(), write() or open() that waits and makes all later work end at once.
   virtual void interrupt() noexcept = 0;
 };
-
-/// The real one. Serial ports and sockets are Boost.Asio's. Throws std::system_error where the process has no
-/// descriptors left.
-///
-/// A serial port is locked against other programs while it is open (flock, and TIOCEXCL against those that do not ask
-/// for locks). Opening it raises DTR and closing it lowers DTR again, which restarts most Arduinos.
-std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address);
 
 }  // namespace yuragi

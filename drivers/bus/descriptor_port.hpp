@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "drivers/bus/byte_port.hpp"
 #include "drivers/bus/interruption.hpp"
 

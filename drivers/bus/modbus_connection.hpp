@@ -7,7 +7,7 @@
 #include <string>
 
 #include "drivers/bus/interruption.hpp"
-#include "drivers/decode/modbus.hpp"
+#include "drivers/decode/modbus/modbus.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 

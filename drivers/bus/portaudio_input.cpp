@@ -1,6 +1,6 @@
 // PortAudio 19.6.0 over ALSA can spin for ever in its own thread when a USB device is unplugged (PortAudio issue 1037),
 // and its list of devices is frozen until the library is begun anew (issues 447, 750). This wrapper cannot mend that:
-// it runs in a process that may be killed (drivers/microphone_worker.hpp).
+// it runs in a process that may be killed (drivers/microphone/microphone_worker.hpp).
 #include <algorithm>
 #include <cctype>
 #include <string_view>

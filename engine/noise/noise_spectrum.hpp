@@ -11,7 +11,7 @@
 
 #include "engine/fft/real_fft.hpp"
 #include "engine/math/philox.hpp"
-#include "engine/noise/spectral_noise.hpp"
+#include "engine/noise/noise_spec.hpp"
 
 // How a noise's modes are drawn and its samples standardised: what make_noise_1d, 2d, 3d and EvolvingNoise share.
 // Between the sources of this folder; nobody else needs this.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
-#include "engine/wind/gust_noise.hpp"
+#include "engine/wind/turbulence/gust_noise.hpp"
 
 namespace yuragi {
 

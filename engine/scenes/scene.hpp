@@ -9,7 +9,7 @@
 #include "engine/base/part.hpp"
 #include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
-#include "engine/wind/ground_wind.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
 
 namespace yuragi {
 

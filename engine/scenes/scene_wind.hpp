@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "engine/math/critically_damped.hpp"
-#include "engine/wind/ground_wind.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
 
 namespace yuragi {
 

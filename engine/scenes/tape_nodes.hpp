@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/scenes/gust_nodes.hpp"
-#include "engine/wind/ground_wind.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
 
 namespace yuragi {
 

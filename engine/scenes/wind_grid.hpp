@@ -10,7 +10,7 @@
 #include "engine/scenes/gust_nodes.hpp"
 #include "engine/scenes/scene_wind.hpp"
 #include "engine/scenes/tape_nodes.hpp"
-#include "engine/wind/ground_wind.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
 
 namespace yuragi {
 

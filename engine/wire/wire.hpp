@@ -15,7 +15,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 #include "engine/pose/skeleton.hpp"
-#include "engine/wind/sensor_state.hpp"
+#include "engine/wind/judging/sensor_state.hpp"
 #include "engine/wind/wind_state.hpp"
 
 // The stream's messages as plain values, and their FlatBuffers form (pose.fbs, which is the public description).
@@ -91,7 +91,7 @@ struct Frame {
 struct SensorStatus {
   std::string name;
   std::string driver;
-  std::uint8_t link = 0;    ///< as drivers/sensor.hpp, LinkState
+  std::uint8_t link = 0;    ///< as drivers/sensor/sensor.hpp, LinkState
   std::uint8_t health = 0;  ///< as wind/wind_estimator.hpp, SourceHealth
   std::string detail;
   std::optional<double> speed_m_s;
@@ -111,7 +111,7 @@ struct SensorStatus {
   std::optional<double> raw_direction_deg;
 };
 
-/// What makes the wind that moves the scenes another than the real one (engine/wind/wind_shaping.hpp).
+/// What makes the wind that moves the scenes another than the real one (engine/wind/shaping/wind_shaping.hpp).
 struct Shaping {
   double site_gain = 1.0;
   double floor_gain = 1.0;

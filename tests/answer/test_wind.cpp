@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/wind/gust_variances.hpp"
+#include "engine/wind/turbulence/gust_variances.hpp"
 
 namespace yuragi::answer {
 namespace {

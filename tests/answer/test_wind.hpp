@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "engine/wind/ground_wind.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
 
 namespace yuragi::answer {
 

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/plot.hpp"
+#include "daemon/tools/plot/plot.hpp"
 #include "tests/answer/calm.hpp"
 #include "tests/answer/directions.hpp"
 #include "tests/answer/repeats.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "engine/wind/ground_wind.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
 #include "tests/support/measured_wind.hpp"
 
 namespace yuragi::bench {

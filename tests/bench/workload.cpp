@@ -7,8 +7,8 @@
 #include <utility>
 
 #include <emmintrin.h>
+#include <toml++/toml.h>
 
-#include "daemon/config.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi::bench {
@@ -26,6 +26,17 @@ void add_joints(Kinematics::Joints& joints, std::vector<std::span<float>>& all) 
   }
 }
 
+/// A table's values, as a scene's parameters take them.
+ParameterValues::Map parameters_in(const toml::table& table) {
+  ParameterValues::Map given;
+  for (const auto& [key, node] : table) {
+    node.visit([&, name = std::string(key.str())](const auto& value) {
+      if constexpr (requires { ParameterValue(*value); }) given.emplace(name, *value);
+    });
+  }
+  return given;
+}
+
 }  // namespace
 
 BenchScene bench_scene(std::string_view kind, const ParameterValues::Map& given) {
@@ -38,18 +49,26 @@ BenchScene bench_scene(std::string_view kind, const ParameterValues::Map& given)
 }
 
 std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file) {
-  const Config config = load_config(config_file);
+  const toml::table config = toml::parse_file(config_file.string());
+  const auto seed = config["seed"].value_or(std::uint64_t{0});
   std::vector<BenchScene> scenes;
-  for (const SceneConfig& scene : config.scenes) {
-    if (!scene.values.flag("shown")) continue;
-    scenes.push_back({.kind = scene.kind,
-                      .values = scene.values,
-                      .seed = config.seed + scenes.size(),
-                      .placement = {.x_m = scene.values.number("x"),
-                                    .y_m = scene.values.number("y"),
-                                    .z_m = scene.values.number("z"),
-                                    .heading_deg = scene.values.number("heading")},
-                      .gain = scene.values.number("gain")});
+  for (const toml::node& entry : *config["scene"].as_array()) {
+    toml::table scene = *entry.as_table();
+    const auto number = [&scene](const char* key, double otherwise) { return scene[key].value_or(otherwise); };
+    const auto kind = scene["kind"].value_or(std::string());
+    const bool is_shown = scene["shown"].value_or(true);
+    const ScenePlacement placement{.x_m = number("x", 0.0),
+                              .y_m = number("y", 0.0),
+                              .z_m = number("z", 0.0),
+                              .heading_deg = number("heading", 0.0)};
+    const double gain = number("gain", 1.0);
+    for (const char* key : {"kind", "name", "x", "y", "z", "heading", "gain", "shown"}) scene.erase(key);
+    if (!is_shown) continue;
+
+    BenchScene& next = scenes.emplace_back(bench_scene(kind, parameters_in(scene)));
+    next.seed = seed + scenes.size() - 1;
+    next.placement = placement;
+    next.gain = gain;
   }
   return scenes;
 }

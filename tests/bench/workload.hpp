@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/worker_pool.hpp"
 #include "engine/pose/kinematics.hpp"
 #include "engine/scenes/scene.hpp"
+#include "engine/workers/worker_pool.hpp"
 #include "tests/bench/bench_wind.hpp"
 
 namespace yuragi::bench {

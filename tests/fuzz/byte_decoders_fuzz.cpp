@@ -7,15 +7,15 @@
 #include <cstring>
 #include <vector>
 
-#include "drivers/decode/acurite.hpp"
-#include "drivers/decode/cup_counter.hpp"
-#include "drivers/decode/fineoffset.hpp"
-#include "drivers/decode/labjack.hpp"
-#include "drivers/decode/mcc1208.hpp"
-#include "drivers/decode/potentiometer_vane.hpp"
-#include "drivers/decode/te923.hpp"
-#include "drivers/decode/wmr100.hpp"
-#include "drivers/decode/wmr300.hpp"
+#include "drivers/decode/hid/acurite.hpp"
+#include "drivers/decode/hid/fineoffset.hpp"
+#include "drivers/decode/hid/te923.hpp"
+#include "drivers/decode/hid/wmr100.hpp"
+#include "drivers/decode/hid/wmr300.hpp"
+#include "drivers/decode/usb/cup_counter.hpp"
+#include "drivers/decode/usb/labjack.hpp"
+#include "drivers/decode/usb/mcc1208.hpp"
+#include "drivers/decode/usb/potentiometer_vane.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace {

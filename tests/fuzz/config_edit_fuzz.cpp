@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/config_edit.hpp"
+#include "daemon/settings/config_edit.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace yuragi;

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "daemon/csv_import.hpp"
+#include "daemon/tools/csv/csv_import.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

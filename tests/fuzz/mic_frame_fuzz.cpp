@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "drivers/decode/mic_estimator.hpp"
-#include "drivers/decode/mic_frame.hpp"
+#include "drivers/decode/microphone/mic_estimator.hpp"
+#include "drivers/decode/microphone/mic_frame.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "drivers/decode/modbus.hpp"
-#include "drivers/modbus_plan.hpp"
-#include "drivers/modbus_profile.hpp"
+#include "drivers/decode/modbus/modbus.hpp"
+#include "drivers/modbus/modbus_plan.hpp"
+#include "drivers/modbus/modbus_profile.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace {

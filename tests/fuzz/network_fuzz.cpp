@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "drivers/bus/osc_message.hpp"
-#include "drivers/mqtt_payload.hpp"
+#include "drivers/mqtt/mqtt_payload.hpp"
 
 namespace {
 

@@ -6,12 +6,12 @@
 #include <span>
 #include <string>
 
-#include "drivers/decode/ft.hpp"
-#include "drivers/decode/gill.hpp"
-#include "drivers/decode/line.hpp"
-#include "drivers/decode/line_assembler.hpp"
-#include "drivers/decode/nmea.hpp"
-#include "drivers/decode/umb.hpp"
+#include "drivers/decode/text/ft.hpp"
+#include "drivers/decode/text/gill.hpp"
+#include "drivers/decode/text/line.hpp"
+#include "drivers/decode/text/line_assembler.hpp"
+#include "drivers/decode/text/nmea.hpp"
+#include "drivers/decode/text/umb.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 #include <thread>
 
-#include "engine/wind/blended_estimator.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi::proof {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/wind/gust_noise.hpp"
+#include "engine/wind/turbulence/gust_noise.hpp"
 #include "tests/proof/band_power.hpp"
 #include "tests/proof/sonic_record.hpp"
 

@@ -13,9 +13,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "daemon/config.hpp"
-#include "daemon/plot.hpp"
-#include "daemon/sensor_hub.hpp"
+#include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/tools/plot/plot.hpp"
+#include "daemon/tools/plot/plot_script.hpp"
 #include "tests/proof/blend_comparison.hpp"
 
 namespace yuragi::proof {

@@ -17,9 +17,9 @@
 
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
-#include "engine/wind/blend_source.hpp"
-#include "engine/wind/blended_estimator.hpp"
-#include "engine/wind/wind_tapes.hpp"
+#include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
+#include "engine/wind/ground/wind_tapes.hpp"
 #include "tests/proof/heard_wind.hpp"
 
 namespace yuragi::proof {

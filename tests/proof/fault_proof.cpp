@@ -17,7 +17,7 @@
 
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
-#include "engine/wind/wind_spectrum.hpp"
+#include "engine/wind/turbulence/wind_spectrum.hpp"
 #include "tests/proof/band_power.hpp"
 #include "tests/proof/heard_wind.hpp"
 #include "tests/proof/sonic_record.hpp"

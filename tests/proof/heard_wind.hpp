@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/wind/blended_estimator.hpp"
-#include "engine/wind/reading_judge.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
+#include "engine/wind/judging/reading_judge.hpp"
 
 namespace yuragi::proof {
 

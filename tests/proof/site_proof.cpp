@@ -14,9 +14,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/philox.hpp"
-#include "engine/wind/blended_estimator.hpp"
-#include "engine/wind/site_spectrum.hpp"
-#include "engine/wind/wind_profile.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
+#include "engine/wind/turbulence/site_spectrum.hpp"
+#include "engine/wind/turbulence/wind_profile.hpp"
 #include "tests/proof/band_power.hpp"
 #include "tests/proof/heard_wind.hpp"
 #include "tests/proof/sonic_record.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/decode_formats.hpp"
-#include "daemon/unit_reader.hpp"
+#include "daemon/tools/decode/decode_formats.hpp"
+#include "daemon/tools/decode/unit_reader.hpp"
 
 namespace yuragi::test {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "drivers/driver.hpp"
+#include "drivers/sensor/driver.hpp"
 
 namespace yuragi {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/wind/ground_wind.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
 
 namespace yuragi {
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/bus/hid_device.hpp"
-#include "drivers/hid_sensor.hpp"
+#include "drivers/hid/hid_sensor.hpp"
 #include "simulators/faults.hpp"
 #include "simulators/usb/hid_stations.hpp"
 #include "tests/support/manual_clock.hpp"

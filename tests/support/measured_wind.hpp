@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/wind/blended_estimator.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
 

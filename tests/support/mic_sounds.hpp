@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/decode/mic_analyser.hpp"
-#include "drivers/decode/mic_estimator.hpp"
+#include "drivers/decode/microphone/mic_analyser.hpp"
+#include "drivers/decode/microphone/mic_estimator.hpp"
 
 namespace yuragi::test {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/system_clock.hpp"
-#include "drivers/driver.hpp"
+#include "daemon/sensing/system_clock.hpp"
+#include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/recording_sink.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/driver.hpp"
+#include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -14,7 +14,7 @@ namespace yuragi::test {
 
 /// The Modbus driver's sensor, as the daemon opens it.
 inline std::unique_ptr<Sensor> open_modbus_sensor(ParameterValues::Map given) {
-  given.try_emplace("profile_dir", source_path("drivers/profiles"));
+  given.try_emplace("profile_dir", source_path("drivers/modbus/profiles"));
   for (const DriverDescription* driver : driver_table()) {
     if (driver->name == "modbus") return driver->open(*ParameterValues::resolve(driver->parameters, given));
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/clock.hpp"
+#include "drivers/sensor/clock.hpp"
 
 namespace yuragi {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <thread>
 
-#include "daemon/system_clock.hpp"
-#include "drivers/sensor.hpp"
+#include "daemon/sensing/system_clock.hpp"
+#include "drivers/sensor/sensor.hpp"
 #include "tests/support/recording_sink.hpp"
 
 namespace yuragi::test {

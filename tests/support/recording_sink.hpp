@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/sensor.hpp"
-#include "engine/wind/reading_judge.hpp"
+#include "drivers/sensor/sensor.hpp"
+#include "engine/wind/judging/reading_judge.hpp"
 
 namespace yuragi {
 

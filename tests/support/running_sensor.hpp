@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/sensor.hpp"
+#include "drivers/sensor/sensor.hpp"
 #include "tests/support/recording_sink.hpp"
 
 namespace yuragi {

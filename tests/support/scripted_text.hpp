@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "drivers/line_sensor.hpp"
-#include "drivers/nmea_sensor.hpp"
+#include "drivers/text/line_sensor.hpp"
+#include "drivers/text/nmea_sensor.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"

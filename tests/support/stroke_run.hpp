@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "engine/wind/wind_tapes.hpp"
+#include "engine/wind/ground/wind_tapes.hpp"
 
 namespace yuragi {
 

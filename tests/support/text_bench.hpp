@@ -8,9 +8,9 @@
 
 #include <poll.h>
 
-#include "drivers/bus/byte_port.hpp"
-#include "drivers/sensor.hpp"
-#include "simulators/text_simulator.hpp"
+#include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/sensor/sensor.hpp"
+#include "simulators/text/text_simulator.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
 

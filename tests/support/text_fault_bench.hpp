@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulators/text_simulator.hpp"
+#include "simulators/text/text_simulator.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "drivers/usb_sensor.hpp"
+#include "drivers/usb/usb_sensor.hpp"
 #include "simulators/usb/daqs.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"

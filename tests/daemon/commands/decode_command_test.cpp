@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/hex_text.hpp"
+#include "daemon/tools/decode/hex_text.hpp"
 #include "tests/daemon/commands/decode_run.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/places.hpp"

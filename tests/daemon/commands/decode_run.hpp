@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/exit.hpp"
+#include "daemon/settings/exit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/hex_text.hpp"
+#include "daemon/tools/decode/hex_text.hpp"
 #include "tests/daemon/commands/decode_run.hpp"
 #include "tests/support/byte_vectors.hpp"
 #include "tests/support/decoded_text.hpp"

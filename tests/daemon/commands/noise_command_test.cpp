@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/commands/npy.hpp"
-#include "daemon/exit.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/tools/offline/npy.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
 namespace yuragi {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/driver.hpp"
-#include "drivers/recording_player.hpp"
+#include "drivers/recording/recording_player.hpp"
+#include "drivers/sensor/driver.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"

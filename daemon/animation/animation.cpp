@@ -1,0 +1,74 @@
+#include "daemon/animation/animation.hpp"
+
+#include <algorithm>
+
+#include "daemon/settings/wind_settings.hpp"
+#include "engine/pose/pose_arrays.hpp"
+
+namespace yuragi {
+namespace {
+
+/// No more places than sensors can write: a tape is half a megabyte.
+std::size_t most_pens(const Config& config) {
+  return std::min(WindStroke::kMostPens, config.sensors.size() + (has_fallback(config) ? 1 : 0));
+}
+
+}  // namespace
+
+Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts)
+    : pool_(static_cast<std::size_t>(config.animation.integer("threads"))), tapes_(most_pens(config)) {
+  for (const SceneConfig& scene : config.scenes) {
+    const ScenePlacement placement{.x_m = scene.values.number("x"),
+                                   .y_m = scene.values.number("y"),
+                                   .z_m = scene.values.number("z"),
+                                   .heading_deg = scene.values.number("heading")};
+    names_.push_back(scene.name);
+    kinds_.emplace_back(scene.kind->name);
+    scenes_.push_back(
+        scene.kind->make(scene.values, {.seed = config.seed + scenes_.size(), .placement = placement, .gusts = gusts}));
+    gains_.push_back(scene.values.number("gain"));
+    fades_.emplace_back(scene.values.flag("shown"));
+    skeletons_.push_back(&scenes_.back()->skeleton());
+    poses_.push_back(&scenes_.back()->pose());
+    opacities_.push_back(fades_.back().opacity());
+  }
+  // The first frame shows every scene, so that the encoder has all the room that it will ever need.
+  largest_frame_bytes_ = encoder_.encode({}, skeletons_, poses_).size();
+}
+
+void Animation::step(const DrivingWind& wind, double dt_s) noexcept {
+  const GroundWind ground = written_to(tapes_, wind);
+  for (std::size_t i = 0; i < scenes_.size(); ++i) {
+    fades_[i].advance(dt_s);
+    opacities_[i] = fades_[i].opacity();
+    if (opacities_[i] == 0.0F) continue;
+    Scene& scene = *scenes_[i];
+    scene.shift(gains_[i] * ground, dt_s);
+    pool_.run([&scene](Part part) { scene.sample_part(part); });
+    pool_.run([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
+  }
+}
+
+void Animation::cue(const SceneCue& cue) noexcept {
+  if (cue.scene >= fades_.size()) return;
+  if (cue.hide_others) {
+    for (Fade& fade : fades_) fade.begin(false, cue.over_s);
+  }
+  fades_[cue.scene].begin(cue.shown, cue.over_s);
+}
+
+wire::Scenes Animation::describe() const {
+  wire::Scenes all;
+  for (std::size_t index = 0; index < scenes_.size(); ++index) {
+    all.scenes.push_back({names_[index], kinds_[index], *skeletons_[index]});
+  }
+  return all;
+}
+
+std::size_t Animation::node_count() const {
+  std::size_t nodes = 0;
+  for (const Skeleton* skeleton : skeletons_) nodes += yuragi::node_count(*skeleton);
+  return nodes;
+}
+
+}  // namespace yuragi

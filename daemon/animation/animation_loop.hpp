@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "daemon/animation/animation.hpp"
+#include "daemon/animation/duration_histogram.hpp"
+#include "daemon/animation/tick_schedule.hpp"
+#include "drivers/sensor/clock.hpp"
+#include "engine/base/latest.hpp"
+#include "engine/base/spsc_ring.hpp"
+
+namespace yuragi {
+
+/// How the loop keeps time. Read by other threads at any moment.
+struct LoopCounters {
+  std::atomic<std::uint64_t> ticks{0};
+  std::atomic<std::uint64_t> skipped_ticks{0};
+  DurationHistogram lateness;  ///< of the beginning of each tick against its moment
+  DurationHistogram work;      ///< how long each tick took
+};
+
+/// The animation's own thread: at a fixed rate it takes the newest wind, steps the scenes, encodes the frame and hands
+/// it over. After start it neither allocates nor waits for anybody: its ways in and out are triple buffers and a
+/// queue of cues, and it wakes the I/O thread by an eventfd.
+class AnimationLoop {
+ public:
+  /// `wind` must outlive the loop; its writer is the I/O thread. The clock must be the machine's: the loop sleeps on
+  /// CLOCK_MONOTONIC.
+  AnimationLoop(Animation& animation, Latest<DrivingWind>& wind, const Clock& clock, double rate_hz);
+  ~AnimationLoop();
+
+  AnimationLoop(const AnimationLoop&) = delete;
+  AnimationLoop& operator=(const AnimationLoop&) = delete;
+
+  void start();
+  void stop();
+
+  /// Readable when a frame is ready; read 8 bytes from it, then call take_frame(). Owned by the loop.
+  int frame_ready_fd() const noexcept { return frame_ready_fd_; }
+
+  /// The I/O thread: the newest frame, if there is one that it has not had. Valid until the next call.
+  const wire::Bytes* take_frame() noexcept { return frames_.refresh() ? &frames_.value() : nullptr; }
+
+  /// The I/O thread: a change of what is shown, which the next tick begins. False where too many wait: it is lost.
+  bool cue(const SceneCue& cue) { return cues_.push(cue); }
+
+  const LoopCounters& counters() const noexcept { return counters_; }
+
+ private:
+  void run(const std::stop_token& stop);
+  void tick(const TickSchedule::Tick& tick);
+
+  Animation& animation_;
+  Latest<DrivingWind>& wind_;
+  const Clock& clock_;
+  double rate_hz_;
+  std::uint64_t sequence_ = 0;
+  Latest<wire::Bytes> frames_;
+  SpscRing<SceneCue> cues_;
+  LoopCounters counters_;
+  int frame_ready_fd_;
+  std::jthread thread_;
+};
+
+}  // namespace yuragi

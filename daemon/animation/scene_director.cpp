@@ -1,0 +1,44 @@
+#include "daemon/animation/scene_director.hpp"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "daemon/settings/control_permission.hpp"
+
+namespace yuragi {
+
+SceneDirector::SceneDirector(const Config& config, Hand hand)
+    : allowed_(config.stream.text("control")), hand_(std::move(hand)) {
+  for (const SceneConfig& scene : config.scenes)
+    scenes_.push_back({scene.name, std::string(scene.kind->name), scene.values.flag("shown")});
+}
+
+wire::ControlReply SceneDirector::answer(const wire::Control& wish, bool is_local) {
+  if (wish.scene.empty()) return {.done = true, .message = "nothing is changed", .scenes = scenes_};
+  const auto found =
+      std::find_if(scenes_.begin(), scenes_.end(), [&](const auto& scene) { return scene.name == wish.scene; });
+  if (found == scenes_.end()) {
+    std::string known;
+    for (const wire::SceneState& scene : scenes_) known.append(known.empty() ? "" : ", ").append(scene.name);
+    return refuse(fmt::format("there is no scene \"{}\"; there are: {}", wish.scene, known));
+  }
+  if (const auto refusal = control_refusal(allowed_, is_local, "scenes are switched")) return refuse(*refusal);
+
+  const auto index = static_cast<std::size_t>(found - scenes_.begin());
+  if (!hand_({index, wish.shown, wish.hide_others, wish.over_s})) return refuse("too many changes at once; try again");
+  if (wish.hide_others) {
+    for (wire::SceneState& scene : scenes_) scene.shown = false;
+  }
+  found->shown = wish.shown;
+  return {.done = true,
+          .message = fmt::format("{} is {}{}, over {:g} s", wish.scene, wish.shown ? "shown" : "hidden",
+                                 wish.hide_others ? ", every other scene hidden" : "", wish.over_s),
+          .scenes = scenes_};
+}
+
+wire::ControlReply SceneDirector::refuse(std::string why) const {
+  return {.done = false, .message = std::move(why), .scenes = scenes_};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "daemon/animation/animation.hpp"
+#include "daemon/settings/config.hpp"
+
+namespace yuragi {
+
+/// The I/O thread's side of showing and hiding scenes: it knows what is shown, judges who may change that ([stream]
+/// control), hands what is to be done to the animation, and says what came of it. What is seen at the moment, midway in
+/// a fade, only the animation knows.
+///
+/// Thread-safe: no.
+class SceneDirector {
+ public:
+  /// Hands a cue over to the animation; false where it has no room for more.
+  using Hand = std::function<bool(const SceneCue&)>;
+
+  SceneDirector(const Config& config, Hand hand);
+
+  /// Does what a client asks for, or says why not. `is_local`: it asks from this machine.
+  wire::ControlReply answer(const wire::Control& wish, bool is_local);
+
+ private:
+  wire::ControlReply refuse(std::string why) const;
+
+  std::string allowed_;  ///< of [stream] control
+  std::vector<wire::SceneState> scenes_;
+  Hand hand_;
+};
+
+}  // namespace yuragi

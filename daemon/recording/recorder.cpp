@@ -1,0 +1,133 @@
+#include "daemon/recording/recorder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "daemon/settings/exit.hpp"
+
+namespace yuragi {
+namespace {
+
+// What arrives between two commits, at tens of thousands a second.
+constexpr std::size_t kRingCapacity = 16'384;
+constexpr Nanoseconds kFirstBackOff = std::chrono::milliseconds(500);
+constexpr Nanoseconds kMaxBackOff = std::chrono::seconds(10);
+
+}  // namespace
+
+Recorder::Recorder(const std::filesystem::path& file, RecordingInfo info, Report report)
+    : file_(file), info_(std::move(info)), report_(std::move(report)), ring_(kRingCapacity) {
+  auto opened = open_session(info_.started);
+  if (opened) opened = writer_->commit();
+  if (!opened) throw ExitError(kExitCannotCreate, "cannot record: " + opened.error().message);
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+Recorder::~Recorder() {
+  close();
+}
+
+void Recorder::close() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  thread_.join();
+}
+
+bool Recorder::push(std::size_t sensor, const WindReading& reading) noexcept {
+  const bool taken = sensor < info_.sensors.size() && is_recordable(reading) && ring_.push({sensor, reading});
+  if (!taken) lost_.fetch_add(1, std::memory_order_relaxed);
+  return taken;
+}
+
+RecorderStatus Recorder::status() const {
+  const std::lock_guard lock(error_mutex_);
+  return {written_.load(std::memory_order_relaxed), lost_.load(std::memory_order_relaxed), error_};
+}
+
+void Recorder::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    std::unique_lock lock(wake_mutex_);
+    wake_.wait_for(lock, stop, kCommitInterval, [] { return false; });
+    lock.unlock();
+    flush();
+  }
+
+  // One last attempt, without a pause: for what waited, then for what the ring still held. Nobody pushes any more.
+  retry_at_ = {};
+  flush();
+  flush();
+  if (writer_) {
+    const auto closed = writer_->close();
+    if (!closed) set_error(closed.error().message);
+  }
+  std::size_t given_up = pending_.size();
+  given_up += ring_.drain([](const Entry&) {});
+  lost_.fetch_add(given_up, std::memory_order_relaxed);
+  if (given_up > 0 && report_) {
+    report_("recording ended with " + std::to_string(given_up) + " readings that could not be written");
+  }
+}
+
+/// Moves what was pushed to the disk, or, while that fails, to where it waits for the next attempt.
+void Recorder::flush() {
+  Entry entry;
+  while (pending_.size() < kMaxPending && ring_.pop(entry)) pending_.push_back(entry);
+  if (pending_.empty() || std::chrono::steady_clock::now() < retry_at_) return;
+
+  if (const auto done = write_pending(); !done) {
+    writer_.reset();
+    back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kMaxBackOff);
+    retry_at_ = std::chrono::steady_clock::now() + back_off_;
+    set_error(done.error().message);
+    return;
+  }
+  written_.fetch_add(pending_.size(), std::memory_order_relaxed);
+  pending_.clear();
+  back_off_ = Nanoseconds{0};
+  set_error("");
+}
+
+Result<void, Failure> Recorder::write_pending() {
+  // What is written to a file without a name is gone when it is closed, and SQLite would not say so.
+  if (writer_ && !std::filesystem::exists(file_)) return Failure{file_.string() + ": was removed or moved away"};
+  if (!writer_) {
+    if (auto opened = open_session(pending_.front().reading.time); !opened) return opened;
+  }
+  for (const Entry& entry : pending_) {
+    if (auto appended = writer_->append(sensor_ids_[entry.sensor], entry.reading); !appended) return appended;
+  }
+  return writer_->commit();
+}
+
+Result<void, Failure> Recorder::open_session(Instant started) {
+  auto opened = WindlogWriter::open(file_);
+  if (!opened) return opened.error();
+  writer_.emplace(std::move(*opened));
+  if (auto begun = writer_->begin_session({started, info_.software, info_.configuration}); !begun) return begun;
+  sensor_ids_.clear();
+  for (const RecordedSensor& sensor : info_.sensors) {
+    const auto id = writer_->add_sensor(sensor.name, sensor.driver, sensor.options);
+    if (!id) return id.error();
+    sensor_ids_.push_back(*id);
+  }
+  return {};
+}
+
+/// Remembers why nothing can be written (empty: all is well), and says so once.
+void Recorder::set_error(const std::string& error) {
+  bool changed = false;
+  {
+    const std::lock_guard lock(error_mutex_);
+    changed = error_.empty() != error.empty();
+    error_ = error;
+  }
+  if (!changed || !report_) return;
+  if (!error.empty()) {
+    report_("recording stands still, trying again: " + error);
+  } else {
+    report_("recording goes on; " + std::to_string(lost_.load(std::memory_order_relaxed)) + " readings were lost");
+  }
+}
+
+}  // namespace yuragi

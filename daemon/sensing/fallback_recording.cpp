@@ -1,0 +1,132 @@
+#include "daemon/sensing/fallback_recording.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "daemon/settings/wind_settings.hpp"
+#include "drivers/windlog/windlog_cursor.hpp"
+
+namespace yuragi {
+namespace {
+
+// A recording that is not there is looked for again after so long.
+constexpr Nanoseconds kRetryInterval = std::chrono::minutes(1);
+
+SensorConfig fallback_sensor(const Config& config) {
+  const auto drivers = driver_table();
+  const auto windlog =
+      std::ranges::find_if(drivers, [](const DriverDescription* driver) { return driver->name == "windlog"; });
+  const ParameterValues::Map given{
+      {"file", config.wind.text("fallback_recording")}, {"loop", true}, {"same_time_of_day", true}};
+  return {"fall-back", *windlog, ParameterValues::resolve((*windlog)->parameters, given).value(), no_calibration(),
+          config.fallback_origin};
+}
+
+}  // namespace
+
+std::string check_fallback(const Config& config) {
+  try {
+    WindlogCursor cursor(config.wind.text("fallback_recording"), "");
+    return cursor.sensor_of(cursor.next().value()).name;
+  } catch (const std::exception& error) {
+    const std::string place = config.fallback_origin.empty() ? "" : config.fallback_origin + ": ";
+    throw ConfigError(place + "wind.fallback_recording: " + error.what());
+  }
+}
+
+FallbackRecording::FallbackRecording(const Config& config, const Clock& clock) : clock_(clock) {
+  if (!has_fallback(config)) return;
+  const std::string recorded = check_fallback(config);
+  const auto same = std::ranges::find(config.sensors, recorded, &SensorConfig::name);
+  if (same != config.sensors.end()) {
+    calibration_ = calibration_of(*same);
+    judged_by_ = judge_settings_of(*same);
+  }
+  sensor_ = fallback_sensor(config);
+  file_ = config.wind.text("fallback_recording");
+  after_ = from_seconds(config.wind.number("fallback_after"));
+}
+
+void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
+  if (!sensor_) return;
+  const MonoTime now = clock_.now().mono;
+  if (is_any_sensor_live) {
+    silent_since_.reset();
+    return stop();
+  }
+  if (!silent_since_) silent_since_ = now;
+  if (!runner_ && now - *silent_since_ >= after_ && now >= retry_at_) start(now);
+  if (!runner_) return;
+  runner_->drain([&](const WindReading& said) {
+    ++readings_;
+    const WindReading reading = calibration_.applied_to(said);
+    const bool is_judged = judged_by_ && reading.quality != ReadingQuality::kSimulated;
+    if (!is_judged || judge_.judge(reading)) use(reading);
+  });
+  log_changes();
+}
+
+void FallbackRecording::start(MonoTime now) {
+  try {
+    runner_ = std::make_unique<SensorRunner>(open_sensor(*sensor_), clock_);
+    judge_ = ReadingJudge(judged_by_.value_or(JudgeSettings{}));
+    readings_ = 0;
+    logged_link_reports_ = 0;
+  } catch (const std::exception& error) {
+    retry_at_ = now + kRetryInterval;
+    if (!std::exchange(has_failed_, true)) {
+      spdlog::warn("all sensors are silent, and the fall-back cannot be played: {}; the default wind blows",
+                   error.what());
+    }
+  }
+}
+
+void FallbackRecording::stop() {
+  if (!runner_) return;
+  runner_.reset();
+  spdlog::info("a sensor is live again: the fall-back {} ends after {} readings", file_, readings_);
+}
+
+/// Whether it can be read is told once each time that it changes.
+void FallbackRecording::log_changes() {
+  const std::uint64_t reports = runner_->link_reports();
+  if (reports == logged_link_reports_) return;
+  const bool is_first = std::exchange(logged_link_reports_, reports) == 0;
+  const LinkReport link = runner_->link();
+  const bool has_failed = link.state != LinkState::kConnected;
+  if (!is_first && has_failed == has_failed_) return;
+  const bool had_failed = std::exchange(has_failed_, has_failed);
+  if (!has_failed) {
+    spdlog::warn("all sensors are silent: plays {}", file_);
+  } else if (!had_failed) {
+    spdlog::warn("all sensors are silent, and the fall-back cannot be played: {}; the default wind blows", link.detail);
+  }
+}
+
+std::optional<wire::SensorStatus> FallbackRecording::status(const SourceReport& report) const {
+  if (!runner_) return std::nullopt;
+  const LinkReport link = runner_->link();
+  wire::SensorStatus status;
+  status.name = sensor_->name;
+  status.driver = sensor_->driver->name;
+  status.link = static_cast<std::uint8_t>(link.state);
+  status.health = static_cast<std::uint8_t>(report.health);
+  status.detail = "all sensors are silent: " + link.detail;
+  if (report.last) {
+    status.speed_m_s = report.last->speed_m_s;
+    status.direction_deg = report.last->direction_deg;
+    status.gust_m_s = report.last->gust_m_s;
+    status.simulated = report.last->quality == ReadingQuality::kSimulated;
+  }
+  status.age_s = report.age_s;
+  status.interval_s = report.interval_s;
+  status.readings = readings_;
+  status.replayed = true;
+  status.state = report.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
+  status.state_reason = status.detail;
+  return status;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,114 @@
+#include "daemon/sensing/player_director.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/settings/control_permission.hpp"
+
+namespace yuragi {
+namespace {
+
+PlayerOrder order_of(const wire::PlayerWish& wish) {
+  switch (wish.action) {
+    case wire::PlayerAction::kTell:
+    case wire::PlayerAction::kPause:
+      break;
+    case wire::PlayerAction::kResume:
+      return {.kind = PlayerOrder::Kind::kResume};
+    case wire::PlayerAction::kStep:
+      return {.kind = PlayerOrder::Kind::kStep, .count = wish.count};
+    case wire::PlayerAction::kSeek:
+      return {.kind = PlayerOrder::Kind::kSeek, .place = wish.place};
+    case wire::PlayerAction::kRate:
+      return {.kind = PlayerOrder::Kind::kRate, .rate = wish.rate};
+  }
+  return {.kind = PlayerOrder::Kind::kPause};
+}
+
+/// What a sensor is told, for the log and for a person.
+std::string text_of(const wire::PlayerWish& wish) {
+  switch (wish.action) {
+    case wire::PlayerAction::kTell:
+      break;
+    case wire::PlayerAction::kPause:
+      return "to pause";
+    case wire::PlayerAction::kResume:
+      return "to go on";
+    case wire::PlayerAction::kStep:
+      return fmt::format("to step {} on", wish.count);
+    case wire::PlayerAction::kSeek:
+      return "to go to " + wish.place;
+    case wire::PlayerAction::kRate:
+      return fmt::format("to play at {:g}", wish.rate);
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+PlayerDirector::PlayerDirector(std::string allowed, std::vector<NamedPlayer> players)
+    : allowed_(std::move(allowed)), players_(std::move(players)) {}
+
+wire::ControlReply PlayerDirector::answer(const wire::PlayerWish& wish, bool is_local) {
+  wire::ControlReply reply;
+  std::vector<const NamedPlayer*> meant;
+  std::string known;
+  for (const NamedPlayer& named : players_) {
+    known.append(known.empty() ? "" : ", ").append(named.sensor);
+    if (!wish.sensor.empty() && wish.sensor != named.sensor) continue;
+    meant.push_back(&named);
+    reply.players.push_back(state_of(named));
+  }
+  if (meant.empty()) {
+    reply.message = players_.empty()
+                        ? "no sensor here plays a recording"
+                        : fmt::format("no sensor \"{}\" plays a recording; there are: {}", wish.sensor, known);
+    return reply;
+  }
+  if (wish.action == wire::PlayerAction::kTell) {
+    reply.done = true;
+    reply.message = "nothing is changed";
+    return reply;
+  }
+  if (const auto refusal = control_refusal(allowed_, is_local, "recordings are controlled")) {
+    reply.message = *refusal;
+    return reply;
+  }
+
+  reply.done = true;
+  for (std::size_t i = 0; i < meant.size(); ++i) {
+    const auto number = meant[i]->player->order(order_of(wish));
+    meant[i]->wake();
+    reply.done = reply.done && number;
+    reply.players[i].order = number.value_or(0);
+    reply.message.append(i == 0 ? "" : ", ").append(meant[i]->sensor);
+  }
+  reply.message += reply.done ? " is told " + text_of(wish) : ": too many orders wait; try again";
+  return reply;
+}
+
+wire::PlayerState PlayerDirector::state_of(const NamedPlayer& named) const {
+  const PlayerReport report = named.player->report();
+  wire::PlayerState state;
+  state.sensor = named.sensor;
+  state.file = report.file;
+  state.orders_done = report.orders_done;
+  state.refusal = report.refusal;
+  if (!report.position) return state;
+
+  const PlayerPosition& position = *report.position;
+  state.is_open = true;
+  state.position_s = seconds(position.log_time);
+  state.length_s = seconds(position.length);
+  state.recorded_utc_ns = position.recorded.time_since_epoch().count();
+  state.rate = position.rate;
+  state.is_paused = position.is_paused;
+  state.is_finished = position.is_finished;
+  state.loops = position.loops;
+  state.rounds = position.rounds;
+  return state;
+}
+
+}  // namespace yuragi

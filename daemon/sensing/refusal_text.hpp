@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+/// "timeout 3, exception 1"; "nothing" where nothing was refused.
+std::string refusal_text(const wire::SensorStatus& sensor);
+
+}  // namespace yuragi

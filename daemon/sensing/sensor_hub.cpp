@@ -1,0 +1,321 @@
+#include "daemon/sensing/sensor_hub.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <spdlog/spdlog.h>
+
+#include "daemon/sensing/refusal_text.hpp"
+#include "daemon/settings/wind_settings.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
+
+namespace yuragi {
+namespace {
+
+/// Is it believed although others differ?
+bool is_disputed(SensorState state, Vote vote) {
+  return is_believed(state) && vote == Vote::kDisputed;
+}
+
+/// What a log line is about: a state, and whether others differ.
+std::uint32_t key_of(SensorState state, Vote vote) {
+  constexpr std::uint32_t kDisputedBit = 1U << 8U;
+  return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
+}
+SensorState state_in(std::uint32_t key) {
+  return static_cast<SensorState>(key & 0xFFU);
+}
+
+bool is_trouble(SensorState state) {
+  return !is_believed(state) && state != SensorState::kConnecting;
+}
+
+std::string passed_over_text(const ChangeGate& gate) {
+  if (gate.passed_over() == 0) return {};
+  return fmt::format("; {} changes in between did not last", gate.passed_over());
+}
+
+}  // namespace
+
+std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
+  auto noise = std::make_shared<const GustNoise>(
+      GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
+  malloc_trim(0);  // the C library would keep the 9 MB in which it was made
+  return noise;
+}
+
+BlendSettings blend_settings_of(const Config& config) {
+  BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
+                                     .mean_direction_deg = config.wind.number("default_direction"),
+                                     .turbulence_intensity = config.wind.number("default_turbulence"),
+                                     .seed = config.seed},
+                         .length_m = default_gust_length_m(config),
+                         .gustiness = config.wind.number("gustiness"),
+                         .handover_s = config.wind.number("handover"),
+                         .stale_intervals = config.wind.number("stale_intervals"),
+                         .return_after_s = config.wind.number("return_after"),
+                         .rate_hz = config.animation.number("rate"),
+                         .site = make_site_spectrum(config)};
+  for (const SensorConfig& sensor : config.sensors) {
+    settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
+    BlendSourceSettings& source = settings.sources.back();
+    if (is_length_by_height(config, sensor)) source.length_m = gust_length_m(config, sensor);
+    source.teaches_site = !source.is_relative && !sensor.driver->plays_recordings;
+  }
+  // Behind all sensors, whatever their priorities.
+  if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
+  return settings;
+}
+
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
+                                              double reach_m, std::shared_ptr<SiteSpectrum> site) {
+  BlendSettings settings = blend_settings_of(config);
+  settings.reach_m = reach_m;
+  if (site) settings.site = std::move(site);
+  const std::size_t source_count = settings.sources.size();
+  return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
+}
+
+SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
+                     Listener listener, double reach_m)
+    : clock_(clock),
+      listener_(std::move(listener)),
+      site_(make_site_spectrum(config)),
+      estimator_(make_estimator(config, std::move(noise), reach_m, site_)),
+      stale_intervals_(config.wind.number("stale_intervals")),
+      vote_(config.sensors.size()),
+      fallback_(config, clock) {
+  // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
+  for (std::size_t index = 0; index < sensors.size(); ++index) {
+    Channel channel;
+    channel.config = config.sensors[index];
+    channel.calibration = calibration_of(channel.config);
+    const std::optional<JudgeSettings> judged_by = judge_settings_of(channel.config);
+    channel.is_judged = judged_by.has_value();
+    channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
+    // A sensor whose scale is not to be believed is no witness.
+    const bool is_relative = blend_source_of(channel.config.blend, *channel.config.driver).is_relative;
+    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") && !is_relative;
+    channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
+    channels_.push_back(std::move(channel));
+  }
+}
+
+const WindState& SensorHub::advance() {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    Channel& channel = channels_[index];
+    channel.runner->drain([&](const WindReading& reading) {
+      if (!reading.is_held) {
+        ++channel.readings;
+        channel.last_raw = reading;
+        if (listener_) listener_(index, reading);
+      }
+      take(index, reading);
+    });
+    judge_refusals(channel);
+  }
+  const MonoTime now = clock_.now().mono;
+  compare(now);
+  fallback_.advance(is_any_live(),
+                    [this](const WindReading& reading) { estimator_->accept(channels_.size(), reading); });
+  wind_ = estimator_->advance(now);
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    log_link(channels_[index], now);
+    log_state(index, now);
+  }
+  return wind_;
+}
+
+/// A reading as it was said: what it comes to, and whether it is to be believed.
+void SensorHub::take(std::size_t index, const WindReading& said) {
+  Channel& channel = channels_[index];
+  WindReading reading = channel.calibration.applied_to(said);
+  // Nothing was said in the future: such a reading would make all that follow late ones.
+  reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
+  if (!is_plausible(reading)) {
+    if (channel.is_judged) channel.judge.count_impossible(1);
+    return;
+  }
+  if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
+  if (reading.is_held) {
+    channel.said.hold(reading.time);
+    estimator_->accept(index, reading);
+    return;
+  }
+  channel.said.take(reading);
+
+  // What a simulation makes up may be as steady as it likes.
+  const bool is_judged = channel.is_judged && reading.quality != ReadingQuality::kSimulated;
+  const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
+  if (makes_sense) vote_.hear(index, reading.time.mono, reading.speed_m_s);
+  if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
+    estimator_->accept(index, reading);
+  } else {
+    ++channel.not_believed;
+  }
+}
+
+/// Readings that were refused before they came to the hub speak against the sensor, too.
+void SensorHub::judge_refusals(Channel& channel) const {
+  const std::uint64_t impossible = channel.runner->refused_count(Refusal::kImplausible);
+  if (channel.is_judged) channel.judge.count_impossible(impossible - channel.impossible);
+  channel.impossible = impossible;
+}
+
+/// Lets those be compared that measure the wind of now, and are well.
+void SensorHub::compare(MonoTime now) {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    const Channel& channel = channels_[index];
+    const SourceReport said = channel.said.report(now, stale_intervals_);
+    const bool is_measured =
+        !channel.config.driver->plays_recordings && said.last && said.last->quality != ReadingQuality::kSimulated;
+    const bool is_well = said.health == SourceHealth::kLive && channel.judge.fault() <= ReadingFault::kSpike;
+    vote_.seat(index, channel.is_compared && is_measured && is_well);
+  }
+  vote_.advance(now);
+}
+
+SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
+  const Channel& channel = channels_[index];
+  return {.link = channel.link.state,
+          .link_detail = channel.link.detail,
+          .said = channel.said.report(now, stale_intervals_),
+          .is_replay = channel.config.driver->plays_recordings,
+          .fault = channel.judge.fault(),
+          .vote = vote_.vote_on(index),
+          .same_count = channel.judge.same_count(),
+          .same_for_s = channel.judge.same_for_s(),
+          .still_for_s = channel.judge.still_for_s(),
+          .bad_share = channel.judge.bad_share(),
+          .mean_m_s = vote_.mean_m_s(index),
+          .others_m_s = vote_.others_m_s(index)};
+}
+
+/// The link: a change of its state is news; one more failed attempt is not.
+void SensorHub::log_link(Channel& channel, MonoTime now) const {
+  if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.link_reports) {
+    channel.link = channel.runner->link();
+    channel.link_reports = reports;
+    spdlog::debug("sensor {}: {}: {}", channel.config.name, name_of(channel.link.state), channel.link.detail);
+  }
+  if (channel.link_reports == 0 || !channel.link_gate.offer(static_cast<std::uint32_t>(channel.link.state), now))
+    return;
+  spdlog::info("sensor {}: {}: {}{}", channel.config.name, name_of(channel.link.state), channel.link.detail,
+               passed_over_text(channel.link_gate));
+}
+
+void SensorHub::log_state(std::size_t index, MonoTime now) {
+  Channel& channel = channels_[index];
+  const SensorEvidence evidence = evidence_of(index, now);
+  const SensorState state = state_of(evidence);
+  const SensorState before = state_in(channel.state_gate.told());
+  if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
+  const bool is_warning = is_trouble(state) || is_disputed(state, evidence.vote);
+  const auto level = is_warning ? spdlog::level::warn : spdlog::level::info;
+  spdlog::log(level, "sensor {}: {}: {} (was {}{}; {} readings, {} frames, {} reconnects)", channel.config.name,
+              name_of(state), reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
+              channel.readings, channel.runner->frame_count(), channel.runner->reconnect_count());
+}
+
+std::vector<wire::SensorStatus> SensorHub::status() const {
+  std::vector<wire::SensorStatus> all;
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    const Channel& channel = channels_[index];
+    const LinkReport link = channel.runner->link();
+    SensorEvidence evidence = evidence_of(index, clock_.now().mono);
+    evidence.link = link.state;
+    evidence.link_detail = link.detail;
+    const SourceReport& report = evidence.said;
+
+    wire::SensorStatus status;
+    status.name = channel.config.name;
+    status.driver = channel.config.driver->name;
+    status.link = static_cast<std::uint8_t>(link.state);
+    status.health = static_cast<std::uint8_t>(report.health);
+    status.detail = link.detail;
+    if (report.last) {
+      status.speed_m_s = report.last->speed_m_s;
+      status.direction_deg = report.last->direction_deg;
+      status.gust_m_s = report.last->gust_m_s;
+      status.simulated = report.last->quality == ReadingQuality::kSimulated;
+    }
+    if (channel.last_raw) {
+      status.raw_speed_m_s = channel.last_raw->speed_m_s;
+      status.raw_direction_deg = channel.last_raw->direction_deg;
+    }
+    status.age_s = report.age_s;
+    status.interval_s = report.interval_s;
+    status.readings = channel.readings;
+    for (std::size_t why = 0; why < kRefusalCount; ++why) {
+      const auto refusal = static_cast<Refusal>(why);
+      if (const std::uint64_t count = channel.runner->refused_count(refusal)) {
+        status.refused.emplace_back(name_of(refusal), count);
+      }
+    }
+    if (channel.not_believed > 0) status.refused.emplace_back("not believed", channel.not_believed);
+    if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
+    status.frames = channel.runner->frame_count();
+    status.reconnects = channel.runner->reconnect_count();
+    status.replayed = channel.config.driver->plays_recordings;
+    status.state = state_of(evidence);
+    status.state_reason = reason_of(status.state, evidence);
+    all.push_back(std::move(status));
+  }
+  if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
+  return all;
+}
+
+bool SensorHub::is_any_live() const {
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    if (estimator_->report(index).health == SourceHealth::kLive) return true;
+  }
+  return false;
+}
+
+std::vector<NamedPlayer> SensorHub::players() {
+  std::vector<NamedPlayer> players;
+  for (const Channel& channel : channels_) {
+    SensorRunner& runner = *channel.runner;
+    if (runner.player() == nullptr) continue;
+    players.push_back({channel.config.name, runner.player(), [&runner] { runner.wake(); }});
+  }
+  return players;
+}
+
+void SensorHub::trace(const std::function<bool(std::string_view)>& is_wanted) {
+  for (const Channel& channel : channels_) channel.runner->trace(is_wanted(channel.config.name));
+}
+
+void SensorHub::drain_traces(const std::function<void(const wire::RawTrace&)>& use) {
+  const auto nanoseconds = [](auto time) { return std::int64_t{time.time_since_epoch().count()}; };
+  for (const Channel& channel : channels_) {
+    channel.runner->drain_trace([&](const RawMessage& message) {
+      const auto kept = message.kept();
+      use({.sensor = channel.config.name,
+           .mono_ns = nanoseconds(message.time.mono),
+           .utc_ns = nanoseconds(message.time.utc),
+           .received = message.direction == RawDirection::kReceived,
+           .bytes = {kept.begin(), kept.end()},
+           .length = message.length,
+           .lost = message.lost});
+    });
+  }
+}
+
+void SensorHub::log_summary() const {
+  for (const wire::SensorStatus& sensor : status()) {
+    spdlog::info("sensor {}: {} readings from {} frames, {} reconnects; refused: {}", sensor.name, sensor.readings,
+                 sensor.frames, sensor.reconnects, refusal_text(sensor));
+  }
+}
+
+bool SensorHub::is_finished() const {
+  return std::ranges::all_of(
+      channels_, [](const Channel& channel) { return channel.runner->link().state == LinkState::kFinished; });
+}
+
+}  // namespace yuragi

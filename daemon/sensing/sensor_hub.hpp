@@ -1,0 +1,124 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "daemon/sensing/change_gate.hpp"
+#include "daemon/sensing/fallback_recording.hpp"
+#include "daemon/sensing/player_director.hpp"
+#include "daemon/sensing/sensor_diagnosis.hpp"
+#include "daemon/sensing/sensor_runner.hpp"
+#include "daemon/settings/config.hpp"
+#include "engine/wind/blend/blend_settings.hpp"
+#include "engine/wind/blend/source_record.hpp"
+#include "engine/wind/blend/wind_estimator.hpp"
+#include "engine/wind/judging/reading_judge.hpp"
+#include "engine/wind/judging/sensor_vote.hpp"
+#include "engine/wind/turbulence/site_spectrum.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+/// All sensors of an installation, and the estimator that makes one wind of what they say. Belongs to the I/O thread;
+/// each sensor runs on a thread of its own.
+///
+/// Each sensor's readings are calibrated, judged by themselves (ReadingJudge) and compared with the other sensors'
+/// (SensorVote). What is not believed is kept from the estimator, for which the sensor has then fallen silent: it hands
+/// over at its own pace, as for any silence. The listener hears everything, before all that.
+class SensorHub {
+ public:
+  /// Sees each plausible reading, before calibration; the recorder listens here.
+  using Listener = std::function<void(std::size_t sensor, const WindReading&)>;
+
+  /// Opens and starts every sensor. `noise`: of the gusts. Throws ConfigError where a sensor cannot be made of its
+  /// values.
+  SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise, Listener listener = {},
+            double reach_m = 0.0);
+
+  /// Takes in what has arrived and says what the wind is now. Logs each change of a sensor's state once.
+  const WindState& advance();
+
+  /// Does a sensor speak that is believed? A fall-back recording is none. As of the last advance().
+  bool is_any_live() const;
+
+  /// The wind as of the last advance().
+  const WindState& wind() const noexcept { return wind_; }
+  const GroundWind& ground() const noexcept { return estimator_->ground(); }
+  const WindStroke& stroke() const noexcept { return estimator_->stroke(); }
+
+  /// What is known of the site's gusts; learns on while a quick sensor of the site speaks. Of this thread.
+  const std::shared_ptr<SiteSpectrum>& site() const noexcept { return site_; }
+
+  /// How each sensor does, for the stream and for `sensors watch`; and the fall-back, while it plays.
+  std::vector<wire::SensorStatus> status() const;
+
+  /// Decides for each sensor, by its name, whether the messages to and from its device are kept for drain_traces().
+  void trace(const std::function<bool(std::string_view sensor)>& is_wanted);
+
+  /// Hands on the messages that were kept since the last time: sensor by sensor, oldest first.
+  void drain_traces(const std::function<void(const wire::RawTrace&)>& use);
+
+  /// A line for each sensor in the log: what came of it since the start.
+  void log_summary() const;
+
+  /// The controls of the sensors that play a recording; they live as long as the hub.
+  std::vector<NamedPlayer> players();
+
+  /// True when every sensor is a recording that has come to its end.
+  bool is_finished() const;
+
+ private:
+  static constexpr std::uint32_t kNothingTold = ~0U;
+
+  struct Channel {
+    SensorConfig config;
+    Calibration calibration;
+    ReadingJudge judge;
+    bool is_judged = true;
+    bool is_compared = true;
+    std::unique_ptr<SensorRunner> runner;
+    SourceRecord said;  ///< calibrated, believed or not
+    std::uint64_t readings = 0;
+    std::uint64_t not_believed = 0;  ///< plausible readings that were kept from the wind
+    std::uint64_t impossible = 0;    ///< readings that were refused for what they said
+    LinkReport link;                 ///< as of its last report
+    std::uint64_t link_reports = 0;
+    ChangeGate link_gate{kNothingTold};
+    ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
+    std::optional<WindReading> last_raw;  ///< before calibration
+  };
+
+  void take(std::size_t index, const WindReading& reading);
+  void judge_refusals(Channel& channel) const;
+  void compare(MonoTime now);
+  SensorEvidence evidence_of(std::size_t index, MonoTime now) const;
+  void log_link(Channel& channel, MonoTime now) const;
+  void log_state(std::size_t index, MonoTime now);
+
+  const Clock& clock_;
+  Listener listener_;
+  std::shared_ptr<SiteSpectrum> site_;
+  std::unique_ptr<WindEstimator> estimator_;
+  double stale_intervals_;
+  SensorVote vote_;
+  std::vector<Channel> channels_;
+  FallbackRecording fallback_;  ///< the estimator's source behind those of the channels
+  WindState wind_;
+};
+
+/// The pattern of gusts of an installation: the estimator and the scenes share it. Set-up work of about 0.1 s.
+std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
+
+/// What a configuration says of the blend, with one source for each of its sensors, and one for the fall-back.
+BlendSettings blend_settings_of(const Config& config);
+
+/// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
+/// `reach_m`: from the middle of the scenes to the farthest place of any of them. `site`: what is known of the site's
+/// gusts, and learns more of them; none: what the configuration says of them.
+std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
+                                              double reach_m, std::shared_ptr<SiteSpectrum> site = {});
+
+}  // namespace yuragi

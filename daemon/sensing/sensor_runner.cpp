@@ -1,0 +1,91 @@
+#include "daemon/sensing/sensor_runner.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace yuragi {
+namespace {
+
+// A thread that waits looks at the clock at least this often, so that a clock that is set cannot put it to sleep for
+// long.
+constexpr auto kLongestSleep = std::chrono::seconds(1);
+
+}  // namespace
+
+SensorRunner::SensorRunner(std::unique_ptr<Sensor> sensor, const Clock& clock)
+    : sensor_(std::move(sensor)), clock_(clock), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+SensorRunner::~SensorRunner() {
+  thread_.request_stop();
+  sensor_->interrupt();
+  thread_.join();
+}
+
+void SensorRunner::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const MonoTime next = sensor_->poll(clock_, *this);
+    const Nanoseconds wait = std::min<Nanoseconds>(next - clock_.now().mono, kLongestSleep);
+    if (wait <= Nanoseconds::zero()) continue;
+    std::unique_lock lock(sleep_mutex_);
+    wake_.wait_for(lock, stop, wait, [this] { return std::exchange(is_woken_, false); });
+  }
+}
+
+void SensorRunner::wake() {
+  {
+    const std::lock_guard lock(sleep_mutex_);
+    is_woken_ = true;
+  }
+  wake_.notify_one();
+}
+
+void SensorRunner::reading(const WindReading& reading) {
+  if (!is_plausible(reading)) {
+    refused(Refusal::kImplausible);
+  } else if (!readings_.push(reading)) {
+    lost_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+void SensorRunner::refused(Refusal why) {
+  refused_[static_cast<std::size_t>(why)].fetch_add(1, std::memory_order_relaxed);
+}
+
+void SensorRunner::link(LinkState state, std::string_view detail) {
+  const std::lock_guard lock(link_mutex_);
+  const bool connects = state == LinkState::kConnected && link_.state != LinkState::kConnected;
+  if (connects && has_been_connected_) reconnects_.fetch_add(1, std::memory_order_relaxed);
+  has_been_connected_ = has_been_connected_ || connects;
+  link_.state = state;
+  link_.detail = detail;
+  link_reports_.fetch_add(1, std::memory_order_release);
+}
+
+void SensorRunner::raw(RawDirection direction, std::span<const std::uint8_t> message) {
+  if (direction == RawDirection::kReceived) frames_.fetch_add(1, std::memory_order_relaxed);
+  if (!is_trace_wanted_.load(std::memory_order_acquire)) {
+    lost_of_trace_ = 0;
+    return;
+  }
+  RawMessage kept{.time = clock_.now(),
+                  .direction = direction,
+                  .length = static_cast<std::uint32_t>(message.size()),
+                  .bytes = {},
+                  .lost = lost_of_trace_};
+  std::ranges::copy(message.first(kept.kept().size()), kept.bytes.begin());
+  lost_of_trace_ = trace_->push(kept) ? 0 : lost_of_trace_ + 1;
+}
+
+void SensorRunner::trace(bool wanted) {
+  if (wanted == is_trace_wanted_.load(std::memory_order_relaxed)) return;
+  if (wanted && !trace_) trace_ = std::make_unique<SpscRing<RawMessage>>(kTraceCapacity);
+  if (wanted) drain_trace([](const RawMessage&) {});  // what an earlier trace left behind
+  is_trace_wanted_.store(wanted, std::memory_order_release);
+}
+
+LinkReport SensorRunner::link() const {
+  const std::lock_guard lock(link_mutex_);
+  return link_;
+}
+
+}  // namespace yuragi

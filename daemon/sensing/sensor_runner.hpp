@@ -1,0 +1,119 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "drivers/sensor/sensor.hpp"
+#include "engine/base/spsc_ring.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+/// What a sensor's link did last, for a person to read.
+struct LinkReport {
+  LinkState state = LinkState::kConnecting;
+  std::string detail;
+};
+
+/// A message to or from a device, as SensorSink::raw() was told of it, and when.
+struct RawMessage {
+  Instant time{};
+  RawDirection direction = RawDirection::kReceived;
+  std::uint32_t length = 0;  ///< of the whole message
+  std::array<std::uint8_t, wire::kMaxRawBytes> bytes{};
+  std::uint64_t lost = 0;  ///< messages just before this one that there was no room for
+
+  std::span<const std::uint8_t> kept() const {
+    return std::span(bytes).first(std::min<std::size_t>(length, bytes.size()));
+  }
+};
+
+/// Runs one sensor on a thread of its own, since a device may block. Readings wait in a ring until the I/O thread takes
+/// them; nothing that the device does can hold that thread up.
+///
+/// Thread-safe: the public functions may be called from one other thread.
+class SensorRunner final : private SensorSink {
+ public:
+  SensorRunner(std::unique_ptr<Sensor> sensor, const Clock& clock);
+  ~SensorRunner() override;  ///< ends the thread, interrupting a poll that waits
+
+  SensorRunner(const SensorRunner&) = delete;
+  SensorRunner& operator=(const SensorRunner&) = delete;
+
+  /// Hands each reading that has arrived to `use`, oldest first.
+  template <class Use>
+  void drain(Use&& use) {
+    readings_.drain(use);
+  }
+
+  /// From now on keeps the messages that are exchanged with the device, until drain_trace() hands them on; or no more.
+  /// Room for them is made when they are first wanted. Where it is full, later messages are passed over and counted.
+  void trace(bool wanted);
+
+  /// Hands each message that was kept to `use`, oldest first.
+  template <class Use>
+  void drain_trace(Use&& use) {
+    if (trace_) trace_->drain(use);
+  }
+
+  /// Has the sensor polled at once, if it waits.
+  void wake();
+
+  /// The sensor's controls, if it plays a recording.
+  RecordingPlayer* player() noexcept { return sensor_->player(); }
+
+  LinkReport link() const;
+  /// How often the link has been told of; looks cheaply whether there is news.
+  std::uint64_t link_reports() const noexcept { return link_reports_.load(std::memory_order_acquire); }
+  std::uint64_t refused_count(Refusal why) const noexcept {
+    return refused_[static_cast<std::size_t>(why)].load(std::memory_order_relaxed);
+  }
+  /// Messages that have come from the device, of use or not.
+  std::uint64_t frame_count() const noexcept { return frames_.load(std::memory_order_relaxed); }
+  /// How often the device was found again after it had been lost.
+  std::uint64_t reconnect_count() const noexcept { return reconnects_.load(std::memory_order_relaxed); }
+  /// Readings that the ring had no room for, since nobody took them.
+  std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::size_t kRingCapacity = 1024;
+  static constexpr std::size_t kTraceCapacity = 256;
+
+  void run(const std::stop_token& stop);
+  void reading(const WindReading& reading) override;
+  void refused(Refusal why) override;
+  void link(LinkState state, std::string_view detail) override;
+  void raw(RawDirection direction, std::span<const std::uint8_t> message) override;
+
+  std::unique_ptr<Sensor> sensor_;
+  const Clock& clock_;
+  SpscRing<WindReading> readings_{kRingCapacity};
+  std::array<std::atomic<std::uint64_t>, kRefusalCount> refused_{};
+  std::atomic<std::uint64_t> lost_{0};
+  std::atomic<std::uint64_t> frames_{0};
+  std::atomic<std::uint64_t> reconnects_{0};
+  bool has_been_connected_ = false;  // of the sensor's thread
+
+  std::unique_ptr<SpscRing<RawMessage>> trace_;  // made before it is first wanted, and then left alone
+  std::atomic<bool> is_trace_wanted_{false};
+  std::uint64_t lost_of_trace_ = 0;  // of the sensor's thread: since the last message that was kept
+
+  mutable std::mutex link_mutex_;  // of the link's text: rare, and never on the animation's way
+  LinkReport link_;
+  std::atomic<std::uint64_t> link_reports_{0};
+
+  std::mutex sleep_mutex_;
+  bool is_woken_ = false;
+  std::condition_variable_any wake_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace yuragi

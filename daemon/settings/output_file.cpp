@@ -1,0 +1,51 @@
+#include "daemon/settings/output_file.hpp"
+
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "daemon/settings/exit.hpp"
+
+namespace yuragi {
+
+OutputFile::OutputFile(std::filesystem::path file, bool force)
+    : file_(std::move(file)), working_path_(file_.string() + ".part-" + std::to_string(getpid())) {
+  std::error_code error;
+  const std::string name = file_.string();
+  if (std::filesystem::is_directory(file_, error)) throw ExitError(kExitCannotCreate, name + ": is a folder");
+  if (!force && std::filesystem::exists(file_, error)) {
+    throw ExitError(kExitCannotCreate, name + ": is there already; --force overwrites it");
+  }
+  // SQLite would take a left -wal for the new file's.
+  if (std::filesystem::exists(name + "-wal", error)) {
+    throw ExitError(kExitCannotCreate, name + ": is being recorded, or the recorder was killed (" + name +
+                                           "-wal is there); name another file");
+  }
+  const auto folder = file_.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
+    throw ExitError(kExitCannotCreate, folder.string() + ": there is no such folder");
+  }
+}
+
+OutputFile::~OutputFile() {
+  std::error_code ignored;
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+    std::filesystem::remove(working_path_.string() + suffix, ignored);
+  }
+}
+
+void OutputFile::commit() {
+  // Its content reaches the disk before its name does.
+  if (const int descriptor = open(working_path_.c_str(), O_RDONLY | O_CLOEXEC); descriptor >= 0) {
+    fsync(descriptor);
+    close(descriptor);
+  }
+  std::error_code error;
+  std::filesystem::rename(working_path_, file_, error);
+  if (error) throw ExitError(kExitCannotCreate, file_.string() + ": " + error.message());
+}
+
+}  // namespace yuragi

@@ -1,0 +1,119 @@
+#include "daemon/settings/sensor_blend.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace yuragi {
+namespace {
+
+constexpr std::string_view kOfDriver = "auto";
+constexpr std::string_view kRelative = "relative";
+constexpr std::string_view kAtTheEdge =
+    "its gusts enter at the windward edge of the scenes, wherever the wind comes from, and cross all of them";
+constexpr std::array<std::string_view, 3> kRoles = {kOfDriver, "absolute", kRelative};
+
+const std::array kSensorBlendParameters = {
+    Parameter{.name = "role",
+              .unit = "",
+              .default_value = std::string(kOfDriver),
+              .help =
+                  "relative: only its rise and fall is believed; it gives the gusts that the absolute sensors are too "
+                  "slow for, as strong as theirs. auto: a microphone is relative, all else absolute",
+              .choices = kRoles},
+    Parameter{
+        .name = "priority",
+        .unit = "",
+        .default_value = std::int64_t{0},
+        .min = 0,
+        .max = 1000,
+        .help = "of those that speak the lowest makes the wind, equal ones together; 0: its place in the file, from 1"},
+    Parameter{.name = "weight",
+              .unit = "",
+              .default_value = 1.0,
+              .min = 0.01,
+              .max = 100.0,
+              .help = "how much it counts among those of the same priority"},
+    Parameter{.name = "x",
+              .unit = "m",
+              .default_value = 0.0,
+              .min = -1000.0,
+              .max = 1000.0,
+              .help = "where it stands, to the east of the middle of the scenes; a gust that it measures moves on from "
+                      "there with the wind, and what stands upwind of it has gusts that are made up",
+              .left_out = kAtTheEdge},
+    Parameter{.name = "z",
+              .unit = "m",
+              .default_value = 0.0,
+              .min = -1000.0,
+              .max = 1000.0,
+              .help = "the same to the south; of x and z one is enough, the other is then 0",
+              .left_out = kAtTheEdge},
+    Parameter{.name = "lead",
+              .unit = "m",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 1000.0,
+              .help =
+                  "with x or z: its gusts enter the scenes so far upwind of where it stands. More of the scenes has "
+                  "the gusts that were really measured, and has them later, by lead over the wind's speed"},
+    Parameter{.name = "averaging",
+              .unit = "s",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 3600.0,
+              .help = "each reading is a mean over so long; 0: over the time between two, which is measured"},
+    Parameter{.name = "direction_step",
+              .unit = "deg",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 90.0,
+              .help = "of a vane that knows few directions (16: 22.5, 8: 45); 0: found out from its readings"},
+};
+
+}  // namespace
+
+std::span<const Parameter> sensor_blend_parameters() {
+  return kSensorBlendParameters;
+}
+
+ParameterValues default_sensor_blend() {
+  return ParameterValues::resolve(kSensorBlendParameters, {}).value();
+}
+
+std::optional<ParameterError> sensor_blend_mistake(const ParameterValues& values) {
+  if (values.number("lead") > 0.0 && !values.has("x") && !values.has("z")) {
+    return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
+  }
+  return std::nullopt;
+}
+
+std::string place_text(const BlendSourceSettings& source) {
+  if (!source.has_place) return "at the windward edge of the scenes";
+  const auto way = [](double way_m, const char* to, const char* back) {
+    return way_m == 0.0 ? std::string() : fmt::format("{:g} m {}", std::abs(way_m), way_m > 0.0 ? to : back);
+  };
+  const std::string east = way(source.east_m, "east", "west");
+  const std::string south = way(source.south_m, "south", "north");
+  std::string text = east + (east.empty() || south.empty() ? "" : " and ") + south;
+  text = text.empty() ? "in the middle of the scenes" : text + " of the middle of the scenes";
+  if (source.lead_m > 0.0) text += fmt::format(", taken {:g} m upwind of there", source.lead_m);
+  return text;
+}
+
+BlendSourceSettings blend_source_of(const ParameterValues& values, const DriverDescription& driver) {
+  const std::string& role = values.text("role");
+  const auto number_or_0 = [&values](std::string_view name) { return values.has(name) ? values.number(name) : 0.0; };
+  return {.is_relative = role == kRelative || (role == kOfDriver && driver.is_relative),
+          .priority = static_cast<int>(values.integer("priority")),
+          .weight = values.number("weight"),
+          .has_place = values.has("x") || values.has("z"),
+          .east_m = number_or_0("x"),
+          .south_m = number_or_0("z"),
+          .lead_m = values.number("lead"),
+          .averaging_s = values.number("averaging"),
+          .direction_step_deg = values.number("direction_step")};
+}
+
+}  // namespace yuragi

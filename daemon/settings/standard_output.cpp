@@ -1,0 +1,20 @@
+#include "daemon/settings/standard_output.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "daemon/settings/exit.hpp"
+
+namespace yuragi {
+
+void write_at_once(std::string_view text) {
+  const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (is_written) return;
+  throw ExitError(kExitCannotCreate,
+                  fmt::format("cannot write to standard output: {}", std::generic_category().message(errno)));
+}
+
+}  // namespace yuragi

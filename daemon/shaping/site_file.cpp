@@ -1,0 +1,85 @@
+#include "daemon/shaping/site_file.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/settings/output_file.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr const char* kTimesKey = "seconds_at_each_speed";
+constexpr const char* kOctavesKnownKey = "seconds_of_each_octave_of_gusts";
+constexpr const char* kOctavesKey = "decibels_of_each_octave_of_gusts";
+/// Many times what a file of ours holds: what is longer is none.
+constexpr std::streamsize kLongestSiteFile = 64 * 1024;
+
+/// An empty message where all went well.
+Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
+  try {
+    OutputFile output(file, true);
+    std::ofstream out(output.working_path());
+    out << nlohmann::json{{kTimesKey, memory.times_s},
+                          {kOctavesKnownKey, memory.octaves_known_s},
+                          {kOctavesKey, memory.octaves_db}}
+               .dump()
+        << '\n';
+    out.close();
+    if (!out) return {file.string() + ": could not be written; is there room, and may this user write there?"};
+    output.commit();
+    return {};
+  } catch (const std::exception& error) {
+    return {error.what()};
+  }
+}
+
+/// The numbers of a key, none where it is not there; false where it holds anything else.
+bool read_numbers(const nlohmann::json& json, const char* key, std::vector<double>& numbers) {
+  if (!json.contains(key)) return true;
+  const nlohmann::json& row = json[key];
+  if (!row.is_array()) return false;
+  for (const auto& number : row) {
+    if (!number.is_number()) return false;
+    numbers.push_back(number.get<double>());
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<SiteMemory, Failure> SiteFile::read() const {
+  std::ifstream in(file_);
+  if (!in) return Failure{file_.string() + ": cannot be read"};
+  std::string text(kLongestSiteFile, '\0');
+  in.read(text.data(), kLongestSiteFile);
+  text.resize(static_cast<std::size_t>(in.gcount()));
+
+  const Failure none{file_.string() + ": is no memory of a site's wind"};
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains(kTimesKey)) return none;
+  SiteMemory memory;
+  const bool is_read = read_numbers(json, kTimesKey, memory.times_s) &&
+                       read_numbers(json, kOctavesKnownKey, memory.octaves_known_s) &&
+                       read_numbers(json, kOctavesKey, memory.octaves_db);
+  if (!is_read) return none;
+  return memory;
+}
+
+void SiteFile::save(SiteMemory memory) {
+  // Where there is no thread to be had, wait() writes.
+  writing_ = std::async(std::launch::async | std::launch::deferred, write_site_file, file_, std::move(memory));
+}
+
+bool SiteFile::is_writing() const {
+  using namespace std::chrono_literals;
+  return writing_.valid() && writing_.wait_for(0s) == std::future_status::timeout;
+}
+
+Failure SiteFile::wait() {
+  return writing_.valid() ? writing_.get() : Failure{};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,175 @@
+#include "daemon/shaping/wind_shaper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <spdlog/spdlog.h>
+
+#include "daemon/settings/duration_text.hpp"
+#include "daemon/settings/shaping_config.hpp"
+
+namespace yuragi {
+namespace {
+
+/// The clock on the wall is asked so often, and the log is told no sooner.
+constexpr auto kLookAtHoursEvery = std::chrono::seconds(1);
+constexpr auto kSaveSiteEvery = std::chrono::hours(1);
+
+// What is news begins well above where it ends, so that the log is not told of every gust.
+constexpr double kRaisedBegins = 0.10;
+constexpr double kRaisedEnds = 0.02;
+constexpr double kCeilingBegins = 0.02;
+constexpr auto kCeilingEndsAfter = std::chrono::minutes(1);
+constexpr double kSiteGainNews = 1.2;
+
+}  // namespace
+
+WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> noise)
+    : shaping_(shaping_settings(config), std::move(noise)), hours_(opening_hours(config)) {
+  const bool is_of_this_site =
+      std::ranges::none_of(config.sensors, [](const SensorConfig& sensor) { return sensor.driver->plays_recordings; });
+  if (is_of_this_site) site_path_ = config.shaping.text("site_file");
+  if (const double gusts = shaping_.settings().gusts; gusts != 1.0) {
+    spdlog::info("shaping: gusts {:.2f} times the real ones", gusts);
+  }
+  if (!hours_.is_always_open()) spdlog::info("shaping: opening hours by the clocks of {}", hours_.zone_name());
+}
+
+WindShaper::~WindShaper() {
+  if (!site_file_) return;
+  save_site();
+  tell_of_site_file();
+}
+
+void WindShaper::keep_site_file(std::shared_ptr<SiteSpectrum> gusts) {
+  gusts_ = std::move(gusts);
+  const bool has_gain = shaping_.settings().site.median_m_s > 0.0;
+  if (site_path_.empty()) {
+    if (!has_gain) return;
+    spdlog::info("shaping: site gain begins at 1; without site_file (or with a recording) nothing is remembered");
+    return;
+  }
+  const std::string_view gain_begins = has_gain ? "site gain begins at 1; " : "";
+  site_file_.emplace(site_path_);
+  if (std::error_code error; !std::filesystem::exists(site_path_, error)) {
+    spdlog::info("shaping: {}{} will remember the site's wind", gain_begins, site_path_.string());
+    return;
+  }
+  const auto memory = site_file_->read();
+  if (!memory || !shaping_.restore(memory->times_s)) {
+    spdlog::warn("shaping: {}the file anew: {}",
+                 has_gain ? "site gain begins at 1, and " : "nothing is known yet, and ",
+                 memory ? site_path_.string() + ": is of another kind" : memory.error().message);
+    return;
+  }
+  const double known_s = shaping_.memory().known_s();
+  if (has_gain || known_s > 0.0) {
+    spdlog::info("shaping: {} remembers {} of the site's wind", site_path_.string(), duration_text(known_s));
+  }
+  if (gusts_ && gusts_->restore(memory->octaves_known_s, memory->octaves_db)) {
+    spdlog::info("shaping: {} remembers {} of the site's gusts", site_path_.string(),
+                 duration_text(std::ranges::max(gusts_->known_s())));
+  }
+}
+
+void WindShaper::shape(DrivingWind& wind, UtcTime utc, bool is_any_live) {
+  const MonoTime now = wind.state.time;
+  const bool is_time_to_look = !has_looked_ || now - looked_ >= kLookAtHoursEvery;
+  if (is_time_to_look) look_at_hours(now, utc);
+  shaping_.shape(wind, is_open_, is_any_live);
+  log_ceiling(shaping_.report(), now);
+  if (!is_time_to_look) return;
+  log_changes();
+  if (site_file_ && now - saved_ >= kSaveSiteEvery && !site_file_->is_writing()) {
+    saved_ = now;
+    save_site();
+  }
+}
+
+void WindShaper::look_at_hours(MonoTime now, UtcTime utc) {
+  if (!has_looked_) saved_ = now;
+  has_looked_ = true;
+  looked_ = now;
+  utc_ = utc;
+  is_open_ = hours_.is_open(utc);
+}
+
+void WindShaper::log_changes() {
+  const WindShapingReport report = shaping_.report();
+  const WindShapingSettings& settings = shaping_.settings();
+  if (is_open_ != logged_open_) {
+    logged_open_ = is_open_;
+    spdlog::info("shaping: {} {}; the wind fades {} over {:.0f} s", is_open_ ? "open" : "closed",
+                 hours_.until_text(utc_), is_open_ ? "in" : "out", settings.fade_s);
+  }
+  if (is_raised(report, logged_raised_ ? kRaisedEnds : kRaisedBegins) != logged_raised_) {
+    logged_raised_ = !logged_raised_;
+    if (logged_raised_) {
+      spdlog::info("shaping: the wind is weak ({:.1f} m/s) and is raised toward the floor of {:.1f} m/s",
+                   report.site_gain * report.mean_m_s, settings.floor_m_s);
+    } else {
+      spdlog::info("shaping: the wind needs no raising any more ({:.1f} m/s)", report.site_gain * report.mean_m_s);
+    }
+  }
+  if (std::abs(std::log(report.site_gain / logged_site_gain_)) > std::log(kSiteGainNews)) {
+    spdlog::info("shaping: site gain {:.2f} (was {:.2f}); the site's median {:.1f}, strong {:.1f} m/s",
+                 report.site_gain, logged_site_gain_, report.median_m_s, report.strong_m_s);
+    logged_site_gain_ = report.site_gain;
+  }
+}
+
+/// A storm is one piece of news, however many gusts it has.
+void WindShaper::log_ceiling(const WindShapingReport& report, MonoTime now) {
+  if (report.ceiling_gain < 1.0 - kCeilingBegins) {
+    held_back_ = now;
+    strongest_m_s_ = std::max(strongest_m_s_, report.speed_m_s);
+    if (!std::exchange(logged_ceiling_, true)) {
+      spdlog::info("shaping: a storm: {:.1f} m/s is held back to {:.1f}", report.speed_m_s,
+                   report.ceiling_gain * report.speed_m_s);
+    }
+  } else if (logged_ceiling_ && now - held_back_ > kCeilingEndsAfter) {
+    logged_ceiling_ = false;
+    spdlog::info("shaping: the storm is over; the strongest was {:.1f} m/s", std::exchange(strongest_m_s_, 0.0));
+  }
+}
+
+void WindShaper::save_site() {
+  tell_of_site_file();
+  const auto times_s = shaping_.memory().times_s();
+  SiteMemory memory{.times_s = {times_s.begin(), times_s.end()}, .octaves_known_s = {}, .octaves_db = {}};
+  if (gusts_) {
+    memory.octaves_known_s.assign(gusts_->known_s().begin(), gusts_->known_s().end());
+    memory.octaves_db.assign(gusts_->learnt_db().begin(), gusts_->learnt_db().end());
+  }
+  site_file_->save(std::move(memory));
+}
+
+/// What came of the last time that it was written.
+void WindShaper::tell_of_site_file() {
+  if (const Failure failure = site_file_->wait(); !failure.message.empty()) {
+    spdlog::warn("shaping: the site's wind is not remembered: {}", failure.message);
+  }
+}
+
+OpeningNews WindShaper::opening() const {
+  if (hours_.is_always_open()) return {};
+  return {.has_hours = true, .is_open = is_open_, .until = hours_.until_text(utc_)};
+}
+
+wire::Shaping WindShaper::status() const {
+  const WindShapingReport report = shaping_.report();
+  return {.site_gain = report.site_gain,
+          .floor_gain = report.floor_gain,
+          .breeze_m_s = report.breeze_m_s,
+          .opening = std::clamp(report.opening, 0.0, 1.0),
+          .ceiling_gain = report.ceiling_gain,
+          .mean_m_s = report.mean_m_s,
+          .shaped_mean_m_s = report.shaped_mean_m_s,
+          .site_median_m_s = report.median_m_s,
+          .site_strong_m_s = report.strong_m_s,
+          .site_known_s = report.known_s,
+          .text = shaping_text(report, shaping_.settings(), opening()),
+          .gusts = report.gusts};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,133 @@
+#include "daemon/stream/stream_client.hpp"
+
+#include <array>
+#include <utility>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+
+#include "engine/base/address.hpp"
+#include "engine/wire/message_reader.hpp"
+
+namespace yuragi {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+}  // namespace
+
+std::string_view name_of(StreamEnd end) {
+  switch (end) {
+    case StreamEnd::kTimeout:
+      return "nothing came in time";
+    case StreamEnd::kClosed:
+      return "the connection was closed";
+    case StreamEnd::kInvalid:
+      return "the server sent what is no message";
+  }
+  return "?";
+}
+
+class StreamClient::Connection {
+ public:
+  error_code connect(const Address& address, Nanoseconds timeout) {
+    error_code error;
+    tcp::resolver resolver(io_);
+    const auto endpoints = resolver.resolve(address.host, std::to_string(address.port), error);
+    if (error) return error;
+    asio::async_connect(socket_, endpoints,
+                        [&error](const error_code& result, const tcp::endpoint&) { error = result; });
+    if (run_for(timeout)) return error;
+    close();  // cancelling alone would let it try the next of the addresses
+    io_.run();
+    return asio::error::timed_out;
+  }
+
+  bool write(const wire::Bytes& bytes) {
+    error_code error;
+    asio::write(socket_, asio::buffer(bytes), error);
+    return !error;
+  }
+
+  Result<wire::Message, StreamEnd> receive(Nanoseconds timeout) {
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    while (true) {
+      // What is here already goes first; kinds of a newer server are passed over.
+      while (auto message = reader_.next()) {
+        if (*message) return std::move(**message);
+        if (message->error() == wire::WireError::kUnknown) continue;
+        close();
+        return StreamEnd::kInvalid;
+      }
+      if (!socket_.is_open()) return StreamEnd::kClosed;
+
+      // More bytes, in what is left of the time.
+      error_code error;
+      std::size_t count = 0;
+      socket_.async_read_some(asio::buffer(chunk_), [&](const error_code& result, std::size_t read) {
+        error = result;
+        count = read;
+      });
+      const bool in_time = run_for(deadline - std::chrono::steady_clock::now());
+      if (!in_time) {
+        error_code ignored;
+        socket_.cancel(ignored);
+        io_.run();  // the handler may yet bring bytes
+      }
+      reader_.feed(std::span(chunk_).first(count));
+      if (!in_time && count == 0) return StreamEnd::kTimeout;
+      if (error) close();
+    }
+  }
+
+ private:
+  /// Runs the one operation that was begun. False where it is not done in time: then the caller has to end it.
+  bool run_for(Nanoseconds timeout) {
+    io_.restart();
+    io_.run_for(timeout);
+    return io_.stopped();
+  }
+
+  void close() {
+    error_code ignored;
+    socket_.close(ignored);
+  }
+
+  asio::io_context io_{1};
+  tcp::socket socket_{io_};
+  wire::MessageReader reader_;
+  std::array<std::uint8_t, 65536> chunk_{};
+};
+
+Result<StreamClient, Failure> StreamClient::connect(std::string_view address, Nanoseconds timeout) {
+  const auto parsed = parse_address(address);
+  if (!parsed) return parsed.error();
+  auto connection = std::make_unique<Connection>();
+  if (const auto error = connection->connect(*parsed, timeout)) {
+    return Failure{"cannot reach " + std::string(address) + ": " + error.message()};
+  }
+  return StreamClient(std::move(connection));
+}
+
+StreamClient::StreamClient(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
+StreamClient::StreamClient(StreamClient&&) noexcept = default;
+StreamClient& StreamClient::operator=(StreamClient&&) noexcept = default;
+StreamClient::~StreamClient() = default;
+
+bool StreamClient::subscribe(const wire::Subscribe& wish) {
+  return connection_->write(wire::encode(wish));
+}
+
+bool StreamClient::send(const wire::Control& wish) {
+  return connection_->write(wire::encode(wish));
+}
+
+Result<wire::Message, StreamEnd> StreamClient::receive(Nanoseconds timeout) {
+  return connection_->receive(timeout);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,76 @@
+#include "daemon/tools/calibration/calibration_dialog.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "daemon/settings/exit.hpp"
+#include "daemon/settings/standard_output.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kLineInterval_s = 5.0;
+
+/// A line from the keyboard, without blanks around. Throws where there will be no more.
+std::string read_line() {
+  std::string line;
+  if (!std::getline(std::cin, line)) {
+    throw ExitError(kExitUsage, "ended before an answer; nothing was written");
+  }
+  const std::size_t begin = line.find_first_not_of(" \t\r");
+  return begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
+}
+
+}  // namespace
+
+CalibrationDialog::CalibrationDialog(bool takes_yes)
+    : takes_yes_(takes_yes),
+      has_person_(!takes_yes && isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0),
+      is_watched_(isatty(STDERR_FILENO) != 0) {}
+
+void CalibrationDialog::say(const std::string& text) const {
+  write_at_once(text + "\n");
+}
+
+void CalibrationDialog::wait_for_hands(const std::string& what) const {
+  say(what);
+  if (!has_person_) return;
+  write_at_once("Enter when it is so, Ctrl-C to end: ");
+  read_line();
+}
+
+double CalibrationDialog::ask_number(const std::string& question, double least, double most) const {
+  for (;;) {
+    write_at_once(fmt::format("{} ({:g} to {:g}): ", question, least, most));
+    const std::string line = read_line();
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+    const bool is_number = error == std::errc{} && end == line.data() + line.size() && std::isfinite(value);
+    if (is_number && value >= least && value <= most) return value;
+  }
+}
+
+bool CalibrationDialog::confirm(const std::string& question) const {
+  if (!has_person_) return takes_yes_;
+  write_at_once(question + " [y/N] ");
+  const std::string answer = read_line();
+  return answer == "y" || answer == "Y" || answer == "yes";
+}
+
+void CalibrationDialog::show(double elapsed_s, const std::string& values, bool is_last) {
+  if (is_watched_) {
+    fmt::print(stderr, "\r\x1b[K{}{}", values, is_last ? "\n" : "");
+  } else if (is_last || elapsed_s >= next_line_s_) {
+    fmt::print(stderr, "{}\n", values);
+    next_line_s_ = elapsed_s + kLineInterval_s;
+  }
+  if (is_last) next_line_s_ = 0.0;
+  std::fflush(stderr);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,244 @@
+#include "daemon/tools/calibration/calibration_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "daemon/settings/config_file.hpp"
+#include "daemon/settings/exit.hpp"
+
+namespace yuragi {
+namespace {
+
+/// "FROM,TO" in seconds.
+Stretch parse_part(const std::string& text) {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  int used = 0;
+  const int found = std::sscanf(text.c_str(), "%lf,%lf%n", &from_s, &to_s, &used);
+  if (found != 2 || static_cast<std::size_t>(used) != text.size() || !(from_s >= 0.0) || !(to_s > from_s) ||
+      !(to_s < 1e9)) {
+    throw ExitError(kExitUsage, "--part: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
+  }
+  return {.from_s = from_s, .to_s = to_s};
+}
+
+std::string key_of(const ConfigChange& change) {
+  return change.table.empty() ? change.key : change.table + "." + change.key;
+}
+
+/// The parameters of a driver that a recording was made with other values of, but for a microphone's own calibration,
+/// which is taken out of what it said.
+std::set<std::string> settings_that_differ(const SensorConfig& sensor, const HeardSensor& heard) {
+  const bool is_microphone = sensor.driver->name == std::string_view("microphone");
+  std::set<std::string> keys;
+  for (const std::string& text : heard.settings) {
+    const auto values = parse_values(text, sensor.driver->parameters);
+    if (!values) return {"which this version does not understand: " + values.error().message};
+    for (const auto& [key, value] : values->all()) {
+      const bool is_undone = is_microphone && (key == "gain" || key == "exponent" || key == "curve");
+      if (!is_undone && value != sensor.values.all().at(key)) keys.insert(key);
+    }
+  }
+  return keys;
+}
+
+/// What a sensor says of itself while it is listened to.
+std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
+  if (heard.readings.empty()) return fmt::format("{}: waiting for it", sensor.name);
+  const WindReading& last = heard.readings.back().reading;
+  const double speed_m_s = last.speed_m_s * calibration_of(sensor).unit_m_s;
+  return fmt::format("{}: {:.2f} m/s{}, {} readings", sensor.name, speed_m_s,
+                     last.direction_deg ? fmt::format(" from {:.0f} deg", *last.direction_deg) : "",
+                     heard.readings.size());
+}
+
+}  // namespace
+
+CalibrationSession::CalibrationSession(const CalibrationRequest& request, double default_duration_s)
+    : request_(request), dialog_(request.takes_yes), duration_s_(request.duration_s.value_or(default_duration_s)) {
+  for (const std::string& part : request_.parts) parse_part(part);
+  if (is_live() && !request_.parts.empty()) throw ExitError(kExitUsage, "--part is of a recording: add --recording");
+  if (!is_live() && request_.duration_s)
+    throw ExitError(kExitUsage, "--for is for live sensors; a recording has --part");
+  if (!dialog_.has_person() && !request_.takes_yes && !request_.is_dry_run) {
+    throw ExitError(kExitUsage, "there is no terminal to ask at: add --yes to write, or --dry-run to look only");
+  }
+
+  text_ = read_config_text(request_.config_file);
+  config_ = parse_config(text_, request_.config_file.string());
+  if (config_.sensors.front().origin.empty()) {
+    throw ExitError(kExitConfig, request_.config_file.string() + ": has no [[sensor]] to calibrate");
+  }
+  if (request_.sensor.empty() && config_.sensors.size() > 1) {
+    throw ExitError(kExitUsage, "which sensor? Add --sensor NAME");
+  }
+  sensor_ = request_.sensor.empty() ? 0 : find(request_.sensor);
+  if (!request_.reference.empty()) {
+    reference_ = find(request_.reference);
+    if (*reference_ == sensor_) throw ExitError(kExitUsage, "a sensor cannot be its own reference");
+  }
+}
+
+void CalibrationSession::open_source() {
+  std::vector<const SensorConfig*> sensors = {&sensor()};
+  if (reference_) sensors.push_back(reference());
+  const std::string address = request_.listen.value_or(config_.stream.text("listen"));
+  source_ = is_live() ? make_live_source(std::move(sensors), address, clock_)
+                      : make_recorded_source(std::move(sensors), request_.recording);
+  dialog_.say(fmt::format("Calibrating the sensor \"{}\" ({}) of {}, from {}.", sensor().name, sensor().driver->name,
+                          request_.config_file.string(), source_->description()));
+}
+
+std::size_t CalibrationSession::find(const std::string& name) const {
+  const auto& sensors = config_.sensors;
+  const auto found = std::ranges::find(sensors, name, &SensorConfig::name);
+  if (found != sensors.end()) return static_cast<std::size_t>(found - sensors.begin());
+  std::string known;
+  for (const SensorConfig& sensor : sensors) known += (known.empty() ? "" : ", ") + sensor.name;
+  throw ExitError(kExitUsage,
+                  fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
+}
+
+Heard CalibrationSession::hear(const std::string& hands) {
+  if (!source_) open_source();
+  Stretch stretch{.duration_s = duration_s_};
+  if (is_live()) {
+    dialog_.wait_for_hands("\n" + hands);
+  } else if (stretches_ < request_.parts.size()) {
+    stretch = parse_part(request_.parts[stretches_]);
+  }
+  ++stretches_;
+  bool is_told = false;
+  Heard heard = source_->hear(stretch, [this, &is_told](double elapsed_s, const Heard& so_far) {
+    if (is_live()) return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
+    dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
+    is_told = true;
+  });
+  if (is_told) dialog_.show(0.0, "the recording is read", true);
+  beware(heard);
+  return heard;
+}
+
+void CalibrationSession::beware(const Heard& heard) const {
+  for (std::size_t index = 0; index < heard.size(); ++index) {
+    const SensorConfig& one = index == 0 ? sensor() : *reference();
+    if (const auto keys = settings_that_differ(one, heard[index]); !keys.empty()) {
+      dialog_.say(fmt::format("Beware: when this was recorded, the driver of \"{}\" had other settings than now: {}.",
+                              one.name, fmt::join(keys, ", ")));
+    }
+  }
+  const auto is_simulated = [](const TimedReading& one) { return one.reading.quality == ReadingQuality::kSimulated; };
+  for (const HeardSensor& one : heard) {
+    if (std::ranges::any_of(one.readings, is_simulated)) {
+      dialog_.say("Beware: these readings are made up by a simulation.");
+      break;
+    }
+  }
+}
+
+std::string CalibrationSession::progress_line(double elapsed_s, const Heard& heard) const {
+  std::string line = fmt::format("{:3.0f} of {:.0f} s  {}", elapsed_s, duration_s_, live_text(sensor(), heard[0]));
+  if (reference_) line += "  " + live_text(*reference(), heard[1]);
+  return line;
+}
+
+ParameterValue CalibrationSession::value_now(const ConfigChange& change) const {
+  return (change.table.empty() ? sensor().values : sensor().calibration).all().at(change.key);
+}
+
+std::vector<std::string> CalibrationSession::speed_effect(std::span<const ConfigChange> wanted,
+                                                          std::span<const double> said_m_s) const {
+  SensorConfig changed = sensor();
+  for (const ConfigChange& change : wanted) {
+    if (!change.table.empty()) changed.calibration.set(change.key, change.value);
+  }
+  // At the sensor: the way to the height of the scenes comes after, and does not change.
+  Calibration now = calibration();
+  Calibration then = calibration_of(changed);
+  now.height_factor = then.height_factor = 1.0;
+  std::vector<std::string> lines = {"where it says   is taken now for   then for"};
+  for (const double said : said_m_s) {
+    WindReading reading;
+    reading.speed_m_s = said / now.unit_m_s;
+    lines.push_back(fmt::format("{:8.2f} m/s       {:8.2f} m/s   {:6.2f} m/s", said, now.applied_to(reading).speed_m_s,
+                                then.applied_to(reading).speed_m_s));
+  }
+  return lines;
+}
+
+void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vector<std::string>& effect) {
+  std::erase_if(wanted, [this](const ConfigChange& change) { return change.value == value_now(change); });
+  if (wanted.empty()) {
+    dialog_.say("\nThe configuration says so already: nothing to write.");
+    return;
+  }
+  std::string text = "\n";
+  for (const ConfigChange& change : wanted) {
+    text += fmt::format("  {:<24} {} -> {}\n", key_of(change), toml_value(value_now(change)), toml_value(change.value));
+  }
+  for (const std::string& line : effect) text += "  " + line + "\n";
+  dialog_.say(text);
+
+  const auto edited = edit_sensor(text_, sensor().name, wanted);
+  if (!edited) throw ExitError(kExitConfig, request_.config_file.string() + ": " + edited.error().message);
+  if (request_.is_dry_run) {
+    dialog_.say("A dry run: nothing was written.");
+  } else if (!dialog_.confirm(fmt::format("Write this to {}?", request_.config_file.string()))) {
+    dialog_.say("Nothing was written.");
+  } else {
+    const auto kept = replace_config(request_.config_file, text_, *edited);
+    dialog_.say(
+        fmt::format("{} is written; what it said before is in {}. A running daemon takes it on when it is "
+                    "started again.",
+                    request_.config_file.string(), kept.string()));
+  }
+}
+
+std::vector<double> said_speeds_m_s(const HeardSensor& heard, const Calibration& calibration) {
+  std::vector<double> speeds_m_s;
+  for (const TimedReading& one : heard.readings) speeds_m_s.push_back(one.reading.speed_m_s * calibration.unit_m_s);
+  return speeds_m_s;
+}
+
+ReferencePairs pair_with_reference(const CalibrationSession& session, const Heard& heard, double least_block_s) {
+  // Heights count only where both are known: else the two are taken to stand side by side.
+  const Calibration calibration = session.calibration();
+  Calibration reference = calibration_of(*session.reference());
+  const bool has_heights =
+      session.sensor().calibration.number("height") > 0.0 && session.reference()->calibration.number("height") > 0.0;
+  if (!has_heights) reference.height_factor = 1.0;
+  const double to_sensor = has_heights ? 1.0 / calibration.height_factor : 1.0;
+
+  ReferencePairs result{.block_s = least_block_s};
+  for (const HeardSensor& one : heard) {
+    if (one.readings.size() < 2) continue;
+    const double span_s = one.readings.back().time_s - one.readings.front().time_s;
+    result.block_s = std::max(result.block_s, 3.0 * span_s / static_cast<double>(one.readings.size() - 1));
+  }
+  std::vector<TimedSpeed> said;
+  for (const TimedReading& one : heard[0].readings) {
+    said.push_back({one.time_s, one.reading.speed_m_s * calibration.unit_m_s});
+  }
+  for (const TimedReading& one : heard[1].readings) {
+    result.truth.push_back({one.time_s, reference.applied_to(one.reading).speed_m_s * to_sensor});
+  }
+  result.pairs = pair_means(said, result.truth, result.block_s);
+  return result;
+}
+
+void refuse(const Failure& failure) {
+  throw ExitError(kExitDataError, failure.message + ". Nothing was written");
+}
+
+double rounded(double value, double step) noexcept {
+  const double result = std::round(value / step) * step;
+  // The multiple's nearest decimal, so that it is written as 1.043 and not as 1.0430000000000001.
+  const double scale = std::round(1.0 / step);
+  return std::round(result * scale) / scale + 0.0;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,280 @@
+#include "daemon/tools/calibration/calibration_source.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/sensing/sensor_runner.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/stream/stream_client.hpp"
+#include "drivers/windlog/windlog_reader.hpp"
+
+namespace yuragi {
+namespace {
+
+using SensorConfigs = std::vector<const SensorConfig*>;
+
+constexpr auto kDaemonConnectTimeout = std::chrono::seconds(2);
+constexpr auto kDaemonSilence = std::chrono::seconds(5);
+constexpr auto kDevicePause = std::chrono::milliseconds(20);
+constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station speaks every 48 s
+constexpr double kProgressInterval_s = 0.25;
+constexpr std::size_t kReadingsPerProgress = 200'000;  // a second or less
+
+bool all_have_spoken(const Heard& heard) {
+  return std::ranges::none_of(heard, [](const HeardSensor& sensor) { return sensor.readings.empty(); });
+}
+
+/// The course of one live stretch: when it begins, how long it takes, when to tell of it.
+class LiveStretch {
+ public:
+  LiveStretch(const SensorConfigs& sensors, double duration_s, const Clock& clock,
+              const CalibrationSource::Progress& progress)
+      : sensors_(sensors),
+        duration_s_(duration_s),
+        clock_(clock),
+        progress_(progress),
+        begun_(clock.now().mono),
+        heard_(sensors.size()) {}
+
+  void add(std::size_t sensor, const WindReading& reading) {
+    heard_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
+  }
+
+  /// Is it over? Throws where a sensor stays silent; `link_of` says what its link did last.
+  template <class LinkOf>
+  bool is_over(const LinkOf& link_of) {
+    const double now_s = seconds(clock_.now().mono - begun_);
+    if (!all_spoke_at_s_ && all_have_spoken(heard_)) all_spoke_at_s_ = now_s;
+    const double elapsed_s = all_spoke_at_s_ ? now_s - *all_spoke_at_s_ : 0.0;
+    const bool is_over = all_spoke_at_s_ && elapsed_s >= duration_s_;
+    if (is_over || now_s >= next_progress_s_) {
+      progress_(elapsed_s, heard_);
+      next_progress_s_ = now_s + kProgressInterval_s;
+    }
+    if (!all_spoke_at_s_ && now_s >= kFirstReadingTimeout_s) throw silent(link_of);
+    return is_over;
+  }
+
+  Heard take() { return std::move(heard_); }
+
+ private:
+  template <class LinkOf>
+  ExitError silent(const LinkOf& link_of) const {
+    std::size_t sensor = 0;
+    while (!heard_[sensor].readings.empty()) ++sensor;
+    return {kExitUnavailable,
+            fmt::format("the sensor \"{}\" has said nothing for {:.0f} s ({}); `yuragi sensors watch "
+                        "--raw {}` shows what it does",
+                        sensors_[sensor]->name, kFirstReadingTimeout_s, link_of(sensor), sensors_[sensor]->name)};
+  }
+
+  const SensorConfigs& sensors_;
+  double duration_s_;
+  const Clock& clock_;
+  const CalibrationSource::Progress& progress_;
+  MonoTime begun_;
+  Heard heard_;
+  std::optional<double> all_spoke_at_s_;
+  double next_progress_s_ = 0.0;
+};
+
+/// The devices, opened here. They stay open between two stretches, so that the second begins at once.
+class DeviceSource final : public CalibrationSource {
+ public:
+  DeviceSource(SensorConfigs sensors, const Clock& clock) : sensors_(std::move(sensors)), clock_(clock) {
+    std::vector<std::unique_ptr<Sensor>> opened;
+    for (const SensorConfig* sensor : sensors_) opened.push_back(open_sensor(*sensor));
+    for (auto& sensor : opened) runners_.push_back(std::make_unique<SensorRunner>(std::move(sensor), clock_));
+  }
+
+  std::string description() const override { return "the devices themselves"; }
+  bool is_live() const override { return true; }
+
+  Heard hear(const Stretch& stretch, const Progress& progress) override {
+    LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
+    for (const auto& runner : runners_) runner->drain([](const WindReading&) {});  // what came before
+    do {
+      std::this_thread::sleep_for(kDevicePause);
+      for (std::size_t index = 0; index < runners_.size(); ++index) {
+        runners_[index]->drain([&](const WindReading& reading) { live.add(index, reading); });
+      }
+    } while (!live.is_over([this](std::size_t sensor) { return runners_[sensor]->link().detail; }));
+    return live.take();
+  }
+
+ private:
+  SensorConfigs sensors_;
+  const Clock& clock_;
+  std::vector<std::unique_ptr<SensorRunner>> runners_;
+};
+
+const wire::SensorStatus* find_status(const wire::Sensors& all, const SensorConfig& sensor) {
+  const auto found = std::ranges::find_if(all.sensors, [&](const wire::SensorStatus& status) {
+    return status.name == sensor.name && status.driver == sensor.driver->name;
+  });
+  return found != all.sensors.end() ? &*found : nullptr;
+}
+
+/// A client of the daemon that has asked for the sensors. Nothing where nobody answers.
+std::optional<StreamClient> connect_to_daemon(const std::string& address) {
+  auto client = StreamClient::connect(address, kDaemonConnectTimeout);
+  if (!client || !client->subscribe({.poses = false, .sensors = true, .client = "calibrate"})) return std::nullopt;
+  return std::move(*client);
+}
+
+/// The next word of the daemon on its sensors. Throws where it goes.
+wire::Sensors next_sensors(StreamClient& client, const std::string& address) {
+  for (;;) {
+    auto message = client.receive(kDaemonSilence);
+    if (!message) {
+      throw ExitError(kExitUnavailable,
+                      fmt::format("the daemon at {} has gone ({})", address, name_of(message.error())));
+    }
+    if (const auto* hello = std::get_if<wire::Hello>(&*message); hello != nullptr && hello->refused) {
+      throw ExitError(kExitUnavailable, fmt::format("the daemon at {} lets nobody in: {}", address, *hello->refused));
+    }
+    if (auto* sensors = std::get_if<wire::Sensors>(&*message)) return std::move(*sensors);
+  }
+}
+
+/// The daemon that has the devices: it tells each sensor's last raw reading about twice a second.
+class DaemonSource final : public CalibrationSource {
+ public:
+  DaemonSource(SensorConfigs sensors, std::string address, const Clock& clock)
+      : sensors_(std::move(sensors)), address_(std::move(address)), clock_(clock) {}
+
+  std::string description() const override { return "the running daemon at " + address_; }
+  bool is_live() const override { return true; }
+
+  Heard hear(const Stretch& stretch, const Progress& progress) override {
+    // A connection of its own: an old one would hand out what was said while hands were busy.
+    auto client = connect_to_daemon(address_);
+    if (!client) throw ExitError(kExitUnavailable, "the daemon at " + address_ + " has gone");
+    std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
+    std::vector<std::string> links(sensors_.size(), "it is not there");
+
+    LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
+    do {
+      const wire::Sensors all = next_sensors(*client, address_);
+      for (std::size_t index = 0; index < sensors_.size(); ++index) {
+        const wire::SensorStatus* status = find_status(all, *sensors_[index]);
+        if (status == nullptr) continue;
+        links[index] = status->detail;
+        // The first word may be of a reading from before.
+        const bool is_new = counted[index] && *counted[index] != status->readings && status->raw_speed_m_s;
+        counted[index] = status->readings;
+        if (is_new) live.add(index, reading_of(*status));
+      }
+    } while (!live.is_over([&links](std::size_t sensor) { return links[sensor]; }));
+    return live.take();
+  }
+
+ private:
+  WindReading reading_of(const wire::SensorStatus& status) const {
+    WindReading reading;
+    reading.time = clock_.now();
+    reading.speed_m_s = status.raw_speed_m_s.value_or(0.0);
+    reading.direction_deg = status.raw_direction_deg;
+    reading.quality = status.simulated ? ReadingQuality::kSimulated : ReadingQuality::kGood;
+    return reading;
+  }
+
+  SensorConfigs sensors_;
+  std::string address_;
+  const Clock& clock_;
+};
+
+/// A recording, read from its beginning for each stretch.
+class RecordedSource final : public CalibrationSource {
+ public:
+  RecordedSource(SensorConfigs sensors, std::filesystem::path file)
+      : sensors_(std::move(sensors)), file_(std::move(file)) {
+    const WindlogReader reader = opened();
+    for (const SensorConfig* sensor : sensors_) {
+      const auto& known = reader.sensors();
+      if (std::ranges::find(known, sensor->name, &LoggedSensor::name) != known.end()) continue;
+      std::set<std::string> names;
+      for (const LoggedSensor& one : known) names.insert(one.name);
+      throw ExitError(kExitDataError, fmt::format("{}: has no sensor \"{}\"; there are: {}", file_.string(),
+                                                  sensor->name, fmt::join(names, ", ")));
+    }
+  }
+
+  std::string description() const override { return "the recording " + file_.string(); }
+  bool is_live() const override { return false; }
+
+  Heard hear(const Stretch& stretch, const Progress& progress) override {
+    WindlogReader reader = opened();
+    if (stretch.from_s) reader.seek(from_seconds(*stretch.from_s));
+    Heard heard(sensors_.size());
+    for (std::size_t count = 1;; ++count) {
+      auto logged = reader.next();
+      if (!logged) throw ExitError(kExitDataError, logged.error().message);
+      if (!*logged) break;
+      const double time_s = seconds((*logged)->log_time);
+      if (stretch.to_s && time_s >= *stretch.to_s) break;
+      if (count % kReadingsPerProgress == 0) progress(time_s, heard);
+      const LoggedSensor& from = reader.sensors()[(*logged)->sensor];
+      for (std::size_t index = 0; index < sensors_.size(); ++index) {
+        if (sensors_[index]->name != from.name) continue;
+        heard[index].readings.push_back({time_s, (*logged)->reading});
+        if (from.driver == sensors_[index]->driver->name) heard[index].settings.insert(from.options);
+      }
+    }
+    return heard;
+  }
+
+ private:
+  WindlogReader opened() const {
+    if (!std::filesystem::exists(file_)) {
+      throw ExitError(kExitNoInput, file_.string() + ": there is no such recording");
+    }
+    auto reader = WindlogReader::open(file_);
+    if (!reader) throw ExitError(kExitDataError, reader.error().message);
+    return std::move(*reader);
+  }
+
+  SensorConfigs sensors_;
+  std::filesystem::path file_;
+};
+
+}  // namespace
+
+std::unique_ptr<CalibrationSource> make_live_source(SensorConfigs sensors, const std::string& address,
+                                                    const Clock& clock) {
+  auto client = connect_to_daemon(address);
+  if (!client) return std::make_unique<DeviceSource>(std::move(sensors), clock);
+
+  const wire::Sensors all = next_sensors(*client, address);
+  const auto held = std::ranges::count_if(
+      sensors, [&all](const SensorConfig* sensor) { return find_status(all, *sensor) != nullptr; });
+  if (held == 0) return std::make_unique<DeviceSource>(std::move(sensors), clock);
+  for (const SensorConfig* sensor : sensors) {
+    const wire::SensorStatus* status = find_status(all, *sensor);
+    std::string obstacle;
+    if (status == nullptr) {
+      obstacle = fmt::format("has not the sensor \"{}\"", sensor->name);
+    } else if (status->replayed) {
+      obstacle = "plays a recording; give that with --recording";
+    } else if (status->readings > 0 && !status->raw_speed_m_s) {
+      obstacle = "is of an older version, which tells calibrated readings only";
+    } else if (sensor->driver->name == std::string_view("microphone")) {
+      // Its readings have gone through gain and exponent, or the curve, as they were when the daemon began.
+      obstacle = "has the microphone, and may have begun with another calibration of it than the file has now";
+    }
+    if (!obstacle.empty()) {
+      throw ExitError(kExitUnavailable,
+                      fmt::format("the daemon at {} {}: end it for the calibration", address, obstacle));
+    }
+  }
+  return std::make_unique<DaemonSource>(std::move(sensors), address, clock);
+}
+
+std::unique_ptr<CalibrationSource> make_recorded_source(SensorConfigs sensors, const std::filesystem::path& file) {
+  return std::make_unique<RecordedSource>(std::move(sensors), file);
+}
+
+}  // namespace yuragi

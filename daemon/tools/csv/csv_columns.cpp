@@ -1,0 +1,243 @@
+#include "daemon/tools/csv/csv_columns.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "engine/base/units.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr SpeedUnit kMetresPerSecond{"m/s", 1.0};
+constexpr SpeedUnit kKilometresPerHour{"km/h", kMetresPerSecondPerKmh};
+constexpr SpeedUnit kKnots{"kn", kMetresPerSecondPerKnot};
+constexpr SpeedUnit kMilesPerHour{"mph", kMetresPerSecondPerMph};
+
+constexpr std::array<std::pair<std::string_view, SpeedUnit>, 14> kSpeedUnits = {{{"ms", kMetresPerSecond},
+                                                                                 {"ms1", kMetresPerSecond},
+                                                                                 {"mps", kMetresPerSecond},
+                                                                                 {"mpers", kMetresPerSecond},
+                                                                                 {"kmh", kKilometresPerHour},
+                                                                                 {"kmh1", kKilometresPerHour},
+                                                                                 {"kph", kKilometresPerHour},
+                                                                                 {"kmph", kKilometresPerHour},
+                                                                                 {"kn", kKnots},
+                                                                                 {"kt", kKnots},
+                                                                                 {"kts", kKnots},
+                                                                                 {"knot", kKnots},
+                                                                                 {"knots", kKnots},
+                                                                                 {"mph", kMilesPerHour}}};
+
+// What loggers call their columns, once letters are small, signs are gone and a unit is cut off. The first that is
+// there is taken.
+constexpr std::array<std::string_view, 15> kTimeNames = {"utc",       "utctime",  "timeutc", "datetimeutc", "dateutc",
+                                                         "timestamp", "datetime", "isotime", "time",        "date",
+                                                         "unixtime",  "unix",     "epoch",   "ts",          "t"};
+constexpr std::array<std::string_view, 14> kSpeedNames = {
+    "speed",        "windspeed",    "windspd", "wspeed",        "wspd",          "ws",  "wv", "ff",
+    "windspeedavg", "avgwindspeed", "windavg", "windspeedmean", "meanwindspeed", "wind"};
+constexpr std::array<std::string_view, 10> kDirectionNames = {
+    "direction", "winddirection", "winddir", "wdir", "wd", "dd", "dir", "winddirectionavg", "bearing", "windbearing"};
+constexpr std::array<std::string_view, 9> kGustNames = {
+    "gust", "windgust", "windgusts", "gustspeed", "gusts", "windgustspeed", "wgust", "maxwindspeed", "windspeedmax"};
+constexpr std::array<std::string_view, 6> kUNames = {"u", "uwind", "windu", "ucomponent", "ugrd", "eastward"};
+constexpr std::array<std::string_view, 6> kVNames = {"v", "vwind", "windv", "vcomponent", "vgrd", "northward"};
+
+std::span<const std::string_view> usual_names(CsvRole role) {
+  switch (role) {
+    case CsvRole::kTime:
+      return kTimeNames;
+    case CsvRole::kSpeed:
+      return kSpeedNames;
+    case CsvRole::kDirection:
+      return kDirectionNames;
+    case CsvRole::kGust:
+      return kGustNames;
+    case CsvRole::kU:
+      return kUNames;
+    case CsvRole::kV:
+      return kVNames;
+    case CsvRole::kElapsed:
+    case CsvRole::kQuality:
+    case CsvRole::kSensor:
+      break;  // taken from our own export alone
+  }
+  return {};
+}
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+bool is_word_sign(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+}
+
+/// The words of a name in small letters: "Wind Speed (km/h)" has wind, speed, km, h.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  for (const char sign : name) {
+    const char c = lower(sign);
+    if (is_word_sign(c)) {
+      words.back() += c;
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+std::string joined(std::span<const std::string> words) {
+  std::string all;
+  for (const std::string& word : words) all += word;
+  return all;
+}
+
+/// A name taken apart: "wind_speed_10m (km/h)" is "windspeed" in "kmh".
+struct NameParts {
+  std::string stem;
+  std::string unit;
+};
+
+NameParts parts_of(std::string_view name) {
+  std::vector<std::string> words = words_of(name);
+  const auto is_unit = [](std::string_view text) {
+    static constexpr std::array<std::string_view, 9> kOthers = {"deg", "degree",  "degrees", "rad",    "radian",
+                                                                "s",   "radians", "sec",     "seconds"};
+    return find_speed_unit(text).has_value() || std::find(kOthers.begin(), kOthers.end(), text) != kOthers.end();
+  };
+
+  // The longest unit at the end: m_s_1 before s_1.
+  NameParts parts;
+  for (std::size_t count = std::min<std::size_t>(3, words.empty() ? 0 : words.size() - 1); count > 0; --count) {
+    const std::string unit = joined(std::span(words).last(count));
+    if (!is_unit(unit)) continue;
+    parts.unit = unit;
+    words.resize(words.size() - count);
+    break;
+  }
+
+  // A height says nothing about what a column is.
+  std::erase_if(words, [](const std::string& word) {
+    return word.size() > 1 && word.back() == 'm' &&
+           std::all_of(word.begin(), word.end() - 1, [](char c) { return c >= '0' && c <= '9'; });
+  });
+  parts.stem = joined(words);
+  return parts;
+}
+
+CsvColumn column_of(const std::string& name) {
+  const NameParts parts = parts_of(name);
+  return {.name = name,
+          .unit = find_speed_unit(parts.unit),
+          .is_in_radians = parts.unit.starts_with("rad"),
+          .is_in_ms = parts.unit == "ms"};
+}
+
+bool equal_in_any_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+}  // namespace
+
+std::string_view name_of(CsvRole role) {
+  static constexpr std::array<std::string_view, kCsvRoleCount> kNames = {
+      "time", "elapsed", "speed", "direction", "gust", "u", "v", "quality", "sensor"};
+  return kNames.at(static_cast<std::size_t>(role));
+}
+
+std::optional<SpeedUnit> find_speed_unit(std::string_view name) {
+  const std::string plain = joined(words_of(name));
+  for (const auto& [known, unit] : kSpeedUnits) {
+    if (known == plain) return unit;
+  }
+  return std::nullopt;
+}
+
+Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given) {
+  CsvColumns columns;
+  const auto at = [&columns](CsvRole role) -> std::optional<CsvColumn>& {
+    return columns[static_cast<std::size_t>(role)];
+  };
+  const auto is_given = [&given](CsvRole role) { return !given[static_cast<std::size_t>(role)].empty(); };
+
+  // What the user says.
+  for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
+    if (given[role].empty()) continue;
+    const auto found = std::find_if(header.begin(), header.end(),
+                                    [&](const std::string& name) { return equal_in_any_case(name, given[role]); });
+    if (found == header.end()) {
+      return Failure{"there is no column \"" + given[role] + "\"; the columns are " + listed(header)};
+    }
+    columns[role] = column_of(*found);
+  }
+
+  // What the names say. Components are looked for only where there is no speed, and the other way round.
+  const auto guess = [&](CsvRole role) {
+    if (at(role)) return;
+    for (const std::string_view usual : usual_names(role)) {
+      for (const std::string& name : header) {
+        if (!at(role) && parts_of(name).stem == usual) at(role) = column_of(name);
+      }
+    }
+  };
+  guess(CsvRole::kTime);
+  guess(CsvRole::kGust);
+  const bool wants_components = is_given(CsvRole::kU) || is_given(CsvRole::kV);
+  if (!wants_components) guess(CsvRole::kSpeed);
+  if (at(CsvRole::kSpeed)) {
+    guess(CsvRole::kDirection);
+  } else {
+    guess(CsvRole::kU);
+    guess(CsvRole::kV);
+  }
+
+  // Our own export tells more.
+  if (header == split_csv_line(kExportedHeader, ',')) {
+    if (!is_given(CsvRole::kTime)) at(CsvRole::kElapsed) = column_of("time_s");
+    at(CsvRole::kSensor) = column_of("sensor");
+    at(CsvRole::kQuality) = column_of("quality");
+  }
+
+  if (!at(CsvRole::kTime)) {
+    return Failure{"no column looks like a time; the columns are " + listed(header) + "; name it with --time COLUMN"};
+  }
+  if (!at(CsvRole::kSpeed) && (!at(CsvRole::kU) || !at(CsvRole::kV))) {
+    return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header) +
+                   "; name it with --speed COLUMN, or --u COLUMN --v COLUMN"};
+  }
+  return columns;
+}
+
+std::vector<std::string> split_csv_line(std::string_view line, char delimiter) {
+  std::vector<std::string> fields;
+  std::string field;
+  bool in_quotes = false;
+  const auto finish = [&] {
+    const auto begin = field.find_first_not_of(" \t");
+    const auto end = field.find_last_not_of(" \t");
+    fields.push_back(begin == std::string::npos ? "" : field.substr(begin, end - begin + 1));
+    field.clear();
+  };
+  for (const char c : line) {
+    if (c == '"') {
+      in_quotes = !in_quotes;
+    } else if (c == delimiter && !in_quotes) {
+      finish();
+    } else {
+      field += c;
+    }
+  }
+  finish();
+  return fields;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/tools/csv/csv_options.hpp"
+#include "engine/base/result.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+struct CsvImportReport {
+  std::vector<std::string> columns;  ///< what was taken as what, a line each
+  std::size_t rows = 0;              ///< below the header
+  std::size_t taken = 0;
+  std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsTold
+
+  std::size_t refused() const { return rows - taken; }
+  static constexpr std::size_t kMaxRefusalsTold = 5;
+};
+
+/// Takes each reading, with the name of its sensor. May throw; the import ends with that.
+using CsvReadingSink = std::function<void(std::string_view sensor, const WindReading& reading)>;
+
+/// Reads a CSV file with a header: each row is a reading with UTC, and with a monotonic time that begins at zero. Rows
+/// that are no readings, or go back in time, are refused and counted. A decimal comma is understood where the delimiter
+/// is another sign.
+///
+/// `name` stands in messages. `in` is read once, in blocks. Believes nothing: any bytes may come. Fails where there is
+/// no header that can be understood, or where a line is endless, or at the first bad row if `strict`. Thread-safe: yes,
+/// with streams of their own.
+Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string& name, const CsvImportOptions& options,
+                                            const CsvReadingSink& sink);
+
+}  // namespace yuragi

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "daemon/tools/csv/csv_columns.hpp"
+#include "daemon/tools/csv/csv_time.hpp"
+
+namespace yuragi {
+
+/// In what a CSV file gives directions.
+enum class CsvDirectionUnit : std::uint8_t {
+  kAuto,  ///< radians if the column's name says so, or else degrees
+  kDegrees,
+  kRadians,
+  kPoint16,  ///< 0 to 15, clockwise from north, 22.5 degrees each; names (NNE) are always understood
+};
+
+struct CsvImportOptions {
+  CsvColumnNames columns;  ///< the user's names; empty ones are guessed
+  CsvTimeFormat time_format = CsvTimeFormat::kAuto;
+  std::optional<SpeedUnit> unit;  ///< of speed, gust, u and v; empty: as the column's name says, or else m/s
+  CsvDirectionUnit direction_unit = CsvDirectionUnit::kAuto;
+  bool direction_is_toward = false;  ///< the column says where the wind blows to
+  bool components_are_from = false;  ///< u and v point to where the wind comes from
+  char delimiter = 0;                ///< ',', ';' or tab; 0: whichever the header has most of
+  char comment = '#';                ///< lines that begin with it are passed over; 0: none are
+  std::string sensor = "imported";   ///< what the readings' sensor is called, unless the file is our own export
+  bool strict = false;               ///< fail at the first row that is refused
+};
+
+}  // namespace yuragi

@@ -1,0 +1,233 @@
+#include "daemon/tools/csv/csv_row.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "drivers/windlog/windlog_writer.hpp"
+#include "engine/base/units.hpp"
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr int kElapsedDecimals = 9;
+constexpr double kDegPerPoint16 = 22.5;
+constexpr std::array<std::string_view, 16> kPoints16 = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
+                                                        "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
+
+char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](char c) { return upper(c); });
+  return result;
+}
+
+/// The ways in which loggers write that they have no value.
+bool is_missing(std::string_view text) {
+  static constexpr std::array<std::string_view, 8> kWords = {"", "NAN", "NA", "N/A", "NULL", "NONE", "-", "--"};
+  return text.size() <= 4 && std::find(kWords.begin(), kWords.end(), upper(text)) != kWords.end();
+}
+
+/// A finite number, with a point or a comma.
+std::optional<double> parse_number(std::string_view text) {
+  std::string plain(text.starts_with('+') ? text.substr(1) : text);
+  std::replace(plain.begin(), plain.end(), ',', '.');
+  double value = 0.0;
+  const char* const end = plain.data() + plain.size();
+  const auto [stop, error] = std::from_chars(plain.data(), end, value);
+  if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// "no number "abc" in speed": the start of a field that may be anything.
+Failure refusal(std::string_view what, std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  std::string shown(text.substr(0, kShown));
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
+  return {std::string(what) + " \"" + shown + (text.size() > kShown ? "...\"" : "\"")};
+}
+
+}  // namespace
+
+CsvRowReader::CsvRowReader(const CsvColumns& columns, const CsvImportOptions& options)
+    : columns_(columns), options_(options), time_format_(options.time_format) {}
+
+double CsvRowReader::unit_of(CsvRole role) const {
+  if (options_.unit) return options_.unit->metres_per_second;
+  const auto& column = columns_[static_cast<std::size_t>(role)];
+  return column && column->unit ? column->unit->metres_per_second : 1.0;
+}
+
+Result<WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
+  WindReading reading;
+  if (const auto done = read_wind(fields, reading); !done) return done.error();
+
+  const auto gust_m_s = read_speed(fields, CsvRole::kGust);
+  if (!gust_m_s) return gust_m_s.error();
+  if (*gust_m_s && **gust_m_s < 0.0)
+    return refusal("a gust below zero:", fields[static_cast<std::size_t>(CsvRole::kGust)]);
+  reading.gust_m_s = *gust_m_s;
+
+  if (const char* quality = fields[static_cast<std::size_t>(CsvRole::kQuality)]; quality != nullptr) {
+    const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), std::string_view(quality));
+    if (word == kQualityWords.end()) return refusal("no such quality:", quality);
+    reading.quality = static_cast<ReadingQuality>(word - kQualityWords.begin());
+  }
+  if (!is_plausible(reading)) {
+    return Failure{"no wind blows like that: " + std::to_string(reading.speed_m_s) + " m/s" +
+                   (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "")};
+  }
+
+  // The time comes last: only a row that is taken moves it on.
+  const auto time = read_time(fields);
+  if (!time) return time.error();
+  reading.time = *time;
+  return reading;
+}
+
+Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
+  const std::string_view text = fields[static_cast<std::size_t>(CsvRole::kTime)];
+  CsvTimeFormat format = time_format_;
+  if (format == CsvTimeFormat::kAuto) {
+    format = guess_time_format(text);
+    const bool is_in_ms = columns_[static_cast<std::size_t>(CsvRole::kTime)]->is_in_ms;
+    if (is_in_ms && format != CsvTimeFormat::kIso) format = CsvTimeFormat::kUnixMs;
+  }
+  const auto utc = parse_time(text, format);
+  if (!utc) return refusal("no time (" + std::string(name_of(format)) + "):", text);
+
+  // Monotonic time: what our own export says, or else UTC since the first row.
+  Instant time{MonoTime(*utc - first_utc_.value_or(*utc)), *utc};
+  if (const char* elapsed = fields[static_cast<std::size_t>(CsvRole::kElapsed)]; elapsed != nullptr) {
+    const auto ns = parse_decimal(elapsed, kElapsedDecimals);
+    if (!ns) return refusal("no seconds:", elapsed);
+    time.mono = MonoTime(Nanoseconds(*ns));
+  }
+  WindReading recordable;
+  recordable.time = time;
+  if (time.mono < last_) return refusal("goes back in time:", text);
+  if (!is_recordable(recordable)) return refusal("too far in time:", text);
+
+  // The first row that is taken settles what the times look like.
+  time_format_ = format;
+  if (!first_utc_) first_utc_ = *utc;
+  last_ = time.mono;
+  return time;
+}
+
+Result<std::optional<double>, Failure> CsvRowReader::read_speed(const CsvFields& fields, CsvRole role) const {
+  const char* text = fields[static_cast<std::size_t>(role)];
+  if (text == nullptr || is_missing(text)) return std::optional<double>{};
+  const auto number = parse_number(text);
+  if (!number) return refusal("no number in " + std::string(name_of(role)) + ":", text);
+  return std::optional<double>(*number * unit_of(role));
+}
+
+/// Speed and direction, from themselves or from components.
+Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, WindReading& reading) const {
+  if (columns_[static_cast<std::size_t>(CsvRole::kSpeed)]) {
+    const auto speed_m_s = read_speed(fields, CsvRole::kSpeed);
+    if (!speed_m_s) return speed_m_s.error();
+    if (!*speed_m_s) return Failure{"no speed"};
+    if (**speed_m_s < 0.0) return refusal("a speed below zero:", fields[static_cast<std::size_t>(CsvRole::kSpeed)]);
+    reading.speed_m_s = **speed_m_s;
+
+    const char* direction = fields[static_cast<std::size_t>(CsvRole::kDirection)];
+    if (direction == nullptr) return {};
+    const auto direction_deg = read_direction(direction);
+    if (!direction_deg) return direction_deg.error();
+    reading.direction_deg = *direction_deg;
+    return {};
+  }
+
+  const auto u_m_s = read_speed(fields, CsvRole::kU);
+  if (!u_m_s) return u_m_s.error();
+  const auto v_m_s = read_speed(fields, CsvRole::kV);
+  if (!v_m_s) return v_m_s.error();
+  if (!*u_m_s || !*v_m_s) return Failure{"no u or no v"};
+  const WindVector wind = (options_.components_are_from ? -1.0 : 1.0) * WindVector{**u_m_s, **v_m_s};
+  reading.speed_m_s = speed_of(wind);
+  if (reading.speed_m_s > 0.0) reading.direction_deg = direction_from_deg(wind);
+  return {};
+}
+
+Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_view text) const {
+  if (is_missing(text)) return std::optional<double>{};
+
+  // A point of the compass by its name, or a number in whatever it is.
+  double direction_deg = 0.0;
+  const auto* point = std::find(kPoints16.begin(), kPoints16.end(), upper(text));
+  if (point != kPoints16.end()) {
+    direction_deg = kDegPerPoint16 * static_cast<double>(point - kPoints16.begin());
+  } else {
+    const auto number = parse_number(text);
+    if (!number) return refusal("no direction:", text);
+    CsvDirectionUnit unit = options_.direction_unit;
+    if (unit == CsvDirectionUnit::kAuto) {
+      const auto& column = columns_[static_cast<std::size_t>(CsvRole::kDirection)];
+      unit = column && column->is_in_radians ? CsvDirectionUnit::kRadians : CsvDirectionUnit::kDegrees;
+    }
+    direction_deg = *number;
+    if (unit == CsvDirectionUnit::kRadians) direction_deg = *number / kRadPerDeg;
+    if (unit == CsvDirectionUnit::kPoint16) direction_deg = *number * kDegPerPoint16;
+  }
+
+  // Both ways to count a circle are understood, -180 to 180 and 0 to 360; a little more is rounding.
+  constexpr double kTolerance_deg = 0.01;
+  if (direction_deg < -180.0 - kTolerance_deg || direction_deg > 360.0 + kTolerance_deg) {
+    return refusal("no direction on a circle:", text);
+  }
+  if (options_.direction_is_toward) direction_deg += 180.0;
+  if (direction_deg < 0.0) direction_deg += 360.0;
+  if (direction_deg >= 360.0) direction_deg -= 360.0;
+  return std::optional<double>(direction_deg);
+}
+
+std::vector<std::string> CsvRowReader::describe() const {
+  std::vector<std::string> lines;
+  for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
+    if (!columns_[index]) continue;
+    const CsvColumn& column = *columns_[index];
+    const auto role = static_cast<CsvRole>(index);
+    std::string line = std::string(name_of(role)) + " from \"" + column.name + "\"";
+    const auto speed_unit = [&] {
+      const SpeedUnit assumed{"m/s", 1.0};
+      return std::string(options_.unit.value_or(column.unit.value_or(assumed)).name);
+    };
+    switch (role) {
+      case CsvRole::kTime:
+        line += " (" + std::string(name_of(time_format_)) +
+                (time_format_ == CsvTimeFormat::kSeconds ? ", counted from 1970, since no date is told)"
+                                                         : ", UTC where it names no zone)");
+        break;
+      case CsvRole::kSpeed:
+      case CsvRole::kGust:
+        line += " (" + speed_unit() + ")";
+        break;
+      case CsvRole::kU:
+        line += " (" + speed_unit() + (options_.components_are_from ? ", from east)" : ", toward east)");
+        break;
+      case CsvRole::kV:
+        line += " (" + speed_unit() + (options_.components_are_from ? ", from north)" : ", toward north)");
+        break;
+      case CsvRole::kDirection:
+        line += options_.direction_is_toward ? " (where it blows to)" : " (where it comes from)";
+        break;
+      case CsvRole::kElapsed:
+        line += " (s)";
+        break;
+      case CsvRole::kQuality:
+      case CsvRole::kSensor:
+        break;
+    }
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/tools/csv/csv_options.hpp"
+#include "engine/base/result.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+/// The fields of a row, by role; null where there is no such column.
+using CsvFields = std::array<const char*, kCsvRoleCount>;
+
+/// Makes readings of the rows of one CSV file. Thread-safe: no.
+class CsvRowReader {
+ public:
+  CsvRowReader(const CsvColumns& columns, const CsvImportOptions& options);
+
+  /// The reading in a row, or why there is none. Rows come in the order of the file.
+  Result<WindReading, Failure> read(const CsvFields& fields);
+
+  /// Which column is taken as what, a line each; complete once a row was read.
+  std::vector<std::string> describe() const;
+
+ private:
+  double unit_of(CsvRole role) const;
+  Result<Instant, Failure> read_time(const CsvFields& fields);
+  Result<std::optional<double>, Failure> read_speed(const CsvFields& fields, CsvRole role) const;
+  Result<std::optional<double>, Failure> read_direction(std::string_view text) const;
+  Result<void, Failure> read_wind(const CsvFields& fields, WindReading& reading) const;
+
+  CsvColumns columns_;
+  CsvImportOptions options_;
+  CsvTimeFormat time_format_;
+  std::optional<UtcTime> first_utc_;
+  MonoTime last_{};
+};
+
+}  // namespace yuragi

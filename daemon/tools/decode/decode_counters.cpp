@@ -1,0 +1,158 @@
+// `yuragi decode mcc1208` and `labjack`: replies are counts and voltages; what wind these are, the options say.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "daemon/tools/decode/decode_formats.hpp"
+#include "drivers/decode/usb/mcc1208.hpp"
+
+namespace yuragi {
+namespace {
+
+/// What a reply holds, as far as it goes.
+struct CounterReply {
+  std::optional<std::uint32_t> count;
+  std::optional<double> volts;        ///< of the vane's wiper, if there is a vane
+  std::optional<double> reference_v;  ///< over the vane's track, where the reply has that too
+};
+
+/// What counts and voltages mean, reply after reply.
+class CounterMeaning {
+ public:
+  explicit CounterMeaning(const UnitDecoderOptions& options) : options_(options) {}
+
+  /// The wind of a reply, as far as the options say. Refused: the counter went back, or on by more than any wind
+  /// drives.
+  UnitDecoder::Outcome of(const CounterReply& reply) {
+    UnitReading reading;
+    reading.count = reply.count;
+    reading.volts = reply.volts;
+    const auto reference_v = reply.reference_v ? reply.reference_v : options_.vane_reference_v;
+    if (reply.volts && reference_v) {
+      reading.wind.direction_deg = vane_direction_deg(options_.vane, *reply.volts, *reference_v);
+    }
+    if (reply.count && options_.interval_s) {
+      const auto speed_m_s = advance_cup(cup_, options_.cup, *reply.count, *options_.interval_s);
+      if (speed_m_s && !*speed_m_s) return UnitRefusal{speed_m_s->error(), "the counter went back, or on too far"};
+      if (speed_m_s) reading.wind.speed_m_s = **speed_m_s;
+    }
+    return reading;
+  }
+
+  /// A reply was no use: how far apart the next two counts are is not known.
+  void interrupt() { cup_ = {}; }
+
+ private:
+  UnitDecoderOptions options_;
+  CupState cup_;
+};
+
+/// Replies to control transfers. The setup packet before one says what it is, else its length does.
+class Mcc1208Decoder final : public UnitDecoder {
+ public:
+  explicit Mcc1208Decoder(const UnitDecoderOptions& options) : meaning_(options) {}
+
+  void take(const RawUnit& unit, const Sink& sink) override {
+    const ByteSpan setup = unit.request.size() == 8 ? unit.request : ByteSpan();
+    const bool is_asked = !setup.empty();
+    if (is_asked && setup[1] == mcc1208_read_calibration(0).request) return take_calibration(unit, sink);
+
+    const bool is_analog = is_asked ? setup[1] == mcc1208_read_analog(0).request : unit.bytes.size() == 2;
+    CounterReply reply;
+    std::optional<Refusal> why;
+    if (is_analog) {
+      const auto analog = decode_mcc1208_analog(unit.bytes);
+      if (analog) {
+        reply.volts =
+            mcc1208_volts(*analog, is_asked ? calibrations_[setup[2] % kMcc1208Inputs] : Mcc1208Calibration{});
+      } else {
+        why = analog.error();
+      }
+    } else {
+      const auto count = decode_mcc1208_count(unit.bytes);
+      if (count) {
+        reply.count = *count;
+      } else {
+        why = count.error();
+      }
+    }
+    if (!why) return sink(meaning_.of(reply));
+    meaning_.interrupt();
+    sink(UnitRefusal{*why, {}});
+  }
+
+ private:
+  /// What an input is off by, for its later values. One that was never written leaves them as they are.
+  void take_calibration(const RawUnit& unit, const Sink& sink) {
+    const auto calibration = decode_mcc1208_calibration(unit.bytes);
+    if (!calibration) return sink(UnitRefusal{calibration.error(), "the calibration of an input"});
+    const auto channel = static_cast<std::size_t>(unit.request[2] / 8U);
+    calibrations_[channel % kMcc1208Inputs] = *calibration;
+  }
+
+  std::array<Mcc1208Calibration, kMcc1208Inputs> calibrations_{};
+  CounterMeaning meaning_;
+};
+
+/// What a feedback reply answers: as its command says; without that, as its own echo and length let it be guessed.
+LabjackRequest labjack_request_of(const RawUnit& unit) {
+  constexpr std::size_t kCommandEcho = 6;
+  constexpr std::size_t kReplyEcho = 8;
+  constexpr std::uint8_t kAnalog = 0x01;
+  constexpr std::uint8_t kCounter0 = 0x36;
+  LabjackRequest request;
+  if (unit.request.size() <= kCommandEcho) {
+    if (unit.bytes.size() > kReplyEcho) request.echo = unit.bytes[kReplyEcho];
+    if (unit.bytes.size() == 12) request.counter.reset();
+    if (unit.bytes.size() == 14) request.analog_channel.reset();
+    return request;
+  }
+
+  request = {.echo = unit.request[kCommandEcho], .analog_channel = {}, .reference_channel = {}, .counter = {}};
+  for (ByteSpan parts = unit.request.subspan(kCommandEcho + 1); parts.size() >= 2;) {
+    const bool is_analog = parts[0] == kAnalog;
+    if (is_analog) {
+      (request.analog_channel ? request.reference_channel : request.analog_channel) = parts[1];
+    } else if (parts[0] == kCounter0 || parts[0] == kCounter0 + 1) {
+      request.counter = static_cast<std::uint8_t>(parts[0] - kCounter0);
+    }
+    parts = parts.subspan(std::min<std::size_t>(is_analog ? 3 : 2, parts.size()));
+  }
+  return request;
+}
+
+class LabjackDecoder final : public UnitDecoder {
+ public:
+  explicit LabjackDecoder(const UnitDecoderOptions& options)
+      : calibration_(nominal_labjack_calibration(options.input)), meaning_(options) {}
+
+  void take(const RawUnit& unit, const Sink& sink) override {
+    const auto reply = decode_labjack(labjack_request_of(unit), unit.bytes);
+    if (!reply) {
+      meaning_.interrupt();
+      const bool has_code = reply.error().why == Refusal::kException && reply.error().error != 0;
+      return sink(UnitRefusal{reply.error().why, has_code ? fmt::format("error {}", reply.error().error) : ""});
+    }
+    const auto volts = [this](std::optional<std::uint16_t> analog) {
+      return analog ? std::optional(calibration_.volts(*analog)) : std::nullopt;
+    };
+    sink(meaning_.of({reply->count, volts(reply->analog), volts(reply->reference)}));
+  }
+
+ private:
+  LabjackCalibration calibration_;
+  CounterMeaning meaning_;
+};
+
+}  // namespace
+
+std::unique_ptr<UnitDecoder> make_mcc1208_unit_decoder(const UnitDecoderOptions& options) {
+  return std::make_unique<Mcc1208Decoder>(options);
+}
+
+std::unique_ptr<UnitDecoder> make_labjack_unit_decoder(const UnitDecoderOptions& options) {
+  return std::make_unique<LabjackDecoder>(options);
+}
+
+}  // namespace yuragi

@@ -1,0 +1,204 @@
+#include "daemon/tools/decode/decode_formats.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "drivers/decode/hid/acurite.hpp"
+#include "drivers/decode/hid/fineoffset.hpp"
+#include "drivers/decode/hid/te923.hpp"
+#include "drivers/decode/hid/wmr100.hpp"
+#include "drivers/decode/hid/wmr300.hpp"
+#include "drivers/decode/text/ft.hpp"
+#include "drivers/decode/text/gill.hpp"
+#include "drivers/decode/text/nmea.hpp"
+#include "drivers/decode/text/umb.hpp"
+
+namespace yuragi {
+namespace {
+
+/// A format in which every message stands for itself.
+class StatelessDecoder final : public UnitDecoder {
+ public:
+  using Decode = std::function<Result<DecodedWind, Refusal>(ByteSpan message)>;
+  explicit StatelessDecoder(Decode decode) : decode_(std::move(decode)) {}
+
+  void take(const RawUnit& unit, const Sink& sink) override { sink(outcome_of(decode_(unit.bytes))); }
+
+ private:
+  Decode decode_;
+};
+
+/// The bytes of a WMR100's reports, whose frames end where they like.
+class Wmr100Decoder final : public UnitDecoder {
+ public:
+  void take(const RawUnit& unit, const Sink& sink) override {
+    for (const std::uint8_t byte : unit.bytes) {
+      if (const auto ended = take_wmr100_byte(stream_, byte)) sink(outcome_of(*ended));
+    }
+  }
+  void finish(const Sink& sink) override {
+    if (const auto ended = finish_wmr100(stream_)) sink(outcome_of(*ended));
+  }
+
+ private:
+  Wmr100Stream stream_;
+};
+
+using Made = std::unique_ptr<UnitDecoder>;
+
+Made stateless(StatelessDecoder::Decode decode) {
+  return std::make_unique<StatelessDecoder>(std::move(decode));
+}
+
+/// A decoder of lines, with options of its own.
+template <class Options>
+Made of_lines(Result<DecodedWind, Refusal> (*decode)(const Options&, std::string_view) noexcept, Options options) {
+  return stateless([decode, options = std::move(options)](ByteSpan line) {
+    return decode(options, {reinterpret_cast<const char*>(line.data()), line.size()});
+  });
+}
+
+Made make_nmea(const UnitDecoderOptions& options) {
+  return of_lines(decode_nmea, NmeaOptions{options.checksum, options.status, options.xdr_first_id});
+}
+
+Made make_gill(const UnitDecoderOptions& options) {
+  GillOptions gill;
+  gill.checksum = options.checksum;
+  gill.status = options.status;
+  gill.node = options.node;
+  return of_lines(decode_gill, gill);
+}
+
+Made make_ft(const UnitDecoderOptions& options) {
+  return of_lines(decode_ft, FtOptions{options.checksum, options.status});
+}
+
+Made make_umb(const UnitDecoderOptions& options) {
+  return of_lines(decode_umb,
+                  UmbOptions{options.checksum, options.status, options.umb_device, options.umb_speed_range_m_s});
+}
+
+Made make_line(const UnitDecoderOptions& options) {
+  return of_lines(decode_line, options.line);
+}
+
+Made make_wmr100(const UnitDecoderOptions& options) {
+  auto stream = std::make_unique<Wmr100Decoder>();
+  if (options.are_reports) return make_wmr100_reports_decoder(std::move(stream));
+  return stream;
+}
+
+Made make_te923(const UnitDecoderOptions& options) {
+  return options.are_reports ? make_te923_reports_decoder() : stateless(decode_te923);
+}
+
+Made make_fineoffset(const UnitDecoderOptions& options) {
+  return options.are_reports ? make_fineoffset_reports_decoder() : stateless(decode_fineoffset_record);
+}
+
+constexpr std::array kUnitFormats = {
+    UnitFormat{.name = "nmea",
+               .is_text = true,
+               .unit = "a line",
+               .devices = "NMEA 0183: MWV, MWD, VWR, VWT, MDA, XDR of any talker",
+               .example = "nmea voyage.log",
+               .make = make_nmea},
+    UnitFormat{.name = "gill",
+               .is_text = true,
+               .unit = "a line",
+               .devices = "Gill WindSonic, WindObserver, MaxiMet",
+               .example = "gill --node Q mast.log",
+               .make = make_gill},
+    UnitFormat{.name = "umb",
+               .is_text = true,
+               .unit = "a line",
+               .devices = "Lufft VENTUS, V200A, WS200 to WS800 in a text mode",
+               .example = "umb --speed-range 90 ventus.log",
+               .make = make_umb},
+    UnitFormat{.name = "ft",
+               .is_text = true,
+               .unit = "a line",
+               .devices = "FT Technologies FT205, FT7xx",
+               .example = "ft --checksum accept ft742.log",
+               .make = make_ft},
+    UnitFormat{.name = "line",
+               .is_text = true,
+               .ending = LineEnding::kEtx,
+               .unit = "a line",
+               .devices = "numbers that a microcontroller prints",
+               .example = "line --speed-column 2 --direction-column 1 --speed-unit km/h esp32.log",
+               .make = make_line},
+    UnitFormat{.name = "wmr100",
+               .is_text = false,
+               .unit = "any part of the stream, without each report's length byte",
+               .devices = "Oregon Scientific WMR100, WMR88, WMRS200, RMS300, RMS600",
+               .example = "wmr100 --hex stream.hex",
+               .make = make_wmr100},
+    UnitFormat{.name = "wmr300",
+               .is_text = false,
+               .unit = "a packet",
+               .devices = "Oregon Scientific WMR300",
+               .example = "wmr300 --hex --refused packets.hex",
+               .make = [](const UnitDecoderOptions&) { return stateless(decode_wmr300); }},
+    UnitFormat{.name = "fineoffset",
+               .is_text = false,
+               .unit = "a record of 16 or 20 bytes",
+               .devices = "Fine Offset WH1080, WH1090, WH2080, WH3080 and their other names",
+               .example = "fineoffset --hex records.hex",
+               .make = make_fineoffset},
+    UnitFormat{.name = "acurite",
+               .is_text = false,
+               .unit = "report 1, of 10 bytes",
+               .devices = "AcuRite 01025, 01035, 01036, 02032, 02064",
+               .example = "acurite --hex r1.hex",
+               .make = [](const UnitDecoderOptions&) { return stateless(decode_acurite); }},
+    UnitFormat{.name = "te923",
+               .is_text = false,
+               .unit = "the block of readings, of 34 bytes",
+               .devices = "Hideki TE923 (Meade, TFA Nexus, Mebus, IROX)",
+               .example = "te923 --hex blocks.hex",
+               .make = make_te923},
+    UnitFormat{.name = "mcc1208",
+               .is_text = false,
+               .unit = "a reply: 4 bytes of the counter, 2 of an analogue input",
+               .devices = "a cup and a vane at an MCC USB-1208FS-Plus",
+               .example = "mcc1208 --hex --slope 0.765 --interval 0.1 counts.hex",
+               .make = make_mcc1208_unit_decoder},
+    UnitFormat{.name = "labjack",
+               .is_text = false,
+               .unit = "a reply to a feedback command",
+               .devices = "a cup and a vane at a LabJack U3",
+               .example = "labjack --hex --vane-reference 2.4 replies.hex",
+               .make = make_labjack_unit_decoder},
+    UnitFormat{.name = "modbus:PROFILE",
+               .is_text = false,
+               .unit = "request | response, of RTU with their checksums or of TCP",
+               .devices = "Modbus anemometers: a response alone does not say which register it answers",
+               .example = "modbus:renke-rs-fsjt-n01 --hex bus.hex",
+               .make = make_modbus_unit_decoder},
+};
+
+}  // namespace
+
+UnitDecoder::Outcome outcome_of(const Result<DecodedWind, Refusal>& decoded) {
+  if (!decoded) return UnitRefusal{decoded.error(), {}};
+  return UnitReading{*decoded, {}, {}};
+}
+
+std::span<const UnitFormat> unit_formats() {
+  return kUnitFormats;
+}
+
+const UnitFormat* find_unit_format(std::string_view name) {
+  const auto stem = [](std::string_view whole) { return whole.substr(0, whole.find(':')); };
+  const auto fits = [&](const UnitFormat& format) {
+    return stem(format.name) == stem(name) &&
+           (format.name.find(':') == format.name.npos) == (name.find(':') == name.npos);
+  };
+  const auto* const found = std::ranges::find_if(kUnitFormats, fits);
+  return found == kUnitFormats.end() ? nullptr : found;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,126 @@
+// `yuragi decode modbus:PROFILE`: a request, which says what is asked, and its response.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "daemon/tools/decode/decode_formats.hpp"
+#include "drivers/decode/modbus/modbus.hpp"
+#include "drivers/modbus/modbus_profile.hpp"
+
+namespace yuragi {
+namespace {
+
+struct AskedRegisters {
+  ModbusFraming framing = ModbusFraming::kRtu;
+  ModbusRequest request;
+};
+
+/// A request to read registers, of RTU or TCP by its form. Nothing for anything else.
+std::optional<AskedRegisters> asked_registers_of(ByteSpan bytes) {
+  constexpr std::size_t kRtuRequest = 8;
+  constexpr std::size_t kTcpRequest = 12;
+  constexpr std::size_t kTcpHeader = 6;  // in front of the unit id
+  AskedRegisters asked;
+  if (bytes.size() == kRtuRequest && modbus_crc(bytes.first(6)) == little_endian_16(bytes, 6)) {
+    asked.framing = ModbusFraming::kRtu;
+  } else if (bytes.size() == kTcpRequest && big_endian_16(bytes, 2) == 0 && big_endian_16(bytes, 4) == 6) {
+    asked.framing = ModbusFraming::kTcp;
+    asked.request.transaction = big_endian_16(bytes, 0);
+    bytes = bytes.subspan(kTcpHeader);
+  } else {
+    return std::nullopt;
+  }
+  asked.request.unit = bytes[0];
+  asked.request.function = bytes[1];
+  asked.request.address = big_endian_16(bytes, 2);
+  asked.request.count = big_endian_16(bytes, 4);
+  const bool reads = asked.request.function == 3 || asked.request.function == 4;
+  const bool is_possible = asked.request.count >= 1 && asked.request.count <= kModbusMaxRegisters;
+  return reads && is_possible ? std::optional(asked) : std::nullopt;
+}
+
+/// The part of an answer that belongs to `quantity`; empty where it was not asked for.
+std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
+                                            const ModbusRegisters& registers) {
+  const std::size_t count = register_count(quantity.type);
+  const bool is_asked = request.unit == quantity.slave && request.function == quantity.function &&
+                        request.address <= quantity.address &&
+                        quantity.address + count <= std::size_t{request.address} + request.count;
+  if (!is_asked) return {};
+  return registers.span().subspan(static_cast<std::size_t>(quantity.address - request.address), count);
+}
+
+class ModbusUnitDecoder final : public UnitDecoder {
+ public:
+  explicit ModbusUnitDecoder(ModbusProfile profile) : profile_(std::move(profile)) {}
+
+  void take(const RawUnit& unit, const Sink& sink) override {
+    if (unit.request.empty()) {
+      return sink(UnitRefusal{Refusal::kMalformed, "no request: write request | response on one line"});
+    }
+    const auto asked = asked_registers_of(unit.request);
+    if (!asked) {
+      return sink(UnitRefusal{Refusal::kMalformed, "the request is none to read registers, or its checksum is wrong"});
+    }
+    const auto registers = decode_modbus(asked->framing, asked->request, unit.bytes);
+    if (!registers) {
+      const ModbusRefusal& refusal = registers.error();
+      const bool is_exception = refusal.why == Refusal::kException;
+      return sink(UnitRefusal{
+          refusal.why,
+          is_exception ? fmt::format("{}, {}", refusal.exception, modbus_exception_name(refusal.exception)) : ""});
+    }
+    tell(asked->request, *registers, sink);
+  }
+
+ private:
+  /// One reading of all that the answer holds. What is refused is told besides.
+  void tell(const ModbusRequest& request, const ModbusRegisters& registers, const Sink& sink) const {
+    UnitReading reading;
+    bool holds_any = false;
+    const auto take_value = [&](const ModbusQuantity& quantity, const char* what, const auto& decode,
+                                std::optional<double>& value) {
+      const auto own = registers_of(quantity, request, registers);
+      if (own.empty()) return;
+      holds_any = true;
+      const auto decoded = decode(quantity, own);
+      if (decoded) {
+        value = *decoded;
+      } else {
+        sink(UnitRefusal{decoded.error(), what});
+      }
+    };
+    take_value(profile_.speed, "speed", decode_speed_m_s, reading.wind.speed_m_s);
+    if (profile_.direction)
+      take_value(*profile_.direction, "direction", decode_direction_deg, reading.wind.direction_deg);
+    if (profile_.gust) take_value(*profile_.gust, "gust", decode_speed_m_s, reading.wind.gust_m_s);
+    if (auto& direction_deg = reading.wind.direction_deg; direction_deg) {
+      direction_deg = std::fmod(*direction_deg + profile_.north_offset_deg + 360.0, 360.0);
+    }
+
+    if (!holds_any) {
+      sink(UnitRefusal{
+          Refusal::kNotMine,
+          fmt::format("slave {}, function {}, registers {:#06x} to {:#06x}: the profile has nothing there",
+                      request.unit, request.function, request.address, request.address + request.count - 1)});
+    } else if (reading.wind != DecodedWind{}) {
+      sink(reading);
+    }
+  }
+
+  ModbusProfile profile_;
+};
+
+}  // namespace
+
+std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& options) {
+  ModbusProfile profile = load_modbus_profile(options.profile, "");
+  if (options.speed_slave != 0) set_slave(profile, static_cast<std::uint8_t>(options.speed_slave));
+  if (options.direction_slave != 0) {
+    if (!profile.direction) throw std::runtime_error("profile \"" + profile.name + "\" has no direction");
+    profile.direction->slave = static_cast<std::uint8_t>(options.direction_slave);
+  }
+  return std::make_unique<ModbusUnitDecoder>(std::move(profile));
+}
+
+}  // namespace yuragi

@@ -1,0 +1,65 @@
+#include "daemon/tools/offline/field_frames.hpp"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/settings/exit.hpp"
+#include "daemon/tools/offline/offline_wind.hpp"
+
+namespace yuragi {
+namespace {
+
+/// The estimator steps as often as this at least: its filters are made for the daemon's rate.
+constexpr double kLeastTickRate_hz = 50.0;
+
+}  // namespace
+
+void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const FieldFrames& frames,
+                          const UseField& use) {
+  std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
+  for (std::size_t frame = 0; frame < frames.count; ++frame) {
+    field.go_to(frames.time_s(frame));
+    sample_field(field, grid, values);
+    use(values);
+  }
+}
+
+void make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback_options,
+                          const Config& config, const FieldGrid& grid, const FieldFrames& frames, const UseField& use) {
+  WindlogPlayback playback(recording, playback_options);
+  const std::shared_ptr<const GustNoise> noise = make_gust_noise(config);
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, noise, grid.reach_m());
+  WindTapes tapes;
+  GroundWind ground;
+  const GroundWindField field(ground, *noise);
+
+  // Some ticks a frame. A frame is of the first tick at its time or after it.
+  OfflineWindOptions offline;
+  offline.rate_hz = frames.rate_hz * std::ceil(kLeastTickRate_hz / frames.rate_hz);
+  offline.judge = judge_settings_of(config.sensors[0]);
+  const double tick_s = 1.0 / offline.rate_hz;
+  offline.until_s = frames.time_s(frames.count - 1) + tick_s;
+  std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
+  std::size_t next = 0;
+  const OfflineWindResult result =
+      run_offline(playback, *estimator, offline, [&](double time_s, const WindState& state) {
+        ground = written_to(tapes, {state, estimator->ground(), estimator->stroke()});
+        if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
+        sample_field(field, grid, values);
+        use(values);
+        ++next;
+      });
+  if (next < frames.count) {
+    throw ExitError(kExitDataError,
+                    fmt::format("{}: ends after {:.1f} s, and {} frames from {:g} s on need {:.1f} s; ask for fewer "
+                                "(--frames) or an earlier --time",
+                                recording.string(), result.duration_s, frames.count, frames.first_s,
+                                frames.time_s(frames.count - 1)));
+  }
+}
+
+}  // namespace yuragi

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+
+#include "daemon/settings/config.hpp"
+#include "drivers/windlog/windlog_playback.hpp"
+#include "engine/wind/field/spectral_wind_field.hpp"
+#include "engine/wind/field/wind_field.hpp"
+
+namespace yuragi {
+
+/// Which moments of a field are wanted.
+struct FieldFrames {
+  double first_s = 0.0;
+  std::size_t count = 1;
+  double rate_hz = 10.0;
+
+  double time_s(std::size_t frame) const { return first_s + static_cast<double>(frame) / rate_hz; }
+};
+
+/// Is told each frame in order: sample_field() of that moment. May throw.
+using UseField = std::function<void(std::span<const float> values)>;
+
+/// The frames of a wind with given statistics.
+void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const FieldFrames& frames,
+                          const UseField& use);
+
+/// The frames of the live wind over the ground, as the daemon with this configuration would have had it while the
+/// recording was made: the estimator hears it reading by reading from its beginning on. Throws what the playback
+/// throws, and ExitError where the recording ends before the last frame.
+void make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback, const Config& config,
+                          const FieldGrid& grid, const FieldFrames& frames, const UseField& use);
+
+}  // namespace yuragi

@@ -1,0 +1,77 @@
+#include "daemon/tools/offline/lockstep_replay.hpp"
+
+#include <algorithm>
+
+#include "daemon/animation/animation.hpp"
+#include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/settings/shaping_config.hpp"
+#include "engine/pose/pose_hash.hpp"
+
+namespace yuragi {
+namespace {
+
+std::uint64_t hash_poses(std::uint64_t hash, std::span<const Pose* const> poses) {
+  for (const Pose* pose : poses) hash = pose_hash(hash, *pose);
+  return hash;
+}
+
+}  // namespace
+
+LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
+                                  const PlayerOptions& options, double duration_s,
+                                  const std::function<void(double)>& progress, const UseTick& use) {
+  WindlogPlayer player(recording, options, Instant{});
+  const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
+  Animation animation(config, gusts);
+  Config one_source = config;
+  one_source.sensors.resize(1);
+  one_source.wind.set("fallback_recording", std::string{});
+  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts, animation.reach_m());
+  WindShaping shaping(shaping_settings(config), gusts);
+
+  const double rate_hz = config.animation.number("rate");
+  const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
+  LockstepResult result;
+  std::uint64_t followed_ticks = 0;
+  const std::optional<JudgeSettings> judged_by = judge_settings_of(one_source.sensors[0]);
+  ReadingJudge judge(judged_by.value_or(JudgeSettings{}));
+
+  for (std::uint64_t tick = 0; !player.is_finished(); ++tick) {
+    const double now_s = static_cast<double>(tick) / rate_hz;
+    if (duration_s > 0.0 && now_s >= duration_s) break;
+
+    // Readings that are due by this tick, at their own log time.
+    const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
+    player.play(now, [&](const WindReading& reading) {
+      // As the daemon would: what is not believed moves nothing.
+      if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) return;
+      if (!estimator->accept(0, reading)) return;
+      ++result.readings;
+      result.reading_mean_m_s += reading.speed_m_s;
+      result.reading_max_m_s = std::max(result.reading_max_m_s, reading.speed_m_s);
+    });
+
+    // A recording is always open: log time is not the time of a wall.
+    DrivingWind wind{estimator->advance(MonoTime(from_seconds(now_s))), estimator->ground(), estimator->stroke()};
+    shaping.shape(wind, true);
+    const WindState& state = wind.state;
+    animation.step(wind, 1.0 / rate_hz);
+    result.pose_hash = hash_poses(result.pose_hash, animation.poses());
+    if (use) use(now_s, animation);
+    ++result.ticks;
+    if (state.source == WindSource::kLive) {
+      const double speed_m_s = speed_of(state.wind);
+      ++followed_ticks;
+      result.wind_mean_m_s += speed_m_s;
+      result.wind_max_m_s = std::max(result.wind_max_m_s, speed_m_s);
+    }
+    if (progress && tick % ticks_between_progress == 0) progress(now_s);
+  }
+
+  result.log_duration_s = static_cast<double>(result.ticks) / rate_hz;
+  if (result.readings > 0) result.reading_mean_m_s /= static_cast<double>(result.readings);
+  if (followed_ticks > 0) result.wind_mean_m_s /= static_cast<double>(followed_ticks);
+  return result;
+}
+
+}  // namespace yuragi

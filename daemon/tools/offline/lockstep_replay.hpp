@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+#include "daemon/settings/config.hpp"
+#include "drivers/windlog/windlog_player.hpp"
+
+namespace yuragi {
+
+/// What a recording did, played through estimator and scenes as fast as the machine can.
+struct LockstepResult {
+  std::uint64_t readings = 0;
+  std::uint64_t ticks = 0;
+  double log_duration_s = 0.0;
+  double reading_mean_m_s = 0.0;  ///< of the readings, as recorded
+  double reading_max_m_s = 0.0;
+  double wind_mean_m_s = 0.0;  ///< of the wind that moved the scenes, from the moment that the sensor was followed
+  double wind_max_m_s = 0.0;
+  std::uint64_t pose_hash = 0;  ///< over every pose of every tick: the same seed, log and build give the same hash
+};
+
+class Animation;
+
+/// Told of each tick, when it is done.
+using UseTick = std::function<void(double log_time_s, const Animation& animation)>;
+
+/// Replays in log time, tick by tick, with no clock and no thread, so that every run of the same seed and recording
+/// gives the same poses, bit for bit. Log time is that of the playback at rate 1, loops and their seams included.
+/// `progress` is called about once a second of work with the log time reached; it may be empty, and so may `use`. Ends
+/// after `duration_s` of log time, if above 0. Throws std::runtime_error where the recording cannot be read.
+LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
+                                  const PlayerOptions& options, double duration_s,
+                                  const std::function<void(double log_time_s)>& progress, const UseTick& use = {});
+
+}  // namespace yuragi

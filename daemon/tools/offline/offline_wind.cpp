@@ -1,0 +1,124 @@
+#include "daemon/tools/offline/offline_wind.hpp"
+
+#include <algorithm>
+
+namespace yuragi {
+namespace {
+
+/// Readings as the estimator is to hear them: each with its log time, less those of the gaps, and averaged where a
+/// slower sensor is asked for.
+class HeardReadings {
+ public:
+  HeardReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
+      : playback_(playback), options_(options) {}
+
+  std::optional<WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
+
+ private:
+  std::optional<WindReading> next_single() {
+    while (auto played = playback_.next()) {
+      if (is_in_gap(played->log_time_s)) continue;
+      WindReading reading = played->reading;
+      reading.time.mono = MonoTime(from_seconds(played->log_time_s));
+      return reading;
+    }
+    return std::nullopt;
+  }
+
+  /// The mean over one block of time; blocks in which nothing was said are passed over.
+  std::optional<WindReading> next_mean() {
+    if (!held_) held_ = next_single();
+    if (!held_) return std::nullopt;
+    // In whole nanoseconds, of which one may be lost on the way through seconds: a reading on the edge of two blocks is
+    // the later one's, and who asks for the wind of the block's end hears it.
+    const Nanoseconds interval = from_seconds(*options_.sensor_interval_s);
+    const Nanoseconds edge = ((held_->time.mono.time_since_epoch() + Nanoseconds(1)) / interval + 1) * interval;
+    const MonoTime end(from_seconds(seconds(edge)));
+
+    WindVector sum{};
+    double speed_sum_m_s = 0.0;
+    double gust_m_s = 0.0;
+    std::size_t count = 0;
+    std::size_t directed = 0;
+    for (; held_ && held_->time.mono < end; held_ = next_single(), ++count) {
+      speed_sum_m_s += held_->speed_m_s;
+      gust_m_s = std::max(gust_m_s, held_->gust_m_s.value_or(held_->speed_m_s));
+      if (!held_->direction_deg) continue;
+      sum = sum + wind_from(held_->speed_m_s, *held_->direction_deg);
+      ++directed;
+    }
+    const bool has_direction = directed == count;
+    const WindVector mean = (1.0 / static_cast<double>(count)) * sum;
+    WindReading reading;
+    reading.time.mono = end;
+    reading.speed_m_s = has_direction ? speed_of(mean) : speed_sum_m_s / static_cast<double>(count);
+    if (has_direction) reading.direction_deg = direction_from_deg(mean);
+    reading.gust_m_s = gust_m_s;
+    return reading;
+  }
+
+  bool is_in_gap(double time_s) const {
+    return std::ranges::any_of(options_.gaps,
+                               [time_s](const OfflineGap& gap) { return time_s >= gap.from_s && time_s < gap.to_s; });
+  }
+
+  WindlogPlayback& playback_;
+  const OfflineWindOptions& options_;
+  std::optional<WindReading> held_;
+};
+
+/// One source of the estimator: what it says next, and whether that is to be believed.
+class OfflineSource {
+ public:
+  OfflineSource(WindlogPlayback& playback, const OfflineWindOptions& options)
+      : readings_(playback, options),
+        is_judged_(options.judge.has_value()),
+        judge_(options.judge.value_or(JudgeSettings{})),
+        next_(readings_.next()) {}
+
+  bool has_more() const { return next_.has_value(); }
+
+  /// Tells the estimator what was said up to `now`, as source `number`.
+  void tell(WindEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
+    for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
+      if (!is_believed(*next_)) {
+        ++result.withheld;
+      } else if (estimator.accept(number, *next_)) {
+        ++result.readings;
+      }
+    }
+  }
+
+ private:
+  bool is_believed(const WindReading& reading) {
+    return !is_judged_ || reading.quality == ReadingQuality::kSimulated || judge_.judge(reading);
+  }
+
+  HeardReadings readings_;
+  bool is_judged_;
+  ReadingJudge judge_;
+  std::optional<WindReading> next_;
+};
+
+}  // namespace
+
+OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, WindEstimator& estimator,
+                              const OfflineWindOptions& options,
+                              const std::function<void(double time_s, const WindState&)>& use) {
+  OfflineWindResult result;
+  std::vector<OfflineSource> sources;
+  for (WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
+  const auto has_more = [&] { return std::ranges::any_of(sources, &OfflineSource::has_more); };
+  // The last reading is heard by the tick at its time or after it, which is the last.
+  for (bool goes_on = has_more(); goes_on; ++result.states) {
+    const double time_s = static_cast<double>(result.states) / options.rate_hz;
+    const MonoTime now(from_seconds(time_s));
+    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].tell(estimator, i, now, result);
+    goes_on = has_more() && time_s + 1.0 / options.rate_hz <= options.until_s;
+    use(time_s, estimator.advance(now));
+    result.duration_s = time_s;
+  }
+  return result;
+}
+
+}  // namespace yuragi

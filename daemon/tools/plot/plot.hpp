@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace yuragi {
+
+/// How a curve is drawn.
+enum class PlotStyle : std::uint8_t {
+  kLine,
+  kPoints,
+  kSteps,
+  kDots,  ///< points that are small and pale: many of them
+  kBand,  ///< the area between `y` and `y2`
+  kBars,  ///< from 0 to `y`, touching each other
+};
+
+struct PlotCurve {
+  std::string title;  ///< empty: not in the legend
+  PlotStyle style = PlotStyle::kLine;
+  std::vector<double> x;
+  std::vector<double> y;        ///< as many as `x`; what is not finite is left out, and ends a line
+  std::vector<double> y2 = {};  ///< of a band: as many
+  std::string color = {};       ///< "#rrggbb"; empty: the next of gnuplot's own
+};
+
+/// A stretch of the x axis that is coloured behind the curves, over a part of the panel's height (0 bottom, 1 top).
+struct PlotSpan {
+  double from = 0.0;
+  double to = 0.0;
+  std::string color;  ///< "#rrggbb"
+  double bottom = 0.0;
+  double top = 1.0;
+};
+
+/// One pair of axes with its curves.
+struct PlotPanel {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  bool is_x_log = false;
+  bool is_y_log = false;
+  std::vector<PlotCurve> curves;
+  bool is_x_time = false;  ///< x is seconds since 1970, written as dates and times of UTC
+  std::optional<std::pair<double, double>> x_range = {};
+  std::optional<std::pair<double, double>> y_range = {};
+  double x_step = 0.0;  ///< between two marks of an x axis that is no time; 0: as gnuplot likes
+  double y_step = 0.0;  ///< between two marks of the y axis; 0: as gnuplot likes; below 0: no marks
+  std::vector<PlotSpan> spans = {};
+  int height_px = 480;
+};
+
+/// Where the x axes of times begin and end in a picture, from its left and right edge: all panels' line up.
+inline constexpr int kTimeAxisLeft_px = 70;
+inline constexpr int kTimeAxisRight_px = 24;
+
+/// Draws the panels below one another into `file`, whose name ends in .png or .svg; one of that name is replaced. By
+/// gnuplot. Throws ExitError where the name is another one, the file cannot be written, or gnuplot is not installed.
+void draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px = 1000);
+
+}  // namespace yuragi

@@ -1,0 +1,78 @@
+#include "daemon/tools/plot/plot_script.hpp"
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "daemon/settings/exit.hpp"
+
+namespace yuragi {
+namespace {
+
+/// Runs gnuplot on a script. False: it is not installed, or not content.
+bool run_gnuplot(const std::string& script_file) {
+  std::string program = "gnuplot";
+  std::string argument = script_file;
+  std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ) != 0) return false;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) return false;
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+std::string plot_text(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += '\'';
+    result += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return result + "'";
+}
+
+std::string plot_output(const std::string& file, bool is_svg, int width_px, int height_px) {
+  return fmt::format("set encoding utf8\nset terminal {} size {},{} {}\nset output {}\n", is_svg ? "svg" : "pngcairo",
+                     width_px, height_px, is_svg ? "dynamic background 'white'" : "background 'white'",
+                     plot_text(file));
+}
+
+void check_plot_name(const std::string& file) {
+  if (!file.ends_with(".png") && !file.ends_with(".svg")) {
+    throw ExitError(kExitUsage, file + ": a plot is a .png or a .svg; name it so");
+  }
+}
+
+void draw_script(const std::string& file,
+                 const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of) {
+  check_plot_name(file);
+
+  // The picture takes its name when it is whole.
+  const std::string unfinished = file + ".part";
+  const std::string script_file = file + ".gnuplot";
+  std::ofstream(script_file, std::ios::binary) << script_of(unfinished, file.ends_with(".svg"));
+  const bool was_drawn = run_gnuplot(script_file);
+  std::error_code error;
+  std::filesystem::remove(script_file, error);
+  if (was_drawn) {
+    std::filesystem::rename(unfinished, file, error);
+    if (!error) return;
+  }
+  std::filesystem::remove(unfinished, error);
+  throw ExitError(kExitCannotCreate,
+                  file +
+                      ": the plot could not be drawn: is its folder there, may you write to it, is there room, and is "
+                      "gnuplot installed (apt-get install gnuplot-nox)?");
+}
+
+}  // namespace yuragi

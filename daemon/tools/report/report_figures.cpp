@@ -1,0 +1,399 @@
+#include "daemon/tools/report/report_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "daemon/settings/exit.hpp"
+#include "daemon/tools/plot/plot.hpp"
+#include "daemon/tools/report/report_text.hpp"
+#include "daemon/tools/report/wind_rose.hpp"
+#include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kWidth_px = 1000;
+/// Fewer than these are points, not a line.
+constexpr std::size_t kFewReadings = 100;
+constexpr const char* kWindColor = "#2f7fc1";
+constexpr const char* kGustColor = "#e07b00";
+constexpr const char* kFitColor = "#c2453d";
+constexpr const char* kSlopeColor = "#7b52ab";
+constexpr const char* kPaleColor = "#8fb8da";
+
+/// Reads the whole file.
+std::string text_of_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Figures {
+ public:
+  Figures(const RecordingNumbers& recording, const SensorNumbers& sensor, std::filesystem::path scratch,
+          std::size_t index)
+      : recording_(recording), sensor_(sensor), scratch_(std::move(scratch)), index_(index) {
+    scratch_ += ".svg";
+  }
+
+  std::string series() {
+    if (sensor_.believed == 0) return {};
+    std::vector<PlotPanel> panels = {speed_panel()};
+    if (sensor_.directed > 0) panels.push_back(direction_panel());
+    panels.push_back(state_panel());
+    std::string svg = draw(panels, "series", "Speed, direction and state over time");
+    int height_px = 0;
+    for (const PlotPanel& panel : panels) height_px += panel.height_px;
+    svg.insert(svg.rfind("</svg>"), event_titles(height_px));
+    return svg;
+  }
+
+  std::string distribution();
+  std::string spectrum();
+  std::string diurnal();
+
+ private:
+  std::string draw(std::span<const PlotPanel> panels, const std::string& name, std::string_view label,
+                   int width_px = kWidth_px) {
+    draw_plot(scratch_, panels, width_px);
+    const std::string text = text_of_file(scratch_);
+    std::error_code ignored;
+    std::filesystem::remove(scratch_, ignored);
+    return embedded_svg(text, fmt::format("{}{}", name, index_), label);
+  }
+
+  double axis_s(double time_s) const { return seconds(recording_.utc_at(time_s).time_since_epoch()); }
+
+  PlotPanel time_panel() const {
+    // One reading has a time, but no duration; and gnuplot knows no axis of microseconds in this century.
+    const double margin_s = recording_.duration_s() < 1.0 ? 1.0 : 0.0;
+    PlotPanel panel;
+    panel.is_x_time = true;
+    panel.x_range = {{axis_s(recording_.begin_s) - margin_s, axis_s(recording_.end_s) + margin_s}};
+    // Silences stand behind the curves.
+    for (const auto& [from_s, to_s] : stretches(RecordedState::kStale, RecordedState::kStale)) {
+      panel.spans.push_back({.from = from_s, .to = to_s, .color = "#dddddd"});
+    }
+    return panel;
+  }
+
+  /// Where, on the axis, the gravest state of the bins is one of these.
+  std::vector<std::pair<double, double>> stretches(RecordedState first, RecordedState last) const {
+    std::vector<std::pair<double, double>> found;
+    const double bin_s = recording_.duration_s() / static_cast<double>(kTimeBins);
+    bool is_open = false;
+    for (std::size_t i = 0; i < kTimeBins; ++i) {
+      const bool is_one = sensor_.bins[i].gravest >= first && sensor_.bins[i].gravest <= last;
+      const double from_s = axis_s(recording_.begin_s + bin_s * static_cast<double>(i));
+      if (is_one && is_open) found.back().second = from_s + bin_s;
+      if (is_one && !is_open) found.emplace_back(from_s, from_s + bin_s);
+      is_open = is_one;
+    }
+    return found;
+  }
+
+  std::string event_titles(int height_px) const;
+  PlotPanel speed_panel() const;
+  PlotPanel direction_panel() const;
+  PlotPanel state_panel() const;
+
+  const RecordingNumbers& recording_;
+  const SensorNumbers& sensor_;
+  std::filesystem::path scratch_;
+  std::size_t index_;
+};
+
+/// What the mouse is told over each event: nothing is seen of it.
+std::string Figures::event_titles(int height_px) const {
+  constexpr double kLeastWidth_px = 3.0;
+  const double axis_px = kWidth_px - kTimeAxisLeft_px - kTimeAxisRight_px;
+  std::string titles;
+  const auto [axis_begin_s, axis_end_s] = *time_panel().x_range;
+  const double px_per_s = axis_px / (axis_end_s - axis_begin_s);
+  for (const StateEvent& event : sensor_.events) {
+    const double from_px = kTimeAxisLeft_px + (axis_s(event.from_s) - axis_begin_s) * px_per_s;
+    fmt::format_to(
+        std::back_inserter(titles),
+        "<rect x=\"{:.1f}\" y=\"0\" width=\"{:.1f}\" height=\"{}\" fill=\"transparent\"><title>{} for {}, from "
+        "{}</title></rect>\n",
+        from_px, std::max(event.length_s() * px_per_s, kLeastWidth_px), height_px,
+        kRecordedStateNames[static_cast<std::size_t>(event.state)], duration_text(event.length_s()),
+        utc_text(recording_.utc_at(event.from_s)));
+  }
+  return titles;
+}
+
+PlotPanel Figures::speed_panel() const {
+  PlotCurve band{.title = "lowest to highest", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
+  PlotCurve mean{.title = "speed", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  PlotCurve gust{.title = sensor_.told_gust_m_s ? "gust told by the sensor" : "3 s gust",
+                 .style = PlotStyle::kLine,
+                 .x = {},
+                 .y = {},
+                 .color = kGustColor};
+  double highest_m_s = 1.0;
+  bool has_band = false;
+  const auto add = [](PlotCurve& curve, double x, double y, double y2) {
+    curve.x.push_back(x);
+    curve.y.push_back(y);
+    curve.y2.push_back(y2);
+  };
+  for (const TimeBin& bin : sensor_.bins) {
+    if (bin.count == 0) continue;
+    const double x = axis_s(bin.time_s());
+    if (bin.follows_silence) {
+      for (PlotCurve* curve : {&band, &mean, &gust}) add(*curve, kNothing, kNothing, kNothing);
+    }
+    add(band, x, bin.min_m_s, bin.max_m_s);
+    add(mean, x, bin.mean_m_s(), 0.0);
+    if (bin.gust_m_s) add(gust, x, *bin.gust_m_s, 0.0);
+    has_band = has_band || bin.max_m_s > bin.min_m_s;
+    highest_m_s = std::max({highest_m_s, bin.max_m_s, bin.gust_m_s.value_or(0.0)});
+  }
+  // Of few readings there is no line to be seen.
+  if (mean.x.size() < kFewReadings) mean.style = PlotStyle::kPoints;
+
+  PlotPanel panel = time_panel();
+  panel.y_label = "speed, m/s";
+  panel.y_range = {{0.0, 1.3 * highest_m_s}};
+  panel.height_px = 360;
+  if (has_band) {
+    mean.title = "mean";
+    panel.curves.push_back(std::move(band));
+  }
+  if (std::ranges::any_of(gust.y, [](double y) { return std::isfinite(y); })) panel.curves.push_back(std::move(gust));
+  panel.curves.push_back(std::move(mean));
+  return panel;
+}
+
+PlotPanel Figures::direction_panel() const {
+  PlotCurve readings{.title = {}, .style = PlotStyle::kDots, .x = {}, .y = {}, .color = kPaleColor};
+  for (const DirectionPoint& point : sensor_.directions) {
+    readings.x.push_back(axis_s(point.time_s));
+    readings.y.push_back(point.direction_deg);
+  }
+  // Points, not lines: a wind that passes through north would draw one through everything.
+  PlotCurve mean{.title = {}, .style = PlotStyle::kDots, .x = {}, .y = {}, .color = kWindColor};
+  for (const TimeBin& bin : sensor_.bins) {
+    const WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
+    if (bin.directed == 0 || speed_of(sum) == 0.0) continue;
+    mean.x.push_back(axis_s(bin.time_s()));
+    mean.y.push_back(direction_from_deg(sum));
+  }
+  if (readings.x.size() < kFewReadings) mean.style = PlotStyle::kPoints;
+
+  PlotPanel panel = time_panel();
+  panel.y_label = "from, degrees";
+  panel.y_range = {{0.0, 360.0}};
+  panel.y_step = 90.0;
+  panel.height_px = 260;
+  for (PlotCurve* curve : {&readings, &mean}) {
+    if (!curve->x.empty()) panel.curves.push_back(std::move(*curve));
+  }
+  return panel;
+}
+
+PlotPanel Figures::state_panel() const {
+  PlotPanel panel = time_panel();
+  panel.spans = {{.from = panel.x_range->first,
+                  .to = panel.x_range->second,
+                  .color = std::string(kRecordedStateColors[static_cast<std::size_t>(RecordedState::kLive)])}};
+  for (std::size_t i = 1; i < kRecordedStates; ++i) {
+    const auto state = static_cast<RecordedState>(i);
+    for (const auto& [from_s, to_s] : stretches(state, state)) {
+      panel.spans.push_back({.from = from_s, .to = to_s, .color = std::string(kRecordedStateColors[i])});
+    }
+  }
+  panel.x_label = "UTC";
+  panel.y_label = "state";
+  panel.y_range = {{0.0, 1.0}};
+  panel.y_step = -1.0;
+  panel.height_px = 120;
+  return panel;
+}
+
+std::string Figures::distribution() {
+  const SpeedDistribution& numbers = sensor_.distribution;
+  if (numbers.share.empty()) return {};
+  PlotCurve measured{.title = "readings", .style = PlotStyle::kBars, .x = {}, .y = {}, .color = kWindColor};
+  for (std::size_t i = 0; i < numbers.share.size(); ++i) {
+    measured.x.push_back((static_cast<double>(i) + 0.5) * numbers.class_m_s);
+    measured.y.push_back(100.0 * numbers.share[i]);
+  }
+  const double end_m_s = numbers.class_m_s * static_cast<double>(numbers.share.size() + 1);
+  PlotPanel panel{.title = {}, .x_label = "speed, m/s", .y_label = "share of the readings, %", .curves = {measured}};
+  if (numbers.weibull_shape) {
+    const double k = *numbers.weibull_shape;
+    const double c = *numbers.weibull_scale_m_s;
+    PlotCurve fit{.title = fmt::format("Weibull, k = {:.2f}, c = {:.2f} m/s", k, c),
+                  .style = PlotStyle::kLine,
+                  .x = {},
+                  .y = {},
+                  .color = kFitColor};
+    constexpr int kPoints = 200;
+    for (int i = 1; i <= kPoints; ++i) {
+      const double speed_m_s = end_m_s * i / kPoints;
+      const double part = speed_m_s / c;
+      fit.x.push_back(speed_m_s);
+      fit.y.push_back(100.0 * numbers.class_m_s * k / c * std::pow(part, k - 1.0) * std::exp(-std::pow(part, k)));
+    }
+    panel.curves.push_back(std::move(fit));
+  }
+  panel.x_range = {{0.0, end_m_s}};
+  panel.y_range = {{0.0, 130.0 * *std::ranges::max_element(numbers.share)}};
+  panel.height_px = 470;
+  return draw(std::span(&panel, 1), "distribution", "Distribution of the speed", 500);
+}
+
+std::string Figures::spectrum() {
+  if (!sensor_.spectrum) return {};
+  const SpectrumNumbers& numbers = *sensor_.spectrum;
+
+  // Means over eighths of an octave: as many points high up as low down.
+  PlotCurve measured{.title = "measured", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  constexpr double kPerOctave = 8.0;
+  // Without the last line, at Nyquist's frequency, which has half of the power.
+  const std::size_t lines = numbers.density_m2_s2_hz.size() - 1;
+  for (std::size_t k = 1; k < lines;) {
+    const double place = std::floor(kPerOctave * std::log2(static_cast<double>(k)));
+    double sum = 0.0;
+    double log_sum = 0.0;
+    std::size_t count = 0;
+    for (; k < lines && std::floor(kPerOctave * std::log2(static_cast<double>(k))) == place; ++k, ++count) {
+      sum += numbers.density_m2_s2_hz[k];
+      log_sum += std::log(numbers.frequency_hz(k));
+    }
+    const double density = sum / static_cast<double>(count);
+    if (!(density > 0.0)) continue;
+    measured.x.push_back(std::exp(log_sum / static_cast<double>(count)));
+    measured.y.push_back(density);
+  }
+  if (measured.x.empty()) return {};
+  const auto [lowest, highest] = std::ranges::minmax(measured.y);
+  const double from_hz = measured.x.front();
+  const double to_hz = measured.x.back();
+
+  PlotPanel panel{.title = {},
+                  .x_label = "frequency, Hz",
+                  .y_label = "S, m²/s²/Hz",
+                  .is_x_log = true,
+                  .is_y_log = true,
+                  .curves = {measured}};
+  if (numbers.von_karman) {
+    const VonKarmanFit& fit = *numbers.von_karman;
+    PlotCurve curve{.title = fmt::format("von Karman, U = {:.2f} m/s, TI = {:.2f}{}", fit.speed_m_s, fit.intensity,
+                                         fit.length_m ? fmt::format(", L = {:.0f} m", *fit.length_m) : ""),
+                    .style = PlotStyle::kLine,
+                    .x = {},
+                    .y = {},
+                    .color = kFitColor};
+    constexpr int kPoints = 200;
+    for (int i = 0; i <= kPoints; ++i) {
+      const double f = from_hz * std::pow(to_hz / from_hz, static_cast<double>(i) / kPoints);
+      // von Karman 1948, as in turbulence_fit.hpp: its integral is sigma^2.
+      const double x = f * fit.time_scale_s;
+      curve.x.push_back(f);
+      curve.y.push_back(fit.sigma_m_s() * fit.sigma_m_s() * 4.0 * fit.time_scale_s /
+                        std::pow(1.0 + 70.8 * x * x, 5.0 / 6.0));
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  if (numbers.power_law) {
+    // Drawn above the measured curve, so that both can be seen.
+    const PowerLawFit& fit = *numbers.power_law;
+    PlotCurve curve{.title = fmt::format("f to the power of {:.2f}, drawn twice as high", -fit.beta),
+                    .style = PlotStyle::kLine,
+                    .x = {},
+                    .y = {},
+                    .color = kSlopeColor};
+    for (const double f : {fit.from_hz, fit.to_hz}) {
+      curve.x.push_back(f);
+      curve.y.push_back(2.0 * std::exp(fit.log_level - fit.beta * std::log(f)));
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  panel.x_range = {{from_hz, to_hz}};
+  panel.y_range = {{std::max(0.5 * lowest, 1e-7 * highest), 8.0 * highest}};
+  panel.height_px = 560;
+  return draw(std::span(&panel, 1), "spectrum", "Spectrum");
+}
+
+std::string Figures::diurnal() {
+  if (!sensor_.diurnal) return {};
+  PlotCurve band{.title = "8 of 10 readings", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
+  PlotCurve mean{.title = "mean", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  double highest_m_s = 1.0;
+  for (std::size_t i = 0; i < sensor_.diurnal->size(); ++i) {
+    const HourOfDay& hour = (*sensor_.diurnal)[i];
+    const bool has_any = hour.count > 0;
+    const double x = static_cast<double>(i) + 0.5;
+    band.x.push_back(x);
+    band.y.push_back(has_any ? hour.p10_m_s : kNothing);
+    band.y2.push_back(has_any ? hour.p90_m_s : kNothing);
+    mean.x.push_back(x);
+    mean.y.push_back(has_any ? hour.mean_m_s : kNothing);
+    highest_m_s = std::max({highest_m_s, hour.p90_m_s, hour.mean_m_s});
+  }
+  PlotPanel panel{
+      .title = {}, .x_label = "hour of the day, local time", .y_label = "speed, m/s", .curves = {band, mean}};
+  panel.x_range = {{0.0, 24.0}};
+  panel.x_step = 3.0;
+  panel.y_range = {{0.0, 1.25 * highest_m_s}};
+  panel.height_px = 360;
+  return draw(std::span(&panel, 1), "diurnal", "Speed by the hour of the day");
+}
+
+void replace_all(std::string& text, std::string_view what, std::string_view with) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size())) {
+    text.replace(at, what.size(), with);
+  }
+}
+
+}  // namespace
+
+std::string embedded_svg(const std::string& file, const std::string& prefix, std::string_view label) {
+  // From <svg viewBox=...> on: a page needs neither prolog nor name spaces, and names nothing outside itself.
+  const std::size_t view = file.find("viewBox=");
+  const std::size_t view_end = view == std::string::npos ? view : file.find('\n', view);
+  const std::size_t begin = view_end == std::string::npos ? view_end : file.find("<g id=\"gnuplot_canvas\">", view_end);
+  if (begin == std::string::npos) throw ExitError(kExitSoftware, "gnuplot drew an SVG that is not understood");
+  std::string body = file.substr(begin);
+  if (const std::size_t rect = body.find("<rect x=\"0\" y=\"0\""); rect != std::string::npos) {
+    body.erase(rect, body.find("/>", rect) + 2 - rect);
+  }
+  replace_all(body, "xlink:href", "href");
+  for (const std::string_view id : {"gpPt", "gpDot", "gnuplot_canvas"}) replace_all(body, id, prefix + std::string(id));
+  // Curves without a name would say gnuplot's when the mouse is on them.
+  for (std::size_t at = body.find("<title>gnuplot_plot"); at != std::string::npos;
+       at = body.find("<title>gnuplot_plot", at)) {
+    body.erase(at, body.find("</title>", at) + 8 - at);
+  }
+  replace_all(body, "gnuplot_plot", prefix + "plot");
+  for (const std::string_view id : {"textbox", "greybox"}) {
+    replace_all(body, fmt::format("id='{}'", id), fmt::format("id='{}{}'", prefix, id));
+  }
+  return fmt::format("<svg {} role=\"img\" aria-label=\"{}\" class=\"plot\">\n{}", file.substr(view, view_end - view),
+                     label, body);
+}
+
+SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
+                           const std::filesystem::path& scratch, std::size_t index) {
+  Figures figures(recording, sensor, scratch, index);
+  SensorFigures drawn;
+  drawn.series = figures.series();
+  if (sensor.rose.count > 0) drawn.rose = draw_wind_rose(sensor.rose);
+  drawn.distribution = figures.distribution();
+  drawn.spectrum = figures.spectrum();
+  drawn.diurnal = figures.diurnal();
+  return drawn;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/tools/report/report_numbers.hpp"
+
+namespace yuragi {
+
+/// The report's numbers for machines: JSON, with the unit in each key, null where something is not known, times in
+/// seconds of log time and in UTC (ISO 8601). `source`: the recording's name. Names that are no UTF-8 are mended.
+std::string report_json(const RecordingNumbers& recording, const std::string& source);
+
+}  // namespace yuragi

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "daemon/tools/report/report_figures.hpp"
+#include "daemon/tools/report/report_numbers.hpp"
+
+namespace yuragi {
+
+/// The whole page: one HTML file that needs nothing else, and no script. `source`: the recording's name. `figures`: one
+/// for each of the recording's sensors. All text from outside is escaped (page_text).
+std::string report_page(const RecordingNumbers& recording, std::span<const SensorFigures> figures,
+                        const std::string& source);
+
+}  // namespace yuragi

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "daemon/settings/duration_text.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// Text from outside as it may stand in HTML or SVG, between tags or in a quoted attribute: with no sign that means
+/// something there, valid UTF-8 (what is not becomes U+FFFD, and so do control characters), and cut when very long.
+std::string page_text(std::string_view text);
+
+/// "2018-07-20 14:00:00 UTC".
+std::string utc_text(UtcTime moment);
+
+/// "2018-07-20 16:00:00 CEST", in the zone of this machine (TZ).
+std::string local_text(UtcTime moment);
+
+/// Local time minus UTC, in the zone of this machine. Reads no clock. Thread-safe: yes, unless TZ is changed.
+Nanoseconds local_offset(UtcTime moment);
+
+/// "north-north-east" and so on, sixteen of them.
+std::string_view compass_text(double direction_deg);
+
+/// "NNE" and so on, clockwise from north; `sector` below 16.
+std::string_view compass_short(std::size_t sector);
+
+}  // namespace yuragi

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "daemon/tools/report/even_series.hpp"
+#include "daemon/tools/report/gust_means.hpp"
+#include "daemon/tools/report/recording_survey.hpp"
+#include "daemon/tools/report/report_numbers.hpp"
+#include "daemon/tools/report/site_lesson.hpp"
+#include "daemon/tools/report/speed_statistics.hpp"
+#include "daemon/tools/report/state_history.hpp"
+#include "daemon/tools/report/welch_spectrum.hpp"
+#include "engine/wind/blend/source_record.hpp"
+#include "engine/wind/judging/reading_judge.hpp"
+
+namespace yuragi {
+
+/// How a recording is judged, and where its hours are counted.
+struct ReportSettings {
+  LogRange range;
+  std::vector<std::string> sensors;  ///< by name; none: all
+  double stale_intervals = 5.0;      ///< [wind] stale_intervals
+  JudgeSettings judge;
+  /// What the gusts of a sensor of this name are taken for; none: TurbulencePrior's own.
+  std::function<TurbulencePrior(const std::string& sensor)> prior;
+  /// Local time minus UTC at a moment; none: UTC.
+  std::function<Nanoseconds(UtcTime)> utc_offset;
+};
+
+/// Gathers all numbers of one sensor in one pass, in memory that does not grow with the recording. Thread-safe: no.
+class SensorTally {
+ public:
+  /// `begin_s` and `end_s`: of the whole recording, log time. `settings` must outlive the tally.
+  SensorTally(const SensorSurvey& survey, double begin_s, double end_s, const ReportSettings& settings);
+
+  /// Takes the sensor's next reading, in the order of log time.
+  void add(Nanoseconds log_time, const WindReading& reading);
+
+  /// All that there is to say; once, after the last reading.
+  SensorNumbers finish();
+
+ private:
+  void plan_spectrum(const SensorSurvey& survey);
+  void mark(RecordedState state, double from_s, double to_s);
+  void add_believed(Nanoseconds log_time, const WindReading& reading);
+  void add_to_bin(double time_s, const WindReading& reading, const std::optional<double>& gust_m_s);
+  std::size_t bin_of(double time_s) const;
+  std::size_t hour_of(UtcTime moment);
+
+  const ReportSettings& settings_;
+  double begin_s_;
+  double end_s_;
+  bool tells_gusts_;
+  SensorNumbers numbers_;
+
+  SourceRecord record_;
+  ReadingJudge judge_;
+  StateHistory states_;
+  RecordedState state_ = RecordedState::kLive;
+  SiteLesson lesson_;
+  bool was_interrupted_ = false;  ///< since the last believed reading
+
+  SpeedStatistics speeds_;
+  RoseTally rose_;
+  ThreeSecondMean three_seconds_;
+  TenMinuteBlocks blocks_;
+  WindVector wind_sum_;
+  double directed_speed_sum_m_s_ = 0.0;
+  double next_direction_s_ = 0.0;
+  std::optional<double> held_direction_deg_;
+
+  std::optional<EvenSeries> series_;
+  std::optional<WelchSpectrum> spectrum_;
+  std::optional<IntegralTime> integral_time_;
+
+  std::optional<std::int64_t> known_quarter_;  ///< of an hour, of which the local hour is known
+  std::size_t known_hour_ = 0;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "daemon/tools/report/report_numbers.hpp"
+#include "engine/fft/real_fft.hpp"
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi {
+
+/// A sample of an evenly spaced series.
+struct EvenSample {
+  double speed_m_s = 0.0;
+  std::optional<WindVector> wind;  ///< nothing: its direction is not known
+};
+
+/// Gathers a spectrum (SpectrumNumbers says how) from an endless series, segment by segment, in memory that does not
+/// grow. Thread-safe: no.
+class WelchSpectrum {
+ public:
+  /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, whatever the samples' directions.
+  WelchSpectrum(std::size_t segment, double step_s, bool is_of_speed);
+
+  /// The next sample of the series.
+  void add(const EvenSample& sample);
+
+  /// The series breaks off here: what comes next does not follow on what was before.
+  void interrupt() { samples_.clear(); }
+
+  /// What has been gathered, with its fits; nothing without a whole segment.
+  std::optional<SpectrumNumbers> numbers() const;
+
+ private:
+  void take_segment();
+
+  RealFft fft_;
+  std::vector<double> window_;
+  double window_power_ = 0.0;
+  double step_s_;
+  bool is_of_speed_;
+  std::vector<EvenSample> samples_;
+  std::vector<double> power_sum_;
+  double squared_speed_sum_m2_s2_ = 0.0;
+  std::size_t segments_ = 0;
+};
+
+/// Gathers the autocorrelation of blocks of a series. Thread-safe: no.
+class IntegralTime {
+ public:
+  IntegralTime(std::size_t block, double step_s);
+
+  void add(double speed_m_s);
+  void interrupt() { samples_.clear(); }
+
+  /// The autocorrelation about the blocks' means, summed by the trapezium rule up to its first zero; nothing without a
+  /// whole block, or where the wind did not vary.
+  std::optional<double> seconds() const;
+
+ private:
+  std::size_t block_;
+  double step_s_;
+  RealFft fft_;
+  std::vector<double> samples_;
+  std::vector<double> sum_;
+};
+
+/// The two fits and the octaves of a spectrum. `mean_square_speed_m2_s2`: U^2.
+void fit_spectrum(SpectrumNumbers& spectrum, double mean_square_speed_m2_s2);
+
+}  // namespace yuragi

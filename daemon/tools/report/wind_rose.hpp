@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "daemon/tools/report/report_numbers.hpp"
+
+namespace yuragi {
+
+/// Colours of the rose's speed classes, which go with kRoseClasses_m_s.
+inline constexpr std::array<std::string_view, kRoseClasses_m_s.size()> kRoseColors = {"#a6cee3", "#6db1d8", "#3690c0",
+                                                                                      "#1f78b4", "#7b52ab", "#c51b8a"};
+
+/// "2 to 4 m/s" and so on.
+std::string rose_class_text(std::size_t speed_class);
+
+/// An SVG element: a wedge a sector toward where the wind came from, its length the share of the readings, in the
+/// colours of the speeds; each piece tells its numbers when the mouse is on it. (gnuplot 5.4 has no such diagram.)
+std::string draw_wind_rose(const WindRose& rose);
+
+}  // namespace yuragi

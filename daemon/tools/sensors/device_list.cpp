@@ -1,0 +1,104 @@
+#include "daemon/tools/sensors/device_list.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace yuragi {
+namespace {
+
+std::string indented(const std::string& text, std::string_view margin) {
+  std::string result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) result += fmt::format("{}{}\n", margin, line);
+  return result;
+}
+
+/// The findings of one device stand together, in the order in which it was first found.
+std::vector<std::vector<const DeviceFinding*>> by_device(std::span<const DeviceFinding> findings) {
+  std::vector<std::vector<const DeviceFinding*>> groups;
+  for (const DeviceFinding& finding : findings) {
+    const auto same = std::ranges::find_if(
+        groups, [&](const auto& group) { return group.front()->device.what == finding.device.what; });
+    if (same == groups.end()) {
+      groups.push_back({&finding});
+    } else {
+      same->push_back(&finding);
+    }
+  }
+  return groups;
+}
+
+std::string names_of(std::span<const DriverDescription* const> drivers, bool that_can_look) {
+  std::string names;
+  for (const DriverDescription* driver : drivers) {
+    if ((driver->find != nullptr) == that_can_look)
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", driver->name);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<DeviceFinding> find_devices(std::span<const DriverDescription* const> drivers) {
+  std::vector<DeviceFinding> findings;
+  for (const DriverDescription* driver : drivers) {
+    if (driver->find == nullptr) continue;
+    try {
+      for (FoundDevice& device : driver->find()) findings.push_back({driver, std::move(device)});
+    } catch (const std::exception& error) {
+      FoundDevice none;
+      none.what = fmt::format("devices of driver {}", driver->name);
+      none.trouble = fmt::format("could not look for them: {}", error.what());
+      findings.push_back({driver, std::move(none)});
+    }
+  }
+  return findings;
+}
+
+std::string device_list(std::span<const DeviceFinding> findings, std::span<const DriverDescription* const> drivers) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  if (findings.empty()) {
+    const std::string asked = names_of(drivers, true);
+    fmt::format_to(out, "Nothing is plugged in that a driver could read{}.\n",
+                   asked.empty() ? "" : fmt::format(" (looked for devices of {})", asked));
+  }
+
+  // A sensor's name must be its own: the second of a driver is "modbus-2".
+  std::map<std::string_view, int> count_of;
+  for (const auto& group : by_device(findings)) {
+    fmt::format_to(out, "{}\n", group.front()->device.what);
+    const DeviceFinding* told = nullptr;
+    for (const DeviceFinding* finding : group) {
+      const FoundDevice& device = finding->device;
+      if (!device.settings.empty()) {
+        const int count = ++count_of[finding->driver->name];
+        const std::string number = count > 1 ? fmt::format("-{}", count) : "";
+        if (finding != group.front()) fmt::format_to(out, "  or\n");
+        fmt::format_to(out, "    [[sensor]]\n    name = \"{0}{1}\"\n    driver = \"{0}\"\n{2}", finding->driver->name,
+                       number, indented(device.settings, "    "));
+      }
+      // The same trouble is told once.
+      const bool is_told =
+          told != nullptr && told->device.trouble == device.trouble && told->device.remedy == device.remedy;
+      if (device.trouble.empty() || is_told) continue;
+      told = finding;
+      fmt::format_to(out, "  It cannot be opened as things are:\n{}", indented(device.trouble, "    "));
+      if (!device.remedy.empty()) fmt::format_to(out, "  What to do:\n{}", indented(device.remedy, "    "));
+    }
+    text += '\n';
+  }
+
+  if (const std::string others = names_of(drivers, false); !others.empty()) {
+    fmt::format_to(out, "{}Not looked for: {}. `yuragi sensors describe DRIVER` says how each is set up.\n",
+                   findings.empty() ? "\n" : "", others);
+  }
+  return text;
+}
+
+}  // namespace yuragi

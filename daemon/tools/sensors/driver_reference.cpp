@@ -1,0 +1,65 @@
+#include "daemon/tools/sensors/driver_reference.hpp"
+
+#include <iterator>
+
+#include <fmt/format.h>
+
+namespace yuragi {
+namespace {
+
+/// Text that stands in a cell of a Markdown table.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '|' || c == '*' || c == '_' || c == '<') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+}  // namespace
+
+std::string parameter_text(std::span<const Parameter> parameters) {
+  std::string text;
+  for (const Parameter& parameter : parameters) {
+    fmt::format_to(std::back_inserter(text), "  {:<18} {}\n  {:<18} {}\n", parameter.name, parameter.help, "",
+                   describe_allowed(parameter));
+  }
+  return text;
+}
+
+std::string driver_names(std::span<const DriverDescription* const> drivers) {
+  std::string text;
+  for (const DriverDescription* driver : drivers) {
+    fmt::format_to(std::back_inserter(text), "{:<12} {}\n", driver->name, driver->summary);
+  }
+  return text;
+}
+
+std::string describe_driver(const DriverDescription& driver) {
+  std::string text = fmt::format(
+      "{0}: {1}\n\n[[sensor]]\nname = \"{0}\"  # any text, each sensor its own\n"
+      "driver = \"{0}\"\n",
+      driver.name, driver.summary);
+  if (driver.parameters.empty()) return text;
+  return text + "\nIts keys:\n" + parameter_text(driver.parameters);
+}
+
+std::string driver_reference(std::span<const DriverDescription* const> drivers) {
+  std::string text =
+      "# Sensors\n\nA sensor is a `[[sensor]]` table of the configuration: a `name` of its own, its `driver`, and the\n"
+      "driver's keys. This page is what `yuragi sensors describe --all` prints.\n";
+  const auto out = std::back_inserter(text);
+  for (const DriverDescription* driver : drivers) {
+    fmt::format_to(out, "\n## {}\n\n{}\n", driver->name, cell(driver->summary));
+    if (driver->parameters.empty()) continue;
+    fmt::format_to(out, "\n| key | takes | what it is |\n| --- | --- | --- |\n");
+    for (const Parameter& parameter : driver->parameters) {
+      fmt::format_to(out, "| `{}` | {} | {} |\n", parameter.name, cell(describe_allowed(parameter)),
+                     cell(parameter.help));
+    }
+  }
+  return text;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "drivers/sensor/driver.hpp"
+
+namespace yuragi {
+
+// Pages about drivers, made from their own descriptions, so that they are never out of date.
+
+/// Each parameter with its help, unit, range and default, for a terminal.
+std::string parameter_text(std::span<const Parameter> parameters);
+
+/// A line for each driver: name and summary.
+std::string driver_names(std::span<const DriverDescription* const> drivers);
+
+/// All that one driver can be told, for a terminal.
+std::string describe_driver(const DriverDescription& driver);
+
+/// All drivers on one page, in Markdown.
+std::string driver_reference(std::span<const DriverDescription* const> drivers);
+
+}  // namespace yuragi

@@ -1,0 +1,127 @@
+#include "daemon/tools/sensors/sensor_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "daemon/sensing/refusal_text.hpp"
+#include "drivers/sensor/sensor.hpp"
+
+namespace yuragi {
+namespace {
+
+/// Does a recording speak, and nothing else?
+bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
+  const auto speaks = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
+  return std::ranges::any_of(sensors, speaks) &&
+         std::ranges::none_of(sensors, [&](const auto& sensor) { return speaks(sensor) && !sensor.replayed; });
+}
+
+std::string_view wind_source(const wire::Sensors& sensors) {
+  switch (sensors.wind.source) {
+    case WindSource::kDefault:
+      return "default wind: no sensor speaks";
+    case WindSource::kHandover:
+      return "handing over";
+    case WindSource::kLive:
+      return is_replayed(sensors.sensors) ? "REPLAY of a recording" : "live";
+  }
+  return "?";
+}
+
+/// In capitals where somebody should look, or could take it for the wind of now.
+std::string state_text(SensorState state) {
+  std::string text(name_of(state));
+  const bool is_quiet =
+      state == SensorState::kLive || state == SensorState::kSimulated || state == SensorState::kConnecting;
+  if (!is_quiet) std::ranges::transform(text, text.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
+  return state == SensorState::kReplayed ? "REPLAY" : text;
+}
+
+std::string direction_text(double direction_deg) {
+  return fmt::format("{:3.0f} {}", direction_deg, compass_point(direction_deg));
+}
+
+std::string optional_text(const std::optional<double>& value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+/// Ten metres and more without decimals, so that a number that changes keeps its width.
+std::string short_number(double value) {
+  return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0);
+}
+
+/// Where the wind on top of the table is, and when its gusts come to the middle of the scenes; empty where it is there.
+std::string place_of_wind(const WindState& wind) {
+  if (!wind.is_place_told && wind.upwind_m == 0.0) return {};
+  std::string text = wind.is_place_told ? "at the sensors, " : "at the windward edge, ";
+  if (std::abs(wind.upwind_m) < 0.05) {
+    text += "level with the middle of the scenes";
+  } else {
+    text += fmt::format("{} m {} of the middle of the scenes", short_number(std::abs(wind.upwind_m)),
+                        wind.upwind_m > 0.0 ? "upwind" : "downwind");
+  }
+  if (wind.to_middle_s > 0.0) text += fmt::format("; a gust is there in {} s", short_number(wind.to_middle_s));
+  return text;
+}
+
+/// `text` under a row: indented, broken between words.
+std::string wrapped(std::string_view text) {
+  constexpr std::size_t kWidth = 100;
+  std::string result;
+  std::string line = " ";
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    if (line.size() > 4 && line.size() + 1 + word.size() > kWidth) {
+      result += line + "\n";
+      line = "   ";
+    }
+    line += fmt::format(" {}", word);
+  }
+  return result + line + "\n";
+}
+
+}  // namespace
+
+std::string compass_point(double direction_deg) {
+  static constexpr std::array<const char*, 16> kPoints = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
+                                                          "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
+  const double turns = direction_deg / 360.0 - std::floor(direction_deg / 360.0);
+  return kPoints[static_cast<std::size_t>(std::lround(turns * 16.0)) % 16];
+}
+
+std::string sensor_table(const wire::Sensors& sensors) {
+  const WindVector wind = sensors.wind.wind;
+  std::string table =
+      fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n", speed_of(wind),
+                  direction_text(direction_from_deg(wind)), wind_source(sensors), sensors.clients, sensors.late_ticks);
+  if (const std::string place = place_of_wind(sensors.wind); !place.empty()) table += wrapped(place);
+  if (!sensors.shaping.text.empty()) table += wrapped("shaped: " + sensors.shaping.text);
+  table += '\n';
+  const auto out = std::back_inserter(table);
+  const auto row = [&](const auto&... cells) {
+    fmt::format_to(out, "{:<12.12} {:<10.10} {:<12} {:>6} {:>7} {:>6} {:>7} {:>7} {:>9} {:>9} {:>5}\n", cells...);
+  };
+  row("sensor", "driver", "state", "m/s", "from", "gust", "age s", "every s", "frames", "readings", "again");
+  for (const wire::SensorStatus& sensor : sensors.sensors) {
+    row(sensor.name, sensor.driver, state_text(sensor.state), optional_text(sensor.speed_m_s, "{:.2f}"),
+        sensor.direction_deg ? direction_text(*sensor.direction_deg) : "-", optional_text(sensor.gust_m_s, "{:.2f}"),
+        sensor.readings > 0 ? fmt::format("{:.1f}", sensor.age_s) : "-",
+        sensor.interval_s > 0.0 ? fmt::format("{:.2f}", sensor.interval_s) : "-", sensor.frames, sensor.readings,
+        sensor.reconnects);
+    if (!sensor.state_reason.empty()) {
+      table += wrapped(fmt::format("{}: {}", name_of(sensor.state), sensor.state_reason));
+    }
+    if (!sensor.detail.empty() && sensor.detail != sensor.state_reason) {
+      table += wrapped(fmt::format("{}: {}", name_of(static_cast<LinkState>(sensor.link)), sensor.detail));
+    }
+    if (!sensor.refused.empty()) table += wrapped("refused: " + refusal_text(sensor));
+  }
+  return table;
+}
+
+}  // namespace yuragi

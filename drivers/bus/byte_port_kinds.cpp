@@ -1,0 +1,21 @@
+#include "drivers/bus/byte_port_kinds.hpp"
+
+#include "drivers/bus/descriptor_port.hpp"
+
+namespace yuragi {
+
+std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address) {
+  switch (address.kind) {
+    case BytePortKind::kSerial:
+      return make_serial_port(address);
+    case BytePortKind::kTcpClient:
+      return make_tcp_port(address);
+    case BytePortKind::kUdp:
+      return make_udp_port(address);
+    case BytePortKind::kFile:
+      break;
+  }
+  return make_file_port(address);
+}
+
+}  // namespace yuragi

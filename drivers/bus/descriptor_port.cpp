@@ -1,0 +1,45 @@
+#include "drivers/bus/descriptor_port.hpp"
+
+#include <cerrno>
+
+#include <unistd.h>
+
+namespace yuragi {
+namespace {
+
+/// A device that takes nothing for so long will not take it later either.
+constexpr Nanoseconds kWritePatience = std::chrono::seconds(1);
+
+}  // namespace
+
+ByteArrival DescriptorPort::read(std::span<std::uint8_t> buffer, Nanoseconds timeout) {
+  if (descriptor() < 0) return {ByteStatus::kLost};
+  switch (interruption_.wait(descriptor(), WaitFor::kReadable, timeout)) {
+    case WaitEnd::kInterrupted:
+      return {ByteStatus::kInterrupted};
+    case WaitEnd::kTimeout:
+      return {ByteStatus::kSilence};
+    case WaitEnd::kReady:
+      break;
+  }
+  const ssize_t size = ::read(descriptor(), buffer.data(), buffer.size());
+  if (size > 0) return {ByteStatus::kBytes, static_cast<std::size_t>(size)};
+  const bool is_nothing = size < 0 && (errno == EAGAIN || errno == EINTR);
+  return {is_nothing ? ByteStatus::kSilence : ByteStatus::kLost};
+}
+
+bool DescriptorPort::write(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    if (descriptor() < 0) return false;
+    if (interruption_.wait(descriptor(), WaitFor::kWritable, kWritePatience) != WaitEnd::kReady) return false;
+    const ssize_t size = ::write(descriptor(), bytes.data(), bytes.size());
+    if (size > 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(size));
+    } else if (errno != EAGAIN && errno != EINTR) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,81 @@
+#include "drivers/decode/hid/wmr300.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace yuragi {
+namespace {
+
+constexpr std::uint8_t kWmr300FirstData = 0xD1;
+constexpr std::uint8_t kWmr300LastData = 0xDC;
+constexpr std::uint8_t kWmr300History = 0xD2;
+constexpr std::uint8_t kWmr300Wind = 0xD4;
+constexpr std::size_t kWmr300Channel = 7;
+constexpr std::size_t kWmr300Magic = 12;
+constexpr std::size_t kWmr300SumAt = 52;
+
+/// The number at `at`; none where the console has none.
+std::optional<double> wmr300_number(ByteSpan packet, std::size_t at) {
+  if (packet[at] == 0x7F) return std::nullopt;
+  return big_endian_16(packet, at);
+}
+
+std::optional<double> tenths(std::optional<double> number) {
+  if (!number) return std::nullopt;
+  return *number / 10.0;
+}
+
+}  // namespace
+
+Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept {
+  // The wind's, whole and undamaged?
+  if (packet.empty()) return Refusal::kTooShort;
+  if (packet[0] != kWmr300Wind) return Refusal::kNotMine;
+  if (packet.size() < kWmr300WindPacket) return Refusal::kTooShort;
+  if (packet[1] != kWmr300WindPacket) return Refusal::kMalformed;
+  if (sum_16(packet.first(kWmr300SumAt)) != big_endian_16(packet, kWmr300SumAt)) return Refusal::kBadChecksum;
+
+  DecodedWind wind;
+  wind.gust_m_s = tenths(wmr300_number(packet, 8));
+  wind.speed_m_s = tenths(wmr300_number(packet, 12));
+  const auto direction_deg = wmr300_number(packet, 14);
+  if (direction_deg && *direction_deg > 360.0) return Refusal::kImplausible;
+  if (direction_deg) wind.direction_deg = wrapped_direction_deg(*direction_deg);
+  return checked(wind);
+}
+
+bool is_wmr300_identity(ByteSpan packet) noexcept {
+  constexpr std::array<std::uint8_t, 6> kName = {'W', 'M', 'R', '3', '0', '0'};
+  return packet.size() > kWmr300Magic + 1 && std::equal(kName.begin(), kName.end(), packet.begin());
+}
+
+std::array<std::uint8_t, 6> encode_wmr300_begin(ByteSpan identity) noexcept {
+  return {0x73, 0xE5, 0x0A, 0x26, identity[kWmr300Magic], identity[kWmr300Magic + 1]};
+}
+
+bool is_sound_wmr300(ByteSpan packet) noexcept {
+  if (!wants_wmr300_acknowledgement(packet)) {
+    const bool is_answer = packet.size() > 2 && packet[0] == 'A' && packet[1] == 'C' && packet[2] == 'K';
+    return is_answer || is_wmr300_identity(packet);
+  }
+  // The history's sum has its low byte first, the others' their high byte; it is longer than a report.
+  constexpr std::size_t kSum = 2;
+  const std::size_t size = packet[1];
+  if (size < kWmr300Channel + kSum || size > packet.size()) return false;
+  const std::uint16_t sum = sum_16(packet.first(size - kSum));
+  return sum ==
+         (packet[0] == kWmr300History ? little_endian_16(packet, size - kSum) : big_endian_16(packet, size - kSum));
+}
+
+bool wants_wmr300_acknowledgement(ByteSpan packet) noexcept {
+  return packet.size() > kWmr300Channel && packet[0] >= kWmr300FirstData && packet[0] <= kWmr300LastData;
+}
+
+std::array<std::uint8_t, 6> encode_wmr300_acknowledgement(ByteSpan packet) noexcept {
+  const bool has_channel = wants_wmr300_acknowledgement(packet);
+  const std::uint8_t kind = has_channel ? packet[0] : kWmr300Wind;
+  const std::uint8_t channel = has_channel ? packet[kWmr300Channel] : std::uint8_t{0};
+  return {'A', 'C', 'K', kind, channel, 0};
+}
+
+}  // namespace yuragi

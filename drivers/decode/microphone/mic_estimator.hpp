@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "drivers/decode/microphone/mic_block.hpp"
+#include "drivers/decode/microphone/mic_calibration.hpp"
+#include "drivers/decode/microphone/mic_direction.hpp"
+#include "drivers/decode/microphone/mic_gain_watch.hpp"
+#include "drivers/decode/microphone/mic_noise_floor.hpp"
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi {
+
+struct MicEstimatorOptions {
+  MicCalibration calibration = MicPowerLaw{};
+  /// Of a calm, dB re full scale; nothing: found while running (MicNoiseFloor). A curve needs none.
+  std::optional<double> noise_floor_db = std::nullopt;
+  double noise_memory_s = 86400.0;
+  /// Does what all microphones hear alike count as sound, not wind? With one microphone it cannot be told.
+  bool ignores_sound = true;
+  double window_s = 1.0;            ///< over which level and coherence are taken
+  std::vector<double> faces_deg{};  ///< where each microphone faces; empty: no direction
+  double direction_smoothing_s = 5.0;
+  double least_confidence = 0.3;  ///< of a direction; below it there is none
+};
+
+/// The wind as one block leaves it.
+struct MicEstimate {
+  double speed_m_s = 0.0;
+  std::optional<double> direction_deg;  ///< where it comes from, clockwise from north, [0, 360)
+  std::optional<double> gust_m_s;       ///< strongest mean over 3 s of the last 10 min (WMO-No. 8, 2021, I.5)
+  double direction_confidence = 0.0;    ///< 0 to 1
+  double level_db = 0.0;                ///< of the wind in its band, without sound; what a calibration is made of
+  double floor_db = 0.0;                ///< what was taken for a calm; -200: nothing
+  double sound_part = 0.0;              ///< of the band's power that was taken for sound, 0 to 1
+  unsigned silent_channels = 0;         ///< a bit for each that says nothing at all
+  bool is_clipping = false;
+  bool suspects_automatic_gain = false;
+};
+
+/// From blocks of sound to wind. Wind noise is made at each microphone by itself, so that two of them hear it
+/// incoherently, and ambient sound alike: of each band's power the part 1 - |gamma| is wind, with gamma the complex
+/// coherence. With few averages even noise looks coherent by 1/N in |gamma|^2, which is taken off (Carter, Knapp and
+/// Nuttall 1973, "Estimation of the magnitude-squared coherence function via overlapped FFT processing").
+///
+/// A microphone that clips hears less than there is: a Gaussian signal that is at full scale for a part p of the time
+/// has the standard deviation 1 / Phi^-1(1 - p/2), and the level is raised to that; it is never lowered. Pure: no
+/// clock, no I/O. Thread-safe: no. Realtime-safe: no (it keeps ten minutes of gusts in a deque).
+class MicEstimator {
+ public:
+  /// Throws std::invalid_argument for faces that are no direction's, or more than there are channels.
+  MicEstimator(const MicEstimatorOptions& options, const MicHello& hello);
+
+  /// Nothing until a whole window has been heard. Refuses: kInvalid (digital silence: muted, or unplugged and not told;
+  /// or samples that are no numbers), kImplausible (noise at full scale, as strong above the wind's band as in it: a
+  /// broken cable or a wrong sample format). A refused block empties the window.
+  Result<std::optional<MicEstimate>, Refusal> add(const MicBlock& block);
+
+  const MicHello& hello() const noexcept { return hello_; }
+
+  /// The stream begins anew: the window is emptied; what is known of the microphone is kept.
+  void restart() noexcept;
+
+ private:
+  struct Levels {
+    std::array<double, kMicMaxChannels> power{};  ///< of the wind, in its band
+    double power_with_sound = 0.0;                ///< mean over the channels that live
+    double wind_power = 0.0;                      ///< likewise
+    double high_power = 0.0;
+    unsigned silent_channels = 0;
+    bool is_clipping = false;
+  };
+
+  std::optional<Refusal> refuse(const MicBlock& block) const;
+  Levels levels_of_window() const;
+  double coherence(std::size_t a, std::size_t b, std::size_t band) const;
+  std::optional<double> add_gust(double speed_m_s, double duration_s);
+
+  MicEstimatorOptions options_;
+  MicHello hello_;
+  std::vector<MicBlock> window_;  ///< a ring
+  std::size_t next_ = 0;
+  std::size_t filled_ = 0;
+  std::uint64_t last_sample_ = 0;
+
+  MicNoiseFloor floor_;
+  MicGainWatch gain_watch_;
+  std::optional<MicDirection> direction_;
+
+  struct Gust {
+    double time_s, speed_m_s;
+  };
+  double time_s_ = 0.0;
+  std::deque<Gust> recent_;  ///< of the last 3 s
+  std::deque<Gust> gusts_;   ///< falling from front to back: the front is the strongest of 10 min
+};
+
+}  // namespace yuragi

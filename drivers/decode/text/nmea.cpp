@@ -1,0 +1,190 @@
+#include "drivers/decode/text/nmea.hpp"
+
+#include <charconv>
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <system_error>
+
+#include "engine/base/units.hpp"
+
+namespace yuragi {
+namespace {
+
+using NmeaAnswer = Result<DecodedWind, Refusal>;
+using NmeaValue = Result<std::optional<double>, Refusal>;
+
+/// MWV and XDR know miles per hour too.
+std::optional<double> sentence_unit(std::string_view letter) {
+  return letter == "S" ? kMetresPerSecondPerMph : metres_per_second_of(letter);
+}
+
+/// The speed in field `at`, whose unit stands in the field behind it.
+NmeaValue speed_with_unit(const TextFields& fields, std::size_t at) {
+  const NmeaValue number = parse_number(fields[at]);
+  if (!number || !*number) return number;
+  const auto factor = sentence_unit(fields[at + 1]);
+  if (!factor) return Refusal::kMalformed;
+  return std::optional(**number * *factor);
+}
+
+/// The speed in the first of these fields that is not empty; each must have the letter that the sentence prescribes.
+struct SpeedPlace {
+  std::size_t at;
+  std::string_view letter;
+};
+NmeaValue first_speed(const TextFields& fields, std::initializer_list<SpeedPlace> places) {
+  for (const SpeedPlace& place : places) {
+    if (fields[place.at].empty()) continue;
+    if (fields[place.at + 1] != place.letter) return Refusal::kMalformed;
+    return speed_with_unit(fields, place.at);
+  }
+  return std::optional<double>();
+}
+
+/// $--MWV,angle,R|T,speed,K|N|M|S,A|V
+NmeaAnswer decode_mwv(const NmeaOptions& options, const TextFields& fields) {
+  DecodedWind wind;
+
+  // The status first: what an invalid sentence says otherwise does not matter.
+  const std::string_view status = fields[5];
+  if (status.empty()) {
+    if (options.status == WhenMissing::kRefuse) return Refusal::kMalformed;
+    wind.status = DecodedStatus::kUncertain;
+  } else if (!is_good_status(status)) {
+    return Refusal::kInvalid;
+  }
+
+  if (fields[2] == "R") {
+    wind.reference = WindReference::kRelative;
+  } else if (fields[2] == "T") {
+    wind.reference = WindReference::kTrue;
+  } else if (!fields[2].empty()) {
+    return Refusal::kMalformed;
+  }
+
+  const NmeaValue direction_deg = parse_direction_deg(fields[1]);
+  if (!direction_deg) return direction_deg.error();
+  const NmeaValue speed_m_s = speed_with_unit(fields, 3);
+  if (!speed_m_s) return speed_m_s.error();
+  wind.direction_deg = *direction_deg;
+  wind.speed_m_s = *speed_m_s;
+  return checked(wind);
+}
+
+/// The eight fields deg,T,deg,M,kn,N,m/s,M that MWD and MDA share, from field `at` on.
+NmeaAnswer decode_north(const TextFields& fields, std::size_t at) {
+  DecodedWind wind;
+  const bool is_true = !fields[at].empty();
+  const std::size_t direction = is_true ? at : at + 2;
+  const NmeaValue direction_deg = parse_direction_deg(fields[direction]);
+  if (!direction_deg) return direction_deg.error();
+  if (*direction_deg) {
+    if (fields[direction + 1] != (is_true ? "T" : "M")) return Refusal::kMalformed;
+    wind.reference = is_true ? WindReference::kNorth : WindReference::kMagnetic;
+  }
+
+  const NmeaValue speed_m_s = first_speed(fields, {{at + 6, "M"}, {at + 4, "N"}});
+  if (!speed_m_s) return speed_m_s.error();
+  wind.direction_deg = *direction_deg;
+  wind.speed_m_s = *speed_m_s;
+  return checked(wind);
+}
+
+/// $--VWR and VWT,0..180,L|R,kn,N,m/s,M,km/h,K
+NmeaAnswer decode_side(const TextFields& fields, WindReference reference) {
+  const NmeaValue angle_deg = parse_number(fields[1]);
+  if (!angle_deg) return angle_deg.error();
+  const NmeaValue speed_m_s = first_speed(fields, {{5, "M"}, {3, "N"}, {7, "K"}});
+  if (!speed_m_s) return speed_m_s.error();
+
+  DecodedWind wind;
+  wind.speed_m_s = *speed_m_s;
+  wind.reference = reference;
+  if (*angle_deg) {
+    const bool is_port = fields[2] == "L";
+    if (!is_port && fields[2] != "R") return Refusal::kMalformed;
+    if (**angle_deg < 0.0 || **angle_deg > 180.0) return Refusal::kImplausible;
+    wind.direction_deg = wrapped_direction_deg(is_port ? 360.0 - **angle_deg : **angle_deg);
+  }
+  return checked(wind);
+}
+
+/// What an XDR quadruple's id says of an angle or a speed.
+enum class XdrRole : std::uint8_t { kNone, kLeast, kMean, kGreatest };
+
+/// Only a number is one: a boat's heel is an angle too, and its id is HEEL.
+XdrRole xdr_role(std::string_view id, int first_id) {
+  int number = 0;
+  const char* const end = id.data() + id.size();
+  const auto [stop, error] = std::from_chars(id.data(), end, number);
+  if (id.empty() || error != std::errc() || stop != end || number < first_id) return XdrRole::kNone;
+  switch (number - first_id) {
+    case 0:
+      return XdrRole::kLeast;
+    case 1:
+      return XdrRole::kMean;
+    case 2:
+      return XdrRole::kGreatest;
+    default:
+      return XdrRole::kNone;
+  }
+}
+
+/// $--XDR and quadruples of type, value, unit, id. The mean is the reading and the greatest speed the gust; a device
+/// that sends only the first id has its reading there.
+NmeaAnswer decode_xdr(const NmeaOptions& options, const TextFields& fields) {
+  DecodedWind wind;
+  wind.reference = WindReference::kRelative;
+  bool has_wind = false;
+  bool direction_is_mean = false;
+  bool speed_is_mean = false;
+
+  for (std::size_t at = 1; at + 3 < fields.count; at += 4) {
+    const bool is_angle = fields[at] == "A" && fields[at + 2] == "D";
+    const bool is_speed = fields[at] == "S" && sentence_unit(fields[at + 2]);
+    const XdrRole role = is_angle || is_speed ? xdr_role(fields[at + 3], options.xdr_first_id) : XdrRole::kNone;
+    if (role == XdrRole::kNone) continue;
+    has_wind = true;
+
+    const NmeaValue value = is_angle ? parse_direction_deg(fields[at + 1]) : speed_with_unit(fields, at + 1);
+    if (!value) return value.error();
+    const bool is_mean = role == XdrRole::kMean;
+    if (role == XdrRole::kGreatest) {
+      if (is_speed) wind.gust_m_s = *value;
+    } else if (is_angle && (is_mean || !direction_is_mean)) {
+      wind.direction_deg = *value;
+      direction_is_mean = is_mean;
+    } else if (is_speed && (is_mean || !speed_is_mean)) {
+      wind.speed_m_s = *value;
+      speed_is_mean = is_mean;
+    }
+  }
+  if (!has_wind) return Refusal::kNotMine;
+  return checked(wind);
+}
+
+}  // namespace
+
+NmeaAnswer decode_nmea(const NmeaOptions& options, std::string_view line) noexcept {
+  const auto sentence = sentence_of(line, options.checksum);
+  if (!sentence) return sentence.error();
+  const TextFields fields = split_fields(*sentence, ',');
+
+  // Two characters of talker, three of sentence.
+  constexpr std::size_t kTalker = 2;
+  if (fields[0].size() != kTalker + 3) return Refusal::kNotMine;
+  const std::string_view name = fields[0].substr(kTalker);
+  const bool is_wind =
+      name == "MWV" || name == "MWD" || name == "VWR" || name == "VWT" || name == "MDA" || name == "XDR";
+  if (!is_wind) return Refusal::kNotMine;
+  if (!fields.are_all) return Refusal::kMalformed;
+
+  if (name == "MWV") return decode_mwv(options, fields);
+  if (name == "MWD") return decode_north(fields, 1);
+  if (name == "MDA") return decode_north(fields, 13);
+  if (name == "XDR") return decode_xdr(options, fields);
+  return decode_side(fields, name == "VWR" ? WindReference::kRelative : WindReference::kTrue);
+}
+
+}  // namespace yuragi

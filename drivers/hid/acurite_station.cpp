@@ -1,0 +1,101 @@
+// AcuRite: says nothing by itself; input report 1 is asked for every 18 s. Its contents alternate, so that a report
+// that is the same as the one before is not new. It has no checksum: it is read twice, and must be the same both times.
+// Reports: drivers/decode/hid/acurite.hpp. Source: ../shared/sensors.md 2.4.
+#include <algorithm>
+#include <array>
+
+#include "drivers/decode/hid/acurite.hpp"
+#include "drivers/hid/hid_station.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kAcuriteEvery = 18s;
+constexpr Nanoseconds kAcuriteRetry = 6s;
+constexpr Nanoseconds kAcuriteNothingNew = 90s;
+constexpr int kAcuriteGiveUp = 4;  // failures in a row; then it is opened again, which helps some consoles
+
+class AcuriteStation final : public HidStation {
+ public:
+  explicit AcuriteStation(const StationTiming& timing) : timing_(timing) {}
+
+  Result<StationStep, Failure> step(HidTalk& talk) override {
+    const MonoTime begin = talk.now();
+    if (last_new_ == MonoTime{}) last_new_ = begin;
+    Report first;
+    Report second;
+    if (!ask(talk, first)) return station_is_gone();
+    if (first.size != 0 && !ask(talk, second)) return station_is_gone();
+    if (first.size == 0 || second.size == 0) {
+      return fail(talk, Refusal::kTimeout, "does not answer: set the console's USB mode to 3 or 4");
+    }
+    if (first != second) {
+      return fail(talk, Refusal::kMalformed, "says something else each time: unplug it and plug it in again");
+    }
+
+    const MonoTime next = begin + timing_.interval_or(kAcuriteEvery);
+    if (first == last_) return wait_for_news(next, begin);
+    const auto wind = decode_acurite(first.span());
+    if (wind && talk.publish(*wind)) {
+      failures_ = 0;
+      last_ = first;
+      last_new_ = begin;
+      return StationStep::well(next);
+    }
+    const Refusal why = wind ? Refusal::kInvalid : wind.error();
+    if (why != Refusal::kInvalid) {
+      return fail(talk, why, "sends reports that make no sense: unplug it and plug it in again");
+    }
+    // The console is well, and has no sensor, or old numbers of one.
+    failures_ = 0;
+    talk.refuse(Refusal::kInvalid);
+    return StationStep::unwell(next,
+                               "does not hear its sensors: check their batteries and their distance to the console");
+  }
+
+ private:
+  struct Report {
+    std::array<std::uint8_t, kAcuriteReport1> bytes{};
+    std::size_t size = 0;
+
+    ByteSpan span() const { return ByteSpan(bytes).first(size); }
+    bool operator==(const Report&) const = default;
+  };
+
+  /// Report 1; empty if it was refused. False: the device is gone.
+  static bool ask(HidTalk& talk, Report& report) {
+    const HidMessage message = talk.get_input_report(1, kAcuriteReport1);
+    if (message.status == HidStatus::kLost) return false;
+    report.size = message.bytes.size();
+    std::ranges::copy(message.bytes, report.bytes.begin());
+    return true;
+  }
+
+  /// The report is the one that was published last.
+  StationStep wait_for_news(MonoTime next, MonoTime now) {
+    failures_ = 0;
+    if (now - last_new_ < timing_.paced(kAcuriteNothingNew)) return StationStep::same(next);
+    return StationStep::unwell(next, "says the same again and again: unplug it and plug it in again");
+  }
+
+  Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
+    talk.refuse(why);
+    if (++failures_ >= kAcuriteGiveUp) return Failure{trouble};
+    return StationStep::unwell(talk.now() + timing_.paced(kAcuriteRetry), trouble);
+  }
+
+  StationTiming timing_;
+  Report last_;          ///< that was published
+  MonoTime last_new_{};  ///< when that was
+  int failures_ = 0;     ///< in a row
+};
+
+}  // namespace
+
+std::unique_ptr<HidStation> make_acurite_station(const StationTiming& timing) {
+  return std::make_unique<AcuriteStation>(timing);
+}
+
+}  // namespace yuragi

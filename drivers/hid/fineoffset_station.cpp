@@ -1,0 +1,269 @@
+// Fine Offset WH1080, WH3080: a console whose memory is read block by block. It writes what it measures there every
+// 48 s, goes on to the next record every few minutes, and may lock up when it is read at that moment (only a power
+// cycle helps then). Blocks: drivers/decode/hid/fineoffset.hpp. Source: ../shared/sensors.md 2.3; weewx fousb.py ("USB
+// lockups", polling).
+//
+// So it is read once for each time that it writes. When that is, is looked for at first, by reading a few times in one
+// period of 48 s until the record changes, and looked for again every six hours, since clocks drift. A block counts
+// when it was read twice alike; one that was not was just being written. That a round of reading always begins with the
+// fixed block, and ends with the record, keeps a late answer to one from being taken for the other.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "drivers/decode/hid/fineoffset.hpp"
+#include "drivers/hid/hid_station.hpp"
+#include "drivers/hid/write_clock.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kFineOffsetEvery = 48s;
+constexpr Nanoseconds kFineOffsetMinute = 60s;
+constexpr Nanoseconds kFineOffsetMargin = 5s;  // 3, and what two quartzes drift apart until the next search
+constexpr Nanoseconds kFineOffsetSearchStep = 6s;
+constexpr Nanoseconds kFineOffsetSearchAgain = 6h;
+constexpr Nanoseconds kFineOffsetSearchSoon = 1h;  // where nothing was found
+constexpr int kFineOffsetSearchSteps = 10;         // a period and a little more: in calm nothing may change
+constexpr Nanoseconds kFineOffsetRetry = 6s;
+constexpr Nanoseconds kFineOffsetReport = 1s;     // for each of a block's reports
+constexpr Nanoseconds kFineOffsetWriting = 2s;    // until a block that was being written is read again
+constexpr int kFineOffsetUnstable = 4;            // times that a block was not the same twice
+constexpr Nanoseconds kFineOffsetStalled = 240s;  // without any change: at the least it counts minutes
+constexpr int kFineOffsetGiveUp = 4;              // failures in a row; then it is opened again
+constexpr std::size_t kFineOffsetRecord = 16;     // what is alike in both models' records
+
+using FineOffsetBytes = std::array<std::uint8_t, kFineOffsetBlock>;
+
+class FineOffsetStation final : public HidStation {
+ public:
+  explicit FineOffsetStation(const StationTiming& timing)
+      : timing_(timing),
+        sensor_clock_(timing.paced(kFineOffsetEvery), timing.paced(kFineOffsetMargin)),
+        record_clock_(timing.paced(kFineOffsetMinute), timing.paced(kFineOffsetMargin)) {
+    begin_round();
+  }
+
+  Result<StationStep, Failure> step(HidTalk& talk) override {
+    const MonoTime now = talk.now();
+    if (const MonoTime clear = keep_away(now); clear > now) return StationStep::same(clear);
+
+    // One block, which counts when it is like the one before.
+    FineOffsetBytes block{};
+    const BlockStatus status = read_block(talk, addresses_[blocks_.size()], block);
+    if (status == BlockStatus::kLost) return station_is_gone();
+    if (status != BlockStatus::kRead) {
+      return fail(talk, status == BlockStatus::kNone ? Refusal::kTimeout : Refusal::kTooShort,
+                  "does not answer; one that has locked up needs its batteries and its cable taken out");
+    }
+    if (!last_block_) {
+      last_block_ = block;
+      return StationStep::same(talk.now());
+    }
+    if (*last_block_ != block) return wait_for_writing(talk);
+    last_block_.reset();
+    blocks_.push_back(block);
+    return blocks_.size() == 1 ? take_fixed_block(talk) : take_record(talk);
+  }
+
+ private:
+  enum class BlockStatus : std::uint8_t { kRead, kNone, kCutOff, kLost };
+
+  void begin_round() {
+    addresses_ = {0};
+    blocks_.clear();
+    last_block_.reset();
+    unstable_ = 0;
+  }
+
+  /// The first time from `time` on at which the console does not write, as far as we know.
+  MonoTime keep_away(MonoTime time) const {
+    // Each can push the time into the other's window; there is room between them.
+    for (int i = 0; i < 4; ++i) time = record_clock_.clear_from(sensor_clock_.clear_from(time));
+    return time;
+  }
+
+  static BlockStatus read_block(HidTalk& talk, std::uint16_t address, FineOffsetBytes& block) {
+    if (!talk.discard_waiting() || !talk.send(encode_fineoffset_read(address))) return BlockStatus::kLost;
+    for (std::size_t size = 0; size < block.size();) {
+      const HidMessage message = talk.read(kFineOffsetReport);
+      if (message.status == HidStatus::kLost) return BlockStatus::kLost;
+      if (message.status != HidStatus::kReport) return size == 0 ? BlockStatus::kNone : BlockStatus::kCutOff;
+      if (message.bytes.size() != 8) return BlockStatus::kCutOff;
+      std::ranges::copy(message.bytes, block.begin() + static_cast<std::ptrdiff_t>(size));
+      size += 8;
+    }
+    return BlockStatus::kRead;
+  }
+
+  /// The block was not the same twice: the console is writing to it, and will soon be done; or the cable is bad.
+  Result<StationStep, Failure> wait_for_writing(HidTalk& talk) {
+    last_block_.reset();
+    if (++unstable_ >= kFineOffsetUnstable) {
+      return fail(talk, Refusal::kMalformed, "reads differently each time: check its cable");
+    }
+    return StationStep::same(talk.now() + timing_.paced(kFineOffsetWriting));
+  }
+
+  /// Where the current record stands; whichever model's ring the address fits.
+  Result<StationStep, Failure> take_fixed_block(HidTalk& talk) {
+    auto fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh1080);
+    if (!fixed) fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh3080);
+    if (!fixed) {
+      return fail(talk, fixed.error(), "is no Fine Offset console, or has locked up: take out batteries and cable");
+    }
+    // Blocks are read where the memory's own begin; a long record can reach into the next.
+    position_ = fixed->current_position;
+    const std::size_t offset = position_ % kFineOffsetBlock;
+    const auto first = static_cast<std::uint16_t>(position_ - offset);
+    addresses_.push_back(first);
+    if (offset + kFineOffsetRecord > kFineOffsetBlock) {
+      addresses_.push_back(static_cast<std::uint16_t>(first + kFineOffsetBlock));
+    }
+    return StationStep::same(talk.now());
+  }
+
+  Result<StationStep, Failure> take_record(HidTalk& talk) {
+    if (blocks_.back() == blocks_.front()) {
+      return fail(talk, Refusal::kNotMine, "answers another question than the one asked: check its cable");
+    }
+    if (blocks_.size() < addresses_.size()) return StationStep::same(talk.now());
+
+    Record record{};
+    std::array<std::uint8_t, 2 * kFineOffsetBlock> joined{};
+    for (std::size_t i = 1; i < blocks_.size(); ++i) {
+      std::ranges::copy(blocks_[i], joined.begin() + static_cast<std::ptrdiff_t>((i - 1) * kFineOffsetBlock));
+    }
+    std::copy_n(joined.begin() + position_ % kFineOffsetBlock, record.size(), record.begin());
+    begin_round();
+    failures_ = 0;
+    return judge(record, talk);
+  }
+
+  using Record = std::array<std::uint8_t, kFineOffsetRecord>;
+
+  /// What a look at the console shows, beside the one before.
+  struct Look {
+    bool is_first = false;
+    bool has_moved = false;     ///< on to the next record
+    bool has_measured = false;  ///< and has written it into the current one
+    bool has_counted = false;   ///< a minute
+
+    bool is_news() const { return is_first || has_moved || has_measured || has_counted; }
+  };
+
+  Look compare(const Record& record) const {
+    if (last_look_ == MonoTime{}) return {.is_first = true};
+    // The first byte counts minutes; the rest changes when the console has measured.
+    return {.is_first = false,
+            .has_moved = position_ != last_position_,
+            .has_measured = !std::equal(record.begin() + 1, record.end(), last_record_.begin() + 1),
+            .has_counted = record[0] != last_record_[0]};
+  }
+
+  /// Learns when the console writes, of what it wrote since the look before.
+  void learn(const Look& look, MonoTime now) {
+    const bool is_turn_of_minute = look.has_moved || (look.has_counted && !look.has_measured);
+    if (is_turn_of_minute) record_clock_.happened_between(last_look_, now);
+    const bool has_measured_alone = look.has_measured && !look.has_moved;
+    if (is_searching() && has_measured_alone && sensor_clock_.happened_between(last_look_, now)) end_search(now);
+  }
+
+  /// The round is complete.
+  StationStep judge(const Record& record, HidTalk& talk) {
+    const MonoTime now = talk.now();
+    const Look look = compare(record);
+    learn(look, now);
+    // A look between two of the console's measurements is for its clock alone.
+    const bool is_due = look.is_first || look.has_measured || now - told_ >= timing_.paced(kFineOffsetEvery);
+    const bool was_for_clock = is_searching() && !is_due;
+    if (look.is_news()) last_news_ = now;
+    last_record_ = record;
+    last_position_ = position_;
+    last_look_ = now;
+
+    const MonoTime next = next_look(now);
+    if (now - last_news_ >= timing_.paced(kFineOffsetStalled)) {
+      talk.refuse(Refusal::kInvalid);
+      return StationStep::unwell(
+          next, "does not measure any more; one that has locked up needs its batteries and its cable taken out");
+    }
+    if (was_for_clock) return StationStep::same(next);
+    told_ = now;
+    return publish(record, talk, next);
+  }
+
+  static StationStep publish(const Record& record, HidTalk& talk, MonoTime next) {
+    const auto wind = decode_fineoffset_record(record);
+    if (wind && talk.publish(*wind)) return StationStep::well(next);
+    if (!wind) talk.refuse(wind.error());
+    return StationStep::unwell(next,
+                               "has no wind from its sensors: check their batteries and their distance to the console");
+  }
+
+  bool is_searching() const { return search_steps_ < kFineOffsetSearchSteps; }
+  void end_search(MonoTime now) {
+    search_steps_ = kFineOffsetSearchSteps;
+    searched_ = now;
+  }
+
+  MonoTime next_look(MonoTime now) {
+    if (is_searching()) {
+      if (++search_steps_ == kFineOffsetSearchSteps) end_search(now);
+      due_ = now + timing_.paced(kFineOffsetSearchStep);
+      return due_;
+    }
+    const Nanoseconds search_again = sensor_clock_.is_known() ? kFineOffsetSearchAgain : kFineOffsetSearchSoon;
+    if (now - searched_ >= timing_.paced(search_again)) {
+      sensor_clock_.forget();
+      record_clock_.forget();
+      search_steps_ = 0;
+    }
+    // Once an interval, and soon behind the console's writing, where we know when that is. A look that had to be put
+    // off does not put off the next one.
+    const Nanoseconds interval = std::max(timing_.interval_or(kFineOffsetEvery), timing_.paced(kFineOffsetEvery));
+    due_ = std::max(due_, now - interval / 2) + interval;
+    if (sensor_clock_.is_known()) due_ = sensor_clock_.behind(due_ - interval / 4);
+    return due_;
+  }
+
+  Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
+    begin_round();
+    talk.refuse(why);
+    if (++failures_ >= kFineOffsetGiveUp) return Failure{trouble};
+    return StationStep::unwell(talk.now() + timing_.paced(kFineOffsetRetry), trouble);
+  }
+
+  StationTiming timing_;
+  WriteClock sensor_clock_;  ///< when it writes what it measured
+  WriteClock record_clock_;  ///< when it goes on to the next record: at the turn of a minute
+
+  // The round that is under way.
+  std::vector<std::uint16_t> addresses_;
+  std::vector<FineOffsetBytes> blocks_;  ///< that were read, of these addresses
+  std::optional<FineOffsetBytes> last_block_;
+  int unstable_ = 0;
+  std::uint16_t position_ = 0;  ///< of the current record
+
+  // The round before.
+  MonoTime last_look_{};
+  Record last_record_{};
+  std::uint16_t last_position_ = 0;
+
+  int search_steps_ = 0;  ///< looks of the search for the sensor clock
+  MonoTime searched_{};   ///< when the last search ended
+  MonoTime told_{};       ///< the last look whose wind was told
+  MonoTime last_news_{};  ///< the last look that found any change
+  MonoTime due_{};        ///< when the next look should be, if the console does not write just then
+  int failures_ = 0;      ///< in a row
+};
+
+}  // namespace
+
+std::unique_ptr<HidStation> make_fineoffset_station(const StationTiming& timing) {
+  return std::make_unique<FineOffsetStation>(timing);
+}
+
+}  // namespace yuragi

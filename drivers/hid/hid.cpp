@@ -1,0 +1,101 @@
+// USB weather stations that are HID devices. Their reports stand in drivers/decode, their conversations in
+// drivers/stations, one file a family:
+//
+//   station      USB id      speaks                     wind every
+//   wmr100       0fde:ca01   by itself                  14 s       Oregon Scientific WMR100, WMR88, RMS300, RMS600 ...
+//   wmr300       0fde:ca08   while it gets a heartbeat  2.75 s     Oregon Scientific WMR300
+//   fineoffset   1941:8021   when asked                 48 s       Fine Offset WH1080, WH2080, WH3080 and their clones
+//   acurite      24c0:0003   when asked                 18 s       AcuRite 01025, 01035, 01036, 02032, 02064
+//   te923        1130:6801   when asked                 33 s       Hideki TE923: Meade, TFA Nexus, Mebus, IROX
+//
+// Source: ../shared/sensors.md 2.
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "drivers/hid/hid_sensor.hpp"
+#include "drivers/sensor/driver.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr std::array<std::string_view, 6> kStationChoices = {"auto",       "wmr100",  "wmr300",
+                                                             "fineoffset", "acurite", "te923"};
+
+const std::array kHidParameters = {
+    Parameter{.name = "station",
+              .unit = "",
+              .default_value = std::string("auto"),
+              .help = "family of the station; auto takes whichever is plugged in",
+              .choices = kStationChoices},
+    Parameter{.name = "path",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "USB port of the station, such as 1-1.2, or its /dev/hidraw node or a link to that; to tell "
+                      "several apart"},
+    Parameter{.name = "serial",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "its serial number, where it has one; to tell several apart"},
+    Parameter{.name = "poll_interval",
+              .unit = "s",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 3600.0,
+              .help = "from one question to the next, of fineoffset, acurite and te923; 0 takes the station's own: 48, "
+                      "18 and 33 s. Asking more often brings nothing new; a fineoffset may lock up of it, and is not"},
+    Parameter{.name = "pace",
+              .unit = "",
+              .default_value = 1.0,
+              .min = 1.0,
+              .max = 1000.0,
+              .help = "for a simulated station: how many times as fast as a real one it runs"},
+};
+
+std::span<const StationKind> kinds_named(std::string_view name) {
+  const auto all = station_kinds();
+  if (name == "auto") return all;
+  const auto kind = std::ranges::find(all, name, &StationKind::name);
+  return std::span(kind, kind == all.end() ? 0U : 1U);
+}
+
+std::unique_ptr<Sensor> open_hid(const ParameterValues& values) {
+  const HidPlace place = {.serial = values.text("serial"), .path = values.text("path")};
+  const StationTiming timing = {.pace = values.number("pace"),
+                                .poll_interval = from_seconds(values.number("poll_interval"))};
+  const std::string& station = values.text("station");
+  return std::make_unique<HidSensor>(kinds_named(station), place, timing, seed_of(station + place.path + place.serial),
+                                     make_hid_device());
+}
+
+std::vector<FoundDevice> find_hid() {
+  std::vector<HidId> ids;
+  for (const StationKind& kind : station_kinds()) ids.push_back(kind.id);
+  std::vector<FoundDevice> found;
+  for (const HidListing& listing : list_hid_devices(ids)) {
+    const auto kind = std::ranges::find(station_kinds(), listing.info.id, &StationKind::id);
+    const std::string& path = listing.info.port.empty() ? listing.info.node : listing.info.port;
+    found.push_back({.what = fmt::format("{} ({}) at {}", kind->title, describe(kind->id), where_is(listing.info)),
+                     .settings = fmt::format("station = \"{}\"\npath = \"{}\"", kind->name, path),
+                     .trouble = listing.trouble.empty()
+                                    ? ""
+                                    : fmt::format("cannot open {}: {}", listing.info.node, listing.trouble),
+                     .remedy = listing.trouble.empty() ? "" : kHidPermissionRemedy});
+  }
+  return found;
+}
+
+}  // namespace
+
+extern const DriverDescription kHidDriver;
+const DriverDescription kHidDriver{.name = "hid",
+                                   .summary =
+                                       "USB weather stations: Oregon Scientific WMR100 and WMR300, Fine Offset "
+                                       "WH1080 and WH3080, AcuRite, Hideki TE923",
+                                   .parameters = kHidParameters,
+                                   .open = open_hid,
+                                   .find = find_hid};
+
+}  // namespace yuragi

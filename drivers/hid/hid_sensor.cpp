@@ -1,0 +1,68 @@
+#include "drivers/hid/hid_sensor.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace yuragi {
+namespace {
+
+constexpr Nanoseconds kLookAfterEvery = std::chrono::seconds(1);
+
+}  // namespace
+
+HidSensor::HidSensor(std::span<const StationKind> kinds, HidPlace place, const StationTiming& timing,
+                     std::uint32_t seed, std::unique_ptr<HidDevice> device)
+    : ReopeningSensor(seed), kinds_(kinds), place_(std::move(place)), timing_(timing), device_(std::move(device)) {}
+
+Result<MonoTime, Failure> HidSensor::open(const Clock& clock) {
+  std::vector<HidId> ids;
+  for (const StationKind& kind : kinds_) ids.push_back(kind.id);
+  const Result<HidInfo, Failure> opened = device_->open(ids, place_);
+  if (!opened) return opened.error();
+  const auto kind = std::ranges::find(kinds_, opened->id, &StationKind::id);
+  station_ = kind->make(timing_);
+  name_ = std::string(kind->title) + " at " + where_is(*opened);
+  next_step_ = clock.now().mono;
+  return next_step_;
+}
+
+Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) {
+  HidTalk talk(*device_, clock, sink);
+  if (talk.now() < next_step_) return look_after(talk);
+
+  const Result<StationStep, Failure> step = station_->step(talk);
+  if (is_interrupted_) return talk.now();  // whatever the step says, it was cut short
+  if (!step) return Failure{name_ + " " + (step.error().message.empty() ? why_useless(talk) : step.error().message)};
+  if (step->health == StationHealth::kWell) is_well(sink, name_);
+  if (step->health == StationHealth::kUnwell) is_unwell(sink, name_ + " " + step->trouble);
+  next_step_ = step->next;
+  return std::min(next_step_, talk.now() + kLookAfterEvery);
+}
+
+/// The device could not be used. Is it gone, or does it take nothing?
+std::string HidSensor::why_useless(HidTalk& talk) {
+  if (talk.read(Nanoseconds::zero()).status == HidStatus::kLost) return "is gone: plug it in again";
+  talk.refuse(Refusal::kTimeout);
+  return "takes nothing that is sent to it: take out its cable and its batteries, and put them in again";
+}
+
+/// Nothing is due. Is it still there?
+Result<MonoTime, Failure> HidSensor::look_after(HidTalk& talk) {
+  const HidMessage message = talk.read(Nanoseconds::zero());
+  if (message.status == HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};
+  if (message.status == HidStatus::kReport) talk.refuse(Refusal::kNotMine);
+  return std::min(next_step_, talk.now() + kLookAfterEvery);
+}
+
+void HidSensor::interrupt() noexcept {
+  is_interrupted_ = true;
+  device_->interrupt();
+}
+
+void HidSensor::close() noexcept {
+  station_.reset();
+  device_->close();
+}
+
+}  // namespace yuragi

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "drivers/bus/hid_device.hpp"
+#include "drivers/hid/hid_station.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+
+namespace yuragi {
+
+/// A USB HID weather station of one of several families, whichever is found at the place. Between two questions to a
+/// station that speaks only when it is asked, it is looked at once a second, so that an unplugged one is noticed.
+class HidSensor final : public ReopeningSensor {
+ public:
+  /// `kinds` must outlive this. `seed` makes the waits of several sensors differ.
+  HidSensor(std::span<const StationKind> kinds, HidPlace place, const StationTiming& timing, std::uint32_t seed,
+            std::unique_ptr<HidDevice> device);
+
+  void interrupt() noexcept override;
+
+ protected:
+  Result<MonoTime, Failure> open(const Clock& clock) override;
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  void close() noexcept override;
+
+ private:
+  Result<MonoTime, Failure> look_after(HidTalk& talk);
+  static std::string why_useless(HidTalk& talk);
+
+  std::span<const StationKind> kinds_;
+  HidPlace place_;
+  StationTiming timing_;
+  std::unique_ptr<HidDevice> device_;
+  std::unique_ptr<HidStation> station_;  ///< while the device is open
+  std::string name_;                     ///< of the open station and its place
+  MonoTime next_step_{};
+  std::atomic<bool> is_interrupted_ = false;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "drivers/bus/hid_device.hpp"
+#include "drivers/hid/hid_talk.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// How a station is doing, as far as one step shows.
+enum class StationHealth : std::uint8_t {
+  kSame,    ///< as before
+  kWell,    ///< it gave a wind
+  kUnwell,  ///< it is there, but does not say what it should
+};
+
+/// What came of one step of a conversation.
+struct StationStep {
+  MonoTime next;  ///< when the next step is due
+  StationHealth health = StationHealth::kSame;
+  std::string trouble = {};  ///< for kUnwell: what is wrong, and what to do
+
+  static StationStep same(MonoTime next) { return {next}; }
+  static StationStep well(MonoTime next) { return {next, StationHealth::kWell}; }
+  static StationStep unwell(MonoTime next, std::string trouble) {
+    return {next, StationHealth::kUnwell, std::move(trouble)};
+  }
+};
+
+/// The conversation with one family of stations, from the moment that the device was opened: made anew each time.
+class HidStation {
+ public:
+  virtual ~HidStation() = default;
+
+  /// The next piece of the conversation, no longer than the station's own time-out. The failure says why the device
+  /// must be opened again; an empty message: it is gone, or takes nothing.
+  virtual Result<StationStep, Failure> step(HidTalk& talk) = 0;
+};
+
+/// When a station does what.
+struct StationTiming {
+  double pace = 1.0;             ///< how many times as fast as a real one it runs: above 1 for simulated ones alone
+  Nanoseconds poll_interval{0};  ///< from one question to the next; 0: the station's own
+
+  /// A duration of the real station as it is here.
+  Nanoseconds paced(Nanoseconds duration) const { return from_seconds(seconds(duration) / pace); }
+  Nanoseconds interval_or(Nanoseconds own) const {
+    return poll_interval > Nanoseconds::zero() ? poll_interval : paced(own);
+  }
+};
+
+/// A family of stations.
+struct StationKind {
+  std::string_view name;   ///< in a configuration
+  std::string_view title;  ///< for people
+  HidId id;
+  std::unique_ptr<HidStation> (*make)(const StationTiming& timing);
+};
+
+// One a file. Their protocols stand in drivers/decode.
+std::unique_ptr<HidStation> make_wmr100_station(const StationTiming& timing);
+std::unique_ptr<HidStation> make_wmr300_station(const StationTiming& timing);
+std::unique_ptr<HidStation> make_fineoffset_station(const StationTiming& timing);
+std::unique_ptr<HidStation> make_acurite_station(const StationTiming& timing);
+std::unique_ptr<HidStation> make_te923_station(const StationTiming& timing);
+
+/// Every family.
+std::span<const StationKind> station_kinds();
+
+/// What step() returns when the device is gone.
+inline Failure station_is_gone() {
+  return {""};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,60 @@
+#include "drivers/hid/hid_talk.hpp"
+
+#include <algorithm>
+
+namespace yuragi {
+namespace {
+
+// More than the kernel keeps for a reader (64): a device that floods cannot hold us.
+constexpr int kMostWaiting = 128;
+
+}  // namespace
+
+HidMessage HidTalk::read(Nanoseconds timeout) {
+  const HidArrival arrival = device_.read(std::span(buffer_).first(kLongestReport), timeout);
+  if (arrival.status != HidStatus::kReport) return {arrival.status, {}};
+  const ByteSpan bytes = ByteSpan(buffer_).first(arrival.size);
+  sink_.raw(RawDirection::kReceived, bytes);
+  return {arrival.status, bytes};
+}
+
+bool HidTalk::send(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() > kLongestReport) return false;
+  std::array<std::uint8_t, kLongestReport + 1> numbered{};
+  std::ranges::copy(bytes, numbered.begin() + 1);
+  sink_.raw(RawDirection::kSent, bytes);
+  return device_.write(std::span(numbered).first(bytes.size() + 1));
+}
+
+HidMessage HidTalk::get_input_report(std::uint8_t id, std::size_t size) {
+  const HidArrival arrival = device_.get_input_report(id, std::span(buffer_).first(std::min(size, kLongestReport)));
+  if (arrival.status != HidStatus::kReport) return {arrival.status, {}};
+  const ByteSpan bytes = ByteSpan(buffer_).first(arrival.size);
+  sink_.raw(RawDirection::kReceived, bytes);
+  return {arrival.status, bytes};
+}
+
+bool HidTalk::discard_waiting() {
+  for (int i = 0; i < kMostWaiting; ++i) {
+    const HidMessage message = read(Nanoseconds::zero());
+    if (message.status != HidStatus::kReport) return message.status != HidStatus::kLost;
+    refuse(Refusal::kNotMine);
+  }
+  return true;
+}
+
+bool HidTalk::publish(const DecodedWind& wind) {
+  if (!wind.speed_m_s) {
+    refuse(Refusal::kInvalid);
+    return false;
+  }
+  const bool is_good = wind.status == DecodedStatus::kGood;
+  sink_.reading({.time = clock_.now(),
+                 .speed_m_s = *wind.speed_m_s,
+                 .direction_deg = wind.direction_deg,
+                 .gust_m_s = wind.gust_m_s,
+                 .quality = is_good ? ReadingQuality::kGood : ReadingQuality::kUncertain});
+  return true;
+}
+
+}  // namespace yuragi

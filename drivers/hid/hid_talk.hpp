@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "drivers/bus/hid_device.hpp"
+#include "drivers/decode/byte_order.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/sensor/sensor.hpp"
+
+namespace yuragi {
+
+/// What came of listening.
+struct HidMessage {
+  HidStatus status = HidStatus::kSilence;
+  ByteSpan bytes;  ///< for kReport; until the talk's next message
+};
+
+/// A station's device, clock and sink, for the time of one poll(): whatever goes to and fro is shown to the sink.
+/// Owns nothing. Thread-safe: no.
+class HidTalk {
+ public:
+  HidTalk(HidDevice& device, const Clock& clock, SensorSink& sink) : device_(device), clock_(clock), sink_(sink) {}
+
+  MonoTime now() const noexcept { return clock_.now().mono; }
+
+  HidMessage read(Nanoseconds timeout);
+  /// Sends the bytes as an output report without a number.
+  bool send(std::span<const std::uint8_t> bytes);
+  HidMessage get_input_report(std::uint8_t id, std::size_t size);
+
+  /// Throws away what came before anybody asked: late answers. False: the device is gone.
+  bool discard_waiting();
+
+  void refuse(Refusal why) { sink_.refused(why); }
+  /// Publishes the wind as of now. One without a speed is refused instead: false.
+  bool publish(const DecodedWind& wind);
+
+ private:
+  static constexpr std::size_t kLongestReport = 64;
+
+  HidDevice& device_;
+  const Clock& clock_;
+  SensorSink& sink_;
+  std::array<std::uint8_t, kLongestReport + 1> buffer_{};
+};
+
+}  // namespace yuragi

@@ -1,0 +1,83 @@
+// Hideki TE923: asked for a block of its memory, answers in several reports, and wants them acknowledged. The wind in
+// it is new every 33 s. Blocks: drivers/decode/hid/te923.hpp. Source: ../shared/sensors.md 2.5.
+#include <array>
+
+#include "drivers/decode/hid/te923.hpp"
+#include "drivers/hid/hid_station.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kTe923Every = 33s;
+constexpr Nanoseconds kTe923Retry = 5s;
+constexpr Nanoseconds kTe923Answer = 3s;      // for the whole block
+constexpr Nanoseconds kTe923Report = 1200ms;  // for its next report
+constexpr int kTe923GiveUp = 4;               // failures in a row; then it is opened again
+
+class Te923Station final : public HidStation {
+ public:
+  explicit Te923Station(const StationTiming& timing) : timing_(timing) {}
+
+  Result<StationStep, Failure> step(HidTalk& talk) override {
+    const MonoTime begin = talk.now();
+    if (!talk.discard_waiting() || !talk.send(encode_te923_request(kTe923Readings))) return station_is_gone();
+    if (!read_block(talk)) return station_is_gone();
+    if (size_ > 0 && !talk.send(encode_te923_acknowledgement(kTe923Readings))) return station_is_gone();
+
+    if (size_ == 0) return fail(talk, Refusal::kTimeout, "does not answer: check the console's power and its cable");
+    const auto wind = decode_te923(ByteSpan(block_).first(size_));
+    if (wind && talk.publish(*wind)) {
+      failures_ = 0;
+      return StationStep::well(begin + timing_.interval_or(kTe923Every));
+    }
+    const Refusal why = wind ? Refusal::kInvalid : wind.error();
+    if (why != Refusal::kInvalid) {
+      return fail(talk, why, "sends blocks that make no sense: check its cable");
+    }
+    // The console is well, and has no wind.
+    failures_ = 0;
+    talk.refuse(Refusal::kInvalid);
+    return StationStep::unwell(begin + timing_.interval_or(kTe923Every),
+                               "has lost its anemometer: check its battery and its distance to the console");
+  }
+
+ private:
+  /// Collects a block, or as much of it as comes. False: the device is gone.
+  bool read_block(HidTalk& talk) {
+    size_ = 0;
+    const MonoTime deadline = talk.now() + kTe923Answer;
+    while (size_ < kTe923Block && talk.now() < deadline) {
+      const HidMessage message = talk.read(kTe923Report);
+      if (message.status == HidStatus::kLost) return false;
+      if (message.status != HidStatus::kReport) break;
+      // How many of the next bytes are valid, then those. A count that cannot be spoils the block.
+      const std::size_t count = message.bytes[0];
+      const bool is_sound = count <= 7 && count < message.bytes.size();
+      const ByteSpan valid = is_sound ? message.bytes.subspan(1, count) : message.bytes;
+      for (const std::uint8_t byte : valid) block_[size_++] = byte;
+      if (!is_sound) break;
+    }
+    return true;
+  }
+
+  Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
+    talk.refuse(why);
+    if (++failures_ >= kTe923GiveUp) return Failure{trouble};
+    return StationStep::unwell(talk.now() + timing_.paced(kTe923Retry), trouble);
+  }
+
+  StationTiming timing_;
+  std::array<std::uint8_t, kTe923Block + 64> block_{};  ///< and one report more
+  std::size_t size_ = 0;
+  int failures_ = 0;  ///< in a row
+};
+
+}  // namespace
+
+std::unique_ptr<HidStation> make_te923_station(const StationTiming& timing) {
+  return std::make_unique<Te923Station>(timing);
+}
+
+}  // namespace yuragi

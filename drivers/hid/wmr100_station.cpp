@@ -1,0 +1,83 @@
+// Oregon Scientific WMR100: it sends a stream of frames by itself once it was sent a start report, the wind about every
+// 14 s. Reports and frames: drivers/decode/hid/wmr100.hpp. Source: ../shared/sensors.md 2.1.
+#include "drivers/decode/hid/wmr100.hpp"
+#include "drivers/hid/hid_station.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kWmr100Listen = 1s;
+constexpr Nanoseconds kWmr100Silent = 60s;   // the clock's frame comes once a minute, the wind's more often
+constexpr Nanoseconds kWmr100Restart = 30s;  // from one start report to the next, to a console that is silent
+constexpr Nanoseconds kWmr100GiveUp = 180s;  // of silence; then the device is opened again
+constexpr Nanoseconds kWmr100NoWind = 90s;   // six winds that did not come
+
+class Wmr100Station final : public HidStation {
+ public:
+  explicit Wmr100Station(const StationTiming& timing) : timing_(timing) {}
+
+  Result<StationStep, Failure> step(HidTalk& talk) override {
+    if (started_ == MonoTime{}) {
+      if (!talk.send(kWmr100Start)) return station_is_gone();
+      started_ = heard_ = wind_ = talk.now();
+    }
+    const HidMessage message = talk.read(kWmr100Listen);
+    if (message.status == HidStatus::kLost) return station_is_gone();
+    if (message.status != HidStatus::kReport) return bear_silence(talk);
+
+    StationStep step = StationStep::same(talk.now());
+    for (const std::uint8_t byte : wmr100_report_bytes(message.bytes)) {
+      if (const auto frame = take_wmr100_byte(stream_, byte)) judge(*frame, talk, step);
+    }
+    if (step.health == StationHealth::kSame) miss_the_wind(step);
+    return step;
+  }
+
+ private:
+  /// A frame ended.
+  void judge(const Result<DecodedWind, Refusal>& frame, HidTalk& talk, StationStep& step) {
+    if (frame || frame.error() == Refusal::kNotMine) heard_ = step.next;
+    if (!frame) {
+      talk.refuse(frame.error());
+    } else if (talk.publish(*frame)) {
+      wind_ = step.next;
+      step.health = StationHealth::kWell;
+    }
+  }
+
+  /// It speaks. Of the wind, too?
+  void miss_the_wind(StationStep& step) const {
+    if (step.next - wind_ < timing_.paced(kWmr100NoWind)) return;
+    step.health = StationHealth::kUnwell;
+    step.trouble = "sends no wind: check the anemometer's battery and its distance to the console";
+  }
+
+  Result<StationStep, Failure> bear_silence(HidTalk& talk) {
+    const MonoTime now = talk.now();
+    const Nanoseconds silent = now - heard_;
+    if (silent < timing_.paced(kWmr100Silent)) return StationStep::same(now);
+    if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"says nothing, so it is opened again"};
+    if (now - started_ >= timing_.paced(kWmr100Restart)) {
+      started_ = now;
+      talk.refuse(Refusal::kTimeout);
+      if (!talk.send(kWmr100Start)) return station_is_gone();
+    }
+    return StationStep::unwell(now, "says nothing: check the console's power");
+  }
+
+  StationTiming timing_;
+  Wmr100Stream stream_;
+  MonoTime started_{};  ///< when the last start report went
+  MonoTime heard_{};    ///< the last frame that made sense
+  MonoTime wind_{};     ///< the last wind
+};
+
+}  // namespace
+
+std::unique_ptr<HidStation> make_wmr100_station(const StationTiming& timing) {
+  return std::make_unique<Wmr100Station>(timing);
+}
+
+}  // namespace yuragi

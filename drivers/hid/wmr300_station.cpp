@@ -1,0 +1,92 @@
+// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, once it was told to begin and for as
+// long as it gets a heartbeat every 20 s and each data packet is acknowledged. Packets: drivers/decode/hid/wmr300.hpp.
+// Source:
+// ../shared/sensors.md 2.2; weewx wmr300.py (a console that has fallen silent comes back when the device is opened
+// again).
+#include "drivers/decode/hid/wmr300.hpp"
+#include "drivers/hid/hid_station.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kWmr300Listen = 500ms;
+constexpr Nanoseconds kWmr300HeartbeatEvery = 20s;
+constexpr Nanoseconds kWmr300NoWind = 15s;  // five winds that did not come
+constexpr Nanoseconds kWmr300GiveUp = 60s;  // of silence; then the device is opened again
+
+class Wmr300Station final : public HidStation {
+ public:
+  explicit Wmr300Station(const StationTiming& timing) : timing_(timing) {}
+
+  Result<StationStep, Failure> step(HidTalk& talk) override {
+    // The heart.
+    const MonoTime begin = talk.now();
+    if (begin >= next_heartbeat_) {
+      if (!talk.send(kWmr300Heartbeat)) return station_is_gone();
+      if (next_heartbeat_ == MonoTime{}) heard_ = wind_ = begin;
+      next_heartbeat_ = begin + timing_.paced(kWmr300HeartbeatEvery);
+    }
+
+    const Nanoseconds until_heartbeat = next_heartbeat_ - begin;
+    const HidMessage message = talk.read(std::min(kWmr300Listen, until_heartbeat));
+    if (message.status == HidStatus::kLost) return station_is_gone();
+    StationStep step = StationStep::same(talk.now());
+    if (message.status == HidStatus::kReport && !take(message.bytes, talk, step)) return station_is_gone();
+    if (step.health == StationHealth::kSame) return miss_the_wind(talk, step);
+    return step;
+  }
+
+ private:
+  /// A packet came. False: the device went while it was answered.
+  bool take(ByteSpan packet, HidTalk& talk, StationStep& step) {
+    const bool is_sound = is_sound_wmr300(packet);
+    if (is_sound) heard_ = step.next;
+    if (!wants_wmr300_acknowledgement(packet)) {
+      if (!is_sound) talk.refuse(Refusal::kMalformed);
+      // It says who it is. If no data came since the heartbeat before, it wants to be told to begin.
+      const bool is_idle = step.next - data_ > timing_.paced(kWmr300HeartbeatEvery) / 2;
+      return !is_wmr300_identity(packet) || !is_idle || talk.send(encode_wmr300_begin(packet));
+    }
+
+    const auto acknowledgement = encode_wmr300_acknowledgement(packet);
+    const auto wind = decode_wmr300(packet);
+    if (is_sound) data_ = step.next;
+    if (!wind) {
+      talk.refuse(wind.error());
+    } else if (talk.publish(*wind)) {
+      wind_ = step.next;
+      step.health = StationHealth::kWell;
+    }
+    return talk.send(acknowledgement);
+  }
+
+  Result<StationStep, Failure> miss_the_wind(HidTalk& talk, StationStep step) {
+    if (step.next - heard_ > timing_.paced(kWmr300GiveUp)) {
+      talk.refuse(Refusal::kTimeout);
+      return Failure{"says nothing that makes sense, so it is opened again"};
+    }
+    if (step.next - wind_ > timing_.paced(kWmr300NoWind)) {
+      step.health = StationHealth::kUnwell;
+      step.trouble = step.next - heard_ > timing_.paced(kWmr300NoWind)
+                         ? "says nothing that makes sense: check the console's power and the cable"
+                         : "sends no wind: check the anemometer's battery and its distance to the console";
+    }
+    return step;
+  }
+
+  StationTiming timing_;
+  MonoTime next_heartbeat_{};
+  MonoTime heard_{};  ///< the last packet that made sense
+  MonoTime data_{};   ///< the last of them that is no mere answer
+  MonoTime wind_{};   ///< the last wind
+};
+
+}  // namespace
+
+std::unique_ptr<HidStation> make_wmr300_station(const StationTiming& timing) {
+  return std::make_unique<Wmr300Station>(timing);
+}
+
+}  // namespace yuragi

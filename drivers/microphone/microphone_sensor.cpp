@@ -1,0 +1,138 @@
+#include "drivers/microphone/microphone_sensor.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace yuragi {
+namespace {
+
+/// A time stamp that is not within this of now is of another clock, or of a worker that dreams.
+constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
+
+}  // namespace
+
+MicrophoneSensor::MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<BytePort> port)
+    : ReopeningSensor(seed), settings_(std::move(settings)), port_(std::move(port)) {}
+
+Result<MonoTime, Failure> MicrophoneSensor::open(const Clock& clock) {
+  reader_.clear();
+  hello_.reset();
+  trouble_.clear();
+  if (auto opened = port_->open(); !opened) return opened.error();
+  const MonoTime now = clock.now().mono;
+  deadline_ = now + settings_.start_timeout;
+  return now;
+}
+
+void MicrophoneSensor::close() noexcept {
+  port_->close();
+}
+
+Result<MonoTime, Failure> MicrophoneSensor::work(const Clock& clock, SensorSink& sink) {
+  const ByteArrival arrival = port_->read(buffer_, std::max(Nanoseconds::zero(), deadline_ - clock.now().mono));
+  reader_.push(std::span(buffer_).first(arrival.size));
+  while (const auto item = reader_.next()) take(*item, clock, sink);
+
+  const MonoTime now = clock.now().mono;
+  switch (arrival.status) {
+    case ByteStatus::kBytes:
+      if (now < deadline_) return now;
+      break;
+    case ByteStatus::kSilence:
+    case ByteStatus::kForeign:
+      break;
+    case ByteStatus::kInterrupted:
+      return Failure{"interrupted"};
+    case ByteStatus::kEnd:
+    case ByteStatus::kLost:
+      if (!trouble_.empty()) return Failure{trouble_};
+      return Failure{
+          "the microphone's worker ended without a word: starting it again; `yuragi mic-worker --list --verbose` may "
+          "say why"};
+  }
+  sink.refused(Refusal::kTimeout);
+  return Failure{hello_ ? fmt::format("{} has said nothing for {:g} s: starting it again", hello_->device,
+                                      seconds(settings_.sound_timeout))
+                        : fmt::format("the microphone's worker has not begun within {:g} s: starting it again",
+                                      seconds(settings_.start_timeout))};
+}
+
+void MicrophoneSensor::take(const MicFrameReader::Item& item, const Clock& clock, SensorSink& sink) {
+  if (!item.bytes.empty()) sink.raw(RawDirection::kReceived, item.bytes);
+  if (!item.frame) return sink.refused(item.frame.error());
+  const Instant now = clock.now();
+  if (const auto* trouble = std::get_if<MicTrouble>(&*item.frame)) {
+    trouble_ = trouble->message;
+  } else if (const auto* hello = std::get_if<MicHello>(&*item.frame)) {
+    take(*hello);
+    deadline_ = now.mono + settings_.sound_timeout;
+  } else {
+    deadline_ = now.mono + settings_.sound_timeout;
+    take(std::get<MicBlock>(*item.frame), now, sink);
+  }
+}
+
+/// A stream begins. What an earlier one taught (the noise of a calm, automatic gain, gusts) is kept where it has the
+/// same shape.
+void MicrophoneSensor::take(const MicHello& hello) {
+  if (estimator_ && estimator_->hello() == hello) {
+    estimator_->restart();
+  } else {
+    try {
+      estimator_.emplace(settings_.estimator, hello);
+    } catch (const std::invalid_argument& error) {
+      estimator_.reset();
+      trouble_ = error.what();
+    }
+  }
+  hello_ = hello;
+}
+
+void MicrophoneSensor::take(const MicBlock& block, const Instant& now, SensorSink& sink) {
+  if (!estimator_) return is_unwell(sink, trouble_);
+  const auto estimate = estimator_->add(block);
+  if (estimate) {
+    if (*estimate) publish(**estimate, block, now, sink);
+    return;
+  }
+  sink.refused(estimate.error());
+  is_unwell(sink, fmt::format("{}: {}", hello_->device,
+                              estimate.error() == Refusal::kImplausible
+                                  ? "noise at full scale that no wind makes: check cable, plug and sample format"
+                              : block.invalid_samples > 0 ? "samples that are no sound: check the sample format"
+                                                          : "digital silence: is it muted, or its plug loose?"));
+}
+
+void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now,
+                               SensorSink& sink) {
+  // The block's stamp is of the system's monotonic clock; it is only believed where that can be ours.
+  const MonoTime end{Nanoseconds(block.end_mono_ns)};
+  const bool is_ours = end <= now.mono && now.mono - end < kBelievableAge;
+  const Nanoseconds age =
+      (is_ours ? now.mono - end : Nanoseconds::zero()) + from_seconds(0.5 * settings_.estimator.window_s);
+
+  const bool is_uncertain = !settings_.is_calibrated || estimate.suspects_automatic_gain || estimate.is_clipping ||
+                            estimate.silent_channels != 0;
+  is_well(sink, detail(estimate));
+  sink.reading({.time = {.mono = now.mono - age, .utc = now.utc - age},
+                .speed_m_s = estimate.speed_m_s,
+                .direction_deg = estimate.direction_deg,
+                .gust_m_s = estimate.gust_m_s,
+                .quality = is_uncertain ? ReadingQuality::kUncertain : ReadingQuality::kGood});
+}
+
+/// For people; changes only with what is to be done.
+std::string MicrophoneSensor::detail(const MicEstimate& estimate) const {
+  std::string text = hello_->device;
+  if (!settings_.is_calibrated) text += "; not calibrated: set gain and exponent, or curve";
+  if (estimate.suspects_automatic_gain) text += "; its level hardly follows the wind: switch automatic gain off";
+  if (estimate.is_clipping) text += "; it clips: turn its gain down";
+  for (std::size_t channel = 0; channel < hello_->channels; ++channel) {
+    if ((estimate.silent_channels >> channel & 1U) != 0) text += fmt::format("; channel {} is dead", channel + 1);
+  }
+  return text;
+}
+
+}  // namespace yuragi

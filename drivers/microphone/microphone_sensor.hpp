@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/bus/byte_port.hpp"
+#include "drivers/decode/microphone/mic_estimator.hpp"
+#include "drivers/decode/microphone/mic_frame.hpp"
+#include "drivers/sensor/found_device.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+
+namespace yuragi {
+
+struct MicrophoneSettings {
+  MicEstimatorOptions estimator{};
+  bool is_calibrated = false;                            ///< if not, every reading is uncertain
+  Nanoseconds start_timeout = std::chrono::seconds(15);  ///< for the worker's first word: sound systems begin slowly
+  Nanoseconds sound_timeout = std::chrono::seconds(3);   ///< from block to block, of which there are four a second
+};
+
+/// The wind that a microphone hears. The sound system lives in another process, the worker, whose frames come through
+/// `port`; this is its watchdog: a worker that ends, says nothing sensible in time, or says what is wrong is killed and
+/// begun anew, for ever. A reading a block, timed by the middle of the window that it is the mean of.
+class MicrophoneSensor final : public ReopeningSensor {
+ public:
+  MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<BytePort> port);
+
+  void interrupt() noexcept override { port_->interrupt(); }
+
+ protected:
+  Result<MonoTime, Failure> open(const Clock& clock) override;
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  void close() noexcept override;
+
+ private:
+  void take(const MicFrameReader::Item& item, const Clock& clock, SensorSink& sink);
+  void take(const MicHello& hello);
+  void take(const MicBlock& block, const Instant& now, SensorSink& sink);
+  void publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now, SensorSink& sink);
+  std::string detail(const MicEstimate& estimate) const;
+
+  MicrophoneSettings settings_;
+  std::unique_ptr<BytePort> port_;
+  MicFrameReader reader_;
+  std::optional<MicHello> hello_;
+  std::optional<MicEstimator> estimator_;
+  std::string trouble_;  ///< the worker's last word
+  MonoTime deadline_{};
+  std::array<std::uint8_t, 8192> buffer_{};
+};
+
+/// The `yuragi` that is to be the worker: this program if it is one, or else the one beside it or in the PATH.
+std::string microphone_worker_program();
+
+/// The inputs that the worker lists, and what stands in the way of those that the system has. Waits for ten seconds at
+/// most.
+std::vector<FoundDevice> find_microphones(const std::string& worker);
+
+}  // namespace yuragi

@@ -1,0 +1,250 @@
+#include "drivers/modbus/modbus_bus.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace yuragi {
+namespace {
+
+/// Silence on a connection that was dropped without a word looks like a device that is slow: this many requests in a
+/// row decide.
+constexpr int kSilentRequestsBeforeReopen = 3;
+
+ModbusTrouble trouble(ModbusTrouble::Kind kind) {
+  return {kind, {}};
+}
+
+void show_sent(ModbusFraming framing, const ModbusRequest& request, SensorSink& sink) {
+  if (framing == ModbusFraming::kTcp) {
+    sink.raw(RawDirection::kSent, encode_tcp(request));
+  } else {
+    sink.raw(RawDirection::kSent, encode_rtu(request));
+  }
+}
+
+/// "9600 8N1".
+std::string settings_of(const ModbusLine& line) {
+  return fmt::format("{} 8{}{}", line.baud, line.parity, line.stop_bits);
+}
+
+/// What two names of one line have in common.
+std::string address_of(const ModbusLine& line) {
+  if (line.framing == ModbusFraming::kTcp) return describe(line);
+  std::error_code ignored;
+  const auto port = std::filesystem::canonical(line.device, ignored);
+  return ignored ? line.device : port.string();
+}
+
+}  // namespace
+
+/// A place in the queue: begins at its end, and is over when this is. The first in the queue has the line.
+class ModbusBus::Turn {
+ public:
+  Turn(ModbusBus& bus, const Interruption& interruption) : bus_(bus) {
+    std::unique_lock lock(bus_.mutex_);
+    ticket_ = ++bus_.last_ticket_;
+    bus_.waiting_.push_back(ticket_);
+    bus_.turn_ended_.wait(lock, [&] { return is_first() || interruption.is_set(); });
+    has_line_ = is_first() && !interruption.is_set();
+  }
+  ~Turn() {
+    const std::lock_guard lock(bus_.mutex_);
+    std::erase(bus_.waiting_, ticket_);
+    bus_.turn_ended_.notify_all();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+  /// False: `interruption` was set first.
+  bool has_line() const noexcept { return has_line_; }
+
+  /// Waits for what is left of the gap; false: `interruption` was set first.
+  bool wait_for_gap(const Interruption& interruption, MonoTime now) {
+    std::unique_lock lock(bus_.mutex_);
+    if (now >= bus_.free_at_) return true;
+    return !bus_.turn_ended_.wait_for(lock, bus_.free_at_ - now, [&interruption] { return interruption.is_set(); });
+  }
+
+  /// The exchange is over.
+  void begin_gap(MonoTime now) {
+    const std::lock_guard lock(bus_.mutex_);
+    bus_.free_at_ = now + bus_.min_gap_;
+  }
+
+  /// An answer of `unit` may still come, for so long.
+  void expect_late_answer(std::uint8_t unit, MonoTime until) {
+    const std::lock_guard lock(bus_.mutex_);
+    bus_.unit_ready_at_[unit] = until;
+  }
+
+ private:
+  bool is_first() const { return bus_.waiting_.front() == ticket_; }
+
+  ModbusBus& bus_;
+  std::uint64_t ticket_ = 0;
+  bool has_line_ = false;
+};
+
+ModbusBus::ModbusBus(const ModbusLine& line, std::unique_ptr<ModbusConnection> connection)
+    : line_(line), where_(describe(line)), min_gap_(frame_gap(line)), connection_(std::move(connection)) {}
+
+Result<void, Failure> ModbusBus::suits(const ModbusLine& line) const {
+  const bool is_same = line.baud == line_.baud && line.parity == line_.parity && line.stop_bits == line_.stop_bits;
+  if (line.framing == ModbusFraming::kTcp || is_same) return {};
+  return Failure{
+      fmt::format("{} is used with {} by another sensor, and cannot have {} at the same time: give both the "
+                  "same baud, parity and stop_bits",
+                  where_, settings_of(line_), settings_of(line))};
+}
+
+void ModbusBus::keep_gap(Nanoseconds min_gap) {
+  const std::lock_guard lock(mutex_);
+  min_gap_ = std::max(min_gap_, min_gap);
+}
+
+Result<MonoTime, Failure> ModbusBus::open(const Interruption& interruption, const Clock& clock) {
+  // Mostly it is open, and then nobody has to wait to hear so.
+  const auto open_since = [this] {
+    const std::lock_guard lock(mutex_);
+    return open_since_;
+  };
+  if (const auto since = open_since()) return *since;
+
+  const Turn turn(*this, interruption);
+  if (!turn.has_line()) return Failure{"interrupted"};
+  if (const auto since = open_since()) return *since;
+  if (const auto opened = connection_->open(interruption); !opened) return opened.error();
+  is_unsettled_ = true;
+  silent_requests_ = 0;
+  const std::lock_guard lock(mutex_);
+  open_since_ = clock.now().mono;
+  return *open_since_;
+}
+
+MonoTime ModbusBus::ready_at(std::uint8_t unit) const {
+  const std::lock_guard lock(mutex_);
+  return unit_ready_at_[unit];
+}
+
+ModbusBus::Answer ModbusBus::ask(ModbusRequest request, const ModbusPatience& patience,
+                                 const Interruption& interruption, const Clock& clock, SensorSink& sink) {
+  using enum ModbusTrouble::Kind;
+  Turn turn(*this, interruption);
+  if (!turn.has_line() || !turn.wait_for_gap(interruption, clock.now().mono)) return trouble(kInterrupted);
+
+  request.transaction = ++transaction_;
+  const Answer answer = exchange(request, patience, interruption, sink);
+
+  // What was not answered may be yet.
+  const MonoTime now = clock.now().mono;
+  turn.begin_gap(now);
+  const bool may_come_late = !answer && (answer.error().kind == kSilence || answer.error().kind == kOthersOnly ||
+                                         answer.error().refusal.why == Refusal::kTooShort);
+  if (may_come_late && line_.framing == ModbusFraming::kRtu) {
+    turn.expect_late_answer(request.unit, now + patience.response_timeout);
+  }
+  return answer;
+}
+
+std::size_t ModbusBus::waiting_count() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
+void ModbusBus::wake_waiters() noexcept {
+  const std::lock_guard lock(mutex_);
+  turn_ended_.notify_all();
+}
+
+void ModbusBus::close_line() noexcept {
+  connection_->close();
+  const std::lock_guard lock(mutex_);
+  open_since_.reset();
+}
+
+ModbusBus::Answer ModbusBus::exchange(const ModbusRequest& request, const ModbusPatience& patience,
+                                      const Interruption& interruption, SensorSink& sink) {
+  if (is_unsettled_) {
+    const std::size_t leftover = connection_->settle(buffer_, patience, interruption);
+    const auto bytes = std::span(buffer_).first(leftover);
+    if (leftover > 0) sink.raw(RawDirection::kReceived, bytes);
+    // A late answer, as a rule; noise has been counted when it was taken for an answer.
+    if (leftover > 0 && modbus_crc(bytes) == 0) sink.refused(Refusal::kNotMine);
+  }
+  is_unsettled_ = true;
+  if (!connection_->send(request, patience)) return fail(BusStatus::kLost, false, sink);
+  show_sent(line_.framing, request, sink);
+
+  // Messages of others, such as the late answer to an earlier request, are passed over until the time is up.
+  bool heard_others = false;
+  for (;;) {
+    const BusMessage message = connection_->receive(buffer_, interruption);
+    if (message.status != BusStatus::kMessage) return fail(message.status, heard_others, sink);
+    const auto bytes = std::span(buffer_).first(message.size);
+    sink.raw(RawDirection::kReceived, bytes);
+
+    const auto registers = decode_modbus(line_.framing, request, bytes);
+    if (registers || registers.error().why == Refusal::kException) {
+      silent_requests_ = 0;
+      is_unsettled_ = heard_others;
+    }
+    if (registers) return *registers;
+    if (registers.error().why != Refusal::kNotMine) return refuse(registers.error(), sink);
+    sink.refused(Refusal::kNotMine);
+    heard_others = true;
+  }
+}
+
+/// No message came.
+ModbusTrouble ModbusBus::fail(BusStatus status, bool heard_others, SensorSink& sink) {
+  using enum ModbusTrouble::Kind;
+  switch (status) {
+    case BusStatus::kSilence:
+      if (++silent_requests_ >= kSilentRequestsBeforeReopen) close_line();
+      if (heard_others) return trouble(kOthersOnly);
+      sink.refused(Refusal::kTimeout);
+      return trouble(kSilence);
+    case BusStatus::kCutOff:
+      return refuse({Refusal::kTooShort}, sink);
+    case BusStatus::kGarbled:
+      return refuse({Refusal::kMalformed}, sink);
+    case BusStatus::kInterrupted:
+      return trouble(kInterrupted);
+    case BusStatus::kMessage:
+    case BusStatus::kLost:
+      break;
+  }
+  close_line();
+  return trouble(kLost);
+}
+
+/// A message came, and it is no use. Where one TCP message ends and the next begins is not known any more.
+ModbusTrouble ModbusBus::refuse(const ModbusRefusal& refusal, SensorSink& sink) {
+  sink.refused(refusal.why);
+  if (refusal.why != Refusal::kException && line_.framing == ModbusFraming::kTcp) close_line();
+  return {ModbusTrouble::Kind::kRefused, refusal};
+}
+
+std::shared_ptr<ModbusBus> shared_modbus_bus(const ModbusLine& line) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<ModbusBus>> buses;
+
+  const std::lock_guard lock(mutex);
+  std::erase_if(buses, [](const auto& entry) { return entry.second.expired(); });
+  std::weak_ptr<ModbusBus>& known = buses[address_of(line)];
+  std::shared_ptr<ModbusBus> bus = known.lock();
+  if (bus) {
+    if (const auto suits = bus->suits(line); !suits) throw std::runtime_error(suits.error().message);
+    return bus;
+  }
+  bus = std::make_shared<ModbusBus>(line, make_modbus_connection(line));
+  known = bus;
+  return bus;
+}
+
+}  // namespace yuragi

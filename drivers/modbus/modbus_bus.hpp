@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "drivers/bus/modbus_connection.hpp"
+#include "drivers/sensor/sensor.hpp"
+
+namespace yuragi {
+
+/// Why a question brought no registers. What could be counted has been.
+struct ModbusTrouble {
+  enum class Kind : std::uint8_t {
+    kSilence,      ///< nothing came in time
+    kOthersOnly,   ///< others were heard, and not whom we asked
+    kRefused,      ///< a message came that is no use: `refusal`
+    kLost,         ///< the connection is gone
+    kInterrupted,  ///< the interruption was set
+  };
+  Kind kind = Kind::kSilence;
+  ModbusRefusal refusal;  ///< for kRefused
+};
+
+/// One line with Modbus devices: a serial port, or a host and port. All sensors on that line share it, each from a
+/// thread of its own, and are served one after the other in the order in which they asked.
+///
+/// A late answer to one request is never taken for that to another. Over TCP each request has a number of its own. On a
+/// serial line nothing tells them apart but the slave's id, so whoever did not answer in time is to be let be for
+/// another response time-out (ready_at()), and after any trouble nothing is sent before the line has been quiet. A
+/// device that is slower than two time-outs needs a longer one.
+///
+/// Thread-safe: yes. Whoever waits, waits for those before him, each for one response time-out at most; his
+/// `interruption` ends that.
+class ModbusBus {
+ public:
+  using Answer = Result<ModbusRegisters, ModbusTrouble>;
+
+  ModbusBus(const ModbusLine& line, std::unique_ptr<ModbusConnection> connection);
+
+  /// The line, for people.
+  const std::string& where() const noexcept { return where_; }
+  ModbusFraming framing() const noexcept { return line_.framing; }
+
+  /// Can sensors share it that want it so? The failure says what differs.
+  Result<void, Failure> suits(const ModbusLine& line) const;
+
+  /// From an answer to the next request, whoever sends it: the longest that anybody has asked for holds.
+  void keep_gap(Nanoseconds min_gap);
+
+  /// Opens the line if it is not open. Returns when that was, or says why it failed and what to do.
+  Result<MonoTime, Failure> open(const Interruption& interruption, const Clock& clock);
+
+  /// From when on a device may be asked; a time that has passed, mostly.
+  MonoTime ready_at(std::uint8_t unit) const;
+
+  /// Asks, and waits for the answer. The request's transaction is chosen here. Counts in `sink` what it refuses, and
+  /// shows it each message.
+  Answer ask(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
+             const Clock& clock, SensorSink& sink);
+
+  /// How many have asked and not been answered yet.
+  std::size_t waiting_count() const;
+
+  /// To be called after an interruption was set, so that whoever waits for his turn with it looks at it.
+  void wake_waiters() noexcept;
+
+ private:
+  class Turn;
+
+  void close_line() noexcept;
+  Answer exchange(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
+                  SensorSink& sink);
+  ModbusTrouble fail(BusStatus status, bool heard_others, SensorSink& sink);
+  ModbusTrouble refuse(const ModbusRefusal& refusal, SensorSink& sink);
+
+  const ModbusLine line_;
+  const std::string where_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable turn_ended_;
+  std::deque<std::uint64_t> waiting_;  ///< tickets; the first one has its turn
+  std::uint64_t last_ticket_ = 0;
+  Nanoseconds min_gap_;
+  MonoTime free_at_{};                         ///< when the gap after the last exchange has passed
+  std::array<MonoTime, 256> unit_ready_at_{};  ///< when a late answer of that unit is over
+  std::optional<MonoTime> open_since_;         ///< empty: the line is not open
+
+  // Of whoever has the turn.
+  std::unique_ptr<ModbusConnection> connection_;
+  bool is_unsettled_ = true;  ///< something may still be under way on the line
+  int silent_requests_ = 0;   ///< in a row, whomever they asked
+  std::uint16_t transaction_ = 0;
+  std::array<std::uint8_t, kModbusMaxMessage> buffer_{};
+};
+
+/// The bus of that line: the one that somebody holds already, or a new one. A serial port is known by what its name
+/// leads to. Throws std::runtime_error where it is in use with another baud rate, parity or number of stop bits.
+/// Thread-safe: yes.
+std::shared_ptr<ModbusBus> shared_modbus_bus(const ModbusLine& line);
+
+}  // namespace yuragi

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "drivers/decode/modbus/modbus.hpp"
+#include "drivers/modbus/modbus_profile.hpp"
+
+namespace yuragi {
+
+enum class ModbusMeasure : std::uint8_t { kSpeed, kDirection, kGust };
+
+/// One request, and what its answer tells.
+struct ModbusRead {
+  ModbusRequest request;
+  std::vector<ModbusMeasure> measures;
+
+  bool tells(ModbusMeasure measure) const;
+};
+
+/// The requests that read all that a profile knows, that for the speed first: as few as the profile allows, so that
+/// registers that adjoin on one slave come together, and those whose reading has side effects alone.
+/// `is_direction_apart`: the direction is on a line of its own.
+std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_direction_apart = false);
+
+/// Where the profile says that `measure` stands; it must have it.
+const ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure);
+
+/// The part of an answer to `request` that belongs to `quantity`.
+std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
+                                            const ModbusRegisters& registers);
+
+}  // namespace yuragi

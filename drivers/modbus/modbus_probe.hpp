@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/bus/modbus_connection.hpp"
+#include "drivers/modbus/modbus_profile.hpp"
+
+namespace yuragi {
+
+/// A profile under the name by which a configuration asks for it.
+struct NamedModbusProfile {
+  std::string name;
+  ModbusProfile profile;
+};
+
+/// Where to look for Modbus devices.
+struct ModbusProbePlan {
+  std::vector<ModbusLine> lines;  ///< the same port or host with each of its possible settings, the likeliest first
+  std::vector<std::uint8_t> ids;  ///< slaves to ask
+  std::vector<NamedModbusProfile> profiles;
+  Nanoseconds response_timeout = std::chrono::milliseconds(200);
+  bool tries_all_lines = false;  ///< go on after a line on which somebody answered
+};
+
+/// A profile that makes sense of what a device answers.
+struct ModbusFit {
+  std::string profile;  ///< by the name that a configuration uses
+  std::string device;
+  std::optional<double> speed_m_s;  ///< empty: only the vane of a pair
+  std::optional<double> direction_deg;
+  std::optional<double> gust_m_s;
+  std::uint8_t speed_slave = 1;
+  std::optional<std::uint8_t> direction_slave;
+  bool is_at_home = false;  ///< line settings and ids are those of the profile itself
+};
+
+/// A slave that answered.
+struct ModbusHit {
+  ModbusLine line;
+  std::uint8_t id = 0;
+  std::vector<ModbusFit>
+      fits;  ///< the best first; none: a device that no profile knows. Vanes only where nothing else fits
+};
+
+/// Tells of the progress: what is about to be tried, and how much of all that has been done, 0 to 1.
+using ModbusProbeProgress = std::function<void(const ModbusLine& line, std::uint8_t id, double done)>;
+/// Told of each slave that was found, as soon as it is.
+using ModbusProbeFound = std::function<void(const ModbusHit& hit)>;
+
+/// Asks every id on every line for a register or two, and whoever answers for what the profiles know. Reads only, and
+/// leaves out every profile in which a reading has side effects. Returns how many slaves were found, or why a line
+/// cannot be opened. Ends soon after `interruption` was set.
+Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
+                                  const ModbusProbeFound& found, const Interruption& interruption);
+
+/// The line settings of a serial port that are worth trying, the likeliest first: those of the profiles, and then the
+/// others that devices can be set to. `bauds` and `parities` narrow them; empty: all.
+std::vector<ModbusLine> likely_modbus_lines(const std::string& device, const std::vector<NamedModbusProfile>& profiles,
+                                            const std::vector<int>& bauds, const std::vector<char>& parities);
+
+/// Every profile that is shipped, in the order of their names. `directory` is looked into first.
+std::vector<NamedModbusProfile> shipped_modbus_profiles(const std::string& directory);
+
+/// The [[sensor]] table for a configuration, for a fit that has a speed. `device` is the name of the serial port to
+/// write, where there is one.
+std::string sensor_table_for(const ModbusLine& line, const ModbusFit& fit, const ModbusProfile& profile,
+                             const std::string& device);
+
+}  // namespace yuragi

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/decode/modbus/modbus_quantity.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// The rates that a serial line may have, bit/s.
+inline constexpr std::array<std::int64_t, 8> kModbusBauds = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
+
+/// What a device says over Modbus and how it wants to be asked: one TOML file in drivers/modbus/profiles. README.md
+/// there lists the keys.
+struct ModbusProfile {
+  std::string name;      ///< of the device, for people
+  std::string source;    ///< where its register map was read
+  std::string revision;  ///< of the device or its firmware, where the map differs among them
+
+  bool is_serial = true;  ///< its native transport; a serial device can also be reached over TCP, through a gateway
+  int baud = 9600;
+  char parity = 'N';  ///< N, E or O
+  int stop_bits = 1;
+
+  Nanoseconds poll_interval = std::chrono::milliseconds(250);     ///< asking more often brings nothing new
+  Nanoseconds min_gap{0};                                         ///< from an answer to the next request
+  Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< longest wait for an answer
+  Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< serial line: silence that ends a message
+  Nanoseconds delay_after_open{0};                                ///< from opening to the first request
+  Nanoseconds warm_up{0};                                         ///< from opening until what it says can be believed
+
+  bool block_read = true;         ///< registers that adjoin may be read by one request
+  int block_gap = 0;              ///< so many registers between two quantities may be read along with them
+  double north_offset_deg = 0.0;  ///< added to the direction: the device's mark points there instead of to north
+
+  ModbusQuantity speed;
+  std::optional<ModbusQuantity> direction;
+  std::optional<ModbusQuantity> gust;  ///< the strongest of the device's own recent past
+};
+
+/// Reads a profile's text. Throws std::runtime_error "file:line:column: key: what is wrong, what is allowed"; `file` is
+/// used in that text only. Keys that no profile has are refused.
+ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file);
+
+/// The device has another id than the profile says: the speed moves there, and whatever else was on the same slave.
+void set_slave(ModbusProfile& profile, std::uint8_t id);
+
+/// Finds and reads a profile: a path, if `name` contains '/' or ends in ".toml"; otherwise NAME.toml in `directory` (if
+/// not empty), $YURAGI_PROFILE_DIR, ../share/yuragi/profiles beside the executable, the source tree.
+/// Throws std::runtime_error as above, or, for a name that is nowhere, one that lists the names that are.
+ModbusProfile load_modbus_profile(const std::string& name, const std::string& directory);
+
+/// The names of all profiles that can be found so, in alphabetical order.
+std::vector<std::string> modbus_profile_names(const std::string& directory);
+
+}  // namespace yuragi

@@ -1,0 +1,222 @@
+#include "drivers/modbus/modbus_sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace yuragi {
+namespace {
+
+constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
+constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
+
+/// Does a gateway answer for a slave that does not?
+bool is_silence_by_proxy(const ModbusTrouble& trouble) {
+  return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == Refusal::kException &&
+         is_gateway_silence(trouble.refusal.exception);
+}
+
+/// "without direction and gust", for what this read should have brought.
+std::string without(const ModbusRead& read) {
+  const bool has_direction = read.tells(ModbusMeasure::kDirection);
+  const bool has_gust = read.tells(ModbusMeasure::kGust);
+  return fmt::format("without {}{}{}", has_direction ? "direction" : "", has_direction && has_gust ? " and " : "",
+                     has_gust ? "gust" : "");
+}
+
+/// Did the question take its whole time-out, or a gateway's?
+bool has_cost_time(const ModbusTrouble& trouble) {
+  return trouble.kind == ModbusTrouble::Kind::kSilence || trouble.kind == ModbusTrouble::Kind::kOthersOnly ||
+         trouble.refusal.why == Refusal::kTooShort || is_silence_by_proxy(trouble);
+}
+
+}  // namespace
+
+ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus,
+                           const std::shared_ptr<ModbusBus>& direction_bus, std::uint32_t seed)
+    : ReopeningSensor(seed),
+      profile_(std::move(profile)),
+      bus_(std::move(bus)),
+      direction_bus_(direction_bus ? direction_bus : bus_) {
+  const bool is_direction_apart = direction_bus_ != bus_;
+  for (const ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
+    ModbusBus* const line =
+        is_direction_apart && what.tells(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
+    reads_.push_back(
+        {.what = what, .bus = line, .backoff = Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed), .trouble = {}});
+  }
+  bus_->keep_gap(profile_.min_gap);
+  direction_bus_->keep_gap(profile_.min_gap);
+}
+
+void ModbusSensor::interrupt() noexcept {
+  interruption_.set();
+  bus_->wake_waiters();
+  direction_bus_->wake_waiters();
+}
+
+Result<MonoTime, Failure> ModbusSensor::open(const Clock& clock) {
+  const auto opened = bus_->open(interruption_, clock);
+  if (!opened) return opened.error();
+  opened_at_ = *opened;
+  step_ = 0;
+  return std::max(clock.now().mono, opened_at_ + profile_.delay_after_open);
+}
+
+Result<MonoTime, Failure> ModbusSensor::work(const Clock& clock, SensorSink& sink) {
+  if (step_ > 0) {
+    ask_more(reads_[step_], clock, sink);
+    return go_on(clock.now().mono, sink);
+  }
+  // The line may have been opened anew since, by another sensor or after silence.
+  const MonoTime opened_before = opened_at_;
+  auto begin = open(clock);
+  if (!begin || opened_at_ != opened_before) return begin;
+  return ask_first(clock, sink);
+}
+
+Result<MonoTime, Failure> ModbusSensor::ask_first(const Clock& clock, SensorSink& sink) {
+  Read& read = reads_.front();
+  const MonoTime ready_at = bus_->ready_at(read.what.request.unit);
+  round_start_ = clock.now().mono;
+  if (ready_at > round_start_) return ready_at;
+
+  const ModbusBus::Answer answer = ask(read, clock, sink);
+  const Instant now = clock.now();
+  if (!answer) {
+    if (answer.error().kind == ModbusTrouble::Kind::kInterrupted) return now.mono;
+    if (answer.error().kind == ModbusTrouble::Kind::kLost) return Failure{explain(read, answer.error())};
+    is_unwell(sink, explain(read, answer.error()));
+    return has_cost_time(answer.error()) ? now.mono + read.backoff.next() : next_round(now.mono);
+  }
+  read.backoff.reset();
+
+  const auto speed_m_s = decode_speed_m_s(profile_.speed, registers_of(profile_.speed, read.what.request, *answer));
+  if (!speed_m_s) {
+    sink.refused(speed_m_s.error());
+    is_well(sink, fmt::format("slave {} at {} answers, but its speed is {}: check that the profile fits the device",
+                              read.what.request.unit, bus_->where(), name_of(speed_m_s.error())));
+    return next_round(now.mono);
+  }
+  reading_ = {
+      .time = now, .speed_m_s = *speed_m_s, .direction_deg = {}, .gust_m_s = {}, .quality = ReadingQuality::kGood};
+  take(read, *answer, sink);
+  return go_on(now.mono, sink);
+}
+
+void ModbusSensor::ask_more(Read& read, const Clock& clock, SensorSink& sink) {
+  // The vane's own line, where it has one, is opened here; without it there is no direction.
+  if (const auto opened = read.bus->open(interruption_, clock); !opened) {
+    read.trouble = without(read.what) + ": " + opened.error().message;
+    read.not_before = clock.now().mono + read.backoff.next();
+    return;
+  }
+  const ModbusBus::Answer answer = ask(read, clock, sink);
+  if (answer) {
+    read.backoff.reset();
+    take(read, *answer, sink);
+    return;
+  }
+  read.trouble = without(read.what) + ": " + explain(read, answer.error());
+  read.not_before = clock.now().mono + read.backoff.next();
+}
+
+ModbusBus::Answer ModbusSensor::ask(const Read& read, const Clock& clock, SensorSink& sink) {
+  const ModbusPatience patience{.response_timeout = profile_.response_timeout, .byte_timeout = profile_.byte_timeout};
+  return read.bus->ask(read.what.request, patience, interruption_, clock, sink);
+}
+
+MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {
+  // What is due and has not been asked in this round.
+  while (++step_ < reads_.size()) {
+    const Read& read = reads_[step_];
+    const bool is_due = now >= read.not_before && now >= read.bus->ready_at(read.what.request.unit);
+    if (is_due) return read.bus == bus_.get() ? now + profile_.min_gap : now;
+  }
+  step_ = 0;
+
+  // All that the round brought goes out together.
+  if (reading_.time.mono < opened_at_ + profile_.warm_up) {
+    is_well(sink, profile_.name + " at " + bus_->where() + " is warming up");
+    return next_round(now);
+  }
+  std::string detail = profile_.name + " at " + bus_->where();
+  for (const Read& read : reads_) {
+    if (!read.trouble.empty()) detail += "; " + read.trouble;
+  }
+  is_well(sink, detail);
+  sink.reading(reading_);
+  return next_round(now);
+}
+
+MonoTime ModbusSensor::next_round(MonoTime now) const {
+  return std::max(round_start_ + profile_.poll_interval, now + profile_.min_gap);
+}
+
+void ModbusSensor::take(Read& read, const ModbusRegisters& registers, SensorSink& sink) {
+  read.trouble.clear();
+  const auto part = [&](const ModbusQuantity& quantity) {
+    return registers_of(quantity, read.what.request, registers);
+  };
+  if (read.what.tells(ModbusMeasure::kDirection)) take_direction(read, part(*profile_.direction), sink);
+  if (read.what.tells(ModbusMeasure::kGust)) take_gust(read, part(*profile_.gust), sink);
+}
+
+void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink) {
+  const auto direction_deg = decode_direction_deg(*profile_.direction, registers);
+  if (!direction_deg) {
+    sink.refused(direction_deg.error());
+    read.trouble = fmt::format("without direction: it is {}", name_of(direction_deg.error()));
+    return;
+  }
+  // A sum just below 0 may round up to 360 itself.
+  const double turned_deg = std::fmod(*direction_deg + profile_.north_offset_deg + 360.0, 360.0);
+  reading_.direction_deg = turned_deg < 360.0 ? turned_deg : 0.0;
+}
+
+void ModbusSensor::take_gust(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink) {
+  const auto gust_m_s = decode_speed_m_s(*profile_.gust, registers);
+  if (!gust_m_s) {
+    sink.refused(gust_m_s.error());
+    read.trouble +=
+        fmt::format("{}without gust: it is {}", read.trouble.empty() ? "" : "; ", name_of(gust_m_s.error()));
+    return;
+  }
+  reading_.gust_m_s = *gust_m_s;
+}
+
+std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble) const {
+  const std::string slave = fmt::format("slave {} at {}", read.what.request.unit, read.bus->where());
+  switch (trouble.kind) {
+    case ModbusTrouble::Kind::kSilence:
+      return fmt::format("{} does not answer within {:g} s: check its power, its wiring and its id", slave,
+                         seconds(profile_.response_timeout));
+    case ModbusTrouble::Kind::kOthersOnly:
+      return slave + " is not heard, but others are: check its id, and that nobody else asks on its line";
+    case ModbusTrouble::Kind::kLost:
+      return "the connection to " + read.bus->where() + " broke off: opening it again";
+    case ModbusTrouble::Kind::kInterrupted:
+      return "interrupted";
+    case ModbusTrouble::Kind::kRefused:
+      break;
+  }
+  const ModbusRefusal& refusal = trouble.refusal;
+  if (is_silence_by_proxy(trouble)) {
+    return fmt::format(
+        "the gateway says that {} does not answer (exception {}, {}): check its power, its wiring and its "
+        "id",
+        slave, refusal.exception, modbus_exception_name(refusal.exception));
+  }
+  if (refusal.why == Refusal::kException) {
+    return fmt::format("{} refuses the request (exception {}, {}): check that the profile fits the device", slave,
+                       refusal.exception, modbus_exception_name(refusal.exception));
+  }
+  return fmt::format(
+      "an answer of {} is no use ({}): check wiring and termination, baud rate, parity, and that no other device has "
+      "its id",
+      slave, name_of(refusal.why));
+}
+
+}  // namespace yuragi

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/modbus/modbus_bus.hpp"
+#include "drivers/modbus/modbus_plan.hpp"
+#include "drivers/modbus/modbus_profile.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+
+namespace yuragi {
+
+/// A wind sensor of one or two Modbus slaves, asked in rounds, one exchange a poll(): the speed, then what did not come
+/// along with it (direction, gust).
+///
+/// Each round publishes one reading at most, timed when the speed arrived. Without a speed there is none; without a
+/// direction or gust it goes without. A slave that does not answer is asked less and less often, so that it slows
+/// nobody down: after waits that double from 0.25 s up to 10 s.
+class ModbusSensor final : public ReopeningSensor {
+ public:
+  /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
+  /// differ.
+  ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus, const std::shared_ptr<ModbusBus>& direction_bus,
+               std::uint32_t seed);
+
+  void interrupt() noexcept override;
+
+ protected:
+  Result<MonoTime, Failure> open(const Clock& clock) override;
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  /// The line may be another sensor's too: the bus itself closes what is of no use any more.
+  void close() noexcept override {}
+
+ private:
+  /// One of the requests of a round.
+  struct Read {
+    ModbusRead what;
+    ModbusBus* bus;
+    Backoff backoff;
+    MonoTime not_before{};  ///< its slave has not answered: let it be until then
+    std::string trouble;    ///< why the readings come without it; empty if they do not
+  };
+
+  Result<MonoTime, Failure> ask_first(const Clock& clock, SensorSink& sink);
+  void ask_more(Read& read, const Clock& clock, SensorSink& sink);
+  ModbusBus::Answer ask(const Read& read, const Clock& clock, SensorSink& sink);
+  /// The next read of this round that is due, or the end of the round.
+  MonoTime go_on(MonoTime now, SensorSink& sink);
+  MonoTime next_round(MonoTime now) const;
+
+  void take(Read& read, const ModbusRegisters& registers, SensorSink& sink);
+  void take_direction(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink);
+  void take_gust(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink);
+  std::string explain(const Read& read, const ModbusTrouble& trouble) const;
+
+  const ModbusProfile profile_;
+  const std::shared_ptr<ModbusBus> bus_;
+  const std::shared_ptr<ModbusBus> direction_bus_;
+  Interruption interruption_;
+  std::vector<Read> reads_;  ///< the first one brings the speed
+
+  MonoTime opened_at_{};
+  MonoTime round_start_{};
+  std::size_t step_ = 0;  ///< which of the reads is next
+  WindReading reading_;   ///< of the round that is under way
+};
+
+}  // namespace yuragi

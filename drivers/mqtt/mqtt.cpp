@@ -1,0 +1,305 @@
+// Wind that somebody publishes on an MQTT broker (OASIS, "MQTT Version 3.1.1", 2014): a home's weather station, a
+// gateway, a microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own.
+// What is common has a preset, which single settings change:
+//
+//   preset     topic               speed                 direction           gust              unit
+//   number     (yours, one each)   the payload is the number                                   m/s
+//   tasmota    tele/+/SENSOR       /TX23/Speed/Act       /TX23/Dir/Deg       /TX23/Speed/Max   km/h
+//   rtl_433    rtl_433/+/events    /wind_avg_m_s         /wind_dir_deg       /wind_max_m_s     m/s
+//   windnerd   (yours)             /wind_instant_speed   /wind_instant_dir                     m/s
+//
+// Sources: Home Assistant's mqtt_statestream publishes numbers on homeassistant/sensor/NAME/state; arendst/Tasmota
+// tasmota/xsns_35_tx20.ino, Tx2xShow (TX20 in place of TX23 for the older sensor; its SpeedUnit is km/h unless it was
+// changed); merbanan/rtl_433 src/devices/fineoffset_ws80.c, as for most wind sensors; windnerd.net/docs, MQTT.
+//
+// A retained message was kept by the broker for whoever comes: nobody knows how old it is, and it is never taken for
+// the wind of now.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "drivers/bus/mqtt_client.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/mqtt/mqtt_payload.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+#include "drivers/sensor/speed_unit.hpp"
+
+namespace yuragi {
+namespace {
+
+/// A look at the clock at least so often.
+constexpr Nanoseconds kMqttWait = std::chrono::milliseconds(250);
+
+struct MqttPreset {
+  std::string_view name;
+  std::string_view topic;
+  std::string_view speed;
+  std::string_view direction;
+  std::string_view gust;
+  std::string_view unit;
+};
+constexpr std::array<MqttPreset, 4> kMqttPresets = {
+    {{"number", "", "", "", "", "m/s"},
+     {"tasmota", "tele/+/SENSOR", "/TX23/Speed/Act", "/TX23/Dir/Deg", "/TX23/Speed/Max", "km/h"},
+     {"rtl_433", "rtl_433/+/events", "/wind_avg_m_s", "/wind_dir_deg", "/wind_max_m_s", "m/s"},
+     {"windnerd", "", "/wind_instant_speed", "/wind_instant_dir", "", "m/s"}}};
+constexpr std::array<std::string_view, 4> kMqttPresetNames = {"number", "tasmota", "rtl_433", "windnerd"};
+constexpr std::array<std::string_view, 6> kMqttUnits = {"preset", "m/s", "km/h", "kn", "mph", "ft/s"};
+
+const std::array kMqttParameters = {
+    Parameter{
+        .name = "host", .unit = "", .default_value = std::string("127.0.0.1"), .help = "the broker's name or address"},
+    Parameter{.name = "port",
+              .unit = "",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = 65535,
+              .help = "the broker's port; 0 takes 1883, and 8883 with TLS"},
+    Parameter{.name = "user",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "who we are; empty: the broker does not ask"},
+    Parameter{.name = "password", .unit = "", .default_value = std::string(""), .help = "the user's password"},
+    Parameter{.name = "tls", .unit = "", .default_value = false, .help = "speak TLS, and check who the broker is"},
+    Parameter{.name = "ca_file",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the certificate (PEM) of who vouches for the broker; empty: those that this system trusts"},
+    Parameter{.name = "preset",
+              .unit = "",
+              .default_value = std::string("number"),
+              .help = "where the wind stands in common messages; what is set besides changes it",
+              .choices = kMqttPresetNames},
+    Parameter{.name = "topic",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the topic of the speed, and of all that has no topic of its own; + stands for any level"},
+    Parameter{.name = "speed_path",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "JSON pointer to the speed, such as /TX23/Speed/Act; empty takes the preset's"},
+    Parameter{
+        .name = "direction_topic", .unit = "", .default_value = std::string(""), .help = "the direction's own topic"},
+    Parameter{.name = "direction_path",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "JSON pointer to the direction in degrees; empty takes the preset's"},
+    Parameter{.name = "gust_topic", .unit = "", .default_value = std::string(""), .help = "the gust's own topic"},
+    Parameter{.name = "gust_path",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "JSON pointer to the gust; empty takes the preset's"},
+    Parameter{.name = "speed_unit",
+              .unit = "",
+              .default_value = std::string("preset"),
+              .help = "the unit of speed and gust; \"preset\" takes the preset's",
+              .choices = kMqttUnits},
+    Parameter{.name = "hold",
+              .unit = "s",
+              .default_value = 60.0,
+              .min = 0.1,
+              .max = 86400.0,
+              .help = "a direction or gust from a topic of its own goes with the speeds of so long"},
+    Parameter{.name = "silence",
+              .unit = "s",
+              .default_value = 900.0,
+              .min = 0.1,
+              .max = 86400.0,
+              .help = "no wind for so long means that whoever publishes it has stopped"},
+    Parameter{.name = "keep_alive",
+              .unit = "s",
+              .default_value = std::int64_t{15},
+              .min = 5,
+              .max = 3600,
+              .help = "a broker that says nothing for so long is asked whether it is still there"},
+};
+
+/// Where one quantity comes from: a topic of its own, or the speed's.
+struct MqttSource {
+  std::string topic;   ///< empty: this quantity is not published
+  PayloadPlace place;  ///< in its messages
+};
+
+struct MqttSettings {
+  MqttSubscription subscription;
+  MqttSource speed;
+  MqttSource direction;
+  MqttSource gust;
+  double metres_per_second = 1.0;
+  Nanoseconds hold = std::chrono::seconds(60);
+  Nanoseconds silence = std::chrono::minutes(15);
+};
+
+/// A value from a topic of its own, and when it came.
+struct HeldValue {
+  std::optional<double> value;
+  MonoTime since{};
+};
+
+class MqttSensor final : public ReopeningSensor {
+ public:
+  explicit MqttSensor(MqttSettings settings)
+      : ReopeningSensor(seed_of(settings.subscription.host + settings.speed.topic)),
+        settings_(std::move(settings)),
+        where_(fmt::format("topic {} of MQTT broker {}:{}", settings_.speed.topic, settings_.subscription.host,
+                           settings_.subscription.port)),
+        client_(make_mqtt_client(settings_.subscription)) {}
+
+  void interrupt() noexcept override { client_->interrupt(); }
+
+ protected:
+  Result<MonoTime, Failure> open(const Clock& clock) override {
+    if (const auto connected = client_->connect(); !connected) return connected.error();
+    direction_ = {};
+    gust_ = {};
+    has_heard_ = false;
+    heard_at_ = clock.now().mono;
+    return heard_at_;
+  }
+
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
+    if (!has_heard_) is_unwell(sink, "waits for wind on " + where_ + ": a retained message is none");
+    MqttMessage message;
+    const MqttStatus status = client_->receive(message, kMqttWait);
+    const Instant now = clock.now();
+    if (status == MqttStatus::kInterrupted) return Failure{"interrupted"};
+    if (status == MqttStatus::kLost) return Failure{client_->trouble()};
+    if (status == MqttStatus::kMessage) take(message, now, sink);
+    if (now.mono - heard_at_ >= settings_.silence) {
+      has_heard_ = true;  // what is told now is more than that it waits
+      is_unwell(sink, fmt::format("no wind has come on {} for {:g} s: check that whoever publishes it runs", where_,
+                                  seconds(settings_.silence)));
+    }
+    return now.mono;
+  }
+
+  void close() noexcept override { client_->disconnect(); }
+
+ private:
+  void take(const MqttMessage& message, Instant now, SensorSink& sink) {
+    sink.raw(RawDirection::kReceived, message.payload);
+    if (message.is_too_long) return sink.refused(Refusal::kMalformed);
+    if (message.is_retained) return sink.refused(Refusal::kInvalid);
+    const std::string_view payload(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
+
+    // A direction and a gust wait for the next speed; one that cannot be read takes the place of the last one all the
+    // same.
+    for (const auto& [source, held] : {std::pair{&settings_.direction, &direction_}, {&settings_.gust, &gust_}}) {
+      if (!mqtt_topic_matches(message.topic, source->topic)) continue;
+      const auto number = number_in(payload, source->place);
+      *held = {number ? *number : std::nullopt, now.mono};
+      if (!number && source->topic != settings_.speed.topic) sink.refused(number.error());
+    }
+    if (mqtt_topic_matches(message.topic, settings_.speed.topic)) take_speed(payload, now, sink);
+  }
+
+  void take_speed(std::string_view payload, Instant now, SensorSink& sink) {
+    const auto speed = number_in(payload, settings_.speed.place);
+    if (!speed) return sink.refused(speed.error());
+    if (!*speed) return sink.refused(Refusal::kNotMine);
+    DecodedWind wind;
+    wind.speed_m_s = **speed * settings_.metres_per_second;
+    if (const auto gust = still_held(gust_, now)) wind.gust_m_s = *gust * settings_.metres_per_second;
+    if (const auto direction_deg = still_held(direction_, now)) {
+      wind.direction_deg = wrapped_direction_deg(*direction_deg);
+      if (!wind.direction_deg) return sink.refused(Refusal::kImplausible);
+    }
+    const auto plausible = checked(wind);
+    if (!plausible) return sink.refused(plausible.error());
+
+    has_heard_ = true;
+    heard_at_ = now.mono;
+    is_well(sink, where_);
+    sink.reading({.time = now,
+                  .speed_m_s = *plausible->speed_m_s,
+                  .direction_deg = plausible->direction_deg,
+                  .gust_m_s = plausible->gust_m_s,
+                  .quality = ReadingQuality::kGood});
+  }
+
+  std::optional<double> still_held(const HeldValue& held, Instant now) const {
+    return now.mono - held.since <= settings_.hold ? held.value : std::nullopt;
+  }
+
+  MqttSettings settings_;
+  std::string where_;
+  std::unique_ptr<MqttClient> client_;
+  HeldValue direction_;
+  HeldValue gust_;
+  bool has_heard_ = false;  // of the wind, since it connected
+  MonoTime heard_at_{};     // or since when it could have
+};
+
+/// Throws, naming the setting, for what can be neither subscribed to nor found.
+void check_source(std::string_view name, const MqttSource& source) {
+  if (!source.topic.empty() && !is_mqtt_filter(source.topic)) {
+    throw std::runtime_error(fmt::format(
+        "{}topic: \"{}\" is no topic; # may stand at the end only, and + for a whole level", name, source.topic));
+  }
+  if (!is_json_pointer(source.place.pointer)) {
+    throw std::runtime_error(
+        fmt::format("{}path: \"{}\" is no JSON pointer; it begins with a slash, as in /TX23/Speed/Act",
+                    name.empty() ? "speed_" : name, source.place.pointer));
+  }
+}
+
+MqttSettings mqtt_settings_of(const ParameterValues& values) {
+  const auto preset = std::ranges::find(kMqttPresets, values.text("preset"), &MqttPreset::name);
+  const auto text_or = [&values](std::string_view name, std::string_view otherwise) {
+    return values.text(name).empty() ? std::string(otherwise) : values.text(name);
+  };
+  MqttSettings settings;
+  settings.speed = MqttSource{text_or("topic", preset->topic), {text_or("speed_path", preset->speed)}};
+  if (settings.speed.topic.empty())
+    throw std::runtime_error("topic: is missing; give the topic that the speed is published on");
+
+  // Without a topic of its own a quantity comes with the speed, if anything says where in the message it stands.
+  const auto source_of = [&](std::string_view topic, std::string_view path, std::string_view preset_path) {
+    MqttSource source = {values.text(topic), {text_or(path, preset_path)}};
+    if (source.topic.empty() && source.place.is_json()) source.topic = settings.speed.topic;
+    return source;
+  };
+  settings.direction = source_of("direction_topic", "direction_path", preset->direction);
+  settings.gust = source_of("gust_topic", "gust_path", preset->gust);
+  const std::string& unit = values.text("speed_unit");
+  settings.metres_per_second = metres_per_second_in(unit == "preset" ? preset->unit : unit);
+  settings.hold = from_seconds(values.number("hold"));
+  settings.silence = from_seconds(values.number("silence"));
+
+  MqttSubscription& subscription = settings.subscription;
+  subscription.host = values.text("host");
+  subscription.uses_tls = values.flag("tls");
+  const std::int64_t port = values.integer("port");
+  subscription.port = static_cast<std::uint16_t>(port != 0 ? port : subscription.uses_tls ? 8883 : 1883);
+  subscription.user = values.text("user");
+  subscription.password = values.text("password");
+  subscription.ca_file = values.text("ca_file");
+  subscription.keep_alive = std::chrono::seconds(values.integer("keep_alive"));
+  for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {
+    const bool is_new = std::ranges::count(subscription.topics, source->topic) == 0;
+    if (!source->topic.empty() && is_new) subscription.topics.push_back(source->topic);
+  }
+  return settings;
+}
+
+std::unique_ptr<Sensor> open_mqtt(const ParameterValues& values) {
+  MqttSettings settings = mqtt_settings_of(values);
+  check_source("", settings.speed);
+  check_source("direction_", settings.direction);
+  check_source("gust_", settings.gust);
+  if (settings.subscription.host.empty()) throw std::runtime_error("host: is empty; give the broker's name or address");
+  return std::make_unique<MqttSensor>(std::move(settings));
+}
+
+}  // namespace
+
+extern const DriverDescription kMqttDriver;
+const DriverDescription kMqttDriver{.name = "mqtt",
+                                    .summary = "wind that is published on an MQTT broker, as a number or in JSON",
+                                    .parameters = kMqttParameters,
+                                    .open = open_mqtt};
+
+}  // namespace yuragi

@@ -1,0 +1,198 @@
+// Wind that another program sends as Open Sound Control messages over UDP (M. Wright, "The Open Sound Control 1.0
+// specification", 2002): a patch in Max, Pure Data or TouchDesigner, a script with oscsend.
+//
+//   oscsend HOST 9000 /wind ff 4.2 270        speed in m/s, and where it comes from in degrees
+//
+// Any address and any order of the arguments will do; they are numbers of any of OSC's types. What is no number, or
+// missing, is not known.
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/bus/osc_message.hpp"
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+#include "drivers/sensor/speed_unit.hpp"
+
+namespace yuragi {
+namespace {
+
+/// A look at the clock at least so often.
+constexpr Nanoseconds kOscWait = std::chrono::milliseconds(250);
+
+const std::array kOscParameters = {
+    Parameter{.name = "port",
+              .unit = "",
+              .default_value = std::int64_t{9000},
+              .min = 1,
+              .max = 65535,
+              .help = "the UDP port that the messages come to"},
+    Parameter{.name = "host",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "listen at this address of this machine only, or at this multicast address; empty: at all"},
+    Parameter{.name = "sender",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "take messages from this address only; empty: from any"},
+    Parameter{.name = "address",
+              .unit = "",
+              .default_value = std::string("/wind"),
+              .help = "the messages' OSC address, or a pattern: /station/*/wind"},
+    Parameter{.name = "speed_argument",
+              .unit = "",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = 63,
+              .help = "which argument is the speed; the first is 0"},
+    Parameter{.name = "direction_argument",
+              .unit = "",
+              .default_value = std::int64_t{1},
+              .min = -1,
+              .max = 63,
+              .help = "which argument is the direction that the wind comes from, in degrees; -1: none"},
+    Parameter{.name = "gust_argument",
+              .unit = "",
+              .default_value = std::int64_t{-1},
+              .min = -1,
+              .max = 63,
+              .help = "which argument is the gust; -1: none"},
+    Parameter{.name = "speed_unit",
+              .unit = "",
+              .default_value = std::string("m/s"),
+              .help = "the unit of speed and gust",
+              .choices = kSpeedUnitNames},
+    Parameter{.name = "silence",
+              .unit = "s",
+              .default_value = 5.0,
+              .min = 0.1,
+              .max = 86400.0,
+              .help = "nothing for so long means that the sender has stopped"},
+};
+
+struct OscSettings {
+  BytePortAddress port{.kind = BytePortKind::kUdp};
+  std::string address;
+  std::int64_t speed_argument = 0;
+  std::int64_t direction_argument = 1;
+  std::int64_t gust_argument = -1;
+  double metres_per_second = 1.0;
+  Nanoseconds silence = std::chrono::seconds(5);
+};
+
+std::optional<double> argument_of(const OscMessage& message, std::int64_t which) {
+  const bool is_there = which >= 0 && which < std::ssize(message.numbers);
+  return is_there ? message.numbers[static_cast<std::size_t>(which)] : std::nullopt;
+}
+
+/// The wind in one message: kTooShort (it ends before the speed), kInvalid (the speed is no number), kImplausible.
+Result<DecodedWind, Refusal> wind_of(const OscMessage& message, const OscSettings& settings) {
+  if (settings.speed_argument >= std::ssize(message.numbers)) return Refusal::kTooShort;
+  DecodedWind wind;
+  wind.speed_m_s = argument_of(message, settings.speed_argument);
+  if (!wind.speed_m_s) return Refusal::kInvalid;
+  *wind.speed_m_s *= settings.metres_per_second;
+  if (const auto gust = argument_of(message, settings.gust_argument))
+    wind.gust_m_s = *gust * settings.metres_per_second;
+  if (const auto direction_deg = argument_of(message, settings.direction_argument)) {
+    wind.direction_deg = wrapped_direction_deg(*direction_deg);
+    if (!wind.direction_deg) return Refusal::kImplausible;
+  }
+  return checked(wind);
+}
+
+class OscSensor final : public ReopeningSensor {
+ public:
+  explicit OscSensor(OscSettings settings)
+      : ReopeningSensor(seed_of("osc" + std::to_string(settings.port.port))),
+        settings_(std::move(settings)),
+        where_(describe(settings_.port)),
+        port_(make_byte_port(settings_.port)) {}
+
+  void interrupt() noexcept override { port_->interrupt(); }
+
+ protected:
+  Result<MonoTime, Failure> open(const Clock& clock) override {
+    if (const auto opened = port_->open(); !opened) return opened.error();
+    has_heard_ = false;
+    heard_at_ = clock.now().mono;
+    return heard_at_;
+  }
+
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
+    if (!has_heard_) is_unwell(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
+    const ByteArrival arrival = port_->read(buffer_, kOscWait);
+    const Instant now = clock.now();
+    if (arrival.status == ByteStatus::kInterrupted) return Failure{"interrupted"};
+    if (arrival.status == ByteStatus::kLost || arrival.status == ByteStatus::kEnd) return Failure{"lost " + where_};
+    if (arrival.status == ByteStatus::kForeign) sink.refused(Refusal::kNotMine);
+    if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
+    if (now.mono - heard_at_ >= settings_.silence) {
+      has_heard_ = true;  // what is told now is more than that it waits
+      is_unwell(sink, fmt::format(
+                          "no wind has come to {} for {:g} s: check that the sender runs, that it sends {} there, and "
+                          "that no firewall stops it",
+                          where_, seconds(settings_.silence), settings_.address));
+    }
+    return now.mono;
+  }
+
+  void close() noexcept override { port_->close(); }
+
+ private:
+  void take_datagram(std::span<const std::uint8_t> datagram, Instant now, SensorSink& sink) {
+    sink.raw(RawDirection::kReceived, datagram);
+    const auto messages = decode_osc(datagram);
+    if (!messages) return sink.refused(messages.error());
+    for (const OscMessage& message : *messages) take(message, now, sink);
+  }
+
+  void take(const OscMessage& message, Instant now, SensorSink& sink) {
+    if (!osc_address_matches(message.address, settings_.address)) return sink.refused(Refusal::kNotMine);
+    const auto wind = wind_of(message, settings_);
+    if (!wind) return sink.refused(wind.error());
+    has_heard_ = true;
+    heard_at_ = now.mono;
+    is_well(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
+    sink.reading({.time = now,
+                  .speed_m_s = *wind->speed_m_s,
+                  .direction_deg = wind->direction_deg,
+                  .gust_m_s = wind->gust_m_s,
+                  .quality = ReadingQuality::kGood});
+  }
+
+  OscSettings settings_;
+  std::string where_;
+  std::unique_ptr<BytePort> port_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(kLargestDatagram);
+  bool has_heard_ = false;  // of the wind, since it has the port
+  MonoTime heard_at_{};     // or since when it could have
+};
+
+std::unique_ptr<Sensor> open_osc(const ParameterValues& values) {
+  OscSettings settings;
+  settings.port.port = static_cast<std::uint16_t>(values.integer("port"));
+  settings.port.host = values.text("host");
+  settings.port.sender = values.text("sender");
+  settings.address = values.text("address");
+  settings.speed_argument = values.integer("speed_argument");
+  settings.direction_argument = values.integer("direction_argument");
+  settings.gust_argument = values.integer("gust_argument");
+  settings.metres_per_second = metres_per_second_in(values.text("speed_unit"));
+  settings.silence = from_seconds(values.number("silence"));
+  if (!settings.address.starts_with('/')) throw std::runtime_error("address: must begin with a slash, as in /wind");
+  return std::make_unique<OscSensor>(std::move(settings));
+}
+
+}  // namespace
+
+extern const DriverDescription kOscDriver;
+const DriverDescription kOscDriver{.name = "osc",
+                                   .summary = "wind that another program sends as Open Sound Control messages",
+                                   .parameters = kOscParameters,
+                                   .open = open_osc};
+
+}  // namespace yuragi

@@ -1,0 +1,214 @@
+// A recording in place of a sensor: plays a .windlog (drivers/windlog) against the clock.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "drivers/recording/recording_player.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/windlog/windlog_player.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr Nanoseconds kFirstBackOff = std::chrono::seconds(1);
+constexpr Nanoseconds kMaxBackOff = std::chrono::seconds(30);
+constexpr std::size_t kMaxWaitingOrders = 64;
+
+const std::array<Parameter, 9> kWindlogParameters = {
+    Parameter{.name = "file",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "the recording (.windlog); required; `yuragi import` makes one of a CSV"},
+    Parameter{.name = "rate",
+              .unit = "",
+              .default_value = 1.0,
+              .min = 0.01,
+              .max = 1000.0,
+              .help = "how many seconds of the recording are played in one second"},
+    Parameter{.name = "loop", .unit = "", .default_value = false, .help = "begin again at the end"},
+    Parameter{
+        .name = "seam",
+        .unit = "s",
+        .default_value = 5.0,
+        .min = 0.0,
+        .max = 600.0,
+        .help = "how long the end of a loop, or the place left by a seek, fades into the new place; 0: not at all"},
+    Parameter{.name = "start",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "where to begin: seconds from the first reading, or a moment such as 2018-07-20T14:05:00Z"},
+    Parameter{.name = "same_time_of_day",
+              .unit = "",
+              .default_value = false,
+              .help = "begin, and begin again, where the recording's local time of day is that of now: the first day "
+                      "from `start` on that has it, else what comes next"},
+    Parameter{.name = "utc_offset",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "of the clocks where it was recorded, for same_time_of_day: hours ahead of UTC (1, -3.5); empty: "
+                      "this machine's time zone"},
+    Parameter{.name = "paused", .unit = "", .default_value = false, .help = "stand still at the first reading"},
+    Parameter{.name = "sensor",
+              .unit = "",
+              .default_value = std::string{},
+              .help = "which recorded sensor, by its name; empty: the one that spoke first; *: all of them as one"},
+};
+
+class WindlogReplay final : public Sensor, public RecordingPlayer {
+ public:
+  WindlogReplay(std::filesystem::path file, PlayerOptions options)
+      : file_(std::move(file)), options_(std::move(options)) {
+    report_.file = file_.string();
+  }
+
+  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+    const Instant now = clock.now();
+    MonoTime next = now.mono;
+    try {
+      if (!player_) player_.emplace(file_, options_, now);
+      carry_out_orders(now);
+      next = player_->play(now, [&sink](const WindReading& reading) { sink.reading(reading); });
+      back_off_ = Nanoseconds{0};
+      tell(sink);
+    } catch (const std::exception& error) {
+      // The player, if there is one, keeps its place.
+      sink.link(LinkState::kConnecting, error.what());
+      told_.reset();
+      back_off_ = back_off_ == Nanoseconds{0} ? kFirstBackOff : std::min(2 * back_off_, kMaxBackOff);
+      next = now.mono + back_off_;
+    }
+    publish_report(now.mono);
+    return next;
+  }
+
+  RecordingPlayer* player() noexcept override { return this; }
+
+  std::optional<std::uint64_t> order(const PlayerOrder& order) override {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() == kMaxWaitingOrders) return std::nullopt;
+    waiting_.push_back(order);
+    return ++orders_given_;
+  }
+
+  PlayerReport report() const override {
+    const std::lock_guard lock(mutex_);
+    return report_;
+  }
+
+ private:
+  /// What the link tells about.
+  enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
+
+  void carry_out_orders(const Instant& now) {
+    std::vector<PlayerOrder> orders;
+    {
+      const std::lock_guard lock(mutex_);
+      orders.swap(waiting_);
+    }
+    for (const PlayerOrder& order : orders) {
+      std::string refusal;
+      try {
+        carry_out(order, now);
+      } catch (const std::exception& error) {
+        refusal = error.what();
+      }
+      const std::lock_guard lock(mutex_);
+      report_.refusal = std::move(refusal);
+      ++report_.orders_done;
+    }
+  }
+
+  void carry_out(const PlayerOrder& order, const Instant& now) {
+    switch (order.kind) {
+      case PlayerOrder::Kind::kPause:
+        return player_->pause(now);
+      case PlayerOrder::Kind::kResume:
+        return player_->resume(now);
+      case PlayerOrder::Kind::kStep:
+        return player_->step(now, order.count);
+      case PlayerOrder::Kind::kSeek:
+        return player_->seek(now, order.place);
+      case PlayerOrder::Kind::kRate:
+        return player_->set_rate(now, order.rate);
+    }
+  }
+
+  /// Tells the link when what it does has changed.
+  void tell(SensorSink& sink) {
+    const Doing doing = player_->is_finished() ? Doing::kFinished
+                        : player_->is_paused() ? Doing::kPaused
+                                               : Doing::kPlaying;
+    if (doing == told_) return;
+    told_ = doing;
+    switch (doing) {
+      case Doing::kPlaying:
+        return sink.link(LinkState::kConnected, "playing " + file_.string());
+      case Doing::kPaused:
+        return sink.link(LinkState::kConnected, "paused: " + file_.string() + " stands still, and its wind holds");
+      case Doing::kFinished:
+        return sink.link(LinkState::kFinished, file_.string() + " is played; `loop = true` would begin it again");
+    }
+  }
+
+  void publish_report(MonoTime now) {
+    const std::lock_guard lock(mutex_);
+    report_.position.reset();
+    if (player_) report_.position = player_->position(now);
+  }
+
+  std::filesystem::path file_;
+  PlayerOptions options_;
+
+  // Of the sensor's thread.
+  std::optional<WindlogPlayer> player_;
+  Nanoseconds back_off_{0};
+  std::optional<Doing> told_;
+
+  mutable std::mutex mutex_;  // of what follows; rare, and never on the animation's way
+  std::vector<PlayerOrder> waiting_;
+  std::uint64_t orders_given_ = 0;
+  PlayerReport report_;
+};
+
+/// What `parse` makes of a parameter's text, or an exception that names the parameter.
+template <class T>
+T value_of(const char* parameter, Result<T, Failure> parsed) {
+  if (!parsed) throw std::runtime_error(std::string("windlog: ") + parameter + ": " + parsed.error().message);
+  if constexpr (!std::is_void_v<T>) return std::move(*parsed);
+}
+
+std::unique_ptr<Sensor> open_windlog(const ParameterValues& values) {
+  const std::filesystem::path file = values.text("file");
+  if (file.empty()) throw std::runtime_error("windlog: file: name the recording to play");
+  if (!std::filesystem::exists(file)) {
+    throw std::runtime_error("windlog: file: " + file.string() +
+                             ": there is no such recording; `yuragi run --record FILE` or `yuragi import` makes one");
+  }
+  PlayerOptions options;
+  options.playback = {values.text("start"), values.flag("loop"), values.text("sensor")};
+  value_of("start", check_playback_start(options.playback.start));
+  options.rate = values.number("rate");
+  options.seam_s = values.number("seam");
+  options.is_paused = values.flag("paused");
+  options.at_time_of_day = values.flag("same_time_of_day");
+  options.recorded_offset = value_of("utc_offset", parse_utc_offset(values.text("utc_offset")));
+  return std::make_unique<WindlogReplay>(file, std::move(options));
+}
+
+}  // namespace
+
+extern const DriverDescription kWindlogDriver;
+const DriverDescription kWindlogDriver{.name = "windlog",
+                                       .summary = "a recorded wind, played again",
+                                       .parameters = kWindlogParameters,
+                                       .open = open_windlog,
+                                       .plays_recordings = true};
+
+}  // namespace yuragi

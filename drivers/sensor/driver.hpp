@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "drivers/sensor/found_device.hpp"
+#include "drivers/sensor/sensor.hpp"
+#include "engine/base/parameter.hpp"
+
+namespace yuragi {
+
+/// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
+struct DriverDescription {
+  std::string_view name;
+  std::string_view summary;
+  std::span<const Parameter> parameters;
+  /// Makes a sensor of resolved values, without touching the device: poll() does that. Throws std::runtime_error,
+  /// saying what to do, where the values cannot work together or name a file that is not there.
+  std::unique_ptr<Sensor> (*open)(const ParameterValues& values);
+  /// What is plugged in that this driver could read; nullptr where there is nothing to plug in. Opens nothing for
+  /// longer than it takes to look at it.
+  std::vector<FoundDevice> (*find)() = nullptr;
+  /// It plays what was recorded: nobody may take it for the wind of now.
+  bool plays_recordings = false;
+  /// How its readings rise and fall is to be believed, but not their scale, which depends on where it hangs: it is
+  /// compared with no other sensor, and beside others only its gusts count, unless the configuration says otherwise.
+  bool is_relative = false;
+};
+
+/// Every driver (generated).
+std::span<const DriverDescription* const> driver_table();
+
+}  // namespace yuragi

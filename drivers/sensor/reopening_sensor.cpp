@@ -1,0 +1,58 @@
+#include "drivers/sensor/reopening_sensor.hpp"
+
+#include <functional>
+
+namespace yuragi {
+namespace {
+
+constexpr Nanoseconds kFirstWait = std::chrono::milliseconds(250);
+constexpr Nanoseconds kLongestWait = std::chrono::seconds(10);
+
+}  // namespace
+
+ReopeningSensor::ReopeningSensor(std::uint32_t seed) : backoff_(kFirstWait, kLongestWait, seed) {}
+
+MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
+  if (clock.now().mono < next_poll_) {
+    if (is_open_ || !has_returned()) return next_poll_;
+    backoff_.reset();
+  }
+
+  const Result<MonoTime, Failure> next = is_open_ ? work(clock, sink) : open(clock);
+  if (next) {
+    is_open_ = true;
+    next_poll_ = *next;
+    return next_poll_;
+  }
+  if (is_open_) close();
+  is_open_ = false;
+  tell(sink, LinkState::kConnecting, next.error().message);
+  next_poll_ = clock.now().mono + backoff_.next();
+  return next_poll_;
+}
+
+void ReopeningSensor::is_well(SensorSink& sink, const std::string& detail) {
+  backoff_.reset();
+  tell(sink, LinkState::kConnected, detail);
+}
+
+void ReopeningSensor::is_unwell(SensorSink& sink, const std::string& detail) {
+  tell(sink, LinkState::kConnecting, detail);
+}
+
+void ReopeningSensor::is_at_its_end(SensorSink& sink, const std::string& detail) {
+  tell(sink, LinkState::kFinished, detail);
+}
+
+void ReopeningSensor::tell(SensorSink& sink, LinkState state, const std::string& detail) {
+  if (state == told_state_ && detail == told_detail_) return;
+  told_state_ = state;
+  told_detail_ = detail;
+  sink.link(state, detail);
+}
+
+std::uint32_t seed_of(std::string_view name) noexcept {
+  return static_cast<std::uint32_t>(std::hash<std::string_view>{}(name));
+}
+
+}  // namespace yuragi

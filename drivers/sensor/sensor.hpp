@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "drivers/decode/refusal.hpp"
+#include "drivers/sensor/clock.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+/// Does the device answer?
+enum class LinkState : std::uint8_t {
+  kConnecting,  ///< looking for it; also between attempts
+  kConnected,   ///< open, and the last exchange was answered
+  kFinished,    ///< a recording that came to its end; nothing more will come
+};
+
+std::string_view name_of(LinkState state);
+
+/// Which way a message went.
+enum class RawDirection : std::uint8_t { kReceived, kSent };
+
+/// Where a sensor puts what it has. Called on the thread that polls; the strings need to live for the call only.
+class SensorSink {
+ public:
+  virtual ~SensorSink() = default;
+  virtual void reading(const WindReading& reading) = 0;
+  virtual void refused(Refusal why) = 0;
+  /// Told at each change, and with each failed attempt: what happened, and what to do about it.
+  virtual void link(LinkState state, std::string_view detail) = 0;
+  /// Each message as it came from the device or went to it, before anybody judges it: a line, a report, a request. What
+  /// is received counts as a frame; a trace shows the bytes.
+  virtual void raw(RawDirection direction, std::span<const std::uint8_t> message) = 0;
+};
+
+class RecordingPlayer;
+
+/// An open sensor, real or not. It holds its device for as long as it lives and finds it again for ever.
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+
+  /// Does the next piece of work: one exchange with the device, or one attempt to open it. Blocks no longer than the
+  /// device's own time-out. Returns when it wants to be called again (at once, if that has passed). Never throws for
+  /// anything that a device does.
+  virtual MonoTime poll(const Clock& clock, SensorSink& sink) = 0;
+
+  /// Ends a poll() that waits, from another thread, so that shutting down waits for nobody. No poll() follows.
+  virtual void interrupt() noexcept {}
+
+  /// The controls (drivers/recording/recording_player.hpp) of one that plays a recording; nullptr for any other. Lives
+  /// as long as the sensor; may be asked for from another thread.
+  virtual RecordingPlayer* player() noexcept { return nullptr; }
+};
+
+}  // namespace yuragi

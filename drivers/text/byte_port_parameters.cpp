@@ -1,0 +1,168 @@
+#include "drivers/text/byte_port_parameters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "drivers/bus/serial_ports.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr std::array<std::string_view, 4> kByteTransports = {"serial", "tcp", "udp", "file"};
+constexpr std::array<std::string_view, 3> kByteParities = {"none", "even", "odd"};
+
+const std::vector<Parameter>& parameters_of_every_port() {
+  static const std::vector<Parameter> kParameters = {
+      {.name = "transport",
+       .unit = "",
+       .default_value = std::string("serial"),
+       .help = "serial: a serial port; tcp: a server to connect to; udp: datagrams that are sent to us; file: a file "
+               "or named pipe",
+       .choices = kByteTransports},
+      {.name = "device",
+       .unit = "",
+       .default_value = std::string(""),
+       .help = "serial: the port, best by its stable name in /dev/serial/by-id"},
+      {.name = "baud",
+       .unit = "bit/s",
+       .default_value = std::int64_t{9600},
+       .min = kBytePortBauds.front(),
+       .max = kBytePortBauds.back(),
+       .help = "serial: as the device is set; NMEA 0183 has 4800, most anemometers 9600 or 19200"},
+      {.name = "data_bits",
+       .unit = "",
+       .default_value = std::int64_t{8},
+       .min = 7,
+       .max = 8,
+       .help = "serial: in each character"},
+      {.name = "parity",
+       .unit = "",
+       .default_value = std::string("none"),
+       .help = "serial: behind the bits of each character",
+       .choices = kByteParities},
+      {.name = "stop_bits",
+       .unit = "",
+       .default_value = std::int64_t{1},
+       .min = 1,
+       .max = 2,
+       .help = "serial: behind each character"},
+      {.name = "host",
+       .unit = "",
+       .default_value = std::string(""),
+       .help = "tcp: name or address of the server; udp: the local address to listen at, or a multicast address; "
+               "empty: all of this machine's"},
+      {.name = "port",
+       .unit = "",
+       .default_value = std::int64_t{10110},
+       .min = 1,
+       .max = 65535,
+       .help = "tcp, udp: 10110 is registered for NMEA 0183"},
+      {.name = "sender",
+       .unit = "",
+       .default_value = std::string(""),
+       .help = "udp: take only what comes from this address; empty: from any"},
+      {.name = "file", .unit = "", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
+      {.name = "play_rate",
+       .unit = "Hz",
+       .default_value = 0.0,
+       .min = 0.0,
+       .max = 1e6,
+       .help = "file: 0 follows what is appended to it; otherwise it is played once from its beginning, so many "
+               "readings a second"},
+      {.name = "request",
+       .unit = "",
+       .default_value = std::string(""),
+       .help = "what to send to get one answer, with its line end (\"?\\r\\n\"); empty: the format's own"},
+      {.name = "poll_interval",
+       .unit = "s",
+       .default_value = 0.0,
+       .min = 0.0,
+       .max = 3600.0,
+       .help = "from one request to the next; 0: the device speaks by itself"},
+      {.name = "response_timeout",
+       .unit = "s",
+       .default_value = 0.5,
+       .min = 0.05,
+       .max = 60.0,
+       .help = "longest wait for the answer to a request"},
+      {.name = "silence_timeout",
+       .unit = "s",
+       .default_value = 0.0,
+       .min = 0.0,
+       .max = 86400.0,
+       .help = "a device that says nothing for so long is opened again; 0: ten times its usual pause between "
+               "readings, at least 6 s, and twice as long after each time in vain"},
+  };
+  return kParameters;
+}
+
+}  // namespace
+
+std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s) {
+  std::vector<Parameter> all = std::move(own);
+  const auto& others = parameters_of_every_port();
+  all.insert(all.end(), others.begin(), others.end());
+  all.push_back({.name = "delay_after_open",
+                 .unit = "s",
+                 .default_value = delay_after_open_s,
+                 .min = 0.0,
+                 .max = 60.0,
+                 .help = "what comes so soon after opening is not believed; an Arduino starts anew whenever its port "
+                         "is opened"});
+  return all;
+}
+
+BytePortAddress byte_port_address_of(const ParameterValues& values) {
+  BytePortAddress address;
+  const std::string& transport = values.text("transport");
+  address.baud = static_cast<int>(values.integer("baud"));
+  address.data_bits = static_cast<int>(values.integer("data_bits"));
+  address.parity = values.text("parity") == "even" ? 'E' : values.text("parity") == "odd" ? 'O' : 'N';
+  address.stop_bits = static_cast<int>(values.integer("stop_bits"));
+  address.host = values.text("host");
+  address.port = static_cast<std::uint16_t>(values.integer("port"));
+  address.sender = values.text("sender");
+  address.is_played = values.number("play_rate") > 0.0;
+
+  if (transport == "serial") {
+    address.kind = BytePortKind::kSerial;
+    address.path = values.text("device");
+    if (address.path.empty()) {
+      throw std::runtime_error("device: is missing; transport serial needs a port, such as /dev/ttyUSB0");
+    }
+    if (std::ranges::find(kBytePortBauds, address.baud) == kBytePortBauds.end()) {
+      throw std::runtime_error(fmt::format("baud: is {}; allowed: {}", address.baud, fmt::join(kBytePortBauds, ", ")));
+    }
+  } else if (transport == "tcp") {
+    address.kind = BytePortKind::kTcpClient;
+    if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
+  } else if (transport == "udp") {
+    address.kind = BytePortKind::kUdp;
+  } else {
+    address.kind = BytePortKind::kFile;
+    address.path = values.text("file");
+    if (address.path.empty()) throw std::runtime_error("file: is missing; transport file needs its path");
+  }
+
+  const bool can_be_asked = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
+  if (values.number("poll_interval") > 0.0 && !can_be_asked) {
+    throw std::runtime_error("poll_interval: transport " + transport + " goes one way; a request needs serial or tcp");
+  }
+  return address;
+}
+
+std::vector<FoundDevice> find_behind_serial_ports(const std::string& settings) {
+  std::vector<FoundDevice> found;
+  for (const SerialPortInfo& port : find_serial_ports()) {
+    found.push_back({.what = "serial port " + port.node,
+                     .settings = fmt::format("transport = \"serial\"\ndevice = \"{}\"\n{}", port.name, settings),
+                     .trouble = port.trouble,
+                     .remedy = port.remedy});
+  }
+  return found;
+}
+
+}  // namespace yuragi

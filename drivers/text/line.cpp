@@ -1,0 +1,163 @@
+// A microcontroller that prints numbers: columns ("4.2,270,6.1") or keys ("speed=4.2 direction=270"), as the parameters
+// say; what lines may look like stands in drivers/decode/text/line.hpp.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/speed_unit.hpp"
+#include "drivers/text/byte_port_parameters.hpp"
+#include "drivers/text/line_sensor.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr std::array<std::string_view, 3> kLineFormats = {"auto", "columns", "keys"};
+constexpr std::array<std::string_view, 4> kLineSeparators = {"comma", "semicolon", "tab", "blank"};
+constexpr std::array<char, 4> kLineSeparatorBytes = {',', ';', '\t', ' '};
+
+/// How a line is read.
+const std::array kLineReading = {
+    Parameter{.name = "format",
+              .unit = "",
+              .default_value = std::string("auto"),
+              .help = "columns: 4.2,270; keys: speed=4.2 direction=270; auto: keys where the line has '=' or ':'",
+              .choices = kLineFormats},
+    Parameter{.name = "separator",
+              .unit = "",
+              .default_value = std::string("comma"),
+              .help = "between columns; blank: any number of blanks and tabs",
+              .choices = kLineSeparators},
+    Parameter{.name = "speed_column",
+              .unit = "",
+              .default_value = std::int64_t{1},
+              .min = 0,
+              .max = static_cast<double>(kMaxTextFields),
+              .help = "the first column is 1; 0: none"},
+    Parameter{.name = "direction_column",
+              .unit = "",
+              .default_value = std::int64_t{2},
+              .min = 0,
+              .max = static_cast<double>(kMaxTextFields),
+              .help = "0: none"},
+    Parameter{.name = "gust_column",
+              .unit = "",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = static_cast<double>(kMaxTextFields),
+              .help = "0: none"},
+    Parameter{.name = "speed_key", .unit = "", .default_value = std::string("speed"), .help = "exact; empty: none"},
+    Parameter{
+        .name = "direction_key", .unit = "", .default_value = std::string("direction"), .help = "exact; empty: none"},
+    Parameter{.name = "gust_key", .unit = "", .default_value = std::string("gust"), .help = "exact; empty: none"},
+    Parameter{.name = "speed_unit",
+              .unit = "",
+              .default_value = std::string("m/s"),
+              .help = "of speed and gust, after scale and offset",
+              .choices = kSpeedUnitNames},
+    Parameter{.name = "speed_scale",
+              .unit = "",
+              .default_value = 1.0,
+              .help = "speed and gust are the number times this (0.1 for tenths) plus speed_offset"},
+    Parameter{.name = "speed_offset", .unit = "", .default_value = 0.0, .help = "in the speed's unit"},
+    Parameter{.name = "direction_scale",
+              .unit = "",
+              .default_value = 1.0,
+              .help = "the direction in degrees is the number times this (22.5 for points 0 to 15)"},
+    Parameter{.name = "invalid",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},
+};
+
+std::vector<Parameter> line_driver_parameters() {
+  std::vector<Parameter> own(kLineReading.begin(), kLineReading.end());
+  own.push_back({.name = "north_offset",
+                 .unit = "deg",
+                 .default_value = 0.0,
+                 .min = -360.0,
+                 .max = 360.0,
+                 .help = "where the vane's own mark points, clockwise from north"});
+  return with_byte_port_parameters(std::move(own), 2.0);
+}
+const std::vector<Parameter> kLineParameters = line_driver_parameters();
+
+/// Columns are counted from 1 by people.
+std::optional<std::size_t> column_of(std::int64_t number) {
+  return number > 0 ? std::optional(static_cast<std::size_t>(number - 1)) : std::nullopt;
+}
+
+std::optional<double> invalid_number_of(const std::string& text) {
+  if (text.empty()) return {};
+  const auto number = parse_number(text);
+  if (!number || !*number)
+    throw std::runtime_error("invalid: \"" + text + "\" is no number; allowed: one as in \"-999\"");
+  return *number;
+}
+
+}  // namespace
+
+std::span<const Parameter> line_reading_parameters() {
+  return kLineReading;
+}
+
+LineOptions line_options_of(const ParameterValues& values) {
+  LineOptions line;
+  line.format = static_cast<LineFormat>(std::ranges::find(kLineFormats, values.text("format")) - kLineFormats.begin());
+  const auto separator = std::ranges::find(kLineSeparators, values.text("separator")) - kLineSeparators.begin();
+  line.separator = kLineSeparatorBytes[static_cast<std::size_t>(separator)];
+  line.invalid = invalid_number_of(values.text("invalid"));
+
+  const double m_s_per_unit = metres_per_second_in(values.text("speed_unit"));
+  line.speed = {.column = column_of(values.integer("speed_column")),
+                .key = values.text("speed_key"),
+                .scale = values.number("speed_scale") * m_s_per_unit,
+                .offset = values.number("speed_offset") * m_s_per_unit};
+  line.gust = line.speed;
+  line.gust.column = column_of(values.integer("gust_column"));
+  line.gust.key = values.text("gust_key");
+  line.direction = {.column = column_of(values.integer("direction_column")),
+                    .key = values.text("direction_key"),
+                    .scale = values.number("direction_scale")};
+  if (!line.speed.column && line.speed.key.empty()) {
+    throw std::runtime_error("speed_column: neither it nor speed_key is set; a sensor needs a speed");
+  }
+  if (line.speed.column && (line.speed.column == line.direction.column || line.speed.column == line.gust.column)) {
+    throw std::runtime_error("speed_column: another quantity stands in the same column");
+  }
+  return line;
+}
+
+LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
+  LineSensorSettings settings;
+  settings.text = text_sensor_settings_of(values);
+  settings.text.ending = LineEnding::kEtx;
+  settings.line = line_options_of(values);
+  settings.north_offset_deg = values.number("north_offset");
+
+  // Nothing but the end of the line before it says that a line is whole from its beginning on.
+  const bool flows =
+      settings.text.address.kind == BytePortKind::kSerial || settings.text.address.kind == BytePortKind::kTcpClient;
+  const bool is_asked = settings.text.poll_interval > Nanoseconds::zero();
+  settings.text.doubts_first_line = flows && !is_asked;
+  if (is_asked && settings.text.request.empty()) {
+    throw std::runtime_error("request: is missing; poll_interval needs something to ask with");
+  }
+  return settings;
+}
+
+extern const DriverDescription kLineDriver;
+const DriverDescription kLineDriver{
+    .name = "line",
+    .summary = "microcontrollers that print numbers, one reading a line",
+    .parameters = kLineParameters,
+    .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
+      const LineSensorSettings settings = line_sensor_settings_of(values);
+      return std::make_unique<LineSensor>(settings, make_byte_port(settings.text.address));
+    },
+    .find = [] { return find_behind_serial_ports("baud = 9600  # as Serial.begin() of the sketch says"); }};
+
+}  // namespace yuragi

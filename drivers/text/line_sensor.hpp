@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "drivers/decode/text/line.hpp"
+#include "drivers/text/text_sensor.hpp"
+#include "engine/base/parameter.hpp"
+
+namespace yuragi {
+
+struct LineSensorSettings {
+  TextSensorSettings text;
+  LineOptions line;
+  double north_offset_deg = 0.0;  ///< what to add to each direction
+};
+
+/// The parameters that say how a line is read: the driver's first ones, and what `yuragi decode line` can be told.
+std::span<const Parameter> line_reading_parameters();
+
+/// Their values. Throws std::runtime_error, `name: what is wrong`, where they cannot work together.
+LineOptions line_options_of(const ParameterValues& values);
+
+/// The values of kLineDriver's parameters. Throws std::runtime_error where they cannot work together.
+LineSensorSettings line_sensor_settings_of(const ParameterValues& values);
+
+/// A microcontroller that prints numbers, one reading a line, without a checksum. What a checksum would find is found
+/// by what the lines have in common: a line of another shape than the one before it, or next to bytes that are no text,
+/// is not believed.
+class LineSensor final : public TextSensor {
+ public:
+  LineSensor(LineSensorSettings settings, std::unique_ptr<BytePort> port);
+
+ private:
+  Judgement judge(std::string_view line, const Instant& now) override;
+  void begin() override;
+  std::string name() const override { return "lines of numbers"; }
+
+  LineSensorSettings settings_;
+  std::optional<std::size_t> shape_;       // of the lines that are believed
+  std::optional<std::size_t> last_shape_;  // of the line before
+  bool follows_garbage_ = false;
+};
+
+}  // namespace yuragi

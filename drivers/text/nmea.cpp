@@ -1,0 +1,177 @@
+// Anemometers that say text, by themselves or when asked: NMEA 0183 and what its users make of it, and the formats of
+// Gill, FT Technologies and Lufft, over a serial line, a TCP server, UDP datagrams, a file or a pipe. What the lines
+// look like stands with their decoders, each with its source: drivers/decode/{nmea,gill,ft,umb}.hpp. What is asked:
+//
+//   format  request                   source
+//   umb     "01TR4" CR                Lufft V200A-UMB manual V25, 20.5.4
+//   ft      "$01,WV?*hh" CR LF        FT Technologies FT702LT manual, 5.3
+//   others  what the installation says (a WindSonic in polled mode M3 wants its node letter)
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/text/byte_port_parameters.hpp"
+#include "drivers/text/nmea_sensor.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr std::array<std::string_view, 5> kNmeaFormats = {"auto", "nmea", "gill", "ft", "umb"};
+constexpr std::array<std::string_view, 4> kNmeaReferences = {"auto", "north", "relative", "true"};
+constexpr std::array<std::string_view, 3> kMissingChecksum = {"auto", "accept", "refuse"};
+constexpr std::array<std::string_view, 2> kMissingStatus = {"accept", "refuse"};
+constexpr std::array<std::string_view, 6> kSentences = {"MWV", "MWD", "VWR", "VWT", "MDA", "XDR"};
+constexpr Nanoseconds kUmbInterval = std::chrono::seconds(1);
+
+const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
+    {
+        {.name = "format",
+         .unit = "",
+         .default_value = std::string("auto"),
+         .help = "auto: each line by its look; ft and umb also know how their devices are asked",
+         .choices = kNmeaFormats},
+        {.name = "sentences",
+         .unit = "",
+         .default_value = std::string(""),
+         .help = "nmea: take only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
+        {.name = "talker",
+         .unit = "",
+         .default_value = std::string(""),
+         .help =
+             "take only what this one says: two characters before the sentence (WI), Gill's node letter (Q); empty: "
+             "any"},
+        {.name = "reference",
+         .unit = "",
+         .default_value = std::string("auto"),
+         .help =
+             "which directions to take where a device says several: from north (MWD, MDA), relative to its own mark "
+             "(MWV R, VWR, XDR, Gill, FT, UMB), true (MWV T, VWT); auto: the first of these that it says",
+         .choices = kNmeaReferences},
+        {.name = "north_offset",
+         .unit = "deg",
+         .default_value = 0.0,
+         .min = -360.0,
+         .max = 360.0,
+         .help = "where the device's own mark points, clockwise from north: added to relative and true directions"},
+        {.name = "variation",
+         .unit = "deg",
+         .default_value = 0.0,
+         .min = -180.0,
+         .max = 180.0,
+         .help = "magnetic variation of the place, east positive: added to magnetic directions"},
+        {.name = "missing_checksum",
+         .unit = "",
+         .default_value = std::string("auto"),
+         .help = "lines without a checksum; auto: NMEA sentences are accepted over a network and from a file, and "
+                 "refused on a serial line, where nothing else finds a wrong bit; the makers' own formats always have "
+                 "one. A wrong checksum is always refused",
+         .choices = kMissingChecksum},
+        {.name = "missing_status",
+         .unit = "",
+         .default_value = std::string("accept"),
+         .help = "lines without the status that is due; accepted ones are marked uncertain",
+         .choices = kMissingStatus},
+        {.name = "address",
+         .unit = "",
+         .default_value = std::string("01"),
+         .help = "ft, umb: two characters, the device to ask"},
+        {.name = "xdr_id",
+         .unit = "",
+         .default_value = std::int64_t{0},
+         .min = 0,
+         .max = 99,
+         .help = "nmea: number of the device in XDR sentences (Vaisala's address)"},
+        {.name = "speed_range",
+         .unit = "m/s",
+         .default_value = 75.0,
+         .min = 1.0,
+         .max = 120.0,
+         .help = "umb: full scale in Lufft's ASCII mode; a VENTUS has 90"},
+    },
+    0.0);
+
+NmeaFormat nmea_format_of(std::string_view name) {
+  return static_cast<NmeaFormat>(std::ranges::find(kNmeaFormats, name) - kNmeaFormats.begin());
+}
+
+std::vector<std::string> sentences_of(const std::string& list) {
+  std::vector<std::string> sentences;
+  const TextFields fields = split_fields(list, ',');
+  for (std::size_t i = 0; i < fields.count; ++i) {
+    if (fields[i].empty()) continue;
+    if (std::ranges::find(kSentences, fields[i]) == kSentences.end()) {
+      throw std::runtime_error(fmt::format("sentences: no wind in \"{}\"; allowed: {}, separated by commas", fields[i],
+                                           fmt::join(kSentences, ", ")));
+    }
+    sentences.emplace_back(fields[i]);
+  }
+  return sentences;
+}
+
+/// What the format's devices are asked with; empty where there is no such thing.
+std::string request_of(NmeaFormat format, const std::string& device) {
+  if (format == NmeaFormat::kUmb) return device + "TR4\r";
+  if (format == NmeaFormat::kFt) return fmt::format("${0},WV?*{1:02X}\r\n", device, xor_checksum(device + ",WV?"));
+  return "";
+}
+
+/// How the device is asked, if it is.
+void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
+  TextSensorSettings& text = settings.text;
+  const bool can_be_asked = text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
+  // A Lufft says nothing by itself.
+  if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_asked) {
+    text.poll_interval = kUmbInterval;
+  }
+  if (text.poll_interval == Nanoseconds::zero() || !text.request.empty()) return;
+  const std::string& device = values.text("address");
+  if (device.size() != 2)
+    throw std::runtime_error("address: is \"" + device + "\"; allowed: two characters, as in \"01\"");
+  text.request = request_of(settings.format, device);
+  if (text.request.empty()) {
+    throw std::runtime_error("request: is missing; only formats ft and umb know by themselves what to ask for");
+  }
+}
+
+}  // namespace
+
+NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
+  NmeaSensorSettings settings;
+  settings.text = text_sensor_settings_of(values);
+  settings.format = nmea_format_of(values.text("format"));
+  settings.sentences = sentences_of(values.text("sentences"));
+  settings.talker = values.text("talker");
+  const std::string& reference = values.text("reference");
+  if (reference == "north") settings.frame = WindFrame::kNorth;
+  if (reference == "relative") settings.frame = WindFrame::kRelative;
+  if (reference == "true") settings.frame = WindFrame::kTrue;
+  settings.north_offset_deg = values.number("north_offset");
+  settings.variation_deg = values.number("variation");
+
+  const std::string& checksum = values.text("missing_checksum");
+  const bool is_serial = settings.text.address.kind == BytePortKind::kSerial;
+  const bool accepts = checksum == "accept" || (checksum == "auto" && !is_serial);
+  settings.checksum = accepts ? WhenMissing::kAccept : WhenMissing::kRefuse;
+  settings.makers_checksum = checksum == "accept" ? WhenMissing::kAccept : WhenMissing::kRefuse;
+  settings.status = values.text("missing_status") == "accept" ? WhenMissing::kAccept : WhenMissing::kRefuse;
+  settings.xdr_first_id = static_cast<int>(values.integer("xdr_id"));
+  settings.speed_range_m_s = values.number("speed_range");
+  set_request(settings, values);
+  return settings;
+}
+
+extern const DriverDescription kNmeaDriver;
+const DriverDescription kNmeaDriver{
+    .name = "nmea",
+    .summary = "anemometers that say NMEA 0183, or the text of Gill, FT Technologies or Lufft",
+    .parameters = kNmeaParameters,
+    .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
+      const NmeaSensorSettings settings = nmea_sensor_settings_of(values);
+      return std::make_unique<NmeaSensor>(settings, make_byte_port(settings.text.address));
+    },
+    .find = [] { return find_behind_serial_ports("baud = 4800  # or 9600, 19200: as the anemometer is set"); }};
+
+}  // namespace yuragi

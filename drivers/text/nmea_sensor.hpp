@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/text_fields.hpp"
+#include "drivers/text/text_sensor.hpp"
+#include "drivers/text/wind_choice.hpp"
+#include "engine/base/parameter.hpp"
+
+namespace yuragi {
+
+/// How an anemometer says its wind.
+enum class NmeaFormat : std::uint8_t {
+  kAuto,  ///< each line by its look
+  kNmea,
+  kGill,
+  kFt,
+  kUmb,
+};
+
+struct NmeaSensorSettings {
+  TextSensorSettings text;
+  NmeaFormat format = NmeaFormat::kAuto;
+  std::vector<std::string> sentences;           ///< take these only (MWV, MWD, ...); none: all
+  std::string talker;                           ///< take this one only; empty: any
+  std::optional<WindFrame> frame;               ///< take what is measured from there only; nothing: the best there is
+  WhenMissing checksum = WhenMissing::kRefuse;  ///< of NMEA sentences
+  WhenMissing makers_checksum = WhenMissing::kRefuse;  ///< of the makers' own formats, which always have one
+  WhenMissing status = WhenMissing::kAccept;
+  double north_offset_deg = 0.0;  ///< what to add to a direction from the device's own mark
+  double variation_deg = 0.0;     ///< what to add to a direction from magnetic north
+  int xdr_first_id = 0;
+  double speed_range_m_s = 75.0;  ///< of Lufft's ASCII mode
+};
+
+/// The values of kNmeaDriver's parameters. Throws std::runtime_error where they cannot work together.
+NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values);
+
+/// An anemometer that says NMEA 0183, or the text of Gill, FT Technologies or Lufft.
+class NmeaSensor final : public TextSensor {
+ public:
+  NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<BytePort> port);
+
+ private:
+  Judgement judge(std::string_view line, const Instant& now) override;
+  std::optional<WindReading> take_held() override;
+  void begin() override;
+  std::string name() const override;
+  std::string advice(Refusal why, std::string_view line) const override;
+
+  Result<DecodedWind, Refusal> decode(NmeaFormat format, std::string_view line) const;
+  std::optional<double> north_direction_deg(const DecodedWind& wind) const;
+
+  /// A direction that came alone, and waits for the speed of the same source.
+  struct LoneDirection {
+    std::string source;
+    double direction_deg = 0.0;
+    MonoTime time{};
+  };
+
+  NmeaSensorSettings settings_;
+  WindChoice choice_;
+  std::optional<WindReading> held_;
+  std::optional<LoneDirection> lone_direction_;
+  std::string taken_;  // the name of the source that was taken last
+};
+
+}  // namespace yuragi

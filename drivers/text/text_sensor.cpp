@@ -1,0 +1,350 @@
+#include "drivers/text/text_sensor.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "drivers/text/byte_port_parameters.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A read returns so often, so that what depends on time is looked at.
+constexpr Nanoseconds kLongestRead = 200ms;
+/// The messages of one burst follow each other faster.
+constexpr Nanoseconds kBurstEnd = 200ms;
+/// The bytes of one line follow each other faster; a line that pauses for longer was cut off.
+constexpr Nanoseconds kLineCut = 500ms;
+/// Without a reading for so long, or for five times the usual pause, something is wrong.
+constexpr Nanoseconds kPatience = 3s;
+/// A device whose pace is not known yet is opened again after this.
+constexpr Nanoseconds kFirstSilence = 120s;
+/// An answer that has not come by then never will.
+constexpr Nanoseconds kLatestAnswer = 2s;
+/// The silence after which a device is opened again doubles so often.
+constexpr int kMostDoublings = 6;
+/// A device that does not answer is asked less often: up to so many times the interval.
+constexpr int kRarestRequest = 8;
+/// So many blocks at most are thrown away at the beginning; a device that says more never ends.
+constexpr int kForgottenBlocks = 64;
+constexpr std::size_t kShownOfLine = 60;
+constexpr Nanoseconds kForAges = 1h;
+
+/// The beginning of a line, with what cannot be shown replaced.
+std::string shown(std::string_view line) {
+  std::string text(line.substr(0, kShownOfLine));
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c == '\x7f'; }, '.');
+  return text;
+}
+
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+bool is_text(std::string_view line) noexcept {
+  constexpr std::string_view kOthers("\0\x02\x03\t", 4);
+  return std::ranges::all_of(
+      line, [&](char c) { return (c >= ' ' && c <= '~') || kOthers.find(c) != std::string_view::npos; });
+}
+
+TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
+  TextSensorSettings settings;
+  settings.address = byte_port_address_of(values);
+  settings.delay_after_open =
+      settings.address.kind == BytePortKind::kSerial ? from_seconds(values.number("delay_after_open")) : 0ns;
+  settings.silence_timeout = from_seconds(values.number("silence_timeout"));
+  settings.play_rate_hz = values.number("play_rate");
+  settings.request = values.text("request");
+  settings.poll_interval = from_seconds(values.number("poll_interval"));
+  settings.response_timeout = from_seconds(values.number("response_timeout"));
+  return settings;
+}
+
+TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<BytePort> port)
+    : ReopeningSensor(seed_of(describe(settings.address))),
+      settings_(settings),
+      where_(describe(settings.address)),
+      port_(std::move(port)),
+      assembler_(settings.ending),
+      buffer_(kLargestDatagram) {
+  settings_.response_timeout = std::min(settings_.response_timeout, settings_.poll_interval);
+}
+
+bool TextSensor::is_played() const noexcept {
+  return settings_.address.kind == BytePortKind::kFile && settings_.address.is_played;
+}
+
+Result<MonoTime, Failure> TextSensor::open(const Clock& clock) {
+  if (const auto opened = port_->open(); !opened) return opened.error();
+  const MonoTime now = clock.now().mono;
+  is_fresh_ = settings_.delay_after_open > 0ns;
+  skips_line_ = settings_.doubts_first_line;
+  awaits_answer_ = false;
+  next_request_ = now;
+  last_bytes_ = now;
+  readings_.restart(now);
+  bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
+  refused_ = {};
+  begin();
+  return now + settings_.delay_after_open;
+}
+
+void TextSensor::close() noexcept {
+  port_->close();
+  assembler_.clear();
+  rest_ = {};
+}
+
+Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink) {
+  if (is_finished_) return clock.now().mono + kForAges;
+  if (std::exchange(is_fresh_, false)) {
+    for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == ByteStatus::kBytes; ++i) {
+    }
+  }
+  if (is_asked() && !ask_if_due(clock.now().mono, sink)) return Failure{where_ + " takes no request: opened again"};
+
+  // What comes next, unless a file that is played still has something left.
+  ByteArrival arrival{ByteStatus::kBytes};
+  if (rest_.empty()) {
+    arrival = port_->read(buffer_, longest_read(clock.now().mono));
+    if (arrival.status == ByteStatus::kBytes) {
+      rest_ = std::span(buffer_).first(arrival.size);
+      ends_with_rest_ = arrival.is_whole_datagram;
+    }
+  }
+
+  const Instant now = clock.now();
+  switch (arrival.status) {
+    case ByteStatus::kInterrupted:
+      return now.mono;
+    case ByteStatus::kLost:
+      return Failure{where_ +
+                     " is gone: opened again as soon as it is back; check its plug, its power and the network"};
+    case ByteStatus::kEnd:
+      if (const auto line = assembler_.finish()) take_line(**line, now, sink);
+      if (const auto held = take_held()) publish(*held, sink);
+      is_finished_ = true;
+      is_at_its_end(sink, where_ + " has been read to its end");
+      return now.mono + kForAges;
+    case ByteStatus::kForeign:
+      ++foreign_datagrams_;
+      last_bytes_ = now.mono;
+      sink.refused(Refusal::kNotMine);
+      break;
+    case ByteStatus::kSilence:
+      if (now.mono - last_bytes_ >= kBurstEnd) {
+        if (const auto held = take_held()) publish(*held, sink);
+      }
+      break;
+    case ByteStatus::kBytes:
+      if (take_bytes(now, sink)) return now.mono + from_seconds(1.0 / settings_.play_rate_hz);
+      break;
+  }
+
+  // Only now, when what had come by then has been read.
+  if (awaits_answer_ && now.mono >= answer_due_) give_up_answer(now.mono, sink);
+  if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
+    sink.refused(Refusal::kTimeout);
+    vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
+    return Failure{fmt::format("{} has said nothing for {:.0f} s: opened again; check the device's power and cable",
+                               where_, seconds(now.mono - last_bytes_))};
+  }
+  judge_device(now.mono, sink);
+  return now.mono;
+}
+
+/// False: the port is lost.
+bool TextSensor::ask_if_due(MonoTime now, SensorSink& sink) {
+  if (awaits_answer_ || now < next_request_) return true;
+  drop_cut_line(sink);
+  if (!port_->write(bytes_of(settings_.request))) return false;
+  sink.raw(RawDirection::kSent, bytes_of(settings_.request));
+  awaits_answer_ = true;
+  answer_due_ = now + settings_.response_timeout;
+  next_request_ = now + settings_.poll_interval;
+  return true;
+}
+
+/// The next request waits until an answer that is merely late has passed: it must not be taken for the next one.
+void TextSensor::give_up_answer(MonoTime now, SensorSink& sink) {
+  awaits_answer_ = false;
+  unanswered_ = std::min(unanswered_ + 1, kRarestRequest);
+  next_request_ = now + std::max<Nanoseconds>(kLatestAnswer, unanswered_ * settings_.poll_interval);
+  refuse(Refusal::kTimeout, "", sink);
+}
+
+Nanoseconds TextSensor::longest_read(MonoTime now) const {
+  if (!is_asked()) return kLongestRead;
+  const MonoTime due = awaits_answer_ ? answer_due_ : next_request_;
+  return std::clamp<Nanoseconds>(due - now, 0ns, kLongestRead);
+}
+
+bool TextSensor::take_bytes(const Instant& now, SensorSink& sink) {
+  // On a line in which bytes follow each other, a pause within a line means that its end is missing. Files and pipes
+  // come in blocks that end anywhere, and datagrams end by themselves.
+  const bool flows =
+      settings_.address.kind == BytePortKind::kSerial || settings_.address.kind == BytePortKind::kTcpClient;
+  if (flows && now.mono - last_bytes_ >= kLineCut) drop_cut_line(sink);
+  last_bytes_ = now.mono;
+
+  bool has_published = false;
+  while (!rest_.empty() && !has_published) {
+    const std::span<const std::uint8_t> before = rest_;
+    const auto line = assembler_.next(rest_);
+    const auto taken = before.first(before.size() - rest_.size());
+    bytes_ += taken.size();
+    if (line && !*line) {
+      take_broken_line(line->error(), taken, sink);
+    } else if (line) {
+      has_published = take_line(**line, now, sink) && is_played();
+    }
+  }
+  if (rest_.empty() && ends_with_rest_) {
+    if (const auto line = assembler_.finish()) take_line(**line, now, sink);
+  }
+  return has_published;
+}
+
+/// A line that was too long, or was cut off by the next one, and whose bytes are not kept but for the last ones.
+void TextSensor::take_broken_line(Refusal why, std::span<const std::uint8_t> end, SensorSink& sink) {
+  if (std::exchange(skips_line_, false)) return;
+  if (why == Refusal::kMalformed) ++garbled_lines_;
+  sink.raw(RawDirection::kReceived, end);
+  refuse(why, "", sink);
+}
+
+bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink& sink) {
+  if (std::exchange(skips_line_, false)) return false;
+  sink.raw(RawDirection::kReceived, bytes_of(line));
+  if (is_asked() && !awaits_answer_) {
+    ++late_lines_;
+    refuse(Refusal::kNotMine, line, sink);
+    return false;
+  }
+
+  const Judgement judgement = judge(line, now);
+  if (!judgement) {
+    const bool is_readable = is_text(line);
+    ++(is_readable ? readable_lines_ : garbled_lines_);
+    // What is not ours may be our own request, as a line with one pair of wires echoes it: the answer is still to come.
+    if (judgement.error() != Refusal::kNotMine) awaits_answer_ = false;
+    refuse(is_readable ? judgement.error() : Refusal::kMalformed, line, sink);
+    return false;
+  }
+  awaits_answer_ = false;
+  unanswered_ = 0;
+  if (*judgement) publish(**judgement, sink);
+  return judgement->has_value();
+}
+
+/// What has come of a line that will not be whole any more.
+void TextSensor::drop_cut_line(SensorSink& sink) {
+  const auto cut = assembler_.finish();
+  if (!cut) return;
+  sink.raw(RawDirection::kReceived, bytes_of(**cut));
+  if (!std::exchange(skips_line_, false)) refuse(Refusal::kTooShort, **cut, sink);
+}
+
+void TextSensor::publish(const WindReading& reading, SensorSink& sink) {
+  readings_.arrive(reading.time.mono);
+  vain_openings_ = 0;
+  bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
+  refused_ = {};
+  is_well(sink, name() + " at " + where_);
+  sink.reading(reading);
+}
+
+void TextSensor::refuse(Refusal why, std::string_view line, SensorSink& sink) {
+  Refused& refused = refused_[static_cast<std::size_t>(why)];
+  if (refused.count++ == 0) refused.first_line = line;
+  sink.refused(why);
+}
+
+/// Each opening in vain doubles the limit: a device that is slow at first, or that starts anew whenever it is opened,
+/// has its time at last.
+Nanoseconds TextSensor::silence_limit() const {
+  if (settings_.silence_timeout > 0ns) return settings_.silence_timeout;
+  const Nanoseconds usual = readings_.usual_pause();
+  const Nanoseconds first = usual > 0ns ? std::max<Nanoseconds>(2 * kPatience, 10 * usual) : kFirstSilence;
+  return first * (1 << vain_openings_);
+}
+
+/// Says what is wrong where no reading comes.
+void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
+  const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
+  if (readings_.quiet_for(now) < patience) return;
+  if (now - last_bytes_ >= kPatience) return is_unwell(sink, silence_trouble());
+  const Refusal why = main_refusal();
+  const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;
+  if (late_lines_ > 0 || !has_lines) {
+    is_unwell(sink, trouble_without_lines());
+  } else if (why == Refusal::kInvalid || why == Refusal::kImplausible) {
+    // It is there and speaks: what it says is another matter.
+    is_well(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
+  } else {
+    is_unwell(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
+  }
+}
+
+std::size_t TextSensor::cut_lines() const {
+  return refused_[static_cast<std::size_t>(Refusal::kTooShort)].count;
+}
+
+/// Why most lines were refused: those that are merely others count only where there is nothing else.
+Refusal TextSensor::main_refusal() const {
+  constexpr auto kOthers = static_cast<std::size_t>(Refusal::kNotMine);
+  std::size_t most = kOthers;
+  for (std::size_t why = 0; why < refused_.size(); ++why) {
+    if (why == kOthers || refused_[why].count == 0) continue;
+    if (most == kOthers || refused_[why].count > refused_[most].count) most = why;
+  }
+  return static_cast<Refusal>(most);
+}
+
+std::string TextSensor::silence_trouble() const {
+  const bool is_serial = settings_.address.kind == BytePortKind::kSerial;
+  return fmt::format("{} {}: check {}", where_, is_asked() ? "does not answer" : "is open, but says nothing",
+                     is_serial ? "the device's power, its wires (TX and RX crossed?) and baud"
+                               : "the device's power and network settings");
+}
+
+/// Something comes, but no lines that could be judged.
+std::string TextSensor::trouble_without_lines() const {
+  if (late_lines_ > 0) {
+    return fmt::format("{} answers, but not within {:g} s: raise response_timeout", where_,
+                       seconds(settings_.response_timeout));
+  }
+  if (foreign_datagrams_ > 0 && bytes_ == 0) {
+    return fmt::format("datagrams come to {}, but none from {}: check sender", where_, settings_.address.sender);
+  }
+  const bool is_serial = settings_.address.kind == BytePortKind::kSerial;
+  return fmt::format("bytes come from {}, but no line: check {}", where_,
+                     is_serial ? "baud, data_bits and parity" : "that this is the device, and that it says text");
+}
+
+std::string TextSensor::advice(Refusal why, std::string_view line) const {
+  switch (why) {
+    case Refusal::kInvalid:
+      return fmt::format("{} says that it cannot measure (\"{}\"): look at the device", where_, shown(line));
+    case Refusal::kImplausible:
+      return fmt::format("{} says a wind that cannot be (\"{}\"): check its unit and its settings", where_,
+                         shown(line));
+    case Refusal::kBadChecksum:
+      return fmt::format("lines come from {} with wrong checksums: check its cable and baud", where_);
+    case Refusal::kTooShort:
+      return fmt::format("lines from {} end too early (\"{}\"): check its cable", where_, shown(line));
+    case Refusal::kTimeout:
+      return fmt::format("{} does not answer: check its address, and request", where_);
+    default:
+      return fmt::format("lines come from {}, but no wind in them (the first: \"{}\"): check that the settings fit",
+                         where_, shown(line));
+  }
+}
+
+}  // namespace yuragi

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/bus/byte_port.hpp"
+#include "drivers/decode/text/line_assembler.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+#include "drivers/text/arrival_watch.hpp"
+#include "engine/base/parameter.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+/// How a device that says lines is read.
+struct TextSensorSettings {
+  BytePortAddress address;
+  LineEnding ending = LineEnding::kNewline;
+  bool doubts_first_line =
+      false;  ///< on a line that one joins at any moment, the first is likely to lack its beginning
+  Nanoseconds delay_after_open{};  ///< what comes so early is not believed
+  Nanoseconds silence_timeout{};   ///< until the device is opened again; zero: by what is usual for it
+  double play_rate_hz = 0.0;       ///< of a file that is played
+  std::string request;             ///< what to send for one answer
+  Nanoseconds poll_interval{};     ///< zero: the device speaks by itself
+  Nanoseconds response_timeout{};  ///< at most the poll interval
+};
+
+/// Those of the parameters that with_byte_port_parameters() adds. Throws std::runtime_error.
+TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
+
+/// A device that says one line a reading, by itself or when it is asked. This base makes lines of the bytes, asks,
+/// notices silence and nonsense, and says what is wrong; what a driver adds is what a line means.
+class TextSensor : public ReopeningSensor {
+ public:
+  void interrupt() noexcept final { port_->interrupt(); }
+
+ protected:
+  /// What a line comes to: a reading, or nothing to publish for now, or a refusal.
+  using Judgement = Result<std::optional<WindReading>, Refusal>;
+
+  TextSensor(const TextSensorSettings& settings, std::unique_ptr<BytePort> port);
+
+  virtual Judgement judge(std::string_view line, const Instant& now) = 0;
+  /// After a pause, in which what came in one burst has ended: a reading that waited for that.
+  virtual std::optional<WindReading> take_held() { return {}; }
+  /// The device was opened again: what came before has nothing to do with what comes now.
+  virtual void begin() {}
+  /// What the device is, for people.
+  virtual std::string name() const = 0;
+  /// Lines come, but all are refused like this one: what is wrong, and what to do.
+  virtual std::string advice(Refusal why, std::string_view line) const;
+
+  const TextSensorSettings& settings() const noexcept { return settings_; }
+
+ private:
+  Result<MonoTime, Failure> open(const Clock& clock) final;
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) final;
+  void close() noexcept final;
+
+  bool is_asked() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
+  bool is_played() const noexcept;
+  bool ask_if_due(MonoTime now, SensorSink& sink);
+  void give_up_answer(MonoTime now, SensorSink& sink);
+  Nanoseconds longest_read(MonoTime now) const;
+
+  /// Makes lines of what has come. Returns whether a reading was published after which a file that is played has to
+  /// wait.
+  bool take_bytes(const Instant& now, SensorSink& sink);
+  bool take_line(std::string_view line, const Instant& now, SensorSink& sink);
+  void take_broken_line(Refusal why, std::span<const std::uint8_t> end, SensorSink& sink);
+  void drop_cut_line(SensorSink& sink);
+  void publish(const WindReading& reading, SensorSink& sink);
+  void refuse(Refusal why, std::string_view line, SensorSink& sink);
+
+  Nanoseconds silence_limit() const;
+  void judge_device(MonoTime now, SensorSink& sink);
+  std::size_t cut_lines() const;
+  Refusal main_refusal() const;
+  std::string silence_trouble() const;
+  std::string trouble_without_lines() const;
+
+  TextSensorSettings settings_;
+  std::string where_;
+  std::unique_ptr<BytePort> port_;
+  LineAssembler assembler_;
+  std::vector<std::uint8_t> buffer_;
+  std::span<const std::uint8_t> rest_;  // of the buffer: what has not been looked at yet
+  bool ends_with_rest_ = false;         // rest_ is the end of a datagram
+  bool is_fresh_ = false;
+  bool skips_line_ = false;
+  bool is_finished_ = false;
+
+  bool awaits_answer_ = false;
+  MonoTime next_request_{};
+  MonoTime answer_due_{};
+  int unanswered_ = 0;
+
+  MonoTime last_bytes_{};
+  ArrivalWatch readings_;
+  int vain_openings_ = 0;
+
+  // What has come since the last reading, to say what is wrong where none comes.
+  struct Refused {
+    std::size_t count = 0;
+    std::string first_line;
+  };
+  std::array<Refused, kRefusalCount> refused_{};
+  std::size_t bytes_ = 0;
+  std::size_t readable_lines_ = 0;
+  std::size_t garbled_lines_ = 0;
+  std::size_t foreign_datagrams_ = 0;
+  std::size_t late_lines_ = 0;
+};
+
+/// Is every byte one that text has? NUL, STX, ETX and tab may be among them.
+bool is_text(std::string_view line) noexcept;
+
+}  // namespace yuragi

@@ -1,0 +1,53 @@
+#include "drivers/usb/usb_daq.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+
+namespace yuragi {
+
+std::span<const UsbDaqModel* const> usb_daq_models() {
+  static constexpr std::array kModels = {&kMcc1208Model, &kLabjackModel};
+  return kModels;
+}
+
+std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring) {
+  if (wiring.counter >= model.counters) {
+    return fmt::format("counter: is {}; {} has counters 0 to {}", wiring.counter, model.what, model.counters - 1);
+  }
+  for (const auto& [name, channel] :
+       {std::pair{"vane_channel", wiring.vane_channel}, {"reference_channel", wiring.reference_channel}}) {
+    if (channel && *channel >= model.channels) {
+      return fmt::format("{}: is {}; {} has inputs 0 to {}", name, *channel, model.what, model.channels - 1);
+    }
+  }
+  return "";
+}
+
+DaqTrouble trouble_of(UsbStatus status, SensorSink& sink) {
+  switch (status) {
+    case UsbStatus::kTimeout:
+      sink.refused(Refusal::kTimeout);
+      return {"does not answer: check its cable, and plug it in again if this lasts"};
+    case UsbStatus::kStalled:
+      sink.refused(Refusal::kException);
+      return {"refuses the request: plug it in again, and check that it is what it says it is"};
+    case UsbStatus::kDone:  // but with the wrong number of bytes
+    case UsbStatus::kOverflow:
+      sink.refused(Refusal::kMalformed);
+      return {"says more than it was asked for: check its cable"};
+    case UsbStatus::kInterrupted:
+      return {"was interrupted", true};
+    case UsbStatus::kGone:
+      break;
+  }
+  return {"was unplugged: plug it in again", true};
+}
+
+DaqTrouble trouble_of(Refusal why, SensorSink& sink) {
+  sink.refused(why);
+  return {fmt::format("gives an answer that is refused ({}): check its cable, and that no other program uses it",
+                      name_of(why))};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "drivers/bus/usb_device.hpp"
+#include "drivers/sensor/sensor.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi {
+
+/// Where the cup and the vane are connected.
+struct DaqWiring {
+  std::uint8_t counter = 0;
+  std::optional<std::uint8_t> vane_channel = 0;        ///< the vane's wiper; empty: there is no vane
+  std::optional<std::uint8_t> reference_channel = {};  ///< the voltage over the vane's track; empty: it is known
+};
+
+/// What a device tells of itself.
+struct DaqIdentity {
+  std::string serial;  ///< empty where it has no serial number but the one that the bus shows
+};
+
+/// What one round of questions brings.
+struct DaqSample {
+  std::uint32_t count = 0;
+  std::optional<double> wiper_v;
+  std::optional<double> reference_v;
+};
+
+/// Why one brought nothing. What there was to count has been counted.
+struct DaqTrouble {
+  std::string message;   ///< behind the device's name: "does not answer"
+  bool is_lost = false;  ///< the device has to be opened again; otherwise the next round may do
+};
+
+/// How one kind of counter and ADC device is spoken to. Holds what it knows of the device from start() on; one is made
+/// each time that the device is opened. Every message is shown to the sink, every refusal counted there.
+class UsbDaq {
+ public:
+  virtual ~UsbDaq() = default;
+
+  /// Configures the device and reads its calibration.
+  virtual Result<DaqIdentity, DaqTrouble> start(UsbDevice& device, SensorSink& sink) = 0;
+
+  virtual Result<DaqSample, DaqTrouble> sample(UsbDevice& device, SensorSink& sink) = 0;
+};
+
+/// A kind of such devices.
+struct UsbDaqModel {
+  std::string_view name;  ///< in a configuration
+  std::string_view what;  ///< for people
+  UsbId id;
+  std::uint8_t counters = 1;
+  std::uint8_t channels = 1;
+  std::unique_ptr<UsbDaq> (*make)(const DaqWiring& wiring, Nanoseconds timeout);
+};
+
+extern const UsbDaqModel kMcc1208Model;
+extern const UsbDaqModel kLabjackModel;
+
+/// Every model.
+std::span<const UsbDaqModel* const> usb_daq_models();
+
+/// What of the wiring the model does not have; empty where all is well.
+std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring);
+
+/// What a transfer that did not succeed means, counted in `sink`.
+DaqTrouble trouble_of(UsbStatus status, SensorSink& sink);
+
+/// What a reply that was refused means, counted in `sink`.
+DaqTrouble trouble_of(Refusal why, SensorSink& sink);
+
+}  // namespace yuragi

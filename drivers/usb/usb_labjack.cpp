@@ -1,0 +1,117 @@
+// The LabJack U3 behind the driver "usb". Its messages: drivers/decode/usb/labjack.hpp.
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "drivers/decode/usb/labjack.hpp"
+#include "drivers/usb/usb_daq.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr std::uint8_t kLabjackCommands = 1;  // the end points
+constexpr std::uint8_t kLabjackReplies = 2;
+/// Of a device that says something else than it was asked: so many messages, and then it is enough.
+constexpr int kMostStrangers = 16;
+
+class LabjackDaq final : public UsbDaq {
+ public:
+  LabjackDaq(const DaqWiring& wiring, Nanoseconds timeout) : timeout_(timeout) {
+    request_.analog_channel = wiring.vane_channel;
+    request_.reference_channel = wiring.reference_channel;
+    request_.counter = wiring.counter;
+  }
+
+  Result<DaqIdentity, DaqTrouble> start(UsbDevice& device, SensorSink& sink) override {
+    const auto identity = ask(device, sink, encode_labjack_identity(), decode_labjack_identity);
+    if (!identity) return identity.error();
+    const std::uint8_t counter = *request_.counter;
+    const auto configured = ask(device, sink, encode_labjack_configuration(counter),
+                                [counter](ByteSpan reply) { return decode_labjack_configuration(counter, reply); });
+    if (!configured) return configured.error();
+
+    // High voltage inputs have a slope and an offset each, in two blocks; the others share one of both.
+    const bool is_high = identity->input == LabjackInput::kHighVoltage;
+    const auto slopes = ask(device, sink, encode_labjack_memory(is_high ? 3 : 0), decode_labjack_memory);
+    if (!slopes) return slopes.error();
+    const auto offsets = is_high ? ask(device, sink, encode_labjack_memory(4), decode_labjack_memory) : slopes;
+    if (!offsets) return offsets.error();
+    for (std::size_t channel = 0; channel < calibrations_.size(); ++channel) {
+      const LabjackCalibration own = is_high ? LabjackCalibration{(*slopes)[channel], (*offsets)[channel]}
+                                             : LabjackCalibration{(*slopes)[0], (*slopes)[1]};
+      calibrations_[channel] = is_believable(own, identity->input) ? own : nominal_labjack_calibration(identity->input);
+    }
+    return DaqIdentity{fmt::format("{}", identity->serial)};
+  }
+
+  Result<DaqSample, DaqTrouble> sample(UsbDevice& device, SensorSink& sink) override {
+    ++request_.echo;
+    const auto reply = ask(device, sink, encode_labjack_feedback(request_),
+                           [this](ByteSpan bytes) { return decode_labjack(request_, bytes); });
+    if (!reply) return reply.error();
+    DaqSample sample;
+    sample.count = *reply->count;
+    if (reply->analog) sample.wiper_v = calibrations_[*request_.analog_channel].volts(*reply->analog);
+    if (reply->reference) sample.reference_v = calibrations_[*request_.reference_channel].volts(*reply->reference);
+    return sample;
+  }
+
+ private:
+  /// Sends a command and decodes its reply. What answers another command, such as the one before that came too late, is
+  /// counted and passed over.
+  template <class Decode>
+  auto ask(UsbDevice& device, SensorSink& sink, const LabjackCommand& command, Decode&& decode)
+      -> Result<typename decltype(decode(ByteSpan()))::value_type, DaqTrouble> {
+    sink.raw(RawDirection::kSent, command.span());
+    const UsbTransfer sent = device.write(kLabjackCommands, command.span(), timeout_);
+    if (sent.status != UsbStatus::kDone) return trouble_of(sent.status, sink);
+    for (int message = 0; message < kMostStrangers; ++message) {
+      const UsbTransfer got = device.read(kLabjackReplies, buffer_, timeout_);
+      if (got.status == UsbStatus::kTimeout && message > 0) return DaqTrouble{"answers other questions, not this one"};
+      if (got.status != UsbStatus::kDone) return trouble_of(got.status, sink);
+      const ByteSpan reply = ByteSpan(buffer_).first(std::min(got.size, buffer_.size()));
+      sink.raw(RawDirection::kReceived, reply);
+      auto decoded = decode(reply);
+      if (decoded) {
+        if constexpr (std::is_void_v<typename decltype(decoded)::value_type>) {
+          return {};
+        } else {
+          return *decoded;
+        }
+      }
+      const LabjackRefusal refusal = decoded.error();
+      if (refusal.why == Refusal::kException) return exception(refusal.error, sink);
+      if (refusal.why != Refusal::kNotMine) return trouble_of(refusal.why, sink);
+      sink.refused(Refusal::kNotMine);
+    }
+    return DaqTrouble{"answers other questions, not this one"};
+  }
+
+  static DaqTrouble exception(std::uint8_t error, SensorSink& sink) {
+    sink.refused(Refusal::kException);
+    if (error == 0) return {"finds a command damaged: check its cable"};
+    return {fmt::format("refuses the command (its error {}): was it set up by another program meanwhile?", error)};
+  }
+
+  Nanoseconds timeout_;
+  LabjackRequest request_;
+  std::array<LabjackCalibration, 4> calibrations_{};
+  std::array<std::uint8_t, 64> buffer_{};  // one packet
+};
+
+std::unique_ptr<UsbDaq> make_labjack_daq(const DaqWiring& wiring, Nanoseconds timeout) {
+  return std::make_unique<LabjackDaq>(wiring, timeout);
+}
+
+}  // namespace
+
+const UsbDaqModel kLabjackModel{.name = "labjack-u3",
+                                .what = "LabJack U3",
+                                .id = {0x0CD5, 0x0003},
+                                .counters = 2,
+                                .channels = 4,
+                                .make = make_labjack_daq};
+
+}  // namespace yuragi

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/decode/usb/cup_counter.hpp"
+#include "drivers/decode/usb/potentiometer_vane.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+#include "drivers/usb/usb_daq.hpp"
+
+namespace yuragi {
+
+/// What a cup and a vane on a counter and ADC device are like, and which device it is.
+struct UsbSettings {
+  std::vector<const UsbDaqModel*> models;  ///< any of these
+  std::string port;                        ///< the one that is plugged in there; empty: anywhere
+  std::string serial;                      ///< the one with this serial number; empty: any
+  DaqWiring wiring;
+  CupCalibration cup;
+  VaneCalibration vane;
+  double reference_v = 5.0;                             ///< over the vane's track, where it is not measured
+  Nanoseconds period = std::chrono::milliseconds(100);  ///< from one round of questions to the next
+  Nanoseconds timeout = std::chrono::milliseconds(500);
+};
+
+/// The mean of directions around the circle. Thread-safe: no.
+class MeanDirection {
+ public:
+  void add(double direction_deg);
+  void clear() { *this = {}; }
+  /// [0, 360); empty where nothing was added, and where the directions cancel.
+  std::optional<double> mean_deg() const;
+
+ private:
+  double east_ = 0.0;
+  double north_ = 0.0;
+};
+
+/// A cup anemometer on the counter and a potentiometer vane on the ADC of a USB device. Samples both at a steady rate
+/// and publishes whenever the cup's window closes: its speed, and the mean of the vane's directions in that window.
+class UsbSensor final : public ReopeningSensor {
+ public:
+  UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<UsbDevice> device);
+  ~UsbSensor() override;
+
+  void interrupt() noexcept override { device_->interrupt(); }
+
+ protected:
+  Result<MonoTime, Failure> open(const Clock& clock) override;
+  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  void close() noexcept override { device_->close(); }
+  bool has_returned() override { return device_->has_arrived(); }
+
+ private:
+  bool is_wanted(const PluggedUsbDevice& device) const;
+  const UsbDaqModel& model_of(const UsbId& id) const;
+  std::string name_of_wanted() const;
+  Failure wrong_device(const std::string& serial);
+  Result<MonoTime, Failure> suffer(const DaqTrouble& trouble, MonoTime again, SensorSink& sink);
+  void take(const DaqSample& sample, MonoTime asked_at, Instant now, SensorSink& sink);
+
+  UsbSettings settings_;
+  std::unique_ptr<UsbDevice> device_;
+
+  // Of the device that is open.
+  std::unique_ptr<UsbDaq> daq_;
+  std::string name_;
+  bool is_started_ = false;
+  int failures_ = 0;             // rounds in a row
+  bool is_jumpy_ = false;        // the counter has jumped, and no window has closed well since
+  std::size_t turn_ = 0;         // which of several that fit is tried
+  MonoTime counted_at_{};        // the last count that was taken,
+  Nanoseconds counted_doubt_{};  // which may be so much older
+  CupState cup_;
+  MeanDirection direction_;
+};
+
+}  // namespace yuragi

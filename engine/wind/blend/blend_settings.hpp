@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/wind/turbulence/site_spectrum.hpp"
+#include "engine/wind/turbulence/synthetic_wind.hpp"
+
+namespace yuragi {
+
+/// What an installation knows of one source of a blend.
+struct BlendSourceSettings {
+  /// Only how its readings rise and fall is believed, neither their scale nor their mean (a microphone): it gives the
+  /// gusts that are too quick for the absolute sources. Alone it is taken as it is.
+  bool is_relative = false;
+  int priority = 0;                 ///< lower first; equal ones share; 0: its place among the sources, from 1
+  double weight = 1.0;              ///< among those of the same priority; above 0
+  bool has_place = false;           ///< it is known where it stands; otherwise it is taken for the windward edge
+  double east_m = 0.0;              ///< where it stands, from the middle of the scenes
+  double south_m = 0.0;             ///< (a relative one is taken to stand where those do whose gusts it fills)
+  double lead_m = 0.0;              ///< it is taken to stand so far upwind of there: more is known, and known later
+  double length_m = 0.0;            ///< how far its gusts reach, until it tells more of them; 0: the blend's length
+  bool teaches_site = false;        ///< what it measures is the wind of this site and of now
+  double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
+  double direction_step_deg = 0.0;  ///< its vane knows only every so many degrees; 0: found out
+};
+
+struct BlendSettings {
+  SyntheticWindSettings climate;  ///< the wind where nobody measures: mean, direction, turbulence intensity, seed
+  double length_m = 57.0;         ///< how far its gusts reach: the integral length scale
+  double gustiness = 0.0;         ///< 0 to 0.6: deviation of the logarithm of gusts' strength; 0: all of one strength
+  double handover_s = 3.0;        ///< about how long the way from one source to another takes
+  double stale_intervals = 5.0;   ///< silent for this many of its own intervals: stale
+  double return_after_s = 10.0;   ///< a source that failed is trusted again after so long; longer if it often fails
+  double fit_memory_s = 600.0;    ///< how long the fit of the turbulence remembers
+  double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
+  double reach_m = 0.0;           ///< from the middle of the scenes to the farthest place of any of them
+  double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
+  /// What is known of the site's gusts: corrects the noise of slow sources, and is taught by those that may teach. Of
+  /// the estimator's thread. None: nothing is corrected.
+  std::shared_ptr<SiteSpectrum> site{};
+  std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults
+};
+
+}  // namespace yuragi

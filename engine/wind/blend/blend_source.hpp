@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <complex>
+#include <memory>
+
+#include "engine/math/critically_damped.hpp"
+#include "engine/wind/blend/blend_settings.hpp"
+#include "engine/wind/blend/direction_keeper.hpp"
+#include "engine/wind/blend/relative_scale.hpp"
+#include "engine/wind/blend/site_teacher.hpp"
+#include "engine/wind/blend/source_record.hpp"
+#include "engine/wind/turbulence/gust_variances.hpp"
+#include "engine/wind/turbulence/octave_follower.hpp"
+#include "engine/wind/turbulence/wind_turbulence.hpp"
+
+namespace yuragi {
+
+/// Turbulence is measured as a part of the mean speed; of a weaker mean than this it is none.
+inline constexpr double kLeastSpeed_m_s = 0.5;
+
+/// A number for the mean (0) and each octave band (1 + band) of a source.
+using BandWeights = std::array<double, OctaveFollower::kBands + 1>;
+
+/// A complex response along the wind and across it.
+struct SourceResponse {
+  std::complex<double> along, across;
+};
+
+/// What is believed of a source's turbulence before it has told of it. Pure.
+TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept;
+
+/// One source of a blend: what it says, taken apart into octave bands, how far each is to be believed, and the
+/// turbulence that its readings show. Thread-safe: no. Realtime-safe after construction: yes.
+class BlendSource {
+ public:
+  BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings, const GustNoise& noise);
+
+  /// What a source without a vane needs to know, and the fit.
+  struct Around {
+    WindVector ahead{0.0, 1.0};      ///< unit vector downwind
+    bool is_direction_live = false;  ///< another source measures it
+    double advection_m_s = 1.0;      ///< how fast gusts pass
+  };
+
+  /// Takes a reading; false for one that is impossible or older than what is known.
+  bool accept(const WindReading& reading, const Around& around) noexcept;
+
+  /// Goes on to `now`. Only when it has spoken.
+  void step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept;
+
+  const SourceRecord& record() const noexcept { return record_; }
+  bool has_vane() const noexcept { return direction_.has_vane(); }
+  bool is_coarse() const noexcept { return direction_.is_coarse(); }
+
+  WindVector mean() const noexcept { return follower_.mean(); }
+  WindVector band(std::size_t band) const noexcept { return follower_.band(band); }
+  double speed_m_s() const noexcept { return speed_m_s_; }  ///< slow mean of its speeds
+
+  /// How far the mean and each band are believed, 0 to 1, slewed; and how far they would be if it spoke on time.
+  const BandWeights& trust() const noexcept { return trust_; }
+  const BandWeights& full_trust() const noexcept { return full_trust_; }
+  /// What its averaging and the holding of its readings leave of a wave in the middle of each band.
+  const BandWeights& passed() const noexcept { return passed_; }
+
+  /// What its averaging, the holding of its readings and its vane leave of a wave of the real wind: times what its
+  /// bands pass of it (OctaveFollower::Response), that is what it says of it.
+  SourceResponse passed_of(double frequency_hz) const noexcept;
+  /// How far a wave of this frequency is believed while it speaks on time.
+  double trust_at(double frequency_hz) const noexcept;
+
+  const Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
+  const GustVariances& along() const noexcept { return along_; }
+  const GustVariances& across() const noexcept { return across_; }
+
+  RelativeScale scale;  ///< of a relative source
+
+ private:
+  void begin() noexcept;
+  double expected_interval_s() const noexcept;
+  double averaging_s() const noexcept;
+  double slowness_s() const noexcept;
+  void set_full_trust() noexcept;
+  void measure(WindVector ahead, double mean_of_s) noexcept;
+  void fit(double interval_s, double advection_m_s) noexcept;
+
+  BlendSourceSettings settings_;
+  double mean_memory_s_;
+  const GustNoise* noise_;
+
+  SourceRecord record_;
+  DirectionKeeper direction_;
+  WindVector wind_;  ///< that is held
+  OctaveFollower follower_;
+  std::array<CriticallyDamped, OctaveFollower::kBands + 1> trusts_{};
+  BandWeights trust_{}, full_trust_{}, passed_{};
+  double interval_s_ = 0.0;  ///< that the full trust is made for
+  double speed_m_s_ = 0.0;
+  double spoken_s_ = 0.0;  ///< for so long, at most the memory of that speed
+
+  WindTurbulence measured_;
+  Turbulence turbulence_;
+  GustVariances along_, across_;  ///< what each octave of the noise has of it
+  std::shared_ptr<SiteSpectrum> site_;
+  SiteTeacher teacher_;
+  std::size_t since_kept_ = 0;  ///< readings
+  double fitted_s_ = 0.0;       ///< time since the last fit
+};
+
+/// The group delay of the blend, s: how much later than the wind the part of it at this frequency is that comes from a
+/// source which speaks every `interval_s`, each time the mean over `averaging_s`. Pure.
+double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept;
+
+}  // namespace yuragi

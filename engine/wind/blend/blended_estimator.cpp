@@ -1,0 +1,547 @@
+#include "engine/wind/blend/blended_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace yuragi {
+namespace {
+
+/// Gusts go on changing in calm air as if it moved at this.
+constexpr double kLeastAdvection_m_s = 0.3;
+/// Below this the wind's direction is no direction: what it was is held, the more the calmer it is.
+constexpr double kCalm_m_s = 0.5;
+constexpr double kTurnRate_hz = 0.1;
+
+/// Gusts of an absolute source tell something new after so many of its intervals.
+constexpr double kIntervalsOfAGust = 3.0;
+/// A low pass has done 98 % of its way after 4 time constants.
+constexpr double kPlaneRateTimesHandover = 4.0;
+/// Sources at a place of their own count at least so much there.
+constexpr double kLeastWord = 1e-6;
+/// Less than this is nothing.
+constexpr double kLeastShare = 1e-9;
+/// How fast the strength of the gusts follows what it should be.
+constexpr double kStrengthMemory_s = 1.0;
+/// And how fast they lose what is known of them follows the turbulence that is fitted.
+constexpr double kCoherenceMemory_s = 10.0;
+/// The noise's eddies turn over at half of their own rate. At the full rate two places 60 m apart on the line of the
+/// wind have less in common than GustCoherence leaves them of what was measured; frozen, they have more.
+constexpr double kTurnoverRate = 0.5;
+/// Waves shorter than so many of its samples are faded out of the tape, over the octave above them.
+constexpr double kLeastSamplesAWave = 4.0;
+/// How far the windward edge moves with a wider scene, over how far the wind goes.
+constexpr double kReachRate = 0.2;
+/// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
+/// machine: the wind goes on from where it was, and only the readings' ages are what they are.
+constexpr double kLongestStep_ticks = 2.0;
+
+double dot(WindVector a, WindVector b) noexcept {
+  return a.u_m_s * b.u_m_s + a.v_m_s * b.v_m_s;
+}
+
+std::vector<BlendSourceSettings> completed(std::vector<BlendSourceSettings> sources, std::size_t count) {
+  sources.resize(count);
+  return sources;
+}
+
+}  // namespace
+
+BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings& settings,
+                                   std::shared_ptr<const GustNoise> noise)
+    : settings_(settings),
+      climate_(wind_from(settings.climate.mean_speed_m_s, settings.climate.mean_direction_deg)),
+      noise_(std::move(noise)),
+      climate_along_(gust_variances(*noise_, settings.climate.turbulence_intensity, settings.length_m)),
+      climate_across_(
+          gust_variances(*noise_, kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)),
+      choice_(completed(settings.sources, source_count), settings.handover_s, settings.return_after_s),
+      plane_(completed(settings.sources, source_count)),
+      places_(completed(settings.sources, source_count)),
+      pens_(places_.count(),
+            Pen{.shares = std::vector<BandWeights>(source_count), .written = std::vector<BandWeights>(source_count)}),
+      shares_(source_count),
+      words_(source_count),
+      level_shares_(source_count),
+      place_weights_(source_count),
+      passed_(source_count) {
+  settings_.sources.resize(source_count);
+  ground_.slope = plane_.ends();
+  ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
+  ground_.gusts.carried = noise_->begin(settings.climate.seed);
+  ground_.gusts.gustiness = static_cast<float>(settings.gustiness);
+  stroke_.pen_count = pens_.size();
+  stroke_.coherence.longest_wave_m =
+      2.0 * std::numbers::pi / noise_->octaves()[GustNoise::kFirstTileOctave + GustNoise::kTileOctaves].from_rad_m;
+  sources_.reserve(source_count);
+  for (const BlendSourceSettings& source : settings_.sources) sources_.emplace_back(settings, source, *noise_);
+}
+
+bool BlendedEstimator::accept(std::size_t index, const WindReading& reading) noexcept {
+  if (index >= sources_.size()) return false;
+  return sources_[index].accept(reading, {.ahead = ground_.gusts.ahead,
+                                          .is_direction_live = is_direction_live(index),
+                                          .advection_m_s = std::max(advection_m_s_, kLeastAdvection_m_s)});
+}
+
+/// Does another source measure the direction of the wind that is shown?
+bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    if (i == besides || !choice_.is_chosen(i) || choice_.word(i) < 0.5 * kLeastShare) continue;
+    if (sources_[i].has_vane() && sources_[i].record().is_live(state_.time, settings_.stale_intervals)) return true;
+  }
+  return false;
+}
+
+/// What each source has of the mean and of each band.
+void BlendedEstimator::share_out(double dt_s) noexcept {
+  share_words();
+  share_mean(dt_s);
+  for (std::size_t pen = 0; pen < pens_.size(); ++pen) share_at(pen);
+}
+
+/// Of a band that is known together each source has a part by its word times trust. What is known together is the mean
+/// of their trusts, weighted in the same way: as much as the one knows who knows. Returns the sum of the shares.
+double BlendedEstimator::share_level(std::size_t level, std::span<const double> words,
+                                     std::span<double> shares) const noexcept {
+  double all = 0.0;
+  double trusted = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const double trust = sources_[i].trust()[level];
+    all += words[i];
+    trusted += words[i] * trust;
+    squares += words[i] * trust * trust;
+  }
+  const double scale = trusted > kLeastShare ? std::min(all, 1.0) * squares / (trusted * trusted) : 1.0;
+  double known = 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    shares[i] = scale * words[i] * sources_[i].trust()[level];
+    known += shares[i];
+  }
+  return known;
+}
+
+/// Of all sources together, wherever they stand.
+void BlendedEstimator::share_words() noexcept {
+  for (std::size_t i = 0; i < sources_.size(); ++i) words_[i] = choice_.word(i);
+  for (std::size_t level = 0; level <= kBands; ++level) {
+    share_level(level, words_, level_shares_);
+    for (std::size_t i = 0; i < sources_.size(); ++i) shares_[i].word[level] = level_shares_[i];
+  }
+}
+
+/// The means make a plane. A second place at once makes a slope, however small its share: its weights follow as slowly
+/// as a hand-over.
+void BlendedEstimator::share_mean(double dt_s) noexcept {
+  const double plane_part = -std::expm1(-kPlaneRateTimesHandover / settings_.handover_s * dt_s);
+  for (std::size_t i = 0; i < sources_.size(); ++i) level_shares_[i] = shares_[i].word[0];
+  plane_.weigh(level_shares_, 1.0, place_weights_);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    Share& share = shares_[i];
+    share.tilt += plane_part * (place_weights_[i].middle - share.word[0] - share.tilt);
+    share.per_m_east += plane_part * (place_weights_[i].per_m_east - share.per_m_east);
+    share.per_m_south += plane_part * (place_weights_[i].per_m_south - share.per_m_south);
+    share.middle = share.word[0] + share.tilt;
+  }
+}
+
+/// Of the bands at one place those who stand there know all that can be known, however small their part among others
+/// is; how far they count at all is the pen's presence. Relative sources have of the gusts what is left.
+void BlendedEstimator::share_at(std::size_t index) noexcept {
+  Pen& pen = pens_[index];
+  double all = 0.0;
+  pen.word = 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    all += choice_.word(i);
+    if (places_.pen_of(i) == index) pen.word += choice_.word(i);
+  }
+  // Where none of them counts at present, they are written all the same: nothing leaps when one begins to count.
+  const double own = pens_.size() == 1 ? 0.0 : kLeastWord;
+  const double sum = pen.word + own * static_cast<double>(places_.sources_at(index));
+  const double times = sum > kLeastShare ? all / sum : 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    words_[i] = places_.pen_of(i) == index ? times * (choice_.word(i) + own) : 0.0;
+    pen.shares[i][0] = shares_[i].middle;
+  }
+  for (std::size_t level = 1; level <= kBands; ++level) {
+    const double left = std::max(0.0, 1.0 - share_level(level, words_, level_shares_));
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      pen.shares[i][level] = level_shares_[i] + left * choice_.gusts(i) * sources_[i].trust()[level];
+    }
+  }
+}
+
+/// What a source says of the mean, or of a band.
+WindVector BlendedEstimator::said(std::size_t index, std::size_t level) const noexcept {
+  const BlendSource& source = sources_[index];
+  const WindVector value = level == 0 ? source.mean() : source.band(level - 1);
+  if (!settings_.sources[index].is_relative) return value;
+  return (level == 0 ? source.scale.mean_gain() : source.scale.gust_gain()) * value;
+}
+
+/// How much stronger than they say relative sources are, from the absolute ones that have the word.
+void BlendedEstimator::learn_scales(double dt_s) noexcept {
+  for (std::size_t r = 0; r < sources_.size(); ++r) {
+    if (!settings_.sources[r].is_relative || !sources_[r].record().is_live(state_.time, settings_.stale_intervals)) {
+      continue;
+    }
+    RelativeScale::Pair pair{.relative_speed_m_s = sources_[r].speed_m_s()};
+    double weight = 0.0;
+    BandWeights common{};
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      if (settings_.sources[i].is_relative) continue;
+      const BandWeights& word = shares_[i].word;
+      weight += word[0];
+      pair.speed_m_s += word[0] * sources_[i].speed_m_s();
+      pair.independent_after_s += word[0] * kIntervalsOfAGust * sources_[i].record().expected_interval_s();
+      for (std::size_t level = 1; level <= kBands; ++level) {
+        pair.gust_m_s += word[level] * dot(said(i, level), ground_.gusts.ahead);
+        common[level] += word[level] * sources_[i].passed()[level];
+      }
+    }
+    if (weight < 0.5) continue;
+    pair.speed_m_s /= weight;
+    pair.independent_after_s = std::max(pair.independent_after_s / weight, 1.0);
+    for (std::size_t level = 1; level <= kBands; ++level) {
+      pair.relative_gust_m_s += common[level] * dot(sources_[r].band(level - 1), ground_.gusts.ahead);
+    }
+    sources_[r].scale.learn(pair, dt_s);
+  }
+}
+
+BlendedEstimator::Heard BlendedEstimator::hear() noexcept {
+  Heard heard;
+  WindSlope& slope = ground_.slope;
+  slope.per_m_east = slope.per_m_south = {};
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Share& share = shares_[i];
+    const bool is_relative = settings_.sources[i].is_relative;
+    const WindVector mean = said(i, 0);
+    heard.weight += share.middle;
+    heard.mean = heard.mean + share.middle * mean;
+    heard.speed_m_s += share.middle * sources_[i].speed_m_s() * (is_relative ? sources_[i].scale.mean_gain() : 1.0);
+    slope.per_m_east = slope.per_m_east + share.per_m_east * mean;
+    slope.per_m_south = slope.per_m_south + share.per_m_south * mean;
+  }
+  heard.weight = std::clamp(heard.weight, 0.0, 1.0);
+  heard.mean = heard.mean + (1.0 - heard.weight) * climate_;
+  heard.speed_m_s = std::max(heard.speed_m_s, 0.0) + (1.0 - heard.weight) * settings_.climate.mean_speed_m_s;
+  heard.trust = trust() * heard.weight;
+
+  // Winds of this mean speed differ from end to end by twice as much at most.
+  const double difference_m_s = speed_of(slope.per_m_east) * (slope.east_m - slope.west_m) +
+                                speed_of(slope.per_m_south) * (slope.south_m - slope.north_m);
+  if (const double most_m_s = 2.0 * heard.speed_m_s; difference_m_s > most_m_s) {
+    slope.per_m_east = (most_m_s / difference_m_s) * slope.per_m_east;
+    slope.per_m_south = (most_m_s / difference_m_s) * slope.per_m_south;
+  }
+  return heard;
+}
+
+/// Of the bands that those who have the word could know: 1 while they speak.
+double BlendedEstimator::trust() const noexcept {
+  double known = 0.0;
+  double knowable = 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    for (std::size_t level = 1; level <= kBands; ++level) {
+      known += choice_.word(i) * sources_[i].trust()[level];
+      knowable += choice_.word(i) * sources_[i].full_trust()[level];
+    }
+  }
+  return knowable > 0.0 ? std::clamp(known / std::max(knowable, known), 0.0, 1.0) : 0.0;
+}
+
+/// All that is said at one place adds up by amplitude.
+BlendedEstimator::Power BlendedEstimator::power_heard(const OctaveFollower::Response& bands,
+                                                      std::span<const BandWeights> shares) const noexcept {
+  SourceResponse sum;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const std::complex<double> in_bands = bands.weighted(shares[i]);
+    sum.along += passed_[i].along * in_bands;
+    sum.across += passed_[i].across * in_bands;
+  }
+  return {std::clamp(std::norm(sum.along), 0.0, 1.0), std::clamp(std::norm(sum.across), 0.0, 1.0)};
+}
+
+/// The mean wind carries the gusts, and says where ahead is; their eddies turn over as the turbulence does.
+void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
+  WindVector& ahead = ground_.gusts.ahead;
+  const double speed_m_s = speed_of(heard.mean);
+  if (speed_m_s > 0.0) {
+    const double calm = std::clamp(speed_m_s / kCalm_m_s, 0.0, 1.0);
+    const double part = -std::expm1(-2.0 * std::numbers::pi * kTurnRate_hz * calm * calm * dt_s);
+    ahead = turned_toward(ahead, (1.0 / speed_m_s) * heard.mean, part);
+  }
+  advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
+  const Turbulence now = turbulence();
+  const double length_m = now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s);
+  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
+                kTurnoverRate * eddy_turnover_m23_s(now.intensity * heard.speed_m_s, length_m));
+
+  // The tapes go the same way.
+  const double way_m = advection_m_s_ * dt_s;
+  stroke_.way_m += way_m;
+  stroke_.carried_east_m += way_m * ahead.u_m_s;
+  stroke_.carried_south_m -= way_m * ahead.v_m_s;
+  stroke_.ahead = ahead;
+  GustCoherence& coherence = stroke_.coherence;
+  const double part = is_first_ ? 1.0 : -std::expm1(-dt_s / kCoherenceMemory_s);
+  coherence.speed_m_s = advection_m_s_;
+  coherence.length_m = gust_length_m(heard);
+  coherence.decay_along += part * (GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
+  reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
+}
+
+/// How far gusts reach as the installation says it, which the coherence law asks for: a fit to quick readings knows
+/// little of it.
+double BlendedEstimator::gust_length_m(const Heard& heard) const noexcept {
+  double length_m = (1.0 - heard.weight) * settings_.length_m;
+  double all = 1.0 - heard.weight;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const double own_m = settings_.sources[i].length_m;
+    const double share = std::max(shares_[i].middle, 0.0);
+    length_m += share * (own_m > 0.0 ? own_m : settings_.length_m);
+    all += share;
+  }
+  return length_m / all;
+}
+
+/// Where each pen stands: at the windward edge of the scenes, or where its sensor does, how far its sensors count, and
+/// its part of the wind that is shown.
+void BlendedEstimator::place_pens() noexcept {
+  double largest = kLeastShare;
+  double all = 0.0;
+  for (const Pen& pen : pens_) {
+    largest = std::max(largest, pen.word);
+    all += pen.word;
+  }
+  const WindVector ahead = stroke_.ahead;
+  for (std::size_t i = 0; i < pens_.size(); ++i) {
+    const PenPlaces::Place& place = places_.place(i);
+    const double upwind_m = place.is_edge ? reach_m_ : place.lead_m;
+    WindPen& pen = stroke_.pens[i];
+    pen.east_m = place.east_m - upwind_m * ahead.u_m_s;
+    pen.south_m = place.south_m + upwind_m * ahead.v_m_s;
+    pen.part = all > kLeastShare ? pens_[i].word / all : 1.0 / static_cast<double>(pens_.size());
+    pen.presence = std::clamp(2.0 * pens_[i].word / largest, 0.0, 1.0);
+    pen.now.east_m = pen.east_m - stroke_.carried_east_m;
+    pen.now.south_m = pen.south_m - stroke_.carried_south_m;
+  }
+}
+
+/// What is measured at each place, and what of it the tape can hold.
+void BlendedEstimator::write_gusts() noexcept {
+  is_fading_ = false;
+  for (std::size_t band = 0; band < kBands; ++band) {
+    const double wave_m = advection_m_s_ / OctaveFollower::centre_hz(band);
+    fade_[1 + band] = std::clamp(std::log2(wave_m / (kLeastSamplesAWave * WindTape::kStep_m)), 0.0, 1.0);
+  }
+  for (std::size_t p = 0; p < pens_.size(); ++p) {
+    WindPen& pen = stroke_.pens[p];
+    pen.weights.fill(0.0);
+    for (std::size_t level = 0; level <= kBands; ++level) {
+      WindVector gust;
+      for (std::size_t i = 0; i < sources_.size(); ++i) {
+        const double share = pens_[p].shares[i][level];
+        const double written = share * (level == 0 ? 1.0 : fade_[level]);
+        pens_[p].written[i][level] = written;
+        pen.weights[level] += written;
+        if (level > 0 && share > 0.0) gust = gust + share * said(i, level);
+      }
+      if (level == 0) continue;
+      if (pen.weights[level] > kLeastShare && fade_[level] < 1.0) is_fading_ = true;
+      pen.now.east_m_s[level - 1] = static_cast<float>(gust.u_m_s);
+      pen.now.north_m_s[level - 1] = static_cast<float>(gust.v_m_s);
+    }
+  }
+}
+
+/// How much a source's turbulence counts at a frequency, over the square of the mean speed: its part of the mean; above
+/// what the absolute ones know, that of the relative ones.
+double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, const Heard& heard) const noexcept {
+  double gusts = 0.0;
+  double unknown = 0.0;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    gusts += choice_.gusts(i);
+    unknown += shares_[i].middle * (1.0 - sources_[i].trust_at(frequency_hz));
+  }
+  const double own = shares_[index].middle;
+  if (gusts < kLeastShare) return own;
+  const double given = heard.weight > 0.0 ? std::clamp(unknown / heard.weight, 0.0, 1.0) : 0.0;
+  const double kept = own * (1.0 - std::min(gusts, 1.0) * given);
+  if (!settings_.sources[index].is_relative) return kept;
+  const double strength =
+      sources_[index].scale.gust_gain() * sources_[index].speed_m_s() / std::max(heard.speed_m_s, kLeastSpeed_m_s);
+  return kept + heard.weight * choice_.gusts(index) * given * std::min(strength * strength, 4.0);
+}
+
+/// How strong each octave of the noise is, and how much of it the sensors know already. What the way brings is less
+/// what they know; of the tiles' octaves that is for each place to say.
+void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
+  // A new fit, or another interval of a sensor, is a step that nobody shall see.
+  const auto part = static_cast<float>(is_first_ ? 1.0 : -std::expm1(-dt_s / kStrengthMemory_s));
+  for (std::size_t i = 0; i < kOctaves; ++i) weigh_octave(i, heard, part);
+}
+
+void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept {
+  const double frequency_hz = centre_hz(noise_->octaves()[octave], advection_m_s_);
+  // What would jitter from one picture to the next is left out, by and by over the octave before.
+  const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / frequency_hz), 0.0, 1.0);
+  double variance_along = (1.0 - heard.weight) * climate_along_[octave];
+  double variance_across = (1.0 - heard.weight) * climate_across_[octave];
+  for (std::size_t index = 0; index < sources_.size(); ++index) {
+    if (!sources_[index].record().has_spoken()) continue;
+    const double share = variance_share(index, frequency_hz, heard);
+    variance_along += share * sources_[index].along()[octave];
+    variance_across += share * sources_[index].across()[octave];
+  }
+  const double scale = shown * heard.speed_m_s * heard.speed_m_s;
+  const auto approach = [part](float& value, double wanted) { value += part * (static_cast<float>(wanted) - value); };
+  const auto deviation = [scale](double variance) { return std::sqrt(std::max(scale * variance, 0.0)); };
+  float& along_m_s = ground_.gusts.along_m_s[octave];
+  float& across_m_s = ground_.gusts.across_m_s[octave];
+
+  // Waves of a plane that run aslant pass more slowly than their length tells: what a tile's octave brings is lower by
+  // about half an octave, and that is where it would come on top of what the sensors say.
+  const bool is_way = octave < GustNoise::kFirstTileOctave;
+  const double known_hz = is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2;
+  const OctaveFollower::Response bands(known_hz);
+  for (std::size_t i = 0; i < sources_.size(); ++i) passed_[i] = sources_[i].passed_of(known_hz);
+  if (is_way) {
+    Power known;
+    for (std::size_t p = 0; p < pens_.size(); ++p) {
+      const Power here = power_heard(bands, pens_[p].shares);
+      known.along += stroke_.pens[p].part * here.along;
+      known.across += stroke_.pens[p].part * here.across;
+    }
+    approach(along_m_s, deviation((1.0 - known.along) * variance_along));
+    approach(across_m_s, deviation((1.0 - known.across) * variance_across));
+    return;
+  }
+
+  approach(along_m_s, deviation(variance_along));
+  approach(across_m_s, deviation(variance_across));
+  const std::size_t lane = octave - GustNoise::kFirstTileOctave;
+  stroke_.octave_hz[lane] = static_cast<float>(known_hz);
+  for (std::size_t p = 0; p < pens_.size(); ++p) {
+    const Power now = power_heard(bands, pens_[p].shares);
+    const Power written = is_fading_ ? power_heard(bands, pens_[p].written) : now;
+    WindPen& pen = stroke_.pens[p];
+    approach(pen.now.known_along[lane], now.along);
+    approach(pen.now.known_across[lane], now.across);
+    approach(pen.written.known_along[lane], written.along);
+    approach(pen.written.known_across[lane], written.across);
+  }
+}
+
+GustNoise::Moment BlendedEstimator::gusts_at(std::size_t pen) const noexcept {
+  return ground_.left_of(WindTapes::at_pen(stroke_.pens[pen].now));
+}
+
+/// The wind that is shown, and the samples that go onto the tapes.
+void BlendedEstimator::show(const Heard& heard) noexcept {
+  const WindVector way = noise_->everywhere(ground_.gusts);
+  ground_.everywhere = heard.mean + way;
+  state_.upwind_m = 0.0;
+  double told = 0.0;
+  for (std::size_t p = 0; p < pens_.size(); ++p) {
+    WindPen& pen = stroke_.pens[p];
+    if (!places_.place(p).is_edge) told += pen.part;
+    pen.now.mean = heard.mean;
+    pen.now.way = way;
+    const OctaveLanes known_along = pen.written.known_along;
+    const OctaveLanes known_across = pen.written.known_across;
+    pen.written = pen.now;
+    pen.written.known_along = known_along;
+    pen.written.known_across = known_across;
+    for (std::size_t band = 0; band < kBands; ++band) {
+      pen.written.east_m_s[band] *= static_cast<float>(fade_[1 + band]);
+      pen.written.north_m_s[band] *= static_cast<float>(fade_[1 + band]);
+    }
+    ground_.everywhere = ground_.everywhere + pen.part * WindTapes::at_pen(pen.now).gusts;
+    state_.upwind_m -= pen.part * (pen.east_m * stroke_.ahead.u_m_s - pen.south_m * stroke_.ahead.v_m_s);
+  }
+  state_.wind = wind_where_measured(ground_, stroke_, *noise_);
+  state_.is_place_told = told > 0.5;
+  state_.to_middle_s = std::max(state_.upwind_m, 0.0) / advection_m_s_;
+  if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {
+    state_.wind = (kMaxPlausibleSpeed_m_s / speed_m_s) * state_.wind;
+  }
+}
+
+WindState BlendedEstimator::advance(MonoTime now) noexcept {
+  is_first_ = !has_begun_;
+  if (is_first_) {
+    has_begun_ = true;
+    reach_m_ = settings_.reach_m;
+    state_.time = now;
+  }
+  if (now < state_.time) return state_;
+  const double passed_s = seconds(now - state_.time);
+  const double dt_s = std::min(passed_s, kLongestStep_ticks * std::max(1.0 / settings_.rate_hz, last_step_s_));
+  last_step_s_ = passed_s;
+  state_.time = now;
+
+  // Who has the word, and what each says.
+  const OctaveFollower::Parts parts = OctaveFollower::parts(dt_s);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    choice_.set_live(i, sources_[i].record().is_live(now, settings_.stale_intervals));
+  }
+  choice_.step(dt_s);
+  for (BlendSource& source : sources_) {
+    if (source.record().has_spoken()) source.step(now, dt_s, parts);
+  }
+  share_out(dt_s);
+  learn_scales(dt_s);
+
+  // The wind: what is measured, and the gusts for the rest.
+  const Heard heard = hear();
+  carry_gusts(heard, dt_s);
+  place_pens();
+  write_gusts();
+  weigh_gusts(heard, dt_s);
+  show(heard);
+
+  state_.live_weight = heard.trust;
+  state_.reading_age_s = newest_age_s();
+  state_.source = heard.trust > 0.99   ? WindSource::kLive
+                  : heard.trust < 0.01 ? WindSource::kDefault
+                                       : WindSource::kHandover;
+  return state_;
+}
+
+/// Of the readings that take part; 0 where none does.
+double BlendedEstimator::newest_age_s() const noexcept {
+  std::optional<double> newest_s;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    if (!choice_.is_chosen(i)) continue;
+    const double age_s = sources_[i].record().age_s(state_.time);
+    newest_s = std::min(newest_s.value_or(age_s), age_s);
+  }
+  return newest_s.value_or(0.0);
+}
+
+SourceReport BlendedEstimator::report(std::size_t index) const noexcept {
+  if (index >= sources_.size()) return {};
+  return sources_[index].record().report(state_.time, settings_.stale_intervals);
+}
+
+Turbulence BlendedEstimator::turbulence() const noexcept {
+  double left = 1.0;
+  Turbulence sum{.intensity = 0.0, .time_scale_s = 0.0};
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const double word = std::min(choice_.word(i), left);
+    left -= word;
+    sum.intensity += word * sources_[i].turbulence().intensity;
+    sum.time_scale_s += word * sources_[i].turbulence().time_scale_s;
+  }
+  sum.intensity += left * settings_.climate.turbulence_intensity;
+  sum.time_scale_s += left * settings_.length_m / std::max(settings_.climate.mean_speed_m_s, kLeastSpeed_m_s);
+  return sum;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/wind/blend/blend_settings.hpp"
+#include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/pen_places.hpp"
+#include "engine/wind/blend/source_choice.hpp"
+#include "engine/wind/blend/wall_plane.hpp"
+#include "engine/wind/blend/wind_estimator.hpp"
+#include "engine/wind/turbulence/gust_noise.hpp"
+#include "engine/wind/turbulence/gust_variances.hpp"
+
+namespace yuragi {
+
+/// The wind that moves things: the live signal where the sensors know, noise of the same spectrum where they do not,
+/// counted once.
+///
+/// In each octave band of frequency the sensor's word has a weight a: 1 far below the crossover of 0.25 / its interval
+/// (where sensor and noise have the same power), 0 far above, less the longer it is silent. The noise has the rest *in
+/// power*, sqrt(1 - |a A|^2), A being what the sensor's own averaging and the holding of its readings leave of that
+/// band, and the strength that von Karman's spectrum has there; its turbulence intensity and length are fitted to the
+/// readings of the past, and go back to the climate's while nothing is known. The noise is read from a pattern that the
+/// mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and across it. A mean that
+/// nobody measures fades into the climate's. Everything is made of vectors; weights slew by critically damped filters,
+/// so nothing jumps.
+///
+/// Where: what is measured is written where the sensor stands (PenPlaces), which is at the windward edge of the scenes
+/// unless it is told, and goes on from there with the mean wind: stroke() is what a tick adds to the tapes (WindTapes),
+/// ground() says how strong the noise is that fills what is not known. The state is the wind at that place; of several
+/// places their mean, by the sensors' weights.
+///
+/// Several sources: SourceChoice says which of them count. Those that count at one place share each band by weight
+/// times trust, so that a slow one rules the mean and a fast one the gusts; a relative one gives the gusts that they
+/// leave, scaled to theirs. Sources at several places each have a tape of their own, and their means make a plane
+/// (WallPlane). Across the wind a source without a vane knows nothing, and one of few points only what is slow.
+///
+/// Delay: what comes from a sensor is later than the wind by half of what it averages over, half of the interval that a
+/// reading is held for, and the group delay of the weighted bands, 0.36 to 0.2 of the interval: blend_group_delay_s().
+/// For means over the interval T, one after the other:
+///
+///     frequency times T   to 0.02   0.05   0.1    0.2    0.25 (the crossover)
+///     delay over T        1.36      1.35   1.31   1.25   1.22
+///
+/// Source: Taylor 1938, The spectrum of turbulence (frozen turbulence).
+class BlendedEstimator final : public WindEstimator {
+ public:
+  /// `noise`: shared with whoever wants to know the wind at other places. The climate's seed says where on it the gusts
+  /// begin. Allocates.
+  BlendedEstimator(std::size_t source_count, const BlendSettings& settings, std::shared_ptr<const GustNoise> noise);
+
+  bool accept(std::size_t source, const WindReading& reading) noexcept override;
+  WindState advance(MonoTime now) noexcept override;
+  const GroundWind& ground() const noexcept override { return ground_; }
+  const WindStroke& stroke() const noexcept override { return stroke_; }
+  SourceReport report(std::size_t source) const noexcept override;
+
+  /// The turbulence that is fitted at the moment, along the wind.
+  Turbulence turbulence() const noexcept;
+
+  /// The noise that is left at the place of a sensor, where most is known.
+  GustNoise::Moment gusts_at(std::size_t pen) const noexcept;
+
+ private:
+  static constexpr std::size_t kBands = OctaveFollower::kBands;
+  static constexpr std::size_t kOctaves = GustNoise::kOctaves;
+
+  /// What a source has of the wind at the moment: of the mean, and of the bands by the word of all together.
+  struct Share {
+    BandWeights word{};   ///< of the mean (0) and each band (1 + band), as one whose readings count
+    double middle = 0.0;  ///< of the mean in the middle of the scenes
+    double tilt = 0.0;    ///< what the plane adds there; it and the slopes follow the plane slowly
+    double per_m_east = 0.0, per_m_south = 0.0;
+  };
+
+  /// What is written at one place.
+  struct Pen {
+    std::vector<BandWeights> shares;   ///< of each source: of the mean, and of the bands at this place
+    std::vector<BandWeights> written;  ///< as far as the tape can hold them
+    double word = 0.0;                 ///< of its sources, of that of all
+  };
+
+  /// What all sources together say of the mean, and how far it is to be believed.
+  struct Heard {
+    WindVector mean;
+    double weight = 0.0;     ///< of the means that are measured; the climate's has the rest
+    double speed_m_s = 0.0;  ///< slow mean
+    double trust = 0.0;      ///< of the bands that can be known: 1 while the sensors speak
+  };
+  /// The part of the power at a frequency that comes from the sensors.
+  struct Power {
+    double along = 0.0, across = 0.0;
+  };
+
+  bool is_direction_live(std::size_t besides) const noexcept;
+  void share_out(double dt_s) noexcept;
+  void share_mean(double dt_s) noexcept;
+  void share_words() noexcept;
+  double share_level(std::size_t level, std::span<const double> words, std::span<double> shares) const noexcept;
+  void share_at(std::size_t pen) noexcept;
+  void learn_scales(double dt_s) noexcept;
+  Heard hear() noexcept;
+  double trust() const noexcept;
+  double newest_age_s() const noexcept;
+  WindVector said(std::size_t source, std::size_t level) const noexcept;
+  void carry_gusts(const Heard& heard, double dt_s) noexcept;
+  double gust_length_m(const Heard& heard) const noexcept;
+  void place_pens() noexcept;
+  void write_gusts() noexcept;
+  void weigh_gusts(const Heard& heard, double dt_s) noexcept;
+  void weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept;
+  Power power_heard(const OctaveFollower::Response& bands, std::span<const BandWeights> shares) const noexcept;
+  void show(const Heard& heard) noexcept;
+  double variance_share(std::size_t source, double frequency_hz, const Heard& heard) const noexcept;
+
+  BlendSettings settings_;
+  WindVector climate_;
+  std::shared_ptr<const GustNoise> noise_;
+  GustVariances climate_along_, climate_across_;
+  std::vector<BlendSource> sources_;
+  SourceChoice choice_;
+  WallPlane plane_;
+  PenPlaces places_;
+  std::vector<Pen> pens_;
+  GroundWind ground_;
+  WindStroke stroke_;
+  double advection_m_s_ = 0.0;
+  WindState state_;
+  double reach_m_ = 0.0;      ///< where the windward edge is
+  double last_step_s_ = 0.0;  ///< the time that passed from the last tick but one to the last
+  bool has_begun_ = false;
+  bool is_first_ = false;  ///< tick
+
+  // Made anew in each tick; for each source.
+  std::vector<Share> shares_;
+  std::vector<double> words_, level_shares_;
+  std::vector<PlaceWeights> place_weights_;
+  std::vector<SourceResponse> passed_;  ///< at the octave at hand
+  BandWeights fade_{};                  ///< what the tape can hold of each band
+  bool is_fading_ = false;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,90 @@
+#include "engine/wind/blend/direction_keeper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/units.hpp"
+
+namespace yuragi {
+namespace {
+
+/// Below this a vane's word counts less and less.
+constexpr double kVaneCalm_m_s = 0.5;
+/// So many turns in a row tell a coarse vane; a fine one makes such turns by chance, one in 15 at most, and must make
+/// more of them to be taken for one.
+constexpr std::size_t kTurnsToTell = 3;
+constexpr std::size_t kTurnsToTellIfFine = 12;
+/// 22.5 degrees may come as 22 or 23.
+constexpr double kRounding_deg = 0.6;
+/// However little turbulence is expected, a coarse vane that has turned is believed after about 100 s.
+constexpr double kLongestMemory_s = 100.0;
+
+bool is_multiple(double turn_deg, double step_deg) noexcept {
+  return std::abs(turn_deg) > 0.5 * step_deg && std::abs(std::remainder(turn_deg, step_deg)) <= kRounding_deg;
+}
+
+}  // namespace
+
+WindVector turned_toward(WindVector unit, WindVector other, double part) noexcept {
+  if (part >= 1.0) return other;
+  const double cross = unit.u_m_s * other.v_m_s - unit.v_m_s * other.u_m_s;
+  const double dot = unit.u_m_s * other.u_m_s + unit.v_m_s * other.v_m_s;
+  const double angle = part * std::atan2(cross, dot);
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  const WindVector turned{c * unit.u_m_s - s * unit.v_m_s, s * unit.u_m_s + c * unit.v_m_s};
+  return (1.0 / speed_of(turned)) * turned;
+}
+
+WindVector DirectionKeeper::take(const WindReading& reading, double dt_s, WindVector otherwise,
+                                 bool otherwise_is_live) noexcept {
+  has_vane_ = reading.direction_deg.has_value();
+  if (!has_vane_) {
+    if (otherwise_is_live || !is_known_) toward_ = otherwise;
+    return toward_;
+  }
+  const WindVector said = wind_from(1.0, *reading.direction_deg);
+  note_step(*reading.direction_deg);
+  const double wind = std::clamp(reading.speed_m_s / kVaneCalm_m_s, 0.0, 1.0);
+  const double smoothed = is_known_ && memory_s_ > 0.0 ? -std::expm1(-dt_s / memory_s_) : 1.0;
+  toward_ = turned_toward(is_known_ ? toward_ : otherwise, said, wind * wind * smoothed);
+  is_known_ = is_known_ || wind > 0.0;
+  return toward_;
+}
+
+double DirectionKeeper::step_deg() const noexcept {
+  if (given_step_deg_ > 0.0) return given_step_deg_;
+  const std::size_t needed = was_fine_ ? kTurnsToTellIfFine : kTurnsToTell;
+  return turns_of_8_ >= needed ? 45.0 : turns_of_16_ >= needed ? 22.5 : 0.0;
+}
+
+void DirectionKeeper::expect(double swing_rad, double time_scale_s, double interval_s) noexcept {
+  if (!is_coarse()) {
+    memory_s_ = 0.0;
+    return;
+  }
+  // The stairs' noise forgets from one reading to the next where the swing covers the steps, else as slowly as gusts.
+  const double step_rad = step_deg() * kRadPerDeg;
+  const double steps = std::numbers::pi * swing_rad / step_rad;
+  const double correlated_s = interval_s + time_scale_s * std::exp(-2.0 * steps * steps);
+  // S(f) = sigma^2 T 4 / 70.8^(5/6) (f T)^(-5/3) = step^2 / 12 * 2 dt, for f.
+  const double stairs = step_rad * step_rad / 12.0 * 2.0 * correlated_s;
+  const double swing = 4.0 / std::pow(70.8, 5.0 / 6.0) * swing_rad * swing_rad * time_scale_s;
+  const double corner_hz = std::pow(swing / stairs, 0.6) / time_scale_s;
+  memory_s_ = std::min(1.0 / (2.0 * std::numbers::pi * corner_hz), kLongestMemory_s);
+}
+
+/// A reading that says what the one before said tells nothing of the step.
+void DirectionKeeper::note_step(double direction_deg) noexcept {
+  const double turn_deg = direction_deg - last_deg_;
+  const bool is_first = last_deg_ < 0.0;
+  last_deg_ = direction_deg;
+  if (is_first || std::abs(turn_deg) < 1e-9) return;
+  turns_of_16_ = is_multiple(turn_deg, 22.5) ? turns_of_16_ + 1 : 0;
+  turns_of_8_ = is_multiple(turn_deg, 45.0) ? turns_of_8_ + 1 : 0;
+  if (turns_of_16_ == 0) was_fine_ = true;
+  if (turns_of_16_ >= kTurnsToTellIfFine) was_fine_ = false;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/wind/blend/blend_settings.hpp"
+
+namespace yuragi {
+
+/// The places where measured wind is written: one for all sensors of which nobody said where they stand (the windward
+/// edge of the scenes), and one for each place that was said. Sensors closer together than half a metre share one; of
+/// more than WindStroke::kMostPens places the last ones share the nearest. Relative sources stand where the first
+/// absolute one does. Allocates at construction only. Thread-safe: reading, yes.
+class PenPlaces {
+ public:
+  explicit PenPlaces(std::span<const BlendSourceSettings> sources);
+
+  struct Place {
+    bool is_edge = true;
+    double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
+    double lead_m = 0.0;                 ///< the wind is written so far upwind of there
+  };
+  /// 0 where there are no sources.
+  std::size_t count() const noexcept { return places_.size(); }
+  const Place& place(std::size_t pen) const noexcept { return places_[pen]; }
+  std::size_t pen_of(std::size_t source) const noexcept { return pens_[source]; }
+  std::size_t sources_at(std::size_t pen) const noexcept {
+    return static_cast<std::size_t>(std::ranges::count(pens_, pen));
+  }
+
+ private:
+  std::size_t pen_for(const BlendSourceSettings& source);
+
+  std::vector<Place> places_;
+  std::vector<std::size_t> pens_;  ///< of each source
+};
+
+}  // namespace yuragi

@@ -1,0 +1,66 @@
+#include "engine/wind/blend/site_teacher.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace yuragi {
+namespace {
+
+/// The slow sensor that is played: it says nothing of waves above 0.37 over this, 0.026 Hz.
+constexpr double kPlayedInterval_s = 14.0;
+constexpr double kLeastTaught_m_s = 1.0;
+/// The fit must have seen so many differences of neighbouring means.
+constexpr double kEnough = 15.0;
+/// Haar's differences of means over tau see most of the waves of 0.37 / tau.
+constexpr double kSeenTimesTau = 0.37;
+/// An octave may lie by so many octaves above the quickest scale.
+constexpr double kBeyond_octaves = 0.5;
+
+}  // namespace
+
+SiteTeacher::SiteTeacher(const TurbulencePrior& prior, double fit_memory_s) : slow_(prior, fit_memory_s) {}
+
+void SiteTeacher::break_off() noexcept {
+  slow_.break_off();
+  sum_ = {};
+  count_ = 0;
+}
+
+void SiteTeacher::hear(const Heard& heard, const WindTurbulence& quick, SiteSpectrum& site) noexcept {
+  if (heard.interval_s > SiteSpectrum::kQuick_s || !(heard.interval_s > 0.0) || !(heard.speed_m_s > 0.0)) return;
+  sum_ = sum_ + heard.wind;
+  ++count_;
+  const double played_s = static_cast<double>(count_) * heard.interval_s;
+  if (played_s < kPlayedInterval_s - 0.5 * heard.interval_s) return;
+  slow_.forget(played_s);
+  slow_.take((1.0 / static_cast<double>(count_)) * sum_, heard.ahead, heard.speed_m_s, heard.tells_across);
+  slow_.fit(kPlayedInterval_s, heard.speed_m_s);
+  sum_ = {};
+  count_ = 0;
+  if (heard.speed_m_s >= kLeastTaught_m_s && slow_.along().observations(0) >= kEnough) teach(heard, quick, site);
+}
+
+void SiteTeacher::teach(const Heard& heard, const WindTurbulence& quick, SiteSpectrum& site) const noexcept {
+  const auto of_both = [&heard](const WindTurbulence& turbulence, const auto& power_of) {
+    return power_of(turbulence.along()) + (heard.tells_across ? power_of(turbulence.across()) : 0.0);
+  };
+  for (std::size_t octave = 0; octave < SiteSpectrum::kOctaves; ++octave) {
+    // Where among the quick source's scales, means over interval * 2^scale, it is.
+    const double tau_s = kSeenTimesTau / SiteSpectrum::centre_hz(octave);
+    const double place = std::log2(tau_s / heard.interval_s);
+    if (place < -kBeyond_octaves || place > static_cast<double>(TurbulenceFit::kScales - 2)) continue;
+    const double inside = std::max(place, 0.0);
+    const auto below = static_cast<std::size_t>(inside);
+    const double t = inside - static_cast<double>(below);
+    const auto measured = [&](std::size_t scale) {
+      const double seen_tau_s = std::ldexp(heard.interval_s, static_cast<int>(scale));
+      return std::log10(of_both(quick, [&](const TurbulenceFit& fit) { return fit.measured(scale); }) /
+                        of_both(slow_, [&](const TurbulenceFit& fit) { return fit.expected(seen_tau_s); }));
+    };
+    const double low = measured(below);
+    const double excess_db = 10.0 * (t > 0.0 ? low + t * (measured(below + 1) - low) : low);
+    site.learn(octave, excess_db, kPlayedInterval_s);  // what is not finite is nothing
+  }
+}
+
+}  // namespace yuragi

@@ -1,0 +1,96 @@
+#include "engine/wind/blend/source_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace yuragi {
+namespace {
+
+/// A critically damped step has done 91 % of its way after 4 time constants.
+constexpr double kRateTimesHandover = 4.0;
+constexpr int kMostFailures = 7;
+constexpr double kForgivenAfter_s = 600.0;
+
+}  // namespace
+
+SourceChoice::SourceChoice(std::span<const BlendSourceSettings> sources, double handover_s, double return_after_s)
+    : handover_s_(handover_s), return_after_s_(return_after_s) {
+  for (const BlendSourceSettings& settings : sources) {
+    const int place = static_cast<int>(entries_.size()) + 1;
+    Entry entry;
+    entry.is_relative = settings.is_relative;
+    entry.priority = settings.priority != 0 ? settings.priority : place;
+    entry.share = settings.weight;
+    entries_.push_back(entry);
+  }
+}
+
+void SourceChoice::note_failures(Entry& entry, double dt_s) const noexcept {
+  if (!entry.is_live) {
+    if (entry.was_live) entry.failures = std::min(entry.failures + 1, kMostFailures);
+    entry.live_for_s = 0.0;
+    entry.is_ready = false;
+  } else {
+    if (entry.was_live) entry.live_for_s += dt_s;
+    const double wait_s = entry.failures == 0 ? 0.0 : std::ldexp(return_after_s_, entry.failures - 1);
+    if (entry.live_for_s >= wait_s) entry.is_ready = true;
+    if (entry.live_for_s >= std::max(wait_s, kForgivenAfter_s)) entry.failures = 0;
+  }
+  entry.was_live = entry.is_live;
+}
+
+/// Shares `wanted` out among those of the lowest priority that may take it. Where nobody may, it changes nothing, and
+/// says false.
+template <class MayTake>
+bool SourceChoice::give(double Entry::*wanted, bool relative, MayTake may_take) noexcept {
+  int lowest = std::numeric_limits<int>::max();
+  double sum = 0.0;
+  for (const Entry& entry : entries_) {
+    if (entry.is_relative != relative || !may_take(entry) || entry.priority > lowest) continue;
+    if (entry.priority < lowest) sum = 0.0;
+    lowest = entry.priority;
+    sum += entry.share;
+  }
+  if (!(sum > 0.0)) return false;
+  for (Entry& entry : entries_) {
+    const bool takes = entry.is_relative == relative && may_take(entry) && entry.priority == lowest;
+    entry.*wanted = takes ? entry.share / sum : 0.0;
+  }
+  return true;
+}
+
+void SourceChoice::step(double dt_s) noexcept {
+  for (Entry& entry : entries_) note_failures(entry, dt_s);
+  const auto is_ready = [](const Entry& entry) { return entry.is_ready; };
+  const auto is_live = [](const Entry& entry) { return entry.is_live; };
+
+  // The word; who has it needs to wait for nothing. Then the gusts.
+  const bool given = give(&Entry::word_wanted, false, is_ready) || give(&Entry::word_wanted, true, is_ready) > 0.0 ||
+                     give(&Entry::word_wanted, false, is_live) || give(&Entry::word_wanted, true, is_live);
+  bool relative_has_word = false;
+  for (Entry& entry : entries_) {
+    if (entry.word_wanted > 0.0 && entry.is_live) entry.is_ready = true;
+    relative_has_word = relative_has_word || (entry.is_relative && entry.word_wanted > 0.0);
+  }
+  if (relative_has_word) {
+    for (Entry& entry : entries_) entry.gusts_wanted = 0.0;
+  } else if (given) {
+    if (!give(&Entry::gusts_wanted, true, is_ready)) give(&Entry::gusts_wanted, true, is_live);
+  }
+
+  // Before anything was shown there is nobody to hand over from.
+  const bool is_first = !std::exchange(has_begun_, true);
+  for (Entry& entry : entries_) {
+    if (is_first) {
+      entry.word.value = entry.word_wanted;
+      entry.gusts.value = entry.gusts_wanted;
+    }
+    entry.word.step(entry.word_wanted, kRateTimesHandover / handover_s_, dt_s);
+    entry.gusts.step(entry.gusts_wanted, kRateTimesHandover / handover_s_, dt_s);
+    entry.is_chosen = entry.word_wanted > 0.0 || entry.gusts_wanted > 0.0;
+  }
+}
+
+}  // namespace yuragi

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+
+#include "engine/wind/blend/blend_settings.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
+
+namespace yuragi {
+
+/// What a source's value counts for: in the middle of the scene, and in the slopes (1/m).
+struct PlaceWeights {
+  double middle = 0.0, per_m_east = 0.0, per_m_south = 0.0;
+};
+
+/// The plane through what several absolute sources say at their places, by weighted least squares. It is given as the
+/// weights of what they say, which may be vectors, and follows a source as its share fades and returns.
+///
+/// A small ridge makes the slope fade where one place alone is left, and bounds it where those that are left stand
+/// close together. Thread-safe: reading, yes. Realtime-safe: yes.
+class WallPlane {
+ public:
+  explicit WallPlane(std::span<const BlendSourceSettings> sources);
+
+  /// Do all stand at one place?
+  bool is_point() const noexcept { return length_m_ <= 0.0; }
+  /// From corner to corner.
+  double length_m() const noexcept { return length_m_; }
+  /// Where it ends; without slopes.
+  const WindSlope& ends() const noexcept { return ends_; }
+
+  /// The weights of sources that have these shares (at least 0; as many as there are sources). The sum of those in the
+  /// middle is that of the shares. `part`, 0 to 1: how much of the slopes is wanted.
+  void weigh(std::span<const double> shares, double part, std::span<PlaceWeights> weights) const noexcept;
+
+ private:
+  struct Place {
+    double east_m = 0.0, south_m = 0.0;
+  };
+  std::vector<Place> places_;
+  Place middle_;  ///< that of the scene, or the nearest that the plane has
+  WindSlope ends_;
+  double length_m_ = 0.0;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/wind/ground/gust_coherence.hpp"
+#include "engine/wind/turbulence/gust_noise.hpp"
+#include "engine/wind/turbulence/octave_follower.hpp"
+#include "engine/wind/wind_vector.hpp"
+
+namespace yuragi {
+
+/// A number for each octave band of what is measured, and for each octave of the noise's tiles: padded to whole SIMD
+/// registers, with zeros behind the last.
+inline constexpr std::size_t kBandLanes = 16;
+inline constexpr std::size_t kTileOctaveCount = 2 * GustNoise::kTileOctaves;
+inline constexpr std::size_t kOctaveLanes = (kTileOctaveCount + 15) / 16 * 16;
+static_assert(OctaveFollower::kBands <= kBandLanes);
+using BandLanes = std::array<float, kBandLanes>;
+using OctaveLanes = std::array<float, kOctaveLanes>;
+
+/// What was known of the wind at one place at one moment.
+struct alignas(64) WindSample {
+  BandLanes east_m_s{}, north_m_s{};          ///< the measured gusts of each band, as far as they are believed
+  OctaveLanes known_along{}, known_across{};  ///< the part of each noise octave's power that they know already
+  WindVector mean;                            ///< slower than all bands
+  WindVector way;                             ///< the noise's waves that are longer than the ground
+  double east_m = 0.0, south_m = 0.0;         ///< the place, less how far the wind had carried the gusts by then
+  double gain = 1.0;                          ///< of the ceiling
+};
+
+/// A sample between two.
+WindSample between(const WindSample& first, const WindSample& second, double fraction) noexcept;
+
+/// Where measured wind is written: the place of a sensor, or the windward edge of the scenes.
+struct WindPen {
+  double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
+  double part = 1.0;                   ///< of the wind that is shown to people
+  double presence = 0.0;  ///< of its sensors among those of other places: 0 they are gone, 1 they are there
+  std::array<double, OctaveFollower::kBands + 1>
+      weights{};       ///< of the mean (0) and each band, as they go onto the tape
+  WindSample now;      ///< at this place
+  WindSample written;  ///< the same without waves that are too short for the tape
+};
+
+/// What one tick of the estimator puts on the tapes. A value of some kilobytes that goes from thread to thread.
+struct WindStroke {
+  static constexpr std::size_t kMostPens = 4;
+
+  std::size_t pen_count = 0;                           ///< 0: nothing can be measured, there is no tape
+  double way_m = 0.0;                                  ///< that the mean wind has come, all in all; never less
+  double carried_east_m = 0.0, carried_south_m = 0.0;  ///< and its vector: how far it has carried the gusts
+  WindVector ahead{0.0, 1.0};                          ///< unit vector downwind
+  GustCoherence coherence;
+  OctaveLanes octave_hz{};  ///< at which frequency each octave of the tiles passes
+  std::array<WindPen, kMostPens> pens;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/simd_row.hpp"
+#include "engine/wind/ground/gust_kriging.hpp"
+#include "engine/wind/ground/tape_kernels.hpp"
+#include "engine/wind/ground/wind_stroke.hpp"
+#include "engine/wind/ground/wind_tape.hpp"
+
+namespace yuragi {
+
+/// What has been measured, where it is by now: the tapes of all places that have a sensor, and how much of what is
+/// written on them still holds at any place over the ground.
+///
+/// At a place x, a way D = (x - pen) . ahead downwind of the pen, the tape is read D of the way ago. The air of that
+/// moment is by now at P = its pen + how far it has been carried since, and the place is |x - P| away from it: across
+/// the wind in a steady wind, farther where the wind has turned. So the distance by which gusts are lost
+/// (GustCoherence) has two parts, that way across and D along; a place upwind of the pen reads the newest sample, which
+/// holds the less the longer the gust still takes to the pen (wave by wave exp(-kappa |D|), as a reading of that age).
+/// What is lost, the noise fills in power: an octave of which the part k was known at the pen is there with the factor
+/// sqrt(1 - k g^2), g being what the bands that carry this octave have kept of it together.
+///
+/// Several places: GustKriging wave by wave; the mean and the way's noise from all of them, the nearest most.
+///
+/// This is conditional simulation with the condition at a place, as PyConTurb (Rinker 2018) and TurbSim do it for a
+/// whole recorded box, but it goes on in time. Known limits: frozen noise does not forget along the way, so that with a
+/// sensor of 1 s the fast octaves of two places on one line of wind are more alike than nature's; what bands lose,
+/// causal low passes lose, so that a place 7 m beside the sensor lags by up to 0.6 s.
+///
+/// Owns the tapes. The table of losses over distance is renewed by a few rows a tick. Thread-safe: reading, yes.
+/// Realtime-safe: all but construction. Every SIMD row computes the same bits.
+class WindTapes {
+ public:
+  /// Tapes for so many pens; what further ones write is not kept.
+  explicit WindTapes(std::size_t most_pens = WindStroke::kMostPens, SimdRow row = best_simd_row());
+
+  /// Takes a tick's stroke in. A way that goes back begins anew.
+  void write(const WindStroke& stroke) noexcept;
+
+  /// Is there anything written?
+  bool is_written() const noexcept { return pen_count_ > 0; }
+
+  /// What is known at a place.
+  struct Known {
+    WindVector mean, way, gusts;  ///< gusts: all measured bands, with what they have kept
+    double gain = 1.0;            ///< of the ceiling, when this wind was measured
+  };
+  /// And what is left of the noise.
+  struct Reading : Known {
+    OctaveLanes noise_along{}, noise_across{};  ///< factors on each octave of the tiles, 0 to 1
+  };
+  /// Metres east and south of the middle of the scenes.
+  Reading at(double east_m, double south_m) const noexcept;
+  /// The same without the noise.
+  Known known_at(double east_m, double south_m) const noexcept;
+
+  /// What is left of the noise at many places: for each octave of the tiles a factor for each place; empty: not asked
+  /// for. An octave is asked for along and across.
+  struct NoiseLeft {
+    std::array<std::span<float>, kTileOctaveCount> along, across;
+  };
+  /// The same at many places, to the same bits; `known` may be empty. All others are as many.
+  void read(std::span<const double> east_m, std::span<const double> south_m, std::span<Known> known,
+            const NoiseLeft& left) const noexcept;
+  /// The same where a sample was taken, at that moment.
+  static Reading at_pen(const WindSample& now) noexcept;
+
+ private:
+  /// How much is kept at some distances, evenly spread over its logarithm; between two of them linear.
+  static constexpr std::size_t kRowsAnOctave = 4;
+  static constexpr int kFirstOctave = -5, kLastOctave = 9;  ///< from 1/32 m to 512 m
+  static constexpr std::size_t kRows = 2 + kRowsAnOctave * static_cast<std::size_t>(kLastOctave - kFirstOctave);
+  static constexpr std::size_t kRowsATick = 2;
+  struct Kept {
+    BandLanes bands{};
+    OctaveLanes octaves{};  ///< in power
+  };
+  struct Row {
+    std::size_t below = 0;
+    float fraction = 0.0F;
+  };
+  static double distance_of(std::size_t row) noexcept;
+  static Row row_of(double distance_m) noexcept;
+
+  /// A tape where a place reads it.
+  struct Found {
+    WindTape::Place place;
+    double distance_m = 0.0;  ///< by which gusts are lost
+    float kept = 1.0F;        ///< less at the end of the tape
+  };
+  Found find(std::size_t tape, double east_m, double south_m) const noexcept;
+  double from_pen_m(std::size_t tape, double east_m, double south_m) const noexcept;
+  void keep(std::size_t first_row, std::size_t count) noexcept;
+  void renew_rows(bool all) noexcept;
+  TapeKernelPlace on_tape(const Found& found) const noexcept;
+  static Known slow_part(const WindTape::Place& place) noexcept;
+  void read_one_tape(std::span<const double> east_m, std::span<const double> south_m, std::span<Known> known,
+                     TapeKernelArguments& arguments) const noexcept;
+  BandLanes bands_kept(std::size_t tape, double distance_m) const noexcept;
+  OctaveLanes octaves_kept(std::size_t tape, double distance_m) const noexcept;
+  Reading at_several(double east_m, double south_m) const noexcept;
+
+  const TapeKernels* kernels_;
+  std::vector<WindTape> tapes_;
+  std::size_t pen_count_ = 0;
+  WindStroke stroke_;
+  BandLanes band_loss_per_m_{};
+  OctaveLanes octave_loss_per_m_{};
+  std::array<std::array<Kept, kRows>, WindStroke::kMostPens> kept_{};  ///< of each tape
+  std::size_t next_row_ = 0;                                           ///< to be renewed
+  GustKriging<kBandLanes> band_kriging_;
+  GustKriging<kOctaveLanes> octave_kriging_;
+};
+
+}  // namespace yuragi

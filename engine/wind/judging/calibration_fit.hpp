@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/base/result.hpp"
+#include "engine/wind/judging/calibration.hpp"
+
+namespace yuragi {
+
+// What a calibration is made of: from what a sensor said beside something known to gain, offset, curve and north
+// offset. Speeds that a sensor said are in m/s, its unit counted and nothing else of its calibration. Each function
+// refuses what would make the wall worse than no calibration, in words that tell a person what to do. All are pure;
+// thread-safe: yes; realtime-safe: no.
+
+// ---- zero ----
+
+/// A sensor in still air.
+struct StillAir {
+  std::size_t count = 0;
+  double mean_m_s = 0.0;
+  double noise_m_s = 0.0;  ///< standard deviation
+};
+
+/// Refuses fewer than 10 readings, more scatter or drift than still air has, and more than a zero error can be.
+Result<StillAir, Failure> measure_still_air(std::span<const double> said_m_s);
+
+/// The offset with which `calibration` makes 0 of `still_m_s`; its gain and curve stay.
+double offset_for_zero_m_s(const Calibration& calibration, double still_m_s) noexcept;
+
+// ---- north ----
+
+/// The mean of directions as unit vectors, so that 350 and 10 degrees have the mean 0.
+struct DirectionMean {
+  std::size_t count = 0;
+  double mean_deg = 0.0;    ///< clockwise, [0, 360)
+  double spread_deg = 0.0;  ///< circular standard deviation, sqrt(-2 ln R) (Mardia and Jupp 2000, eq. 2.3.11)
+};
+
+/// Of any directions, degrees; all fields are 0 for none.
+DirectionMean direction_mean(std::span<const double> directions_deg) noexcept;
+
+/// A vane that somebody holds. Refuses fewer than 5 readings, and a vane that moved.
+Result<DirectionMean, Failure> measure_held_vane(std::span<const double> said_deg);
+
+/// Two vanes in the same wind, by the angle from what one said to what the other says is true, degrees. Refuses fewer
+/// than 20, and vanes that do not turn together.
+Result<DirectionMean, Failure> measure_turn(std::span<const double> turns_deg);
+
+/// A direction at a time, s; the origin is the caller's.
+struct TimedDirection {
+  double time_s = 0.0;
+  double direction_deg = 0.0;
+};
+
+/// Two vanes side by side: the turn from the mean of the one to the mean of the other in each block of `block_s` in
+/// which both spoke, degrees in (-180, 180].
+std::vector<double> pair_turns(std::span<const TimedDirection> said, std::span<const TimedDirection> truth,
+                               double block_s);
+
+/// The same angle in (-180, 180].
+double signed_degrees(double angle_deg) noexcept;
+
+// ---- span ----
+
+/// true = gain * said + offset, and how well it fits.
+struct LineFit {
+  std::size_t count = 0;
+  double gain = 1.0;
+  double offset_m_s = 0.0;
+  double r_squared = 1.0;     ///< part of the variance of the true speeds that the line explains
+  double residual_m_s = 0.0;  ///< root mean square distance of the true speeds from the line
+};
+
+/// Least squares over pairs, of which those without wind (said 0) count for nothing. Refuses fewer than two speeds,
+/// less than 2 m/s between the slowest and the fastest, a gain that no sensor has, and pairs of which the line explains
+/// too little.
+Result<LineFit, Failure> fit_line(std::span<const CalibrationPoint> pairs);
+
+/// The line through one pair and the zero point of the calibration until now. Refuses a wind below 2 m/s, and a gain
+/// that no sensor has.
+Result<LineFit, Failure> fit_line_from_zero(double zero_m_s, const CalibrationPoint& pair);
+
+/// A curve by the method of bins, as IEC 61400-12-1 averages power curves: pairs are averaged in bins of what was said,
+/// and bins that do not rise are joined.
+struct CurveFit {
+  std::vector<CalibrationPoint> curve;
+  double r_squared = 1.0;
+  double residual_m_s = 0.0;
+};
+
+/// Bins of 1 m/s with at least 3 pairs each; a point beyond either end goes on as steeply as that half of the pairs.
+/// Refuses as fit_line() does, and fewer than 3 bins.
+Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs);
+
+/// A speed at a time, s; the origin is the caller's.
+struct TimedSpeed {
+  double time_s = 0.0;
+  double speed_m_s = 0.0;
+};
+
+/// Two sensors side by side: means over blocks of `block_s`, of the blocks in which both spoke. In the order of time.
+std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> said, std::span<const TimedSpeed> truth,
+                                         double block_s);
+
+}  // namespace yuragi

@@ -1,0 +1,215 @@
+#include "engine/wind/judging/reading_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace yuragi {
+namespace {
+
+constexpr double kRobustDeviations = 5.0;
+constexpr double kDeviationPerMad = 1.4826;
+/// A sensor that makes things up has a large deviation, too: beyond so many times the least nothing is believed at
+/// once.
+constexpr double kMostPerLeast = 2.0;
+/// A step that has been said so often is believed, however quick: recordings can be played a hundred times too fast.
+constexpr std::size_t kEnoughRepeats = 20;
+/// What was said so long ago is no measure for what is said now.
+constexpr double kForgotten_s = 600.0;
+/// How many readings the share of bad ones is counted over, and where a sensor is given up and trusted again.
+constexpr double kReadingsCounted = 20.0;
+constexpr double kGiveUpShare = 0.3;
+constexpr double kTrustShare = 0.05;
+/// Below this nothing is told from a calm.
+constexpr double kNoWind_m_s = 0.3;
+constexpr double kStill_m_s = 0.05;
+/// The turbulence that a sensor's steps are compared with, and how much longer a coarse one may repeat itself.
+constexpr double kLittleTurbulence = 0.05;
+constexpr double kCoarsePatience = 10.0;
+/// How much longer than it usually does, and how much longer one that has never said anything else.
+constexpr double kRepeatingPatience = 10.0;
+constexpr double kNeverMovedPatience = 20.0;
+constexpr double kRunsRemembered = 16.0;
+/// A silence is no stillness: between two readings it counts for so long at most.
+constexpr double kLongestStep_s = 600.0;
+constexpr double kDay_s = 86400.0;
+
+template <std::size_t N>
+double median(std::array<double, N> values) noexcept {
+  const auto middle = values.begin() + N / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Without a direction only the speed is compared: as if all came from one side.
+WindVector vector_of(const WindReading& reading) noexcept {
+  return wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
+}
+
+bool says_the_same(const WindReading& a, const WindReading& b) noexcept {
+  return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg && a.gust_m_s == b.gust_m_s;
+}
+
+}  // namespace
+
+bool ReadingJudge::judge(const WindReading& reading, std::optional<double> others_m_s) noexcept {
+  const double time_s = seconds(reading.time.mono.time_since_epoch());
+  if (has_begun_ && time_s < last_s_) return false;
+  if (!has_begun_) last_s_ = time_s;
+  has_begun_ = true;
+  if (time_s - last_s_ > kForgotten_s) {
+    believed_ = 0;
+    same_.reset();
+  }
+
+  fault_ = fault_of(reading, time_s, others_m_s);
+  last_s_ = time_s;
+  return fault_ == ReadingFault::kNone;
+}
+
+void ReadingJudge::count_impossible(std::uint64_t readings) noexcept {
+  // More than are remembered change nothing any more.
+  const auto counted = std::min(static_cast<double>(readings), 10.0 * kReadingsCounted);
+  for (double i = 0.0; i < counted; ++i) count(true);
+  if (is_implausible_ && fault_ <= ReadingFault::kImplausible) fault_ = ReadingFault::kImplausible;
+}
+
+ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
+                                    std::optional<double> others_m_s) noexcept {
+  const bool is_out_of_range = reading.speed_m_s > settings_.max_speed_m_s;
+  const bool is_repeated = is_frozen(reading, time_s);
+  const bool is_dead = is_seized(reading.speed_m_s, time_s, others_m_s);
+  if (is_out_of_range || is_repeated || is_dead) {
+    dismiss_suspicion();
+    believed_ = 0;  // what it said so is no measure for what it will say
+    if (is_out_of_range) count(true);
+    if (is_repeated) return ReadingFault::kFrozen;
+    if (is_dead) return ReadingFault::kSeized;
+    return is_implausible_ ? ReadingFault::kImplausible : ReadingFault::kSpike;
+  }
+
+  const WindVector wind = vector_of(reading);
+  const bool is_held_back = is_spike(wind, time_s);
+  if (!is_held_back) {
+    believe(wind);
+    count(false);
+  }
+  if (is_implausible_) return ReadingFault::kImplausible;
+  return is_held_back ? ReadingFault::kSpike : ReadingFault::kNone;
+}
+
+/// A spike, or the beginning of a step? What comes next will tell.
+bool ReadingJudge::is_spike(WindVector wind, double time_s) noexcept {
+  if (!is_suspect(wind)) {
+    dismiss_suspicion();
+    return false;
+  }
+  if (!suspicion_ || speed_of(wind - suspicion_->wind) > 0.5 * suspicion_->jump_m_s) {
+    dismiss_suspicion();
+    suspicion_ = {.wind = wind, .since_s = time_s, .jump_m_s = speed_of(wind - middle()), .repeats = 0};
+  }
+  ++suspicion_->repeats;
+  if (!is_confirmed(time_s)) return true;
+  suspicion_.reset();
+  believed_ = 0;  // a new wind: what was before is no measure for it
+  return false;
+}
+
+/// What was held back was a spike.
+void ReadingJudge::dismiss_suspicion() noexcept {
+  if (!suspicion_) return;
+  spikes_ += suspicion_->repeats;
+  for (std::size_t i = 0; i < suspicion_->repeats; ++i) count(true);
+  suspicion_.reset();
+}
+
+/// The median of what was believed last, east and north.
+WindVector ReadingJudge::middle() const noexcept {
+  std::array<double, kWindow> u{};
+  std::array<double, kWindow> v{};
+  for (std::size_t i = 0; i < kWindow; ++i) {
+    u[i] = window_[i].u_m_s;
+    v[i] = window_[i].v_m_s;
+  }
+  return {median(u), median(v)};
+}
+
+bool ReadingJudge::is_suspect(WindVector wind) const noexcept {
+  if (believed_ < kWindow) return false;
+  const WindVector usual = middle();
+  std::array<double, kWindow> distances{};
+  for (std::size_t i = 0; i < kWindow; ++i) distances[i] = speed_of(window_[i] - usual);
+  const double least_m_s = settings_.least_spike_m_s + 0.5 * speed_of(usual);
+  const double allowed_m_s =
+      std::clamp(kRobustDeviations * kDeviationPerMad * median(distances), least_m_s, kMostPerLeast * least_m_s);
+  return speed_of(wind - usual) > allowed_m_s;
+}
+
+/// Has the step been there for as long as the wind would take to make it, and been said more than once?
+bool ReadingJudge::is_confirmed(double time_s) const noexcept {
+  const double needed_s = suspicion_->jump_m_s / settings_.slew_m_s2;
+  return suspicion_->repeats >= kEnoughRepeats ||
+         (suspicion_->repeats >= 2 && time_s - suspicion_->since_s >= needed_s);
+}
+
+void ReadingJudge::believe(WindVector wind) noexcept {
+  window_[believed_ % kWindow] = wind;
+  ++believed_;
+}
+
+void ReadingJudge::count(bool is_bad) noexcept {
+  bad_share_ += ((is_bad ? 1.0 : 0.0) - bad_share_) / kReadingsCounted;
+  is_implausible_ = bad_share_ > (is_implausible_ ? kTrustShare : kGiveUpShare);
+}
+
+bool ReadingJudge::is_frozen(const WindReading& reading, double time_s) noexcept {
+  if (!same_ || !says_the_same(reading, *same_)) {
+    if (same_) {
+      const double step_m_s = std::abs(reading.speed_m_s - same_->speed_m_s);
+      if (step_m_s > 0.0) resolution_m_s_ = resolution_m_s_ > 0.0 ? std::min(resolution_m_s_, step_m_s) : step_m_s;
+      // How long it usually stays with a value. A calm says nothing of that, and a freeze little.
+      const double run_s = std::min(time_s - same_since_s_, frozen_patience() * settings_.frozen_s);
+      if (!usual_run_s_) usual_run_s_ = std::min(run_s, settings_.frozen_s);
+      if (same_->speed_m_s >= kNoWind_m_s) *usual_run_s_ += (run_s - *usual_run_s_) / kRunsRemembered;
+    }
+    same_ = reading;
+    same_since_s_ = time_s;
+    same_count_ = 1;
+    return false;
+  }
+  ++same_count_;
+  if (reading.speed_m_s < kNoWind_m_s) return false;
+  const double patience = frozen_patience();
+  const double longest_s = std::max(patience * settings_.frozen_s, kRepeatingPatience * usual_run_s_.value_or(0.0));
+  return static_cast<double>(same_count_) >= patience * static_cast<double>(settings_.frozen_readings) &&
+         time_s - same_since_s_ >= longest_s;
+}
+
+/// How many times longer than another this sensor may repeat itself.
+double ReadingJudge::frozen_patience() const noexcept {
+  if (!usual_run_s_) return kNeverMovedPatience;
+  // Steps as large as the turbulence: the same number for a while is no wonder.
+  const bool is_coarse = same_ && resolution_m_s_ > kLittleTurbulence * same_->speed_m_s;
+  return is_coarse ? kCoarsePatience : 1.0;
+}
+
+bool ReadingJudge::is_seized(double speed_m_s, double time_s, std::optional<double> others_m_s) noexcept {
+  const double passed_s = time_s - last_s_;
+  if (speed_m_s > kStill_m_s) {
+    const double part = usual_m_s_ > 0.0 ? -std::expm1(-passed_s / kDay_s) : 1.0;
+    usual_m_s_ += part * (speed_m_s - usual_m_s_);
+    is_still_ = is_seized_ = false;
+    still_s_ = windy_still_s_ = 0.0;
+    return false;
+  }
+  const bool others_are_windy = others_m_s && *others_m_s > settings_.windy_m_s;
+  const double step_s = std::exchange(is_still_, true) ? std::min(passed_s, kLongestStep_s) : 0.0;
+  still_s_ += step_s;
+  if (others_are_windy) windy_still_s_ += step_s;
+  // Until it moves: a calm that comes over the others mends nothing.
+  is_seized_ = is_seized_ || (others_m_s ? others_are_windy && windy_still_s_ >= settings_.seized_s
+                                         : usual_m_s_ > settings_.windy_m_s && still_s_ >= settings_.seized_alone_s);
+  return is_seized_;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,226 @@
+#include "engine/wind/shaping/wind_shaping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace yuragi {
+namespace {
+
+/// A critically damped step has done 95 % of its way after 4.75 time constants.
+constexpr double kPhaseOfArrival = 4.75;
+/// How long the floor's gain takes to where the mean says.
+constexpr double kFloorGainOver_s = 5.0;
+/// A front is felt within this, so that the gain of a calm does not meet a storm ...
+constexpr double kQuickOver_s = 4.0;
+/// ... and is told from a gust by being so many times the slow mean.
+constexpr double kFrontTimesMean = 2.0;
+/// Longer than any way to anywhere: the first call begins there.
+constexpr double kForEver_s = 1e12;
+
+constexpr double kRememberEvery_s = 1.0;
+/// So much live wind must be known (or this share of a short memory) until the site's percentiles are believed.
+constexpr double kKnownAfter_s = 6.0 * 3600.0;
+constexpr double kKnownShare = 0.25;
+constexpr double kMedian = 0.50;
+constexpr double kStrong = 0.95;
+/// Slower than anything that a sensor tells from calm.
+constexpr double kLeastMedian_m_s = 0.05;
+
+/// Goes on, and ends its way at the target itself, not ever nearer to it.
+void follow_to_the_end(CriticallyDamped& value, double target, double over_s, double dt_s) noexcept {
+  constexpr double kArrived = 1e-6;
+  value.step(target, kPhaseOfArrival / over_s, dt_s);
+  if (std::abs(value.value - target) < kArrived && std::abs(value.rate_per_s) < kArrived) value = {target, 0.0};
+}
+
+/// The breeze has carried the tapes farther, too.
+void carry_tapes(WindStroke& stroke, WindVector blown_m, double way_m) noexcept {
+  stroke.way_m += way_m;
+  stroke.carried_east_m += blown_m.u_m_s;
+  stroke.carried_south_m -= blown_m.v_m_s;
+  for (WindPen& pen : stroke.pens) {
+    for (WindSample* sample : {&pen.now, &pen.written}) {
+      sample->east_m -= blown_m.u_m_s;
+      sample->south_m += blown_m.v_m_s;
+    }
+  }
+}
+
+/// Of gusts that have become stronger by some that nobody measures, the same is a smaller part.
+void know_less(WindStroke& stroke, const GustNoise::Moment& real, const GustNoise::Moment& all) noexcept {
+  const auto part = [](float of_m_s, float all_m_s) {
+    return all_m_s > 0.0F ? of_m_s * of_m_s / (all_m_s * all_m_s) : 0.0F;
+  };
+  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+    const std::size_t octave = GustNoise::kFirstTileOctave + i;
+    const float along = part(real.along_m_s[octave], all.along_m_s[octave]);
+    const float across = part(real.across_m_s[octave], all.across_m_s[octave]);
+    for (WindPen& pen : stroke.pens) {
+      for (WindSample* sample : {&pen.now, &pen.written}) {
+        sample->known_along[i] *= along;
+        sample->known_across[i] *= across;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+WindShaping::WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise)
+    : settings_(settings),
+      noise_(std::move(noise)),
+      along_(gust_variances(*noise_, settings.turbulence_intensity, settings.length_m)),
+      across_(gust_variances(*noise_, kAcrossPerAlong * settings.turbulence_intensity, settings.length_m)),
+      memory_(settings.site_memory_s) {}
+
+void WindShaping::shape(DrivingWind& wind, bool is_open, bool is_of_site) noexcept {
+  WindState& state = wind.state;
+  const double dt_s = has_begun_ ? std::max(0.0, seconds(state.time - time_)) : 0.0;
+  if (!has_begun_ || state.time > time_) time_ = state.time;
+
+  // The slow part: means, what the site is like, and the gains that follow from both.
+  const double speed_m_s = speed_of(state.wind);
+  const double way_s = std::exchange(has_begun_, true) ? dt_s : kForEver_s;
+  mean_.step(speed_m_s, kPhaseOfArrival / settings_.over_s, way_s);
+  quick_mean_.step(speed_m_s, kPhaseOfArrival / kQuickOver_s, way_s);
+  live_s_ = is_of_site && state.live_weight > 0.5 ? live_s_ + dt_s : 0.0;
+  // By then the mean has forgotten what was before.
+  if (live_s_ > settings_.over_s) remember(mean_.value, dt_s);
+  follow(state.live_weight, is_open, way_s);
+
+  // Factors, the breeze, and last the ceiling.
+  apply_gains(wind);
+  add_breeze(wind, dt_s);
+  hold_back(wind);
+}
+
+/// Site gain, floor and opening: on all wind that is over the ground now. And the gusts' own.
+void WindShaping::apply_gains(DrivingWind& wind) const noexcept {
+  const double gain = site_.value * floor_.value * opening_.value;
+  wind.state.wind = gain * wind.state.wind;
+  wind.ground = gain * wind.ground;
+  if (settings_.gusts == 1.0) return;
+  wind.ground.gust_gain = settings_.gusts;
+  const WindVector way = noise_->everywhere(wind.ground.gusts);
+  wind.ground.everywhere = wind.ground.everywhere + (settings_.gusts - 1.0) * way;
+  for (float& deviation : wind.ground.gusts.along_m_s) deviation *= static_cast<float>(settings_.gusts);
+  for (float& deviation : wind.ground.gusts.across_m_s) deviation *= static_cast<float>(settings_.gusts);
+  wind.state.wind = wind_where_measured(wind.ground, wind.stroke, *noise_);
+}
+
+/// The ceiling: on what is measured now, and on that for as long as it crosses the ground.
+void WindShaping::hold_back(DrivingWind& wind) noexcept {
+  speed_m_s_ = speed_of(wind.state.wind);
+  ceiling_gain_ = settings_.ceiling.gain(speed_m_s_);
+  wind.state.wind = ceiling_gain_ * wind.state.wind;
+  if (wind.stroke.pen_count == 0) wind.ground = ceiling_gain_ * wind.ground;
+  for (WindPen& pen : wind.stroke.pens) pen.now.gain = pen.written.gain = ceiling_gain_;
+}
+
+bool WindShaping::restore(std::span<const double> times_s) noexcept {
+  if (!memory_.restore(times_s)) return false;
+  look_at_memory();
+  return true;
+}
+
+/// Tells the memory of the site, now and then, what blew.
+void WindShaping::remember(double mean_m_s, double dt_s) noexcept {
+  if (settings_.site.median_m_s <= 0.0) return;
+  heard_s_ += dt_s;
+  if (heard_s_ < kRememberEvery_s) return;
+  memory_.add(std::max(mean_m_s, 0.0), std::exchange(heard_s_, 0.0));
+  look_at_memory();
+}
+
+void WindShaping::look_at_memory() noexcept {
+  known_s_ = memory_.known_s();
+  median_m_s_ = memory_.percentile(kMedian);
+  strong_m_s_ = memory_.percentile(kStrong);
+}
+
+double WindShaping::site_gain_of(double mean_m_s) const noexcept {
+  const SiteRange& site = settings_.site;
+  if (site.median_m_s <= 0.0 || known_s_ <= 0.0) return 1.0;
+  const double trusted_s = std::min(kKnownAfter_s, kKnownShare * settings_.site_memory_s);
+  const double trust = std::min(1.0, known_s_ / trusted_s);
+  const auto limited = [&site](double gain) { return std::clamp(gain, 1.0 / site.most_gain, site.most_gain); };
+
+  // Where the two percentiles go to; what lies between them goes between.
+  const double median_m_s = std::max(median_m_s_, kLeastMedian_m_s);
+  const double median_gain = limited(site.median_m_s / median_m_s);
+  if (site.strong_m_s <= 0.0) return 1.0 + trust * (median_gain - 1.0);
+  const double strong_m_s = std::max(strong_m_s_, 1.1 * median_m_s);
+  const double strong_gain = limited(site.strong_m_s / strong_m_s);
+  const double mean = std::clamp(mean_m_s, median_m_s, strong_m_s);
+  const double part = (mean - median_m_s) / (strong_m_s - median_m_s);
+  const double wanted_m_s = std::lerp(median_gain * median_m_s, strong_gain * strong_m_s, part);
+  return 1.0 + trust * (wanted_m_s / mean - 1.0);
+}
+
+/// Leads each gain toward where the means and the opening hours want it.
+void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept {
+  // The default wind is no wind of the site: it is what somebody wanted to see.
+  const double site_gain = 1.0 + live_weight * (site_gain_of(mean_.value) - 1.0);
+  follow_to_the_end(site_, site_gain, settings_.over_s, dt_s);
+
+  // A front has the word before the slow mean knows of it.
+  const double mean_m_s = std::max({mean_.value, quick_mean_.value / kFrontTimesMean, 0.0});
+  const double floor_m_s = settings_.floor_m_s;
+  const double least_m_s = floor_m_s / kMostFloorGain;
+  const double site_mean_m_s = site_.value * mean_m_s;
+  const double wanted_gain =
+      floor_m_s > 0.0 ? std::clamp(floor_m_s / std::max(site_mean_m_s, least_m_s), 1.0, kMostFloorGain) : 1.0;
+  follow_to_the_end(floor_, wanted_gain, kFloorGainOver_s, dt_s);
+  follow_to_the_end(breeze_, std::max(0.0, floor_m_s - kMostFloorGain * site_mean_m_s), kFloorGainOver_s, dt_s);
+
+  follow_to_the_end(opening_, is_open ? 1.0 : settings_.closed_level, settings_.fade_s, dt_s);
+}
+
+/// The wind that blows although there is none: with a mean where the wind last came from, and gusts of its own, which
+/// it carries along. In power they are what a wind of the floor's strength has more than one that lacks the breeze.
+void WindShaping::add_breeze(DrivingWind& wind, double dt_s) noexcept {
+  const double breeze_m_s = std::clamp(breeze_.value, 0.0, settings_.floor_m_s);
+  if (breeze_m_s <= 0.0 && blown_m_.u_m_s == 0.0 && blown_m_.v_m_s == 0.0) return;
+  GroundWind& ground = wind.ground;
+  GustNoise::Moment& gusts = ground.gusts;
+  blown_m_ = blown_m_ + breeze_m_s * dt_s * gusts.ahead;
+  blown_way_m_ += breeze_m_s * dt_s;
+  noise_->carry(gusts.carried, blown_m_.u_m_s, -blown_m_.v_m_s, 1.0);
+  carry_tapes(wind.stroke, blown_m_, blown_way_m_);
+
+  const double scale = opening_.value * std::sqrt(breeze_m_s * (2.0 * settings_.floor_m_s - breeze_m_s));
+  GustNoise::Moment own = gusts;
+  const GustNoise::Moment real = gusts;
+  for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
+    const double along_m_s = scale * std::sqrt(along_[i]);
+    const double across_m_s = scale * std::sqrt(across_[i]);
+    own.along_m_s[i] = static_cast<float>(along_m_s);
+    own.across_m_s[i] = static_cast<float>(across_m_s);
+    gusts.along_m_s[i] = static_cast<float>(std::hypot(static_cast<double>(gusts.along_m_s[i]), along_m_s));
+    gusts.across_m_s[i] = static_cast<float>(std::hypot(static_cast<double>(gusts.across_m_s[i]), across_m_s));
+  }
+  know_less(wind.stroke, real, gusts);
+  const WindVector breeze = opening_.value * breeze_m_s * gusts.ahead + noise_->everywhere(own);
+  ground.breeze = ground.breeze + breeze;
+  ground.everywhere = ground.everywhere + breeze;
+
+  wind.state.wind = wind_where_measured(ground, wind.stroke, *noise_);
+}
+
+WindShapingReport WindShaping::report() const noexcept {
+  return {.mean_m_s = mean_.value,
+          .shaped_mean_m_s = site_.value * floor_.value * mean_.value + breeze_.value,
+          .site_gain = site_.value,
+          .floor_gain = floor_.value,
+          .breeze_m_s = breeze_.value,
+          .gusts = settings_.gusts,
+          .opening = opening_.value,
+          .speed_m_s = speed_m_s_,
+          .ceiling_gain = ceiling_gain_,
+          .median_m_s = median_m_s_,
+          .strong_m_s = strong_m_s_,
+          .known_s = known_s_};
+}
+
+}  // namespace yuragi

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "engine/math/critically_damped.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
+#include "engine/wind/shaping/soft_ceiling.hpp"
+#include "engine/wind/shaping/speed_memory.hpp"
+#include "engine/wind/turbulence/gust_variances.hpp"
+#include "engine/wind/wind_state.hpp"
+
+namespace yuragi {
+
+/// The speeds that a site's own wind is to be brought to: its 50th and its 95th percentile.
+struct SiteRange {
+  double median_m_s = 0.0;  ///< 0: no site gain at all
+  double strong_m_s = 0.0;  ///< 0: the median's gain for every wind; otherwise above median_m_s
+  double most_gain = 3.0;   ///< at least 1; and no gain is below 1 / most_gain
+};
+
+struct WindShapingSettings {
+  double floor_m_s = 0.0;  ///< the least mean speed; 0: none
+  SiteRange site = {};
+  double site_memory_s = 7.0 * 86400.0;  ///< of the site's speeds
+  double over_s = 120.0;                 ///< how long floor and site gain take to follow the wind's mean
+  double gusts = 1.0;                    ///< the scenes' gusts over the real ones, 0 to 3; 1: as strong
+  SoftCeiling ceiling = {};
+  double closed_level = 0.0;          ///< outside of opening hours, 0 to 1: the part of the wind that is left
+  double fade_s = 300.0;              ///< how long opening and closing take
+  double turbulence_intensity = 0.3;  ///< of the breeze that the floor adds to a still wind
+  double length_m = 57.0;             ///< and its integral length scale
+};
+
+/// What is at work, as of the last shape().
+struct WindShapingReport {
+  double mean_m_s = 0.0;         ///< slow mean of the real wind
+  double shaped_mean_m_s = 0.0;  ///< what site gain and floor make of it
+  double site_gain = 1.0;
+  double floor_gain = 1.0;
+  double breeze_m_s = 0.0;  ///< what the floor adds
+  double gusts = 1.0;       ///< how strong the gusts are, compared with the real ones
+  double opening = 1.0;     ///< the factor on the wind: closed_level when closed, 1 when open
+  double speed_m_s = 0.0;   ///< of the wind at this moment, before the ceiling
+  double ceiling_gain = 1.0;
+  double median_m_s = 0.0;  ///< the site's own, as far as it is remembered
+  double strong_m_s = 0.0;
+  double known_s = 0.0;  ///< time that is remembered
+};
+
+/// From the real wind to the one that moves the scenes: for days without wind, storms and nights.
+///
+///  1. Site gain: the wind is made stronger or weaker by a factor that takes the site's median to `site.median_m_s`
+///     and its 95th percentile to `site.strong_m_s`; between the two the mean goes on a straight line, and beyond them
+///     the factor stays. It grows from 1 while the first hours of live wind are heard, and is 1 for the default wind.
+///  2. Floor: a mean below it is raised to it by a factor of up to kMostFloorGain; what then still lacks is a breeze
+///     that blows where the wind last came from, with the turbulence of the climate at that level. It carries the
+///     gusts on: those that no sensor measured are others from then on than in the real wind.
+///  3. Opening: outside of opening hours only a part is left.
+///  4. Ceiling: SoftCeiling where the wind is measured. Its factor is written on the tapes with the wind that it holds
+///     back, so that a gust crosses the ground as it was cut.
+///
+/// A factor never turns the wind. Site gain, floor and opening are slow, critically damped: they never jump, whatever
+/// the wind, the clock or `is_open` does. What is switched off leaves the wind as it is, bit for bit. Finite for a
+/// finite wind. Thread-safe: no. Realtime-safe: all but construction.
+class WindShaping {
+ public:
+  static constexpr double kMostFloorGain = 3.0;
+
+  /// `noise`: the one that the estimator and the scenes have.
+  WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise);
+
+  /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call begins where
+  /// its wind and `is_open` say, without a way there. `is_of_site`: live wind is what the site has, and is remembered.
+  void shape(DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
+
+  const WindShapingSettings& settings() const noexcept { return settings_; }
+  WindShapingReport report() const noexcept;
+
+  /// The site's speeds (slow means of the live wind), to be kept over a restart, and back, before the first shape().
+  const SpeedMemory& memory() const noexcept { return memory_; }
+  bool restore(std::span<const double> times_s) noexcept;
+
+ private:
+  void remember(double mean_m_s, double dt_s) noexcept;
+  void look_at_memory() noexcept;
+  double site_gain_of(double mean_m_s) const noexcept;
+  void follow(double live_weight, bool is_open, double dt_s) noexcept;
+  void apply_gains(DrivingWind& wind) const noexcept;
+  void add_breeze(DrivingWind& wind, double dt_s) noexcept;
+  void hold_back(DrivingWind& wind) noexcept;
+
+  WindShapingSettings settings_;
+  std::shared_ptr<const GustNoise> noise_;
+  GustVariances along_, across_;  ///< of the breeze
+  SpeedMemory memory_;
+  double live_s_ = 0.0;   ///< for how long the wind has been a sensor's
+  double heard_s_ = 0.0;  ///< time since the memory was told
+  double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
+  CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
+  CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0};
+  WindVector blown_m_;        ///< how far the breeze has carried the gusts besides
+  double blown_way_m_ = 0.0;  ///< and along how much of a way
+  double speed_m_s_ = 0.0, ceiling_gain_ = 1.0;
+  MonoTime time_{};
+  bool has_begun_ = false;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,46 @@
+#include "engine/wind/turbulence/gust_variances.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/wind/turbulence/turbulence_fit.hpp"
+
+namespace yuragi {
+
+double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept {
+  return std::numbers::sqrt2 * octave.from_rad_m * advection_m_s / (2.0 * std::numbers::pi);
+}
+
+GustVariances gust_variances(const GustNoise& noise, double intensity, double length_m) noexcept {
+  // On the ground, in two dimensions: what is left of von Karman's variance above |k|.
+  const auto above = [length_m](double rad_m) {
+    const double reduced = 1.339 * length_m * rad_m;
+    return std::pow(1.0 + reduced * reduced, -1.0 / 3.0);
+  };
+  // Along the way, in one: at a wind of 1 m/s a wavenumber k is a frequency k / 2 pi.
+  const auto along_way = [length_m](double from_rad_m, double to_rad_m) {
+    return von_karman_share(from_rad_m / (2.0 * std::numbers::pi), to_rad_m / (2.0 * std::numbers::pi), length_m);
+  };
+
+  GustVariances shares{};
+  const auto& octaves = noise.octaves();
+  for (std::size_t which = 0; which < 2; ++which) {
+    const std::size_t way = which * GustNoise::kWayOctaves;
+    const std::size_t tile = GustNoise::kFirstTileOctave + which * GustNoise::kTileOctaves;
+    // What is too long for the tiles is the way's. Its first octave stands for all that is longer, too.
+    const double longest_rad_m = octaves[tile].from_rad_m;
+    const double scale = (1.0 - above(longest_rad_m)) / along_way(0.0, longest_rad_m);
+    for (std::size_t i = 0; i < GustNoise::kWayOctaves; ++i) {
+      const GustNoise::Octave& octave = octaves[way + i];
+      shares[way + i] = scale * along_way(i == 0 ? 0.0 : octave.from_rad_m, octave.to_rad_m);
+    }
+    for (std::size_t i = 0; i < GustNoise::kTileOctaves; ++i) {
+      const GustNoise::Octave& octave = octaves[tile + i];
+      shares[tile + i] = above(octave.from_rad_m) - above(octave.to_rad_m);
+    }
+  }
+  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] *= octaves[i].share * intensity * intensity;
+  return shares;
+}
+
+}  // namespace yuragi

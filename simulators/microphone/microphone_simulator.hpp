@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "simulators/microphone/microphone_sound.hpp"
+#include "simulators/simulator.hpp"
+
+namespace yuragi::sim {
+
+/// Where the sound goes, at the pace at which it is made. Raw 32-bit floats, native byte order, frame after frame.
+struct MicrophoneOutputs {
+  std::string socket;  ///< a Unix stream socket to listen on, any number of clients; empty: none
+  std::string pipe;    ///< a named pipe that somebody else reads (PulseAudio's module-pipe-source); empty: none
+};
+
+/// Simulated microphones. A client too slow for the sound loses some of it, in whole frames. Unplugged, the socket and
+/// its name are gone, and the named pipe is closed; both come back.
+class MicrophoneSimulator final : public Simulator {
+ public:
+  /// Listens at once. Throws std::runtime_error where that fails.
+  MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs, MeasuredWind wind);
+  ~MicrophoneSimulator() override;
+
+  std::span<const FaultKind> known_faults() const override;
+  std::vector<int> descriptors() const override;
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What microphones can suffer.
+std::span<const FaultKind> microphone_faults();
+
+}  // namespace yuragi::sim

@@ -1,0 +1,84 @@
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "simulators/commands.hpp"
+#include "simulators/common_options.hpp"
+#include "simulators/modbus/modbus_simulator.hpp"
+
+namespace yuragi::sim {
+namespace {
+
+struct ModbusOptions {
+  std::string tcp = "127.0.0.1:1502";
+  bool is_rtu = false;
+  std::string link;
+  std::vector<std::string> devices;
+  std::optional<int> fault_id;
+  double late_s = ModbusFaultOptions{}.late_s;
+  CommonOptions common;
+};
+
+/// The slaves of all devices. Throws CLI::ValidationError for a device that nobody knows.
+std::vector<ModbusSlave> slaves_of(std::vector<std::string> devices) {
+  if (devices.empty()) devices.emplace_back("renke-rs-fsjt-rs-fxjt-n01");
+  std::vector<ModbusSlave> slaves;
+  try {
+    for (const std::string& device : devices) {
+      const auto more = modbus_slaves(device);
+      slaves.insert(slaves.end(), more.begin(), more.end());
+    }
+  } catch (const std::runtime_error& error) {
+    throw CLI::ValidationError("--device", error.what());
+  }
+  return slaves;
+}
+
+void simulate_modbus(const ModbusOptions& options) {
+  const std::vector<ModbusSlave> slaves = slaves_of(options.devices);
+  std::unique_ptr<ModbusPort> port;
+  if (options.is_rtu) {
+    port = make_modbus_rtu_port(options.link);
+  } else {
+    const Address address = address_option("--tcp", options.tcp);
+    port = make_modbus_tcp_port(address.host, address.port);
+  }
+  ModbusFaultOptions faults{.id = std::nullopt, .late_s = options.late_s, .seed = options.common.synthetic.seed};
+  if (options.fault_id) faults.id = static_cast<std::uint8_t>(*options.fault_id);
+  ModbusSimulator simulator(slaves, std::move(port), options.common.make_wind(), faults);
+
+  // Scripts wait for this line.
+  std::printf("%s %s\n", options.is_rtu ? "serving" : "listening on", simulator.name().c_str());
+  std::fflush(stdout);
+  options.common.run_simulator(simulator);
+}
+
+}  // namespace
+
+void add_modbus_command(CLI::App& app) {
+  auto options = std::make_shared<ModbusOptions>();
+  CLI::App* command =
+      app.add_subcommand("modbus", "Modbus line, over TCP or serial (RTU), with the registers of real wind sensors");
+  CLI::Option* tcp = command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one");
+  tcp->capture_default_str();
+  CLI::Option* rtu = command->add_flag("--rtu", options->is_rtu, "be a serial port (a pseudo terminal) instead");
+  rtu->excludes(tcp);
+  command->add_option("--link", options->link, "with --rtu: make this link to the port, a name that stays")->needs(rtu);
+  command->add_option("--device,--profile", options->devices,
+                      fmt::format("NAME or NAME@ID, with the id of its first slave; can be given again, for a line of "
+                                  "several. NAME is one of {} (default renke-rs-fsjt-rs-fxjt-n01)",
+                                  fmt::join(modbus_device_names(), ", ")));
+  command->add_option("--fault-id", options->fault_id, "the only slave that suffers the faults; all do without it")
+      ->check(CLI::Range(1, 247));
+  command->add_option("--late-by", options->late_s, "how late an answer is under the fault late, s")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  options->common.add_to(*command);
+  command->callback([options] { simulate_modbus(*options); });
+}
+
+}  // namespace yuragi::sim

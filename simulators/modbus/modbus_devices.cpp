@@ -1,0 +1,229 @@
+// Simulated Modbus devices. Their registers stand here, and nowhere else in the simulators; the drivers have their own
+// (as profiles), so that a mistake on either side shows. Numbers are those on the wire. Sources: the makers' manuals,
+// as the profile of each device names them.
+#include "simulators/modbus/modbus_devices.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace yuragi::sim {
+namespace {
+
+constexpr double kTenths = 10.0;
+
+double compass_point_of(double direction_deg, int points) {
+  return static_cast<double>(std::lround(direction_deg * points / 360.0) % points);
+}
+
+/// Renke RS-FSJT-N01 (and the clones that copy it): 0x0000 speed, 0.1 m/s.
+void measure_cup(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(0x0000, kTenths * air.speed_m_s);
+}
+
+/// Renke RS-FXJT-N01: 0x0000 eight points, 0x0001 degrees.
+void measure_renke_vane(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(0x0000, compass_point_of(air.direction_deg, 8));
+  registers.set(0x0001, air.direction_deg);
+}
+
+/// DFRobot SEN0482 V2: 0x0000 tenths of degrees, 0x0001 sixteen points.
+void measure_sen0482(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(0x0000, kTenths * air.direction_deg);
+  registers.set(0x0001, compass_point_of(air.direction_deg, 16));
+}
+
+/// DFRobot SEN0482 V1: 0x0000 sixteen points.
+void measure_sen0482_v1(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(0x0000, compass_point_of(air.direction_deg, 16));
+}
+
+/// Renke multi-station: 500 speed, 501 Beaufort (left at 0 here), 502 eight points, 503 degrees.
+void measure_multi_station(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(500, kTenths * air.speed_m_s);
+  registers.set(501, 0.0);
+  registers.set(502, compass_point_of(air.direction_deg, 8));
+  registers.set(503, air.direction_deg);
+}
+
+/// SenseCAP ONE: from 0x0008 direction, from 0x000E speed, each least, most, mean; thousandths.
+void measure_sensecap(const ModbusAir& air, ModbusRegisterBank& registers) {
+  constexpr double kThousandths = 1000.0;
+  for (int i = 0; i < 3; ++i) registers.set_two(0x0008 + 2 * i, kThousandths * air.direction_deg);
+  registers.set_two(0x000E, kThousandths * air.lull_m_s);
+  registers.set_two(0x0010, kThousandths * air.gust_m_s);
+  registers.set_two(0x0012, kThousandths * air.speed_m_s);
+}
+
+/// Calypso ULP: 200 status; 201 and 202 speed and direction; means of 2 and 10 min; 207 and 208 gust and its direction.
+void measure_calypso(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(200, 0.0);
+  for (int i = 201; i <= 207; i += 2) {
+    const double speed_m_s = i == 201 ? air.speed_m_s : i == 207 ? air.gust_m_s : air.mean_m_s;
+    registers.set(i, kTenths * speed_m_s);
+    registers.set(i + 1, kTenths * air.direction_deg);
+  }
+}
+
+/// Lufft UMB: 42 actual, 43 least, 44 most, 45 mean, 46 vectorial mean, 47 fast.
+void measure_lufft(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(42, kTenths * air.mean_m_s);
+  registers.set(43, kTenths * air.lull_m_s);
+  registers.set(44, kTenths * air.gust_m_s);
+  registers.set(45, kTenths * air.mean_m_s);
+  registers.set(46, kTenths * air.mean_m_s);
+  registers.set(47, kTenths * air.speed_m_s);
+}
+
+/// WM80: floats; speed and direction in turn: sample, instant, mean; lull; gust; direction of the mean, of the gust.
+void measure_wm80(const ModbusAir& air, ModbusRegisterBank& registers) {
+  for (int i = 0x0000; i <= 0x0008; i += 4) {
+    registers.set_float(i, i == 0x0008 ? air.mean_m_s : air.speed_m_s);
+    registers.set_float(i + 2, air.direction_deg);
+  }
+  registers.set_float(0x000C, air.lull_m_s);
+  registers.set_float(0x000E, air.gust_m_s);
+  registers.set_float(0x0010, air.direction_deg);
+  registers.set_float(0x0012, air.direction_deg);
+}
+
+/// MaxiMet GMX: 40001 node letter, 40003 DIR, 40005 SPEED, 40007 CDIR, less 40001 each.
+void measure_gmx(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set_float(0, 'Q');
+  registers.set_float(2, air.direction_deg);
+  registers.set_float(4, air.speed_m_s);
+  registers.set_float(6, air.direction_deg);
+}
+
+/// MetSENS200: 40001 DIR, 40003 SPEED.
+void measure_metsens(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set_float(0, air.direction_deg);
+  registers.set_float(2, air.speed_m_s);
+}
+
+/// Lambrecht: from 30001 speed now, mean, most, least; from 30201 direction likewise.
+void measure_lambrecht(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(30001, kTenths * air.speed_m_s);
+  registers.set(30002, kTenths * air.mean_m_s);
+  registers.set(30003, kTenths * air.gust_m_s);
+  registers.set(30004, kTenths * air.lull_m_s);
+  for (int i = 30201; i <= 30204; ++i) registers.set(i, kTenths * air.direction_deg);
+}
+
+/// Thies: 30001 speed now, 30003 mean, 30011 gust; 30203 direction, 30211 that of the gust; two registers each.
+void measure_thies(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set_two(30001, kTenths * air.speed_m_s);
+  registers.set_two(30003, kTenths * air.speed_m_s);
+  registers.set_two(30011, kTenths * air.gust_m_s);
+  registers.set_two(30203, kTenths * air.direction_deg);
+  registers.set_two(30211, kTenths * air.direction_deg);
+}
+
+constexpr std::array kRenkeCup = {ModbusSlave{1, 3, measure_cup}};
+constexpr std::array kRenkePair = {ModbusSlave{1, 3, measure_cup}, ModbusSlave{2, 3, measure_renke_vane}};
+constexpr std::array kDfrobotCup = {ModbusSlave{2, 3, measure_cup}};
+constexpr std::array kDfrobotPair = {ModbusSlave{2, 3, measure_cup}, ModbusSlave{3, 3, measure_sen0482}};
+constexpr std::array kDfrobotPairV1 = {ModbusSlave{2, 3, measure_cup}, ModbusSlave{3, 3, measure_sen0482_v1}};
+constexpr std::array kMultiStation = {ModbusSlave{1, 3, measure_multi_station}};
+constexpr std::array kSensecap = {ModbusSlave{1, 4, measure_sensecap}};
+constexpr std::array kCalypso = {ModbusSlave{1, 3, measure_calypso}};
+constexpr std::array kLufft = {ModbusSlave{1, 4, measure_lufft}};
+constexpr std::array kWm80 = {ModbusSlave{1, 3, measure_wm80}};
+constexpr std::array kGmx = {ModbusSlave{1, 3, measure_gmx}};
+constexpr std::array kMetsens = {ModbusSlave{1, 3, measure_metsens}};
+constexpr std::array kLambrecht = {ModbusSlave{1, 4, measure_lambrecht, 30002}};
+constexpr std::array kThies = {ModbusSlave{1, 4, measure_thies}};
+constexpr std::array kVane = {ModbusSlave{1, 3, measure_renke_vane}};
+constexpr std::array kDfrobotVane = {ModbusSlave{2, 3, measure_sen0482}};
+
+struct DeviceEntry {
+  std::string_view name;
+  std::span<const ModbusSlave> slaves;
+};
+constexpr std::array<DeviceEntry, 18> kModbusDevices = {{
+    {"renke-rs-fsjt-rs-fxjt-n01", kRenkePair},
+    {"renke-rs-fsjt-n01", kRenkeCup},
+    {"renke-rs-fxjt-n01", kVane},
+    {"dfrobot-sen0483", kDfrobotCup},
+    {"dfrobot-sen0482", kDfrobotVane},
+    {"dfrobot-sen0483-sen0482", kDfrobotPair},
+    {"dfrobot-sen0483-sen0482-v1", kDfrobotPairV1},
+    {"renke-multi-station", kMultiStation},
+    {"seeed-sensecap-one", kSensecap},
+    {"calypso-ulp", kCalypso},
+    {"lufft-umb", kLufft},
+    {"vaisala-wm80", kWm80},
+    {"gill-maximet-gmx", kGmx},
+    {"campbell-metsens200", kMetsens},
+    {"lambrecht-industry", kLambrecht},
+    {"thies-clima-sensor-us", kThies},
+    {"xunchip-xm8589", kRenkeCup},
+    {"generic-rs485-cup", kRenkeCup},
+}};
+
+constexpr int kHighestSlaveId = 247;
+
+/// 0 for what is no id.
+int slave_id_in(std::string_view text) {
+  int id = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  return error == std::errc{} && end == text.data() + text.size() ? id : 0;
+}
+
+}  // namespace
+
+void ModbusRegisterBank::set(int address, double value) {
+  set_bits(address, static_cast<std::uint16_t>(std::lround(value)));
+}
+
+void ModbusRegisterBank::set_two(int address, double value) {
+  const auto bits = static_cast<std::uint32_t>(std::lround(value));
+  set_bits(address, static_cast<std::uint16_t>(bits >> 16U));
+  set_bits(address + 1, static_cast<std::uint16_t>(bits & 0xFFFFU));
+}
+
+void ModbusRegisterBank::set_float(int address, double value) {
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  set_bits(address, static_cast<std::uint16_t>(bits >> 16U));
+  set_bits(address + 1, static_cast<std::uint16_t>(bits & 0xFFFFU));
+}
+
+std::optional<std::uint16_t> ModbusRegisterBank::at(std::uint16_t address) const {
+  const auto found = registers_.find(address);
+  return found != registers_.end() ? std::optional(found->second) : std::nullopt;
+}
+
+std::vector<std::string> modbus_device_names() {
+  std::vector<std::string> names;
+  names.reserve(kModbusDevices.size());
+  for (const DeviceEntry& device : kModbusDevices) names.emplace_back(device.name);
+  return names;
+}
+
+std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id) {
+  const std::size_t at = name_and_id.find('@');
+  const std::string_view name = name_and_id.substr(0, at);
+  const auto device = std::ranges::find(kModbusDevices, name, &DeviceEntry::name);
+  if (device == kModbusDevices.end()) {
+    throw std::runtime_error(
+        fmt::format("no simulated Modbus device \"{}\"; known: {}", name, fmt::join(modbus_device_names(), ", ")));
+  }
+  std::vector<ModbusSlave> slaves(device->slaves.begin(), device->slaves.end());
+  if (at == std::string_view::npos) return slaves;
+
+  const int first = slave_id_in(name_and_id.substr(at + 1));
+  const int last = first + static_cast<int>(slaves.size()) - 1;
+  if (first < 1 || last > kHighestSlaveId) {
+    throw std::runtime_error(fmt::format("\"{}\" is no slave id; allowed: 1 to {}", name_and_id, kHighestSlaveId));
+  }
+  for (std::size_t i = 0; i < slaves.size(); ++i) slaves[i].id = static_cast<std::uint8_t>(first + static_cast<int>(i));
+  return slaves;
+}
+
+}  // namespace yuragi::sim

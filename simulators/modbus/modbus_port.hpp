@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulators/modbus/modbus_protocol.hpp"
+
+namespace yuragi::sim {
+
+/// Where a simulated Modbus bus is reached: a TCP port or a serial one.
+class ModbusPort {
+ public:
+  /// A question, and whom to answer.
+  struct Heard {
+    int client;
+    ModbusQuestion question;
+  };
+
+  virtual ~ModbusPort() = default;
+
+  virtual bool is_rtu() const = 0;
+  /// For others to open: "127.0.0.1:1502", "/dev/pts/3".
+  virtual std::string name() const = 0;
+
+  virtual std::vector<int> descriptors() const = 0;
+  /// The questions that have come over those descriptors that can be read. Never waits.
+  virtual std::vector<Heard> hear(std::span<const int> ready) = 0;
+  /// Says bytes to a client; to one that is gone, nothing.
+  virtual void say(int client, std::span<const std::uint8_t> bytes) = 0;
+
+  /// Goes away: connections are closed, the port is there no more.
+  virtual void leave() = 0;
+  /// Is there again under the same name, if it had left and can be.
+  virtual void come_back() = 0;
+};
+
+/// Listens at once; port 0 takes a free one. Serves any number of clients. Throws std::runtime_error for an address
+/// that cannot be had.
+std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::uint16_t port);
+
+/// A pseudo terminal, and, if it is not empty, a `link` to it. Throws std::system_error.
+std::unique_ptr<ModbusPort> make_modbus_rtu_port(const std::string& link);
+
+}  // namespace yuragi::sim

@@ -1,0 +1,48 @@
+#include <algorithm>
+
+#include "simulators/modbus/modbus_port.hpp"
+#include "simulators/pty.hpp"
+
+namespace yuragi::sim {
+namespace {
+
+class RtuPort final : public ModbusPort {
+ public:
+  explicit RtuPort(const std::string& link) : pty_(link) {}
+
+  bool is_rtu() const override { return true; }
+  std::string name() const override { return pty_.path(); }
+
+  std::vector<int> descriptors() const override {
+    return pty_.is_plugged_in() ? std::vector<int>{pty_.descriptor()} : std::vector<int>{};
+  }
+
+  std::vector<Heard> hear(std::span<const int> ready) override {
+    std::vector<Heard> heard;
+    if (std::ranges::count(ready, pty_.descriptor()) == 0) return heard;
+    const auto bytes = pty_.read();
+    incoming_.insert(incoming_.end(), bytes.begin(), bytes.end());
+    while (const auto question = take_rtu_question(incoming_)) heard.push_back({0, *question});
+    return heard;
+  }
+
+  void say(int /*client*/, std::span<const std::uint8_t> bytes) override { pty_.write(bytes); }
+
+  void leave() override {
+    pty_.unplug();
+    incoming_.clear();
+  }
+  void come_back() override { pty_.plug_in(); }
+
+ private:
+  Pty pty_;
+  ModbusBytes incoming_;
+};
+
+}  // namespace
+
+std::unique_ptr<ModbusPort> make_modbus_rtu_port(const std::string& link) {
+  return std::make_unique<RtuPort>(link);
+}
+
+}  // namespace yuragi::sim

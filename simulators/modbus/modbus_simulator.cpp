@@ -1,0 +1,255 @@
+#include "simulators/modbus/modbus_simulator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <random>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace yuragi::sim {
+namespace {
+
+constexpr double kWindow_s = 3.0;         // of gust, lull and mean
+constexpr double kPauseOfSplit_s = 0.03;  // between the pieces of an answer
+constexpr std::size_t kMostRegisters = 125;
+constexpr std::size_t kGarbageBytes = 24;
+
+/// Speeds of a stretch of time.
+class SpeedWindow {
+ public:
+  void add(double time_s, double speed_m_s) {
+    while (!speeds_.empty() && speeds_.front().first < time_s - kWindow_s) speeds_.pop_front();
+    speeds_.emplace_back(time_s, speed_m_s);
+  }
+  void clear() { speeds_.erase(speeds_.begin(), speeds_.empty() ? speeds_.end() : std::prev(speeds_.end())); }
+
+  /// The air with these speeds in it; at least one must have been added.
+  ModbusAir air(double direction_deg) const {
+    ModbusAir air{.speed_m_s = speeds_.back().second,
+                  .direction_deg = direction_deg,
+                  .gust_m_s = speeds_.back().second,
+                  .lull_m_s = speeds_.back().second,
+                  .mean_m_s = 0.0};
+    for (const auto& [time_s, speed_m_s] : speeds_) {
+      air.gust_m_s = std::max(air.gust_m_s, speed_m_s);
+      air.lull_m_s = std::min(air.lull_m_s, speed_m_s);
+      air.mean_m_s += speed_m_s / static_cast<double>(speeds_.size());
+    }
+    return air;
+  }
+
+ private:
+  std::deque<std::pair<double, double>> speeds_;
+};
+
+/// One device on the simulated line.
+struct SimulatedSlave {
+  ModbusSlave model;
+  SpeedWindow window;
+  ModbusRegisterBank registers;
+};
+
+/// Bytes that wait for their time.
+struct DueMessage {
+  double due_s;
+  int client;
+  ModbusBytes bytes;
+};
+
+}  // namespace
+
+class ModbusSimulator::State {
+ public:
+  State(std::unique_ptr<ModbusPort> port, MeasuredWind wind, const ModbusFaultOptions& options)
+      : port_(std::move(port)), wind_(std::move(wind)), options_(options), random_(options.seed) {}
+
+  void add(const ModbusSlave& slave) {
+    if (slave_of(slave.id) != nullptr) {
+      throw std::runtime_error(fmt::format("two devices with id {}: give one another, as NAME@ID", slave.id));
+    }
+    slaves_.push_back({slave, {}, {}});
+  }
+
+  const ModbusPort& port() const { return *port_; }
+
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+    // The devices measure on, whoever asks.
+    now_s_ = time_s;
+    fault_ = fault;
+    moment_ = wind_.at(time_s, fault);
+    for (SimulatedSlave& slave : slaves_) {
+      slave.window.add(time_s, moment_.speed_m_s);
+      slave.model.measure(slave.window.air(moment_.direction_deg), slave.registers);
+    }
+
+    // Gone: nobody is served until the port is back.
+    if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
+      outgoing_.clear();
+      return port_->leave();
+    }
+    port_->come_back();
+
+    for (const ModbusPort::Heard& heard : port_->hear(ready)) answer(heard);
+    say_what_is_due();
+  }
+
+  std::string status() const {
+    return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {} answers{}{}", moment_.speed_m_s, moment_.direction_deg,
+                       answered_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
+  }
+
+ private:
+  SimulatedSlave* slave_of(std::uint8_t id) {
+    const auto found = std::ranges::find(slaves_, id, [](const SimulatedSlave& slave) { return slave.model.id; });
+    return found != slaves_.end() ? &*found : nullptr;
+  }
+
+  /// What a device answers that is well; a clearing register clears.
+  static ModbusBytes right_answer(SimulatedSlave& slave, const ModbusQuestion& question) {
+    if (question.function != slave.model.function) return exception_answer(question.function, kIllegalFunction);
+    if (question.count < 1 || question.count > kMostRegisters) {
+      return exception_answer(question.function, kIllegalValue);
+    }
+    std::vector<std::uint16_t> values;
+    for (unsigned i = 0; i < question.count; ++i) {
+      const auto value = slave.registers.at(static_cast<std::uint16_t>(question.address + i));
+      if (!value) return exception_answer(question.function, kIllegalAddress);
+      values.push_back(*value);
+    }
+    const std::uint16_t clearing = slave.model.clearing_register;
+    if (clearing >= question.address && clearing < question.address + question.count) slave.window.clear();
+    return registers_answer(question.function, values);
+  }
+
+  void answer(const ModbusPort::Heard& heard) {
+    // Where nobody has that id, a gateway says so, and a serial line stays silent.
+    const ModbusQuestion& question = heard.question;
+    SimulatedSlave* const slave = slave_of(question.unit);
+    if (slave == nullptr) {
+      if (!port_->is_rtu()) say(heard, exception_answer(question.function, kGatewayTargetSilent), 0.0);
+      return;
+    }
+    const bool is_well = !fault_ || (options_.id && *options_.id != question.unit);
+    ++answered_;
+    if (is_well) return say(heard, right_answer(*slave, question), 0.0);
+    answer_wrongly(heard, right_answer(*slave, question));
+  }
+
+  void answer_wrongly(ModbusPort::Heard heard, const ModbusBytes& right) {
+    switch (*fault_) {
+      case FaultKind::kSilence:
+        return;
+      case FaultKind::kLate:
+        return say(heard, right, options_.late_s);
+      case FaultKind::kException:
+        return say(heard, exception_answer(heard.question.function, kDeviceFailure), 0.0);
+      case FaultKind::kWrongTransaction:
+        --heard.question.transaction;
+        return say(heard, right, 0.0);
+      case FaultKind::kWrongId:
+        ++heard.question.unit;
+        return say(heard, right, 0.0);
+      case FaultKind::kGarbage:
+      case FaultKind::kSplit:
+      case FaultKind::kPartial:
+      case FaultKind::kBadChecksum:
+        return say_damaged(heard.client, message(heard.question, right));
+      case FaultKind::kFreeze:
+      case FaultKind::kSpike:
+      case FaultKind::kDisconnect:
+      case FaultKind::kUnplug:
+        return say(heard, right, 0.0);
+    }
+  }
+
+  void say_damaged(int client, ModbusBytes bytes) {
+    if (fault_ == FaultKind::kSplit) {
+      // A byte, then some, then the rest.
+      const auto first = bytes.begin() + 1;
+      const auto second = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2 + 1);
+      queue(client, {bytes.begin(), first}, 0.0);
+      queue(client, {first, second}, kPauseOfSplit_s);
+      queue(client, {second, bytes.end()}, 2 * kPauseOfSplit_s);
+      return;
+    }
+    if (fault_ == FaultKind::kGarbage) {
+      bytes.resize(kGarbageBytes);
+      std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
+    } else if (fault_ == FaultKind::kPartial) {
+      bytes.pop_back();
+    } else {
+      bytes.back() ^= 0xFFU;
+    }
+    queue(client, std::move(bytes), 0.0);
+  }
+
+  ModbusBytes message(const ModbusQuestion& question, const ModbusBytes& answer) const {
+    return port_->is_rtu() ? rtu_message(question.unit, answer)
+                           : tcp_message(question.transaction, question.unit, answer);
+  }
+
+  void say(const ModbusPort::Heard& heard, const ModbusBytes& answer, double delay_s) {
+    queue(heard.client, message(heard.question, answer), delay_s);
+  }
+
+  void queue(int client, ModbusBytes bytes, double delay_s) {
+    outgoing_.push_back({now_s_ + delay_s, client, std::move(bytes)});
+  }
+
+  void say_what_is_due() {
+    for (const DueMessage& out : outgoing_) {
+      if (out.due_s <= now_s_) port_->say(out.client, out.bytes);
+    }
+    std::erase_if(outgoing_, [this](const DueMessage& out) { return out.due_s <= now_s_; });
+  }
+
+  std::unique_ptr<ModbusPort> port_;
+  MeasuredWind wind_;
+  ModbusFaultOptions options_;
+  std::mt19937_64 random_;
+  std::vector<SimulatedSlave> slaves_;
+  std::vector<DueMessage> outgoing_;
+
+  double now_s_ = 0.0;
+  PlayedMoment moment_;
+  std::optional<FaultKind> fault_;
+  std::uint64_t answered_ = 0;
+};
+
+ModbusSimulator::ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port,
+                                 MeasuredWind wind, const ModbusFaultOptions& options)
+    : state_(std::make_unique<State>(std::move(port), std::move(wind), options)) {
+  for (const ModbusSlave& slave : slaves) state_->add(slave);
+}
+
+ModbusSimulator::~ModbusSimulator() = default;
+
+std::string ModbusSimulator::name() const {
+  return state_->port().name();
+}
+
+std::span<const FaultKind> ModbusSimulator::known_faults() const {
+  using enum FaultKind;
+  static constexpr std::array kOverTcp = {kSilence, kFreeze,           kSpike, kGarbage,   kSplit,     kPartial,
+                                          kWrongId, kWrongTransaction, kLate,  kException, kDisconnect};
+  static constexpr std::array kOverRtu = {kSilence,     kFreeze,  kSpike, kGarbage,   kSplit, kPartial,
+                                          kBadChecksum, kWrongId, kLate,  kException, kUnplug};
+  if (state_->port().is_rtu()) return kOverRtu;
+  return kOverTcp;
+}
+
+std::vector<int> ModbusSimulator::descriptors() const {
+  return state_->port().descriptors();
+}
+
+void ModbusSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+  state_->serve(ready, time_s, fault);
+}
+
+std::string ModbusSimulator::status() const {
+  return state_->status();
+}
+
+}  // namespace yuragi::sim

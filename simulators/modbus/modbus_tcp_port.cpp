@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <map>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <modbus/modbus.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "simulators/modbus/modbus_port.hpp"
+
+namespace yuragi::sim {
+namespace {
+
+constexpr int kModbusBacklog = 8;
+
+std::uint16_t listening_port(int socket) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
+  // The port stands at the same place in both families' addresses.
+  return ntohs(reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
+}
+
+class TcpPort final : public ModbusPort {
+ public:
+  TcpPort(const std::string& host, std::uint16_t port) : host_(host), port_(port) {
+    if (listen()) return;
+    throw std::runtime_error(fmt::format("cannot listen on {}:{} ({}): choose another port, or 0 for a free one", host,
+                                         port, modbus_strerror(errno)));
+  }
+  ~TcpPort() override { TcpPort::leave(); }
+  TcpPort(const TcpPort&) = delete;
+  TcpPort& operator=(const TcpPort&) = delete;
+
+  bool is_rtu() const override { return false; }
+  std::string name() const override { return fmt::format("{}:{}", host_, port_); }
+
+  std::vector<int> descriptors() const override {
+    std::vector<int> all;
+    if (listener_ >= 0) all.push_back(listener_);
+    for (const auto& [client, bytes] : clients_) all.push_back(client);
+    return all;
+  }
+
+  std::vector<Heard> hear(std::span<const int> ready) override {
+    std::vector<Heard> heard;
+    for (const int descriptor : ready) {
+      if (descriptor == listener_) {
+        accept_client();
+      } else if (const auto client = clients_.find(descriptor); client != clients_.end()) {
+        if (!read_from(descriptor, client->second)) {
+          close(descriptor);
+          clients_.erase(client);
+          continue;
+        }
+        while (const auto question = take_tcp_question(client->second)) heard.push_back({descriptor, *question});
+      }
+    }
+    return heard;
+  }
+
+  void say(int client, std::span<const std::uint8_t> bytes) override {
+    if (clients_.contains(client)) send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
+
+  void leave() override {
+    for (const auto& [client, bytes] : clients_) close(client);
+    clients_.clear();
+    if (listener_ >= 0) close(listener_);
+    listener_ = -1;
+  }
+
+  void come_back() override {
+    if (listener_ < 0) listen();
+  }
+
+ private:
+  bool listen() {
+    const std::unique_ptr<modbus_t, void (*)(modbus_t*)> context(
+        modbus_new_tcp_pi(host_.c_str(), std::to_string(port_).c_str()), modbus_free);
+    if (!context) return false;
+    listener_ = modbus_tcp_pi_listen(context.get(), kModbusBacklog);
+    if (listener_ < 0) return false;
+    fcntl(listener_, F_SETFL, O_NONBLOCK);
+    port_ = listening_port(listener_);
+    return true;
+  }
+
+  void accept_client() {
+    const int client = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (client >= 0) clients_[client] = {};
+  }
+
+  /// False: the client is gone.
+  static bool read_from(int client, ModbusBytes& incoming) {
+    std::array<std::uint8_t, 512> block{};
+    const ssize_t size = recv(client, block.data(), block.size(), 0);
+    if (size <= 0) return size < 0 && (errno == EAGAIN || errno == EINTR);
+    incoming.insert(incoming.end(), block.begin(), block.begin() + size);
+    return true;
+  }
+
+  std::string host_;
+  std::uint16_t port_;
+  int listener_ = -1;
+  std::map<int, ModbusBytes> clients_;  // with what they have sent and nobody has answered yet
+};
+
+}  // namespace
+
+std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::uint16_t port) {
+  return std::make_unique<TcpPort>(host, port);
+}
+
+}  // namespace yuragi::sim

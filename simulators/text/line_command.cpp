@@ -1,0 +1,27 @@
+#include <memory>
+
+#include "simulators/commands.hpp"
+#include "simulators/text/line_device.hpp"
+#include "simulators/text/text_options.hpp"
+
+namespace yuragi::sim {
+namespace {
+
+struct LineOptions {
+  std::string format = "csv";
+  TextOptions text;
+};
+
+}  // namespace
+
+void add_line_command(CLI::App& app) {
+  auto options = std::make_shared<LineOptions>();
+  CLI::App* command = app.add_subcommand("line", "microcontroller that prints numbers, one reading a line");
+  command->add_option("--format", options->format, "what its lines look like")
+      ->check(CLI::IsMember(line_format_names()))
+      ->capture_default_str();
+  options->text.add_to(*command);
+  command->callback([options] { options->text.run(make_line_device(options->format)); });
+}
+
+}  // namespace yuragi::sim

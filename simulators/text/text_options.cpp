@@ -1,0 +1,36 @@
+#include "simulators/text/text_options.hpp"
+
+#include <cstdio>
+
+namespace yuragi::sim {
+
+void TextOptions::add_to(CLI::App& command) {
+  CLI::Option_group* wire = command.add_option_group("wire", "what carries it");
+  CLI::Option* pty_flag = wire->add_flag("--pty", pty, "a serial port, made for it");
+  wire->add_option("--tcp", tcp, "a server at HOST:PORT; port 0 takes a free one");
+  wire->add_option("--udp", udp, "datagrams to HOST:PORT");
+  wire->require_option(1);
+  command.add_option("--link", link, "with --pty: a name for the port that stays when it is unplugged and plugged in")
+      ->needs(pty_flag);
+  command.add_option("--rate", rate_hz, "messages a second; 0: only when asked")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  common.add_to(command);
+}
+
+std::unique_ptr<TextWire> TextOptions::make_wire() const {
+  if (pty) return make_pty_wire(link);
+  const bool is_tcp = !tcp.empty();
+  const Address address = address_option(is_tcp ? "--tcp" : "--udp", is_tcp ? tcp : udp);
+  return is_tcp ? make_tcp_wire(address.host, address.port) : make_udp_wire(address.host, address.port);
+}
+
+void TextOptions::run(std::unique_ptr<TextDevice> device) const {
+  if (rate_hz <= 0.0 && !udp.empty()) throw CLI::ValidationError("--udp", "nobody can ask there; it needs a --rate");
+  TextSimulator simulator(std::move(device), make_wire(), rate_hz, common.make_wind(), common.synthetic.seed);
+  std::printf("%s\n", simulator.wire().place().c_str());
+  std::fflush(stdout);
+  common.run_simulator(simulator);
+}
+
+}  // namespace yuragi::sim

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "simulators/common_options.hpp"
+#include "simulators/text/text_simulator.hpp"
+
+namespace yuragi::sim {
+
+/// The options of simulators that say text: over what, and how often.
+struct TextOptions {
+  bool pty = false;
+  std::string link;
+  std::string tcp;
+  std::string udp;
+  double rate_hz = 4.0;
+  CommonOptions common;
+
+  void add_to(CLI::App& command);
+
+  /// Runs the device until it is over, and says where it is first, for scripts that wait for that. Throws
+  /// CLI::ValidationError for options that do not fit, std::runtime_error for an address that cannot be had.
+  void run(std::unique_ptr<TextDevice> device) const;
+
+ private:
+  std::unique_ptr<TextWire> make_wire() const;
+};
+
+}  // namespace yuragi::sim

@@ -1,0 +1,104 @@
+#include "simulators/text/text_simulator.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace yuragi::sim {
+namespace {
+
+constexpr std::size_t kTextGarbageBytes = 24;
+constexpr std::size_t kPieces = 3;
+constexpr double kPieceGap_s = 0.03;
+/// An answer that is late comes when nobody should wait any more.
+constexpr double kLate_s = 1.3;
+constexpr std::size_t kLongestRequest = 64;
+
+}  // namespace
+
+TextSimulator::TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz,
+                             MeasuredWind wind, std::uint64_t seed)
+    : device_(std::move(device)),
+      wire_(std::move(wire)),
+      rate_hz_(rate_hz),
+      wind_(std::move(wind)),
+      random_(seed),
+      known_faults_{FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike,
+                    FaultKind::kGarbage, FaultKind::kSplit,  FaultKind::kPartial} {
+  const auto add = [this](std::span<const FaultKind> more) {
+    known_faults_.insert(known_faults_.end(), more.begin(), more.end());
+  };
+  add(device_->known_faults());
+  if (rate_hz_ <= 0.0) known_faults_.push_back(FaultKind::kLate);
+  add(wire_->known_faults());
+}
+
+void TextSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+  fault_ = fault;
+  if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
+    wire_->take_away();
+    waiting_.clear();
+    request_.clear();
+    next_s_ = time_s;
+    return;
+  }
+  wire_->bring_back();
+
+  hear(wire_->read(ready), time_s, fault);
+  while (!waiting_.empty() && waiting_.front().time_s <= time_s) {
+    wire_->write(waiting_.front().bytes);
+    waiting_.pop_front();
+  }
+  for (; rate_hz_ > 0.0 && next_s_ <= time_s; next_s_ += 1.0 / rate_hz_) say(next_s_, fault);
+}
+
+void TextSimulator::hear(std::string_view bytes, double time_s, std::optional<FaultKind> fault) {
+  for (const char c : bytes) {
+    if (c != '\r' && c != '\n') {
+      if (request_.size() < kLongestRequest) request_ += c;
+      continue;
+    }
+    const std::string request = std::exchange(request_, "");
+    if (!request.empty() && device_->is_request(request)) say(time_s, fault);
+  }
+}
+
+void TextSimulator::say(double time_s, std::optional<FaultKind> fault) {
+  moment_ = wind_.at(time_s, fault);
+  if (fault == FaultKind::kSilence) return;
+  for (const std::string& message : device_->say(moment_, fault)) send(message, time_s, fault);
+  ++said_;
+}
+
+void TextSimulator::send(const std::string& message, double time_s, std::optional<FaultKind> fault) {
+  if (fault == FaultKind::kGarbage) {
+    std::string noise(kTextGarbageBytes, '\0');
+    std::ranges::generate(noise, [this] { return static_cast<char>(random_()); });
+    return send_after(0.0, noise, time_s);
+  }
+  if (fault == FaultKind::kPartial) return send_after(0.0, message.substr(0, message.size() * 2 / 3), time_s);
+  if (fault == FaultKind::kLate) return send_after(kLate_s, message, time_s);
+  if (fault == FaultKind::kSplit) {
+    const std::size_t size = message.size() / kPieces + 1;
+    for (std::size_t piece = 0; piece * size < message.size(); ++piece) {
+      send_after(static_cast<double>(piece) * kPieceGap_s, message.substr(piece * size, size), time_s);
+    }
+    return;
+  }
+  send_after(0.0, message, time_s);
+}
+
+/// At once where there is no delay, unless something waits: bytes keep their order.
+void TextSimulator::send_after(double delay_s, const std::string& bytes, double time_s) {
+  if (delay_s == 0.0 && waiting_.empty()) return wire_->write(bytes);
+  const double due_s = time_s + delay_s;
+  waiting_.push_back({waiting_.empty() ? due_s : std::max(due_s, waiting_.back().time_s), bytes});
+}
+
+std::string TextSimulator::status() const {
+  return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}, {} said{}{}", moment_.speed_m_s, moment_.direction_deg,
+                     wire_->place(), said_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
+}
+
+}  // namespace yuragi::sim

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulators/played_wind.hpp"
+#include "simulators/simulator.hpp"
+#include "simulators/text/text_wire.hpp"
+
+namespace yuragi::sim {
+
+/// What a simulated device says. It computes: no socket, no file, no clock.
+class TextDevice {
+ public:
+  virtual ~TextDevice() = default;
+
+  /// Which of its own faults it has: freeze and spike are the wind's, and what happens to bytes is the simulator's.
+  virtual std::span<const FaultKind> known_faults() const = 0;
+
+  /// Its messages about one moment, with their line ends.
+  virtual std::vector<std::string> say(const PlayedMoment& moment, std::optional<FaultKind> fault) = 0;
+
+  /// Is that what it is asked with? Without the line end.
+  virtual bool is_request(std::string_view line) const = 0;
+};
+
+/// A device that says text over a wire: by itself, at a rate, or when it is asked.
+class TextSimulator final : public Simulator {
+ public:
+  /// `rate_hz`: how often it speaks by itself; 0: only when asked. `seed` makes the bytes of the garbage fault.
+  TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz, MeasuredWind wind,
+                std::uint64_t seed);
+
+  const TextWire& wire() const noexcept { return *wire_; }
+
+  std::span<const FaultKind> known_faults() const override { return known_faults_; }
+  std::vector<int> descriptors() const override { return wire_->descriptors(); }
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override;
+
+ private:
+  void hear(std::string_view bytes, double time_s, std::optional<FaultKind> fault);
+  void say(double time_s, std::optional<FaultKind> fault);
+  void send(const std::string& message, double time_s, std::optional<FaultKind> fault);
+  void send_after(double delay_s, const std::string& bytes, double time_s);
+
+  /// Bytes that wait for their moment.
+  struct Waiting {
+    double time_s;
+    std::string bytes;
+  };
+
+  std::unique_ptr<TextDevice> device_;
+  std::unique_ptr<TextWire> wire_;
+  double rate_hz_;
+  MeasuredWind wind_;
+  std::mt19937_64 random_;
+  std::vector<FaultKind> known_faults_;
+  double next_s_ = 0.0;
+  std::string request_;
+  std::deque<Waiting> waiting_;
+  PlayedMoment moment_;
+  std::uint64_t said_ = 0;
+  std::optional<FaultKind> fault_;
+};
+
+}  // namespace yuragi::sim

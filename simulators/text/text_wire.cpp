@@ -1,0 +1,199 @@
+#include "simulators/text/text_wire.hpp"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <stdexcept>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+
+#include "simulators/pty.hpp"
+
+namespace yuragi::sim {
+namespace {
+
+using boost::asio::ip::tcp;
+using boost::asio::ip::udp;
+
+boost::asio::ip::address address_named(const std::string& host) {
+  boost::system::error_code error;
+  auto address = boost::asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
+  if (error) throw std::runtime_error(fmt::format("\"{}\" is no address; allowed: one as in 127.0.0.1", host));
+  return address;
+}
+
+template <class Endpoint>
+std::string text_of(const Endpoint& endpoint) {
+  std::ostringstream text;
+  text << endpoint;
+  return text.str();
+}
+
+bool has(std::span<const int> ready, int descriptor) {
+  return std::ranges::find(ready, descriptor) != ready.end();
+}
+
+class PtyWire final : public TextWire {
+ public:
+  explicit PtyWire(const std::string& link) : pty_(link) {}
+
+  std::span<const FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {FaultKind::kUnplug};
+    return kKnown;
+  }
+  std::vector<int> descriptors() const override {
+    return pty_.is_plugged_in() ? std::vector{pty_.descriptor()} : std::vector<int>{};
+  }
+  std::string read(std::span<const int> /*ready*/) override {
+    if (!pty_.is_plugged_in()) return {};
+    const auto bytes = pty_.read();
+    return {bytes.begin(), bytes.end()};
+  }
+  void write(std::string_view bytes) override {
+    if (!pty_.is_plugged_in()) return;
+    pty_.write({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  }
+  void take_away() override { pty_.unplug(); }
+  void bring_back() override { pty_.plug_in(); }
+  std::string place() const override { return "listening on " + pty_.path(); }
+
+ private:
+  Pty pty_;
+};
+
+class TcpWire final : public TextWire {
+ public:
+  TcpWire(const std::string& host, std::uint16_t port) : endpoint_(address_named(host), port) {
+    if (const auto error = listen()) {
+      throw std::runtime_error(fmt::format("cannot listen on {} ({}): choose another port, or 0 for a free one",
+                                           text_of(endpoint_), error.message()));
+    }
+    endpoint_ = listener_.local_endpoint();
+  }
+
+  std::span<const FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {FaultKind::kDisconnect, FaultKind::kUnplug};
+    return kKnown;
+  }
+  std::vector<int> descriptors() const override {
+    std::vector<int> all;
+    if (listener_.is_open()) all.push_back(const_cast<tcp::acceptor&>(listener_).native_handle());
+    for (const tcp::socket& client : clients_) all.push_back(const_cast<tcp::socket&>(client).native_handle());
+    return all;
+  }
+
+  std::string read(std::span<const int> ready) override {
+    std::string heard;
+    for (tcp::socket& client : clients_) {
+      if (!has(ready, client.native_handle())) continue;
+      std::array<char, 512> block{};
+      boost::system::error_code error;
+      const std::size_t size = client.read_some(boost::asio::buffer(block), error);
+      heard.append(block.data(), size);
+      if (error && error != boost::asio::error::would_block) client.close(error);
+    }
+    if (listener_.is_open()) accept_all();
+    std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
+    return heard;
+  }
+
+  void write(std::string_view bytes) override {
+    for (tcp::socket& client : clients_) {
+      boost::system::error_code error;
+      boost::asio::write(client, boost::asio::buffer(bytes), error);
+      if (error && error != boost::asio::error::would_block) client.close(error);
+    }
+    std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
+  }
+
+  void take_away() override {
+    clients_.clear();
+    boost::system::error_code ignored;
+    listener_.close(ignored);
+  }
+  void bring_back() override {
+    if (!listener_.is_open()) listen();
+  }
+  std::string place() const override { return "listening on " + text_of(endpoint_); }
+
+ private:
+  boost::system::error_code listen() {
+    boost::system::error_code error;
+    const bool failed = listener_.open(endpoint_.protocol(), error) ||
+                        listener_.set_option(tcp::acceptor::reuse_address(true), error) ||
+                        listener_.bind(endpoint_, error) || listener_.listen(8, error) ||
+                        listener_.non_blocking(true, error);
+    boost::system::error_code ignored;
+    if (failed) listener_.close(ignored);
+    return error;
+  }
+
+  void accept_all() {
+    for (;;) {
+      boost::system::error_code error;
+      tcp::socket client = listener_.accept(error);
+      if (error) return;
+      client.non_blocking(true, error);
+      if (!error) clients_.push_back(std::move(client));
+    }
+  }
+
+  boost::asio::io_context context_;
+  tcp::endpoint endpoint_;
+  tcp::acceptor listener_{context_};
+  std::vector<tcp::socket> clients_;
+};
+
+class UdpWire final : public TextWire {
+ public:
+  UdpWire(const std::string& host, std::uint16_t port) : endpoint_(address_named(host), port) {
+    if (port == 0) throw std::runtime_error("port 0 is none to send to");
+    bring_back();
+  }
+
+  std::span<const FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {FaultKind::kUnplug};
+    return kKnown;
+  }
+  std::vector<int> descriptors() const override { return {}; }
+  std::string read(std::span<const int> /*ready*/) override { return {}; }
+  void write(std::string_view bytes) override {
+    // Whether anybody listens is told by an error of the next write, and is of no interest.
+    boost::system::error_code ignored;
+    if (socket_.is_open()) socket_.send_to(boost::asio::buffer(bytes), endpoint_, 0, ignored);
+  }
+  void take_away() override {
+    boost::system::error_code ignored;
+    socket_.close(ignored);
+  }
+  void bring_back() override {
+    boost::system::error_code ignored;
+    if (!socket_.is_open()) socket_.open(endpoint_.protocol(), ignored);
+  }
+  std::string place() const override { return "sending to " + text_of(endpoint_); }
+
+ private:
+  boost::asio::io_context context_;
+  udp::endpoint endpoint_;
+  udp::socket socket_{context_};
+};
+
+}  // namespace
+
+std::unique_ptr<TextWire> make_pty_wire(const std::string& link) {
+  return std::make_unique<PtyWire>(link);
+}
+
+std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t port) {
+  return std::make_unique<TcpWire>(host, port);
+}
+
+std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port) {
+  return std::make_unique<UdpWire>(host, port);
+}
+
+}  // namespace yuragi::sim

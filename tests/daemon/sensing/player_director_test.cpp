@@ -1,0 +1,109 @@
+#include "daemon/sensing/player_director.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Keeps its orders, and tells what the test wants it to.
+struct NotedPlayer final : RecordingPlayer {
+  std::optional<std::uint64_t> order(const PlayerOrder& order) override {
+    if (is_full) return std::nullopt;
+    orders.push_back(order);
+    return orders.size();
+  }
+  PlayerReport report() const override { return told; }
+
+  std::vector<PlayerOrder> orders;
+  PlayerReport told;
+  bool is_full = false;
+};
+
+class PlayerDirectorTest : public testing::Test {
+ protected:
+  PlayerDirector director(const std::string& control) {
+    return {control, {{"roof", &roof_, [this] { ++woken_; }}, {"yard", &yard_, [this] { ++woken_; }}}};
+  }
+
+  NotedPlayer roof_, yard_;
+  int woken_ = 0;
+};
+
+TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
+  PlayerDirector here = director("loopback");
+  const auto one = here.answer({.action = wire::PlayerAction::kSeek, .sensor = "yard", .place = "+30"}, true);
+  EXPECT_TRUE(one.done);
+  EXPECT_EQ(one.message, "yard is told to go to +30");
+  ASSERT_EQ(one.players.size(), 1U);
+  EXPECT_EQ(one.players[0].order, 1U);
+  EXPECT_TRUE(roof_.orders.empty());
+  ASSERT_EQ(yard_.orders.size(), 1U);
+  EXPECT_EQ(yard_.orders[0].kind, PlayerOrder::Kind::kSeek);
+  EXPECT_EQ(yard_.orders[0].place, "+30");
+  EXPECT_EQ(woken_, 1);
+
+  const auto all = here.answer({.action = wire::PlayerAction::kStep, .count = 7}, true);
+  EXPECT_EQ(all.message, "roof, yard is told to step 7 on");
+  EXPECT_EQ(roof_.orders.at(0).count, 7U);
+  EXPECT_EQ(yard_.orders.at(1).count, 7U);
+  here.answer({.action = wire::PlayerAction::kPause}, true);
+  here.answer({.action = wire::PlayerAction::kResume}, true);
+  here.answer({.action = wire::PlayerAction::kRate, .rate = 0.5}, true);
+  EXPECT_EQ(roof_.orders.at(1).kind, PlayerOrder::Kind::kPause);
+  EXPECT_EQ(roof_.orders.at(2).kind, PlayerOrder::Kind::kResume);
+  EXPECT_EQ(roof_.orders.at(3).rate, 0.5);
+}
+
+TEST_F(PlayerDirectorTest, TellsEveryoneHowThingsAreAndChangesNothing) {
+  roof_.told = {.file = "storm.windlog",
+                .position = PlayerPosition{.log_time = std::chrono::seconds(90),
+                                           .length = std::chrono::seconds(3600),
+                                           .rate = 2.0,
+                                           .is_paused = true,
+                                           .rounds = 3},
+                .orders_done = 4,
+                .refusal = "no"};
+  const auto reply = director("nobody").answer({}, false);
+  EXPECT_TRUE(reply.done);
+  ASSERT_EQ(reply.players.size(), 2U);
+  EXPECT_EQ(reply.players[0].sensor, "roof");
+  EXPECT_EQ(reply.players[0].file, "storm.windlog");
+  EXPECT_EQ(reply.players[0].position_s, 90.0);
+  EXPECT_EQ(reply.players[0].length_s, 3600.0);
+  EXPECT_EQ(reply.players[0].rate, 2.0);
+  EXPECT_TRUE(reply.players[0].is_paused);
+  EXPECT_EQ(reply.players[0].rounds, 3U);
+  EXPECT_EQ(reply.players[0].orders_done, 4U);
+  EXPECT_EQ(reply.players[0].refusal, "no");
+  EXPECT_FALSE(reply.players[1].is_open);
+  EXPECT_TRUE(roof_.orders.empty());
+}
+
+TEST_F(PlayerDirectorTest, TakesOrdersOnlyFromThoseWhoMay) {
+  const wire::PlayerWish pause{.action = wire::PlayerAction::kPause};
+  EXPECT_FALSE(director("nobody").answer(pause, true).done);
+  EXPECT_FALSE(director("loopback").answer(pause, false).done);
+  EXPECT_TRUE(roof_.orders.empty());
+  EXPECT_THAT(director("loopback").answer(pause, false).message, HasSubstr("[stream] control"));
+  EXPECT_TRUE(director("anywhere").answer(pause, false).done);
+}
+
+TEST_F(PlayerDirectorTest, SaysWhatThereIsWhereNothingFits) {
+  const auto unknown = director("loopback").answer({.sensor = "cellar"}, true);
+  EXPECT_FALSE(unknown.done);
+  EXPECT_TRUE(unknown.players.empty());
+  EXPECT_THAT(unknown.message, HasSubstr("roof, yard"));
+  const auto none = PlayerDirector("loopback", {}).answer({}, true);
+  EXPECT_FALSE(none.done);
+  EXPECT_THAT(none.message, HasSubstr("no sensor here"));
+  roof_.is_full = true;
+  const auto full = director("loopback").answer({.action = wire::PlayerAction::kPause}, true);
+  EXPECT_FALSE(full.done);
+  EXPECT_EQ(full.players[0].order, 0U);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,328 @@
+#include "daemon/sensing/sensor_hub.hpp"
+
+#include <future>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+class HandClock final : public Clock {
+ public:
+  Instant now() const noexcept override {
+    return {.mono = MonoTime(std::chrono::nanoseconds(now_ns_.load())), .utc = {}};
+  }
+  void advance(double duration_s) { now_ns_ += from_seconds(duration_s).count(); }
+
+ private:
+  std::atomic<std::int64_t> now_ns_{1'000'000'000};
+};
+
+/// What the sensor under test does when it is polled; set before the hub is made.
+struct Script {
+  std::function<void(const Clock&, SensorSink&)> first_poll;
+  std::promise<void> polled, interrupted;
+  bool wait_for_interrupt = false;
+};
+Script* script = nullptr;
+
+class ScriptedSensor final : public Sensor {
+ public:
+  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+    if (!done_) {
+      done_ = true;
+      script->first_poll(clock, sink);
+      script->polled.set_value();
+      if (script->wait_for_interrupt) script->interrupted.get_future().wait();
+    }
+    return MonoTime::max();
+  }
+  void interrupt() noexcept override {
+    if (script->wait_for_interrupt) script->interrupted.set_value();
+  }
+
+ private:
+  bool done_ = false;
+};
+
+const DriverDescription kScriptedDriver{
+    .name = "scripted", .summary = "", .parameters = {}, .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> {
+      return std::make_unique<ScriptedSensor>();
+    }};
+
+class SensorHubTest : public ::testing::Test {
+ protected:
+  SensorHubTest() {
+    script = &script_;
+    config_ = default_config();
+    config_.sensors = {{"roof", &kScriptedDriver, {}, no_calibration(), "wall.toml:3:1"}};
+  }
+
+  HandClock clock_;
+  Script script_;
+  Config config_;
+};
+
+WindReading reading_at(const Clock& clock, double speed_m_s) {
+  WindReading reading;
+  reading.time = clock.now();
+  reading.speed_m_s = speed_m_s;
+  reading.direction_deg = 90.0;
+  return reading;
+}
+
+/// The wind of a hub after 10 s of ticks.
+WindState wind_after_a_while(SensorHub& hub, HandClock& clock) {
+  for (int tick = 0; tick < 600; ++tick) {
+    hub.advance();
+    clock.advance(1.0 / 60.0);
+  }
+  return hub.advance();
+}
+
+TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid) {
+  config_.wind.set("default_turbulence", 0.0);
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) { sink.reading(reading_at(clock, 6.0)); };
+  config_.sensors[0].calibration.set("gain", 1.5);
+  config_.sensors[0].calibration.set("north_offset", 180.0);
+  std::vector<double> heard;
+  SensorHub hub(config_, clock_, make_gust_noise(config_),
+                [&](std::size_t, const WindReading& reading) { heard.push_back(reading.speed_m_s); });
+  script_.polled.get_future().wait();
+  EXPECT_NEAR(wind_after_a_while(hub, clock_).wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
+  EXPECT_EQ(heard, std::vector{6.0});
+  EXPECT_EQ(hub.status()[0].speed_m_s, 9.0);
+  EXPECT_EQ(hub.status()[0].raw_speed_m_s, 6.0);
+  EXPECT_EQ(hub.status()[0].raw_direction_deg, 90.0);
+}
+
+TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
+  config_.wind.set("default_turbulence", 0.0);
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+    sink.link(LinkState::kConnected, "here");
+    sink.reading(reading_at(clock, 6.0));
+  };
+  std::vector<double> heard;
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t sensor, const WindReading& reading) {
+    EXPECT_EQ(sensor, 0U);
+    heard.push_back(reading.speed_m_s);
+  });
+  script_.polled.get_future().wait();
+
+  const WindState state = wind_after_a_while(hub, clock_);
+  EXPECT_EQ(heard, std::vector{6.0});
+  EXPECT_NE(state.source, WindSource::kDefault);
+  EXPECT_NEAR(state.wind.u_m_s, -6.0, 0.2);
+
+  const std::vector<wire::SensorStatus> status = hub.status();
+  ASSERT_EQ(status.size(), 1U);
+  EXPECT_EQ(status[0].name, "roof");
+  EXPECT_EQ(status[0].readings, 1U);
+  EXPECT_EQ(status[0].speed_m_s, 6.0);
+  EXPECT_EQ(status[0].detail, "here");
+  EXPECT_NEAR(status[0].age_s, 10.0, 1e-3);
+}
+
+/// Says one reading, and then ten times a second that it still holds.
+class HoldingSensor final : public Sensor {
+ public:
+  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+    const Instant now = clock.now();
+    if (now.mono - said_.time.mono >= std::chrono::milliseconds(100)) {
+      said_.is_held = said_.speed_m_s > 0.0;
+      said_.time = now;
+      said_.speed_m_s = 6.0;
+      sink.reading(said_);
+    }
+    return now.mono + std::chrono::milliseconds(1);
+  }
+
+ private:
+  WindReading said_;
+};
+
+const DriverDescription kHoldingDriver{
+    .name = "holding", .summary = "", .parameters = {}, .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> {
+      return std::make_unique<HoldingSensor>();
+    }};
+
+TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
+  config_.sensors[0].driver = &kHoldingDriver;
+  std::atomic<int> heard = 0;
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { ++heard; });
+  // Two minutes: a sensor that measured the same for so long would be frozen.
+  for (int tick = 0; tick < 1200; ++tick) {
+    clock_.advance(0.1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    hub.advance();
+  }
+  // The sensor's thread may be behind the clock: let it catch up.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (hub.status()[0].age_s > 0.2 && std::chrono::steady_clock::now() < deadline) hub.advance();
+  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(hub.status()[0].readings, 1U);
+  EXPECT_EQ(hub.status()[0].state, SensorState::kLive) << "two minutes after it was first said";
+}
+
+TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+    sink.refused(Refusal::kTimeout);
+    sink.refused(Refusal::kTimeout);
+    sink.reading(reading_at(clock, std::numeric_limits<double>::quiet_NaN()));
+    sink.reading(reading_at(clock, -3.0));
+  };
+  bool heard = false;
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { heard = true; });
+  script_.polled.get_future().wait();
+  hub.advance();
+
+  EXPECT_FALSE(heard);
+  const wire::SensorStatus status = hub.status().at(0);
+  EXPECT_EQ(status.readings, 0U);
+  EXPECT_FALSE(status.speed_m_s.has_value());
+  const std::vector<std::pair<std::string, std::uint64_t>> expected{{"timeout", 2}, {"implausible", 2}};
+  EXPECT_EQ(status.refused, expected);
+}
+
+TEST_F(SensorHubTest, ASensorThatWaitsForItsDeviceDoesNotHoldUpTheEnd) {
+  script_.wait_for_interrupt = true;
+  script_.first_poll = [](const Clock&, SensorSink&) {};
+  {
+    const SensorHub hub(config_, clock_, make_gust_noise(config_));
+    script_.polled.get_future().wait();
+  }  // hangs here for ever if poll() is not interrupted
+  SUCCEED();
+}
+
+TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
+  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+    for (int count = 0; count < 2000; ++count) sink.reading(reading_at(clock, 1.0));
+  };
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  script_.polled.get_future().wait();
+  hub.advance();
+  const wire::SensorStatus status = hub.status().at(0);
+  ASSERT_EQ(status.refused.size(), 1U);
+  EXPECT_EQ(status.refused[0].first, "lost");
+  EXPECT_EQ(status.readings + status.refused[0].second, 2000U) << "every reading is accounted for";
+}
+
+TEST_F(SensorHubTest, CountsFramesAndHowOftenTheDeviceCameAgain) {
+  script_.first_poll = [](const Clock&, SensorSink& sink) {
+    const std::vector<std::uint8_t> message = {1, 2, 3};
+    sink.raw(RawDirection::kSent, message);
+    for (int i = 0; i < 5; ++i) sink.raw(RawDirection::kReceived, message);
+    for (const auto state : {LinkState::kConnected, LinkState::kConnecting, LinkState::kConnected,
+                             LinkState::kConnecting, LinkState::kConnected, LinkState::kConnected}) {
+      sink.link(state, "");
+    }
+  };
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  script_.polled.get_future().wait();
+  EXPECT_EQ(hub.status().at(0).frames, 5U) << "what is sent is no frame";
+  EXPECT_EQ(hub.status().at(0).reconnects, 2U) << "the first connection is none";
+
+  int kept = 0;
+  hub.drain_traces([&](const wire::RawTrace&) { ++kept; });
+  EXPECT_EQ(kept, 0) << "nobody asked for the messages";
+}
+
+TEST_F(SensorHubTest, HandsOnTheMessagesOfATracedSensorInTheirOrder) {
+  std::promise<void> is_traced;
+  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+    is_traced.get_future().wait();
+    sink.raw(RawDirection::kSent, std::vector<std::uint8_t>{1, 3, 0});
+    sink.raw(RawDirection::kReceived, std::vector<std::uint8_t>(700, 0x5A));
+  };
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  clock_.advance(2.0);
+  hub.trace([](std::string_view sensor) { return sensor == "roof"; });
+  is_traced.set_value();
+  script_.polled.get_future().wait();
+
+  std::vector<wire::RawTrace> traces;
+  hub.drain_traces([&](const wire::RawTrace& trace) { traces.push_back(trace); });
+  ASSERT_EQ(traces.size(), 2U);
+  EXPECT_EQ(traces[0].sensor, "roof");
+  EXPECT_FALSE(traces[0].received);
+  EXPECT_EQ(traces[0].bytes, (wire::Bytes{1, 3, 0}));
+  EXPECT_EQ(traces[0].mono_ns, 3'000'000'000);
+  EXPECT_TRUE(traces[1].received);
+  EXPECT_EQ(traces[1].bytes, wire::Bytes(wire::kMaxRawBytes, 0x5A)) << "the beginning of a long one";
+  EXPECT_EQ(traces[1].length, 700U);
+  hub.drain_traces([&](const wire::RawTrace& trace) { traces.push_back(trace); });
+  EXPECT_EQ(traces.size(), 2U) << "each once";
+}
+
+TEST_F(SensorHubTest, MessagesThatFindNoRoomAreCountedInTheNextOne) {
+  std::promise<void> is_traced, is_drained, is_flooded;
+  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+    const std::vector<std::uint8_t> message = {1};
+    is_traced.get_future().wait();
+    for (int i = 0; i < 1000; ++i) sink.raw(RawDirection::kReceived, message);
+    is_flooded.set_value();
+    is_drained.get_future().wait();
+    sink.raw(RawDirection::kReceived, message);
+  };
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  hub.trace([](std::string_view) { return true; });
+  is_traced.set_value();
+  is_flooded.get_future().wait();
+  std::uint64_t kept = 0;
+  std::uint64_t lost = 0;
+  const auto count = [&](const wire::RawTrace& trace) {
+    ++kept;
+    lost += trace.lost;
+  };
+  hub.drain_traces(count);
+  EXPECT_LT(kept, 1000U) << "room without bounds";
+  EXPECT_EQ(lost, 0U);
+  is_drained.set_value();
+  script_.polled.get_future().wait();
+  hub.drain_traces(count);
+  EXPECT_EQ(kept + lost, 1001U) << "every message is accounted for";
+}
+
+TEST_F(SensorHubTest, ATraceThatBeginsAgainHasNothingOfTheOneBefore) {
+  std::promise<void> is_traced;
+  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+    is_traced.get_future().wait();
+    sink.raw(RawDirection::kReceived, std::vector<std::uint8_t>{1});
+  };
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  hub.trace([](std::string_view) { return true; });
+  is_traced.set_value();
+  script_.polled.get_future().wait();
+  hub.trace([](std::string_view) { return false; });
+  hub.trace([](std::string_view) { return true; });
+  int kept = 0;
+  hub.drain_traces([&](const wire::RawTrace&) { ++kept; });
+  EXPECT_EQ(kept, 0);
+}
+
+TEST_F(SensorHubTest, IsFinishedWhenEveryRecordingIs) {
+  script_.first_poll = [](const Clock&, SensorSink& sink) { sink.link(LinkState::kFinished, "the end"); };
+  const SensorHub hub(config_, clock_, make_gust_noise(config_));
+  script_.polled.get_future().wait();
+  EXPECT_TRUE(hub.is_finished());
+}
+
+TEST(SensorHub, ASensorThatCannotBeMadeIsAMistakeAtItsPlaceInTheFile) {
+  const DriverDescription refusing{
+      .name = "refusing",
+      .summary = "",
+      .parameters = {},
+      .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { throw std::runtime_error("no such profile"); }};
+  try {
+    open_sensor({"roof", &refusing, {}, no_calibration(), "wall.toml:3:1"});
+    FAIL() << "it was made";
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(), "wall.toml:3:1: sensor: no such profile");
+  }
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,386 @@
+// The hub with its judges: what the sensors say, good and bad, and the wind and the states that come of it.
+#include <cmath>
+#include <deque>
+#include <future>
+#include <limits>
+#include <memory>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include "daemon/sensing/sensor_hub.hpp"
+#include "engine/wind/turbulence/synthetic_wind.hpp"
+#include "tests/support/manual_clock.hpp"
+
+namespace yuragi {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// What a sensor's thread hands to the test, which speaks in its place while the thread waits.
+struct Mouth {
+  std::promise<SensorSink*> sink;
+  std::promise<void> end;
+};
+std::deque<Mouth>* mouths = nullptr;
+std::size_t mouths_given = 0;
+
+class SpokenSensor final : public Sensor {
+ public:
+  SpokenSensor() : mouth_(mouths->at(mouths_given++)) {}
+  MonoTime poll(const Clock&, SensorSink& sink) override {
+    mouth_.sink.set_value(&sink);
+    mouth_.end.get_future().wait();
+    return MonoTime::max();
+  }
+  void interrupt() noexcept override { mouth_.end.set_value(); }
+
+ private:
+  Mouth& mouth_;
+};
+
+std::unique_ptr<Sensor> open_spoken(const ParameterValues&) {
+  return std::make_unique<SpokenSensor>();
+}
+const DriverDescription kSpokenDriver{.name = "spoken", .summary = "", .parameters = {}, .open = open_spoken};
+const DriverDescription kPlayedDriver{
+    .name = "played", .summary = "", .parameters = {}, .open = open_spoken, .plays_recordings = true};
+
+class SensorJudgement : public ::testing::Test {
+ protected:
+  explicit SensorJudgement(std::size_t sensor_count = 1) {
+    config_ = default_config();
+    config_.wind.set("default_speed", 2.0);
+    config_.sensors.clear();
+    for (std::size_t i = 0; i < sensor_count; ++i) add_sensor(kSpokenDriver);
+    auto logger = std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log_));
+    logger->set_pattern("%l %v");
+    usual_logger_ = spdlog::default_logger();
+    spdlog::set_default_logger(std::move(logger));
+  }
+  ~SensorJudgement() override { spdlog::set_default_logger(usual_logger_); }
+  SensorJudgement(const SensorJudgement&) = delete;
+  SensorJudgement& operator=(const SensorJudgement&) = delete;
+
+  void add_sensor(const DriverDescription& driver) {
+    const std::string name = std::string(driver.name) + std::to_string(config_.sensors.size());
+    config_.sensors.push_back({name, &driver, {}, no_calibration(), "wall.toml:3:1"});
+  }
+
+  void start() {
+    static const auto noise = make_gust_noise(default_config());
+    mouths_.resize(config_.sensors.size());
+    mouths = &mouths_;
+    mouths_given = 0;
+    hub_ =
+        std::make_unique<SensorHub>(config_, clock_, noise, [this](std::size_t, const WindReading&) { ++recorded_; });
+    for (Mouth& mouth : mouths_) {
+      sinks_.push_back(mouth.sink.get_future().get());
+      sinks_.back()->link(LinkState::kConnected, "here");
+    }
+  }
+
+  void say(std::size_t sensor, double speed_m_s, double direction_deg = 250.0, double late_s = 0.0) {
+    WindReading reading;
+    reading.time = clock_.now();
+    reading.time.mono -= from_seconds(late_s);
+    reading.speed_m_s = speed_m_s;
+    reading.direction_deg = direction_deg;
+    reading.quality = quality_;
+    sinks_[sensor]->reading(reading);
+  }
+  /// A turbulent wind around a mean, never twice the same.
+  double breeze(double mean_m_s = 6.0) const {
+    const double time_s = seconds(clock_.now().mono.time_since_epoch());
+    return mean_m_s * (1.0 + 0.12 * std::sin(1.7 * time_s) + 0.05 * std::sin(5.1 * time_s));
+  }
+  /// Time goes on; `each` is told of every second.
+  template <class Each>
+  void go_on(double duration_s, Each each) {
+    const auto ticks = static_cast<int>(duration_s * kTicksPerSecond);
+    for (int tick = 0; tick < ticks; ++tick) {
+      clock_.advance(from_seconds(1.0 / kTicksPerSecond));
+      if (tick % kTicksPerSecond == 0) each();
+      const WindVector before = hub_->wind().wind;
+      const WindState& state = hub_->advance();
+      ASSERT_TRUE(std::isfinite(state.wind.u_m_s) && std::isfinite(state.wind.v_m_s));
+      largest_wind_m_s_ = std::max(largest_wind_m_s_, speed_of(state.wind));
+      largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(state.wind - before));
+    }
+  }
+  SensorState state(std::size_t sensor = 0) const { return hub_->status().at(sensor).state; }
+  std::string reason(std::size_t sensor = 0) const { return hub_->status().at(sensor).state_reason; }
+
+  int lines_of_log_with(const std::string& text) const {
+    std::istringstream lines(log_.str());
+    int count = 0;
+    for (std::string line; std::getline(lines, line);) count += line.find(text) != std::string::npos ? 1 : 0;
+    return count;
+  }
+
+  static constexpr int kTicksPerSecond = 5;
+
+  ManualClock clock_;
+  Config config_;
+  std::deque<Mouth> mouths_;
+  std::vector<SensorSink*> sinks_;
+  std::unique_ptr<SensorHub> hub_;
+  ReadingQuality quality_ = ReadingQuality::kGood;
+  int recorded_ = 0;
+  double largest_wind_m_s_ = 0.0;
+  double largest_step_m_s_ = 0.0;
+  std::ostringstream log_;
+  std::shared_ptr<spdlog::logger> usual_logger_;
+};
+
+class SensorJudgementOfTwo : public SensorJudgement {
+ protected:
+  SensorJudgementOfTwo() : SensorJudgement(2) {}
+};
+class SensorJudgementOfThree : public SensorJudgement {
+ protected:
+  SensorJudgementOfThree() : SensorJudgement(3) {}
+};
+
+TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenItMoves) {
+  start();
+  go_on(120, [&] { say(0, breeze()); });
+  EXPECT_EQ(state(), SensorState::kLive);
+  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  const double normal_step_m_s = std::exchange(largest_step_m_s_, 0.0);
+
+  go_on(60, [&] { say(0, 6.5); });
+  EXPECT_EQ(state(), SensorState::kFrozen);
+  EXPECT_THAT(reason(), HasSubstr("the same 6.50 m/s 60 times"));
+  EXPECT_EQ(hub_->status()[0].health, static_cast<std::uint8_t>(SourceHealth::kLive)) << "it speaks";
+  EXPECT_EQ(hub_->status()[0].speed_m_s, 6.5) << "what it says is shown";
+  go_on(60, [&] { say(0, 6.5); });
+  EXPECT_NE(hub_->wind().source, WindSource::kLive);
+
+  go_on(30, [&] { say(0, breeze()); });
+  EXPECT_EQ(state(), SensorState::kLive);
+  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_LT(largest_step_m_s_, 2.0 * normal_step_m_s) << "neither loss nor return is a jump";
+  EXPECT_EQ(recorded_, 270) << "a recording keeps everything";
+
+  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: frozen: the same 6.50 m/s"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("(was frozen"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("sensor spoken0"), 4) << "connected, live, frozen, live\n" << log_.str();
+}
+
+TEST_F(SensorJudgement, SpikesDoNotReachTheWind) {
+  start();
+  go_on(60, [&] { say(0, breeze()); });
+  const double normal_wind_m_s = std::exchange(largest_wind_m_s_, 0.0);
+  int second = 0;
+  go_on(300, [&] { say(0, second++ % 20 == 0 ? 55.0 : breeze()); });
+  EXPECT_EQ(state(), SensorState::kLive) << "one in twenty is no fault";
+  EXPECT_LT(largest_wind_m_s_, 1.5 * normal_wind_m_s);
+  EXPECT_EQ(recorded_, 360);
+  EXPECT_THAT(hub_->status()[0].refused,
+              ::testing::Contains(std::pair<std::string, std::uint64_t>("not believed", 15)));
+}
+
+TEST_F(SensorJudgement, ASensorThatSaysNonsenseAgainAndAgainIsImplausibleUntilItSpeaksSense) {
+  start();
+  go_on(60, [&] { say(0, breeze()); });
+  go_on(30, [&] { say(0, kNan); });
+  EXPECT_EQ(state(), SensorState::kImplausible);
+  EXPECT_THAT(reason(), HasSubstr("of its last readings"));
+  go_on(90, [&] { say(0, breeze()); });
+  EXPECT_EQ(state(), SensorState::kLive);
+  EXPECT_EQ(lines_of_log_with("implausible: "), 1) << log_.str();
+}
+
+TEST_F(SensorJudgement, ASimulationMayBeAsSteadyAsItLikesAndSoMayOneThatIsNotJudged) {
+  quality_ = ReadingQuality::kSimulated;
+  start();
+  go_on(900, [&] { say(0, 6.0); });
+  EXPECT_EQ(state(), SensorState::kSimulated);
+  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+}
+
+TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
+  config_.sensors[0].judge.set("enabled", false);
+  start();
+  go_on(60, [&] { say(0, breeze()); });
+  go_on(300, [&] { say(0, 6.0); });
+  EXPECT_EQ(state(), SensorState::kLive);
+  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+}
+
+TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
+  config_.sensors[0].judge.set("frozen", 100.0);
+  config_.sensors[0].judge.set("max_speed", 40.0);
+  start();
+  go_on(60, [&] { say(0, breeze()); });
+  go_on(95, [&] { say(0, 6.0); });
+  EXPECT_EQ(state(), SensorState::kLive);
+  go_on(10, [&] { say(0, 6.0); });
+  EXPECT_EQ(state(), SensorState::kFrozen);
+  go_on(30, [&] { say(0, 41.0 + 0.1 * breeze()); });
+  EXPECT_EQ(state(), SensorState::kImplausible);
+}
+
+TEST_F(SensorJudgement, ARecordingIsJudgedAsTheSensorWasAndNeverTakenForLive) {
+  config_.sensors.clear();
+  add_sensor(kPlayedDriver);
+  start();
+  go_on(60, [&] { say(0, breeze()); });
+  EXPECT_EQ(state(), SensorState::kReplayed);
+  go_on(60, [&] { say(0, 5.0); });
+  EXPECT_EQ(state(), SensorState::kFrozen);
+  EXPECT_TRUE(hub_->status()[0].replayed);
+  sinks_[0]->link(LinkState::kFinished, "the end");
+  go_on(30, [] {});
+  EXPECT_EQ(state(), SensorState::kDisconnected);
+}
+
+TEST_F(SensorJudgement, SilenceIsStaleAndADeviceThatGoesIsDisconnected) {
+  start();
+  EXPECT_EQ(state(), SensorState::kConnecting);
+  go_on(30, [&] { say(0, breeze()); });
+  go_on(10, [] {});
+  EXPECT_EQ(state(), SensorState::kStale);
+  EXPECT_THAT(reason(), HasSubstr("no reading for 10"));
+  sinks_[0]->link(LinkState::kConnecting, "its cable is out");
+  go_on(1, [] {});
+  EXPECT_EQ(state(), SensorState::kDisconnected);
+  EXPECT_EQ(reason(), "its cable is out");
+}
+
+TEST_F(SensorJudgement, AFlappingSensorDoesNotFloodTheLog) {
+  start();
+  int second = 0;
+  go_on(3600, [&] {
+    if (second++ % 20 < 8) say(0, breeze());  // twelve seconds of silence: stale
+  });
+  EXPECT_GE(lines_of_log_with("sensor spoken0: stale"), 1);
+  EXPECT_LE(lines_of_log_with("sensor spoken0"), 14) << log_.str();
+}
+
+TEST_F(SensorJudgementOfThree, TheOneThatIsOutvotedLosesTheWindToTheNext) {
+  start();
+  const auto all_say = [&](double first_m_s) {
+    say(0, breeze(first_m_s));
+    say(1, breeze(5.0), 251.0);
+    say(2, breeze(6.0), 249.0);
+  };
+  go_on(60, [&] { all_say(5.5); });
+  go_on(1000, [&] { all_say(33.0); });
+  EXPECT_EQ(state(0), SensorState::kImplausible);
+  EXPECT_THAT(reason(0), HasSubstr("m/s where the others say 5"));
+  EXPECT_EQ(state(1), SensorState::kLive);
+  EXPECT_EQ(state(2), SensorState::kLive);
+  go_on(60, [&] { all_say(33.0); });
+  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_LT(speed_of(hub_->wind().wind), 12.0) << "the next one's";
+  go_on(1000, [&] { all_say(5.5); });
+  EXPECT_EQ(state(0), SensorState::kLive);
+}
+
+TEST_F(SensorJudgementOfThree, WhoIsNotToBeComparedIsNeverOutvoted) {
+  config_.sensors[0].judge.set("compare", false);
+  start();
+  go_on(1000, [&] {
+    say(0, breeze(33.0));
+    say(1, breeze(5.0));
+    say(2, breeze(6.0));
+  });
+  EXPECT_EQ(state(0), SensorState::kLive);
+}
+
+TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
+  start();
+  go_on(1000, [&] {
+    say(0, breeze(3.0));
+    say(1, breeze(25.0));
+  });
+  for (const std::size_t sensor : {0U, 1U}) {
+    EXPECT_EQ(state(sensor), SensorState::kLive);
+    EXPECT_THAT(reason(sensor), HasSubstr("nobody can tell who is right"));
+  }
+  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1 s; but it says"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("nobody can tell"), 2) << log_.str();
+}
+
+TEST_F(SensorJudgementOfTwo, ACupThatStandsStillWhereTheOtherHasWindIsSeized) {
+  config_.sensors[0].judge.set("seized", 900.0);
+  start();
+  const auto other_says = [&] { say(1, breeze(7.0)); };
+  go_on(60, [&] { say(0, breeze()), other_says(); });
+  go_on(1400, [&] { say(0, 0.0), other_says(); });
+  EXPECT_EQ(state(0), SensorState::kSeized);
+  EXPECT_THAT(reason(0), HasSubstr("while the others say 7"));
+  EXPECT_GT(speed_of(hub_->wind().wind), 3.0) << "the other's wind";
+  go_on(20, [&] { say(0, breeze()), other_says(); });
+  EXPECT_EQ(state(0), SensorState::kLive);
+}
+
+/// Whatever happens, the wind stays one, and in the end everything is as it should be.
+TEST_F(SensorJudgementOfTwo, RandomFaultsLeaveTheWindFiniteAndBoundedAndTheStatesEndRight) {
+  start();
+  std::mt19937_64 random(17);
+  const auto chance = [&](unsigned one_in) { return random() % one_in == 0; };
+  constexpr double kTenYears_s = 315'576'000.0;
+  double frozen_m_s = -1.0;
+  for (int episode = 0; episode < 100; ++episode) {
+    const std::uint64_t fault = random() % 9;
+    const std::size_t sensor = random() % 2;
+    if (fault == 0) clock_.set_utc(clock_.now().utc + from_seconds(chance(2) ? kTenYears_s : -kTenYears_s));
+    frozen_m_s = breeze();
+    go_on(5.0 + static_cast<double>(random() % 40), [&] {
+      say(1 - sensor, breeze());
+      switch (fault) {
+        case 1:
+          return;  // silence
+        case 2:
+          return say(sensor, chance(3) ? kNan : breeze());
+        case 3:
+          return say(sensor, chance(4) ? 0.1 * static_cast<double>(random() % 1200) : breeze());
+        case 4:
+          return say(sensor, frozen_m_s);
+        case 5:  // late ones, and such as come from the future
+          return say(sensor, breeze(), 250.0, chance(2) ? 3.0 : -kTenYears_s);
+        case 6:
+          for (int i = 0; i < 12; ++i) say(sensor, breeze(), static_cast<double>(random() % 360));
+          return;
+        case 7:
+          sinks_[sensor]->link(chance(2) ? LinkState::kConnected : LinkState::kConnecting, "flaps");
+          return;
+        case 8:
+          return say(sensor, 0.0);
+        default:
+          return say(sensor, breeze());
+      }
+    });
+    if (HasFatalFailure()) return;
+    if (chance(20)) clock_.advance(from_seconds(chance(3) ? kTenYears_s : 3600.0));  // the machine slept
+    if (chance(20)) clock_.advance(-from_seconds(2.0));
+  }
+  EXPECT_LE(largest_wind_m_s_, kMaxPlausibleSpeed_m_s);
+
+  for (SensorSink* sink : sinks_) sink->link(LinkState::kConnected, "here");
+  WindVector sum{};
+  int seconds_seen = 0;
+  go_on(180, [&] {
+    say(0, breeze());
+    say(1, breeze());
+    if (++seconds_seen > 120) sum = sum + hub_->wind().wind;
+  });
+  EXPECT_EQ(state(0), SensorState::kLive) << reason(0);
+  EXPECT_EQ(state(1), SensorState::kLive) << reason(1);
+  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_NEAR(speed_of(sum) / 60.0, 6.0, 2.0);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,89 @@
+#include "daemon/settings/config_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/exit.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace yuragi {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr std::string_view kOldWall = "# mine\n[[sensor]]\ndriver = \"synthetic\"\nspeed = 3\n";
+constexpr std::string_view kNewWall = "# mine\n[[sensor]]\ndriver = \"synthetic\"\nspeed = 4\n";
+
+class ConfigFile : public testing::Test {
+ protected:
+  ConfigFile() : wall_(folder_ / "wall.toml") { write(wall_, kOldWall); }
+
+  static void write(const fs::path& file, std::string_view text) { std::ofstream(file, std::ios::binary) << text; }
+
+  /// What is said of a text that is not taken; the file and its folder must be as they were.
+  std::string refusal(std::string_view old_text, std::string_view new_text) {
+    const std::string before = read_config_text(wall_);
+    try {
+      replace_config(wall_, old_text, new_text);
+    } catch (const ExitError& error) {
+      EXPECT_EQ(read_config_text(wall_), before);
+      EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left beside it";
+      return error.what();
+    }
+    return "it was taken";
+  }
+
+  test::TemporaryFolder folder_;
+  fs::path wall_;
+};
+
+TEST_F(ConfigFile, IsReplacedAsAWholeAndItsOldTextKept) {
+  fs::permissions(wall_, fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(replace_config(wall_, kOldWall, kNewWall).filename(), "wall.toml.bak");
+  EXPECT_EQ(read_config_text(wall_), kNewWall);
+  EXPECT_EQ(read_config_text(folder_ / "wall.toml.bak"), kOldWall);
+  for (const char* name : {"wall.toml", "wall.toml.bak"}) {
+    EXPECT_EQ(fs::status(folder_ / name).permissions(), fs::perms::owner_read | fs::perms::owner_write) << name;
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);
+}
+
+TEST_F(ConfigFile, BehindALinkIsReplacedAndTheLinkStays) {
+  const fs::path link = folder_ / "current.toml";
+  fs::create_symlink("wall.toml", link);
+  replace_config(link, kOldWall, kNewWall);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_config_text(wall_), kNewWall);
+}
+
+TEST_F(ConfigFile, StaysWhereTheNewTextWouldBeWrong) {
+  EXPECT_THAT(refusal(kOldWall, "[[sensor]]\ndriver = \"synthetic\"\nspeed = -1\n"), HasSubstr("speed: is -1"));
+  EXPECT_THAT(refusal(kOldWall, "[[sensor\n"), HasSubstr("TOML"));
+  const std::string microphone = "[[sensor]]\ndriver = \"microphone\"\n";
+  write(wall_, microphone);
+  EXPECT_THAT(refusal(microphone, microphone + "curve = \"5\"\n"), HasSubstr("curve")) << "what only the driver knows";
+}
+
+TEST_F(ConfigFile, ASensorThatCouldNotBeOpenedBeforeStandsInNobodysWay) {
+  const std::string elsewhere = "[[sensor]]\ndriver = \"modbus\"\nprofile = \"no-such-device\"\n";
+  write(wall_, elsewhere);
+  replace_config(wall_, elsewhere, elsewhere + "[sensor.calibration]\ngain = 2.0\n");
+  EXPECT_THAT(read_config_text(wall_), HasSubstr("gain = 2.0"));
+}
+
+TEST_F(ConfigFile, StaysWhereSomebodyHasChangedItMeanwhile) {
+  write(wall_, "# somebody else's\n");
+  EXPECT_THAT(refusal(kOldWall, kNewWall), HasSubstr("has been changed meanwhile"));
+}
+
+TEST_F(ConfigFile, ThatIsNotThereIsTold) {
+  EXPECT_THROW(replace_config(folder_ / "none.toml", "", kNewWall), ExitError);
+}
+
+}  // namespace
+}  // namespace yuragi

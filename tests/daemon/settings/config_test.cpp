@@ -1,0 +1,368 @@
+#include "daemon/settings/config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/settings/site_octaves.hpp"
+#include "daemon/settings/wind_settings.hpp"
+
+namespace yuragi {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// What the reader says of a wrong text.
+std::string mistakes_of(std::string_view text) {
+  try {
+    parse_config(text, "wall.toml");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no mistake was found";
+}
+
+TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
+  const Config config = parse_config("", "empty.toml");
+  ASSERT_EQ(config.sensors.size(), 1U);
+  EXPECT_EQ(config.sensors[0].driver->name, "synthetic");
+  ASSERT_EQ(config.scenes.size(), 1U);
+  EXPECT_EQ(config.scenes[0].kind->name, "grass");
+  EXPECT_EQ(config.stream.text("listen"), "127.0.0.1:7410");
+  EXPECT_EQ(config.animation.number("rate"), 60.0);
+}
+
+TEST(Config, TakesWhatTheFileSaysAndDefaultsForTheRest) {
+  const Config config = parse_config(R"(
+seed = 12
+[wind]
+default_speed = 7
+[[sensor]]
+driver = "synthetic"
+name = "attic"
+speed = 9.5
+[[scene]]
+kind = "grass"
+name = "meadow"
+)",
+                                     "wall.toml");
+  EXPECT_EQ(config.seed, 12U);
+  EXPECT_EQ(config.wind.number("default_speed"), 7.0) << "a whole number passes for a number";
+  EXPECT_EQ(config.wind.number("default_direction"), 240.0);
+  EXPECT_EQ(config.sensors[0].name, "attic");
+  EXPECT_EQ(config.sensors[0].values.number("speed"), 9.5);
+  EXPECT_EQ(config.sensors[0].origin, "wall.toml:5:1");
+  EXPECT_EQ(config.scenes[0].name, "meadow");
+}
+
+TEST(Config, AParameterThatASceneHadOnceIsToldWithWhatItIsNow) {
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"fur\"\nturbulence = 0.5\n"),
+              StartsWith("wall.toml:3:14: scene.turbulence: is now strokes"));
+}
+
+TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
+  EXPECT_THAT(mistakes_of("[animation]\nrate = 1000\n"),
+              StartsWith("wall.toml:2:8: animation.rate: is 1000; allowed: number from 1 to 240 Hz"));
+  EXPECT_THAT(mistakes_of("seed = \"seven\"\n"),
+              StartsWith("wall.toml:1:8: seed: is a text (\"seven\"); allowed: whole number"));
+  EXPECT_THAT(mistakes_of("[wind]\ngusts = 3\n"),
+              StartsWith("wall.toml:2:9: wind.gusts: is not a parameter here; known: default_speed"));
+  EXPECT_THAT(mistakes_of("[win]\nx = 1\n"),
+              StartsWith("wall.toml:1:2: win: is not known here; allowed: seed, [stream]"));
+  EXPECT_THAT(mistakes_of("wind = 3\n"), StartsWith("wall.toml:1:1: wind: is a value; write it as a table"));
+  EXPECT_THAT(mistakes_of("[sensor]\ndriver = \"synthetic\"\n"),
+              StartsWith("wall.toml:1:2: sensor: is one table; write [[sensor]]"));
+  EXPECT_THAT(mistakes_of("[[sensor]]\nspeed = 3\n"),
+              testing::AllOf(HasSubstr("sensor.driver: is missing or not a text; allowed: one of "),
+                             HasSubstr("\"synthetic\"")));
+  EXPECT_THAT(mistakes_of("[[sensor]]\ndriver = \"barometer\"\n"),
+              StartsWith("wall.toml:2:10: sensor.driver: is \"barometer\"; allowed: one of"));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nlinks = [1, 2]\n"),
+              StartsWith("wall.toml:3:9: scene.links: takes one value"));
+  EXPECT_THAT(mistakes_of("[wind]\ndefault_speed = nan\n"),
+              StartsWith("wall.toml:2:17: wind.default_speed: is nan; allowed: number from 0 to 40 m/s"));
+  EXPECT_THAT(mistakes_of("[[sensor]]\ndriver=\"synthetic\"\n[[sensor]]\ndriver=\"synthetic\"\n"),
+              HasSubstr("\"synthetic\" is there twice"));
+}
+
+TEST(Config, ASensorOfAnyDriverHasACalibration) {
+  const Config config = parse_config(R"(
+[[sensor]]
+driver = "synthetic"
+[sensor.calibration]
+gain = 1.05
+curve = "0:0 5:5.5"
+height = 2
+[[sensor]]
+driver = "synthetic"
+name = "other"
+)",
+                                     "wall.toml");
+  const Calibration calibration = calibration_of(config.sensors[0]);
+  EXPECT_EQ(calibration.gain, 1.05);
+  EXPECT_EQ(calibration.curve.size(), 2U);
+  EXPECT_EQ(calibration.height_factor, height_factor(2.0, 10.0, 0.03));
+  EXPECT_EQ(calibration_of(config.sensors[1]).gain, 1.0);
+  EXPECT_EQ(calibration_of(config.sensors[1]).height_factor, 1.0);
+  EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
+
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  const Config in_km_h = parse_config(sensor + "[sensor.calibration]\nunit = \"km/h\"\n", "wall.toml");
+  EXPECT_EQ(calibration_of(in_km_h.sensors[0]).unit_m_s, 1.0 / 3.6);
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\nunit = \"km\"\n"), HasSubstr("sensor.calibration.unit: is"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ngain = 0\n"),
+              StartsWith("wall.toml:4:8: sensor.calibration.gain: is 0; allowed: number from 0.01 to 100"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ncurve = \"5\"\n"),
+              StartsWith("wall.toml:4:9: sensor.calibration.curve: \"5\" is no curve; allowed:"));
+  EXPECT_THAT(mistakes_of(sensor + "calibration = 3\n"),
+              StartsWith("wall.toml:3:15: sensor.calibration: is a value; write it as a table"));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\n[scene.calibration]\ngain = 2\n"),
+              HasSubstr("scene.calibration: takes one value"));
+}
+
+TEST(Config, GustsReachAsFarAsTheHeightOfASensorSaysUnlessTheirLengthIsSet) {
+  const std::string sensors =
+      "[[sensor]]\nname = \"low\"\ndriver = \"synthetic\"\n[sensor.calibration]\nheight = 4.4\nscene_height = 4.4\n"
+      "[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n[sensor.calibration]\nheight = 15\nscene_height = 15\n"
+      "[[sensor]]\nname = \"raised\"\ndriver = \"synthetic\"\n[sensor.calibration]\nheight = 4.4\n"
+      "[[sensor]]\nname = \"any\"\ndriver = \"synthetic\"\n";
+  const Config derived = parse_config(sensors, "test");
+  ASSERT_EQ(derived.sensors.size(), 4U);
+  EXPECT_NEAR(gust_length_m(derived, derived.sensors[0]), 25.0, 0.1);
+  EXPECT_NEAR(gust_length_m(derived, derived.sensors[1]), 85.0, 0.1);
+  // Brought to 10 m, speed and length by the same factor: it passes in the same time.
+  EXPECT_NEAR(gust_length_m(derived, derived.sensors[2]), 24.95 * height_factor(4.4, 10.0, 0.03), 0.1);
+  EXPECT_EQ(gust_length_m(derived, derived.sensors[3]), 57.0);
+  EXPECT_EQ(default_gust_length_m(derived), 57.0);
+
+  const Config set = parse_config("[wind]\ndefault_length = 40\n" + sensors, "test");
+  for (const SensorConfig& sensor : set.sensors) EXPECT_EQ(gust_length_m(set, sensor), 40.0) << sensor.name;
+  EXPECT_EQ(default_gust_length_m(set), 40.0);
+}
+
+TEST(Config, TheOctavesOfASiteAreARowOfDecibels) {
+  const Config config = parse_config("[wind]\nsite_octaves = \"+1.2 -0.4 3\"\n", "test");
+  const SiteSpectrum::Decibels octaves_db = make_site_spectrum(config)->octaves_db();
+  EXPECT_NEAR(octaves_db[0], 1.2, 1e-9);
+  EXPECT_NEAR(octaves_db[1], -0.4, 1e-9);
+  EXPECT_NEAR(octaves_db[2], 3.0, 1e-9);
+  EXPECT_NEAR(octaves_db[6], 3.0, 1e-9);
+  EXPECT_EQ(site_octaves_text(std::vector<double>{1.2, -0.4, 3.0}), "+1.2 -0.4 +3.0");
+  EXPECT_TRUE(parse_site_octaves(" ")->empty());
+  for (const char* wrong : {"1.2 x", "11", "nan", "+-1", "1 2 3 4 5 6 7 8", "1,2"}) {
+    EXPECT_THAT(mistakes_of("[wind]\nsite_octaves = \"" + std::string(wrong) + "\"\n"),
+                StartsWith("wall.toml:2:16: wind.site_octaves: "))
+        << wrong;
+  }
+}
+
+TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {
+  EXPECT_THAT(mistakes_of("[shaping]\nhours = \"25:00-18:00\"\n"),
+              StartsWith("wall.toml:2:9: shaping.hours: has \"25:00-18:00\"; allowed: FROM-TO"));
+  EXPECT_THAT(mistakes_of("[shaping]\nfloor = 1\nzone = \"Mars\"\n"),
+              StartsWith("wall.toml:3:8: shaping.zone: is \"Mars\", which is no time zone"));
+  EXPECT_THAT(mistakes_of("[shaping]\nceiling_most = 12\n"),
+              StartsWith("wall.toml:2:16: shaping.ceiling_most: is 12; allowed: more than ceiling, which is 17"));
+  EXPECT_THAT(mistakes_of("[shaping]\nceiling = 30\n"), StartsWith("wall.toml:1:1: shaping.ceiling_most: is 25"));
+  EXPECT_THAT(mistakes_of("[shaping]\nsite_median = 3\nsite_strong = 3\n"),
+              StartsWith("wall.toml:3:15: shaping.site_strong: is 3, with site_median 3"));
+  EXPECT_THAT(mistakes_of("[shaping]\nfloor = -1\n"), StartsWith("wall.toml:2:9: shaping.floor: is -1"));
+  EXPECT_THAT(mistakes_of("shaping = 3\n"), StartsWith("wall.toml:1:1: shaping: is a value; write it as a table"));
+  const Config config =
+      parse_config("[shaping]\nceiling = 0\nceiling_most = 1\nhours = \"10:00-18:00\"\n", "wall.toml");
+  EXPECT_EQ(config.shaping.number("ceiling"), 0.0);
+  EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
+}
+
+TEST(Config, ASensorHasItsPartAmongSeveral) {
+  const Config config = parse_config(
+      "[wind]\nreturn_after = 20\n"
+      "[[sensor]]\ndriver = \"synthetic\"\nname = \"roof\"\n"
+      "[[sensor]]\ndriver = \"synthetic\"\nname = \"microphone\"\n[sensor.blend]\nrole = \"relative\"\n"
+      "priority = 3\nweight = 2\nx = -4.5\nz = 2\naveraging = 600\ndirection_step = 22.5\n",
+      "wall.toml");
+  EXPECT_EQ(config.wind.number("return_after"), 20.0);
+  const BlendSourceSettings roof = blend_source_of(config.sensors[0].blend, *config.sensors[0].driver);
+  EXPECT_FALSE(roof.is_relative);
+  EXPECT_EQ(roof.priority, 0);
+  EXPECT_EQ(roof.weight, 1.0);
+  const BlendSourceSettings microphone = blend_source_of(config.sensors[1].blend, *config.sensors[1].driver);
+  EXPECT_TRUE(microphone.is_relative);
+  EXPECT_EQ(microphone.priority, 3);
+  EXPECT_EQ(microphone.weight, 2.0);
+  EXPECT_EQ(microphone.east_m, -4.5);
+  EXPECT_EQ(microphone.south_m, 2.0);
+  EXPECT_EQ(microphone.averaging_s, 600.0);
+  EXPECT_EQ(microphone.direction_step_deg, 22.5);
+  EXPECT_THAT(to_toml(config), HasSubstr("averaging = 600.0"));
+
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nrole = \"boss\"\n"),
+              StartsWith("wall.toml:4:8: sensor.blend.role: is \"boss\"; allowed:"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nweight = 0\n"),
+              StartsWith("wall.toml:4:10: sensor.blend.weight: is 0; allowed: number from 0.01 to 100"));
+  EXPECT_THAT(mistakes_of(sensor + "blend = 3\n"),
+              StartsWith("wall.toml:3:9: sensor.blend: is a value; write it as a table"));
+}
+
+TEST(Config, WhereASensorStandsIsToldOrNotAndStaysSoWhenWrittenOut) {
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  const auto source_of = [](const Config& config) {
+    return blend_source_of(config.sensors.at(0).blend, *config.sensors.at(0).driver);
+  };
+  struct Case {
+    const char* blend;
+    bool has_place;
+    double east_m, south_m, lead_m;
+    const char* text;
+  };
+  for (const Case& one : {Case{"", false, 0.0, 0.0, 0.0, "at the windward edge of the scenes"},
+                          Case{"weight = 2\nlead = 0\n", false, 0.0, 0.0, 0.0, "at the windward edge of the scenes"},
+                          Case{"x = 0\n", true, 0.0, 0.0, 0.0, "in the middle of the scenes"},
+                          Case{"z = -3\n", true, 0.0, -3.0, 0.0, "3 m north of the middle of the scenes"},
+                          Case{"x = -12.5\nz = 3\nlead = 20\n", true, -12.5, 3.0, 20.0,
+                               "12.5 m west and 3 m south of the middle of the scenes, taken 20 m upwind of there"}}) {
+    const Config config = parse_config(sensor + "[sensor.blend]\n" + one.blend, "wall.toml");
+    const std::string written = to_toml(config);
+    const Config again = parse_config(written, "again.toml");
+    EXPECT_EQ(to_toml(again), written) << one.blend;
+    for (const BlendSourceSettings& source : {source_of(config), source_of(again)}) {
+      EXPECT_EQ(source.has_place, one.has_place) << one.blend;
+      EXPECT_EQ(source.east_m, one.east_m) << one.blend;
+      EXPECT_EQ(source.south_m, one.south_m) << one.blend;
+      EXPECT_EQ(source.lead_m, one.lead_m) << one.blend;
+      EXPECT_EQ(place_text(source), one.text) << one.blend;
+    }
+  }
+  EXPECT_FALSE(source_of(default_config()).has_place);
+
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nlead = 20\n"),
+              StartsWith("wall.toml:4:8: sensor.blend.lead: is counted from where the sensor stands; give x or z"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nx = 2000\n"),
+              StartsWith("wall.toml:4:5: sensor.blend.x: is 2000; allowed: number from -1000 to 1000 m; left out: "));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nx = 0\nlead = -1\n"), HasSubstr("sensor.blend.lead: is -1"));
+}
+
+TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
+  const Config config = parse_config(
+      "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades_across = 50\n"
+      "[[scene]]\nkind = \"grass\"\nname = \"other\"\n",
+      "wall.toml");
+  const ParameterValues& placed = config.scenes[0].values;
+  EXPECT_EQ(placed.number("x"), 3.0);
+  EXPECT_EQ(placed.number("z"), -2.5);
+  EXPECT_EQ(placed.number("heading"), 90.0);
+  EXPECT_EQ(placed.number("gain"), 1.5);
+  EXPECT_FALSE(placed.flag("shown"));
+  EXPECT_EQ(config.scenes[1].values.number("gain"), 1.0);
+  EXPECT_TRUE(config.scenes[1].values.flag("shown"));
+  EXPECT_THAT(to_toml(config), HasSubstr("heading = 90.0"));
+
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\ngain = 11\n"),
+              StartsWith("wall.toml:3:8: scene.gain: is 11; allowed: number from 0 to 10"));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nshown = 1\n"), StartsWith("wall.toml:3:9: scene.shown: "));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nxx = 1\n"), HasSubstr("heading"));
+  EXPECT_THAT(mistakes_of("[stream]\ncontrol = \"me\"\n"), StartsWith("wall.toml:2:11: stream.control: "));
+}
+
+TEST(Config, NoKindOfSceneHasAParameterOfTheCommonNames) {
+  for (const SceneDescription* scene : scene_table()) {
+    for (const Parameter& own : scene->parameters) {
+      for (const Parameter& common : common_scene_parameters()) EXPECT_NE(own.name, common.name) << scene->name;
+      EXPECT_NE(own.name, "name") << scene->name;
+      EXPECT_NE(own.name, "kind") << scene->name;
+    }
+  }
+}
+
+TEST(Config, AnAddressThatIsNoneIsAMistakeAtItsPlace) {
+  EXPECT_THAT(mistakes_of("[stream]\nlisten = \"here\"\n"), StartsWith("wall.toml:2:10: stream.listen: "));
+  EXPECT_THAT(mistakes_of("[stream]\nlisten = \"127.0.0.1:99999\"\n"), StartsWith("wall.toml:2:10: stream.listen: "));
+}
+
+TEST(Config, ABrokenFileIsToldWithLineAndColumn) {
+  EXPECT_THAT(mistakes_of("seed = \n"), StartsWith("wall.toml:1:8: TOML: "));
+  EXPECT_THAT(mistakes_of("seed = 1\nseed = 2\n"), StartsWith("wall.toml:2:"));
+}
+
+TEST(Config, AllMistakesOfAFileAreToldAtOnce) {
+  const std::string told = mistakes_of("seed = -1\n[animation]\nrate = 0\n[stream]\nlisten = 7410\n");
+  EXPECT_THAT(told, HasSubstr("wall.toml:1:8: seed"));
+  EXPECT_THAT(told, HasSubstr("wall.toml:3:8: animation.rate"));
+  EXPECT_THAT(told, HasSubstr("wall.toml:5:10: stream.listen"));
+}
+
+TEST(Config, AFileThatIsNotThereIsAMistakeOfTheConfiguration) {
+  EXPECT_THROW(load_config("/nowhere/wall.toml"), ConfigError);
+  EXPECT_THROW(load_config("/"), ConfigError);
+}
+
+TEST(Config, ASensorsJudgeHasLimitsOfItsOwnAndDefaults) {
+  const Config config = parse_config(
+      "[[sensor]]\ndriver = \"synthetic\"\n[sensor.judge]\nfrozen = 120\nseized = 600\n"
+      "[[sensor]]\nname = \"free\"\ndriver = \"synthetic\"\n[sensor.judge]\nenabled = false\n"
+      "[[sensor]]\nname = \"usual\"\ndriver = \"synthetic\"\n",
+      "wall.toml");
+  const auto strict = judge_settings_of(config.sensors[0]);
+  ASSERT_TRUE(strict.has_value());
+  EXPECT_EQ(strict->frozen_s, 120.0);
+  EXPECT_EQ(strict->seized_s, 600.0);
+  EXPECT_EQ(strict->seized_alone_s, 3600.0);
+  EXPECT_FALSE(judge_settings_of(config.sensors[1]).has_value());
+  const auto usual = judge_settings_of(config.sensors[2]);
+  ASSERT_TRUE(usual.has_value());
+  const JudgeSettings defaults;
+  EXPECT_EQ(usual->max_speed_m_s, defaults.max_speed_m_s);
+  EXPECT_EQ(usual->slew_m_s2, defaults.slew_m_s2);
+  EXPECT_EQ(usual->least_spike_m_s, defaults.least_spike_m_s);
+  EXPECT_EQ(usual->frozen_s, defaults.frozen_s);
+  EXPECT_EQ(usual->seized_s, defaults.seized_s);
+  EXPECT_EQ(usual->seized_alone_s, defaults.seized_alone_s);
+}
+
+TEST(Config, MistakesOfAJudgeAreToldAtTheirPlaces) {
+  const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
+  EXPECT_THAT(mistakes_of(sensor + "judge = true\n"),
+              HasSubstr("wall.toml:3:9: sensor.judge: is a value; write it as a table"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfrozen = 0\n"),
+              HasSubstr("wall.toml:4:10: sensor.judge.frozen: is 0"));
+  EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfreeze = 10\n"), HasSubstr("sensor.judge.freeze"));
+}
+
+TEST(Config, WrittenOutAndReadAgainItIsTheSame) {
+  const Config config = parse_config("seed = 5\n[[sensor]]\ndriver = \"synthetic\"\nspeed = 2.25\n", "wall.toml");
+  const std::string written = to_toml(config);
+  EXPECT_EQ(to_toml(parse_config(written, "again.toml")), written);
+  EXPECT_THAT(written, HasSubstr("speed = 2.25"));
+}
+
+TEST(Config, TheValuesOfOneTableAreReadBack) {
+  const Config config = parse_config("[[sensor]]\ndriver = \"synthetic\"\nspeed = 2.25\n", "wall.toml");
+  const SensorConfig& sensor = config.sensors[0];
+  const auto again = parse_values(to_toml(sensor.values), sensor.driver->parameters);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->all(), sensor.values.all());
+  EXPECT_THAT(parse_values("speed = -1", sensor.driver->parameters).error().message, HasSubstr("speed: is -1"));
+  EXPECT_THAT(parse_values("speed = [1]", sensor.driver->parameters).error().message, HasSubstr("takes one value"));
+  EXPECT_THAT(parse_values("speed =", sensor.driver->parameters).error().message, HasSubstr("TOML"));
+}
+
+TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
+  const auto check = [](std::string_view where, std::span<const Parameter> parameters) {
+    for (const Parameter& parameter : parameters) {
+      EXPECT_FALSE(parameter.help.empty()) << where << " " << parameter.name;
+      const ParameterValues::Map given{{std::string(parameter.name), parameter.default_value}};
+      EXPECT_TRUE(ParameterValues::resolve(parameters, given).has_value()) << where << " " << parameter.name;
+    }
+  };
+  for (const ConfigTable& table : config_tables()) check(table.name, table.parameters);
+  check("scene", common_scene_parameters());
+  check("sensor.calibration", calibration_parameters());
+  check("sensor.blend", sensor_blend_parameters());
+  check("sensor.judge", judge_parameters());
+  for (const DriverDescription* driver : driver_table()) check(driver->name, driver->parameters);
+  for (const SceneDescription* scene : scene_table()) check(scene->name, scene->parameters);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,285 @@
+#include "daemon/shaping/wind_shaper.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "daemon/settings/shaping_config.hpp"
+#include "tests/support/gusty_wind.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double kShaperTick_s = 1.0 / 60.0;
+
+/// What the log is told while this lives.
+class ToldLog {
+ public:
+  ToldLog() : before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(text_)));
+  }
+  ~ToldLog() { spdlog::set_default_logger(before_); }
+  ToldLog(const ToldLog&) = delete;
+  ToldLog& operator=(const ToldLog&) = delete;
+
+  /// How many lines hold this.
+  int count(const std::string& words) const {
+    std::istringstream lines(text_.str());
+    int found = 0;
+    for (std::string line; std::getline(lines, line);) found += line.find(words) != std::string::npos ? 1 : 0;
+    return found;
+  }
+
+ private:
+  std::ostringstream text_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+/// An installation with this [shaping], its steady wind, and both clocks, moved by hand.
+class ShaperBench {
+ public:
+  explicit ShaperBench(const std::string& shaping)
+      : config_(parse_config("[shaping]\n" + shaping, "wall.toml")), shaper(config_, shared_gusts()) {}
+
+  /// The speed that moves the scenes, after so long of this wind.
+  double after(double speed_m_s, double duration_s = kShaperTick_s, double step_s = kShaperTick_s) {
+    double shaped_m_s = 0.0;
+    for (double left_s = duration_s; left_s > 0.5 * step_s; left_s -= step_s) {
+      mono += from_seconds(step_s);
+      utc += from_seconds(step_s);
+      DrivingWind wind{.state = {.time = mono, .wind = {speed_m_s, 0.0}, .live_weight = 1.0},
+                       .ground = WindVector{speed_m_s, 0.0}};
+      shaper.shape(wind, utc, is_any_live);
+      shaped_m_s = speed_of(wind.state.wind);
+      largest_step_m_s = std::max(largest_step_m_s, has_begun_ ? std::abs(shaped_m_s - last_m_s_) : 0.0);
+      has_begun_ = true;
+      last_m_s_ = shaped_m_s;
+    }
+    return shaped_m_s;
+  }
+  std::string text() const { return shaper.status().text; }
+
+ private:
+  Config config_;
+  bool has_begun_ = false;
+  double last_m_s_ = 0.0;
+
+ public:
+  MonoTime mono{std::chrono::hours(1)};
+  UtcTime utc = std::chrono::sys_days(std::chrono::year(2026) / 11 / 17) + 9h + 58min;  // a Tuesday
+  double largest_step_m_s = 0.0;
+  bool is_any_live = true;
+  WindShaper shaper;
+};
+
+TEST(WindShaper, NothingButTheCeilingIsOnByDefault) {
+  ShaperBench wall("");
+  for (const double speed_m_s : {0.0, 0.4, 5.0, 16.9}) EXPECT_EQ(wall.after(speed_m_s, 2.0), speed_m_s);
+  EXPECT_EQ(wall.text(), "");
+  EXPECT_LT(wall.after(40.0), 25.0);
+  EXPECT_THAT(wall.text(), HasSubstr("ceiling: 40.0 held back to 22."));
+}
+
+TEST(WindShaper, TellsHowStrongGustsAreWhereTheyAreNotTheRealOnes) {
+  EXPECT_EQ(shaping_settings(parse_config("", "wall.toml")).gusts, 1.0);
+  const WindShapingSettings settings = shaping_settings(parse_config("[shaping]\ngusts = 1.5\n", "wall.toml"));
+  EXPECT_EQ(settings.gusts, 1.5);
+  EXPECT_EQ(shaping_text({.gusts = 1.5}, settings, {}), "gusts 1.50 times the real ones");
+  EXPECT_EQ(shaping_text({.gusts = 1.0}, settings, {}), "");
+  EXPECT_EQ(shaping_text({.breeze_m_s = 0.0, .gusts = 0.0}, settings, {.has_hours = true, .until = "until 18:00"}),
+            "gusts 0.00 times the real ones; open until 18:00");
+}
+
+TEST(WindShaper, OpensAndClosesByTheWallAndSaysSo) {
+  const ToldLog log;
+  ShaperBench wall("hours = \"10:00-18:00\"\nzone = \"Etc/UTC\"\nfade = 20\n");
+  EXPECT_EQ(wall.after(6.0, 60.0), 0.0);
+  EXPECT_EQ(wall.text(), "closed until 10:00");
+  const double soon_m_s = wall.after(6.0, 65.0);
+  EXPECT_GT(soon_m_s, 0.0);
+  EXPECT_LT(soon_m_s, 6.0);
+  EXPECT_THAT(wall.text(), HasSubstr("open until 18:00, fading in: "));
+  EXPECT_EQ(wall.after(6.0, 120.0), 6.0);
+  EXPECT_EQ(wall.text(), "open until 18:00");
+  EXPECT_EQ(log.count("closed until 10:00"), 1);
+  EXPECT_EQ(log.count("open until 18:00; the wind fades in over 20 s"), 1);
+}
+
+TEST(WindShaper, NoJumpOfTheClockIsOneOfTheWind) {
+  ShaperBench wall("hours = \"10:00-18:00\"\nzone = \"Europe/Berlin\"\nfade = 30\n");
+  std::int64_t jump = 0;
+  for (const auto hours : {5h, -5h, 87600h, -175200h, 87600h, 1h, 12h}) {
+    wall.utc += hours;
+    wall.after(6.0, 20.0 + static_cast<double>(++jump % 3) * 20.0);
+  }
+  // Critically damped: a step of the target by 1 moves it at most 0.37 times its rate.
+  EXPECT_GT(wall.largest_step_m_s, 0.0);
+  EXPECT_LE(wall.largest_step_m_s, 6.0 / std::numbers::e * (4.75 / 30.0) * kShaperTick_s * 1.001);
+}
+
+TEST(WindShaper, TheFloorIsToldOnceHoweverTheWindFlickers) {
+  const ToldLog log;
+  ShaperBench wall("floor = 2\nover = 10\n");
+  for (int i = 0; i < 50; ++i) wall.after(i % 2 == 0 ? 1.0 : 1.4, 5.0);
+  EXPECT_THAT(wall.text(), ::testing::MatchesRegex("floor: raised 1\\.[0-9] to 2\\.[01] m/s"));
+  EXPECT_EQ(log.count("raised toward the floor of 2.0 m/s"), 1);
+  for (int i = 0; i < 20; ++i) wall.after(i % 2 == 0 ? 5.0 : 4.0, 5.0);
+  EXPECT_EQ(log.count("needs no raising any more"), 1);
+  EXPECT_EQ(wall.text(), "");
+}
+
+TEST(WindShaper, AStormIsToldOnceHoweverManyGustsItHas) {
+  const ToldLog log;
+  ShaperBench wall("");
+  for (int i = 0; i < 100; ++i) wall.after(i % 2 == 0 ? 12.0 : 30.0, 2.0);
+  EXPECT_EQ(log.count("a storm: 30.0 m/s is held back to"), 1);
+  EXPECT_EQ(log.count("the storm is over"), 0);
+  wall.after(12.0, 70.0);
+  EXPECT_EQ(log.count("the storm is over; the strongest was 30.0 m/s"), 1);
+}
+
+class SiteFileTest : public ::testing::Test {
+ protected:
+  SiteFileTest() {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~SiteFileTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string with_file(const std::string& more = "") const {
+    return "site_median = 4\nsite_memory = 0.2\nover = 10\nsite_file = \"" + file_.string() + "\"\n" + more;
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("site_file_test." + std::to_string(getpid()));
+  std::filesystem::path file_ = folder_ / "site.json";
+};
+
+TEST_F(SiteFileTest, TheSiteIsRememberedOverARestart) {
+  {
+    ShaperBench wall(with_file());
+    wall.shaper.keep_site_file();
+    wall.after(2.0, 6.0 * 3600.0, 1.0);
+    EXPECT_NEAR(wall.after(2.0), 4.0, 0.1);
+    // Once an hour, not at the end only; on a thread of its own.
+    const auto deadline = std::chrono::steady_clock::now() + 30s;
+    while (!std::filesystem::exists(file_) && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    EXPECT_TRUE(std::filesystem::exists(file_));
+  }
+  const ToldLog log;
+  ShaperBench wall(with_file());
+  wall.shaper.keep_site_file();
+  EXPECT_NEAR(wall.after(2.0), 4.0, 0.1);
+  EXPECT_THAT(wall.text(), HasSubstr("site gain 2.0"));
+  EXPECT_EQ(log.count("remembers 3 h"), 1);
+}
+
+TEST_F(SiteFileTest, TheSitesGustsAreRememberedOverARestart) {
+  const auto learnt = std::make_shared<SiteSpectrum>();
+  for (int i = 0; i < 1000; ++i) learnt->learn(1, 3.0, 14.0);
+  {
+    // A gain is not needed for that.
+    ShaperBench wall("site_file = \"" + file_.string() + "\"\n");
+    wall.shaper.keep_site_file(learnt);
+    wall.after(2.0);
+  }
+  const ToldLog log;
+  const auto known = std::make_shared<SiteSpectrum>();
+  ShaperBench wall("site_file = \"" + file_.string() + "\"\n");
+  wall.shaper.keep_site_file(known);
+  EXPECT_EQ(known->octaves_db(), learnt->octaves_db());
+  EXPECT_EQ(log.count("of the site's gusts"), 1);
+}
+
+TEST_F(SiteFileTest, AFileFromBeforeGustsWereLearntIsStillRead) {
+  std::string times;
+  for (std::size_t bin = 0; bin < SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
+  std::ofstream(file_) << "{\"seconds_at_each_speed\": [" << times << "]}";
+  const ToldLog log;
+  const auto gusts = std::make_shared<SiteSpectrum>();
+  ShaperBench wall(with_file());
+  wall.shaper.keep_site_file(gusts);
+  EXPECT_EQ(log.count("of the site's wind"), 1);
+  EXPECT_EQ(gusts->octaves_db(), SiteSpectrum::Decibels{});
+}
+
+TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
+  for (const char* wrong : {"", "{", "[]", "{\"seconds_at_each_speed\": 3}", "{\"seconds_at_each_speed\": [1, \"x\"]}",
+                            "{\"seconds_at_each_speed\": [1, 2]}", "{\"seconds_at_each_speed\": [-1e999]}"}) {
+    std::ofstream(file_) << wrong;
+    const ToldLog log;
+    {
+      ShaperBench wall(with_file());
+      wall.shaper.keep_site_file();
+      EXPECT_EQ(wall.after(2.0), 2.0) << wrong;
+    }
+    EXPECT_EQ(log.count("site gain begins at 1, and the file anew"), 1) << wrong;
+    EXPECT_TRUE(SiteFile(file_).read().has_value()) << wrong;
+  }
+}
+
+TEST_F(SiteFileTest, AFolderThatIsNotThereIsToldAndNoReasonToStop) {
+  const ToldLog log;
+  {
+    ShaperBench wall("site_median = 4\nsite_file = \"" + (folder_ / "not" / "there.json").string() + "\"\n");
+    wall.shaper.keep_site_file();
+    EXPECT_EQ(wall.after(2.0), 2.0);
+  }
+  EXPECT_EQ(log.count("the site's wind is not remembered: "), 1);
+}
+
+TEST_F(SiteFileTest, ARecordingIsNotTheSite) {
+  {
+    ShaperBench wall(with_file("[[sensor]]\ndriver = \"windlog\"\nfile = \"storm.windlog\"\n"));
+    wall.shaper.keep_site_file();
+    wall.after(2.0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST(WindShaper, NothingIsLearntOfTheSiteFromAFallBack) {
+  ShaperBench wall("site_median = 4\nover = 10\n");
+  wall.is_any_live = false;
+  EXPECT_EQ(wall.after(2.0, 3.0 * 3600.0, 1.0), 2.0);
+  EXPECT_EQ(wall.shaper.status().site_known_s, 0.0);
+  wall.is_any_live = true;
+  wall.after(2.0, 600.0, 1.0);
+  EXPECT_NEAR(wall.shaper.status().site_known_s, 590.0, 5.0);
+}
+
+TEST(ShapingText, SaysEverythingThatIsAtWork) {
+  const WindShapingSettings settings{.floor_m_s = 1.5, .site = {.median_m_s = 3.0}, .closed_level = 0.2};
+  const WindShapingReport report{.mean_m_s = 0.4,
+                                 .shaped_mean_m_s = 1.5,
+                                 .site_gain = 1.5,
+                                 .floor_gain = 2.5,
+                                 .opening = 0.6,
+                                 .speed_m_s = 30.0,
+                                 .ceiling_gain = 0.75,
+                                 .median_m_s = 1.2,
+                                 .strong_m_s = 3.9,
+                                 .known_s = 450'000.0};
+  EXPECT_EQ(shaping_text(report, settings, {.has_hours = true, .is_open = false, .until = "until Tue 10:00"}),
+            "site gain 1.50 (in 5 days 5 h median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; "
+            "closed until Tue 10:00, fading out: 60 % of the wind; ceiling: 30.0 held back to 22.5 m/s");
+  EXPECT_EQ(shaping_text({}, {}, {}), "");
+  const OpeningNews closed{.has_hours = true, .is_open = false, .until = "until 10:00"};
+  EXPECT_EQ(shaping_text({.opening = 0.2}, settings, closed),
+            "site gain 1.00 (nothing is known of the site yet); closed until 10:00: 20 % of the wind");
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,144 @@
+#include "daemon/tools/calibration/calibration_source.hpp"
+
+#include <atomic>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/settings/exit.hpp"
+#include "drivers/windlog/windlog_writer.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace yuragi {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kNoDaemon = "127.0.0.1:1";
+
+/// Moved by the test alone, and read by the sensor's thread too.
+class SteppedClock final : public Clock {
+ public:
+  Instant now() const noexcept override {
+    return {.mono = MonoTime(std::chrono::nanoseconds(now_ns_.load())), .utc = {}};
+  }
+  void advance(double duration_s) { now_ns_ += from_seconds(duration_s).count(); }
+
+ private:
+  std::atomic<std::int64_t> now_ns_{1'000'000'000};
+};
+
+/// A sensor that says 3 m/s from 350 degrees whenever it is asked, or only that it is looking for its device.
+template <bool kSpeaks>
+class AskedSensor final : public Sensor {
+ public:
+  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+    if (kSpeaks) {
+      sink.reading({.time = clock.now(), .speed_m_s = 3.0, .direction_deg = 350.0, .gust_m_s = {}});
+    } else {
+      sink.link(LinkState::kConnecting, "no such port");
+    }
+    return clock.now().mono + std::chrono::milliseconds(1);
+  }
+};
+
+template <bool kSpeaks>
+const DriverDescription kAskedDriver{
+    .name = kSpeaks ? "speaking" : "silent",
+    .summary = "",
+    .parameters = {},
+    .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { return std::make_unique<AskedSensor<kSpeaks>>(); }};
+
+SensorConfig sensor_named(const std::string& name, const DriverDescription& driver) {
+  SensorConfig sensor;
+  sensor.name = name;
+  sensor.driver = &driver;
+  sensor.calibration = no_calibration();
+  return sensor;
+}
+
+TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
+  SteppedClock clock;
+  SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
+  roof.calibration.set("gain", 2.0);
+  const auto source = make_live_source({&roof}, kNoDaemon, clock);
+  EXPECT_EQ(source->description(), "the devices themselves");
+  EXPECT_TRUE(source->is_live());
+
+  int told = 0;
+  double last_s = 0.0;
+  const Heard heard = source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard& so_far) {
+    EXPECT_EQ(so_far.size(), 1U);
+    EXPECT_GE(elapsed_s, last_s);
+    last_s = elapsed_s;
+    ++told;
+    clock.advance(0.5);
+  });
+  EXPECT_GE(last_s, 5.0);
+  EXPECT_GE(told, 10);
+  ASSERT_FALSE(heard[0].readings.empty());
+  for (const TimedReading& one : heard[0].readings) {
+    EXPECT_EQ(one.reading.speed_m_s, 3.0) << "as the sensor says it, before calibration";
+    EXPECT_GE(one.time_s, 0.0);
+  }
+}
+
+TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
+  SteppedClock clock;
+  const SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
+  const SensorConfig mast = sensor_named("mast", kAskedDriver<false>);
+  const auto source = make_live_source({&roof, &mast}, kNoDaemon, clock);
+  try {
+    source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard&) {
+      EXPECT_EQ(elapsed_s, 0.0) << "the time runs when both have spoken";
+      clock.advance(10.0);
+    });
+    FAIL() << "it waits for ever, or not at all";
+  } catch (const ExitError& error) {
+    EXPECT_EQ(error.code(), kExitUnavailable);
+    EXPECT_THAT(error.what(), HasSubstr("the sensor \"mast\" has said nothing for 90 s (no such port)"));
+  }
+}
+
+TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "field.windlog";
+  {
+    auto writer = WindlogWriter::open(file).value();
+    const auto at = [](double time_s) {
+      return Instant{MonoTime(from_seconds(100.0 + time_s)), UtcTime(from_seconds(1.7e9 + time_s))};
+    };
+    for (int session = 0; session < 2; ++session) {
+      const double begin_s = 100.0 * session;
+      ASSERT_TRUE(writer.begin_session({at(begin_s), "test", ""}));
+      const auto roof = writer.add_sensor("roof", "speaking", session == 0 ? "gain = 1.0" : "gain = 2.0").value();
+      const auto other = writer.add_sensor("other", "silent", "").value();
+      for (int i = 0; i < 50; ++i) {
+        const double time_s = begin_s + i;
+        ASSERT_TRUE(
+            writer.append(roof, {.time = at(time_s), .speed_m_s = 1.0 + session, .direction_deg = {}, .gust_m_s = {}}));
+        ASSERT_TRUE(writer.append(other, {.time = at(time_s), .speed_m_s = 9.0, .direction_deg = {}, .gust_m_s = {}}));
+      }
+    }
+    ASSERT_TRUE(writer.close());
+  }
+  const SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
+  const auto source = make_recorded_source({&roof}, file);
+  EXPECT_FALSE(source->is_live());
+  const auto hear = [&](const Stretch& stretch) { return source->hear(stretch, [](double, const Heard&) {})[0]; };
+  EXPECT_EQ(hear({}).readings.size(), 100U);
+  EXPECT_EQ(hear({}).settings, (std::set<std::string>{"gain = 1.0", "gain = 2.0"}));
+
+  const HeardSensor part = hear({.from_s = 10.0, .to_s = 20.0});
+  ASSERT_EQ(part.readings.size(), 10U);
+  EXPECT_EQ(part.readings.front().time_s, 10.0);
+  EXPECT_EQ(part.settings, std::set<std::string>{"gain = 1.0"});
+
+  const SensorConfig mast = sensor_named("mast", kAskedDriver<true>);
+  EXPECT_THROW(make_recorded_source({&mast}, file), ExitError);
+  EXPECT_THROW(make_recorded_source({&roof}, folder / "none.windlog"), ExitError);
+}
+
+}  // namespace
+}  // namespace yuragi

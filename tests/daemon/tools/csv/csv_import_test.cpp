@@ -1,0 +1,274 @@
+#include "daemon/tools/csv/csv_import.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/base/units.hpp"
+#include "tests/support/places.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+struct Imported {
+  std::vector<WindReading> readings;
+  std::vector<std::string> sensors;
+  CsvImportReport report;
+  std::string failure;
+};
+
+Imported import_text(const std::string& text, const CsvImportOptions& options = {}) {
+  Imported imported;
+  std::istringstream in(text);
+  const auto report = import_csv(in, "a.csv", options, [&](std::string_view sensor, const WindReading& reading) {
+    imported.sensors.emplace_back(sensor);
+    imported.readings.push_back(reading);
+  });
+  if (report) {
+    imported.report = *report;
+  } else {
+    imported.failure = report.error().message;
+  }
+  return imported;
+}
+
+CsvImportOptions with_column(CsvRole role, const std::string& name) {
+  CsvImportOptions options;
+  options.columns[static_cast<std::size_t>(role)] = name;
+  return options;
+}
+
+TEST(CsvImport, TakesSpeedAndDirectionByTheirUsualNames) {
+  const auto imported = import_text(
+      "# a mast on a hill\n"
+      "Timestamp,Wind Speed,Wind Direction,Gust\n"
+      "2018-07-20T14:00:00Z,5.5,270,7.25\n"
+      "\n"
+      "2018-07-20T14:00:01Z,0.0,,\n");
+  EXPECT_EQ(imported.failure, "");
+  ASSERT_EQ(imported.readings.size(), 2U);
+  EXPECT_EQ(imported.readings[0].speed_m_s, 5.5);
+  EXPECT_EQ(imported.readings[0].direction_deg, 270.0);
+  EXPECT_EQ(imported.readings[0].gust_m_s, 7.25);
+  EXPECT_EQ(imported.readings[0].quality, ReadingQuality::kGood);
+  EXPECT_EQ(imported.readings[0].time.mono, MonoTime{});
+  EXPECT_EQ(imported.readings[1].time.mono, MonoTime{1s});
+  EXPECT_EQ(imported.readings[1].direction_deg, std::nullopt);
+  EXPECT_EQ(imported.readings[1].gust_m_s, std::nullopt);
+  EXPECT_THAT(imported.sensors, ElementsAre("imported", "imported"));
+  EXPECT_EQ(imported.report.taken, 2U);
+  EXPECT_EQ(imported.report.refused(), 0U);
+  EXPECT_THAT(imported.report.columns, testing::Contains(HasSubstr("speed from \"Wind Speed\" (m/s)")));
+}
+
+TEST(CsvImport, TurnsComponentsIntoWhereTheWindComesFrom) {
+  // Toward the east: from the west.
+  const std::string text = "time,u_ms,v_ms,w_ms\n0,3,0,9\n1,0,-4,9\n2,3,4,9\n3,0,0,9\n";
+  const auto imported = import_text(text);
+  ASSERT_EQ(imported.readings.size(), 4U);
+  EXPECT_NEAR(*imported.readings[0].direction_deg, 270.0, 1e-9);
+  EXPECT_NEAR(*imported.readings[1].direction_deg, 0.0, 1e-9);
+  EXPECT_EQ(imported.readings[1].speed_m_s, 4.0);
+  EXPECT_EQ(imported.readings[2].speed_m_s, 5.0);
+  EXPECT_EQ(imported.readings[3].direction_deg, std::nullopt) << "a calm comes from nowhere";
+
+  CsvImportOptions from;
+  from.components_are_from = true;
+  EXPECT_NEAR(*import_text(text, from).readings[0].direction_deg, 90.0, 1e-9);
+}
+
+TEST(CsvImport, UnderstandsUnitsInNamesAndAsAnOption) {
+  const auto speed_of_header = [](const std::string& name) {
+    const auto imported = import_text("time," + name + "\n0,10\n");
+    return imported.readings.empty() ? -1.0 : imported.readings[0].speed_m_s;
+  };
+  EXPECT_EQ(speed_of_header("speed_m_s"), 10.0);
+  EXPECT_EQ(speed_of_header("wind_speed_ms"), 10.0);
+  EXPECT_EQ(speed_of_header("Wind Speed [m s-1]"), 10.0);
+  EXPECT_DOUBLE_EQ(speed_of_header("windspeed_10m (km/h)"), 10.0 / 3.6);
+  EXPECT_DOUBLE_EQ(speed_of_header("speed_kmh"), 10.0 / 3.6);
+  EXPECT_DOUBLE_EQ(speed_of_header("WindSpd_kn"), 10.0 * kMetresPerSecondPerKnot);
+  EXPECT_DOUBLE_EQ(speed_of_header("Wind Speed (kts)"), 10.0 * kMetresPerSecondPerKnot);
+  EXPECT_DOUBLE_EQ(speed_of_header("wind speed mph"), 10.0 * kMetresPerSecondPerMph);
+
+  CsvImportOptions knots;
+  knots.unit = find_speed_unit("kn");
+  const auto imported = import_text("time,u,v,gust\n0,10,0,20\n", knots);
+  EXPECT_DOUBLE_EQ(imported.readings[0].speed_m_s, 10.0 * kMetresPerSecondPerKnot);
+  EXPECT_DOUBLE_EQ(*imported.readings[0].gust_m_s, 20.0 * kMetresPerSecondPerKnot);
+}
+
+TEST(CsvImport, UnderstandsDirectionsInAllConventions) {
+  const auto direction = [](const std::string& header, const std::string& text, const CsvImportOptions& options = {}) {
+    const auto imported = import_text("time,speed," + header + "\n0,1," + text + "\n", options);
+    return imported.readings.empty() ? std::nullopt : imported.readings[0].direction_deg;
+  };
+  EXPECT_EQ(direction("dir", "360"), 0.0);
+  EXPECT_EQ(direction("dir", "-90"), 270.0);
+  EXPECT_EQ(direction("dir", "nnw"), 337.5);
+  EXPECT_EQ(direction("dir", "NaN"), std::nullopt);
+  EXPECT_NEAR(direction("dir_rad", "3.14159265358979").value(), 180.0, 1e-9);
+  CsvImportOptions options;
+  options.direction_is_toward = true;
+  EXPECT_EQ(direction("dir", "90", options), 270.0);
+  EXPECT_EQ(direction("dir", "270", options), 90.0);
+  options = {};
+  options.direction_unit = CsvDirectionUnit::kPoint16;
+  EXPECT_EQ(direction("dir", "4", options), 90.0);
+  for (const char* text : {"361", "-181", "1e300", "north", "999"}) {
+    EXPECT_EQ(import_text(std::string("time,speed,dir\n0,1,") + text + "\n").report.refused(), 1U) << text;
+  }
+}
+
+TEST(CsvImport, ReadsSemicolonsTabsAndDecimalCommas) {
+  for (const char separator : {';', '\t'}) {
+    std::string text = "station,time,speed\r\nhill,0.5,3.25\r\n";
+    std::replace(text.begin(), text.end(), ',', separator);
+    std::replace(text.begin(), text.end(), '.', ',');
+    const auto imported = import_text(text);
+    ASSERT_EQ(imported.readings.size(), 1U);
+    EXPECT_EQ(imported.readings[0].speed_m_s, 3.25);
+    EXPECT_EQ(imported.readings[0].time.utc, UtcTime(500ms));
+  }
+}
+
+TEST(CsvImport, ReadsQuotedFieldsAndAByteOrderMark) {
+  const auto imported = import_text("\xEF\xBB\xBF\"time\",\"speed\",note\n\"0\",\"4.5\",\"gusty, cold\"\n");
+  ASSERT_EQ(imported.readings.size(), 1U);
+  EXPECT_EQ(imported.readings[0].speed_m_s, 4.5);
+}
+
+TEST(CsvImport, TakesTheColumnsThatAreNamed) {
+  CsvImportOptions options = with_column(CsvRole::kSpeed, "AVG (20 M)");
+  options.columns[static_cast<std::size_t>(CsvRole::kTime)] = "when";
+  const auto imported = import_text("When,Speed,Avg (20 m)\n0,1,2\n", options);
+  ASSERT_EQ(imported.readings.size(), 1U);
+  EXPECT_EQ(imported.readings[0].speed_m_s, 2.0);
+}
+
+TEST(CsvImport, SaysWhichColumnsThereAreWhenItFindsNoneThatFit) {
+  EXPECT_THAT(import_text("a,b\n1,2\n").failure,
+              testing::AllOf(HasSubstr("a.csv"), HasSubstr("a, b"), HasSubstr("--time")));
+  EXPECT_THAT(import_text("time,b\n1,2\n").failure, HasSubstr("--speed"));
+  EXPECT_THAT(import_text("time,u\n1,2\n").failure, HasSubstr("--speed"));
+  EXPECT_THAT(import_text("time,speed\n1,2\n", with_column(CsvRole::kGust, "peak")).failure, HasSubstr("\"peak\""));
+  EXPECT_THAT(import_text("time,speed,speed\n1,2,3\n").failure, HasSubstr("uplicated"));
+  EXPECT_THAT(import_text("").failure, HasSubstr("header"));
+  EXPECT_THAT(import_text("# nothing\n\n").failure, HasSubstr("header"));
+}
+
+TEST(CsvImport, LeavesOutBadRowsAndTellsTheFirstFew) {
+  const auto imported = import_text(
+      "time,speed,direction\n"
+      "0,1,90\n"
+      "1,abc,90\n"        // line 3
+      "2,-1,90\n"         // line 4
+      "3,,90\n"           // line 5
+      "4,1\n"             // line 6
+      "5,1,90,7\n"        // line 7
+      "yesterday,1,90\n"  // line 8
+      "6,1,\"90\n"
+      "7,130,90\n"
+      "0.5,nan,90\n"
+      "8,1,90\n");
+  EXPECT_EQ(imported.report.rows, 11U);
+  EXPECT_EQ(imported.report.taken, 2U);
+  EXPECT_THAT(
+      imported.report.first_refusals,
+      ElementsAre("a.csv:3: no number in speed: \"abc\"", "a.csv:4: a speed below zero: \"-1\"", "a.csv:5: no speed",
+                  "a.csv:6: fewer fields than the header", "a.csv:7: more fields than the header"));
+}
+
+TEST(CsvImport, LeavesOutRowsThatGoBackInTime) {
+  const auto imported = import_text("time,speed\n10,1\n12,2\n11,3\n12,4\n13,5\n");
+  EXPECT_EQ(imported.report.refused(), 1U);
+  EXPECT_EQ(imported.report.first_refusals.at(0), "a.csv:4: goes back in time: \"11\"");
+  EXPECT_EQ(imported.readings.back().time.mono, MonoTime{3s});
+}
+
+TEST(CsvImport, StrictEndsAtTheFirstBadRow) {
+  CsvImportOptions options;
+  options.strict = true;
+  EXPECT_EQ(import_text("time,speed\n0,1\n1,x\n2,1\n", options).failure, "a.csv:3: no number in speed: \"x\"");
+  EXPECT_EQ(import_text("time,speed\n0,1\n1,1\n", options).report.taken, 2U);
+}
+
+TEST(CsvImport, SettlesTheTimeFormatWithTheFirstGoodRow) {
+  const auto imported = import_text("time,speed\n99999999,1\n100000001,1\n");
+  EXPECT_EQ(imported.report.taken, 2U);
+  EXPECT_EQ(imported.readings[1].time.mono, MonoTime{2s});
+
+  const auto milliseconds = import_text("time_ms,speed\n0,1\n100,1\n");
+  ASSERT_EQ(milliseconds.readings.size(), 2U);
+  EXPECT_EQ(milliseconds.readings[1].time.mono, MonoTime{100ms});
+}
+
+TEST(CsvImport, PassesOverTheCommentsThatItIsTold) {
+  CsvImportOptions options;
+  options.comment = '%';
+  EXPECT_EQ(import_text("% mast\ntime,speed\n% pause\n0,1\n", options).report.rows, 1U);
+  options.comment = 0;
+  EXPECT_EQ(import_text("time,speed\n0,1\n#1,1\n", options).report.refused(), 1U);
+}
+
+TEST(CsvImport, ReadsAFileOfManyBlocksWithoutALastLineEnd) {
+  // The library reads blocks of 16 MiB; the file is larger than two of them.
+  std::string text = "time,speed,note\n";
+  const std::string note(1000, 'x');
+  constexpr std::size_t kRows = 34'000;
+  for (std::size_t i = 0; i < kRows; ++i) text += std::to_string(i) + ",1," + note + "\n";
+  text.pop_back();
+  ASSERT_GT(text.size(), std::size_t{2} << 24);
+  EXPECT_EQ(import_text(text).report.taken, kRows);
+}
+
+TEST(CsvImport, GivesUpOnALineWithoutEnd) {
+  EXPECT_NE(import_text("time,speed\n0,1\n" + std::string((1 << 24) + 10, '1')).failure, "");
+  EXPECT_THAT(import_text(std::string(2 << 20, 'x')).failure, HasSubstr("megabyte"));
+}
+
+TEST(CsvImport, OfAnyBytesEndsWithReadingsOrAFailure) {
+  std::mt19937 random(11);
+  const std::string signs = "0123456789.,;-+:TZe \t\"'#\n\r\xEF\xFF" + std::string(1, '\0');
+  for (int i = 0; i < 100; ++i) {
+    std::string text = i % 3 == 0 ? "" : "time,speed,direction\n0,1,2\n";
+    const std::size_t length = random() % 300;
+    for (std::size_t j = 0; j < length; ++j) text += signs[random() % signs.size()];
+    const auto imported = import_text(text);
+    if (imported.failure.empty()) {
+      EXPECT_EQ(imported.readings.size(), imported.report.taken);
+    }
+    for (const WindReading& reading : imported.readings) EXPECT_TRUE(is_plausible(reading));
+  }
+}
+
+TEST(CsvImport, OfTheFinseSonicNeedsNoOptions) {
+  std::ifstream in(test::source_path("../shared/data/sonic/finse_csat3_10hz_20180720T140000.csv"));
+  if (!in) GTEST_SKIP() << "the real recordings do not stand beside the project";
+  double sum = 0.0;
+  double max = 0.0;
+  Instant last;
+  const auto report = import_csv(in, "finse.csv", {}, [&](std::string_view, const WindReading& reading) {
+    sum += reading.speed_m_s;
+    max = std::max(max, reading.speed_m_s);
+    last = reading.time;
+  });
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->taken, 18'000U);
+  EXPECT_EQ(report->refused(), 0U);
+  EXPECT_NEAR(sum / 18'000.0, 7.02, 0.005);
+  EXPECT_NEAR(max, 11.27, 0.005);
+  EXPECT_EQ(last.mono, MonoTime{1'799'900ms});
+}
+
+}  // namespace
+}  // namespace yuragi

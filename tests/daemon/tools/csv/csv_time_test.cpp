@@ -1,0 +1,95 @@
+#include "daemon/tools/csv/csv_time.hpp"
+
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr UtcTime kAfternoon{std::chrono::seconds(1'532'095'200)};  // 2018-07-20T14:00:00Z
+
+TEST(CsvTime, ReadsIso8601InAllItsUsualForms) {
+  const auto iso = [](const char* text) { return parse_time(text, CsvTimeFormat::kIso); };
+  EXPECT_EQ(iso("2018-07-20T14:00:00Z"), kAfternoon);
+  EXPECT_EQ(iso("2018-07-20 14:00:00"), kAfternoon);
+  EXPECT_EQ(iso("2018/07/20 14:00"), kAfternoon);
+  EXPECT_EQ(iso("2018-07-20"), kAfternoon - 14h);
+  EXPECT_EQ(iso("2018-07-20 14:00:00.100000"), kAfternoon + 100ms);
+  EXPECT_EQ(iso("2018-07-20T14:00:00,5Z"), kAfternoon + 500ms);
+  EXPECT_EQ(iso("2018-07-20T14:00:00.123456789Z"), kAfternoon + 123'456'789ns);
+  EXPECT_EQ(iso("2018-07-20T14:00:00.1234567899Z"), kAfternoon + 123'456'789ns);
+  EXPECT_EQ(iso("2018-07-20T16:00:00+02:00"), kAfternoon);
+  EXPECT_EQ(iso("2018-07-20T16:00:00 +0200"), kAfternoon);
+  EXPECT_EQ(iso("2018-07-20T09:30:00.5-04:30"), kAfternoon + 500ms);
+  EXPECT_EQ(iso("2018-07-20T23+09"), std::nullopt);
+  EXPECT_EQ(iso("1969-12-31T23:59:59.5Z"), UtcTime(-500ms));
+  EXPECT_EQ(iso("2016-12-31T23:59:60Z"), UtcTime(std::chrono::sys_days(std::chrono::year(2017) / 1 / 1)));
+}
+
+TEST(CsvTime, RefusesWhatIsNoTime) {
+  for (const char* text : {"",
+                           " ",
+                           "noon",
+                           "2018",
+                           "2018-07",
+                           "2018-13-01",
+                           "2018-02-30",
+                           "2018-07-20T",
+                           "2018-07-20T24:00:00",
+                           "2018-07-20T14:60",
+                           "2018-07-20T14:00:61",
+                           "2018-07-20T14:00:00.",
+                           "2018-07-20T14:00:00.Z",
+                           "2018-07-20T14:00:00+",
+                           "2018-07-20T14:00:00+2",
+                           "2018-07-20T14:00:00+25:00",
+                           "2018-07-20T14:00:00Zulu",
+                           "2018-07-20x14:00:00",
+                           "-018-07-20",
+                           "20180720T140000",
+                           "0001-01-01",
+                           "9999-12-31T23:59:59Z"}) {
+    EXPECT_EQ(parse_time(text, CsvTimeFormat::kIso), std::nullopt) << text;
+  }
+  EXPECT_EQ(parse_time("1532095200", CsvTimeFormat::kAuto), std::nullopt);
+}
+
+TEST(CsvTime, ReadsNumbersExactly) {
+  EXPECT_EQ(parse_time("1532095200.1", CsvTimeFormat::kUnix), kAfternoon + 100ms);
+  EXPECT_EQ(parse_time("1532095200.123456789", CsvTimeFormat::kUnix), kAfternoon + 123'456'789ns);
+  EXPECT_EQ(parse_time("1532095200100", CsvTimeFormat::kUnixMs), kAfternoon + 100ms);
+  EXPECT_EQ(parse_time("1532095200100.25", CsvTimeFormat::kUnixMs), kAfternoon + 100'250us);
+  EXPECT_EQ(parse_time("0.3", CsvTimeFormat::kSeconds), UtcTime(300ms));
+  EXPECT_EQ(parse_time("99999999999999999999", CsvTimeFormat::kUnix), std::nullopt);
+  EXPECT_EQ(parse_time("9000000000", CsvTimeFormat::kUnix), std::nullopt) << "beyond what a recording holds";
+}
+
+TEST(CsvTime, DecimalsAreKeptToTheLastDigit) {
+  EXPECT_EQ(parse_decimal("1.25", 9), 1'250'000'000);
+  EXPECT_EQ(parse_decimal("-1.25", 1), -12);
+  EXPECT_EQ(parse_decimal("1,25", 2), 125);
+  EXPECT_EQ(parse_decimal("+7", 0), 7);
+  EXPECT_EQ(parse_decimal(".5", 3), 500);
+  EXPECT_EQ(parse_decimal("5.", 3), 5000);
+  EXPECT_EQ(parse_decimal("9223372036854775807", 0), std::numeric_limits<std::int64_t>::max());
+  for (const char* text :
+       {"", ".", "-", "+", "1e3", "0x10", "1.2.3", "1,532,095", "--1", " 1", "9223372036854775808"}) {
+    EXPECT_EQ(parse_decimal(text, 0), std::nullopt) << text;
+  }
+  EXPECT_EQ(parse_decimal("9223372036854775807", 1), std::nullopt);
+}
+
+TEST(CsvTime, GuessesTheFormatFromWhatItSees) {
+  EXPECT_EQ(guess_time_format("2018-07-20T14:00:00Z"), CsvTimeFormat::kIso);
+  EXPECT_EQ(guess_time_format("1532095200.1"), CsvTimeFormat::kUnix);
+  EXPECT_EQ(guess_time_format("1532095200100"), CsvTimeFormat::kUnixMs);
+  EXPECT_EQ(guess_time_format("0.1"), CsvTimeFormat::kSeconds);
+  EXPECT_EQ(guess_time_format("86400"), CsvTimeFormat::kSeconds);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,186 @@
+#include "daemon/tools/report/measure_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <gmock/gmock.h>
+
+#include "daemon/tools/report/state_history.hpp"
+#include "tests/daemon/tools/report/report_samples.hpp"
+
+namespace yuragi {
+namespace {
+
+using test::made_readings;
+using test::numbers_of;
+
+/// A wind that is never quite the same.
+double lively_m_s(std::size_t i) {
+  return 6.0 + std::sin(0.3 * static_cast<double>(i)) + 0.4 * std::sin(1.7 * static_cast<double>(i));
+}
+
+TEST(MeasureRecording, ASilenceIsAGapFromReadingToReading) {
+  auto readings =
+      made_readings(600, 1000, [](std::size_t i, WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  readings.erase(readings.begin() + 100, readings.begin() + 160);
+  readings.erase(readings.begin() + 300, readings.begin() + 303);  // too short to be told
+  const auto numbers = numbers_of(readings);
+  ASSERT_EQ(numbers.sensors.size(), 1U);
+  const SensorNumbers& sensor = numbers.sensors[0];
+  ASSERT_EQ(sensor.events.size(), 1U);
+  EXPECT_EQ(sensor.events[0].state, RecordedState::kStale);
+  EXPECT_DOUBLE_EQ(sensor.events[0].from_s, 99.0);
+  EXPECT_DOUBLE_EQ(sensor.events[0].to_s, 160.0);
+  const double all_s = std::accumulate(sensor.states.begin(), sensor.states.end(), 0.0,
+                                       [](double sum, const StateTotal& total) { return sum + total.time_s; });
+  EXPECT_NEAR(all_s, numbers.duration_s(), 1e-9) << "every moment has one state";
+  EXPECT_DOUBLE_EQ(sensor.interval_s, 1.0);
+
+  // A line does not lead over the gap.
+  std::size_t breaks = 0;
+  for (const TimeBin& bin : sensor.bins) breaks += bin.follows_silence ? 1 : 0;
+  EXPECT_EQ(breaks, 1U);
+}
+
+TEST(MeasureRecording, TheMeanDirectionPassesThroughNorth) {
+  const auto numbers = numbers_of(made_readings(200, 1000, [](std::size_t i, WindReading& reading) {
+    reading.speed_m_s = 5.0;
+    reading.direction_deg = i % 2 == 0 ? 350.0 : 10.0;
+  }));
+  const SensorNumbers& sensor = numbers.sensors[0];
+  EXPECT_NEAR(std::remainder(*sensor.direction_deg, 360.0), 0.0, 1e-9);
+  EXPECT_NEAR(*sensor.steadiness, std::cos(10.0 * std::numbers::pi / 180.0), 1e-9);
+  EXPECT_NEAR(sensor.rose.share[0][2], 1.0, 1e-12) << "north, 4 to 6 m/s";
+}
+
+TEST(MeasureRecording, WhatIsFrozenOrASpikeIsToldAndNotCounted) {
+  const auto numbers = numbers_of(made_readings(2000, 1000, [](std::size_t i, WindReading& reading) {
+    reading.speed_m_s = i >= 500 && i < 700 ? 7.25 : i == 1000 ? 60.0 : lively_m_s(i);
+  }));
+  const SensorNumbers& sensor = numbers.sensors[0];
+  EXPECT_LT(sensor.max_m_s, 8.0);
+  EXPECT_EQ(sensor.spikes, 1U);
+  EXPECT_EQ(sensor.states[static_cast<std::size_t>(RecordedState::kSpike)].count, 1U);
+  const StateTotal& frozen = sensor.states[static_cast<std::size_t>(RecordedState::kFrozen)];
+  EXPECT_EQ(frozen.count, 1U);
+  EXPECT_NEAR(frozen.time_s, 170.0, 2.0) << "from when it was noticed, after 30 s";
+  EXPECT_LT(sensor.believed, sensor.readings - 160);
+}
+
+TEST(MeasureRecording, GustsAreMeansOfThreeSeconds) {
+  // Ten a second; one burst of 1 s is a third of a gust.
+  const auto numbers = numbers_of(made_readings(6100, 100, [](std::size_t i, WindReading& reading) {
+    reading.speed_m_s = 5.0 + 0.01 * static_cast<double>(i % 2) + (i >= 3000 && i < 3010 ? 3.0 : 0.0);
+  }));
+  const SensorNumbers& sensor = numbers.sensors[0];
+  EXPECT_NEAR(*sensor.gust_3s_m_s, 6.005, 1e-9);
+  EXPECT_EQ(sensor.blocks.blocks, 1U);
+  EXPECT_NEAR(*sensor.blocks.gust_factor, 6.005 / 5.01, 1e-3);
+
+  // Once in 2 s no gust is seen.
+  const auto slow = numbers_of(
+      made_readings(100, 2000, [](std::size_t i, WindReading& reading) { reading.speed_m_s = lively_m_s(i); }));
+  EXPECT_FALSE(slow.sensors[0].gust_3s_m_s);
+}
+
+TEST(MeasureRecording, HoursAreThoseOfTheZone) {
+  ReportSettings settings;
+  settings.utc_offset = [](UtcTime) { return Nanoseconds(std::chrono::minutes(330)); };
+  // From 14:00 UTC on, for 25 hours, six an hour; the first hour is windy.
+  const auto numbers = numbers_of(made_readings(151, 600'000,
+                                                [](std::size_t i, WindReading& reading) {
+                                                  reading.speed_m_s =
+                                                      (i < 6 ? 5.0 : 2.0) + 0.01 * static_cast<double>(i % 5);
+                                                }),
+                                  settings);
+  ASSERT_TRUE(numbers.sensors[0].diurnal);
+  const auto& hours = *numbers.sensors[0].diurnal;
+  // 14:00 UTC is 19:30 there: three windy readings before eight o'clock, three after; the others of that hour are calm.
+  EXPECT_NEAR(hours[12].mean_m_s, 2.02, 0.03);
+  EXPECT_EQ(hours[19].count, 9U);
+  EXPECT_NEAR(hours[19].mean_m_s, (3 * 5.0 + 6 * 2.0) / 9.0 + 0.02, 0.03);
+  EXPECT_EQ(hours[20].count, 10U);
+  EXPECT_NEAR(hours[20].mean_m_s, (3 * 5.0 + 7 * 2.0) / 10.0 + 0.02, 0.03);
+}
+
+TEST(MeasureRecording, MonthsFitIntoTheSameBinsAndKeepTheirExtremes) {
+  const auto numbers = numbers_of(made_readings(20'000, 60'000, [](std::size_t i, WindReading& reading) {
+    reading.speed_m_s = i == 12'345 ? 9.5 : lively_m_s(i);
+  }));
+  const SensorNumbers& sensor = numbers.sensors[0];
+  ASSERT_EQ(sensor.bins.size(), kTimeBins);
+  double highest = 0.0;
+  std::uint64_t count = 0;
+  for (const TimeBin& bin : sensor.bins) {
+    highest = std::max(highest, bin.max_m_s);
+    count += bin.count;
+  }
+  EXPECT_EQ(highest, 9.5);
+  EXPECT_EQ(count, 20'000U);
+  EXPECT_LE(sensor.directions.size(), 1501U);
+}
+
+TEST(MeasureRecording, SeesThatTheClockWasSet) {
+  auto readings =
+      made_readings(100, 1000, [](std::size_t i, WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  for (std::size_t i = 50; i < 100; ++i) readings[i].time.utc -= std::chrono::hours(24 * 3650);
+  const auto numbers = numbers_of(readings);
+  EXPECT_EQ(numbers.clock_sets, 1U);
+  EXPECT_NEAR(numbers.largest_clock_set_s, -3650.0 * 86400.0, 1.0);
+  EXPECT_EQ(numbers.duration_s(), 99.0);
+  EXPECT_TRUE(numbers.sensors[0].events.empty());
+}
+
+TEST(MeasureRecording, AnUnevenPaceIsMadeEven) {
+  // Readings of a slow sine at alternating intervals: the spectrum's line is where it belongs.
+  auto readings = made_readings(4000, 1000, [](std::size_t i, WindReading& reading) {
+    const std::int64_t shift_ms = i % 2 == 0 ? 200 : -200;
+    reading.time.mono += std::chrono::milliseconds(shift_ms + 300);
+    reading.speed_m_s =
+        6.0 + std::sin(2.0 * std::numbers::pi * 0.05 * (static_cast<double>(i) + 1e-3 * static_cast<double>(shift_ms)));
+  });
+  const auto numbers = numbers_of(readings);
+  ASSERT_TRUE(numbers.sensors[0].spectrum);
+  const SpectrumNumbers& spectrum = *numbers.sensors[0].spectrum;
+  EXPECT_NEAR(spectrum.step_s, 1.0, 1e-3);
+  const auto peak = std::ranges::max_element(spectrum.density_m2_s2_hz) - spectrum.density_m2_s2_hz.begin();
+  EXPECT_NEAR(spectrum.frequency_hz(static_cast<std::size_t>(peak)), 0.05, spectrum.frequency_hz(1));
+  const double variance = std::accumulate(spectrum.density_m2_s2_hz.begin(), spectrum.density_m2_s2_hz.end(), 0.0) *
+                          spectrum.frequency_hz(1);
+  EXPECT_NEAR(variance, 0.5, 0.02);
+}
+
+TEST(MeasureRecording, NamesWhatIsThereWhereASensorIsNot) {
+  const test::TemporaryFolder folder;
+  test::write_session(folder / "a.windlog", test::numbered_readings(3), "roof");
+  auto reader = WindlogReader::open(folder / "a.windlog");
+  ASSERT_TRUE(reader);
+  ReportSettings settings;
+  settings.sensors = {"rooof"};
+  const auto numbers = measure_recording(*reader, settings);
+  ASSERT_FALSE(numbers);
+  EXPECT_THAT(numbers.error().message, testing::HasSubstr("\"roof\""));
+}
+
+TEST(StateHistory, JoinsWhatTouchesAndKeepsTheLongest) {
+  StateHistory history;
+  double now_s = 0.0;
+  for (int i = 1; i <= 1000; ++i) {
+    history.add(RecordedState::kLive, now_s, now_s + 1.0);
+    history.add(RecordedState::kStale, now_s + 1.0, now_s + 1.0 + 0.5 * i);
+    history.add(RecordedState::kStale, now_s + 1.0 + 0.5 * i, now_s + 1.0 + i);
+    now_s += 1.0 + i;
+  }
+  const auto events = history.events();
+  ASSERT_EQ(events.size(), SensorNumbers::kMaxEvents);
+  EXPECT_DOUBLE_EQ(events.front().length_s(), 901.0);
+  EXPECT_DOUBLE_EQ(events.back().length_s(), 1000.0);
+  const auto totals = history.totals();
+  EXPECT_EQ(totals[static_cast<std::size_t>(RecordedState::kStale)].count, 1000U);
+  EXPECT_DOUBLE_EQ(totals[static_cast<std::size_t>(RecordedState::kLive)].time_s, 1000.0);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,114 @@
+#include "daemon/tools/sensors/device_list.hpp"
+
+#include <sstream>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/settings/config.hpp"
+#include "daemon/tools/sensors/driver_reference.hpp"
+
+namespace yuragi {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kRule = "SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"0fde\", TAG+=\"uaccess\"";
+
+// Of the names that real drivers have, so that what is printed is a configuration.
+const DriverDescription kSeesTwo{.name = "synthetic",
+                                 .summary = "a maker of wind",
+                                 .parameters = {},
+                                 .open = nullptr,
+                                 .find = []() -> std::vector<FoundDevice> {
+                                   return {{"Station A", "speed = 3.0\ndirection = 90.0", "", ""},
+                                           {"Station B", "speed = 4.0", "/dev/hidraw0: Permission denied", kRule}};
+                                 }};
+const DriverDescription kSeesBToo{
+    .name = "modbus",
+    .summary = "another reader",
+    .parameters = {},
+    .open = nullptr,
+    .find = []() -> std::vector<FoundDevice> {
+      return {{"Station B", "transport = \"tcp\"", "/dev/hidraw0: Permission denied", kRule}};
+    }};
+const DriverDescription kSeesNothing{
+    .name = "blind", .summary = "", .parameters = {}, .open = nullptr, .find = []() -> std::vector<FoundDevice> {
+      return {};
+    }};
+const DriverDescription kFails{
+    .name = "broken", .summary = "", .parameters = {}, .open = nullptr, .find = []() -> std::vector<FoundDevice> {
+      throw std::runtime_error("no bus");
+    }};
+const DriverDescription kOfTheNetwork{.name = "mqtt", .summary = "", .parameters = {}, .open = nullptr};
+
+std::string list_of(const std::vector<const DriverDescription*>& drivers) {
+  return device_list(find_devices(drivers), drivers);
+}
+
+TEST(DeviceList, SaysSoWhereNothingIsPluggedIn) {
+  const std::string text = list_of({&kSeesNothing, &kOfTheNetwork});
+  EXPECT_THAT(text, HasSubstr("Nothing is plugged in that a driver could read (looked for devices of blind)."));
+  EXPECT_THAT(text, HasSubstr("Not looked for: mqtt."));
+  EXPECT_THAT(text, Not(HasSubstr("[[sensor]]")));
+}
+
+TEST(DeviceList, PrintsAConfigurationForEachDeviceThatIsOne) {
+  const std::string text = list_of({&kSeesTwo, &kSeesBToo});
+  std::string toml;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line == "  It cannot be opened as things are:") break;
+    if (line.starts_with("    ")) toml += line + "\n";
+  }
+  const Config config = parse_config(toml, "pasted.toml");
+  ASSERT_EQ(config.sensors.size(), 2U) << toml;
+  EXPECT_EQ(config.sensors[0].name, "synthetic");
+  EXPECT_EQ(config.sensors[1].name, "synthetic-2") << "each sensor needs a name of its own";
+  EXPECT_EQ(config.sensors[1].values.number("speed"), 4.0);
+}
+
+TEST(DeviceList, NamesADeviceOnceThatTwoDriversCouldReadAndItsTroubleOnce) {
+  const std::string text = list_of({&kSeesTwo, &kSeesBToo});
+  EXPECT_EQ(text.find("Station B"), text.rfind("Station B")) << text;
+  EXPECT_EQ(text.find("Permission denied"), text.rfind("Permission denied")) << text;
+  EXPECT_THAT(text, HasSubstr("  or\n    [[sensor]]\n    name = \"modbus\"\n    driver = \"modbus\"\n"));
+  EXPECT_THAT(text, HasSubstr("  What to do:\n    SUBSYSTEM==\"hidraw\""));
+}
+
+TEST(DeviceList, TellsOfADriverThatCannotLookAndGoesOnWithTheOthers) {
+  const std::string text = list_of({&kFails, &kSeesTwo});
+  EXPECT_THAT(text, HasSubstr("could not look for them: no bus"));
+  EXPECT_THAT(text, HasSubstr("Station A"));
+}
+
+TEST(DriverReference, DescribesEveryDriverAndEveryKeyOfIt) {
+  const std::string page = driver_reference(driver_table());
+  const std::string names = driver_names(driver_table());
+  for (const DriverDescription* driver : driver_table()) {
+    const std::string text = describe_driver(*driver);
+    EXPECT_THAT(names, HasSubstr(driver->name));
+    EXPECT_THAT(page, HasSubstr("\n## " + std::string(driver->name) + "\n"));
+    EXPECT_THAT(text, HasSubstr("driver = \"" + std::string(driver->name) + "\""));
+    for (const Parameter& parameter : driver->parameters) {
+      EXPECT_THAT(text, HasSubstr(parameter.help));
+      EXPECT_THAT(text, HasSubstr(describe_allowed(parameter)));
+      EXPECT_THAT(page, HasSubstr("| `" + std::string(parameter.name) + "` | "));
+    }
+  }
+}
+
+TEST(DriverReference, KeepsItsTablesWhole) {
+  const Parameter parameter{
+      .name = "key", .unit = "", .default_value = std::string("a|b"), .help = "either | or <this>"};
+  const DriverDescription driver{
+      .name = "piped", .summary = "a_b", .parameters = std::span(&parameter, 1), .open = nullptr};
+  const std::vector<const DriverDescription*> drivers = {&driver};
+  EXPECT_THAT(driver_reference(drivers), HasSubstr("a\\|b"));
+  EXPECT_THAT(driver_reference(drivers), HasSubstr("| either \\| or \\<this> |"));
+}
+
+}  // namespace
+}  // namespace yuragi

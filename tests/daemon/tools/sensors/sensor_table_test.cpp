@@ -1,0 +1,183 @@
+#include "daemon/tools/sensors/sensor_table.hpp"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(SensorTable, NamesTheCompassPoints) {
+  EXPECT_EQ(compass_point(0.0), "N");
+  EXPECT_EQ(compass_point(359.0), "N");
+  EXPECT_EQ(compass_point(90.0), "E");
+  EXPECT_EQ(compass_point(247.5), "WSW");
+  EXPECT_EQ(compass_point(-22.5), "NNW");
+}
+
+TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
+  wire::SensorStatus live;
+  live.name = "roof";
+  live.driver = "modbus";
+  live.link = 1;
+  live.health = 1;
+  live.state = SensorState::kLive;
+  live.state_reason = "a reading every 0.5 s";
+  live.detail = "answers at 10.0.0.5:502";
+  live.speed_m_s = 8.6;
+  live.direction_deg = 90.0;
+  live.age_s = 0.2;
+  live.interval_s = 0.5;
+  live.readings = 42;
+  live.refused = {{"timeout", 3}, {"exception", 1}};
+  wire::SensorStatus silent;
+  silent.name = "mast";
+  silent.driver = "modbus";
+  const wire::Sensors sensors{
+      {live, silent},
+      {.time = {}, .wind = {5.0, 0.0}, .source = WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.2},
+      2,
+      3};
+
+  const std::string table = sensor_table(sensors);
+  EXPECT_THAT(table, HasSubstr("wind 5.0 m/s from 270 W (live)   clients 3   late ticks 2"));
+  EXPECT_THAT(table, HasSubstr("roof"));
+  EXPECT_THAT(table, HasSubstr("8.60"));
+  EXPECT_THAT(table, HasSubstr(" 90 E"));
+  EXPECT_THAT(table, HasSubstr("timeout 3, exception 1"));
+  EXPECT_THAT(table, HasSubstr("connected: answers at 10.0.0.5:502"));
+  EXPECT_THAT(table, HasSubstr("live: a reading every 0.5 s"));
+  EXPECT_THAT(table, HasSubstr("connecting")) << "a sensor that never spoke shows what its link does";
+}
+
+TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
+  wire::SensorStatus log;
+  log.name = "storm";
+  log.driver = "windlog";
+  log.link = 1;
+  log.health = 1;
+  log.replayed = true;
+  log.state = SensorState::kReplayed;
+  log.readings = 3;
+  wire::Sensors sensors{
+      {log},
+      {.time = {}, .wind = {5.0, 0.0}, .source = WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.0},
+      0,
+      0};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("(REPLAY of a recording)"));
+  EXPECT_THAT(sensor_table(sensors), ContainsRegex("storm +windlog +REPLAY"));
+  log.replayed = false;
+  log.state = SensorState::kLive;
+  sensors.sensors.push_back(log);
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("(live)")) << "a real one speaks beside it";
+}
+
+TEST(SensorTable, SaysWhereTheWindIsAndWhenItsGustsComeToTheMiddle) {
+  wire::Sensors sensors;
+  EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("middle"))) << "nothing is said of a wind without a place";
+  sensors.wind = {.wind = {7.2, 0.0}, .upwind_m = 5.0, .to_middle_s = 0.694};
+  EXPECT_THAT(
+      sensor_table(sensors),
+      HasSubstr("\n  at the windward edge, 5.0 m upwind of the middle of the scenes; a gust is there in 0.7 s\n"));
+  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = 42.4, .to_middle_s = 14.1, .is_place_told = true};
+  EXPECT_THAT(sensor_table(sensors),
+              HasSubstr("\n  at the sensors, 42 m upwind of the middle of the scenes; a gust is there in 14 s\n"));
+  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = -12.0, .to_middle_s = 0.0, .is_place_told = true};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, 12 m downwind of the middle of the scenes\n"));
+  sensors.wind.upwind_m = 0.0;
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, level with the middle of the scenes\n"));
+}
+
+TEST(SensorTable, SaysHowTheWindIsShapedWhereItIs) {
+  wire::Sensors sensors;
+  EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("shaped")));
+  sensors.shaping.text = "floor: raised 0.6 to 1.5 m/s; closed until 10:00";
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  shaped: floor: raised 0.6 to 1.5 m/s; closed until 10:00\n"));
+}
+
+TEST(SensorTable, ShowsFramesAndReconnects) {
+  wire::SensorStatus sensor;
+  sensor.name = "roof";
+  sensor.readings = 1200;
+  sensor.frames = 34567;
+  sensor.reconnects = 12;
+  EXPECT_THAT(sensor_table({{sensor}, {}, 0, 0}), ContainsRegex(" 34567 +1200 +12\n"));
+}
+
+TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
+  wire::SensorStatus sensor;
+  sensor.name = "a sensor with a name that is long";
+  sensor.driver = "a driver with a long name";
+  sensor.health = 1;
+  sensor.state = SensorState::kDisconnected;
+  sensor.state_reason =
+      "a reason of many words, which goes on and on and on, until it is longer than any line may be here";
+  sensor.detail =
+      "slave 1 at /dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A50285BI-if00-port0 does not answer within 0.5 s: check "
+      "its "
+      "power, its wiring and its id, and that nobody else asks on its line";
+  sensor.speed_m_s = 120.0;
+  sensor.direction_deg = 247.5;
+  sensor.gust_m_s = 119.99;
+  sensor.age_s = 99999.9;
+  sensor.interval_s = 3600.0;
+  sensor.frames = 999'999'999;
+  sensor.readings = 999'999'999;
+  sensor.reconnects = 99'999;
+  for (const char* why : {"timeout", "too short", "not mine", "bad checksum", "exception", "malformed", "invalid"}) {
+    sensor.refused.emplace_back(why, 123'456'789);
+  }
+  const std::string table = sensor_table({{sensor}, {}, 0, 0});
+  std::istringstream lines(table);
+  std::string words;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 100U) << line;
+    if (!line.empty()) words += line.substr(line.find_first_not_of(' ')) + " ";
+  }
+  EXPECT_THAT(words, HasSubstr(sensor.detail));
+  EXPECT_THAT(words, HasSubstr(sensor.state_reason));
+  EXPECT_THAT(words, HasSubstr("bad checksum 123456789, exception 123456789"));
+}
+
+TEST(SensorTable, AStaleSensorCannotBeTakenForALiveOne) {
+  wire::SensorStatus stale;
+  stale.name = "roof";
+  stale.health = 2;
+  stale.state = SensorState::kStale;
+  stale.speed_m_s = 3.0;
+  EXPECT_THAT(sensor_table({{stale}, {}, 0, 0}), HasSubstr("STALE"));
+}
+
+TEST(SensorTable, EachStateIsShownAndTroubleInCapitals) {
+  for (std::size_t number = 0; number < kSensorStateNames.size(); ++number) {
+    wire::SensorStatus sensor;
+    sensor.name = "roof";
+    sensor.driver = "hid";
+    sensor.state = static_cast<SensorState>(number);
+    sensor.state_reason = "for a reason";
+    const std::string table = sensor_table({{sensor}, {}, 0, 0});
+    EXPECT_THAT(table, HasSubstr(std::string(kSensorStateNames[number]) + ": for a reason"));
+  }
+  wire::SensorStatus frozen;
+  frozen.name = "roof";
+  frozen.driver = "hid";
+  frozen.state = SensorState::kFrozen;
+  EXPECT_THAT(sensor_table({{frozen}, {}, 0, 0}), ContainsRegex("roof +hid +FROZEN"));
+}
+
+TEST(SensorTable, AReasonThatIsTheLinksOwnIsToldOnce) {
+  wire::SensorStatus lost;
+  lost.name = "roof";
+  lost.state = SensorState::kDisconnected;
+  lost.state_reason = lost.detail = "/dev/ttyUSB0 has gone";
+  const std::string table = sensor_table({{lost}, {}, 0, 0});
+  EXPECT_EQ(table.find("has gone"), table.rfind("has gone")) << table;
+}
+
+}  // namespace
+}  // namespace yuragi

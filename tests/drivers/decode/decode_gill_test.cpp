@@ -1,0 +1,130 @@
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "drivers/decode/text/gill.hpp"
+#include "tests/support/decoded_text.hpp"
+
+namespace yuragi {
+namespace {
+
+const GillOptions kGill;
+
+/// STX body ETX and the right checksum.
+std::string gill_frame(std::string_view body) {
+  const std::string sum = sentence(body).substr(body.size() + 2);
+  return '\x02' + std::string(body) + '\x03' + sum + "\r\n";
+}
+
+Result<DecodedWind, Refusal> decode_gill_body(std::string_view body, const GillOptions& options = kGill) {
+  return decode_gill(options, gill_frame(body));
+}
+
+TEST(GillPolar, GivesSpeedInEachUnit) {
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,M,00,"), 2.74, 229.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,N,00,"), 1.4096, 229.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,P,00,"), 1.2249, 229.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,K,00,"), 0.7611, 229.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,0539.4,F,00,"), 2.7402, 229.0));
+  EXPECT_EQ(decode_gill_body("Q,229,002.74,M,00,")->reference, WindReference::kRelative);
+}
+
+TEST(GillPolar, HasNoDirectionInCalm) {
+  EXPECT_TRUE(reads(decode_gill_body("Q,,000.04,M,00,"), 0.04, {}));
+  EXPECT_TRUE(reads(decode_gill_body("Q,160,000.04,M,00,"), 0.04, {}));  // fixed field: the last one, frozen
+  EXPECT_TRUE(reads(decode_gill_body("Q,160,000.05,M,00,"), 0.05, 160.0));
+}
+
+TEST(GillPolar, WithABadStatusIsInvalid) {
+  EXPECT_TRUE(is_refused(decode_gill_body("Q,,,M,04,"), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused(decode_gill_body("Q,999,999.99,M,04,"), Refusal::kInvalid));
+  for (const std::string status : {"01", "02", "08", "09", "V"}) {
+    EXPECT_TRUE(is_refused(decode_gill_body("Q,229,002.74,M," + status + ","), Refusal::kInvalid)) << status;
+  }
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,M,60,"), 2.74, 229.0));
+  EXPECT_TRUE(is_refused(decode_gill_body("Q,229,002.74,M,"), Refusal::kMalformed));
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,M,", {.status = WhenMissing::kAccept, .node = {}}), 2.74, 229.0));
+}
+
+TEST(GillPolar, OfAWindObserverHasItsStatusBehindTheTemperature) {
+  EXPECT_TRUE(reads(decode_gill_body("A,121,000.08,M,+344.66,+021.76,00,"), 0.08, 121.0));
+  EXPECT_TRUE(is_refused(decode_gill_body("A,121,000.08,M,+344.66,+021.76,04,"), Refusal::kInvalid));
+}
+
+TEST(GillUv, BlowsTowardNorthAndWest) {
+  EXPECT_TRUE(reads(decode_gill_body("Q,+003.00,+000.00,M,00,"), 3.0, 180.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,-003.00,+000.00,M,00,"), 3.0, 0.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,+000.00,+003.00,M,00,"), 3.0, 90.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,+000.00,-003.00,M,00,"), 3.0, 270.0));
+  EXPECT_TRUE(reads(decode_gill_body("Q,-003.00,-004.00,N,00,"), 5.0 * 0.51444, 306.87));
+  EXPECT_TRUE(reads(decode_gill_body("Q,+000.00,-000.00,M,00,"), 0.0, {}));
+  EXPECT_TRUE(is_refused(decode_gill_body("Q,+000.00,,M,00,"), Refusal::kInvalid));
+}
+
+TEST(GillMaxiMet, HasSpeedAndDirectionInFront) {
+  EXPECT_TRUE(reads(decode_gill_body("Q,180,000.06,133,000.21,1013.2,021,0000,"), 0.06, 180.0));
+  EXPECT_EQ(decode_gill_body("Q,180,001.06,133,000.21,0100,")->status, DecodedStatus::kUncertain);
+}
+
+TEST(GillFrame, NeedsItsChecksumUnlessThePolicySaysOtherwise) {
+  EXPECT_TRUE(reads(decode_gill(kGill,
+                                "Q,229,002.74,M,00,\x03"
+                                "16"),
+                    2.74, 229.0));
+  EXPECT_TRUE(is_refused(decode_gill(kGill,
+                                     "\x02Q,229,002.74,M,00,\x03"
+                                     "17"),
+                         Refusal::kBadChecksum));
+  EXPECT_TRUE(is_refused(decode_gill(kGill,
+                                     "\x02Q,229,002.74,M,00,\x03"
+                                     "1"),
+                         Refusal::kTooShort));
+  EXPECT_TRUE(is_refused(decode_gill(kGill, "\x02Q,229,002.74,M,00,"), Refusal::kTooShort));
+  EXPECT_TRUE(reads(decode_gill({.checksum = WhenMissing::kAccept, .node = {}}, "Q,229,002.74,M,00,"), 2.74, 229.0));
+  EXPECT_TRUE(is_refused(decode_gill(kGill, ""), Refusal::kTooShort));
+}
+
+TEST(GillFrame, OfAnotherNodeOrFormatIsNotMine) {
+  GillOptions options;
+  options.node = 'Q';
+  EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,M,00,", options), 2.74, 229.0));
+  EXPECT_TRUE(is_refused(decode_gill_body("A,229,002.74,M,00,", options), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(decode_gill_body("WINDSONIC (Gill Instruments Ltd)"), Refusal::kNotMine));
+  EXPECT_TRUE(reads(decode_gill(kGill, "$IIMWV,120,R,002.10,M,00*51"), 2.1, 120.0));
+}
+
+TEST(GillVectors, OfTheManualReadWithTheRightChecksumOnly) {
+  const auto vectors = shared_json("vectors/gill_vectors.json");
+  if (vectors.is_null()) GTEST_SKIP() << "../shared/data/vectors/gill_vectors.json is not here";
+  for (const auto& vector : vectors) {
+    const std::string body = vector["body"];
+    SCOPED_TRACE(body);
+    const bool is_error = body.find(",04,") != std::string::npos;
+    const auto decoded = decode_gill(kGill, '\x02' + body + '\x03' + vector["computed"].get<std::string>());
+    EXPECT_EQ(decoded.has_value(), !is_error);
+    EXPECT_EQ(gill_frame(body).substr(body.size() + 2, 2), vector["computed"]);
+    if (!vector["printed_is_right"]) {
+      EXPECT_TRUE(is_refused(decode_gill(kGill, '\x02' + body + '\x03' + vector["printed"].get<std::string>()),
+                             Refusal::kBadChecksum));
+    }
+  }
+}
+
+TEST(GillDecoder, GivesNothingUnphysicalWhateverComes) {
+  constexpr std::string_view kAlphabet = "0123456789.,-+MNPKFQ\x02\x03";
+  std::mt19937_64 random(8);
+  for (int round = 0; round < 30'000; ++round) {
+    std::string body = round % 2 == 0 ? "Q,229,002.74,M,00," : "Q,+001.59,-002.74,M,00,";
+    for (auto changes = random() % 6; changes > 0; --changes) {
+      body[random() % body.size()] = kAlphabet[random() % kAlphabet.size()];
+    }
+    const auto decoded = decode_gill_body(body, {.status = WhenMissing::kAccept, .node = {}});
+    if (decoded) {
+      ASSERT_TRUE(is_physical(*decoded)) << body;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,302 @@
+// Several sensors on one line: who asks first is served first, the gap holds for all, a wait can be ended.
+#include "drivers/modbus/modbus_bus.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_modbus_line.hpp"
+#include "tests/support/manual_clock.hpp"
+#include "tests/support/recording_sink.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using Kind = ModbusTrouble::Kind;
+
+class RealClock final : public Clock {
+ public:
+  Instant now() const noexcept override {
+    return {.mono = std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()), .utc = {}};
+  }
+};
+
+/// A device that answers when the test lets it, and remembers when it was asked.
+class HeldConnection final : public ModbusConnection {
+ public:
+  Result<void, Failure> open(const Interruption&) override {
+    is_open_ = true;
+    return {};
+  }
+  bool is_open() const noexcept override { return is_open_; }
+  void close() noexcept override { is_open_ = false; }
+  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const Interruption&) override {
+    return 0;
+  }
+  bool send(const ModbusRequest& request, const ModbusPatience&) override {
+    const std::lock_guard lock(mutex_);
+    asked_.push_back(request);
+    asked_at_.push_back(std::chrono::steady_clock::now());
+    changed_.notify_all();
+    return true;
+  }
+  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
+    std::unique_lock lock(mutex_);
+    while (may_answer_ == 0) {
+      if (interruption.is_set()) return {BusStatus::kInterrupted};
+      changed_.wait_for(lock, 5ms);
+    }
+    --may_answer_;
+    const auto bytes = answer_with(asked_.back(), {86});
+    std::ranges::copy(bytes, buffer.begin());
+    return {BusStatus::kMessage, bytes.size()};
+  }
+
+  void let_answer(int count) {
+    const std::lock_guard lock(mutex_);
+    may_answer_ += count;
+    changed_.notify_all();
+  }
+  bool wait_for_questions(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 20s, [&] { return asked_.size() >= count; });
+  }
+  std::vector<int> asked_units() {
+    const std::lock_guard lock(mutex_);
+    std::vector<int> units;
+    for (const ModbusRequest& request : asked_) units.push_back(request.unit);
+    return units;
+  }
+  std::vector<std::chrono::steady_clock::time_point> asked_at() {
+    const std::lock_guard lock(mutex_);
+    return asked_at_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_open_ = false;
+  int may_answer_ = 0;
+  std::vector<ModbusRequest> asked_;
+  std::vector<std::chrono::steady_clock::time_point> asked_at_;
+};
+
+ModbusLine line_named(const std::string& host) {
+  ModbusLine line;
+  line.host = host;
+  return line;
+}
+
+/// Sensors as threads, each with its own unit, that ask once.
+class ModbusBusTest : public testing::Test {
+ protected:
+  struct Asker {
+    Interruption interruption;
+    RecordingSink sink;
+    std::optional<ModbusBus::Answer> answer;
+    std::thread thread;
+  };
+  ModbusBusTest() {
+    auto connection = std::make_unique<HeldConnection>();
+    connection_ = connection.get();
+    bus_ = std::make_unique<ModbusBus>(line_named("held"), std::move(connection));
+    const Interruption interruption;
+    EXPECT_TRUE(bus_->open(interruption, clock_));
+  }
+  ~ModbusBusTest() override {
+    for (const auto& asker : askers_) {
+      if (asker->thread.joinable()) asker->thread.join();
+    }
+  }
+  Asker& ask(std::uint8_t unit) {
+    Asker& asker = *askers_.emplace_back(std::make_unique<Asker>());
+    asker.thread = std::thread(
+        [this, unit, &asker] { asker.answer = bus_->ask({.unit = unit}, {}, asker.interruption, clock_, asker.sink); });
+    return asker;
+  }
+  /// Until `count` of them stand in the queue, or have the line.
+  void wait_until_waiting(std::size_t count) {
+    const auto deadline = std::chrono::steady_clock::now() + 20s;
+    while (bus_->waiting_count() < count && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(1ms);
+    ASSERT_EQ(bus_->waiting_count(), count);
+  }
+
+  RealClock clock_;
+  HeldConnection* connection_ = nullptr;
+  std::unique_ptr<ModbusBus> bus_;
+  std::vector<std::unique_ptr<Asker>> askers_;
+};
+
+TEST_F(ModbusBusTest, ServesInTheOrderOfAsking) {
+  std::vector<int> expected;
+  for (std::uint8_t unit = 1; unit <= 8; ++unit) {
+    ask(unit);
+    expected.push_back(unit);
+    wait_until_waiting(unit);
+  }
+  connection_->let_answer(8);
+  for (const auto& asker : askers_) {
+    asker->thread.join();
+    EXPECT_TRUE(asker->answer->has_value());
+  }
+  EXPECT_EQ(connection_->asked_units(), expected);
+}
+
+TEST_F(ModbusBusTest, KeepsTheLongestGapThatAnySensorAsksFor) {
+  bus_->keep_gap(60ms);
+  bus_->keep_gap(10ms);
+  connection_->let_answer(3);
+  for (std::uint8_t unit = 1; unit <= 3; ++unit) ask(unit);
+  for (const auto& asker : askers_) asker->thread.join();
+  const auto at = connection_->asked_at();
+  ASSERT_EQ(at.size(), 3U);
+  EXPECT_GE(at[1] - at[0], 60ms);
+  EXPECT_GE(at[2] - at[1], 60ms);
+}
+
+TEST_F(ModbusBusTest, EndsTheWaitOfTheOneWhoIsInterruptedAndOfNobodyElse) {
+  Asker& first = ask(1);
+  ASSERT_TRUE(connection_->wait_for_questions(1));
+  Asker& second = ask(2);
+  wait_until_waiting(2);
+  Asker& third = ask(3);
+  wait_until_waiting(3);
+
+  second.interruption.set();
+  bus_->wake_waiters();
+  second.thread.join();
+  EXPECT_EQ(second.answer->error().kind, Kind::kInterrupted);
+
+  first.interruption.set();
+  first.thread.join();
+  EXPECT_EQ(first.answer->error().kind, Kind::kInterrupted);
+  connection_->let_answer(1);
+  third.thread.join();
+  EXPECT_TRUE(third.answer->has_value());
+  EXPECT_THAT(connection_->asked_units(), testing::ElementsAre(1, 3));
+}
+
+TEST_F(ModbusBusTest, EndsAWaitForTheGapToo) {
+  bus_->keep_gap(1h);
+  connection_->let_answer(1);
+  ask(1).thread.join();
+  Asker& second = ask(2);
+  wait_until_waiting(1);
+  second.interruption.set();
+  bus_->wake_waiters();
+  second.thread.join();
+  EXPECT_EQ(second.answer->error().kind, Kind::kInterrupted);
+}
+
+/// A bus on a fake line, one thread, time by hand.
+class ModbusBusByHandTest : public testing::Test {
+ protected:
+  ModbusBusByHandTest() {
+    line_.statuses = [this](const ModbusRequest&) { return std::deque{status_}; };
+    line_.message = [](const ModbusRequest& request) { return answer_with(request, {86}); };
+  }
+  void make(ModbusFraming framing) {
+    ModbusLine line = line_named("fake");
+    line.framing = framing;
+    line.device = "fake";
+    bus_ = std::make_unique<ModbusBus>(line, std::make_unique<FakeConnection>(line_));
+    ASSERT_TRUE(bus_->open(interruption_, clock_));
+  }
+  ModbusBus::Answer ask(std::uint8_t unit) { return bus_->ask({.unit = unit}, {}, interruption_, clock_, sink_); }
+
+  FakeLine line_;
+  BusStatus status_ = BusStatus::kMessage;
+  ManualClock clock_;
+  Interruption interruption_;
+  RecordingSink sink_;
+  std::unique_ptr<ModbusBus> bus_;
+};
+
+TEST_F(ModbusBusByHandTest, LetsASilentSlaveOfASerialLineBeForOneTimeOutMore) {
+  make(ModbusFraming::kRtu);
+  status_ = BusStatus::kSilence;
+  ask(5);
+  EXPECT_EQ(bus_->ready_at(5), clock_.now().mono + 500ms);
+  EXPECT_LE(bus_->ready_at(6), clock_.now().mono);
+}
+
+TEST_F(ModbusBusByHandTest, NeedNotWaitOverTcpWhereALateAnswerIsKnownByItsNumber) {
+  make(ModbusFraming::kTcp);
+  status_ = BusStatus::kSilence;
+  ask(5);
+  EXPECT_LE(bus_->ready_at(5), clock_.now().mono);
+}
+
+TEST_F(ModbusBusByHandTest, LetsTheLineSettleAfterTroubleAndNotAfterAnAnswer) {
+  make(ModbusFraming::kTcp);
+  ask(1);
+  EXPECT_EQ(line_.settled, 1);  // it had just been opened
+  ask(1);
+  EXPECT_EQ(line_.settled, 1);
+  status_ = BusStatus::kSilence;
+  ask(1);
+  EXPECT_EQ(line_.settled, 1);
+  ask(1);
+  EXPECT_EQ(line_.settled, 2);
+}
+
+TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
+  make(ModbusFraming::kTcp);
+  line_.statuses = [](const ModbusRequest& request) {
+    return std::deque{request.unit == 1 ? BusStatus::kMessage : BusStatus::kSilence};
+  };
+  for (int i = 0; i < 10; ++i) {
+    ask(1);
+    ask(9);
+  }
+  ASSERT_TRUE(bus_->open(interruption_, clock_));
+  EXPECT_EQ(line_.opened, 1);
+}
+
+TEST_F(ModbusBusByHandTest, ShowsEachMessageThatWentOrCame) {
+  make(ModbusFraming::kTcp);
+  ask(7);
+  ASSERT_EQ(sink_.raws.size(), 2U);
+  EXPECT_EQ(sink_.raws[0].direction, RawDirection::kSent);
+  EXPECT_THAT(sink_.raws[0].message, testing::ElementsAre(0, 1, 0, 0, 0, 6, 7, 3, 0, 0, 0, 1));
+  EXPECT_EQ(sink_.raws[1].direction, RawDirection::kReceived);
+  EXPECT_THAT(sink_.raws[1].message, testing::ElementsAre(0, 1, 0, 0, 0, 5, 7, 3, 2, 0, 86));
+}
+
+TEST(SharedModbusBus, IsOneForAllNamesOfALineForAsLongAsSomebodyHoldsIt) {
+  const test::TemporaryFolder folder;
+  const std::string link = folder / "stable-name";
+  std::filesystem::create_symlink("/dev/null", link);
+  ModbusLine by_link;
+  by_link.framing = ModbusFraming::kRtu;
+  by_link.device = link;
+  ModbusLine by_node = by_link;
+  by_node.device = "/dev/null";
+
+  auto one = shared_modbus_bus(by_link);
+  EXPECT_EQ(shared_modbus_bus(by_node), one);
+  EXPECT_NE(shared_modbus_bus(line_named("a")), shared_modbus_bus(line_named("b")));
+
+  by_node.baud = 4800;
+  try {
+    shared_modbus_bus(by_node);
+    FAIL() << "shared";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is used with 9600 8N1 by another sensor, and cannot have 4800 8N1"));
+  }
+  one.reset();
+  EXPECT_NO_THROW(shared_modbus_bus(by_node));
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,108 @@
+#include "drivers/modbus/modbus_plan.hpp"
+
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+using testing::ElementsAre;
+using enum ModbusMeasure;
+
+/// Speed at 10, direction at 11, gust at 14, all on slave 1.
+ModbusProfile three_quantities() {
+  ModbusProfile profile;
+  profile.speed.address = 10;
+  profile.direction = ModbusQuantity{};
+  profile.direction->address = 11;
+  profile.gust = ModbusQuantity{};
+  profile.gust->address = 14;
+  return profile;
+}
+
+TEST(ModbusPlan, ReadsTogetherWhatAdjoinsAndTheRestByItself) {
+  const auto reads = plan_modbus_reads(three_quantities());
+  ASSERT_EQ(reads.size(), 2U);
+  EXPECT_EQ(reads[0].request.address, 10);
+  EXPECT_EQ(reads[0].request.count, 2);
+  EXPECT_THAT(reads[0].measures, ElementsAre(kSpeed, kDirection));
+  EXPECT_EQ(reads[1].request.address, 14);
+  EXPECT_THAT(reads[1].measures, ElementsAre(kGust));
+}
+
+TEST(ModbusPlan, ReadsAcrossAGapThatTheProfileAllows) {
+  ModbusProfile profile = three_quantities();
+  profile.block_gap = 1;
+  EXPECT_EQ(plan_modbus_reads(profile).size(), 2U);
+  profile.block_gap = 2;
+  const auto reads = plan_modbus_reads(profile);
+  ASSERT_EQ(reads.size(), 1U);
+  EXPECT_EQ(reads[0].request.count, 5);
+}
+
+TEST(ModbusPlan, BringsTheSpeedFirstWhereverItStands) {
+  ModbusProfile profile = three_quantities();
+  profile.speed.address = 20;
+  profile.gust->address = 12;
+  const auto reads = plan_modbus_reads(profile);
+  ASSERT_EQ(reads.size(), 2U);
+  EXPECT_TRUE(reads[0].tells(kSpeed));
+  EXPECT_THAT(reads[1].measures, ElementsAre(kDirection, kGust));
+  EXPECT_EQ(reads[1].request.address, 11);
+}
+
+TEST(ModbusPlan, JoinsTwoThatOnlyTheThirdConnects) {
+  ModbusProfile profile = three_quantities();
+  profile.direction->address = 12;  // speed 10, direction 12, gust 11
+  profile.gust->address = 11;
+  const auto reads = plan_modbus_reads(profile);
+  ASSERT_EQ(reads.size(), 1U);
+  EXPECT_EQ(reads[0].request.address, 10);
+  EXPECT_EQ(reads[0].request.count, 3);
+}
+
+TEST(ModbusPlan, ReadsNothingTogetherThatMayNotBe) {
+  const std::vector<std::function<void(ModbusProfile&)>> obstacles = {
+      [](ModbusProfile& profile) { profile.block_read = false; },
+      [](ModbusProfile& profile) { profile.direction->slave = 2; },
+      [](ModbusProfile& profile) { profile.direction->function = 4; },
+      [](ModbusProfile& profile) { profile.direction->read_has_side_effect = true; },
+      [](ModbusProfile& profile) { profile.speed.read_has_side_effect = true; },
+  };
+  for (const auto& obstacle : obstacles) {
+    ModbusProfile profile = three_quantities();
+    obstacle(profile);
+    EXPECT_EQ(plan_modbus_reads(profile).size(), 3U);
+  }
+}
+
+TEST(ModbusPlan, NeverAsksForMoreThanOneRequestMay) {
+  ModbusProfile profile = three_quantities();
+  profile.block_gap = 100;
+  profile.direction->address = 105;
+  profile.gust->address = 200;
+  for (const ModbusRead& read : plan_modbus_reads(profile)) EXPECT_LE(read.request.count, kModbusMaxRegisters);
+}
+
+TEST(ModbusPlan, LeavesADirectionOnItsOwnLineToItself) {
+  const auto reads = plan_modbus_reads(three_quantities(), true);
+  ASSERT_EQ(reads.size(), 3U);
+  EXPECT_THAT(reads[2].measures, ElementsAre(kDirection));
+}
+
+TEST(ModbusPlan, FindsEachQuantityInTheAnswer) {
+  ModbusProfile profile = three_quantities();
+  profile.block_gap = 2;
+  const ModbusRead read = plan_modbus_reads(profile).front();
+  ModbusRegisters registers;
+  registers.values = {1, 2, 3, 4, 5};
+  registers.count = 5;
+  EXPECT_EQ(registers_of(quantity_of(profile, kSpeed), read.request, registers)[0], 1);
+  EXPECT_EQ(registers_of(quantity_of(profile, kDirection), read.request, registers)[0], 2);
+  EXPECT_EQ(registers_of(quantity_of(profile, kGust), read.request, registers)[0], 5);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,243 @@
+#include "drivers/modbus/modbus_profile.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/places.hpp"
+
+namespace yuragi {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kProfileDirectory = test::source_path("drivers/modbus/profiles");
+
+/// A profile that says no more than it must; `more` goes where top-level keys go, `tail` behind everything.
+std::string minimal(const std::string& more = "", const std::string& tail = "") {
+  return "name = \"x\"\nsource = \"y\"\n" + more + "[speed]\nslave = 1\naddress = 0\ntype = \"u16\"\nunit = \"m/s\"\n" +
+         tail;
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_modbus_profile(text, "device.toml");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ModbusProfile, OfTheRenkePairIsWhatItsRegisterMapSays) {
+  const ModbusProfile profile = load_modbus_profile("renke-rs-fsjt-rs-fxjt-n01", kProfileDirectory);
+  EXPECT_TRUE(profile.is_serial);
+  EXPECT_EQ(profile.baud, 4800);
+  EXPECT_EQ(profile.parity, 'N');
+  EXPECT_EQ(profile.stop_bits, 1);
+
+  EXPECT_EQ(profile.speed.slave, 1);
+  EXPECT_EQ(profile.speed.function, 3);
+  EXPECT_EQ(profile.speed.address, 0);
+  EXPECT_NEAR(*decode_speed_m_s(profile.speed, std::vector<std::uint16_t>{86}), 8.6, 1e-12);
+
+  ASSERT_TRUE(profile.direction.has_value());
+  EXPECT_EQ(profile.direction->slave, 2);
+  EXPECT_EQ(profile.direction->address, 1);
+  EXPECT_EQ(*decode_direction_deg(*profile.direction, std::vector<std::uint16_t>{360}), 0.0);
+}
+
+TEST(ModbusProfile, OfTheCupAloneHasNoDirection) {
+  EXPECT_FALSE(load_modbus_profile("renke-rs-fsjt-n01", kProfileDirectory).direction.has_value());
+}
+
+TEST(ModbusProfile, ThatIsShippedCanBeRead) {
+  int profiles = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kProfileDirectory)) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_NO_THROW(load_modbus_profile(entry.path().string(), "")) << entry.path();
+    ++profiles;
+  }
+  EXPECT_GE(profiles, 2);
+}
+
+TEST(ModbusProfile, ReadsEveryField) {
+  const ModbusProfile profile = parse_modbus_profile(R"(
+name = "n"
+source = "s"
+revision = "V2"
+transport = "tcp"
+block_read = false
+block_gap = 3
+north_offset_deg = -12.5
+address_base = 40001
+[serial]
+baud = 19200
+parity = "even"
+stop_bits = 2
+[timing]
+poll_interval_s = 1
+min_gap_s = 0.5
+response_timeout_s = 0.8
+byte_timeout_s = 0.02
+delay_after_open_s = 2.5
+warm_up_s = 10
+[speed]
+slave = 17
+function = 4
+address = 40005
+type = "f32"
+order = "CDAB"
+scale = 0.5
+offset = 1
+unit = "kn"
+invalid = [0x7FFFFFFF, 1]
+min = 0
+max = 100.5
+read_has_side_effect = true
+[direction]
+slave = 18
+address = 40003
+type = "i16"
+unit = "deg"
+map = "16-point"
+[gust]
+slave = 17
+address = 40007
+type = "u16"
+unit = "km/h"
+)",
+                                                     "device.toml");
+  EXPECT_EQ(profile.revision, "V2");
+  EXPECT_FALSE(profile.is_serial);
+  EXPECT_FALSE(profile.block_read);
+  EXPECT_EQ(profile.north_offset_deg, -12.5);
+  EXPECT_EQ(profile.baud, 19200);
+  EXPECT_EQ(profile.parity, 'E');
+  EXPECT_EQ(profile.stop_bits, 2);
+  EXPECT_EQ(profile.poll_interval, std::chrono::seconds(1));
+  EXPECT_EQ(profile.min_gap, std::chrono::milliseconds(500));
+  EXPECT_EQ(profile.response_timeout, std::chrono::milliseconds(800));
+  EXPECT_EQ(profile.byte_timeout, std::chrono::milliseconds(20));
+  EXPECT_EQ(profile.delay_after_open, std::chrono::milliseconds(2500));
+  EXPECT_EQ(profile.warm_up, std::chrono::seconds(10));
+  EXPECT_EQ(profile.speed.slave, 17);
+  EXPECT_EQ(profile.speed.function, 4);
+  EXPECT_EQ(profile.speed.address, 4);
+  EXPECT_EQ(profile.speed.type, RegisterType::kF32);
+  EXPECT_EQ(profile.speed.order, ByteOrder::kCDAB);
+  EXPECT_EQ(profile.speed.scale, 0.5);
+  EXPECT_EQ(profile.speed.offset, 1.0);
+  EXPECT_EQ(profile.speed.unit, QuantityUnit::kKnots);
+  EXPECT_EQ(profile.speed.invalid, (std::vector<std::int64_t>{0x7FFFFFFF, 1}));
+  EXPECT_EQ(profile.speed.min, 0.0);
+  EXPECT_EQ(profile.speed.max, 100.5);
+  EXPECT_TRUE(profile.speed.read_has_side_effect);
+  ASSERT_TRUE(profile.direction.has_value());
+  EXPECT_EQ(profile.direction->slave, 18);
+  EXPECT_EQ(profile.direction->address, 2);
+  EXPECT_EQ(profile.direction->type, RegisterType::kI16);
+  EXPECT_EQ(profile.direction->map, DirectionMap::kPoint16);
+  EXPECT_EQ(profile.block_gap, 3);
+  ASSERT_TRUE(profile.gust.has_value());
+  EXPECT_EQ(profile.gust->address, 6);
+  EXPECT_EQ(profile.gust->unit, QuantityUnit::kKmh);
+}
+
+TEST(ModbusProfile, ThatIsMovedToAnotherSlaveTakesAlongWhatWasOnTheSame) {
+  ModbusProfile profile;
+  profile.direction = ModbusQuantity{};
+  profile.direction->slave = 2;
+  profile.gust = ModbusQuantity{};
+  set_slave(profile, 7);
+  EXPECT_EQ(profile.speed.slave, 7);
+  EXPECT_EQ(profile.direction->slave, 2);
+  EXPECT_EQ(profile.gust->slave, 7);
+}
+
+TEST(ModbusProfile, KeepsALiteral30001OnTheWire) {
+  const auto profile = parse_modbus_profile(
+      "name = \"x\"\nsource = \"y\"\n[speed]\nslave = 1\naddress = 30001\ntype = \"u16\"\nunit = \"m/s\"\n", "");
+  EXPECT_EQ(profile.speed.address, 0x7531);
+}
+
+TEST(ModbusProfile, ErrorsNameFileLineColumnKeyAndWhatIsAllowed) {
+  EXPECT_EQ(error_of(minimal("transport = \"usb\"\n")),
+            "device.toml:3:13: transport: is \"usb\"; allowed: one of \"rtu\" \"tcp\"");
+  EXPECT_EQ(error_of(minimal("", "order = 3\n")),
+            "device.toml:8:9: speed.order: is not a text; allowed: one of \"ABCD\" \"CDAB\" \"BADC\" \"DCBA\"");
+  EXPECT_EQ(error_of(minimal("", "min = 5\nmax = 4.5\n")),
+            "device.toml:9:7: speed.max: is below min; allowed: min or more");
+}
+
+TEST(ModbusProfile, ErrorsAreFoundWhereverTheyAre) {
+  EXPECT_THAT(error_of("name = \n"), StartsWith("device.toml:1:8: not TOML: "));
+  EXPECT_THAT(error_of("source = \"y\"\n"), HasSubstr(": name: is missing; allowed: a text"));
+  EXPECT_THAT(error_of("name = \"x\"\nsource = \"y\"\n"), HasSubstr(": speed: is missing; allowed: a table [speed]"));
+  EXPECT_THAT(error_of("name = \"x\"\nsource = \"y\"\nspeed = 3\n"),
+              StartsWith("device.toml:3:9: speed: is not a table"));
+  EXPECT_THAT(error_of(minimal("", "slaves = 2\n")),
+              StartsWith("device.toml:8:10: speed.slaves: is not known here; allowed: address, "));
+  EXPECT_THAT(error_of(minimal("", "[directions]\nslave = 2\n")), HasSubstr(": directions: is not known here"));
+  EXPECT_THAT(error_of(minimal("", "function = 5\n")),
+              HasSubstr("speed.function: is 5; allowed: a whole number from 3 to 4"));
+  EXPECT_THAT(error_of(minimal("", "scale = 0.0\n")), HasSubstr("speed.scale: is 0;"));
+  EXPECT_THAT(error_of(minimal("", "scale = nan\n")), HasSubstr("speed.scale: is nan; allowed: a finite number"));
+  EXPECT_THAT(error_of(minimal("", "scale = \"1\"\n")), HasSubstr("speed.scale: is not a number"));
+  EXPECT_THAT(error_of(minimal("", "invalid = [70000]\n")),
+              HasSubstr("speed.invalid: holds something else; allowed: a list of whole numbers from 0 to 65535"));
+  EXPECT_THAT(error_of(minimal("", "invalid = 3\n")), HasSubstr("speed.invalid: is not a list"));
+  EXPECT_THAT(error_of(minimal("", "map = \"degrees\"\n")), HasSubstr("speed.map: is not known here"));
+  EXPECT_THAT(error_of(minimal("", "read_has_side_effect = 1\n")),
+              HasSubstr("is not a truth value; allowed: true or false"));
+  EXPECT_THAT(error_of(minimal("address_base = 2\n")),
+              HasSubstr("address_base: is 2; allowed: one of 0 1 30001 40001"));
+  EXPECT_THAT(error_of(minimal("address_base = 1\n")),
+              HasSubstr("speed.address: is 0; allowed: a whole number from 1 to 65536"));
+  EXPECT_THAT(error_of(minimal("", "[serial]\nbaud = 1000\n")),
+              StartsWith("device.toml:9:8: serial.baud: is 1000; allowed: one of 1200 "));
+  EXPECT_THAT(error_of(minimal("", "[timing]\nmin_gap_s = -1\n")),
+              HasSubstr("timing.min_gap_s: is -1; allowed: a finite number from 0 to 10"));
+  EXPECT_THAT(error_of(minimal("", "[direction]\nslave = 2\naddress = 0\ntype = \"u16\"\nunit = \"m/s\"\n")),
+              HasSubstr("direction.unit: is \"m/s\"; allowed: one of \"deg\""));
+}
+
+TEST(ModbusProfile, ThatTakesTwoRegistersEndsBeforeTheLastAddress) {
+  const std::string two =
+      "name = \"x\"\nsource = \"y\"\n[speed]\nslave = 1\ntype = \"u32\"\nunit = \"m/s\"\naddress = ";
+  EXPECT_EQ(error_of(two + "65534\n"), "no error");
+  EXPECT_THAT(error_of(two + "65535\n"), HasSubstr("speed.address: is 65535"));
+}
+
+TEST(ModbusProfileSearch, OfAnUnknownNameListsTheKnownOnes) {
+  try {
+    load_modbus_profile("no-such-device", "");
+    FAIL() << "found";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no Modbus profile named \"no-such-device\""));
+    EXPECT_THAT(error.what(), HasSubstr("renke-rs-fsjt-n01, renke-rs-fsjt-rs-fxjt-n01"));
+  }
+}
+
+TEST(ModbusProfileSearch, OfAPathThatIsNotThereSaysWhich) {
+  try {
+    load_modbus_profile("/no/such/file.toml", "");
+    FAIL() << "found";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), StartsWith("/no/such/file.toml: "));
+  }
+}
+
+TEST(ModbusProfileSearch, LooksInTheGivenDirectoryFirst) {
+  const std::filesystem::path directory = testing::TempDir() + "yuragi_profiles";
+  std::filesystem::create_directories(directory);
+  std::ofstream(directory / "renke-rs-fsjt-n01.toml") << minimal("revision = \"mine\"\n");
+  EXPECT_EQ(load_modbus_profile("renke-rs-fsjt-n01", directory.string()).revision, "mine");
+  std::filesystem::remove_all(directory);
+}
+
+}  // namespace
+}  // namespace yuragi

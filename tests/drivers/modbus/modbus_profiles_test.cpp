@@ -1,0 +1,265 @@
+// Every profile that is shipped: which registers it reads, and what it makes of them. The frames are those of the
+// shared collection, and such as were written by hand from the makers' register maps.
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "drivers/modbus/modbus_plan.hpp"
+#include "tests/support/modbus_vectors.hpp"
+#include "tests/support/places.hpp"
+
+namespace yuragi {
+namespace {
+
+/// What a device has in its registers, as the wire counts them.
+using DeviceRegisters = std::map<int, std::uint16_t>;
+
+/// What a profile reads in them.
+struct ProfileReading {
+  Result<double, Refusal> speed_m_s = Refusal::kTimeout;
+  Result<double, Refusal> direction_deg = Refusal::kTimeout;
+  Result<double, Refusal> gust_m_s = Refusal::kTimeout;
+};
+
+ModbusProfile shipped_profile(const std::string& name) {
+  return load_modbus_profile(name, test::source_path("drivers/modbus/profiles"));
+}
+
+/// Registers as a request brings them; nothing if the device lacks one.
+std::optional<ModbusRegisters> answer_of(const DeviceRegisters& device, const ModbusRequest& request) {
+  ModbusRegisters registers;
+  for (int i = 0; i < request.count; ++i) {
+    const auto found = device.find(request.address + i);
+    if (found == device.end()) return std::nullopt;
+    registers.values[registers.count++] = found->second;
+  }
+  return registers;
+}
+
+ProfileReading read_with(const ModbusProfile& profile, const DeviceRegisters& device) {
+  ProfileReading reading;
+  for (const ModbusRead& read : plan_modbus_reads(profile)) {
+    const auto registers = answer_of(device, read.request);
+    if (!registers) continue;
+    for (const ModbusMeasure measure : read.measures) {
+      const ModbusQuantity& quantity = quantity_of(profile, measure);
+      const auto part = registers_of(quantity, read.request, *registers);
+      if (measure == ModbusMeasure::kSpeed) reading.speed_m_s = decode_speed_m_s(quantity, part);
+      if (measure == ModbusMeasure::kGust) reading.gust_m_s = decode_speed_m_s(quantity, part);
+      if (measure == ModbusMeasure::kDirection) reading.direction_deg = decode_direction_deg(quantity, part);
+    }
+  }
+  return reading;
+}
+
+/// One device with known registers and what a person reads in them by the maker's map.
+struct KnownReading {
+  const char* profile;
+  std::uint8_t function;
+  DeviceRegisters registers;
+  double speed_m_s;
+  std::optional<double> direction_deg;
+  std::optional<double> gust_m_s;
+
+  friend void PrintTo(const KnownReading& known, std::ostream* out) { *out << known.profile; }
+};
+
+const std::vector<KnownReading> kKnownReadings = {
+    {"renke-rs-fsjt-n01", 3, {{0, 86}}, 8.6, {}, {}},
+    {"renke-rs-fsjt-rs-fxjt-n01", 3, {{0, 2}, {1, 90}}, 0.2, 90.0, {}},
+    {"dfrobot-sen0483", 3, {{0, 37}}, 3.7, {}, {}},
+    {"dfrobot-sen0483-sen0482", 3, {{0, 324}}, 32.4, 32.4, {}},
+    {"dfrobot-sen0483-sen0482-v1", 3, {{0, 15}}, 1.5, 337.5, {}},
+    {"renke-multi-station", 3, {{500, 123}, {502, 6}}, 12.3, 270.0, {}},
+    // 95.000 degrees; most 5.000, mean 3.500 m/s: the frame of the shared collection.
+    {"seeed-sensecap-one",
+     4,
+     {{8, 1},
+      {9, 0x5F90},
+      {10, 1},
+      {11, 0x86A0},
+      {12, 1},
+      {13, 0x7318},
+      {14, 0},
+      {15, 2000},
+      {16, 0},
+      {17, 5000},
+      {18, 0},
+      {19, 3500}},
+     3.5,
+     95.0,
+     5.0},
+    {"calypso-ulp",
+     3,
+     {{200, 0}, {201, 52}, {202, 3599}, {203, 1}, {204, 2}, {205, 3}, {206, 4}, {207, 81}, {208, 10}},
+     5.2,
+     359.9,
+     8.1},
+    {"lufft-umb", 4, {{42, 55}, {43, 20}, {44, 98}, {45, 52}, {46, 51}, {47, 60}}, 6.0, {}, 9.8},
+    // 5.5, 90.5 and 8.25 as IEEE 754.
+    {"vaisala-wm80",
+     3,
+     {{0, 0x40B0},
+      {1, 0},
+      {2, 0x42B5},
+      {3, 0},
+      {4, 0},
+      {5, 0},
+      {6, 0},
+      {7, 0},
+      {8, 0},
+      {9, 0},
+      {10, 0},
+      {11, 0},
+      {12, 0},
+      {13, 0},
+      {14, 0x4104},
+      {15, 0}},
+     5.5,
+     90.5,
+     8.25},
+    {"gill-maximet-gmx",
+     3,
+     {{0, 0x42A2}, {1, 0}, {2, 0x42B5}, {3, 0}, {4, 0x40B0}, {5, 0}, {6, 0x4334}, {7, 0}},
+     5.5,
+     90.5,
+     {}},
+    {"campbell-metsens200", 3, {{0, 0x42B5}, {1, 0}, {2, 0x40B0}, {3, 0}}, 5.5, 90.5, {}},
+    {"lambrecht-industry",
+     4,
+     {{30001, 44}, {30002, 1}, {30003, 2}, {30004, 3}, {30201, 2705}, {30202, 4}},
+     4.4,
+     270.5,
+     {}},
+    {"thies-clima-sensor-us",
+     4,
+     {{30001, 0}, {30002, 1}, {30003, 0}, {30004, 62}, {30011, 0}, {30012, 99}, {30203, 0}, {30204, 3594}},
+     6.2,
+     359.4,
+     9.9},
+    {"xunchip-xm8589", 3, {{0, 121}}, 12.1, {}, {}},
+    {"generic-rs485-cup", 3, {{0, 30}}, 3.0, {}, {}},
+};
+
+class ShippedProfileTest : public testing::TestWithParam<KnownReading> {};
+
+TEST_P(ShippedProfileTest, ReadsWhatTheRegistersSay) {
+  const KnownReading& known = GetParam();
+  const ModbusProfile profile = shipped_profile(known.profile);
+  EXPECT_EQ(profile.speed.function, known.function);
+  EXPECT_EQ(profile.direction.has_value(), known.direction_deg.has_value());
+  EXPECT_EQ(profile.gust.has_value(), known.gust_m_s.has_value());
+
+  const ProfileReading reading = read_with(profile, known.registers);
+  ASSERT_TRUE(reading.speed_m_s) << name_of(reading.speed_m_s.error());
+  EXPECT_NEAR(*reading.speed_m_s, known.speed_m_s, 1e-9);
+  if (known.direction_deg) {
+    ASSERT_TRUE(reading.direction_deg) << name_of(reading.direction_deg.error());
+    EXPECT_NEAR(*reading.direction_deg, *known.direction_deg, 1e-9);
+  }
+  if (known.gust_m_s) {
+    ASSERT_TRUE(reading.gust_m_s) << name_of(reading.gust_m_s.error());
+    EXPECT_NEAR(*reading.gust_m_s, *known.gust_m_s, 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, ShippedProfileTest, testing::ValuesIn(kKnownReadings), [](const auto& test) {
+  std::string name = test.param.profile;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
+
+TEST(ShippedProfiles, AreAllTestedAndSayWhereTheyWereRead) {
+  std::set<std::string> shipped;
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("drivers/modbus/profiles"))) {
+    if (entry.path().extension() != ".toml") continue;
+    shipped.insert(entry.path().stem().string());
+    const ModbusProfile profile = load_modbus_profile(entry.path().string(), "");
+    EXPECT_GT(profile.source.size(), 10U) << entry.path();
+    EXPECT_TRUE(profile.speed.max.has_value()) << entry.path();
+  }
+  std::set<std::string> tested;
+  for (const KnownReading& known : kKnownReadings) tested.insert(known.profile);
+  EXPECT_EQ(shipped, tested);
+}
+
+TEST(ShippedProfiles, TakeTheMarksForNoValueAsNone) {
+  EXPECT_EQ(read_with(shipped_profile("lufft-umb"), {{44, 98}, {45, 0}, {46, 0}, {47, 0x7FFF}}).speed_m_s.error(),
+            Refusal::kInvalid);
+  EXPECT_EQ(read_with(shipped_profile("lambrecht-industry"), {{30001, 0xD8F1}}).speed_m_s.error(), Refusal::kInvalid);
+  const ProfileReading gill =
+      read_with(shipped_profile("gill-maximet-gmx"), {{2, 0x7FFF}, {3, 0xFFFF}, {4, 0x40B0}, {5, 0}});
+  EXPECT_TRUE(gill.speed_m_s.has_value());
+  EXPECT_EQ(gill.direction_deg.error(), Refusal::kInvalid);
+}
+
+TEST(ShippedProfiles, NeverReadARegisterThatClearsOthers) {
+  for (const ModbusRead& read : plan_modbus_reads(shipped_profile("lambrecht-industry"))) {
+    for (const int clearing : {30002, 30202}) {
+      EXPECT_FALSE(clearing >= read.request.address && clearing < read.request.address + read.request.count);
+    }
+  }
+}
+
+TEST(ShippedProfiles, KeepTheirSerialLinesAndPaces) {
+  EXPECT_EQ(shipped_profile("lufft-umb").parity, 'E');
+  EXPECT_EQ(shipped_profile("lufft-umb").baud, 19200);
+  EXPECT_EQ(shipped_profile("vaisala-wm80").poll_interval, std::chrono::milliseconds(100));
+  EXPECT_EQ(shipped_profile("generic-rs485-cup").min_gap, std::chrono::milliseconds(500));
+  EXPECT_EQ(shipped_profile("gill-maximet-gmx").warm_up, std::chrono::seconds(10));
+  EXPECT_EQ(shipped_profile("dfrobot-sen0483-sen0482-v1").revision, "V1");
+  EXPECT_EQ(shipped_profile("thies-clima-sensor-us").speed.address, 0x7533);
+}
+
+/// The registers that a frame of the shared collection carries.
+DeviceRegisters registers_of(const ModbusVector& vector) {
+  DeviceRegisters registers;
+  const int from = (vector.request[2] << 8) | vector.request[3];
+  for (std::size_t i = 0; 3 + 2 * i + 1 < vector.response.size() - 2; ++i) {
+    registers[from + static_cast<int>(i)] =
+        static_cast<std::uint16_t>((vector.response[3 + 2 * i] << 8U) | vector.response[4 + 2 * i]);
+  }
+  return registers;
+}
+
+TEST(ShippedProfiles, ReadTheSharedCollectionsFramesAsItSays) {
+  const auto vectors = load_modbus_vectors();
+  if (vectors.empty()) GTEST_SKIP() << "../shared/data/vectors/modbus_vectors.json is not here";
+  int checked = 0;
+  const auto reading_of = [&](const std::string& device, const std::string& profile) {
+    const auto found = std::ranges::find(vectors, device, &ModbusVector::device);
+    EXPECT_NE(found, vectors.end()) << device;
+    ++checked;
+    return found != vectors.end() ? read_with(shipped_profile(profile), registers_of(*found)) : ProfileReading{};
+  };
+
+  EXPECT_NEAR(*reading_of("Renke RS-FSJT-N01 / PR-3000-FSJT-N01", "renke-rs-fsjt-n01").speed_m_s, 8.6, 1e-9);
+  EXPECT_NEAR(*reading_of("Xunchip XM8589", "xunchip-xm8589").speed_m_s, 12.1, 1e-9);
+  EXPECT_NEAR(*reading_of("DFRobot SEN0482/SEN0483", "dfrobot-sen0483").speed_m_s, 3.7, 1e-9);
+  EXPECT_NEAR(*reading_of("Renke RS-FXJT-N01", "renke-rs-fsjt-rs-fxjt-n01").direction_deg, 90.0, 1e-9);
+
+  const ProfileReading seeed = reading_of("SenseCAP ONE S500/S700", "seeed-sensecap-one");
+  EXPECT_NEAR(*seeed.speed_m_s, 3.5, 1e-9);
+  EXPECT_NEAR(*seeed.direction_deg, 95.0, 1e-9);
+  EXPECT_NEAR(*seeed.gust_m_s, 5.0, 1e-9);
+  const ProfileReading lufft = reading_of("Lufft WS-UMB / VENTUS", "lufft-umb");
+  EXPECT_EQ(lufft.speed_m_s.error(), Refusal::kInvalid);
+  EXPECT_NEAR(*lufft.gust_m_s, 9.8, 1e-9);
+
+  // The frame of the WM80 ends before the gust, which this profile reads along.
+  ModbusProfile wm80 = shipped_profile("vaisala-wm80");
+  wm80.gust.reset();
+  const auto found = std::ranges::find(vectors, "Vaisala WM80", &ModbusVector::device);
+  ASSERT_NE(found, vectors.end());
+  const ProfileReading vaisala = read_with(wm80, registers_of(*found));
+  EXPECT_NEAR(*vaisala.speed_m_s, 5.5, 1e-9);
+  EXPECT_NEAR(*vaisala.direction_deg, 90.5, 1e-9);
+  EXPECT_EQ(checked, 6);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,101 @@
+#include "drivers/mqtt/mqtt_payload.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace yuragi {
+namespace {
+
+/// Passes if a number was found there.
+testing::AssertionResult finds(std::string_view payload, const std::string& pointer, double expected) {
+  const auto number = number_in(payload, {pointer});
+  if (number && *number && **number == expected) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << (number ? "another one, or none" : name_of(number.error()));
+}
+testing::AssertionResult finds_none(std::string_view payload, const std::string& pointer) {
+  const auto number = number_in(payload, {pointer});
+  if (number && !*number) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << (number ? "a number" : name_of(number.error()));
+}
+testing::AssertionResult refuses(std::string_view payload, const std::string& pointer, Refusal why) {
+  const auto number = number_in(payload, {pointer});
+  if (!number && number.error() == why) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << (number ? "accepted" : name_of(number.error()));
+}
+
+TEST(MqttPayload, ThatIsANumber) {
+  EXPECT_TRUE(finds("4.2", "", 4.2));
+  EXPECT_TRUE(finds(" 0\r\n", "", 0.0));
+  EXPECT_TRUE(finds("-1e1", "", -10.0));
+}
+
+TEST(MqttPayload, ThatStandsForNoValue) {
+  for (const std::string_view payload : {"", " ", "unavailable", "unknown", "None", "null", "nan"}) {
+    EXPECT_TRUE(refuses(payload, "", Refusal::kInvalid)) << payload;
+  }
+}
+
+TEST(MqttPayload, ThatIsSomethingElse) {
+  for (const std::string_view payload : {"4.2 m/s", "NNE", "0x10", "4,2", "1e999", "inf", "{\"a\":1}", "\xff\xfe"}) {
+    EXPECT_TRUE(refuses(payload, "", Refusal::kMalformed)) << payload;
+  }
+}
+
+TEST(MqttPayload, InJsonStandsWhereThePointerSays) {
+  const std::string_view tasmota =
+      R"({"Time":"2024-06-01T12:00:00","TX23":{"Speed":{"Act":14.8,"Avg":8.5},"Dir":{"Card":"WSW","Deg":247.5}}})";
+  EXPECT_TRUE(finds(tasmota, "/TX23/Speed/Act", 14.8));
+  EXPECT_TRUE(finds(tasmota, "/TX23/Dir/Deg", 247.5));
+  EXPECT_TRUE(finds(R"([{"v":"3.5"}])", "/0/v", 3.5)) << "as a text";
+  EXPECT_TRUE(finds_none("7", "/"));
+}
+
+TEST(MqttPayload, InJsonMayBeAbsent) {
+  EXPECT_TRUE(finds_none(R"({"a":null})", "/a"));
+  EXPECT_TRUE(finds_none(R"({"a":1})", "/b"));
+  EXPECT_TRUE(finds_none(R"({"a":1})", "/a/b/c"));
+  EXPECT_TRUE(finds_none("[1,2]", "/7"));
+  EXPECT_TRUE(finds_none("[1,2]", "/-"));
+}
+
+TEST(MqttPayload, InJsonIsRefusedWhereItIsNoNumber) {
+  EXPECT_TRUE(refuses(R"({"a":{}})", "/a", Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":true})", "/a", Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":"NNE"})", "/a", Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":"unavailable"})", "/a", Refusal::kInvalid));
+  EXPECT_TRUE(refuses(R"({"a":1)", "/a", Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":1e999})", "/a", Refusal::kMalformed));
+  EXPECT_TRUE(refuses("", "/a", Refusal::kMalformed));
+}
+
+TEST(MqttPayload, StandsAnyBytes) {
+  std::mt19937_64 random(20260608);
+  const std::string alphabet = "{}[]\":,0123456789.eE+-tfn \\u/a\xff";
+  for (int round = 0; round < 100'000; ++round) {
+    std::string payload(random() % 40, ' ');
+    for (char& letter : payload) letter = alphabet[random() % alphabet.size()];
+    for (const char* const pointer : {"", "/a", "/0", "/0/a", "/99999999999999999999"}) {
+      const auto number = number_in(payload, {pointer});
+      if (number && *number) {
+        EXPECT_TRUE(std::isfinite(**number)) << payload;
+      }
+    }
+  }
+}
+
+TEST(MqttPayload, StandsALotOfBrackets) {
+  EXPECT_TRUE(refuses(std::string(60'000, '['), "/a", Refusal::kMalformed));
+  EXPECT_TRUE(finds_none(std::string(30'000, '[') + std::string(30'000, ']'), "/1"));
+}
+
+TEST(JsonPointer, BeginsWithASlash) {
+  EXPECT_TRUE(is_json_pointer(""));
+  EXPECT_TRUE(is_json_pointer("/a/b~1c"));
+  EXPECT_FALSE(is_json_pointer("a/b"));
+  EXPECT_FALSE(is_json_pointer("/a~2"));
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,402 @@
+// The driver as the daemon opens it and runs it, with Debian's own broker and its own publisher.
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include "drivers/sensor/driver.hpp"
+#include "tests/support/free_port.hpp"
+#include "tests/support/mosquitto_broker.hpp"
+#include "tests/support/running_sensor.hpp"
+#include "tests/support/scripted_server.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+const DriverDescription& mqtt_driver() {
+  for (const DriverDescription* driver : driver_table()) {
+    if (driver->name == "mqtt") return *driver;
+  }
+  throw std::logic_error("no driver named mqtt");
+}
+
+std::unique_ptr<Sensor> open_mqtt_sensor(const ParameterValues::Map& given) {
+  return mqtt_driver().open(*ParameterValues::resolve(mqtt_driver().parameters, given));
+}
+
+/// The driver on a thread of its own, connected to a broker.
+class MqttRun {
+ public:
+  MqttRun(const MosquittoBroker& broker, ParameterValues::Map given) : MqttRun(broker.port(), std::move(given)) {}
+  MqttRun(std::uint16_t port, ParameterValues::Map given) : sensor_(make(port, std::move(given))) {}
+
+  /// Sends when the driver listens, and waits for the reading.
+  bool reads_after(const std::function<void()>& publish) {
+    const bool listens = sensor_.wait_until([](const RecordingSink& sink) {
+      const std::string detail = sink.last_detail();
+      return sink.last_state() == LinkState::kConnected || detail.find("waits for") != std::string::npos ||
+             detail.find("no wind has come") != std::string::npos;
+    });
+    const std::size_t before = count();
+    publish();
+    return listens && has_read(before + 1);
+  }
+  bool has_refused(Refusal why, std::ptrdiff_t times = 1) {
+    return sensor_.wait_until([&](const RecordingSink& sink) { return sink.count(why) >= times; });
+  }
+  bool is_in(LinkState state) {
+    return sensor_.wait_until([&](const RecordingSink& sink) { return sink.last_state() == state; });
+  }
+  bool says(const std::string& text) {
+    return sensor_.wait_until(
+        [&](const RecordingSink& sink) { return sink.last_detail().find(text) != std::string::npos; });
+  }
+  bool has_read(std::size_t readings) {
+    return sensor_.wait_until([&](const RecordingSink& sink) { return sink.readings.size() >= readings; });
+  }
+  std::size_t count() {
+    return sensor_.look([](const RecordingSink& sink) { return sink.readings.size(); });
+  }
+  WindReading last() {
+    return sensor_.look([](const RecordingSink& sink) { return sink.readings.back(); });
+  }
+  LinkState state() {
+    return sensor_.look([](const RecordingSink& sink) { return sink.last_state(); });
+  }
+
+ private:
+  static std::unique_ptr<Sensor> make(std::uint16_t port, ParameterValues::Map given) {
+    given.try_emplace("port", std::int64_t{port});
+    given.try_emplace("topic", std::string("garden/speed"));
+    return open_mqtt_sensor(given);
+  }
+
+  RunningSensor sensor_;
+};
+
+/// A sensor that reads "garden/speed" as a plain number has read one wind of 4 m/s.
+struct RunningGarden {
+  MosquittoBroker broker;
+  MqttRun run;
+
+  explicit RunningGarden(const ParameterValues::Map& given = {}) : run(broker, given) {
+    if (!run.reads_after([this] { broker.publish("garden/speed", "4"); })) throw std::runtime_error("no wind came");
+  }
+
+  /// What comes next is refused for this reason, and is no reading; then the wind is read again.
+  void expect_refused(const std::string& topic, const std::string& payload, Refusal why,
+                      const std::vector<std::string>& more = {}) {
+    const std::size_t before = run.count();
+    broker.publish(topic, payload, more);
+    EXPECT_TRUE(run.has_refused(why));
+    EXPECT_EQ(run.count(), before);
+    EXPECT_EQ(run.state(), LinkState::kConnected);
+    broker.publish("garden/speed", "6");
+    EXPECT_TRUE(run.has_read(before + 1));
+    EXPECT_EQ(run.last().speed_m_s, 6.0);
+  }
+};
+
+TEST(MqttDriver, ReadsPlainNumbersEachFromATopicOfItsOwn) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"topic", std::string("homeassistant/sensor/wind_speed/state")},
+                       {"direction_topic", std::string("homeassistant/sensor/wind_bearing/state")},
+                       {"gust_topic", std::string("homeassistant/sensor/wind_gust/state")},
+                       {"speed_unit", std::string("km/h")}});
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("homeassistant/sensor/wind_speed/state", "18"); }));
+  EXPECT_DOUBLE_EQ(run.last().speed_m_s, 5.0);
+  EXPECT_FALSE(run.last().direction_deg.has_value()) << "nobody has said";
+  const std::size_t before = run.count();
+  broker.publish("homeassistant/sensor/wind_bearing/state", "360");
+  broker.publish("homeassistant/sensor/wind_gust/state", "36.0");
+  broker.publish("homeassistant/sensor/wind_speed/state", "21.6");
+  ASSERT_TRUE(run.has_read(before + 1));
+  EXPECT_DOUBLE_EQ(run.last().speed_m_s, 6.0);
+  EXPECT_EQ(run.last().direction_deg, 0.0);
+  EXPECT_DOUBLE_EQ(run.last().gust_m_s.value(), 10.0);
+}
+
+TEST(MqttDriver, ReachesABrokerByItsName) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"host", std::string("localhost")}});
+  EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); })) << "whichever of its addresses it has";
+}
+
+TEST(MqttDriver, SaysThatThereIsNoSuchHost) {
+  MqttRun run(1, {{"host", std::string("no-such-host.invalid")}});
+  EXPECT_TRUE(run.says("no-such-host.invalid"));
+}
+
+TEST(MqttDriver, ForgetsADirectionThatIsOldOrNotKnownAnyMore) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"direction_topic", std::string("garden/direction")}, {"hold", 0.2}});
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); }));
+  broker.publish("garden/direction", "90");
+  broker.publish("garden/direction", "unavailable");
+  std::size_t before = run.count();
+  broker.publish("garden/speed", "4");
+  ASSERT_TRUE(run.has_read(before + 1));
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+
+  // One that has come stays for so long only: with the speeds of the next moments, and then no more.
+  broker.publish("garden/direction", "90");
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "5"); }));
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (run.last().direction_deg && std::chrono::steady_clock::now() < deadline) {
+    before = run.count();
+    broker.publish("garden/speed", "5");
+    ASSERT_TRUE(run.has_read(before + 1));
+  }
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+}
+
+TEST(MqttDriver, ReadsWhatTasmotaPublishes) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"preset", std::string("tasmota")}, {"topic", std::string("")}});
+  ASSERT_TRUE(run.reads_after([&] {
+    broker.publish(
+        "tele/roof/SENSOR",
+        R"({"Time":"2024-06-01T12:00:00","TX23":{"Speed":{"Act":14.4,"Avg":8.5,"Min":7.2,"Max":28.8},)"
+        R"("Dir":{"Card":"WSW","Deg":247.5,"Avg":240.1,"AvgCard":"WSW","Min":225.0,"Max":270.0,"Range":45.0}}})");
+  }));
+  EXPECT_DOUBLE_EQ(run.last().speed_m_s, 4.0);
+  EXPECT_EQ(run.last().direction_deg, 247.5);
+  EXPECT_DOUBLE_EQ(run.last().gust_m_s.value(), 8.0);
+}
+
+TEST(MqttDriver, ReadsWhatRtl433Publishes) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"preset", std::string("rtl_433")}, {"topic", std::string("")}});
+  ASSERT_TRUE(run.reads_after([&] {
+    broker.publish(
+        "rtl_433/attic/events",
+        R"({"model":"Fineoffset-WS80","id":"0a003b","wind_dir_deg":109,"wind_avg_m_s":2.4,"wind_max_m_s":2.8})");
+  }));
+  EXPECT_EQ(run.last().speed_m_s, 2.4);
+  EXPECT_EQ(run.last().direction_deg, 109.0);
+  EXPECT_EQ(run.last().gust_m_s, 2.8);
+}
+
+TEST(MqttDriver, TakesNoDirectionOfAnotherMessageOnTheSameTopic) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"preset", std::string("windnerd")}});
+  ASSERT_TRUE(run.reads_after([&] {
+    broker.publish("garden/speed", R"({"type":"INSTANT_WIND","wind_instant_speed":4.3,"wind_instant_dir":237})");
+  }));
+  EXPECT_EQ(run.last().direction_deg, 237.0);
+  const std::size_t before = run.count();
+  broker.publish("garden/speed", R"({"type":"INSTANT_WIND","wind_instant_speed":4.5,"wind_instant_dir":null})");
+  ASSERT_TRUE(run.has_read(before + 1));
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+}
+
+TEST(MqttDriver, SpeaksTlsAndChecksWhoTheBrokerIs) {
+  const test::TemporaryFolder folder;
+  const std::string key = folder / "broker.key";
+  const std::string certificate = folder / "broker.pem";
+  run_program({"openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=127.0.0.1",
+               "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", certificate});
+  const MosquittoBroker broker("allow_anonymous true\ncafile " + certificate + "\ncertfile " + certificate +
+                               "\nkeyfile " + key + "\n");
+  MqttRun run(broker, {{"tls", true}, {"ca_file", certificate}});
+  EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4", {"--cafile", certificate}); }));
+
+  MqttRun stranger(broker, {{"tls", true}});
+  EXPECT_TRUE(stranger.says("do not agree on TLS")) << "this system does not trust it";
+  MqttRun plain(broker, {});
+  EXPECT_TRUE(plain.says("MQTT broker 127.0.0.1")) << "says something, at least";
+  EXPECT_EQ(plain.count(), 0U);
+}
+
+TEST(MqttDriver, SaysWhichFileOfCertificatesIsMissing) {
+  MqttRun run(1, {{"tls", true}, {"ca_file", std::string("/no/such/file.pem")}});
+  EXPECT_TRUE(run.says("ca_file"));
+}
+
+TEST(MqttDriver, NoticesABrokerThatHangs) {
+  RunningGarden garden({{"keep_alive", std::int64_t{5}}});
+  garden.broker.hold();
+  EXPECT_TRUE(garden.run.is_in(LinkState::kConnecting)) << "within two keep-alives";
+  garden.broker.go_on();
+  EXPECT_TRUE(garden.run.reads_after([&] { garden.broker.publish("garden/speed", "5"); }));
+  EXPECT_EQ(garden.run.state(), LinkState::kConnected);
+}
+
+TEST(MqttDriver, EndsAtOnceWhateverItWaitsFor) {
+  // For a wind; for a broker that accepts and says nothing; for one that is not there.
+  const MosquittoBroker broker;
+  const ScriptedServer mute([](const ScriptedServer::Bytes&) { return ScriptedServer::Bytes{}; });
+  for (const std::uint16_t port : {broker.port(), mute.port(), free_port(SOCK_STREAM)}) {
+    auto run = std::make_unique<MqttRun>(port, ParameterValues::Map{});
+    const auto begin = std::chrono::steady_clock::now();
+    run.reset();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
+  }
+}
+
+TEST(MqttDriver, GivesUpABrokerThatSaysNothing) {
+  const ScriptedServer mute([](const ScriptedServer::Bytes&) { return ScriptedServer::Bytes{}; });
+  MqttRun run(mute.port(), {});
+  EXPECT_TRUE(run.says("does not answer"));
+}
+
+TEST(MqttDriver, ConnectsToABrokerThatIsSlowToTakeUs) {
+  // A listener with no room left: our connection is under way until two others have been taken.
+  const LoopbackPort listener(SOCK_STREAM);
+  ASSERT_EQ(listen(listener.descriptor(), 0), 0);
+  const int any = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  const std::array others = {Descriptor(socket(AF_INET, any, 0)), Descriptor(socket(AF_INET, any, 0))};
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(listener.port());
+  for (const Descriptor& other : others) {
+    static_cast<void>(connect(other.get(), reinterpret_cast<sockaddr*>(&address), sizeof address));
+  }
+  MqttRun run(listener.port(), {});
+
+  constexpr std::uint8_t kMqttConnect = 0x10;
+  std::uint8_t first_byte = 0;
+  std::vector<Descriptor> taken;
+  const auto deadline = std::chrono::steady_clock::now() + 20s;
+  while (first_byte != kMqttConnect && std::chrono::steady_clock::now() < deadline) {
+    pollfd wait{listener.descriptor(), POLLIN, 0};
+    if (poll(&wait, 1, 100) == 1)
+      taken.emplace_back(accept4(listener.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    for (const Descriptor& client : taken) recv(client.get(), &first_byte, 1, 0);
+  }
+  EXPECT_EQ(first_byte, kMqttConnect);
+}
+
+TEST(MqttDriver, SaysThatThereIsNoBroker) {
+  MqttRun run(free_port(SOCK_STREAM), {});
+  EXPECT_TRUE(run.says("check its address, the network, and that it runs")) << "refused";
+}
+
+TEST(MqttDriver, RefusesWhatCannotWork) {
+  EXPECT_THAT([] { open_mqtt_sensor({}); }, ThrowsMessage<std::runtime_error>(HasSubstr("topic: is missing")));
+  EXPECT_THAT(
+      [] {
+        open_mqtt_sensor({{"topic", std::string("a/#/b")}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("topic: \"a/#/b\" is no topic")));
+  EXPECT_THAT(
+      [] {
+        open_mqtt_sensor({{"topic", std::string("a")}, {"direction_path", std::string("Dir.Deg")}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("direction_path: \"Dir.Deg\" is no JSON pointer")));
+  EXPECT_THAT(
+      [] {
+        open_mqtt_sensor({{"topic", std::string("a")}, {"speed_path", std::string("x")}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("speed_path")));
+}
+
+TEST(MqttFault, Silence) {
+  RunningGarden garden({{"silence", 1.0}});
+  EXPECT_TRUE(garden.run.is_in(LinkState::kConnecting));
+  EXPECT_TRUE(garden.run.says("no wind has come on topic garden/speed"));
+  EXPECT_TRUE(garden.run.reads_after([&] { garden.broker.publish("garden/speed", "5"); }));
+  EXPECT_EQ(garden.run.last().speed_m_s, 5.0);
+}
+
+TEST(MqttFault, Freeze) {
+  // The same again and again: the driver says so, and the hub has to judge it.
+  RunningGarden garden;
+  for (int i = 0; i < 5; ++i) garden.broker.publish("garden/speed", "4");
+  EXPECT_TRUE(garden.run.has_read(6));
+  EXPECT_EQ(garden.run.last().speed_m_s, 4.0);
+  EXPECT_EQ(garden.run.state(), LinkState::kConnected);
+}
+
+TEST(MqttFault, Spike) {
+  // 55 m/s is a wind, for the hub to judge; 200 m/s is none.
+  RunningGarden garden;
+  garden.broker.publish("garden/speed", "55");
+  EXPECT_TRUE(garden.run.has_read(2));
+  EXPECT_EQ(garden.run.last().speed_m_s, 55.0);
+  garden.expect_refused("garden/speed", "200", Refusal::kImplausible);
+}
+
+TEST(MqttFault, Garbage) {
+  RunningGarden garden;
+  garden.expect_refused("garden/speed", "\xfe\x01\x80garbage", Refusal::kMalformed);
+  garden.expect_refused("garden/speed", std::string(100'000, '7'), Refusal::kMalformed);
+}
+
+TEST(MqttFault, Partial) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"speed_path", std::string("/wind/speed")}});
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", R"({"wind":{"speed":4.0}})"); }));
+  const std::size_t before = run.count();
+  broker.publish("garden/speed", R"({"wind":{"speed":4.)");
+  EXPECT_TRUE(run.has_refused(Refusal::kMalformed));
+  EXPECT_EQ(run.count(), before);
+  EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", R"({"wind":{"speed":4.5}})"); }));
+}
+
+TEST(MqttFault, WrongId) {
+  // Somebody else publishes on the same topic: there is no wind in it.
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"preset", std::string("rtl_433")}, {"topic", std::string("")}});
+  const std::string wind = R"({"model":"Fineoffset-WS80","wind_avg_m_s":2.4})";
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("rtl_433/attic/events", wind); }));
+  const std::size_t before = run.count();
+  broker.publish("rtl_433/attic/events", R"({"model":"Acurite-Tower","temperature_C":21.5})");
+  EXPECT_TRUE(run.has_refused(Refusal::kNotMine));
+  EXPECT_EQ(run.count(), before);
+  EXPECT_TRUE(run.reads_after([&] { broker.publish("rtl_433/attic/events", wind); }));
+}
+
+TEST(MqttFault, Late) {
+  // What the broker kept from before is of no known age: it is no wind of now.
+  const MosquittoBroker broker;
+  broker.publish("garden/speed", "25", {"-r"});
+  MqttRun run(broker, {});
+  EXPECT_TRUE(run.has_refused(Refusal::kInvalid));
+  EXPECT_EQ(run.count(), 0U);
+  EXPECT_EQ(run.state(), LinkState::kConnecting);
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); }));
+  EXPECT_EQ(run.last().speed_m_s, 4.0);
+}
+
+TEST(MqttFault, Exception) {
+  // The broker does not let us in; and then somebody sets it right.
+  const test::TemporaryFolder folder;
+  const std::string passwords = folder / "passwords";
+  std::ofstream(passwords) << "";
+  run_program({"mosquitto_passwd", "-b", passwords, "garden", "right"});
+  MosquittoBroker broker("allow_anonymous false\npassword_file " + passwords + "\n");
+  MqttRun run(broker, {{"user", std::string("garden")}, {"password", std::string("wrong")}});
+  EXPECT_TRUE(run.says("check `user` and `password`"));
+  EXPECT_EQ(run.state(), LinkState::kConnecting);
+
+  run_program({"mosquitto_passwd", "-b", passwords, "garden", "wrong"});
+  broker.stop();
+  broker.start();
+  EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4", {"-u", "garden", "-P", "wrong"}); }));
+}
+
+TEST(MqttFault, Disconnect) {
+  RunningGarden garden;
+  garden.broker.stop();
+  EXPECT_TRUE(garden.run.is_in(LinkState::kConnecting));
+  EXPECT_EQ(garden.run.count(), 1U);
+  garden.broker.start();
+  EXPECT_TRUE(garden.run.reads_after([&] { garden.broker.publish("garden/speed", "5"); }));
+  EXPECT_EQ(garden.run.last().speed_m_s, 5.0);
+  EXPECT_EQ(garden.run.state(), LinkState::kConnected);
+}
+
+}  // namespace
+}  // namespace yuragi

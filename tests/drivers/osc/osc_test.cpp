@@ -1,0 +1,317 @@
+// The driver as the daemon opens it and runs it, with messages from liblo's own oscsend, and datagrams that are none.
+#include <chrono>
+#include <functional>
+#include <random>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "drivers/bus/osc_message.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "tests/support/child_process.hpp"
+#include "tests/support/free_port.hpp"
+#include "tests/support/running_sensor.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace std::string_literals;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+const DriverDescription& osc_driver() {
+  for (const DriverDescription* driver : driver_table()) {
+    if (driver->name == "osc") return *driver;
+  }
+  throw std::logic_error("no driver named osc");
+}
+
+std::unique_ptr<Sensor> open_osc_sensor(const ParameterValues::Map& given) {
+  return osc_driver().open(*ParameterValues::resolve(osc_driver().parameters, given));
+}
+
+/// A message of two floats, as any sender makes it.
+const std::string kWindOf5From90 = "/wind\0\0\0,ff\0\x40\xa0\0\0\x42\xb4\0\0"s;
+
+const std::string kPast = "\0\0\0\0\0\0\0\1"s;  // "at once", to be exact
+const std::string kFarFuture = "\xff\0\0\0\0\0\0\1"s;
+
+/// A bundle of one element.
+std::string bundle_of(const std::string& element, const std::string& time = kPast) {
+  const auto size = static_cast<std::uint32_t>(element.size());
+  std::string bundle = "#bundle\0"s;
+  bundle += time;
+  for (const unsigned shift : {24U, 16U, 8U, 0U}) bundle += static_cast<char>(size >> shift);
+  return bundle += element;
+}
+
+/// The driver on a thread of its own, and what is sent to it.
+class OscRun {
+ public:
+  explicit OscRun(ParameterValues::Map given = {}) : OscRun(free_port(SOCK_DGRAM), std::move(given)) {}
+  OscRun(std::uint16_t port, ParameterValues::Map given) : port_(port), sensor_(make(port, std::move(given))) {}
+
+  std::uint16_t port() const { return port_; }
+
+  /// By an independent program.
+  void send(std::vector<std::string> message) const {
+    std::vector<std::string> command = {"oscsend", "127.0.0.1", std::to_string(port_)};
+    command.insert(command.end(), message.begin(), message.end());
+    ChildProcess program(command);
+    program.rest();
+    ASSERT_EQ(program.wait(), 0);
+  }
+  /// Any bytes as one datagram.
+  void send_bytes(const std::string& bytes) const {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(port_);
+    const auto sent = sendto(from_.descriptor(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address),
+                             sizeof address);
+    ASSERT_EQ(sent, std::ssize(bytes));
+  }
+  /// Sends when the driver listens, and waits for the reading.
+  bool reads_after(const std::function<void()>& send) {
+    const bool listens = sensor_.wait_until([](const RecordingSink& sink) {
+      const std::string detail = sink.last_detail();
+      return sink.last_state() == LinkState::kConnected || detail.find("waits for") != std::string::npos ||
+             detail.find("no wind has come") != std::string::npos;
+    });
+    const std::size_t before = count();
+    send();
+    return listens && has_read(before + 1);
+  }
+  void send_when_it_listens(const std::string& bytes) {
+    ASSERT_TRUE(says("waits for"));
+    send_bytes(bytes);
+  }
+  bool reads_wind() {
+    return reads_after([this] { send_bytes(kWindOf5From90); });
+  }
+  bool has_refused(Refusal why, std::ptrdiff_t times = 1) {
+    return sensor_.wait_until([&](const RecordingSink& sink) { return sink.count(why) >= times; });
+  }
+  bool has_read(std::size_t readings) {
+    return sensor_.wait_until([&](const RecordingSink& sink) { return sink.readings.size() >= readings; });
+  }
+  bool is_in(LinkState state) {
+    return sensor_.wait_until([&](const RecordingSink& sink) { return sink.last_state() == state; });
+  }
+  bool says(const std::string& text) {
+    return sensor_.wait_until(
+        [&](const RecordingSink& sink) { return sink.last_detail().find(text) != std::string::npos; });
+  }
+  std::size_t count() {
+    return sensor_.look([](const RecordingSink& sink) { return sink.readings.size(); });
+  }
+  WindReading last() {
+    return sensor_.look([](const RecordingSink& sink) { return sink.readings.back(); });
+  }
+  RecordingSink all() {
+    return sensor_.look([](const RecordingSink& sink) { return sink; });
+  }
+
+  /// A datagram is refused for this reason, and is no reading; then the wind is read again.
+  void expect_refused(const std::string& bytes, Refusal why) {
+    const std::size_t before = count();
+    const auto times = sensor_.look([why](const RecordingSink& sink) { return sink.count(why); });
+    send_bytes(bytes);
+    EXPECT_TRUE(has_refused(why, times + 1));
+    EXPECT_EQ(count(), before);
+    EXPECT_TRUE(reads_wind());
+    EXPECT_EQ(last().speed_m_s, 5.0);
+  }
+
+ private:
+  static std::unique_ptr<Sensor> make(std::uint16_t port, ParameterValues::Map given) {
+    given.try_emplace("port", std::int64_t{port});
+    given.try_emplace("host", std::string("127.0.0.1"));
+    return open_osc_sensor(given);
+  }
+
+  LoopbackPort from_{SOCK_DGRAM};
+  std::uint16_t port_;
+  RunningSensor sensor_;
+};
+
+TEST(OscDriver, ReadsWhatOscsendSends) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "ff", "4.5", "270"}); }));
+  EXPECT_EQ(run.last().speed_m_s, 4.5);
+  EXPECT_EQ(run.last().direction_deg, 270.0);
+  EXPECT_FALSE(run.last().gust_m_s.has_value());
+  EXPECT_EQ(run.all().last_state(), LinkState::kConnected);
+}
+
+TEST(OscDriver, TakesNumbersOfAnyTypeInAnyOrder) {
+  OscRun run({{"address", std::string("/station/*/wind")},
+              {"speed_argument", std::int64_t{3}},
+              {"direction_argument", std::int64_t{1}},
+              {"gust_argument", std::int64_t{2}},
+              {"speed_unit", std::string("km/h")}});
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/station/roof/wind", "sihd", "north mast", "350", "36", "18"}); }));
+  EXPECT_DOUBLE_EQ(run.last().speed_m_s, 5.0);
+  EXPECT_DOUBLE_EQ(run.last().gust_m_s.value(), 10.0);
+  EXPECT_EQ(run.last().direction_deg, 350.0);
+}
+
+TEST(OscDriver, HasNoDirectionWhereNoneIsSent) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "f", "4.5"}); }));
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "fs", "4.5", "NNE"}); }));
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+}
+
+TEST(OscDriver, TakesBundlesAtOnceWhateverTheirTime) {
+  OscRun run;
+  for (const std::string& time : {kPast, kFarFuture}) {
+    ASSERT_TRUE(run.reads_after([&] { run.send_bytes(bundle_of(kWindOf5From90, time)); }));
+    EXPECT_EQ(run.last().speed_m_s, 5.0);
+    EXPECT_EQ(run.last().direction_deg, 90.0);
+  }
+}
+
+TEST(OscDriver, ShowsEveryDatagramAsItCame) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_wind());
+  run.send_bytes("abc");
+  ASSERT_TRUE(run.has_refused(Refusal::kMalformed));
+  const RecordingSink sink = run.all();
+  EXPECT_EQ(std::string(sink.raws.front().message.begin(), sink.raws.front().message.end()), kWindOf5From90);
+  EXPECT_EQ(std::string(sink.raws.back().message.begin(), sink.raws.back().message.end()), "abc");
+}
+
+TEST(OscDriver, StandsAnyDatagram) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_wind());
+  std::mt19937_64 random(20260609);
+  for (int round = 0; round < 2000; ++round) {
+    std::string bytes = kWindOf5From90;
+    bytes.resize(random() % 2 == 0 ? bytes.size() : random() % 64);
+    for (int change = 0; change < 4 && !bytes.empty(); ++change)
+      bytes[random() % bytes.size()] = static_cast<char>(random());
+    run.send_bytes(bytes);
+  }
+  // Bundles within bundles, as deep as a datagram can hold.
+  std::string nested = kWindOf5From90;
+  while (nested.size() < 60'000) nested = bundle_of(nested);
+  run.send_bytes(nested);
+  EXPECT_TRUE(run.reads_wind());
+  for (const WindReading& reading : run.all().readings) EXPECT_TRUE(is_plausible(reading));
+}
+
+TEST(OscDriver, TakesNoMessageOfAnotherSender) {
+  OscRun run({{"sender", std::string("127.0.0.9")}});
+  run.send_when_it_listens(kWindOf5From90);
+  EXPECT_TRUE(run.has_refused(Refusal::kNotMine));
+  EXPECT_EQ(run.count(), 0U);
+}
+
+TEST(OscDriver, EndsAtOnce) {
+  auto run = std::make_unique<OscRun>();
+  ASSERT_TRUE(run->reads_wind());
+  const auto begin = std::chrono::steady_clock::now();
+  run.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 1s);
+}
+
+TEST(OscDriver, RefusesAnAddressThatIsNone) {
+  EXPECT_THAT(
+      [] {
+        open_osc_sensor({{"address", std::string("wind")}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("address: must begin with a slash")));
+}
+
+TEST(OscDatagram, HoldsOneMessageOrThoseOfABundle) {
+  const auto bytes_of = [](const std::string& text) { return std::vector<std::uint8_t>(text.begin(), text.end()); };
+  const auto one = decode_osc(bytes_of(kWindOf5From90));
+  ASSERT_TRUE(one.has_value());
+  ASSERT_EQ(one->size(), 1U);
+  EXPECT_EQ((*one)[0].address, "/wind");
+  EXPECT_THAT((*one)[0].numbers, testing::ElementsAre(5.0, 90.0));
+
+  const std::string head = "#bundle\0\0\0\0\0\0\0\0\1"s;
+  const std::string element = "\0\0\0\x14"s + kWindOf5From90;
+  EXPECT_EQ(decode_osc(bytes_of(head))->size(), 0U) << "an empty bundle is one";
+  EXPECT_EQ(decode_osc(bytes_of(head + element + element))->size(), 2U);
+  EXPECT_EQ(decode_osc(bytes_of(head + "\0\0\0\x28"s + head + element + element))->size(), 2U);
+  EXPECT_FALSE(decode_osc(bytes_of(head + element + "\0\0"s)).has_value());
+  EXPECT_FALSE(decode_osc(bytes_of(head + "\0\0\0\x18"s + kWindOf5From90)).has_value()) << "longer than the datagram";
+  EXPECT_EQ(decode_osc({}).error(), Refusal::kTooShort);
+}
+
+TEST(OscAddress, MatchesOscPatterns) {
+  EXPECT_TRUE(osc_address_matches("/wind", "/wind"));
+  EXPECT_FALSE(osc_address_matches("/wind2", "/wind"));
+  EXPECT_TRUE(osc_address_matches("/a/b/wind", "/a/?/wind"));
+  EXPECT_TRUE(osc_address_matches("/gust", "/{wind,gust}"));
+}
+
+TEST(OscFault, Silence) {
+  OscRun run({{"silence", 1.0}});
+  ASSERT_TRUE(run.reads_wind());
+  EXPECT_TRUE(run.is_in(LinkState::kConnecting));
+  EXPECT_THAT(run.all().last_detail(), HasSubstr("no wind has come to UDP"));
+  EXPECT_TRUE(run.reads_wind());
+  EXPECT_TRUE(run.is_in(LinkState::kConnected));
+}
+
+TEST(OscFault, Freeze) {
+  // The same again and again: the driver says so, and the hub has to judge it.
+  OscRun run;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(run.reads_wind());
+  EXPECT_EQ(run.last().speed_m_s, 5.0);
+  EXPECT_EQ(run.all().last_state(), LinkState::kConnected);
+}
+
+TEST(OscFault, Spike) {
+  // 55 m/s is a wind, for the hub to judge; 1000 m/s is none.
+  OscRun run;
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "ff", "55", "90"}); }));
+  EXPECT_EQ(run.last().speed_m_s, 55.0);
+  run.expect_refused("/wind\0\0\0,ff\0\x44\x7a\0\0\x42\xb4\0\0"s, Refusal::kImplausible);
+}
+
+TEST(OscFault, Garbage) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_wind());
+  for (const std::string& bytes : {"xyz"s, "\xff\xfe\xfd\xfc"s, "no osc here!"s, "/wind\0\0\0,zz\0aaaa"s}) {
+    run.expect_refused(bytes, Refusal::kMalformed);
+  }
+  run.expect_refused("/wind\0\0\0,ff\0\x7f\xc0\0\0\x42\xb4\0\0"s, Refusal::kInvalid);  // not a number
+  run.expect_refused("/wind\0\0\0,sf\0fast\0\0\0\0\x42\xb4\0\0"s, Refusal::kInvalid);  // a text for the speed
+}
+
+TEST(OscFault, Partial) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_wind());
+  for (std::size_t size = 1; size < kWindOf5From90.size(); ++size) {
+    run.expect_refused(kWindOf5From90.substr(0, size), Refusal::kMalformed);
+  }
+  run.expect_refused("/wind\0\0\0,\0\0\0"s, Refusal::kTooShort);  // whole, but without arguments
+}
+
+TEST(OscFault, WrongId) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_wind());
+  run.expect_refused("/rain\0\0\0,ff\0\x40\xa0\0\0\x42\xb4\0\0"s, Refusal::kNotMine);
+}
+
+TEST(OscFault, Disconnect) {
+  // Another program has the port; then it ends.
+  auto other = std::make_unique<LoopbackPort>(SOCK_DGRAM);
+  OscRun run(other->port(), {});
+  EXPECT_TRUE(run.says("cannot listen at UDP"));
+  EXPECT_EQ(run.all().last_state(), LinkState::kConnecting);
+  other.reset();
+  EXPECT_TRUE(run.reads_wind());
+  EXPECT_TRUE(run.is_in(LinkState::kConnected));
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,288 @@
+#include "drivers/text/nmea_sensor.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/decoded_text.hpp"
+#include "tests/support/scripted_text.hpp"
+
+namespace yuragi {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string said(std::string_view body) {
+  return sentence(body) + "\r\n";
+}
+std::string framed(std::string_view body) {
+  const std::string with_checksum = sentence(body);
+  return '\x02' + std::string(body) + '\x03' + with_checksum.substr(with_checksum.size() - 2) + "\r\n";
+}
+
+class NmeaSensorTest : public testing::Test, protected ScriptedText {
+ protected:
+  void expect_last(double speed_m_s, std::optional<double> direction_deg) {
+    ASSERT_FALSE(sink.readings.empty()) << sink.last_detail();
+    EXPECT_NEAR(sink.readings.back().speed_m_s, speed_m_s, 0.006);
+    ASSERT_EQ(sink.readings.back().direction_deg.has_value(), direction_deg.has_value());
+    if (direction_deg) {
+      EXPECT_NEAR(*sink.readings.back().direction_deg, *direction_deg, 0.006);
+    }
+  }
+};
+
+TEST_F(NmeaSensorTest, ReadsEachFormatByItsLook) {
+  const std::vector<std::string> lines = {
+      said("WIMWV,123.0,R,7.00,M,A"),
+      said("WIMWD,123.0,T,,M,13.61,N,7.00,M"),
+      said("IIVWR,123.0,R,13.61,N,7.00,M,25.20,K"),
+      said("IIVWT,123.0,R,13.61,N,7.00,M,25.20,K"),
+      said("WIMDA,29.9,I,1.013,B,12.5,C,,,55.0,,3.7,C,123.0,T,,M,13.61,N,7.00,M"),
+      said("WIXDR,A,118,D,0,A,123,D,1,A,128,D,2,S,6.1,M,0,S,7.0,M,1,S,8.2,M,2"),
+      framed("Q,123,007.00,M,00,"),
+      framed("Q,+003.8125,+005.8707,M,00,"),
+      said("WI,WVP=007.0,123,0"),
+  };
+  for (const std::string& line : lines) {
+    SCOPED_TRACE(line);
+    sink = {};
+    make_nmea();
+    hear(line);
+    EXPECT_EQ(sink.readings.size(), 1U);
+    expect_last(7.0, 123.0);
+    EXPECT_TRUE(sink.refusals.empty());
+    EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  }
+}
+
+TEST_F(NmeaSensorTest, PublishesOneWindOfABurstOnceAndPrefersNorth) {
+  make_nmea();
+  for (int second = 0; second < 10; ++second) {
+    far_end.say(said("WIMWV,57.5,R,13.0,N,A"));
+    far_end.say(said("WIMWV,96.6,T,11.2,N,A"));
+    hear(said("WIMWD,328.2,T,326.8,M,11.2,N,5.8,M"));
+    run(750ms);
+  }
+  EXPECT_EQ(sink.readings.size(), 10U);
+  for (const WindReading& reading : sink.readings) {
+    EXPECT_NEAR(reading.speed_m_s, 5.8, 1e-9);
+    EXPECT_EQ(reading.direction_deg, 328.2);
+  }
+  EXPECT_TRUE(sink.refusals.empty());
+  EXPECT_THAT(sink.last_detail(), HasSubstr("MWD of WI"));
+}
+
+TEST_F(NmeaSensorTest, TakesTheReferenceThatItIsTold) {
+  for (const auto& [reference, speed_m_s] : {std::pair("relative", 6.6878), std::pair("true", 5.7618)}) {
+    sink = {};
+    make_nmea({{"reference", std::string(reference)}});
+    for (int second = 0; second < 3; ++second) {
+      far_end.say(said("WIMWD,328.2,T,326.8,M,11.2,N,5.8,M"));
+      far_end.say(said("WIMWV,57.5,R,13.0,N,A"));
+      hear(said("WIMWV,96.6,T,11.2,N,A"));
+    }
+    EXPECT_EQ(sink.readings.size(), 3U);
+    expect_last(speed_m_s, std::string(reference) == "relative" ? 57.5 : 96.6);
+    EXPECT_EQ(sink.count(Refusal::kNotMine), 6);
+  }
+}
+
+TEST_F(NmeaSensorTest, NeverMixesFramesOfDirection) {
+  make_nmea();
+  for (int second = 0; second < 3; ++second) {
+    far_end.say(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+    hear(said("WIMWV,57.5,R,13.0,N,A"));
+    run(750ms);
+  }
+  sink.readings.clear();
+
+  // The compass fails: the wind goes on, but its direction from the bow is none from north.
+  for (int second = 0; second < 10; ++second) {
+    hear(said("WIMWV,57.5,R,13.0,N,A"));
+    run(750ms);
+  }
+  EXPECT_GE(sink.readings.size(), 5U);
+  for (const WindReading& reading : sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
+
+  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  run(750ms);
+  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  expect_last(5.8, 328.2);
+}
+
+TEST_F(NmeaSensorTest, HasNoDirectionInACalmAndNeverAZero) {
+  make_nmea();
+  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  hear(said("WIMWD,,T,,M,0.0,N,0.0,M"));
+  expect_last(0.0, {});
+  make_nmea();
+  hear(framed("Q,229,002.74,M,00,"));
+  hear(framed("Q,,000.04,M,00,"));
+  expect_last(0.04, {});
+}
+
+TEST_F(NmeaSensorTest, TakesTheTalkersAndSentencesThatItIsTold) {
+  make_nmea({{"talker", std::string("24")}});
+  hear(said("02MWV,327.6,R,1.89,N"));
+  EXPECT_TRUE(sink.readings.empty());
+  hear(said("24MWV,88.8,R,0.36,N"));
+  expect_last(0.1852, 88.8);
+  EXPECT_EQ(sink.readings.back().quality, ReadingQuality::kUncertain) << "it says nothing of its status";
+
+  sink = {};
+  make_nmea({{"sentences", std::string("VWR, MWV")}});
+  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  EXPECT_THAT(sink.refusals, ElementsAre(Refusal::kNotMine));
+  hear(said("WIMWV,57.5,R,13.0,N,A"));
+  expect_last(6.6878, 57.5);
+
+  sink = {};
+  make_nmea({{"talker", std::string("Q")}});
+  hear(framed("R,229,002.74,M,00,"));
+  EXPECT_TRUE(sink.readings.empty());
+  hear(framed("Q,229,002.74,M,00,"));
+  expect_last(2.74, 229.0);
+}
+
+TEST_F(NmeaSensorTest, TurnsDirectionsByTheMarkAndTheVariation) {
+  make_nmea({{"north_offset", -20.0}, {"variation", 7.5}});
+  hear(said("WIMWV,10.0,R,5.0,M,A"));
+  expect_last(5.0, 350.0);
+  make_nmea({{"north_offset", -20.0}, {"variation", 7.5}});
+  hear(said("IIMWD,,,355.0,M,10.1,N,5.0,M"));
+  expect_last(5.0, 2.5);
+  make_nmea({{"north_offset", -20.0}, {"variation", 7.5}});
+  hear(said("IIMWD,10.0,T,355.0,M,10.1,N,5.0,M"));
+  expect_last(5.0, 10.0);
+}
+
+TEST_F(NmeaSensorTest, TakesLinesWithoutAChecksumWhereTheWireHasOneOfItsOwn) {
+  make_nmea();
+  for (int i = 0; i < 20; ++i) hear("$WIMWV,214.8,R,0.1,K\r\n");
+  EXPECT_TRUE(sink.readings.empty());
+  EXPECT_EQ(sink.count(Refusal::kBadChecksum), 20);
+  EXPECT_THAT(sink.last_detail(), HasSubstr("missing_checksum to \"accept\""));
+
+  for (const ParameterValues::Map& given : {ParameterValues::Map{{"missing_checksum", std::string("accept")}},
+                                            ParameterValues::Map{{"transport", std::string("udp")}}}) {
+    sink = {};
+    make_nmea(given);
+    hear("$WIMWV,214.8,R,0.1,K\r\n");
+    expect_last(0.1 / 3.6, 214.8);
+    EXPECT_EQ(sink.readings.back().quality, ReadingQuality::kUncertain);
+    hear("$WIMWV,214.8,R,0.1,K*00\r\n");
+    EXPECT_EQ(sink.count(Refusal::kBadChecksum), 1) << "a wrong one is wrong everywhere";
+  }
+
+  sink = {};
+  make_nmea({{"missing_status", std::string("refuse")}});
+  hear(said("02MWV,327.6,R,1.89,N"));
+  EXPECT_TRUE(sink.readings.empty());
+}
+
+TEST_F(NmeaSensorTest, ReadsOnWhereOthersTalkOnTheSameLine) {
+  make_nmea();
+  for (int second = 0; second < 20; ++second) {
+    far_end.say("!AIVDM,1,1,,A,13u?etPv2;0n:dDPwUM1U1Cb069D,0*24\r\n");
+    far_end.say("Calypso ready\r\n");
+    far_end.say(said("GPGGA,094736,5251.0094,N,00518.8172,E,1,12,0.60,-4,M,46.8,M,,"));
+    far_end.say(std::string(3, '\0') + said("WIMWV,046.,R,5.0,M,A"));
+    run(1s);
+  }
+  EXPECT_GE(sink.readings.size(), 19U);
+  EXPECT_EQ(sink.count(Refusal::kNotMine), 60);
+  EXPECT_EQ(std::ssize(sink.refusals), 60);
+  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+}
+
+TEST_F(NmeaSensorTest, JoinsADirectionAndASpeedThatComeApart) {
+  make_nmea({{"format", std::string("umb")}, {"transport", std::string("udp")}});
+  hear("$ 28673 M 00500 32760\r\n");
+  EXPECT_TRUE(sink.readings.empty()) << "a direction alone is no reading";
+  hear("$ 28673 M 00400 08736\r\n");
+  expect_last(10.0, 179.95);
+  hear("$ 28673 M 00500 32760\r\n");
+  run(3s);
+  hear("$ 28673 M 00400 08736\r\n");
+  expect_last(10.0, {});
+}
+
+TEST_F(NmeaSensorTest, AsksADeviceThatOnlyAnswers) {
+  make_nmea({{"format", std::string("umb")}});
+  far_end.answer = [this](const std::string& request) {
+    far_end.say(request + "\n");  // one pair of wires: everybody hears himself
+    far_end.say(said("WIMWV,230.6,R,003.4,N,A"));
+  };
+  run(10s);
+  ASSERT_GE(far_end.heard.size(), 9U);
+  EXPECT_LE(far_end.heard.size(), 11U);
+  EXPECT_EQ(far_end.heard.front(), "01TR4\r");
+  EXPECT_GE(sink.readings.size(), 9U);
+  expect_last(1.749, 230.6);
+  EXPECT_EQ(std::ranges::count(sink.raws, RawDirection::kSent, &RecordingSink::Raw::direction),
+            std::ssize(far_end.heard));
+
+  far_end = {};
+  make_nmea({{"format", std::string("ft")}, {"poll_interval", 0.5}, {"address", std::string("02")}});
+  run(1s);
+  ASSERT_FALSE(far_end.heard.empty());
+  EXPECT_EQ(far_end.heard.front(), sentence("02,WV?") + "\r\n");
+}
+
+/// The machine was busy, and nobody read for a while: what is there then is the answer all the same.
+TEST_F(NmeaSensorTest, TakesAnAnswerThatWaitedToBeRead) {
+  make_nmea({{"format", std::string("umb")}});
+  far_end.answer = [this](const std::string&) {
+    far_end.say(said("WIMWV,230.6,R,003.4,N,A"));
+    clock.advance(800ms);
+  };
+  run(10s);
+  EXPECT_GE(sink.readings.size(), 9U);
+  EXPECT_TRUE(sink.refusals.empty());
+}
+
+TEST_F(NmeaSensorTest, AsksADeadDeviceLessOften) {
+  make_nmea({{"format", std::string("umb")}, {"poll_interval", 0.2}, {"silence_timeout", 3600.0}});
+  run(60s);
+  EXPECT_LE(far_end.heard.size(), 30U);
+  EXPECT_GE(far_end.heard.size(), 20U);
+  EXPECT_THAT(sink.last_detail(), HasSubstr("does not answer"));
+}
+
+TEST_F(NmeaSensorTest, SaysThatTheDeviceCannotMeasure) {
+  make_nmea();
+  for (int i = 0; i < 20; ++i) hear(said("WIMWV,,R,,M,V"));
+  EXPECT_TRUE(sink.readings.empty());
+  EXPECT_EQ(sink.count(Refusal::kInvalid), 20);
+  EXPECT_EQ(sink.last_state(), LinkState::kConnected) << "it is there and speaks";
+  EXPECT_THAT(sink.last_detail(), HasSubstr("says that it cannot measure"));
+}
+
+TEST(NmeaSettings, RefuseWhatCannotWork) {
+  const auto refusal = [](const ParameterValues::Map& given) -> std::string {
+    try {
+      nmea_sensor_settings_of(values_for("nmea", given));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(refusal({}), HasSubstr("device: is missing"));
+  EXPECT_THAT(refusal({{"device", std::string("x")}, {"baud", std::int64_t{9601}}}), HasSubstr("allowed: 300, 600"));
+  EXPECT_THAT(refusal({{"transport", std::string("tcp")}}), HasSubstr("host: is missing"));
+  EXPECT_THAT(refusal({{"transport", std::string("file")}}), HasSubstr("file: is missing"));
+  EXPECT_THAT(refusal({{"device", std::string("x")}, {"sentences", std::string("MWV,GGA")}}),
+              HasSubstr("no wind in \"GGA\""));
+  EXPECT_THAT(refusal({{"device", std::string("x")}, {"poll_interval", 1.0}}), HasSubstr("request: is missing"));
+  EXPECT_THAT(refusal({{"transport", std::string("udp")}, {"poll_interval", 1.0}}), HasSubstr("goes one way"));
+  EXPECT_THAT(refusal({{"device", std::string("x")}, {"format", std::string("umb")}, {"address", std::string("1")}}),
+              HasSubstr("two characters"));
+  EXPECT_EQ(refusal({{"transport", std::string("udp")}}), "accepted");
+}
+
+}  // namespace
+}  // namespace yuragi

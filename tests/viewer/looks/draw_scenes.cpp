@@ -1,0 +1,97 @@
+// Pictures of every scene of the engine, alone: calm, in a breeze, in a storm; without a daemon.
+//
+//   xvfb-run -a draw_scenes FOLDER [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "engine/scenes/scene.hpp"
+#include "viewer/looks/stage.hpp"
+#include "viewer/picture_file.hpp"
+#include "viewer/window.hpp"
+
+namespace {
+
+using namespace yuragi;
+
+constexpr double kTick_s = 1.0 / 60.0;
+constexpr int kSettlingTicks = 1500;
+constexpr double kWindFrom_deg = 250.0;
+
+struct Weather {
+  const char* name;
+  double speed_m_s;
+};
+
+/// "tree,species=poplar" taken apart.
+std::unique_ptr<Scene> made(const std::string& words) {
+  const std::string kind = words.substr(0, words.find(','));
+  ParameterValues::Map given;
+  for (std::size_t at = kind.size(); at < words.size();) {
+    const std::size_t end = std::min(words.find(',', at + 1), words.size());
+    const std::string word = words.substr(at + 1, end - at - 1);
+    const std::size_t equals = std::min(word.find('='), word.size() - 1);
+    const std::string value = word.substr(equals + 1);
+    char* rest = nullptr;
+    const double number = std::strtod(value.c_str(), &rest);
+    if (*rest == '\0') {
+      given[word.substr(0, equals)] = number;
+    } else {
+      given[word.substr(0, equals)] = value;
+    }
+    at = end;
+  }
+  for (const SceneDescription* description : scene_table()) {
+    if (description->name != kind) continue;
+    return description->make(ParameterValues::resolve(description->parameters, given).value(), {});
+  }
+  throw std::runtime_error("there is no scene of the kind " + kind);
+}
+
+/// Draws what the command line asks for. Returns the exit code.
+int draw_scenes(const std::vector<std::string>& words) {
+  if (words.empty()) return 64;
+  int width_px = 960;
+  int height_px = 540;
+  if (words.size() > 1) std::sscanf(words[1].c_str(), "%dx%d", &width_px, &height_px);
+  std::vector<std::string> kinds(words.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, words.size())),
+                                 words.end());
+  if (kinds.empty()) {
+    for (const SceneDescription* description : scene_table()) kinds.emplace_back(description->name);
+  }
+
+  const Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  report_gl_errors();
+  Stage stage;
+  RenderTarget target(width_px, height_px, 4);
+  for (const std::string& kind : kinds) {
+    for (const auto& [name, speed_m_s] : {Weather{"calm", 0.0}, Weather{"breeze", 4.0}, Weather{"storm", 18.0}}) {
+      const std::unique_ptr<Scene> scene = made(kind);
+      const std::vector<wire::SceneModel> models{{kind, kind.substr(0, kind.find(',')), scene->skeleton()}};
+      for (int i = 0; i < kSettlingTicks; ++i) scene->tick(wind_from(speed_m_s, kWindFrom_deg), kTick_s);
+      stage.set_scenes(models);
+      OrbitCamera camera;
+      camera.frame(stage.home(static_cast<double>(width_px) / height_px));
+      PoseMoment moment = rest_moment(models);
+      moment.poses[0] = scene->pose();
+      stage.draw(moment, camera, target);
+      write_png(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px, target.read_rgb());
+    }
+  }
+  return gl_error_count() == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return draw_scenes({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "draw_scenes: %s\n", error.what());
+    return 70;
+  }
+}

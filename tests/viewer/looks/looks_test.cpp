@@ -1,0 +1,227 @@
+// Each look, drawn for real by the processor under a virtual X server, and looked at: is something there where it
+// should be, and does it move and fade?
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "tests/viewer/test_models.hpp"
+#include "tests/viewer/virtual_screen.hpp"
+#include "viewer/looks/stage.hpp"
+#include "viewer/window.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr int kWidth_px = 320;
+constexpr int kHeight_px = 240;
+using Pixels = std::vector<std::uint8_t>;
+
+/// How many pixels of two pictures differ by more than a little.
+std::size_t changed(const Pixels& a, const Pixels& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
+    int difference = 0;
+    for (std::size_t channel = i; channel < i + 3; ++channel) difference += std::abs(a[channel] - b[channel]);
+    if (difference > 12) ++count;
+  }
+  return count;
+}
+
+class OnScreenTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    screen_ = std::make_unique<VirtualScreen>();
+    ::setenv("DISPLAY", screen_->name().c_str(), 1);  // NOLINT(concurrency-mt-unsafe): before any thread begins
+    window_ =
+        std::make_unique<Window>(WindowOptions{.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+    report_gl_errors();
+  }
+  static void TearDownTestSuite() {
+    window_.reset();
+    screen_.reset();
+  }
+
+  void SetUp() override {
+    stage_ = std::make_unique<Stage>();
+    target_ = std::make_unique<RenderTarget>(kWidth_px, kHeight_px, 1);
+    errors_before_ = gl_error_count();
+  }
+  void TearDown() override {
+    target_.reset();
+    stage_.reset();
+    EXPECT_EQ(gl_error_count(), errors_before_);
+  }
+
+  void show(const std::vector<wire::SceneModel>& models) {
+    models_ = models;
+    stage_->set_scenes(models);
+    camera_.frame(stage_->home(static_cast<double>(kWidth_px) / kHeight_px));
+  }
+
+  Pixels draw(double strength, const std::vector<float>& opacities, double time_s = 2.0) {
+    PoseMoment moment = rest_moment(models_);
+    for (std::size_t i = 0; i < models_.size(); ++i) moment.poses[i] = test_pose(models_[i], time_s, strength);
+    moment.opacities = opacities;
+    stage_->draw(moment, camera_, *target_);
+    return target_->read_rgb();
+  }
+  Pixels draw(double strength, float opacity) { return draw(strength, std::vector<float>(models_.size(), opacity)); }
+
+  std::vector<wire::SceneModel> models_;
+  std::unique_ptr<Stage> stage_;
+  OrbitCamera camera_;
+  std::unique_ptr<RenderTarget> target_;
+
+ private:
+  static inline std::unique_ptr<VirtualScreen> screen_;
+  static inline std::unique_ptr<Window> window_;
+  int errors_before_ = 0;
+};
+
+class LooksTest : public OnScreenTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(LooksTest, ShowsSomethingInTheMiddleAndNothingInTheSkysCorners) {
+  show({test_model(GetParam())});
+  const Pixels with = draw(0.0, 1.0F);
+  const Pixels without = draw(0.0, 0.0F);
+  EXPECT_GT(changed(with, without), kWidth_px * kHeight_px / 60U);
+
+  // Framed: the outermost columns of the sky are empty.
+  const std::size_t sky_rows = kHeight_px / 5;
+  for (std::size_t row = 0; row < sky_rows; ++row) {
+    for (const std::size_t column : {std::size_t{0}, std::size_t{kWidth_px - 1}}) {
+      const std::size_t at = 3 * (row * kWidth_px + column);
+      ASSERT_NEAR(with[at], without[at], 8) << row;
+    }
+  }
+}
+
+TEST_P(LooksTest, IsDrawnAsTheSamePictureTwice) {
+  show({test_model(GetParam())});
+  EXPECT_EQ(draw(0.5, 1.0F), draw(0.5, 1.0F));
+}
+
+TEST_P(LooksTest, ShowsThatItMoves) {
+  show({test_model(GetParam())});
+  EXPECT_GT(changed(draw(0.2, {1.0F}, 2.0), draw(1.0, {1.0F}, 2.4)), 200U);
+}
+
+TEST_P(LooksTest, FadesByHalfOfItsPixels) {
+  show({test_model(GetParam())});
+  const Pixels none = draw(0.3, 0.0F);
+  const auto whole = static_cast<double>(changed(draw(0.3, 1.0F), none));
+  const auto half = static_cast<double>(changed(draw(0.3, 0.5F), none));
+  const auto little = static_cast<double>(changed(draw(0.3, 0.1F), none));
+  EXPECT_NEAR(half / whole, 0.5, 0.06);
+  EXPECT_NEAR(little / whole, 0.1, 0.04);
+}
+
+TEST_P(LooksTest, DrawsNothingOfAPoseThatIsNotItsOwn) {
+  show({test_model(GetParam())});
+  const Pixels without = draw(0.0, 0.0F);
+  PoseMoment moment = rest_moment(models_);
+  moment.poses[0] = std::holds_alternative<StrandPose>(moment.poses[0]) ? Pose(GridPose{}) : Pose(StrandPose{});
+  stage_->draw(moment, camera_, *target_);
+  EXPECT_EQ(target_->read_rgb(), without);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, LooksTest,
+                         testing::Values("grass", "fur", "curtain", "flag", "banner", "tree", "ripple", "flame",
+                                         "flame panel"),
+                         [](const auto& kind) {
+                           std::string name = kind.param;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+class StageTest : public OnScreenTest {};
+
+TEST_F(StageTest, DrawsHiddenScenesNotAtAll) {
+  show(test_garden());
+  const Pixels empty = draw(0.5, 0.0F);
+  std::vector<float> opacities(models_.size(), 0.0F);
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    opacities[i] = 1.0F;
+    EXPECT_GT(changed(draw(0.5, opacities), empty), 20U) << models_[i].name;
+    opacities[i] = 0.0F;
+  }
+  EXPECT_EQ(draw(0.5, opacities), empty);
+}
+
+TEST_F(StageTest, ShowsAndFramesOneSceneAlone) {
+  show(test_garden());
+  const double all_m = stage_->home(1.5).distance_m;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    stage_->show_next();
+    EXPECT_LT(stage_->home(1.5).distance_m, all_m) << models_[i].name;
+    camera_.frame(stage_->home(1.5));
+
+    // The others may be hidden or not: it makes no difference.
+    std::vector<float> only(models_.size(), 0.0F);
+    only[i] = 1.0F;
+    EXPECT_EQ(draw(0.5, 1.0F), draw(0.5, only)) << models_[i].name;
+  }
+  stage_->show_next();
+  EXPECT_EQ(stage_->home(1.5).distance_m, all_m);
+}
+
+TEST_F(StageTest, OpensTheGroundOverWater) {
+  // Troughs go below the ground, and are seen: no turf in the middle of the pond.
+  show({test_model("ripple")});
+  const Pixels calm = draw(0.0, 1.0F);
+  const Pixels storm = draw(1.0, 1.0F);
+  std::size_t green = 0;
+  for (int row = kHeight_px / 2 - 6; row < kHeight_px / 2 + 6; ++row) {
+    for (int column = kWidth_px / 2 - 30; column < kWidth_px / 2 + 30; ++column) {
+      const auto at = 3 * static_cast<std::size_t>(row * kWidth_px + column);
+      if (2 * storm[at + 2] < storm[at + 1]) ++green;
+    }
+  }
+  EXPECT_EQ(green, 0U);
+  EXPECT_GT(changed(calm, storm), 1000U);
+}
+
+TEST_F(StageTest, ThrowsShadowsOnTheGround) {
+  // Toward the north-east of a tree, seen from above, the ground is darker.
+  show({test_model("tree")});
+  camera_.frame({{2.5, 0.0, -1.5}, 239.0, 60.0, 3.0});
+  const Pixels with = draw(0.0, 1.0F);
+  const Pixels without = draw(0.0, 0.0F);
+  std::size_t darker = 0;
+  for (std::size_t i = 0; i + 2 < with.size(); i += 3) {
+    if (with[i + 1] + 8 < without[i + 1]) ++darker;
+  }
+  EXPECT_GT(darker, 500U);
+}
+
+TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
+  StrandSkeleton no_strands;
+  no_strands.links_per_strand = 1;
+  TreeSkeleton no_branches;
+  no_branches.levels.resize(1);
+  no_branches.levels[0].strands.links_per_strand = 1;
+  SurfaceSkeleton no_flame;
+  no_flame.ramp_rgba.resize(1024);
+  show({{"a", "grass", no_strands},
+        {"b", "fur", no_strands},
+        {"c", "curtain", GridSkeleton{}},
+        {"d", "tree", TreeSkeleton{}},
+        {"e", "tree", no_branches},
+        {"f", "ripple", SurfaceSkeleton{}},
+        {"g", "flame", no_flame}});
+  EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));
+  stage_->draw(rest_moment(models_), camera_, *target_);
+}
+
+TEST_F(StageTest, IsAtHomeInNothing) {
+  show({});
+  EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));
+  EXPECT_FALSE(draw(0.0, {}).empty());
+}
+
+}  // namespace
+}  // namespace yuragi

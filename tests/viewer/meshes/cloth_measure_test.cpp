@@ -1,0 +1,70 @@
+#include "viewer/meshes/cloth_measure.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "tests/viewer/test_models.hpp"
+
+namespace yuragi {
+namespace {
+
+class ClothMeasureTest : public testing::Test {
+ protected:
+  static GridSkeleton cloth(std::string_view kind) { return std::get<GridSkeleton>(test_model(kind).skeleton); }
+};
+
+glm::vec2 place_on(const ClothMeasure& lies, std::size_t column, std::size_t row) {
+  return lies.origin_m + static_cast<float>(column) * lies.per_column_m + static_cast<float>(row) * lies.per_row_m;
+}
+
+TEST_F(ClothMeasureTest, OfAFlagRunsFromTheHoistAndDownFromItsTop) {
+  GridSkeleton flag = cloth("flag");
+  const ClothMeasure from_top = measure(flag);
+  EXPECT_NEAR(from_top.size_m.x, 1.8F, 1e-3F);
+  EXPECT_NEAR(from_top.size_m.y, 1.2F, 1e-3F);
+  EXPECT_NEAR(place_on(from_top, 0, flag.rows - 1).x, 1.8F, 1e-3F);
+  EXPECT_NEAR(place_on(from_top, flag.columns - 1, 0).y, 1.2F, 1e-3F);
+
+  // The same where the columns begin at the hoist's foot.
+  for (float& y_m : flag.rest_y_m) y_m = 8.0F - y_m;
+  const ClothMeasure from_foot = measure(flag);
+  EXPECT_NEAR(place_on(from_foot, 0, 0).y, 1.2F, 1e-3F);
+  EXPECT_NEAR(place_on(from_foot, flag.columns - 1, 0).y, 0.0F, 1e-3F);
+}
+
+TEST_F(ClothMeasureTest, OfACurtainIsOfTheClothNotOfItsFolds) {
+  const ClothMeasure lies = measure(cloth("curtain"));
+  EXPECT_GT(lies.size_m.x, 2.4F);
+  EXPECT_NEAR(lies.size_m.y, 2.3F, 0.05F);
+  EXPECT_EQ(place_on(lies, 0, 0), glm::vec2(0.0F));
+}
+
+TEST_F(ClothMeasureTest, KnowsWhatAClothIs) {
+  EXPECT_EQ(cloth_style("curtain", cloth("flag")), ClothStyle::kCurtain);
+  EXPECT_EQ(cloth_style("something new", cloth("curtain")), ClothStyle::kCurtain);
+  EXPECT_EQ(cloth_style("something new", cloth("flag")), ClothStyle::kFlag);
+  EXPECT_EQ(cloth_style("something new", cloth("banner")), ClothStyle::kBanner);
+}
+
+TEST_F(ClothMeasureTest, HoldersStandOnTheGroundAndReachTheCloth) {
+  for (const auto& [kind, top_m] : {std::pair{"curtain", 2.5F}, std::pair{"flag", 4.0F}, std::pair{"banner", 4.6F}}) {
+    const SolidMesh mesh = cloth_holder(cloth_style(kind, cloth(kind)), cloth(kind));
+    ASSERT_FALSE(mesh.vertices().empty()) << kind;
+    const auto [low, high] =
+        std::minmax_element(mesh.vertices().begin(), mesh.vertices().end(),
+                            [](const auto& a, const auto& b) { return a.place_m.y < b.place_m.y; });
+    EXPECT_NEAR(low->place_m.y, 0.0F, 0.05F) << kind;
+    EXPECT_GT(high->place_m.y, top_m) << kind;
+    EXPECT_LT(high->place_m.y, top_m + 0.5F) << kind;
+  }
+}
+
+TEST_F(ClothMeasureTest, NothingIsNoTrouble) {
+  EXPECT_EQ(measure({}).size_m, glm::vec2(0.0F));
+  EXPECT_TRUE(cloth_holder(ClothStyle::kFlag, {}).vertices().empty());
+  EXPECT_EQ(cloth_style("", {}), ClothStyle::kCurtain);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,112 @@
+#include "viewer/meshes/tree_parts.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/pose/pose_arrays.hpp"
+#include "engine/pose/tree_kinematics.hpp"
+#include "tests/viewer/test_models.hpp"
+
+namespace yuragi {
+namespace {
+
+class TreePartsTest : public testing::Test {
+ protected:
+  const TreeSkeleton tree_ = std::get<TreeSkeleton>(test_model("tree").skeleton);
+
+  View view_from(double distance_m) const {
+    OrbitCamera camera;
+    camera.frame({{0.0, 2.0, 0.0}, 0.0, 5.0, distance_m});
+    return view_of(camera, 1280, 720, {});
+  }
+};
+
+TEST_F(TreePartsTest, FindTheJointThatTheyGrowFrom) {
+  // In the rest pose each root of the skeleton is the parent's joint, in the array of all levels as it is uploaded.
+  TreeJoints joints(tree_);
+  const auto rest = std::get<TreePose>(rest_pose(tree_));
+  const TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
+  ASSERT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
+  std::vector<float> all;
+  for (std::size_t level = 0; level < tree_.levels.size(); ++level) {
+    EXPECT_EQ(first_joint_at(tree_, level), all.size());
+    const auto data = std::as_const(joints).level(level).data();
+    all.insert(all.end(), data.begin(), data.end());
+  }
+  EXPECT_EQ(first_joint_at(tree_, tree_.levels.size()), all.size());
+
+  for (std::size_t level = 0; level < tree_.levels.size(); ++level) {
+    for (const TreePart& part : tree_parts(tree_, level, Foliage::kGreen)) {
+      EXPECT_EQ(part.root_at < 0, level == 0);
+      for (std::size_t axis = 0; axis < 3 && part.root_at >= 0; ++axis) {
+        const auto at = static_cast<std::size_t>(part.root_at) + axis * kStrandsPerBlock;
+        ASSERT_NEAR(all.at(at), part.root_m[axis], 1e-4F);
+      }
+    }
+  }
+}
+
+TEST_F(TreePartsTest, AreOneAStrandWithTheLevelsRadii) {
+  for (std::size_t level = 0; level < tree_.levels.size(); ++level) {
+    const auto parts = tree_parts(tree_, level, Foliage::kGreen);
+    ASSERT_EQ(parts.size(), tree_.levels[level].strands.strand_count);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      EXPECT_EQ(parts[i].strand, i);
+      EXPECT_EQ(parts[i].base_radius_m, tree_.levels[level].base_radius_m[i]);
+    }
+  }
+}
+
+TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
+  constexpr std::size_t kLeafLevel = 3;
+  TreeJoints joints(tree_);
+  const auto rest = std::get<TreePose>(rest_pose(tree_));
+  const TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
+  ASSERT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
+  const std::size_t links = tree_.levels[kLeafLevel].strands.links_per_strand;
+  const auto leaves = tree_parts(tree_, kLeafLevel, Foliage::kGreen);
+  std::array<float, 3> middle_m{};
+  for (const TreePart& leaf : leaves) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      middle_m[axis] += leaf.root_m[axis] / static_cast<float>(leaves.size());
+    }
+  }
+  float outward = 0.0F;
+  for (const TreePart& leaf : leaves) {
+    const JointPosition tip = joints.level(kLeafLevel).joint(leaf.strand, links - 1);
+    const std::array<float, 3> way_m = {tip.x_m - leaf.root_m[0], tip.y_m - leaf.root_m[1], tip.z_m - leaf.root_m[2]};
+    const float length_m = std::hypot(way_m[0], way_m[1], way_m[2]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(leaf.rest[axis], way_m[axis] / length_m, 1e-2F);
+      outward += leaf.facing[axis] * (leaf.root_m[axis] - middle_m[axis]);
+    }
+    EXPECT_NEAR(std::hypot(leaf.facing[0], leaf.facing[1], leaf.facing[2]), 1.0F, 1e-5F);
+  }
+  EXPECT_GT(outward / static_cast<float>(leaves.size()), 0.1F);  // metres out of the middle, on average
+}
+
+TEST_F(TreePartsTest, AreGreenUnlessTheirNameSaysOtherwise) {
+  EXPECT_EQ(foliage_of("tree"), Foliage::kGreen);
+  EXPECT_EQ(foliage_of("the old sakura"), Foliage::kBlossom);
+  EXPECT_EQ(foliage_of("autumn-zelkova"), Foliage::kAutumn);
+  for (const TreePart& leaf : tree_parts(tree_, 3, Foliage::kGreen)) EXPECT_GT(leaf.tint[1], leaf.tint[0]);
+  for (const TreePart& leaf : tree_parts(tree_, 3, Foliage::kAutumn)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
+}
+
+TEST_F(TreePartsTest, HaveMoreRingsTheNearerTheyAre) {
+  const Bounds bounds = bounds_of(tree_);
+  const TreeLevel& trunk = tree_.levels[0];
+  EXPECT_EQ(tree_rings(trunk, bounds, view_from(5.0)), trunk.strands.links_per_strand);
+  EXPECT_EQ(tree_rings(trunk, bounds, view_from(200.0)), kMinTreeRings);
+  EXPECT_GE(tree_rings(tree_.levels[1], bounds, view_from(10.0)), tree_rings(tree_.levels[1], bounds, view_from(40.0)));
+
+  // Never more than there are links.
+  TreeLevel stump = trunk;
+  stump.strands.links_per_strand = 1;
+  EXPECT_EQ(tree_rings(stump, bounds, view_from(5.0)), 1U);
+}
+
+}  // namespace
+}  // namespace yuragi

@@ -1,0 +1,147 @@
+#include "viewer/gl/gl.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <stdexcept>
+
+#include "viewer/gl/shaders.hpp"
+
+namespace yuragi {
+namespace {
+
+struct GlShader {
+  explicit GlShader(GLenum stage) : name(glCreateShader(stage)) {}
+  ~GlShader() { glDeleteShader(name); }
+  GlShader(const GlShader&) = delete;
+  GlShader& operator=(const GlShader&) = delete;
+  GLuint name;
+};
+
+void compile(const GlShader& shader, const std::string& name, std::string_view source) {
+  const std::string_view version = "#version 330 core\n";
+  const std::array<const GLchar*, 3> parts{version.data(), shaders::kCommon.data(), source.data()};
+  const std::array<GLint, 3> lengths{static_cast<GLint>(version.size()), static_cast<GLint>(shaders::kCommon.size()),
+                                     static_cast<GLint>(source.size())};
+  glShaderSource(shader.name, 3, parts.data(), lengths.data());
+  glCompileShader(shader.name);
+
+  GLint is_compiled = GL_FALSE;
+  glGetShaderiv(shader.name, GL_COMPILE_STATUS, &is_compiled);
+  if (is_compiled == GL_TRUE) return;
+  std::array<GLchar, 4096> log{};
+  glGetShaderInfoLog(shader.name, log.size(), nullptr, log.data());
+  throw std::runtime_error("the graphics driver does not take the shader " + name + ":\n" + log.data());
+}
+
+std::atomic<int> error_count{0};
+
+void GLAPIENTRY hear(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void*) {
+  if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH) return;
+  ++error_count;
+  std::fprintf(stderr, "yuragi-viewer: OpenGL: %.*s\n", length, text);
+}
+
+}  // namespace
+
+GLuint GlBufferKind::make() {
+  GLuint name = 0;
+  glGenBuffers(1, &name);
+  return name;
+}
+void GlBufferKind::unmake(GLuint name) {
+  glDeleteBuffers(1, &name);
+}
+
+GLuint GlTextureKind::make() {
+  GLuint name = 0;
+  glGenTextures(1, &name);
+  return name;
+}
+void GlTextureKind::unmake(GLuint name) {
+  glDeleteTextures(1, &name);
+}
+
+GLuint GlVertexArrayKind::make() {
+  GLuint name = 0;
+  glGenVertexArrays(1, &name);
+  return name;
+}
+void GlVertexArrayKind::unmake(GLuint name) {
+  glDeleteVertexArrays(1, &name);
+}
+
+GLuint GlFramebufferKind::make() {
+  GLuint name = 0;
+  glGenFramebuffers(1, &name);
+  return name;
+}
+void GlFramebufferKind::unmake(GLuint name) {
+  glDeleteFramebuffers(1, &name);
+}
+
+GLuint GlRenderbufferKind::make() {
+  GLuint name = 0;
+  glGenRenderbuffers(1, &name);
+  return name;
+}
+void GlRenderbufferKind::unmake(GLuint name) {
+  glDeleteRenderbuffers(1, &name);
+}
+
+GLuint GlProgramKind::make() {
+  return glCreateProgram();
+}
+void GlProgramKind::unmake(GLuint name) {
+  glDeleteProgram(name);
+}
+
+GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment) {
+  const GlShader vertex_shader(GL_VERTEX_SHADER);
+  const GlShader fragment_shader(GL_FRAGMENT_SHADER);
+  compile(vertex_shader, name + ".vert", vertex);
+  compile(fragment_shader, name + ".frag", fragment);
+
+  GlProgram program;
+  glAttachShader(program.name(), vertex_shader.name);
+  glAttachShader(program.name(), fragment_shader.name);
+  glLinkProgram(program.name());
+  GLint is_linked = GL_FALSE;
+  glGetProgramiv(program.name(), GL_LINK_STATUS, &is_linked);
+  if (is_linked != GL_TRUE) {
+    std::array<GLchar, 4096> log{};
+    glGetProgramInfoLog(program.name(), log.size(), nullptr, log.data());
+    throw std::runtime_error("the graphics driver does not link the program " + name + ":\n" + log.data());
+  }
+  glDetachShader(program.name(), vertex_shader.name);
+  glDetachShader(program.name(), fragment_shader.name);
+
+  const GLuint view_block = glGetUniformBlockIndex(program.name(), "View");
+  if (view_block != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), view_block, kViewBinding);
+  return program;
+}
+
+void set_sampler(const GlProgram& program, const char* name, GLint unit) {
+  glUseProgram(program.name());
+  glUniform1i(glGetUniformLocation(program.name(), name), unit);
+}
+
+bool is_software_renderer() {
+  const auto* const renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  if (renderer == nullptr) return false;
+  const std::string_view name(renderer);
+  return name.find("llvmpipe") != std::string_view::npos || name.find("softpipe") != std::string_view::npos;
+}
+
+void report_gl_errors() {
+  if (!epoxy_has_gl_extension("GL_KHR_debug") && epoxy_gl_version() < 43) return;
+  glEnable(GL_DEBUG_OUTPUT);
+  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageCallback(hear, nullptr);
+}
+
+int gl_error_count() {
+  return error_count;
+}
+
+}  // namespace yuragi

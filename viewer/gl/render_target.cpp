@@ -1,0 +1,78 @@
+#include "viewer/gl/render_target.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace yuragi {
+namespace {
+
+int supported_samples(int wanted) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_SAMPLES, &most);
+  return std::clamp(wanted, 1, std::max(1, most));
+}
+
+void attach(GLenum attachment, const GlRenderbuffer& buffer, GLenum format, int samples, int width_px, int height_px) {
+  glBindRenderbuffer(GL_RENDERBUFFER, buffer.name());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? samples : 0, format, width_px, height_px);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer.name());
+}
+
+void require_complete() {
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw std::runtime_error(
+        "the graphics driver cannot make a picture of this size; try a smaller --size or --samples 1");
+  }
+}
+
+}  // namespace
+
+RenderTarget::RenderTarget(int width_px, int height_px, int samples)
+    : width_px_(width_px), height_px_(height_px), samples_(supported_samples(samples)) {
+  glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
+  attach(GL_COLOR_ATTACHMENT0, sampled_color_, GL_RGBA8, samples_, width_px, height_px);
+  attach(GL_DEPTH_STENCIL_ATTACHMENT, sampled_depth_, GL_DEPTH24_STENCIL8, samples_, width_px, height_px);
+  require_complete();
+  glBindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
+  attach(GL_COLOR_ATTACHMENT0, resolved_color_, GL_RGBA8, 1, width_px, height_px);
+  require_complete();
+}
+
+void RenderTarget::begin() {
+  glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
+  glViewport(0, 0, width_px_, height_px_);
+  glEnable(GL_MULTISAMPLE);
+}
+
+void RenderTarget::resolve() {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, sampled_.name());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
+  glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
+}
+
+void RenderTarget::show(int window_width_px, int window_height_px) {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.name());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, window_width_px, window_height_px, GL_COLOR_BUFFER_BIT,
+                    GL_NEAREST);
+}
+
+std::vector<std::uint8_t> RenderTarget::read_rgb() {
+  const auto row_bytes = static_cast<std::size_t>(width_px_) * 3;
+  const auto rows = static_cast<std::size_t>(height_px_);
+  std::vector<std::uint8_t> upside_down(row_bytes * rows);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.name());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width_px_, height_px_, GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
+
+  // OpenGL's first row is the lowest.
+  std::vector<std::uint8_t> picture(upside_down.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::copy_n(upside_down.begin() + static_cast<std::ptrdiff_t>((rows - 1 - row) * row_bytes), row_bytes,
+                picture.begin() + static_cast<std::ptrdiff_t>(row * row_bytes));
+  }
+  return picture;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "viewer/gl/gl.hpp"
+
+namespace yuragi {
+
+/// A picture to draw into that needs no visible window: several samples a pixel, resolved into one;
+/// with depth and stencil.
+/// Needs a current context. Throws std::runtime_error where the driver cannot make it.
+class RenderTarget {
+ public:
+  /// As many samples as asked for, or as the driver has; see samples().
+  RenderTarget(int width_px, int height_px, int samples);
+
+  int width_px() const { return width_px_; }
+  int height_px() const { return height_px_; }
+  int samples() const { return samples_; }
+
+  /// What is drawn from here on goes into the samples.
+  void begin();
+  /// Makes pixels of the samples; what is drawn from here on (the overlay) goes over these.
+  void resolve();
+  /// Copies the pixels to the window's framebuffer.
+  void show(int window_width_px, int window_height_px);
+  /// The pixels, 3 bytes each, rows from the top down.
+  std::vector<std::uint8_t> read_rgb();
+
+ private:
+  int width_px_;
+  int height_px_;
+  int samples_;
+  GlFramebuffer sampled_;
+  GlRenderbuffer sampled_color_;
+  GlRenderbuffer sampled_depth_;
+  GlFramebuffer resolved_;
+  GlRenderbuffer resolved_color_;
+};
+
+}  // namespace yuragi

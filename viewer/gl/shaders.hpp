@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string_view>
+
+/// The text of viewer/gl/shaders/*.glsl, which the build puts into the program.
+namespace yuragi::shaders {
+
+extern const std::string_view kCommon;  ///< in front of each of the others
+extern const std::string_view kShadeFrag;
+extern const std::string_view kBarkVert;
+extern const std::string_view kBarkFrag;
+extern const std::string_view kClothVert;
+extern const std::string_view kClothFrag;
+extern const std::string_view kDoorVert;
+extern const std::string_view kDoorFrag;
+extern const std::string_view kFlameVert;
+extern const std::string_view kFlameFrag;
+extern const std::string_view kGlowVert;
+extern const std::string_view kGlowFrag;
+extern const std::string_view kGrassVert;
+extern const std::string_view kGroundVert;
+extern const std::string_view kGroundFrag;
+extern const std::string_view kHairVert;
+extern const std::string_view kHillsVert;
+extern const std::string_view kLeafVert;
+extern const std::string_view kSkyVert;
+extern const std::string_view kSkyFrag;
+extern const std::string_view kSolidVert;
+extern const std::string_view kSolidFrag;
+extern const std::string_view kUndercoatVert;
+extern const std::string_view kWaterVert;
+extern const std::string_view kWaterFrag;
+
+}  // namespace yuragi::shaders

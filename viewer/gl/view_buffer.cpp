@@ -1,0 +1,12 @@
+#include "viewer/gl/view_buffer.hpp"
+
+#include <span>
+
+namespace yuragi {
+
+void ViewBuffer::set(const View& view) {
+  stream_to(GL_UNIFORM_BUFFER, buffer_, std::span(&view, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, buffer_.name());
+}
+
+}  // namespace yuragi

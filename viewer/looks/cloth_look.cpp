@@ -1,0 +1,58 @@
+#include "viewer/looks/cloth_look.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include "viewer/gl/shaders.hpp"
+
+namespace yuragi {
+namespace {
+
+/// From a banner's pole to the end of its arm along the ground, at rest and in a pose.
+glm::vec2 arm_m(const GridSkeleton& cloth, const GridPose* pose) {
+  const std::size_t end = cloth.columns - 1;
+  const glm::vec2 at_rest_m(cloth.rest_x_m[end] - cloth.rest_x_m[0], cloth.rest_z_m[end] - cloth.rest_z_m[0]);
+  return pose == nullptr ? at_rest_m : at_rest_m + glm::vec2(pose->offset_x_m[end], pose->offset_z_m[end]);
+}
+
+}  // namespace
+
+ClothLook::ClothLook(const GridSkeleton& cloth, std::string_view kind)
+    : cloth_(&cloth),
+      is_vane_(cloth_style(kind, cloth) == ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
+      points_(cloth),
+      sheet_(layout_of(cloth)),
+      holder_(cloth_holder(cloth_style(kind, cloth), cloth)),
+      program_(link_program("cloth", shaders::kClothVert, shaders::kClothFrag)) {
+  const ClothMeasure lies = measure(cloth);
+  const auto place = [&](const char* name) { return glGetUniformLocation(program_.name(), name); };
+  glUseProgram(program_.name());
+  glUniform1i(place("stride"), static_cast<GLint>(cloth.stride()));
+  glUniform2f(place("origin_m"), lies.origin_m.x, lies.origin_m.y);
+  glUniform2f(place("per_column_m"), lies.per_column_m.x, lies.per_column_m.y);
+  glUniform2f(place("per_row_m"), lies.per_row_m.x, lies.per_row_m.y);
+  glUniform2f(place("size_m"), lies.size_m.x, lies.size_m.y);
+  glUniform1i(place("style"), static_cast<GLint>(cloth_style(kind, cloth)));
+}
+
+void ClothLook::move_to(const Pose& pose) {
+  const auto* const offsets = std::get_if<GridPose>(&pose);
+  const GridKinematicsJob job{.skeleton = cloth_, .pose = offsets, .points = &points_};
+  if (job.run() != GridKinematicsJob::Problem::kNone) return;
+  sheet_.move_to(std::as_const(points_).data());
+  if (!is_vane_) return;
+  const glm::vec2 rest_m = arm_m(*cloth_, nullptr);
+  const glm::vec2 now_m = arm_m(*cloth_, offsets);
+  const float square_m2 = glm::length(rest_m) * glm::length(now_m);
+  if (!(square_m2 > 0.0F)) return;
+  holder_.turn({cloth_->rest_x_m[0], cloth_->rest_z_m[0]}, (rest_m.x * now_m.y - rest_m.y * now_m.x) / square_m2,
+               glm::dot(rest_m, now_m) / square_m2);
+}
+
+void ClothLook::draw(const View&) {
+  glUseProgram(program_.name());
+  sheet_.draw();
+  holder_.draw();
+}
+
+}  // namespace yuragi

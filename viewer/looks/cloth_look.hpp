@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string_view>
+
+#include "engine/pose/point_kinematics.hpp"
+#include "viewer/looks/grid_sheet.hpp"
+#include "viewer/looks/look.hpp"
+#include "viewer/looks/solids.hpp"
+#include "viewer/meshes/cloth_measure.hpp"
+
+namespace yuragi {
+
+/// Draws a cloth and what it hangs from: a curtain of linen that light shines through, a flag, a nobori banner.
+class ClothLook : public Look {
+ public:
+  /// `cloth` must outlive this.
+  ClothLook(const GridSkeleton& cloth, std::string_view kind);
+
+  void move_to(const Pose& pose) override;
+  void draw(const View& view) override;
+  bool casts_shadow() const override { return true; }
+
+ private:
+  const GridSkeleton* cloth_;
+  bool is_vane_;  ///< what holds it turns with its fixed edge
+  PointPositions points_;
+  GridSheet sheet_;
+  Solids holder_;
+  GlProgram program_;
+};
+
+}  // namespace yuragi

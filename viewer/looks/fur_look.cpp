@@ -1,0 +1,54 @@
+#include "viewer/looks/fur_look.hpp"
+
+#include <cmath>
+
+#include <glm/common.hpp>
+
+#include "viewer/gl/shaders.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr float kDiscPerSpacing = 1.5F;  // so that discs overlap wherever roots stand close and far by chance
+constexpr GLsizei kDiscCorners = 6;
+
+/// Tells a program where the body is: the ellipsoid in the box around the roots.
+void set_body(const GlProgram& program, const StrandSkeleton& strands) {
+  Bounds roots{glm::vec3(1e9F), glm::vec3(-1e9F)};
+  for (std::size_t i = 0; i < strands.strand_count; ++i) {
+    const glm::vec3 root(strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]);
+    roots = united(roots, {root, root});
+  }
+  const glm::vec3 middle = (roots.low_m + roots.high_m) / 2.0F;
+  const glm::vec3 radius = glm::max((roots.high_m - roots.low_m) / 2.0F, glm::vec3(0.01F));
+  glUseProgram(program.name());
+  glUniform3f(glGetUniformLocation(program.name(), "body_middle_m"), middle.x, middle.y, middle.z);
+  glUniform3f(glGetUniformLocation(program.name(), "body_radius_m"), radius.x, radius.y, radius.z);
+
+  // The roots share about the upper half of the ellipsoid's skin.
+  const float area_m2 = 2.0F * (radius.x * radius.y + radius.y * radius.z + radius.z * radius.x);
+  const auto count = static_cast<float>(std::max<std::size_t>(1, strands.strand_count));
+  glUniform1f(glGetUniformLocation(program.name(), "disc_m"), kDiscPerSpacing * std::sqrt(area_m2 / count));
+}
+
+}  // namespace
+
+FurLook::FurLook(const StrandSkeleton& strands)
+    : ribbons_(strands, BladeStyle::kFur),
+      hair_(link_program("hair", shaders::kHairVert, shaders::kShadeFrag)),
+      undercoat_(link_program("undercoat", shaders::kUndercoatVert, shaders::kShadeFrag)) {
+  set_sampler(hair_, "joints", 0);
+  set_body(hair_, strands);
+  set_body(undercoat_, strands);
+}
+
+void FurLook::move_to(const Pose& pose) {
+  if (const auto* const bends = std::get_if<StrandPose>(&pose)) ribbons_.move_to(*bends);
+}
+
+void FurLook::draw(const View& view) {
+  ribbons_.draw(hair_, view);
+  ribbons_.draw_fans(undercoat_, kDiscCorners);
+}
+
+}  // namespace yuragi

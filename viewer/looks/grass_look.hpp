@@ -1,0 +1,23 @@
+#pragma once
+
+#include "viewer/looks/look.hpp"
+#include "viewer/looks/strand_ribbons.hpp"
+
+namespace yuragi {
+
+/// Draws strands as a meadow of lit blades.
+class GrassLook : public Look {
+ public:
+  /// `strands` must outlive this.
+  explicit GrassLook(const StrandSkeleton& strands);
+
+  void move_to(const Pose& pose) override;
+  void draw(const View& view) override;
+  bool is_field() const override { return true; }
+
+ private:
+  StrandRibbons ribbons_;
+  GlProgram program_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/meshes/grid_mesh.hpp"
+
+namespace yuragi {
+
+/// A cloth's or a surface's triangles on the GPU, as smooth as its normals. Needs a current context.
+///
+/// A shader finds the point in the attributes 0 to 2 (x, y, z, metres) and its normal in 3 to 5. Allocates nothing
+/// after it is made.
+class GridSheet {
+ public:
+  explicit GridSheet(const GridLayout& layout);
+
+  /// Takes the points where they stand now: all x, then all y, then all z.
+  void move_to(std::span<const float> points);
+
+  std::size_t shells() const { return layout_.shells; }
+
+  /// Draws all triangles with the program in use.
+  void draw() const;
+
+  /// Draws those of one shell.
+  void draw_shell(std::size_t shell) const;
+
+  /// One more number for each point: attribute 6.
+  void set_level(std::span<const float> levels);
+
+ private:
+  GridLayout layout_;
+  std::vector<float> normals_;
+  GLsizei index_count_ = 0;
+  GlBuffer index_buffer_;
+  GlBuffer point_buffer_;
+  GlBuffer normal_buffer_;
+  GlBuffer level_buffer_;
+  GlVertexArray array_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,53 @@
+#include "viewer/looks/landscape.hpp"
+
+#include "viewer/gl/noise_texture.hpp"
+#include "viewer/gl/screen_door.hpp"
+#include "viewer/gl/shaders.hpp"
+
+namespace yuragi {
+namespace {
+
+// As the shaders count.
+constexpr GLsizei kHillSteps = 2160;
+constexpr GLsizei kHillLines = 3;
+constexpr GLsizei kSkyColumns = 40;
+constexpr GLsizei kSkyRows = 24;
+
+constexpr float kSunInShadow = 0.22F;  // leaves, threads and the air let some through
+
+}  // namespace
+
+Landscape::Landscape()
+    : noise_(make_noise_texture()),
+      ground_(link_program("ground", shaders::kGroundVert, shaders::kGroundFrag)),
+      hills_(link_program("hills", shaders::kHillsVert, shaders::kShadeFrag)),
+      sky_(link_program("sky", shaders::kSkyVert, shaders::kSkyFrag)) {
+  set_sampler(ground_, "noise_tile", 0);
+  sunlight_place_ = glGetUniformLocation(ground_.name(), "sunlight");
+  set_sampler(sky_, "noise_tile", 0);
+}
+
+void Landscape::draw() {
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, noise_.name());
+  glBindVertexArray(no_attributes_.name());
+  glUseProgram(ground_.name());
+  glEnable(GL_STENCIL_TEST);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  for (const GLuint shadow : {GLuint{0}, kShadow}) {
+    glStencilFunc(GL_EQUAL, static_cast<GLint>(shadow), kHole | kShadow);
+    glUniform1f(sunlight_place_, shadow == 0 ? 1.0F : kSunInShadow);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  }
+  glDisable(GL_STENCIL_TEST);
+
+  // From near to far; the sky is at the far end of the depths.
+  glUseProgram(hills_.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kHillSteps + 1), kHillLines);
+  glDepthFunc(GL_LEQUAL);
+  glUseProgram(sky_.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kSkyColumns + 1), kSkyRows);
+  glDepthFunc(GL_LESS);
+}
+
+}  // namespace yuragi

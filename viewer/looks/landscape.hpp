@@ -1,0 +1,26 @@
+#pragma once
+
+#include "viewer/gl/gl.hpp"
+
+namespace yuragi {
+
+/// The ground and the evening sky around what sways. Drawn last: what is covered is not painted. Needs a current
+/// context.
+class Landscape {
+ public:
+  Landscape();
+
+  /// The View is bound (ViewBuffer::set). The ground has holes and shadows where the stencil has
+  /// kHole and kShadow.
+  void draw();
+
+ private:
+  GlTexture noise_;
+  GlProgram ground_;
+  GLint sunlight_place_ = -1;
+  GlProgram hills_;
+  GlProgram sky_;
+  GlVertexArray no_attributes_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,42 @@
+#include "viewer/looks/solids.hpp"
+
+#include <cstddef>
+
+#include "viewer/gl/shaders.hpp"
+
+namespace yuragi {
+
+Solids::Solids(const SolidMesh& mesh)
+    : index_count_(static_cast<GLsizei>(mesh.indices().size())),
+      program_(link_program("solid", shaders::kSolidVert, shaders::kSolidFrag)),
+      axis_place_(glGetUniformLocation(program_.name(), "axis_m")),
+      turn_place_(glGetUniformLocation(program_.name(), "turn")) {
+  glBindVertexArray(array_.name());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_.name());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices().size() * sizeof(std::uint32_t)),
+               mesh.indices().data(), GL_STATIC_DRAW);
+  glBindBuffer(GL_ARRAY_BUFFER, vertex_buffer_.name());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices().size() * sizeof(SolidVertex)),
+               mesh.vertices().data(), GL_STATIC_DRAW);
+  // An offset in a buffer travels as a pointer: so OpenGL's interface is.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
+  const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SolidVertex), at(offsetof(SolidVertex, place_m)));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(SolidVertex), at(offsetof(SolidVertex, normal)));
+  glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(SolidVertex), at(offsetof(SolidVertex, tint)));
+  for (GLuint attribute = 0; attribute < 3; ++attribute) glEnableVertexAttribArray(attribute);
+}
+
+void Solids::turn(const glm::vec2& axis_m, float sine, float cosine) {
+  glUseProgram(program_.name());
+  glUniform2f(axis_place_, axis_m.x, axis_m.y);
+  glUniform2f(turn_place_, sine, cosine - 1.0F);
+}
+
+void Solids::draw() const {
+  glUseProgram(program_.name());
+  glBindVertexArray(array_.name());
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace yuragi

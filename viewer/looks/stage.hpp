@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/gl/render_target.hpp"
+#include "viewer/gl/screen_door.hpp"
+#include "viewer/gl/view_buffer.hpp"
+#include "viewer/looks/landscape.hpp"
+#include "viewer/looks/look.hpp"
+#include "viewer/meshes/view.hpp"
+#include "viewer/stream/pose_moment.hpp"
+
+namespace yuragi {
+
+/// Everything that stands in the picture: the scenes, each with the look of its kind of skeleton, in a landscape.
+/// Needs a current context; on its thread.
+class Stage {
+ public:
+  /// Takes the scenes; draws nothing of those before.
+  void set_scenes(std::vector<wire::SceneModel> scenes);
+  const std::vector<wire::SceneModel>& scenes() const { return scenes_; }
+
+  /// Draws only the scene of this name; all where there is no name.
+  void show_only(std::optional<std::string> name) { only_ = std::move(name); }
+  /// Draws only the first scene, then only the next, and after the last all again.
+  void show_next();
+
+  /// Around all scenes that are drawn, and from where to look at them in a picture of width / height `aspect`.
+  Bounds bounds() const;
+  CameraPlace home(double aspect) const;
+  /// How many joints move.
+  std::size_t node_count() const;
+
+  /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit are left out.
+  void draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarget& target);
+
+ private:
+  bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene].name == *only_; }
+  bool is_seen(const PoseMoment& moment, std::size_t scene) const;
+  Bounds field(const PoseMoment& moment) const;
+
+  std::vector<wire::SceneModel> scenes_;
+  std::vector<std::unique_ptr<Look>> looks_;  // one a scene
+  std::vector<Bounds> bounds_;                // one a scene
+  std::optional<std::string> only_;
+  Landscape landscape_;
+  ScreenDoor door_;
+  ViewBuffer view_buffer_;
+};
+
+}  // namespace yuragi

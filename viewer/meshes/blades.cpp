@@ -1,0 +1,113 @@
+#include "viewer/meshes/blades.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/base/units.hpp"
+#include "engine/math/philox.hpp"
+
+namespace yuragi {
+namespace {
+
+constexpr float kWidthPerSpacing = 0.26F;
+constexpr float kMinWidthPerLength = 0.012F;
+constexpr float kMaxWidthPerLength = 0.055F;
+constexpr float kCullMargin = 1.3F;  // of a blade's length, around its root
+
+/// A few broad waves over the ground, from -1 to 1: where the meadow is lusher.
+float patch(float x_m, float z_m) {
+  return 0.5F * std::sin(0.9F * x_m + 0.6F * z_m) + 0.3F * std::sin(1.7F * z_m - 0.7F * x_m + 2.0F) +
+         0.2F * std::sin(3.1F * x_m + 1.1F);
+}
+
+/// From a young blue-green over fresh green to straw.
+glm::vec3 tint_at(float dryness) {
+  const glm::vec3 lush(0.050F, 0.120F, 0.034F);
+  const glm::vec3 fresh(0.120F, 0.190F, 0.040F);
+  const glm::vec3 straw(0.330F, 0.260F, 0.105F);
+  const float d = std::clamp(dryness, 0.0F, 1.0F);
+  return d < 0.6F ? glm::mix(lush, fresh, d / 0.6F) : glm::mix(fresh, straw, (d - 0.6F) / 0.4F);
+}
+
+/// A fox's coat, from dark russet to straw.
+glm::vec3 coat_at(float paleness) {
+  const glm::vec3 dark(0.110F, 0.042F, 0.016F);
+  const glm::vec3 russet(0.330F, 0.130F, 0.040F);
+  const glm::vec3 straw(0.480F, 0.300F, 0.140F);
+  const float p = std::clamp(paleness, 0.0F, 1.0F);
+  return p < 0.5F ? glm::mix(dark, russet, p / 0.5F) : glm::mix(russet, straw, (p - 0.5F) / 0.5F);
+}
+
+}  // namespace
+
+std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style) {
+  const Bounds bounds = bounds_of(skeleton);
+  const glm::vec3 size_m = bounds.high_m - bounds.low_m;
+  const float spacing_m =
+      std::sqrt(size_m.x * size_m.z / static_cast<float>(std::max<std::size_t>(1, skeleton.strand_count)));
+
+  const RandomStream chance(0, stream_id("viewer blades"));
+  std::vector<Blade> blades(skeleton.strand_count);
+  for (std::size_t i = 0; i < blades.size(); ++i) {
+    const auto [first, second] = chance.uniform_pair(2 * i);
+    const auto [third, fourth] = chance.uniform_pair(2 * i + 1);
+    Blade& blade = blades[i];
+    blade.root_m = {skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
+    blade.strand = static_cast<std::uint32_t>(i);
+    blade.facing_rad = static_cast<float>(first * 2.0 * kPi);
+
+    const float length_m = skeleton.link_length_m[i] * static_cast<float>(skeleton.links_per_strand);
+    blade.width_m =
+        std::clamp(kWidthPerSpacing * spacing_m, kMinWidthPerLength * length_m, kMaxWidthPerLength * length_m) *
+        static_cast<float>(0.7 + 0.6 * second);
+
+    const auto spread = static_cast<float>(third - 0.5);
+    const float light = static_cast<float>(0.8 + 0.4 * fourth);
+    const glm::vec3 tint =
+        light * (style == BladeStyle::kFur
+                     ? coat_at(0.5F + 0.16F * patch(9.0F * blade.root_m[0], 9.0F * blade.root_m[2]) + 0.3F * spread)
+                     : tint_at(0.47F + 0.22F * patch(blade.root_m[0], blade.root_m[2]) + 0.42F * spread));
+    blade.tint = {tint.r, tint.g, tint.b};
+  }
+  return blades;
+}
+
+BladeSorter::BladeSorter(const StrandSkeleton& skeleton, BladeStyle style) : blades_(blades_of(skeleton, style)) {
+  const std::size_t links = skeleton.links_per_strand;
+  for (std::size_t i = 0; i < blades_.size(); ++i) {
+    length_m_.push_back(skeleton.link_length_m[i] * static_cast<float>(links));
+  }
+  for (std::size_t rings = links; rings >= std::min(links, kMinRings) && rings > 0; --rings)
+    levels_.push_back({rings, {}});
+}
+
+void BladeSorter::sort(const View& view) {
+  for (DetailLevel& level : levels_) level.blades.clear();
+
+  // The planes of the picture's sides, from the rows of the projection: what is outside one of them is not seen.
+  const auto row = [&](int i) {
+    return glm::vec4(view.to_clip[0][i], view.to_clip[1][i], view.to_clip[2][i], view.to_clip[3][i]);
+  };
+  std::array<glm::vec4, 5> planes{row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(3) + row(2)};
+  for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
+
+  for (std::size_t i = 0; i < blades_.size(); ++i) {
+    const Blade& blade = blades_[i];
+    const glm::vec4 root(blade.root_m[0], blade.root_m[1], blade.root_m[2], 1.0F);
+    const float reach_m = kCullMargin * length_m_[i];
+    if (std::any_of(planes.begin(), planes.end(),
+                    [&](const glm::vec4& plane) { return glm::dot(plane, root) < -reach_m; })) {
+      continue;
+    }
+    const float distance_m = glm::length(glm::vec3(view.eye_m) - glm::vec3(root));
+    const float height_px = length_m_[i] / (view.eye_m.w * std::max(distance_m, 1e-3F));
+    const auto rings = static_cast<std::size_t>(std::min(height_px / kRingPx, 1e6F));
+    levels_[levels_.front().rings - std::clamp(rings, levels_.back().rings, levels_.front().rings)].blades.push_back(
+        blade);
+  }
+}
+
+}  // namespace yuragi

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/pose/skeleton.hpp"
+#include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/view.hpp"
+
+namespace yuragi {
+
+/// What is drawn for a strand, in the layout that the grass shader reads (one instance).
+struct Blade {
+  std::array<float, 3> root_m{};
+  float width_m = 0.0F;
+  std::array<float, 3> tint{};  ///< of its tip, linear light
+  float facing_rad = 0.0F;      ///< bearing of its flat side
+  std::uint32_t strand = 0;
+};
+
+/// What grows on the strands.
+enum class BladeStyle : std::uint8_t { kGrass, kFur };
+
+/// A blade (or hair) for each strand: as wide as the strands' spacing asks for so that the ground is covered, tinted by
+/// patches and by chance. The same skeleton always makes the same blades.
+std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
+
+/// Blades that are drawn equally finely.
+struct DetailLevel {
+  std::size_t rings = 1;      ///< of vertices above the root; at most the links
+  std::vector<Blade> blades;  ///< in view
+};
+
+/// Sorts blades by how large they are in the picture: a large one gets a ring of vertices a link, a small one fewer.
+/// Blades outside the picture are left out. Pure; does not allocate once it has seen all blades in each level.
+class BladeSorter {
+ public:
+  static constexpr float kRingPx = 22.0F;      ///< a ring for each of so many pixels of a blade's height
+  static constexpr std::size_t kMinRings = 3;  ///< where there are as many links
+
+  explicit BladeSorter(const StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
+
+  void sort(const View& view);
+
+  /// Near ones first.
+  std::span<const DetailLevel> levels() const { return levels_; }
+
+ private:
+  std::vector<Blade> blades_;
+  std::vector<float> length_m_;
+  std::vector<DetailLevel> levels_;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string_view>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "engine/pose/skeleton.hpp"
+#include "viewer/meshes/solid_mesh.hpp"
+
+namespace yuragi {
+
+/// What a cloth is made of and hangs from. The numbers are the cloth shader's.
+enum class ClothStyle : int { kCurtain = 0, kFlag = 1, kBanner = 2 };
+
+/// By the scene's kind; a kind that is not known hangs as a curtain, or flies as a flag where its fixed edge is
+/// upright.
+ClothStyle cloth_style(std::string_view kind, const GridSkeleton& cloth);
+
+/// How a cloth's picture lies on its grid: the place of joint (column, row) on it, in metres from its upper left corner
+/// to the right and down, is origin_m + column * per_column_m + row * per_row_m.
+struct ClothMeasure {
+  glm::vec2 origin_m{0.0F};
+  glm::vec2 per_column_m{0.0F};
+  glm::vec2 per_row_m{0.0F};
+  glm::vec2 size_m{0.0F};
+};
+ClothMeasure measure(const GridSkeleton& cloth);
+
+/// What holds it: a rod on two posts, a pole, a pole with a cross-arm. They stand on the ground at height 0.
+SolidMesh cloth_holder(ClothStyle style, const GridSkeleton& cloth);
+
+}  // namespace yuragi

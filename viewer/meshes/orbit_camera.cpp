@@ -1,0 +1,150 @@
+#include "viewer/meshes/orbit_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace yuragi {
+namespace {
+
+constexpr double kOrbit_deg = 180.0;  // for a drag over the picture's height
+constexpr double kZoomStep = 0.88;    // of the distance, a notch
+constexpr double kGlide_s = 0.08;     // the time constant with which it follows the hand
+constexpr double kTurning_deg_s = 2.0;
+constexpr double kMaxTarget_m = 500.0;  // from the origin
+constexpr double kAcrossPitch_deg = 6.0;
+constexpr double kFieldHeights = 5.0;     // so many times as wide as high: something to look across
+constexpr double kAcrossHeights = 1.05;   // of the eye, in heights of what it looks across
+constexpr double kFromCorner_deg = 32.0;  // how far a broad side is looked at aslant
+constexpr double kAroundPitch_deg = 4.0;
+constexpr double kFlatPitch_deg = 9.0;
+constexpr double kFilled = 0.95;  // of the picture
+
+glm::dvec3 direction(const CameraPlace& place) {
+  const double heading = glm::radians(place.heading_deg);
+  const double pitch = glm::radians(place.pitch_deg);
+  return {std::sin(heading) * std::cos(pitch), -std::sin(pitch), -std::cos(heading) * std::cos(pitch)};
+}
+
+double finite_or(double value, double fallback) {
+  return std::isfinite(value) ? value : fallback;
+}
+
+CameraPlace limited(const CameraPlace& place) {
+  CameraPlace to = place;
+  to.heading_deg = finite_or(place.heading_deg, 0.0);
+  to.pitch_deg = std::clamp(finite_or(place.pitch_deg, 10.0), OrbitCamera::kMinPitch_deg, OrbitCamera::kMaxPitch_deg);
+  to.distance_m =
+      std::clamp(finite_or(place.distance_m, 5.0), OrbitCamera::kMinDistance_m, OrbitCamera::kMaxDistance_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    to.target_m[axis] = std::clamp(finite_or(place.target_m[axis], 0.0), axis == 1 ? 0.0 : -kMaxTarget_m, kMaxTarget_m);
+  }
+  return to;
+}
+
+}  // namespace
+
+void OrbitCamera::frame(const CameraPlace& place) {
+  home_ = wanted_ = place_ = limited(place);
+}
+
+void OrbitCamera::orbit(double right, double down) {
+  wanted_.heading_deg -= right * kOrbit_deg;
+  wanted_.pitch_deg += down * kOrbit_deg;
+  wanted_ = limited(wanted_);
+}
+
+void OrbitCamera::pan(double right, double down) {
+  // The ground under the pointer keeps to it: a picture's height is so many metres at the target.
+  const double height_m = 2.0 * wanted_.distance_m * std::tan(glm::radians(kFieldOfView_deg) / 2.0);
+  const double heading = glm::radians(wanted_.heading_deg);
+  const glm::dvec3 to_right(std::cos(heading), 0.0, std::sin(heading));
+  const glm::dvec3 forward(std::sin(heading), 0.0, -std::cos(heading));
+  wanted_.target_m += (-right * to_right + down * forward) * height_m;
+  wanted_ = limited(wanted_);
+}
+
+void OrbitCamera::zoom(double notches) {
+  wanted_.distance_m *= std::pow(kZoomStep, std::clamp(notches, -20.0, 20.0));
+  wanted_ = limited(wanted_);
+}
+
+void OrbitCamera::advance(double dt_s) {
+  if (is_turning_) wanted_.heading_deg += kTurning_deg_s * dt_s;
+  const double share = 1.0 - std::exp(-std::max(0.0, dt_s) / kGlide_s);
+  place_.target_m += share * (wanted_.target_m - place_.target_m);
+  place_.heading_deg += share * (wanted_.heading_deg - place_.heading_deg);
+  place_.pitch_deg += share * (wanted_.pitch_deg - place_.pitch_deg);
+  place_.distance_m += share * (wanted_.distance_m - place_.distance_m);
+}
+
+glm::dvec3 OrbitCamera::eye_m() const {
+  return place_.target_m - direction(place_) * place_.distance_m;
+}
+
+glm::mat4 OrbitCamera::view() const {
+  return glm::mat4(glm::lookAt(eye_m(), place_.target_m, glm::dvec3(0.0, 1.0, 0.0)));
+}
+
+glm::mat4 OrbitCamera::projection(double aspect) const {
+  const double near_m = std::clamp(0.02 * place_.distance_m, 0.01, 1.0);
+  return glm::mat4(glm::perspective(glm::radians(kFieldOfView_deg), aspect, near_m, 2000.0));
+}
+
+CameraPlace place_across(const Bounds& bounds) {
+  const glm::dvec3 low(bounds.low_m);
+  const glm::dvec3 high(bounds.high_m);
+  const double width_m = std::max(high.x - low.x, 0.1);
+  const double depth_m = std::max(high.z - low.z, 0.1);
+  const double height_m = std::max(high.y - low.y, 0.05);
+  const double diagonal_m = std::hypot(width_m, depth_m);
+
+  CameraPlace place;
+  place.heading_deg = 180.0 + glm::degrees(std::atan2(width_m, depth_m));
+  place.pitch_deg = kAcrossPitch_deg;
+  if (diagonal_m < kFieldHeights * height_m) {
+    // Hardly wider than it is high: the whole of it, from outside.
+    place.target_m = {(low.x + high.x) / 2, low.y + 0.5 * height_m, (low.z + high.z) / 2};
+    place.distance_m = 0.6 * diagonal_m + 2.0 * height_m;
+    return limited(place);
+  }
+
+  // Just inside the north-eastern corner, from where no edge but the far ones is in view, along the diagonal.
+  const double eye_height_m = kAcrossHeights * height_m;
+  place.distance_m = std::min(0.45 * diagonal_m, 0.75 * eye_height_m / std::sin(glm::radians(kAcrossPitch_deg)));
+  const glm::dvec3 corner(high.x - 0.06 * width_m, low.y + eye_height_m, low.z + 0.06 * depth_m);
+  place.target_m = corner + direction(place) * place.distance_m;
+  return limited(place);
+}
+
+CameraPlace place_around(const Bounds& bounds, double aspect) {
+  const glm::dvec3 low(bounds.low_m);
+  const glm::dvec3 high(bounds.high_m);
+  const glm::dvec3 size_m = high - low;
+
+  // At the broad side: to the south-south-west, or to the west-south-west.
+  CameraPlace place;
+  place.heading_deg = size_m.x >= size_m.z ? 180.0 + kFromCorner_deg : 270.0 - kFromCorner_deg;
+  const bool is_flat = size_m.y < 0.2 * std::hypot(size_m.x, size_m.z);
+  place.pitch_deg = is_flat ? kFlatPitch_deg : kAroundPitch_deg;
+  place.target_m = (low + high) / 2.0;
+
+  // As far away as the corner that needs it most.
+  const glm::dvec3 forward = direction(place);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double tan_up = kFilled * std::tan(glm::radians(OrbitCamera::kFieldOfView_deg) / 2.0);
+  double distance_m = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 sign((corner & 1) * 2 - 1, (corner >> 1 & 1) * 2 - 1, (corner >> 2 & 1) * 2 - 1);
+    const glm::dvec3 from_middle = sign * size_m / 2.0;
+    const double across = std::abs(glm::dot(from_middle, right)) / (tan_up * aspect);
+    const double upright = std::abs(glm::dot(from_middle, up)) / tan_up;
+    distance_m = std::max(distance_m, std::max(across, upright) - glm::dot(from_middle, forward));
+  }
+  place.distance_m = distance_m;
+  return limited(place);
+}
+
+}  // namespace yuragi

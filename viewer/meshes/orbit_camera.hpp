@@ -1,0 +1,67 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "viewer/meshes/bounds.hpp"
+
+namespace yuragi {
+
+/// Where a camera looks from: it turns around a target and never rolls.
+struct CameraPlace {
+  glm::dvec3 target_m{0.0};
+  double heading_deg = 0.0;  ///< where it looks to: 0 north, 90 east
+  double pitch_deg = 10.0;   ///< how far it looks down
+  double distance_m = 5.0;   ///< from the target
+};
+
+/// A camera that a hand turns, shifts and moves nearer and farther; it glides to where the hand wants it.
+/// Pure: time is a parameter. Thread-safe: no. Whatever is asked of it stays finite and within limits.
+class OrbitCamera {
+ public:
+  static constexpr double kFieldOfView_deg = 40.0;  ///< from the bottom of the picture to its top
+  static constexpr double kMinPitch_deg = 1.0;      ///< the camera stays above the ground
+  static constexpr double kMaxPitch_deg = 89.0;
+  static constexpr double kMinDistance_m = 0.2;
+  static constexpr double kMaxDistance_m = 200.0;
+
+  /// Takes the place at once; reset() comes back to it.
+  void frame(const CameraPlace& place);
+  void reset() { wanted_ = home_; }
+
+  /// The hand's movements, as shares of the picture's height; `right` and `down` are the screen's.
+  void orbit(double right, double down);
+  void pan(double right, double down);
+  /// Turns of the wheel; above 0 is nearer.
+  void zoom(double notches);
+
+  /// Turns by itself, slowly.
+  void set_turning(bool is_turning) { is_turning_ = is_turning; }
+  bool is_turning() const { return is_turning_; }
+
+  /// Goes on by dt_s.
+  void advance(double dt_s);
+
+  const CameraPlace& place() const { return place_; }
+  glm::dvec3 eye_m() const;
+
+  glm::mat4 view() const;
+  /// For a picture of width / height `aspect`; near and far planes fit the distance.
+  glm::mat4 projection(double aspect) const;
+
+ private:
+  CameraPlace home_;
+  CameraPlace wanted_;
+  CameraPlace place_;
+  bool is_turning_ = false;
+};
+
+/// A low, inviting place from which to look at what stands in `bounds`, toward the evening sun's side: across a field
+/// from just inside its edge, and at something small from outside.
+CameraPlace place_across(const Bounds& bounds);
+
+/// A place outside of `bounds` from where all of it is in a picture of width / height `aspect`: at its broad side, a
+/// little from the corner, toward the evening sun's side.
+CameraPlace place_around(const Bounds& bounds, double aspect);
+
+}  // namespace yuragi

@@ -1,0 +1,140 @@
+#include "viewer/meshes/tree_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "engine/base/units.hpp"
+#include "engine/math/philox.hpp"
+
+namespace yuragi {
+namespace {
+
+const glm::vec3 kBark(0.085F, 0.062F, 0.045F);
+const glm::vec3 kTwig(0.095F, 0.066F, 0.040F);
+
+constexpr double kLeafTilt_rad = 0.75;  // how far, at most about, a leaf's upper side is turned from the sky
+constexpr float kOutward = 0.8F;        // and how much out of the crown, where the light is, against that
+
+struct LeafTints {
+  glm::vec3 deep;
+  glm::vec3 fresh;
+};
+
+LeafTints tints_of(Foliage foliage) {
+  switch (foliage) {
+    case Foliage::kBlossom:
+      return {{0.52F, 0.27F, 0.31F}, {0.80F, 0.60F, 0.60F}};
+    case Foliage::kAutumn:
+      return {{0.36F, 0.045F, 0.012F}, {0.62F, 0.26F, 0.030F}};
+    case Foliage::kGreen:
+      break;
+  }
+  return {{0.050F, 0.118F, 0.020F}, {0.150F, 0.225F, 0.038F}};
+}
+
+/// Where a strand leads to at rest, from foot to tip.
+glm::vec3 rest_direction(const StrandSkeleton& strands, std::size_t i) {
+  const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
+  const glm::vec3 curl(strands.curl_x[i], strands.curl_y[i], strands.curl_z[i]);
+  glm::vec3 sum(0.0F);
+  for (std::size_t link = 0; link < strands.links_per_strand; ++link) {
+    const float curled_rad = static_cast<float>(link) * strands.rest_curl_rad[i];
+    sum += std::cos(curled_rad) * rest + std::sin(curled_rad) * curl;
+  }
+  const float length = glm::length(sum);
+  return length > 1e-3F ? sum / length : rest;
+}
+
+/// The middle of where the strands stand.
+glm::vec3 middle_of(const StrandSkeleton& strands) {
+  glm::vec3 sum(0.0F);
+  for (std::size_t i = 0; i < strands.strand_count; ++i) {
+    sum += glm::vec3(strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]);
+  }
+  return sum / static_cast<float>(std::max<std::size_t>(strands.strand_count, 1));
+}
+
+std::array<float, 3> array_of(const glm::vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+std::size_t first_joint_at(const TreeSkeleton& tree, std::size_t level) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < level; ++i) {
+    const StrandSkeleton& strands = tree.levels[i].strands;
+    first += strands.padded_count() * strands.links_per_strand * 3;
+  }
+  return first;
+}
+
+Foliage foliage_of(std::string_view name) {
+  const auto has = [&](std::string_view word) { return name.find(word) != std::string_view::npos; };
+  if (has("sakura") || has("blossom")) return Foliage::kBlossom;
+  if (has("autumn") || has("momiji")) return Foliage::kAutumn;
+  return Foliage::kGreen;
+}
+
+std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Foliage foliage) {
+  const TreeLevel& from = tree.levels[level];
+  const LeafTints tints = tints_of(foliage);
+  const RandomStream chance(level, stream_id("viewer tree"));
+  const StrandSkeleton& strands = from.strands;
+  std::vector<TreePart> parts(strands.strand_count);
+  const glm::vec3 middle_m = middle_of(strands);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto [first, second] = chance.uniform_pair(2 * i);
+    const auto [third, fourth] = chance.uniform_pair(2 * i + 1);
+    TreePart& part = parts[i];
+    part.root_m = {strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]};
+    part.strand = static_cast<std::uint32_t>(i);
+    part.base_radius_m = from.base_radius_m[i];
+    part.tip_radius_m = from.is_leaves ? 0.0F : from.tip_radius_m[i];
+    if (level > 0) {
+      // As JointPositions lies: blocks of strands, links, axes, lanes.
+      const std::size_t links = tree.levels[from.parent_level].strands.links_per_strand;
+      const std::size_t block = from.parent[i] / kStrandsPerBlock;
+      part.root_at = static_cast<std::int32_t>(first_joint_at(tree, from.parent_level) +
+                                               (block * links + from.parent_link[i]) * 3 * kStrandsPerBlock +
+                                               from.parent[i] % kStrandsPerBlock);
+    }
+
+    const auto light = static_cast<float>(0.8 + 0.4 * second);
+    const double bearing = 2.0 * kPi * third;
+    if (from.is_leaves) {
+      const double tilt = 2.0 * kLeafTilt_rad * fourth;
+      const glm::vec3 up(std::sin(tilt) * std::cos(bearing), std::cos(tilt), std::sin(tilt) * std::sin(bearing));
+      const glm::vec3 from_middle_m = glm::vec3(part.root_m[0], part.root_m[1], part.root_m[2]) - middle_m;
+      const glm::vec3 outward = from_middle_m / std::max(glm::length(from_middle_m), 0.1F);
+      part.facing = array_of(glm::normalize(up + kOutward * outward));
+      part.rest = array_of(rest_direction(strands, i));
+      part.tint = array_of(light * glm::mix(tints.deep, tints.fresh, static_cast<float>(first)));
+    } else {
+      // The seam's side: any that the branch does not lead to.
+      const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
+      part.facing = array_of(std::abs(rest.y) > 0.7F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F));
+      part.tint = array_of(light * (level == 0 ? kBark : kTwig));
+    }
+  }
+  return parts;
+}
+
+std::size_t tree_rings(const TreeLevel& level, const Bounds& bounds, const View& view) {
+  float length_m = 0.0F;
+  for (std::size_t i = 0; i < level.strands.strand_count; ++i) {
+    length_m = std::max(length_m, level.strands.link_length_m[i]);
+  }
+  length_m *= static_cast<float>(level.strands.links_per_strand);
+  const glm::vec3 eye(view.eye_m);
+  const float distance_m = glm::distance(eye, glm::clamp(eye, bounds.low_m, bounds.high_m));
+  const float length_px = length_m / (view.eye_m.w * std::max(distance_m, 0.3F));
+  const auto rings = static_cast<std::size_t>(std::min(length_px / kTreeRingPx, 1e6F));
+  const std::size_t links = std::max<std::size_t>(1, level.strands.links_per_strand);
+  return std::clamp(rings, std::min(kMinTreeRings, links), links);
+}
+
+}  // namespace yuragi

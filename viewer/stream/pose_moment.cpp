@@ -1,0 +1,58 @@
+#include "viewer/stream/pose_moment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/pose/pose_arrays.hpp"
+
+namespace yuragi {
+PoseMoment rest_moment(std::span<const wire::SceneModel> scenes) {
+  PoseMoment rest;
+  for (const wire::SceneModel& scene : scenes) rest.poses.push_back(rest_pose(scene.skeleton));
+  rest.opacities.assign(scenes.size(), 1.0F);
+  return rest;
+}
+
+bool has_same_layout(std::span<const Pose> a, std::span<const Pose> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Pose& left, const Pose& right) {
+    const PoseArrays<const float> lefts(left);
+    const PoseArrays<const float> rights(right);
+    return left.index() == right.index() && std::equal(lefts.begin(), lefts.end(), rights.begin(), rights.end(),
+                                                       [](auto one, auto other) { return one.size() == other.size(); });
+  });
+}
+
+std::size_t value_bytes(std::span<const Pose> poses) {
+  std::size_t bytes = 0;
+  for (const Pose& pose : poses) {
+    for_each_array(pose, [&bytes](std::span<const float> values) { bytes += values.size_bytes(); });
+  }
+  return bytes;
+}
+
+void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& out) {
+  const auto share = static_cast<float>(weight);
+  for (std::size_t scene = 0; scene < out.poses.size(); ++scene) {
+    const PoseArrays<const float> from(a.poses[scene]);
+    const PoseArrays<const float> to(b.poses[scene]);
+    const PoseArrays<float> mixed(out.poses[scene]);
+    for (std::size_t array = 0; array < mixed.size(); ++array) {
+      for (std::size_t i = 0; i < mixed[array].size(); ++i) {
+        mixed[array][i] = from[array][i] + share * (to[array][i] - from[array][i]);
+      }
+    }
+  }
+  for (std::size_t scene = 0; scene < out.opacities.size(); ++scene) {
+    out.opacities[scene] = a.opacities[scene] + share * (b.opacities[scene] - a.opacities[scene]);
+  }
+  out.time_s = std::lerp(a.time_s, b.time_s, weight);
+  out.wind.wind = a.wind.wind + weight * (b.wind.wind - a.wind.wind);
+  out.wind.live_weight = std::lerp(a.wind.live_weight, b.wind.live_weight, weight);
+  out.wind.reading_age_s = std::lerp(a.wind.reading_age_s, b.wind.reading_age_s, weight);
+  out.wind.upwind_m = std::lerp(a.wind.upwind_m, b.wind.upwind_m, weight);
+  out.wind.to_middle_s = std::lerp(a.wind.to_middle_s, b.wind.to_middle_s, weight);
+  out.wind.is_place_told = weight < 0.5 ? a.wind.is_place_told : b.wind.is_place_told;
+  out.wind.source = weight < 0.5 ? a.wind.source : b.wind.source;
+}
+
+}  // namespace yuragi

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "viewer/stream/pose_track.hpp"
+
+namespace yuragi {
+
+/// What the picture is made of at the moment.
+enum class Playback : std::uint8_t {
+  kNothing,    ///< no frame has come yet: the rest pose
+  kLive,       ///< frames as they come, interpolated
+  kReplaying,  ///< the stream has stopped: its last seconds, back and forth
+  kReturning,  ///< it is back: passing over from the replay to it
+};
+
+/// Makes a picture that never jumps out of frames that come unevenly, stop, and come again.
+///
+/// Pure: time is a parameter, in seconds of any steady clock, and may not go back. Between two calls of advance() that
+/// are dt apart the shown moment moves by at most PoseTrack::kMaxPlayRate dt along a run of the stream; passing over
+/// from one run to another takes kFade_s. Thread-safe: no. After it has filled once nothing is allocated,
+/// but for what a frame leaves out.
+class PoseTimeline {
+ public:
+  static constexpr double kFade_s = 1.0;
+  static constexpr double kMaxFadeStep_s = 0.1;  ///< a picture that was long in coming does not skip the fade
+
+  /// The scenes that the frames to come belong to. Where their layout is what it was (the daemon has been restarted),
+  /// the picture goes on; otherwise it starts anew from the rest pose.
+  void set_scenes(std::span<const wire::SceneModel> scenes);
+
+  /// Takes a frame that arrived at local_s; changes its buffers for old ones. False where it is not of these scenes. A
+  /// scene of opacity 0 may come without its pose: the one last shown stands in for it.
+  bool accept(wire::Frame& frame, double local_s);
+
+  /// Goes on to local_s. The moment to show is valid until the next call.
+  const PoseMoment& advance(double local_s);
+
+  Playback playback() const;
+  /// How far the picture is behind the quickest arrival.
+  double delay_s() const { return current().delay_s(); }
+
+ private:
+  void stand_in_for_hidden(wire::Frame& frame) const;
+  PoseTrack& current() { return tracks_[current_]; }
+  const PoseTrack& current() const { return tracks_[current_]; }
+  bool is_fading() const { return fade_ < 1.0; }
+
+  PoseMoment incoming_;  // the frame being accepted
+  PoseMoment shown_;
+  PoseMoment faded_;  // what the outgoing track shows
+  std::array<PoseTrack, 2> tracks_;
+  std::size_t current_ = 0;
+  double fade_ = 1.0;  // from the outgoing track (0) to the current one (1)
+  double last_local_s_ = 0.0;
+};
+
+}  // namespace yuragi

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "viewer/stream/pose_history.hpp"
+#include "viewer/stream/stream_clock.hpp"
+
+namespace yuragi {
+
+/// Where a picture stands that is played back and forth over span_s seconds, elapsed_s after it set out: the distance
+/// from where it set out, from 0 to span_s. It sets out from rest, runs at 1 at most, and slows to rest at each turn.
+double back_and_forth_s(double elapsed_s, double span_s);
+
+/// One run of a stream on the sender's time line: what has come, and the moment of it that is shown.
+///
+/// While frames come, the moment shown follows them at the clock's distance; it never goes back, and never passes the
+/// newest. When they stop, it comes to rest at the newest and then goes back and forth over the last kReplaySpan_s.
+/// Thread-safe: no. Does not allocate after reset() and one filling.
+class PoseTrack {
+ public:
+  static constexpr double kReplaySpan_s = 4.0;
+  static constexpr double kMinSilence_s = 0.2;  ///< no frame for so long (or four intervals): the stream has stopped
+  static constexpr double kMaxPlayRate = 1.3;   ///< of the sender's time line against ours, while it catches up
+  static constexpr double kMinPlayRate = 0.7;
+
+  void reset(const PoseMoment& layout);
+  void clear();
+
+  bool is_empty() const { return history_.is_empty(); }
+  bool is_replaying() const { return is_replaying_; }
+  double delay_s() const { return clock_.delay_s(); }
+
+  /// Can a frame of the moment sender_s, arriving now, be the next of this run? Not where time went back, nor where it
+  /// went on by much more than it did here: then the sender has started anew.
+  bool continues(double sender_s, double local_s) const;
+
+  /// Takes a frame that continues(); swaps its poses.
+  void push(PoseMoment& moment, double local_s);
+
+  /// Goes on to local_s and writes what to show. Not while is_empty().
+  void advance(double local_s, PoseMoment& out);
+
+ private:
+  double follow_s(double passed_s, double local_s);
+
+  PoseHistory history_;
+  StreamClock clock_;
+  double shown_s_ = 0.0;  // the moment shown, on the sender's time line
+  double last_local_s_ = 0.0;
+  bool is_replaying_ = false;
+  double replay_elapsed_s_ = 0.0;
+};
+
+}  // namespace yuragi

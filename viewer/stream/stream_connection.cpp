@@ -1,0 +1,215 @@
+#include "viewer/stream/stream_connection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+
+#include "engine/wire/message_reader.hpp"
+
+namespace yuragi {
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+/// One attempt follows another on one thread; a handler of an attempt that has been given up finds `attempt_` changed
+/// and does nothing.
+class StreamConnection::Session {
+ public:
+  explicit Session(StreamOptions options) : options_(std::move(options)), backoff_(options_.min_backoff) {
+    subscription_ = wire::encode(wire::Subscribe{.poses = true, .sensors = true, .client = "yuragi-viewer"});
+    connect();
+    thread_ = std::thread([this] { context_.run(); });
+  }
+
+  ~Session() {
+    context_.stop();
+    thread_.join();
+  }
+
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  Inbox take() {
+    const std::lock_guard lock(mutex_);
+    has_news_ = false;
+    return std::exchange(inbox_, {});
+  }
+
+  StreamStatus status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+  }
+
+  void wait_for_news(Nanoseconds limit) {
+    std::unique_lock lock(mutex_);
+    news_.wait_for(lock, limit, [this] { return has_news_; });
+    has_news_ = false;
+  }
+
+ private:
+  std::string address() const { return fmt::format("{}:{}", options_.host, options_.port); }
+
+  void set_status(StreamState state, std::string text) {
+    const std::lock_guard lock(mutex_);
+    status_ = {state, std::move(text)};
+    tell_news();
+  }
+
+  /// With mutex_ held.
+  void tell_news() {
+    has_news_ = true;
+    news_.notify_all();
+  }
+
+  // --- an attempt: resolve, connect, subscribe, read ---
+
+  void connect() {
+    const std::uint64_t attempt = ++attempt_;
+    reader_ = wire::MessageReader(wire::kMaxServerMessageBytes);
+    set_status(StreamState::kConnecting, "connecting to " + address());
+    watch_silence(attempt);
+    resolver_.async_resolve(options_.host, std::to_string(options_.port),
+                            [this, attempt](error_code error, const tcp::resolver::results_type& found) {
+                              if (attempt != attempt_) return;
+                              if (error) return give_up("cannot find " + options_.host + ": " + error.message());
+                              open(attempt, found);
+                            });
+  }
+
+  void open(std::uint64_t attempt, const tcp::resolver::results_type& found) {
+    asio::async_connect(socket_, found, [this, attempt](error_code error, const tcp::endpoint&) {
+      if (attempt != attempt_) return;
+      if (error) return give_up(fmt::format("nobody answers at {}: {}", address(), error.message()));
+      subscribe(attempt);
+    });
+  }
+
+  void subscribe(std::uint64_t attempt) {
+    error_code ignored;
+    socket_.set_option(tcp::no_delay(true), ignored);
+    asio::async_write(socket_, asio::buffer(subscription_), [this, attempt](error_code error, std::size_t) {
+      if (attempt == attempt_ && error) give_up("the connection to " + address() + " broke: " + error.message());
+    });
+    set_status(StreamState::kConnected, "connected to " + address());
+    read(attempt);
+  }
+
+  void read(std::uint64_t attempt) {
+    socket_.async_read_some(asio::buffer(received_), [this, attempt](error_code error, std::size_t count) {
+      if (attempt != attempt_) return;
+      if (error) return give_up("the stream from " + address() + " ended: " + error.message());
+      watch_silence(attempt);
+      reader_.feed(std::span(received_).first(count));
+      if (digest()) read(attempt);
+    });
+  }
+
+  /// Hands over each whole message. False where the connection was given up.
+  bool digest() {
+    while (auto message = reader_.next()) {
+      if (!*message) {
+        if (message->error() == wire::WireError::kUnknown) continue;  // of a newer server
+        give_up(fmt::format("{} does not speak as Yuragi does: {}", address(), wire::name_of(message->error())));
+        return false;
+      }
+      if (const auto* hello = std::get_if<wire::Hello>(&**message);
+          hello != nullptr && hello->protocol != wire::kProtocol) {
+        give_up(fmt::format("{} ({}) speaks protocol {}, this viewer {}", address(), hello->software, hello->protocol,
+                            wire::kProtocol));
+        return false;
+      }
+      deliver(std::move(**message));
+    }
+    return true;
+  }
+
+  void deliver(wire::Message message) {
+    const MonoTime arrival = std::chrono::steady_clock::now();
+    backoff_ = options_.min_backoff;
+    const std::lock_guard lock(mutex_);
+    if (auto* frame = std::get_if<wire::Frame>(&message)) {
+      if (inbox_.frames.size() == kMaxWaitingFrames) inbox_.frames.erase(inbox_.frames.begin());
+      inbox_.frames.push_back({std::move(*frame), arrival});
+    } else if (auto* scenes = std::get_if<wire::Scenes>(&message)) {
+      inbox_.scenes = std::move(*scenes);
+      inbox_.frames.clear();  // of the scenes before
+    } else if (auto* sensors = std::get_if<wire::Sensors>(&message)) {
+      inbox_.sensors = std::move(*sensors);
+    } else if (const auto* hello = std::get_if<wire::Hello>(&message)) {
+      status_.text = fmt::format("connected to {} ({})", address(), hello->software);
+    }
+    tell_news();
+  }
+
+  // --- its end ---
+
+  void watch_silence(std::uint64_t attempt) {
+    silence_.expires_after(options_.silence_limit);
+    silence_.async_wait([this, attempt](error_code error) {
+      if (error || attempt != attempt_) return;
+      give_up(address() + " has been silent for too long");
+    });
+  }
+
+  void give_up(const std::string& why) {
+    ++attempt_;
+    error_code ignored;
+    resolver_.cancel();
+    silence_.cancel();
+    socket_.close(ignored);
+    set_status(StreamState::kWaiting, why);
+    retry_.expires_after(backoff_);
+    retry_.async_wait([this](error_code error) {
+      if (!error) connect();
+    });
+    backoff_ = std::min(2 * backoff_, options_.max_backoff);
+  }
+
+  const StreamOptions options_;
+  wire::Bytes subscription_;
+
+  // The thread's own.
+  asio::io_context context_{1};
+  tcp::resolver resolver_{context_};
+  tcp::socket socket_{context_};
+  asio::steady_timer silence_{context_};
+  asio::steady_timer retry_{context_};
+  Nanoseconds backoff_;
+  std::uint64_t attempt_ = 0;
+  wire::MessageReader reader_;
+  std::array<std::uint8_t, 1u << 16> received_{};
+
+  // Shared with the reader.
+  mutable std::mutex mutex_;
+  std::condition_variable news_;
+  bool has_news_ = false;
+  Inbox inbox_;
+  StreamStatus status_;
+
+  std::thread thread_;
+};
+
+StreamConnection::StreamConnection(StreamOptions options) : session_(std::make_unique<Session>(std::move(options))) {}
+StreamConnection::~StreamConnection() = default;
+
+Inbox StreamConnection::take() {
+  return session_->take();
+}
+StreamStatus StreamConnection::status() const {
+  return session_->status();
+}
+void StreamConnection::wait_for_news(Nanoseconds limit) {
+  session_->wait_for_news(limit);
+}
+
+}  // namespace yuragi

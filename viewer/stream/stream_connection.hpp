@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/time.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi {
+
+struct TimedFrame {
+  wire::Frame frame;
+  MonoTime arrival;
+};
+
+/// What has come since the last look, in the order of use: scenes, then frames of these scenes.
+struct Inbox {
+  std::optional<wire::Scenes> scenes;  ///< the newest
+  std::vector<TimedFrame> frames;      ///< oldest first
+  std::optional<wire::Sensors> sensors;
+};
+
+enum class StreamState : std::uint8_t { kConnecting, kConnected, kWaiting };
+
+struct StreamStatus {
+  StreamState state = StreamState::kConnecting;
+  std::string text;  ///< for a person: "connected to 127.0.0.1:7410 (yuragi 0.1.0)"
+};
+
+struct StreamOptions {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = wire::kDefaultPort;
+  Nanoseconds min_backoff = std::chrono::milliseconds(200);  ///< before the first new attempt; doubles
+  Nanoseconds max_backoff = std::chrono::seconds(3);
+  Nanoseconds silence_limit = std::chrono::seconds(6);  ///< no byte for so long, or no answer: connect again
+};
+
+/// A subscription to a daemon's stream, on a thread of its own, that is renewed for ever: whatever the other side does
+/// (is not there, dies, sends garbage), it drops the connection, waits a little, and tries again.
+///
+/// Memory is bounded: a reader who does not take() loses the oldest frames, never scenes.
+/// Thread-safe: yes; meant for one reader. The destructor stops at once.
+class StreamConnection {
+ public:
+  static constexpr std::size_t kMaxWaitingFrames = 64;
+
+  explicit StreamConnection(StreamOptions options);
+  ~StreamConnection();
+  StreamConnection(const StreamConnection&) = delete;
+  StreamConnection& operator=(const StreamConnection&) = delete;
+
+  /// What has come since the last call. Never waits for the network.
+  Inbox take();
+
+  StreamStatus status() const;
+
+  /// Waits until there is something to take(), or the status changes, or limit has passed.
+  void wait_for_news(Nanoseconds limit);
+
+ private:
+  class Session;
+  std::unique_ptr<Session> session_;
+};
+
+}  // namespace yuragi
