@@ -58,9 +58,9 @@ std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file) {
     const auto kind = scene["kind"].value_or(std::string());
     const bool is_shown = scene["shown"].value_or(true);
     const ScenePlacement placement{.x_m = number("x", 0.0),
-                              .y_m = number("y", 0.0),
-                              .z_m = number("z", 0.0),
-                              .heading_deg = number("heading", 0.0)};
+                                   .y_m = number("y", 0.0),
+                                   .z_m = number("z", 0.0),
+                                   .heading_deg = number("heading", 0.0)};
     const double gain = number("gain", 1.0);
     for (const char* key : {"kind", "name", "x", "y", "z", "heading", "gain", "shown"}) scene.erase(key);
     if (!is_shown) continue;
