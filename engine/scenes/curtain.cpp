@@ -55,12 +55,12 @@ const std::array kCurtainParameters = {
               "the wind that blows it up to 45 degrees; heavier cloth needs more"},
     Parameter{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
     Parameter{"bulges", "", 0.22, 0, 0.45, "how unequally gusts fill it from place to place; 0: it swings as a board"},
-    Parameter{"max_flutter", "deg", 38.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
+    Parameter{"max_flutter", "deg", 40.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
     Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes it flutter half as much"},
     Parameter{"wave_length", "m", 2.0, 0.2, 100,
               "of the longest bulges; the hem's waves are somewhat shorter, and shorter ones pass faster"},
-    Parameter{"wave_speed", "", 0.3, 0, 1, "how fast bulges and waves pass, as a part of the wind's speed"},
-    Parameter{"damping", "", 0.3, 0.01, 1, "how soon it hangs still again; 0.1: it swings on for long"},
+    Parameter{"wave_speed", "", 0.36, 0, 1, "how fast bulges and waves pass, as a part of the wind's speed"},
+    Parameter{"damping", "", 0.36, 0.01, 1, "how soon it hangs still again; 0.1: it swings on for long"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
 };
 

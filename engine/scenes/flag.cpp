@@ -60,7 +60,7 @@ const std::array kFlagParameters = {
     Parameter{"max_flutter", "deg", 84.0, 0, 120, "how far the strongest waves turn the fly to the sides"},
     Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes its waves half as high"},
     Parameter{"wave_length", "m", 2.1, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
-    Parameter{"wave_speed", "", 0.55, 0, 2, "how fast the waves run to the fly, as a part of the wind's speed"},
+    Parameter{"wave_speed", "", 0.6, 0, 2, "how fast the waves run to the fly, as a part of the wind's speed"},
     Parameter{"growth", "", 0.8, 0.1, 4,
               "the waves grow as the way from the hoist to this power; more: a calmer hoist"},
     Parameter{"edge_flutter", "", 0.25, 0, 1, "how high the short waves near the fly are, as a part of the long ones"},
