@@ -8,7 +8,7 @@
 //   acurite      24c0:0003   when asked                 18 s       AcuRite 01025, 01035, 01036, 02032, 02064
 //   te923        1130:6801   when asked                 33 s       Hideki TE923: Meade, TFA Nexus, Mebus, IROX
 //
-// Source: ../shared/sensors.md 2.
+// Source: drivers/SOURCES.md S2.
 #include <algorithm>
 #include <array>
 #include <string>

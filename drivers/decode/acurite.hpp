@@ -10,8 +10,7 @@
 namespace yuragi {
 
 // AcuRite 01025, 01035, 01036, 02032, 02064 (USB 24c0:0003).
-// Source: ../shared/sensors.md 2.4, which read weewx drivers/acurite.py and weewx issue 39; wxforum topic 27244
-// (speed).
+// Source: weewx drivers/acurite.py and issue 39; wxforum topic 27244 (speed); drivers/SOURCES.md S2.4.
 //
 // Nothing comes by itself: input report 1 is asked for every 18 s. Its contents alternate, so that a direction comes
 // every 36 s.

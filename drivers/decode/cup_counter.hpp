@@ -9,7 +9,7 @@
 namespace yuragi {
 
 // A cup anemometer on a counter: speed from how many pulses came in how long.
-// Source: ../shared/sensors.md 3 ("Conversion").
+// Source: drivers/SOURCES.md S3.3.
 //
 // Polled ten times a second, a cup gives 0 or 1 pulses a poll, and a speed of each poll would be noise. So the window
 // varies: it is open until enough pulses have come, or as long as one wants to wait for a speed. A storm is seen within

@@ -12,7 +12,7 @@
 namespace yuragi {
 
 // Fine Offset WH1080, WH1090, WH2080, WH3080 and their many names (USB 1941:8021).
-// Source: ../shared/sensors.md 2.3, which read weewx drivers/fousb.py and pywws weatherstation.py.
+// Source: weewx drivers/fousb.py and pywws weatherstation.py; drivers/SOURCES.md S2.3.
 //
 // The console's memory of 64 KiB is read in blocks of 32 bytes: a fixed block at 0, then a ring of records, of which
 // the fixed block says the current one.

@@ -13,8 +13,8 @@
 namespace yuragi {
 
 // Oregon Scientific WMR100, WMR100N, WMR88, WMRS200, RMS300, RMS600 (USB 0fde:ca01).
-// Source: ../shared/sensors.md 2.1, which read weewx drivers/wmr100.py, WLoggerDaemon's Station_protocol.md and
-// barnybug/wmr100.
+// Source: weewx drivers/wmr100.py, ejeklint/WLoggerDaemon's description of the protocol, and barnybug/wmr100;
+// drivers/SOURCES.md S2.1.
 //
 // An input report of 8 bytes: how many of the next 7 are valid, then those. The valid bytes of all reports are one
 // stream of frames, with ff ff between two of them; one ff alone is data.

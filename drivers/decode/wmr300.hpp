@@ -12,7 +12,7 @@
 namespace yuragi {
 
 // Oregon Scientific WMR300 (USB 0fde:ca08).
-// Source: ../shared/sensors.md 2.2, which read weewx drivers/wmr300.py.
+// Source: weewx drivers/wmr300.py; drivers/SOURCES.md S2.2.
 //
 // Every packet is one input report. A heartbeat is answered by who the console is (0x57 "WMR300,A002," and two bytes,
 // at 12 and 13, which go back to it in the packet 73 e5 0a 26 that begins the sending of data). It sends for about 100

@@ -1,6 +1,6 @@
 // Fine Offset WH1080, WH3080: a console whose memory is read block by block. It writes what it measures there every
 // 48 s, goes on to the next record every few minutes, and may lock up when it is read at that moment (only a power
-// cycle helps then). Blocks: drivers/decode/fineoffset.hpp. Source: ../shared/sensors.md 2.3; weewx fousb.py ("USB
+// cycle helps then). Blocks: drivers/decode/fineoffset.hpp. Source: drivers/SOURCES.md S2.3; weewx fousb.py ("USB
 // lockups", polling).
 //
 // So it is read once for each time that it writes. When that is, is looked for at first, by reading a few times in one

@@ -1,5 +1,5 @@
 // Oregon Scientific WMR100: it sends a stream of frames by itself once it was sent a start report, the wind about every
-// 14 s. Reports and frames: drivers/decode/wmr100.hpp. Source: ../shared/sensors.md 2.1.
+// 14 s. Reports and frames: drivers/decode/wmr100.hpp. Source: drivers/SOURCES.md S2.1.
 #include "drivers/decode/wmr100.hpp"
 #include "drivers/stations/hid_station.hpp"
 

@@ -1,8 +1,7 @@
 // Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, once it was told to begin and for as
 // long as it gets a heartbeat every 20 s and each data packet is acknowledged. Packets: drivers/decode/wmr300.hpp.
-// Source:
-// ../shared/sensors.md 2.2; weewx wmr300.py (a console that has fallen silent comes back when the device is opened
-// again).
+// Source: drivers/SOURCES.md S2.2; weewx wmr300.py (a console that has fallen silent comes back when the device is
+// opened again).
 #include "drivers/decode/wmr300.hpp"
 #include "drivers/stations/hid_station.hpp"
 

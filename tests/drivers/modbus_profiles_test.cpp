@@ -1,5 +1,5 @@
-// Every profile that is shipped: which registers it reads, and what it makes of them. The frames are those of the
-// shared collection, and such as were written by hand from the makers' register maps.
+// Every profile that is shipped: which registers it reads, and what it makes of them. The frames are published
+// ones (drivers/SOURCES.md S1), and such as were written by hand from the makers' register maps.
 #include <algorithm>
 #include <filesystem>
 #include <map>
