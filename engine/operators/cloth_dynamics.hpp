@@ -104,7 +104,7 @@ struct ClothDynamicsJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says. A tick longer than 0.1 s is
+  /// Runs the job unless validate() finds a problem; returns the result of validate(). A tick longer than 0.1 s is
   /// simulated for 0.1 s.
   Problem run() const noexcept;
 };

@@ -19,7 +19,7 @@ struct CarriedNoiseSpec {
   std::size_t samples = 512;  ///< an edge of each tile: a power of two
   double beta = 5.0 / 3.0;
   BetaMeaning meaning = BetaMeaning::kTransect;
-  bool has_two_tiles = true;  ///< false: one tile, the paper's letter
+  bool has_two_tiles = true;  ///< false: one tile, as in the paper
   /// Only waves of these lengths, at least an octave apart, metres; 0 and infinity: all that the tile has. A band has
   /// variance 1 as it is read, and is not cut by the tick rate: keep its shortest waves above twice what a tick passes.
   double shortest_m = 0.0;
@@ -45,7 +45,7 @@ struct CarriedPlaces {
 /// so that the sum has no period and no repeat is seen. Both have the same spectrum in rad/m, and both are carried by
 /// the same wind. Both are band-limited by the tick rate (BandLimitedTile2): in a storm what is too fine to be shown
 /// fades out, and nothing jitters from tick to tick. Allocates when it is made and in places(), never afterwards. May
-/// throw std::bad_alloc, and what make_noise_2d says. Thread-safe: sample() among themselves, yes. Realtime-safe:
+/// throw std::bad_alloc, and the errors of make_noise_2d. Thread-safe: sample() among themselves, yes. Realtime-safe:
 /// shift() and sample().
 class CarriedNoise {
  public:

@@ -44,8 +44,8 @@ struct ClothTurn {
   double cosine = 1.0;
 };
 
-/// A cloth that hangs by an edge: the paper's 2-D links (Chiba, section 3.2). A scene says on a coarse grid how the
-/// links lean, by what the wind and its noise make of them, and the cloth projects it:
+/// A cloth that hangs by an edge: the paper's 2-D links (Chiba, section 3.2). A scene sets the leans of
+/// the links on a coarse grid, from the wind and its noise, and the cloth projects them:
 ///
 ///   spread    a spline goes through the knots' leans              ClothSpline, ClothLineJob
 ///   project   links turn by their lean, and add up to offsets     ClothProjectionJob

@@ -12,24 +12,25 @@ namespace {
 constexpr double kHalfTrustTimesInterval = 0.5;
 /// A reading is late after so many of its intervals; until then what is known is not yet old.
 constexpr double kLateAfterIntervals = 1.5;
-/// A source that has spoken once is taken for one of those that speak seldom: its reading is worth a while, and tells
-/// the mean, while the gusts are left to the noise until it has spoken again.
+/// The interval assumed of a source that has sent one reading: a long one, so that the reading counts for a while and
+/// sets the mean, while the gusts are left to the noise until the next.
 constexpr double kUnknownInterval_s = 10.0;
 /// A gap of so many intervals separates what the fit may compare.
 constexpr double kGapIntervals = 3.0;
-/// Trust goes where it should within about 4.75 s: what comes back is believed by and by.
+/// The rate at which weights are slewed: 95 % of the way in 4.75 s.
 constexpr double kTrustRate_rad_s = 1.0;
 /// The slow mean of the speed, by which turbulence is measured.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kFitEvery_s = 1.0;
 
 /// A length that is a source's own is worth more than the climate's intensity, which is any wind's: means over times
-/// that are longer than a gust tell the product of the variance and the time scale, and what one of them is believed to
-/// be says what the other is. Found with two half hours at 4.4 m and made-up storms of 20 m/s at 15 m (site_proof).
+/// that are longer than a gust determine only the product of the variance and the time scale, so that the prior of one
+/// fixes the other. Found with two half hours at 4.4 m and made-up storms of 20 m/s at 15 m (site_proof).
 constexpr double kOwnLengthWeight = 5.0;
 constexpr double kOwnLengthIntensityWeight = 1.0;
 
-/// The weight of a band while a source that tells of so long a time at once speaks as it should.
+/// The weight of a band of a source with this interval, or averaging time, while its readings are on time
+/// (engine/wind/README.md W18).
 double full_trust_at(double frequency_hz, double interval_s) noexcept {
   const double ratio = frequency_hz * interval_s / kHalfTrustTimesInterval;
   return 1.0 / (1.0 + ratio * ratio * ratio * ratio);
@@ -43,7 +44,7 @@ std::complex<double> mean_of_past(double cycles) noexcept {
   return {height * std::cos(angle_rad), -height * sine};
 }
 
-/// A mean over `averaging_s`, held for `interval_s`: what both leave of a wave, and how much later it is.
+/// The response of a mean over `averaging_s` that is held for `interval_s`, as a complex factor (W19).
 std::complex<double> averaged_and_held(double frequency_hz, double averaging_s, double interval_s) noexcept {
   const std::complex<double> held = mean_of_past(frequency_hz * interval_s);
   return held * (averaging_s == interval_s ? held : mean_of_past(frequency_hz * averaging_s));
@@ -117,8 +118,8 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   return true;
 }
 
-/// With its first reading it is what it says, believed at once: nothing of it is shown yet, and how it comes into the
-/// wind is SourceChoice's.
+/// The first reading has its full weight at once: nothing of the source is shown yet, and SourceChoice fades it into
+/// the wind.
 void BlendSource::begin() noexcept {
   follower_.begin(wind_);
   speed_m_s_ = record_.last()->speed_m_s;
@@ -180,7 +181,7 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
     return variances;
   };
   along_ = strengths(measured_.along());
-  // What no vane tells, or one of few points, is as a rule.
+  // Without a vane, or with one of few points: the usual ratio.
   if (has_vane() && !is_coarse()) {
     across_ = strengths(measured_.across());
   } else {
@@ -193,10 +194,10 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
 void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept {
   follower_.step(wind_, parts);
 
-  // What was known of a band is forgotten as fast as its waves pass, and as the gusts do.
+  // The weight of a band decays as fast as its waves pass, and as the gusts do (W21).
   const double late_s = std::max(0.0, record_.age_s(now) - kLateAfterIntervals * interval_s_);
   if (late_s == 0.0) {
-    // Until it has spoken for so long, the mean of all that it has said.
+    // Until its readings span the memory, the mean of all of them.
     spoken_s_ = std::min(spoken_s_ + dt_s, kSpeedMemory_s);
     if (spoken_s_ > 0.0) {
       speed_m_s_ += -std::expm1(-dt_s / spoken_s_) * (record_.last()->speed_m_s - speed_m_s_);

@@ -90,7 +90,7 @@ Result<void, Failure> check_r_squared(double r_squared) {
                  "): they are in different winds, or one lags; bring them closer together, or measure longer"};
 }
 
-/// How well `truth_of(said)` explains the pairs.
+/// How well `truth_of(reading)` explains the pairs.
 template <class TruthOf>
 void measure_fit(std::span<const CalibrationPoint> pairs, const TruthOf& truth_of, double& r_squared,
                  double& residual_m_s) {
@@ -108,8 +108,8 @@ void measure_fit(std::span<const CalibrationPoint> pairs, const TruthOf& truth_o
   residual_m_s = std::sqrt(unexplained / count);
 }
 
-/// The line of least squares: about the means, so that nothing large is subtracted from something large. The sensor has
-/// said at least two things.
+/// The line of least squares: about the means, so that nothing large is subtracted from something large. There are
+/// at least two different readings.
 LineFit least_squares(std::span<const CalibrationPoint> pairs) {
   const auto count = static_cast<double>(pairs.size());
   CalibrationPoint mean;
@@ -156,8 +156,8 @@ bool rises(const Bin& a, const Bin& b) {
          b.mean().true_m_s - a.mean().true_m_s >= 0.01 * kBin_m_s;
 }
 
-/// A point at either end, since a curve goes on as its last two points say, and two bins may say anything: as steeply
-/// as the slower half of the pairs down to 0, and as the faster half up.
+/// A point at either end, since a curve is extrapolated from its last two points, and two bins may have any slope: as
+/// steep as the slower half of the pairs down to 0, and as the faster half up.
 void extend(std::vector<CalibrationPoint>& curve, std::vector<CalibrationPoint>& pairs, double whole_gain) {
   std::ranges::sort(pairs, {}, &CalibrationPoint::measured_m_s);
   const std::size_t half = pairs.size() / 2;

@@ -64,7 +64,7 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
     memory_s_ = 0.0;
     return;
   }
-  // The stairs' noise forgets from one reading to the next where the swing covers the steps, else as slowly as gusts.
+  // Quantisation noise is white where the fluctuation covers the steps, else as slow as the gusts.
   const double step_rad = step_deg() * kRadPerDeg;
   const double steps = std::numbers::pi * swing_rad / step_rad;
   const double correlated_s = interval_s + time_scale_s * std::exp(-2.0 * steps * steps);
@@ -75,7 +75,7 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
   memory_s_ = std::min(1.0 / (2.0 * std::numbers::pi * corner_hz), kLongestMemory_s);
 }
 
-/// A reading that says what the one before said tells nothing of the step.
+/// A reading equal to the one before carries no information on the step.
 void DirectionKeeper::note_step(double direction_deg) noexcept {
   const double turn_deg = direction_deg - last_deg_;
   const bool is_first = last_deg_ < 0.0;

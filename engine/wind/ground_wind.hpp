@@ -11,8 +11,8 @@
 
 namespace yuragi {
 
-/// How the measured wind changes from place to place where several anemometers stand along a wall: a plane through what
-/// they say, which goes on level beyond the outermost of them. Without a slope: the same everywhere.
+/// How the measured mean wind changes from place to place where several anemometers stand apart: a plane through their
+/// means, constant beyond the outermost of them. Without a slope: the same everywhere.
 struct WindSlope {
   WindVector per_m_east, per_m_south;   ///< (m/s) / m
   double west_m = 0.0, east_m = 0.0;    ///< where the plane ends, metres east of the middle of the scene
@@ -34,7 +34,7 @@ struct GroundWind {
   WindSlope slope;          ///< of the mean; none unless sensors stand at several places
   GustNoise::Moment gusts;  ///< the noise, as strong as it is where nothing is known
   const WindTapes* tapes = nullptr;
-  double gain = 1.0;       ///< on all that the tapes say
+  double gain = 1.0;       ///< on all wind that is read from the tapes
   double gust_gain = 1.0;  ///< and on its gusts besides
   WindVector breeze;       ///< blows everywhere besides
 

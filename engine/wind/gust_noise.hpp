@@ -53,7 +53,7 @@ class GustNoise {
   static constexpr std::size_t kFirstTileOctave = 2 * kWayOctaves;
   static constexpr std::size_t kOctaves = 2 * (kWayOctaves + kTileOctaves);
 
-  /// Throws what make_noise_2d says, and std::bad_alloc.
+  /// Throws the errors of make_noise_2d, and std::bad_alloc.
   explicit GustNoise(const GustNoiseSettings& settings);
 
   /// An octave: its waves, and which part of the power at its wavenumbers is its own (the two chains share).

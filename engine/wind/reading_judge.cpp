@@ -12,21 +12,22 @@ constexpr double kDeviationPerMad = 1.4826;
 /// A sensor that makes things up has a large deviation, too: beyond so many times the least nothing is believed at
 /// once.
 constexpr double kMostPerLeast = 2.0;
-/// A step that has been said so often is believed, however quick: recordings can be played a hundred times too fast.
+/// A step that has been repeated so often is accepted, however quick: recordings can be played a hundred times too
+/// fast.
 constexpr std::size_t kEnoughRepeats = 20;
-/// What was said so long ago is no measure for what is said now.
+/// Readings older than this are no measure for new ones.
 constexpr double kForgotten_s = 600.0;
 /// How many readings the share of bad ones is counted over, and where a sensor is given up and trusted again.
 constexpr double kReadingsCounted = 20.0;
 constexpr double kGiveUpShare = 0.3;
 constexpr double kTrustShare = 0.05;
-/// Below this nothing is told from a calm.
+/// Below this a wind cannot be told from a calm.
 constexpr double kNoWind_m_s = 0.3;
 constexpr double kStill_m_s = 0.05;
 /// The turbulence that a sensor's steps are compared with, and how much longer a coarse one may repeat itself.
 constexpr double kLittleTurbulence = 0.05;
 constexpr double kCoarsePatience = 10.0;
-/// How much longer than it usually does, and how much longer one that has never said anything else.
+/// How many times longer than it usually repeats a value; and for a sensor that has never sent another one.
 constexpr double kRepeatingPatience = 10.0;
 constexpr double kNeverMovedPatience = 20.0;
 constexpr double kRunsRemembered = 16.0;
@@ -81,7 +82,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
   const bool is_dead = is_seized(reading.speed_m_s, time_s, others_m_s);
   if (is_out_of_range || is_repeated || is_dead) {
     dismiss_suspicion();
-    believed_ = 0;  // what it said so is no measure for what it will say
+    believed_ = 0;  // old readings are no measure for new ones
     if (is_out_of_range) count(true);
     if (is_repeated) return ReadingFault::kFrozen;
     if (is_dead) return ReadingFault::kSeized;
@@ -98,7 +99,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
   return is_held_back ? ReadingFault::kSpike : ReadingFault::kNone;
 }
 
-/// A spike, or the beginning of a step? What comes next will tell.
+/// A spike, or the beginning of a step? The next readings decide.
 bool ReadingJudge::is_spike(WindVector wind, double time_s) noexcept {
   if (!is_suspect(wind)) {
     dismiss_suspicion();
@@ -145,7 +146,7 @@ bool ReadingJudge::is_suspect(WindVector wind) const noexcept {
   return speed_of(wind - usual) > allowed_m_s;
 }
 
-/// Has the step been there for as long as the wind would take to make it, and been said more than once?
+/// Has the step lasted for as long as the wind would take to make it, and been repeated?
 bool ReadingJudge::is_confirmed(double time_s) const noexcept {
   const double needed_s = suspicion_->jump_m_s / settings_.slew_m_s2;
   return suspicion_->repeats >= kEnoughRepeats ||
@@ -167,7 +168,7 @@ bool ReadingJudge::is_frozen(const WindReading& reading, double time_s) noexcept
     if (same_) {
       const double step_m_s = std::abs(reading.speed_m_s - same_->speed_m_s);
       if (step_m_s > 0.0) resolution_m_s_ = resolution_m_s_ > 0.0 ? std::min(resolution_m_s_, step_m_s) : step_m_s;
-      // How long it usually stays with a value. A calm says nothing of that, and a freeze little.
+      // How long it usually repeats a value. A calm carries no information on that, and a freeze little.
       const double run_s = std::min(time_s - same_since_s_, frozen_patience() * settings_.frozen_s);
       if (!usual_run_s_) usual_run_s_ = std::min(run_s, settings_.frozen_s);
       if (same_->speed_m_s >= kNoWind_m_s) *usual_run_s_ += (run_s - *usual_run_s_) / kRunsRemembered;

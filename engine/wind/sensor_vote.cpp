@@ -26,7 +26,7 @@ void SensorVote::hear(std::size_t sensor, MonoTime time, double speed_m_s) noexc
   Voter& voter = voters_[sensor];
   const double passed_s = voter.last ? seconds(time - *voter.last) : 0.0;
   if (passed_s < 0.0) return;
-  // A mean of all that was heard until there is enough of it, then one that forgets.
+  // The mean of all readings until they span the memory, then an exponential one.
   const bool is_first = !voter.last || passed_s > settings_.memory_s;
   voter.heard_s = is_first ? 0.0 : voter.heard_s + passed_s;
   const double part = is_first ? 1.0 : passed_s / std::max(passed_s, std::min(voter.heard_s, settings_.memory_s));

@@ -6,7 +6,7 @@
 namespace yuragi {
 namespace {
 
-/// The slow sensor that is played: it says nothing of waves above 0.37 over this, 0.026 Hz.
+/// The interval of the simulated slow sensor: it resolves no waves above 0.37 over this, 0.026 Hz.
 constexpr double kPlayedInterval_s = 14.0;
 constexpr double kLeastTaught_m_s = 1.0;
 /// The fit must have seen so many differences of neighbouring means.

@@ -135,7 +135,8 @@ void TurbulenceFit::forget(double dt_s) noexcept {
 void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
   if (!(interval_s > 0.0) || !(speed_m_s > 0.0)) return;
 
-  // What each scale says, and how much it counts: neighbouring differences overlap, so 2^scale of them are about one.
+  // The variance at each scale, and its weight: neighbouring differences overlap, so 2^scale of them count about as
+  // one.
   std::array<double, kScales> log_variance{};
   std::array<double, kScales> weight{};
   std::array<double, kScales> independent{};

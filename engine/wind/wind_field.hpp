@@ -23,7 +23,7 @@ struct WindVector3 {
 };
 
 /// The wind everywhere at one moment, mean and gusts together. Going on in time is each kind's own affair.
-/// Thread-safe: yes, while nobody moves the field on. Realtime-safe: yes. Finite at every finite place.
+/// Thread-safe: yes, while the field is not advanced. Realtime-safe: yes. Finite at every finite place.
 class WindField {
  public:
   virtual ~WindField() = default;

@@ -9,11 +9,11 @@ namespace {
 
 /// A critically damped step has done 95 % of its way after 4.75 time constants.
 constexpr double kPhaseOfArrival = 4.75;
-/// How long the floor's gain takes to where the mean says.
+/// The time that the floor's gain takes to follow the mean.
 constexpr double kFloorGainOver_s = 5.0;
 /// A front is felt within this, so that the gain of a calm does not meet a storm ...
 constexpr double kQuickOver_s = 4.0;
-/// ... and is told from a gust by being so many times the slow mean.
+/// ... and is distinguished from a gust by being so many times the slow mean.
 constexpr double kFrontTimesMean = 2.0;
 /// Longer than any way to anywhere: the first call begins there.
 constexpr double kForEver_s = 1e12;
@@ -24,7 +24,7 @@ constexpr double kKnownAfter_s = 6.0 * 3600.0;
 constexpr double kKnownShare = 0.25;
 constexpr double kMedian = 0.50;
 constexpr double kStrong = 0.95;
-/// Slower than anything that a sensor tells from calm.
+/// Below what a sensor can tell from calm.
 constexpr double kLeastMedian_m_s = 0.05;
 
 /// Goes on, and ends its way at the target itself, not ever nearer to it.
@@ -47,7 +47,7 @@ void carry_tapes(WindStroke& stroke, WindVector blown_m, double way_m) noexcept 
   }
 }
 
-/// Of gusts that have become stronger by some that nobody measures, the same is a smaller part.
+/// Gusts become stronger by some that are not measured: the measured ones are then a smaller part of the power.
 void know_less(WindStroke& stroke, const GustNoise::Moment& real, const GustNoise::Moment& all) noexcept {
   const auto part = [](float of_m_s, float all_m_s) {
     return all_m_s > 0.0F ? of_m_s * of_m_s / (all_m_s * all_m_s) : 0.0F;
@@ -124,7 +124,7 @@ bool WindShaping::restore(std::span<const double> times_s) noexcept {
   return true;
 }
 
-/// Tells the memory of the site, now and then, what blew.
+/// Adds the speed to the site's memory, at most once a second.
 void WindShaping::remember(double mean_m_s, double dt_s) noexcept {
   if (settings_.site.median_m_s <= 0.0) return;
   heard_s_ += dt_s;
@@ -160,11 +160,11 @@ double WindShaping::site_gain_of(double mean_m_s) const noexcept {
 
 /// Leads each gain toward where the means and the opening hours want it.
 void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept {
-  // The default wind is no wind of the site: it is what somebody wanted to see.
+  // The default wind is not the site's: it is configured.
   const double site_gain = 1.0 + live_weight * (site_gain_of(mean_.value) - 1.0);
   follow_to_the_end(site_, site_gain, settings_.over_s, dt_s);
 
-  // A front has the word before the slow mean knows of it.
+  // A front counts before the slow mean has followed it.
   const double mean_m_s = std::max({mean_.value, quick_mean_.value / kFrontTimesMean, 0.0});
   const double floor_m_s = settings_.floor_m_s;
   const double least_m_s = floor_m_s / kMostFloorGain;

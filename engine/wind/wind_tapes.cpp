@@ -58,8 +58,8 @@ double WindTapes::distance_of(std::size_t row) noexcept {
   return std::ldexp(within, kFirstOctave + static_cast<int>(step / kRowsAnOctave));
 }
 
-/// Rows stand on a straight line within an octave of the distance: its exponent and the first bits of its mantissa say
-/// which they are.
+/// Rows stand on a straight line within an octave of the distance: its exponent and the first bits of its mantissa give
+/// their index.
 inline WindTapes::Row WindTapes::row_of(double distance_m) noexcept {
   constexpr float kShortest_m = 1.0F / 32.0F;
   static_assert(kFirstOctave == -5 && kRowsAnOctave == 4);
@@ -305,8 +305,8 @@ OctaveLanes WindTapes::octaves_kept(std::size_t tape, double distance_m) const n
   return result;
 }
 
-/// What the sensors say together follows from where they and the place stand. What is lost besides (a gust that has not
-/// come yet, a wind that has turned, the end of a tape) is lost of each sensor's own part.
+/// The weights of the sensors follow from their places and this one (GustKriging). What is lost besides (a gust that
+/// has not come yet, a wind that has turned, the end of a tape) is lost of each sensor's own part.
 WindTapes::Reading WindTapes::at_several(double east_m, double south_m) const noexcept {
   constexpr std::size_t kMost = WindStroke::kMostPens;
   std::array<WindSample, kMost> samples;
