@@ -8,7 +8,7 @@
 namespace yuragi {
 namespace {
 
-/// A time stamp that is not within this of now is of another clock, or of a worker that dreams.
+/// A time stamp farther than this from now is of another clock, or wrong.
 constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
 }  // namespace
@@ -74,8 +74,8 @@ void MicrophoneSensor::take(const MicFrameReader::Item& item, const Clock& clock
   }
 }
 
-/// A stream begins. What an earlier one taught (the noise of a calm, automatic gain, gusts) is kept where it has the
-/// same shape.
+/// A stream begins. What was estimated from an earlier one (the noise of a calm, automatic gain, gusts) is kept if its
+/// format is the same.
 void MicrophoneSensor::take(const MicHello& hello) {
   if (estimator_ && estimator_->hello() == hello) {
     estimator_->restart();

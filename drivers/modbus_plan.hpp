@@ -11,7 +11,7 @@ namespace yuragi {
 
 enum class ModbusMeasure : std::uint8_t { kSpeed, kDirection, kGust };
 
-/// One request, and what its answer tells.
+/// One request, and the quantities in its answer.
 struct ModbusRead {
   ModbusRequest request;
   std::vector<ModbusMeasure> measures;

@@ -28,7 +28,7 @@ constexpr Nanoseconds kLatestAnswer = 2s;
 constexpr int kMostDoublings = 6;
 /// A device that does not answer is asked less often: up to so many times the interval.
 constexpr int kRarestRequest = 8;
-/// So many blocks at most are thrown away at the beginning; a device that says more never ends.
+/// So many blocks at most are discarded at the beginning; a device that sends more does not stop.
 constexpr int kForgottenBlocks = 64;
 constexpr std::size_t kShownOfLine = 60;
 constexpr Nanoseconds kForAges = 1h;
@@ -275,7 +275,7 @@ Nanoseconds TextSensor::silence_limit() const {
   return first * (1 << vain_openings_);
 }
 
-/// Says what is wrong where no reading comes.
+/// Reports the cause where no reading comes.
 void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
@@ -285,7 +285,7 @@ void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
   if (late_lines_ > 0 || !has_lines) {
     is_unwell(sink, trouble_without_lines());
   } else if (why == Refusal::kInvalid || why == Refusal::kImplausible) {
-    // It is there and speaks: what it says is another matter.
+    // It is there and sends: whether that is valid is checked elsewhere.
     is_well(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
   } else {
     is_unwell(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));

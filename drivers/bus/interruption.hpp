@@ -8,7 +8,7 @@ namespace yuragi {
 
 /// What came of waiting for a descriptor.
 enum class WaitEnd : std::uint8_t {
-  kReady,        ///< it can be read (or written), or has an error to tell
+  kReady,        ///< it can be read (or written), or has an error
   kTimeout,      ///< not within the time
   kInterrupted,  ///< set() was called
 };

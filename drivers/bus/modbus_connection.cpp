@@ -1,6 +1,6 @@
 // libmodbus 3.1.6 opens and closes, sets up serial ports, sends, and cuts what arrives into messages. What it does not
 // do is done here or in the decoder: over TCP it never checks the unit id, and its raw requests all carry one
-// transaction id; it reports a message of another slave without its length; and nothing can interruption it.
+// transaction id; it reports a message of another slave without its length; and nothing can interrupt it.
 #include "drivers/bus/modbus_connection.hpp"
 
 #include <algorithm>
@@ -74,7 +74,7 @@ class LibmodbusConnection final : public ModbusConnection {
       modbus_set_socket(context.get(), *socket);
     } else {
       if (modbus_connect(context.get()) != 0) return Failure{explain(modbus_strerror(errno))};
-      // Two programs that ask on one line hear each other's answers.
+      // Two programs on one line would receive each other's answers.
       if (flock(modbus_get_socket(context.get()), LOCK_EX | LOCK_NB) != 0) {
         modbus_close(context.get());
         return Failure{"cannot open " + describe(line_) + ": another program reads it; end that one first"};

@@ -47,7 +47,7 @@ class Wmr100Station final : public HidStation {
     }
   }
 
-  /// It speaks. Of the wind, too?
+  /// It sends frames. Those of the wind, too?
   void miss_the_wind(StationStep& step) const {
     if (step.next - wind_ < timing_.paced(kWmr100NoWind)) return;
     step.health = StationHealth::kUnwell;
