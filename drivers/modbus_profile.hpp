@@ -47,7 +47,7 @@ struct ModbusProfile {
 /// used in that text only. Keys that no profile has are refused.
 ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file);
 
-/// The device has another id than the profile says: the speed moves there, and whatever else was on the same slave.
+/// The device has another id than in the profile: the speed moves there, and all else that was on the same slave.
 void set_slave(ModbusProfile& profile, std::uint8_t id);
 
 /// Finds and reads a profile: a path, if `name` contains '/' or ends in ".toml"; otherwise NAME.toml in `directory` (if

@@ -16,7 +16,7 @@ enum class WaitEnd : std::uint8_t {
 /// What to wait for.
 enum class WaitFor : std::uint8_t { kReadable, kWritable };
 
-/// Lets another thread end whatever a port waits for, now and from then on.
+/// Lets another thread end every wait of a port, now and from then on.
 ///
 /// Thread-safe: yes. Throws std::system_error where the process has no descriptors left.
 class Interruption {

@@ -31,7 +31,7 @@ struct PlayedReading {
   std::string_view sensor;  ///< its sensor's name; lives as long as the playback
 };
 
-/// Plays a recording (.windlog) in log time, with no clock: whoever asks decides when a reading is due. Log time
+/// Plays a recording (.windlog) in log time, with no clock: the caller decides when a reading is due. Log time
 /// follows the monotonic clock inside a session and the UTC gap between two sessions (never less than zero), so that
 /// setting the clock of the recording machine neither stretches nor shrinks a replay.
 ///

@@ -32,7 +32,7 @@ class EvolvingNoise {
                                                 SimdRow row = best_simd_row());
   static constexpr double kMaxTurn_rad_s = 100.0;
 
-  /// Goes on by dt_s (finite; backwards if below 0).
+  /// Advances by dt_s (finite; backwards if below 0).
   void advance(double dt_s) noexcept;
 
   /// The field now. Valid for this object's life; advance() changes it.

@@ -87,7 +87,7 @@ class Cloth {
   /// (-1 to 1; a value a column of the knots, stride in all). Does nothing where hybrid is 0.
   void blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept;
 
-  /// Goes on by dt_s. `rest_kept`: how much of its rest lean the cloth keeps (folds that the wind blows smooth), 0 to
+  /// Advances by dt_s. `rest_kept`: how much of its rest lean the cloth keeps (folds that the wind blows smooth), 0 to
   /// 1. `turn`: of the whole cloth about its first column, where that is fixed.
   void project(double dt_s, double rest_kept = 1.0, ClothTurn turn = {}) noexcept;
 

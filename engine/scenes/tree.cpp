@@ -459,7 +459,7 @@ void Tree::add_leaves(const TreeLevel& level, std::uint64_t seed) {
     leaves_.largest_give = std::max(leaves_.largest_give, species_.petiole * liveliness);
     leaves_.liveliest = std::max(leaves_.liveliest, liveliness);
 
-    // It nods, about an axis across its own direction; one that hangs straight down, to wherever.
+    // It nods about an axis across its own direction; one that hangs straight down, about any level axis.
     const double twist_rad = kLargestTwist_rad * (2.0 * random.uniform(2 * i + 1) - 1.0);
     const auto rest_x = static_cast<double>(strands.rest_x[i]);
     const auto rest_z = static_cast<double>(strands.rest_z[i]);

@@ -36,7 +36,7 @@ class OctaveFollower {
     return parts;
   }
 
-  /// Goes on by that with `held`.
+  /// Advances by that step, with `held` as input.
   void step(WindVector held, const Parts& parts) noexcept {
     for (std::size_t i = 0; i <= kBands; ++i) passed_[i] = passed_[i] + parts[i] * (held - passed_[i]);
   }

@@ -44,7 +44,7 @@ class SensorVote {
   /// Whether a sensor can be compared at the moment: it is live, not a recording, and not frozen.
   void seat(std::size_t sensor, bool takes_part) noexcept { voters_[sensor].is_seated = takes_part; }
 
-  /// Goes on to `now`. Counts votes about once a second.
+  /// Advances to `now`. Counts votes about once a second.
   void advance(MonoTime now) noexcept;
 
   Vote vote_on(std::size_t sensor) const noexcept;
