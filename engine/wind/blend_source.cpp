@@ -7,15 +7,15 @@
 namespace yuragi {
 namespace {
 
-/// The weight of a band is a half at this over the sensor's interval. What its averaging, its being held and the
-/// breadth of the bands leave of it has half the power at 0.25 over the interval: there sensor and noise cross.
+/// The weight of a band is 0.5 at this over the sensor's interval. With averaging, hold and the width of the bands the
+/// sensor's part has half the power at 0.25 over the interval: the crossover of sensor and noise.
 constexpr double kHalfTrustTimesInterval = 0.5;
-/// A reading is late after so many of its intervals; until then what is known is not yet old.
+/// A reading is late after so many of its intervals; until then weights do not decay.
 constexpr double kLateAfterIntervals = 1.5;
 /// The interval assumed of a source that has sent one reading: a long one, so that the reading counts for a while and
 /// sets the mean, while the gusts are left to the noise until the next.
 constexpr double kUnknownInterval_s = 10.0;
-/// A gap of so many intervals separates what the fit may compare.
+/// The fit compares no readings across a gap of so many intervals.
 constexpr double kGapIntervals = 3.0;
 /// The rate at which weights are slewed: 95 % of the way in 4.75 s.
 constexpr double kTrustRate_rad_s = 1.0;
@@ -23,9 +23,9 @@ constexpr double kTrustRate_rad_s = 1.0;
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kFitEvery_s = 1.0;
 
-/// A length that is a source's own is worth more than the climate's intensity, which is any wind's: means over times
-/// that are longer than a gust determine only the product of the variance and the time scale, so that the prior of one
-/// fixes the other. Found with two half hours at 4.4 m and made-up storms of 20 m/s at 15 m (site_proof).
+/// A configured length of a source weighs more than the climate's intensity, which is not specific to the site: means
+/// over times that are longer than a gust determine only the product of the variance and the time scale, so that the
+/// prior of one fixes the other. Found with two half hours at 4.4 m and made-up storms of 20 m/s at 15 m (site_proof).
 constexpr double kOwnLengthWeight = 5.0;
 constexpr double kOwnLengthIntensityWeight = 1.0;
 
@@ -36,7 +36,7 @@ double full_trust_at(double frequency_hz, double interval_s) noexcept {
   return 1.0 / (1.0 + ratio * ratio * ratio * ratio);
 }
 
-/// The mean of a wave over so many of its cycles, that have passed: how high it is, and how much later.
+/// The mean of a wave over so many of its past cycles, as a complex factor: sinc(cycles) exp(-i pi cycles).
 std::complex<double> mean_of_past(double cycles) noexcept {
   const double angle_rad = std::numbers::pi * cycles;
   const double sine = std::sin(angle_rad);
@@ -89,7 +89,7 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   if (!is_plausible(reading)) return false;
   const bool is_first = !record_.has_spoken();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
-  if (gap_s < 0.0) return false;  // older than what is known
+  if (gap_s < 0.0) return false;  // older than the last reading
   if (reading.is_held && !is_first) {
     record_.hold(reading.time);
     return true;
@@ -153,7 +153,7 @@ void BlendSource::set_full_trust() noexcept {
   }
 }
 
-/// Notes the turbulence of the wind that was read, a mean over so long; the site learns of it, if it may.
+/// Adds a reading, a mean over so long, to the turbulence, and to the site's spectrum if the source may update it.
 void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   const bool tells_across = has_vane() && !is_coarse();
@@ -164,7 +164,7 @@ void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
       measured_, *site_);
 }
 
-/// Fits the turbulence to what was measured, and works out what the noise should have of it.
+/// Fits the turbulence to the readings, and computes the variance of each octave of the noise from the fit.
 void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   fitted_s_ = 0.0;
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);

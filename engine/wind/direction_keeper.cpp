@@ -9,15 +9,15 @@
 namespace yuragi {
 namespace {
 
-/// Below this a vane's word counts less and less.
+/// Below this a vane's direction has less and less weight.
 constexpr double kVaneCalm_m_s = 0.5;
-/// So many turns in a row tell a coarse vane; a fine one makes such turns by chance, one in 15 at most, and must make
-/// more of them to be taken for one.
+/// After so many whole steps in a row a vane is taken for a coarse one; a fine one makes such steps by chance, one in
+/// 15 at most, so that after other turns more of them are needed.
 constexpr std::size_t kTurnsToTell = 3;
 constexpr std::size_t kTurnsToTellIfFine = 12;
 /// 22.5 degrees may come as 22 or 23.
 constexpr double kRounding_deg = 0.6;
-/// However little turbulence is expected, a coarse vane that has turned is believed after about 100 s.
+/// The longest smoothing: a coarse vane that has turned is followed within about 100 s, however low the turbulence.
 constexpr double kLongestMemory_s = 100.0;
 
 bool is_multiple(double turn_deg, double step_deg) noexcept {

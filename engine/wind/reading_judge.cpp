@@ -9,15 +9,16 @@ namespace {
 
 constexpr double kRobustDeviations = 5.0;
 constexpr double kDeviationPerMad = 1.4826;
-/// A sensor that makes things up has a large deviation, too: beyond so many times the least nothing is believed at
-/// once.
+/// A sensor whose values are random has a large deviation, too: beyond so many times the least spike every reading is
+/// suspect.
 constexpr double kMostPerLeast = 2.0;
 /// A step that has been repeated so often is accepted, however quick: recordings can be played a hundred times too
 /// fast.
 constexpr std::size_t kEnoughRepeats = 20;
 /// Readings older than this are no measure for new ones.
 constexpr double kForgotten_s = 600.0;
-/// How many readings the share of bad ones is counted over, and where a sensor is given up and trusted again.
+/// The number of readings that the share of bad ones is taken over, and the shares at which a sensor is rejected and
+/// accepted again.
 constexpr double kReadingsCounted = 20.0;
 constexpr double kGiveUpShare = 0.3;
 constexpr double kTrustShare = 0.05;
@@ -31,7 +32,7 @@ constexpr double kCoarsePatience = 10.0;
 constexpr double kRepeatingPatience = 10.0;
 constexpr double kNeverMovedPatience = 20.0;
 constexpr double kRunsRemembered = 16.0;
-/// A silence is no stillness: between two readings it counts for so long at most.
+/// A gap between two readings counts as a calm for so long at most.
 constexpr double kLongestStep_s = 600.0;
 constexpr double kDay_s = 86400.0;
 
@@ -42,7 +43,7 @@ double median(std::array<double, N> values) noexcept {
   return *middle;
 }
 
-/// Without a direction only the speed is compared: as if all came from one side.
+/// Without a direction only the speed is compared: as if all winds came from one direction.
 WindVector vector_of(const WindReading& reading) noexcept {
   return wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
 }
@@ -69,7 +70,7 @@ bool ReadingJudge::judge(const WindReading& reading, std::optional<double> other
 }
 
 void ReadingJudge::count_impossible(std::uint64_t readings) noexcept {
-  // More than are remembered change nothing any more.
+  // More readings than the memory spans change nothing further.
   const auto counted = std::min(static_cast<double>(readings), 10.0 * kReadingsCounted);
   for (double i = 0.0; i < counted; ++i) count(true);
   if (is_implausible_ && fault_ <= ReadingFault::kImplausible) fault_ = ReadingFault::kImplausible;
@@ -112,11 +113,11 @@ bool ReadingJudge::is_spike(WindVector wind, double time_s) noexcept {
   ++suspicion_->repeats;
   if (!is_confirmed(time_s)) return true;
   suspicion_.reset();
-  believed_ = 0;  // a new wind: what was before is no measure for it
+  believed_ = 0;  // a new wind: the readings before are no measure for it
   return false;
 }
 
-/// What was held back was a spike.
+/// The suspect was a spike.
 void ReadingJudge::dismiss_suspicion() noexcept {
   if (!suspicion_) return;
   spikes_ += suspicion_->repeats;
@@ -124,7 +125,7 @@ void ReadingJudge::dismiss_suspicion() noexcept {
   suspicion_.reset();
 }
 
-/// The median of what was believed last, east and north.
+/// The median of the last accepted readings, east and north.
 WindVector ReadingJudge::middle() const noexcept {
   std::array<double, kWindow> u{};
   std::array<double, kWindow> v{};
@@ -186,10 +187,10 @@ bool ReadingJudge::is_frozen(const WindReading& reading, double time_s) noexcept
          time_s - same_since_s_ >= longest_s;
 }
 
-/// How many times longer than another this sensor may repeat itself.
+/// How many times longer than usual this sensor may repeat its value.
 double ReadingJudge::frozen_patience() const noexcept {
   if (!usual_run_s_) return kNeverMovedPatience;
-  // Steps as large as the turbulence: the same number for a while is no wonder.
+  // A resolution as coarse as the turbulence repeats the same number by nature.
   const bool is_coarse = same_ && resolution_m_s_ > kLittleTurbulence * same_->speed_m_s;
   return is_coarse ? kCoarsePatience : 1.0;
 }
@@ -207,7 +208,7 @@ bool ReadingJudge::is_seized(double speed_m_s, double time_s, std::optional<doub
   const double step_s = std::exchange(is_still_, true) ? std::min(passed_s, kLongestStep_s) : 0.0;
   still_s_ += step_s;
   if (others_are_windy) windy_still_s_ += step_s;
-  // Until it moves: a calm that comes over the others mends nothing.
+  // Until it moves: a calm of the other sensors does not clear it.
   is_seized_ = is_seized_ || (others_m_s ? others_are_windy && windy_still_s_ >= settings_.seized_s
                                          : usual_m_s_ > settings_.windy_m_s && still_s_ >= settings_.seized_alone_s);
   return is_seized_;

@@ -6,7 +6,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kCountEvery_s = 1.0;
-/// After a halt of the machine, time goes on as if it had been so long.
+/// A halt of the machine counts as so long at most.
 constexpr double kLongestCount_s = 10.0;
 
 /// A judgement with a memory: it needs the whole patience to change either way.
@@ -51,7 +51,7 @@ void SensorVote::advance(MonoTime now) noexcept {
         std::ranges::any_of(voters_, [&](const Voter& other) { return &other != &voter && can_be_compared(other); });
     if (has_others) voter.others_m_s = median_without(&voter);
 
-    // Without a majority an earlier sentence stands.
+    // Without a majority the earlier result stays.
     const bool is_compared = can_be_compared(voter);
     if (majority && is_compared) {
       const double sign = agree(voter.mean_m_s, *majority) ? -1.0 : 1.0;

@@ -8,7 +8,7 @@
 namespace yuragi {
 namespace {
 
-/// A critically damped step has done 91 % of its way after 4 time constants.
+/// A critically damped step has covered 91 % after 4 time constants (engine/METHOD.md M18).
 constexpr double kRateTimesHandover = 4.0;
 constexpr int kMostFailures = 7;
 constexpr double kForgivenAfter_s = 600.0;
