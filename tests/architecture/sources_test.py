@@ -6,6 +6,7 @@ usage: sources_test.py PROJECT_ROOT
 - A name that ends in .md is a document of the repository, named from the root (or from the comment's own folder).
 - A number behind such a name (engine/METHOD.md M9, D2) is a numbered place of that document: one that begins a line, a
   paragraph or a row of a table there.
+- A path that begins with one of the project's folders and ends in .hpp or .cpp is a file of the repository.
 - What stands beside the repository on some machines is named only by those tests that read recordings there
   (../shared/data) in their code.
 """
@@ -30,6 +31,7 @@ HASH_TOKEN = re.compile(
 )
 
 DOCUMENT = re.compile(r"[\w./-]*\w\.md\b")
+SOURCE = re.compile(rf"(?<![\w./-])(?:{'|'.join(FOLDERS)})/[\w./-]*\w\.[hc]pp\b")
 NUMBERS = re.compile(r"(?:,? (?:and |to )?[MDWS]\d+(?:\.\d+)?\b)+")
 NUMBER = re.compile(r"[MDWS]\d+(?:\.\d+)?")
 PLACE = re.compile(r"^(?:#+ |- |\| )?(?:\*\*)?([MDWS]\d+(?:\.\d+)?)\b", re.MULTILINE)
@@ -72,8 +74,9 @@ def document_of(name, folder, documents):
     return next((path for path in (name, f"{folder}/{name}") if path in documents), None)
 
 
-def faults_of(path, text, documents):
-    """Every citation of what is not there, each as "path:line: what is wrong". `documents`: {path: text}."""
+def faults_of(path, text, documents, files=()):
+    """Every citation of what is not there, each as "path:line: what is wrong". `documents`: {path: text}; `files`: the
+    paths of the sources."""
     path = pathlib.PurePosixPath(path)
     token = token_of(path)
     if token is None:
@@ -85,6 +88,9 @@ def faults_of(path, text, documents):
         for beside in BESIDE.finditer(comment):
             if not (reads_recordings and beside["data"]):
                 faults.append(f"{path}:{line}: {beside[0]}: is no part of the repository")
+        for cited in SOURCE.findall(comment):
+            if cited not in files:
+                faults.append(f"{path}:{line}: {cited}: is no file of the repository")
         for cited in DOCUMENT.finditer(comment):
             if cited[0].startswith("../shared"):
                 continue
@@ -117,11 +123,11 @@ def sources(root):
 class TheProject(unittest.TestCase):
     def test_cites_what_is_there(self):
         documents = documents_of(ROOT)
-        files = list(sources(ROOT))
+        files = {path.relative_to(ROOT).as_posix(): path for path in sources(ROOT)}
         self.assertGreater(len(files), 300, "the sources were not found")
         faults = []
-        for path in files:
-            faults += faults_of(path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8"), documents)
+        for name, path in files.items():
+            faults += faults_of(name, path.read_text(encoding="utf-8"), documents, files)
         self.assertEqual(faults, [], "\n" + "\n".join(faults))
 
     def test_names_files_that_are_there(self):
@@ -143,6 +149,8 @@ class TheCheck(unittest.TestCase):
         "drivers/SOURCES.md": "## S2. USB\n\n| **S2.1** | WMR100 |\n\n- **S6.3.** clipping\n",
     }
 
+    FILES = {"drivers/decode/nmea.hpp"}
+
     REFUSED = [
         ("engine/noise/a.hpp", "/// Source: wind.md 1."),
         ("engine/noise/a.hpp", "int a;  ///< as the issue.md says"),
@@ -153,6 +161,7 @@ class TheCheck(unittest.TestCase):
         ("drivers/hid.cpp", "// Source: ../shared/sensors.md 2.1"),
         ("drivers/hid.cpp", 'open("../shared/data/a.log");  // from ../shared/data'),
         ("drivers/hid.cpp", "double way_m = 2'048.0;  // sensors.md's"),
+        ("drivers/hid.cpp", "// Reports: drivers/decode/wmr.hpp."),
         ("drivers/profiles/a.toml", 'name = "A"  # sensors.md 1'),
         ("drivers/hid.cpp", "const char c = '\"';  // drivers/SOURCES.md S2.2"),
         ("tests/drivers/a_test.cpp", "// ../shared/data/nmea, and nothing reads it"),
@@ -168,6 +177,7 @@ class TheCheck(unittest.TestCase):
         ("engine/noise/a.hpp", 'const char* name = "wind.md";'),
         ("engine/a.hpp", "/// METHOD.md M1: of the folder of this file"),
         ("drivers/hid.cpp", "// drivers/SOURCES.md S2, S2.1 and S6.3"),
+        ("drivers/hid.cpp", "// drivers/decode/nmea.hpp, and weewx drivers/wmr.py; gpsd/drivers/driver.cpp"),
         ("drivers/hid.cpp", 'log("see ../shared/a.md");  // 20 % of M7'),
         ("tests/drivers/a_test.cpp", '// Reads ../shared/data.\nread("../shared/data/a");'),
         ("tests/e2e/a_test.py", '"""A recording of ../shared/data."""\nfind("shared", "data")'),
@@ -177,12 +187,12 @@ class TheCheck(unittest.TestCase):
     def test_refuses_what_is_not_there(self):
         for path, text in self.REFUSED:
             with self.subTest(path=path, text=text):
-                self.assertEqual(len(faults_of(path, text, self.DOCUMENTS)), 1)
+                self.assertEqual(len(faults_of(path, text, self.DOCUMENTS, self.FILES)), 1)
 
     def test_passes_what_is_there(self):
         for path, text in self.PASSED:
             with self.subTest(path=path, text=text):
-                self.assertEqual(faults_of(path, text, self.DOCUMENTS), [])
+                self.assertEqual(faults_of(path, text, self.DOCUMENTS, self.FILES), [])
 
     def test_says_where_and_what(self):
         self.assertEqual(
