@@ -107,7 +107,7 @@ void MicrophoneSensor::take(const MicBlock& block, const Instant& now, SensorSin
 
 void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now,
                                SensorSink& sink) {
-  // The block's stamp is of the system's monotonic clock; it is only believed where that can be ours.
+  // The block's stamp is of the system's monotonic clock; it is only used where that can be ours.
   const MonoTime end{Nanoseconds(block.end_mono_ns)};
   const bool is_ours = end <= now.mono && now.mono - end < kBelievableAge;
   const Nanoseconds age =

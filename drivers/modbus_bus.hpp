@@ -53,7 +53,7 @@ class ModbusBus {
   /// From an answer to the next request, of any sensor: the longest gap asked for is kept.
   void keep_gap(Nanoseconds min_gap);
 
-  /// Opens the line if it is not open. Returns when that was, or says why it failed and what to do.
+  /// Opens the line if it is not open. Returns when that was; the failure's text: why, and what to do.
   Result<MonoTime, Failure> open(const Interruption& interruption, const Clock& clock);
 
   /// From when on a device may be asked; a time that has passed, mostly.

@@ -20,7 +20,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 /// From the first byte of a message to its last. While libmodbus waits for the rest nothing can interrupt it, so that
-/// this is also the longest that anybody may have to wait at the end. At 1200 bit/s there is time for 50 bytes.
+/// this is also the longest that shutting down may wait for it. At 1200 bit/s there is time for 50 bytes.
 constexpr Nanoseconds kLongestMessage = std::chrono::milliseconds(500);
 
 struct FreeModbus {

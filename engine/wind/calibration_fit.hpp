@@ -64,7 +64,7 @@ double signed_degrees(double angle_deg) noexcept;
 
 // ---- span ----
 
-/// true = gain * said + offset, and how well it fits.
+/// true = gain * reading + offset, and how well it fits.
 struct LineFit {
   std::size_t count = 0;
   double gain = 1.0;

@@ -19,7 +19,7 @@ constexpr double kFrontTimesMean = 2.0;
 constexpr double kForEver_s = 1e12;
 
 constexpr double kRememberEvery_s = 1.0;
-/// So much live wind must be known (or this share of a short memory) until the site's percentiles are believed.
+/// So much live wind must be known (or this share of a short memory) until the site's percentiles have full weight.
 constexpr double kKnownAfter_s = 6.0 * 3600.0;
 constexpr double kKnownShare = 0.25;
 constexpr double kMedian = 0.50;
