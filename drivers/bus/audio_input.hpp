@@ -32,9 +32,9 @@ struct AudioChoice {
 inline constexpr std::size_t kAudioMaxChannels = 4;
 inline constexpr std::size_t kAudioBlockFrames = 128;
 
-/// A piece of what came, as the sound system handed it over.
+/// A block of samples, as the sound system delivered it.
 struct AudioBlock {
-  std::int64_t end_mono_ns = 0;   ///< when its last frame was at the microphone, by the sound system's word
+  std::int64_t end_mono_ns = 0;   ///< when its last frame was at the microphone, by the sound system's time stamp
   std::uint64_t end_frame = 0;    ///< frames since the stream began, lost ones included
   std::uint32_t lost_frames = 0;  ///< just before it
   std::uint32_t frames = 0;
@@ -49,15 +49,14 @@ class AudioInput {
   /// The devices that were there when the process asked first: PortAudio's list is frozen from then on.
   virtual Result<std::vector<AudioDevice>, Failure> list() = 0;
 
-  /// Opens and starts; what was opened. `now` tells the time on the sound system's thread: realtime-safe. The failure
-  /// says what is missing and what there is instead.
+  /// Opens and starts; what was opened. `now` is the clock, called on the sound system's thread: realtime-safe. The
+  /// failure's text: what is missing and what there is instead.
   virtual Result<AudioDevice, Failure> open(const AudioChoice& choice, std::function<MonoTime()> now) = 0;
 
   /// The next piece; false: none has come yet.
   virtual bool take(AudioBlock& block) = 0;
 
-  /// False: the stream has ended by itself. True says little: a device that is gone may leave a stream that never says
-  /// so.
+  /// False: the stream has ended by itself. True is no proof: the stream of a device that is gone may never report it.
   virtual bool is_running() = 0;
 };
 

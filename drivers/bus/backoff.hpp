@@ -7,8 +7,8 @@
 
 namespace yuragi {
 
-/// How long to wait before the next attempt: doubles from `first` up to `cap`, for ever, each wait shortened by up to a
-/// quarter at random, so that sensors that failed together do not come back in step.
+/// How long to wait before the next attempt: doubles from `first` up to `cap`, and stays there; each wait is shortened
+/// by up to a quarter at random, so that sensors that failed together do not come back in step.
 ///
 /// The same seed gives the same waits. Thread-safe: no. Realtime-safe: yes.
 class Backoff {

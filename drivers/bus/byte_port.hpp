@@ -37,8 +37,8 @@ struct BytePortAddress {
   std::uint16_t port = 10110;
   std::string sender = {};  ///< UDP: take datagrams from this address only; empty: from any
 
-  /// File: from its beginning to its end, once. Otherwise from the first line that is appended to it, for ever, also
-  /// when it is cut short or another takes its name. A named pipe is always read for ever, whoever writes into it.
+  /// File: from its beginning to its end, once. Otherwise from the first line that is appended to it, without end,
+  /// also when it is truncated or replaced. A named pipe is always read without end, by any number of writers.
   bool is_played = false;
 
   Nanoseconds connect_timeout = std::chrono::seconds(3);
@@ -65,16 +65,15 @@ struct ByteArrival {
 /// A datagram that is longer than what it is read into loses its end; this is enough for each.
 inline constexpr std::size_t kLargestDatagram = 65536;
 
-/// A port that can be closed and opened again for as long as it lives. Carries bytes and judges nothing. A test may put
-/// another in its place.
+/// A port that can be closed and opened again. Carries bytes without interpreting them. A test may substitute another.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class BytePort {
  public:
   virtual ~BytePort() = default;
 
-  /// Opens, or says why that failed and what to do. Blocks for the connect time-out at most, or twice that where a host
-  /// name has to be looked up.
+  /// Opens. The failure's text: why, and what to do. Blocks for the connect time-out at most, or twice that where a
+  /// host name has to be looked up.
   virtual Result<void, Failure> open() = 0;
   virtual void close() noexcept = 0;
 

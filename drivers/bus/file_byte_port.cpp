@@ -14,7 +14,7 @@
 namespace yuragi {
 namespace {
 
-/// How often a file is looked at for something new: no system tells of it on every file system.
+/// How often a file is checked for new lines: change notification does not work on every file system.
 constexpr Nanoseconds kLookInterval = std::chrono::milliseconds(50);
 
 class FileBytePort final : public DescriptorPort {
@@ -64,7 +64,7 @@ class FileBytePort final : public DescriptorPort {
     }
   }
 
-  /// A file listens to nobody.
+  /// A file cannot be written to.
   bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
 
  protected:

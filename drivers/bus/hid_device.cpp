@@ -1,6 +1,6 @@
 // hidapi 0.13, on Linux's hidraw. What it does not do is done here: its enumeration and its opening share one global
-// state without a lock; it cannot say where a device is plugged in, so that a device that was away cannot be told from
-// its twin; it answers -1 whether a device refuses or is gone; and nothing can wake a read.
+// state without a lock; it does not report where a device is plugged in, so that a device that was away cannot be
+// distinguished from its twin; it answers -1 whether a device refuses or is gone; and nothing can wake a read.
 #include "drivers/bus/hid_device.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace {
 
 using HidSteadyClock = std::chrono::steady_clock;
 constexpr Nanoseconds kSlice = std::chrono::milliseconds(50);      // a read looks up so often
-constexpr Nanoseconds kSpinGuard = std::chrono::milliseconds(10);  // where the system says "ready" and has nothing
+constexpr Nanoseconds kSpinGuard = std::chrono::milliseconds(10);  // where the system reports "ready" and has nothing
 
 /// hidapi's one global state, set up once and taken down at the end of the process.
 class HidLibrary {
@@ -55,7 +55,7 @@ struct CloseHid {
   }
 };
 
-/// What a device says of itself, fit to be printed: anything but plain ASCII is replaced.
+/// A device's own description, fit to be printed: anything but plain ASCII is replaced.
 std::string printable(const wchar_t* text) {
   std::string plain;
   for (; text != nullptr && *text != 0; ++text) {

@@ -63,15 +63,15 @@ struct HidArrival {
   std::size_t size = 0;  ///< for kReport
 };
 
-/// A HID device that can be closed and opened again for as long as this lives. Carries reports and judges nothing. A
-/// test may put another in its place.
+/// A HID device that can be closed and opened again. Carries reports without interpreting them. A test may substitute
+/// another.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class HidDevice {
  public:
   virtual ~HidDevice() = default;
 
-  /// Finds the one device that has one of these ids and is at that place, and opens it. The failure says what is
+  /// Finds the one device that has one of these ids and is at that place, and opens it. The failure's text: what is
   /// missing, or that there are several, and what to do.
   virtual Result<HidInfo, Failure> open(std::span<const HidId> ids, const HidPlace& place) = 0;
   virtual void close() noexcept = 0;

@@ -28,7 +28,7 @@ LookupAnswer ask_system(const std::string& host, std::uint16_t port) {
 
 }  // namespace
 
-/// Shared with the thread, which may outlive whoever asked.
+/// Shared with the thread, which may outlive the caller.
 struct HostLookup::State {
   std::string host;
   std::uint16_t port = 0;

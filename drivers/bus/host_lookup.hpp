@@ -12,8 +12,8 @@
 
 namespace yuragi {
 
-/// The addresses of a host name. The system's own look-up cannot be ended, and waits for a name server for as long as
-/// it likes: here it has a thread to itself, which is left behind where it takes too long.
+/// The addresses of a host name. The system's own look-up cannot be ended, and may wait for a name server for a
+/// long time: here it has a thread to itself, which is abandoned where it takes too long.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class HostLookup {

@@ -8,7 +8,7 @@ namespace yuragi {
 
 /// What came of waiting for a descriptor.
 enum class WaitEnd : std::uint8_t {
-  kReady,        ///< it can be read (or written), or has an error to tell
+  kReady,        ///< it can be read (or written), or has an error
   kTimeout,      ///< not within the time
   kInterrupted,  ///< set() was called
 };
@@ -16,7 +16,7 @@ enum class WaitEnd : std::uint8_t {
 /// What to wait for.
 enum class WaitFor : std::uint8_t { kReadable, kWritable };
 
-/// Lets another thread end whatever a port waits for, now and from then on.
+/// Lets another thread end every wait of a port, now and from then on.
 ///
 /// Thread-safe: yes. Throws std::system_error where the process has no descriptors left.
 class Interruption {

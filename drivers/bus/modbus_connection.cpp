@@ -1,6 +1,6 @@
 // libmodbus 3.1.6 opens and closes, sets up serial ports, sends, and cuts what arrives into messages. What it does not
 // do is done here or in the decoder: over TCP it never checks the unit id, and its raw requests all carry one
-// transaction id; it reports a message of another slave without its length; and nothing can interruption it.
+// transaction id; it reports a message of another slave without its length; and nothing can interrupt it.
 #include "drivers/bus/modbus_connection.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 /// From the first byte of a message to its last. While libmodbus waits for the rest nothing can interrupt it, so that
-/// this is also the longest that anybody may have to wait at the end. At 1200 bit/s there is time for 50 bytes.
+/// this is also the longest that shutting down may wait for it. At 1200 bit/s there is time for 50 bytes.
 constexpr Nanoseconds kLongestMessage = std::chrono::milliseconds(500);
 
 struct FreeModbus {
@@ -74,7 +74,7 @@ class LibmodbusConnection final : public ModbusConnection {
       modbus_set_socket(context.get(), *socket);
     } else {
       if (modbus_connect(context.get()) != 0) return Failure{explain(modbus_strerror(errno))};
-      // Two programs that ask on one line hear each other's answers.
+      // Two programs on one line would receive each other's answers.
       if (flock(modbus_get_socket(context.get()), LOCK_EX | LOCK_NB) != 0) {
         modbus_close(context.get());
         return Failure{"cannot open " + describe(line_) + ": another program reads it; end that one first"};

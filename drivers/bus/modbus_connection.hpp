@@ -43,11 +43,11 @@ Nanoseconds frame_gap(const ModbusLine& line) noexcept;
 
 /// What came of waiting for an answer.
 enum class BusStatus : std::uint8_t {
-  kMessage,      ///< a message; the decoder says what it is worth
+  kMessage,      ///< a message, not decoded yet
   kSilence,      ///< nothing until the response time-out
   kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
   kGarbled,      ///< bytes that are no message; the line is no longer in step
-  kInterrupted,  ///< somebody set the interruption
+  kInterrupted,  ///< the interruption was set
   kLost,         ///< the connection is gone
 };
 
@@ -56,20 +56,19 @@ struct BusMessage {
   std::size_t size = 0;  ///< bytes, for kMessage
 };
 
-/// A connection to the devices on one line, which can be closed and opened again for as long as it lives. Carries bytes
-/// and judges nothing. A test may put another in its place. An `interruption` that is set ends whatever waits with it,
-/// at once.
+/// A connection to the devices on one line, which can be closed and opened again. Carries bytes without interpreting
+/// them. A test may substitute another. An `interruption` that is set ends every call that waits with it, at once.
 ///
 /// Thread-safe: no; one thread after the other may use it.
 class ModbusConnection {
  public:
   virtual ~ModbusConnection() = default;
 
-  /// Opens, or says why that failed and what to do. Blocks for the connect time-out at most (and while the system
+  /// Opens. The failure's text: why, and what to do. Blocks for the connect time-out at most (and while the system
   /// looks up a host name).
   virtual Result<void, Failure> open(const Interruption& interruption) = 0;
   virtual bool is_open() const noexcept = 0;
-  /// Whatever goes wrong while closing is of no interest: the descriptor is gone.
+  /// Errors while closing are ignored: the descriptor is gone.
   virtual void close() noexcept = 0;
 
   /// Reads what the line brings until it has been quiet for the byte time-out, or chattering for the response time-out,

@@ -1,5 +1,5 @@
-// libmosquitto 2.0.11, driven by this thread: its own loops can neither be woken nor told how long a connection may
-// take (mosquitto issues 949 and 3051: minutes, where a firewall drops what is sent). Nor can its look-up of a name be
+// libmosquitto 2.0.11, driven by this thread: its own loops can neither be woken nor given a time-out for a connection
+// (mosquitto issues 949 and 3051: minutes, where a firewall drops what is sent). Nor can its look-up of a name be
 // ended, so the name is looked up before.
 #include "drivers/bus/mqtt_client.hpp"
 

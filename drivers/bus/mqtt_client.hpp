@@ -10,7 +10,7 @@
 
 namespace yuragi {
 
-/// A broker, how it lets us in, and what we want of it.
+/// A broker, the credentials for it, and the topics to subscribe to.
 struct MqttSubscription {
   std::string host;  ///< a name, an IPv4 or an IPv6 address
   std::uint16_t port = 1883;
@@ -19,14 +19,14 @@ struct MqttSubscription {
   bool uses_tls = false;
   std::string ca_file;              ///< who vouches for the broker; empty: those that this system trusts
   std::vector<std::string> topics;  ///< + stands for any one level, # for all that follow
-  Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that says nothing for so long is asked; >= 5 s
+  Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that is silent for so long is pinged; >= 5 s
   Nanoseconds connect_timeout = std::chrono::seconds(5);  ///< until it has agreed to everything
 };
 
 struct MqttMessage {
   std::string topic;
   std::vector<std::uint8_t> payload;
-  bool is_retained = false;  ///< the broker kept it for whoever comes: nobody knows how old it is
+  bool is_retained = false;  ///< kept by the broker for later subscribers: its age is unknown
   bool is_too_long = false;  ///< longer than any message about the wind; `payload` is empty
 };
 
@@ -34,7 +34,7 @@ enum class MqttStatus : std::uint8_t {
   kMessage,
   kSilence,      ///< none until the time-out
   kInterrupted,  ///< interrupt() was called
-  kLost,         ///< the connection is gone; trouble() says why
+  kLost,         ///< the connection is gone; trouble() is the reason
 };
 
 /// A connection to an MQTT broker, which can be closed and opened again for as long as this lives. A test may put
@@ -45,8 +45,8 @@ class MqttClient {
  public:
   virtual ~MqttClient() = default;
 
-  /// Connects and subscribes, or says why that failed and what to do. Blocks for the connect time-out at most, or twice
-  /// that where a host name has to be looked up.
+  /// Connects and subscribes. The failure's text: why, and what to do. Blocks for the connect time-out at most, or
+  /// twice that where a host name has to be looked up.
   virtual Result<void, Failure> connect() = 0;
   virtual void disconnect() noexcept = 0;
 

@@ -20,7 +20,7 @@ using OscBytes = std::span<const std::uint8_t>;
 constexpr std::array<std::uint8_t, 8> kBundleMark = {'#', 'b', 'u', 'n', 'd', 'l', 'e', 0};
 constexpr std::size_t kBundleHead = 16;
 constexpr std::size_t kElementHead = 4;
-/// Nobody puts bundles into each other deeper than this.
+/// The deepest nesting of bundles that is accepted.
 constexpr int kDeepestBundle = 8;
 
 struct FreeOscMessage {

@@ -1,6 +1,6 @@
-// PortAudio 19.6.0 over ALSA can spin for ever in its own thread when a USB device is unplugged (PortAudio issue 1037),
-// and its list of devices is frozen until the library is begun anew (issues 447, 750). This wrapper cannot mend that:
-// it runs in a process that may be killed (drivers/microphone/microphone_worker.hpp).
+// PortAudio 19.6.0 over ALSA can spin without end in its own thread when a USB device is unplugged (PortAudio issue
+// 1037), and its list of devices is frozen until the library is begun anew (issues 447, 750). This wrapper cannot mend
+// that: it runs in a process that may be killed (drivers/microphone/microphone_worker.hpp).
 #include <algorithm>
 #include <cctype>
 #include <string_view>
@@ -140,7 +140,7 @@ class PortaudioInput final : public AudioInput {
   void hand_over(const float* input, std::size_t frames, const PaStreamCallbackTimeInfo& time, bool overflowed) {
     if (input == nullptr) return;
     // PortAudio's own clock is not ours: what is taken from it is how long ago the first frame was at the converter.
-    // Some sound systems say nothing, or nonsense; then the buffer has just become full.
+    // Some sound systems report nothing, or nonsense; then the buffer is taken to have just become full.
     const double duration_s = static_cast<double>(frames) / rate_hz_;
     double age_s = time.currentTime - time.inputBufferAdcTime;
     if (!(time.inputBufferAdcTime > 0.0) || !(age_s >= duration_s) || age_s > duration_s + kBelievableLatency_s) {
@@ -149,8 +149,8 @@ class PortaudioInput final : public AudioInput {
     const auto now_ns = now_().time_since_epoch().count();
     const double begin_ns = -1e9 * age_s;
 
-    // How many frames an overflow took is not said: the worker's clock sees it; here one is counted, so that it is
-    // known.
+    // How many frames an overflow lost is not reported: the worker's clock finds it; here one is counted, so that it
+    // shows.
     std::uint32_t lost = overflowed ? 1U : 0U;
     for (std::size_t done = 0; done < frames;) {
       const std::size_t count = std::min(frames - done, kAudioBlockFrames);

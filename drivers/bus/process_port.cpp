@@ -26,9 +26,9 @@ void close_if_open(int& descriptor) noexcept {
   if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
 }
 
-/// What happens between fork and exec: only calls that are safe there (signal-safety(7)). `failure` hears errno.
+/// What happens between fork and exec: only calls that are safe there (signal-safety(7)). `failure` receives errno.
 [[noreturn]] void become(char* const* words, int output, int failure, pid_t parent) noexcept {
-  // Dies with its parent, even one that died before this was said.
+  // Dies with its parent, even one that died before this call.
   if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent) _exit(127);
 
   // Signals are as a shell leaves them, whatever the parent blocked.
@@ -81,7 +81,7 @@ class ProcessPort final : public BytePort {
     close_if_open(failure[1]);
     output_ = output[0];
 
-    // exec closes the other end of this pipe without a word; a failure says why.
+    // A successful exec closes the other end of this pipe; otherwise errno comes through it.
     int error = process_ < 0 ? fork_error : 0;
     if (process_ > 0 && ::read(failure[0], &error, sizeof error) != static_cast<ssize_t>(sizeof error)) error = 0;
     close_if_open(failure[0]);

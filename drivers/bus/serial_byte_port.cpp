@@ -86,7 +86,7 @@ class SerialBytePort final : public DescriptorPort {
     boost::system::error_code error;
     if (port_.open(address().path, error)) return error;
 
-    // Nobody else may read: each would get a part of the bytes.
+    // No other program may read: each would get a part of the bytes.
     const int handle = port_.native_handle();
     if (flock(handle, LOCK_EX | LOCK_NB) != 0 || ioctl(handle, TIOCEXCL) != 0) {
       return {errno, boost::system::system_category()};

@@ -29,7 +29,7 @@ bool is_numbered(std::string_view name, std::string_view prefix) {
   return name.starts_with(prefix) && !number.empty() && number.find_first_not_of("0123456789") == number.npos;
 }
 
-/// The kernel lists 32 ports of a PC whether they are there or not; `type` says 0 for those without a chip.
+/// The kernel lists 32 ports of a PC whether they are there or not; `type` is 0 for those without a chip.
 bool has_chip(const fs::path& classes, const std::string& name) {
   std::ifstream in(classes / name / "type");
   int type = 0;

@@ -74,7 +74,7 @@ class UdpBytePort final : public DescriptorPort {
     return size > 0 ? ByteArrival{ByteStatus::kBytes, size, true} : ByteArrival{};
   }
 
-  /// There is nobody to send to: the talkers are not known.
+  /// There is no address to send to: the senders are not known.
   bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
 
  protected:
@@ -86,7 +86,7 @@ class UdpBytePort final : public DescriptorPort {
     const udp::endpoint endpoint(local, address().port);
     if (socket_.open(endpoint.protocol(), error) || socket_.non_blocking(true, error)) return error;
     if (!local.is_multicast()) {
-      // Not shared: the last one to bind would get everything, and the others nothing, without a word.
+      // Not shared: the last one to bind would get everything, and the others nothing, without an error.
       socket_.bind(endpoint, error);
       return error;
     }

@@ -1,5 +1,5 @@
 // libusb 1.0.26. Every transfer is an asynchronous one that the calling thread waits for: libusb's own synchronous
-// calls cannot be ended by another thread, and wait for ever for a transfer whose cancellation fails (libusb issue
+// calls cannot be ended by another thread, and wait without end for a transfer whose cancellation fails (libusb issue
 // 369). The hot-plug callback only sets a flag, since nothing may be opened, closed or waited for in it.
 #include "drivers/bus/usb_device.hpp"
 
@@ -56,7 +56,7 @@ UsbStatus status_of(libusb_transfer_status status) {
       return UsbStatus::kStalled;
     case LIBUSB_TRANSFER_OVERFLOW:
       return UsbStatus::kOverflow;
-    case LIBUSB_TRANSFER_ERROR:  // what the bus says while a plug is being pulled
+    case LIBUSB_TRANSFER_ERROR:  // the bus's error while a plug is being pulled
     case LIBUSB_TRANSFER_NO_DEVICE:
       break;
   }
@@ -177,7 +177,7 @@ class LibusbDevice final : public UsbDevice {
 
  private:
   static unsigned milliseconds(Nanoseconds timeout) {
-    // To libusb none at all is for ever.
+    // libusb takes 0 for no time-out at all.
     return static_cast<unsigned>(std::max<std::int64_t>(timeout / std::chrono::milliseconds(1), 1));
   }
 
@@ -188,8 +188,8 @@ class LibusbDevice final : public UsbDevice {
     return 0;
   }
 
-  /// Makes the context and listens for devices that come, the first time that it can. Where the kernel cannot tell of
-  /// them they are found all the same, by the next attempt to open.
+  /// Makes the context and listens for devices that come, the first time that it can. Where the kernel does not
+  /// report them they are found all the same, by the next attempt to open.
   bool start() {
     if (context_.load() != nullptr) return true;
     libusb_context* context = nullptr;
@@ -231,7 +231,7 @@ class LibusbDevice final : public UsbDevice {
     if (is_interrupted_) return {UsbStatus::kInterrupted};
     if (libusb_submit_transfer(pending->transfer) != LIBUSB_SUCCESS) return {UsbStatus::kGone};
 
-    // Wait until it is done, or somebody wants an end, or libusb has forgotten it.
+    // Wait until it is done, or interrupted, or libusb has forgotten it.
     auto deadline = UsbClock::now() + timeout + kTransferGrace;
     for (bool is_cancelled = false; pending->is_finished == 0;) {
       const bool is_over = UsbClock::now() >= deadline;

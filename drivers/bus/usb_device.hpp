@@ -44,7 +44,7 @@ enum class UsbStatus : std::uint8_t {
   kDone,         ///< `size` bytes have gone over
   kTimeout,      ///< not in time
   kStalled,      ///< the device refuses this request
-  kOverflow,     ///< the device said more than it was asked for
+  kOverflow,     ///< the device sent more than was requested
   kInterrupted,  ///< interrupt() was called
   kGone,         ///< the device, or the way to it, is not there any more
 };
@@ -54,8 +54,8 @@ struct UsbTransfer {
   std::size_t size = 0;
 };
 
-/// A device of a few kinds, which can be plugged in and out for as long as this lives. Carries bytes and judges
-/// nothing. A test may put another in its place.
+/// A device of a few kinds, which can be plugged in and out for as long as this lives. Carries bytes without
+/// interpreting them. A test may substitute another.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class UsbDevice {
@@ -68,7 +68,7 @@ class UsbDevice {
   /// Has one of its kinds been plugged in since this was last asked? Waits for nothing.
   virtual bool has_arrived() = 0;
 
-  /// Opens one of those and claims its first interface, or says why that failed and what to do.
+  /// Opens one of those and claims its first interface. The failure's text: why, and what to do.
   virtual Result<void, Failure> open(const PluggedUsbDevice& device) = 0;
   virtual void close() noexcept = 0;
 

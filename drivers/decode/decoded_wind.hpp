@@ -10,9 +10,9 @@
 
 namespace yuragi {
 
-/// What a direction is measured from, clockwise, where the message itself says it.
+/// The frame of a direction, clockwise, as far as the message itself states it.
 enum class WindReference : std::uint8_t {
-  kUnknown,   ///< the message does not say: for a fixed device its own north mark
+  kUnknown,   ///< not stated: for a fixed device its own north mark
   kRelative,  ///< the device's mark or the vessel's bow; on a moving vessel the apparent wind
   kTrue,      ///< still the bow, but the vessel's own motion is taken out ("true wind" of MWV and VWT)
   kNorth,     ///< geographic north
@@ -21,15 +21,15 @@ enum class WindReference : std::uint8_t {
 inline constexpr std::array<std::string_view, 5> kWindReferenceNames = {"unknown", "relative", "true", "north",
                                                                         "magnetic"};
 
-/// How much the values are worth by the device's own word. Values that it calls invalid are a Refusal, not a status.
+/// The status of the values as the device reports it. Values that it reports as invalid are a Refusal, not a status.
 enum class DecodedStatus : std::uint8_t {
-  kGood,       ///< the device says it is well, or its protocol has no way to say
+  kGood,       ///< the device reports no fault, or its protocol has no status
   kUncertain,  ///< the device flags something (low battery, partial data), or leaves out the status that is due
 };
 inline constexpr std::array<std::string_view, 2> kDecodedStatusNames = {"good", "uncertain"};
 
-/// What one message of any anemometer says: SI units, no time, before calibration. What every decoder but Modbus's
-/// yields. At least one value is there; a value that is not known is empty, never 0.
+/// The values of one message of any anemometer: SI units, no time, before calibration. The result of every decoder but
+/// Modbus's. At least one value is there; a value that is not known is empty, never 0.
 struct DecodedWind {
   std::optional<double> speed_m_s;      ///< [0, kMaxPlausibleSpeed_m_s]
   std::optional<double> direction_deg;  ///< where the wind comes *from*, clockwise from `reference`, [0, 360)

@@ -12,7 +12,7 @@ enum class Refusal : std::uint8_t {
   kTooShort,  ///< an answer that ends too early
   kNotMine,   ///< an answer of another device, or to another question
   kBadChecksum,
-  kException,    ///< the device said no
+  kException,    ///< the device answered with an exception
   kMalformed,    ///< not the protocol
   kInvalid,      ///< the device's own mark for "no value"
   kImplausible,  ///< decoded, but no wind blows like that

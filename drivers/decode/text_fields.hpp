@@ -14,7 +14,7 @@ namespace yuragi {
 // What the decoders of lines share: fields, numbers, checksums, units. Nothing here allocates, throws or keeps state;
 // views point into the line that was given. Thread-safe and realtime-safe: yes.
 
-/// What a decoder does with a line that leaves out a checksum or a status which is due.
+/// What a decoder does with a line without a checksum or status that its format requires.
 enum class WhenMissing : std::uint8_t { kRefuse, kAccept };
 
 /// More fields than any sentence has; a line with more is refused.

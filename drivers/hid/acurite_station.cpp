@@ -1,6 +1,6 @@
-// AcuRite: says nothing by itself; input report 1 is asked for every 18 s. Its contents alternate, so that a report
+// AcuRite: sends nothing unasked; input report 1 is requested every 18 s. Its contents alternate, so that a report
 // that is the same as the one before is not new. It has no checksum: it is read twice, and must be the same both times.
-// Reports: drivers/decode/hid/acurite.hpp. Source: ../shared/sensors.md 2.4.
+// Reports: drivers/decode/hid/acurite.hpp. Source: drivers/SOURCES.md S2.4.
 #include <algorithm>
 #include <array>
 

@@ -1,12 +1,12 @@
 // Fine Offset WH1080, WH3080: a console whose memory is read block by block. It writes what it measures there every
 // 48 s, goes on to the next record every few minutes, and may lock up when it is read at that moment (only a power
-// cycle helps then). Blocks: drivers/decode/hid/fineoffset.hpp. Source: ../shared/sensors.md 2.3; weewx fousb.py ("USB
+// cycle helps then). Blocks: drivers/decode/hid/fineoffset.hpp. Source: drivers/SOURCES.md S2.3; weewx fousb.py ("USB
 // lockups", polling).
 //
-// So it is read once for each time that it writes. When that is, is looked for at first, by reading a few times in one
-// period of 48 s until the record changes, and looked for again every six hours, since clocks drift. A block counts
-// when it was read twice alike; one that was not was just being written. That a round of reading always begins with the
-// fixed block, and ends with the record, keeps a late answer to one from being taken for the other.
+// So it is read once for each time that it writes. That moment is determined at first, by reading a few times in one
+// period of 48 s until the record changes, and again every six hours, since clocks drift. A block is accepted when two
+// reads of it are equal; otherwise it was just being written. Each round of reading begins with the fixed block and
+// ends with the record, so that a late answer to one is not taken for the other.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -254,7 +254,7 @@ class FineOffsetStation final : public HidStation {
 
   int search_steps_ = 0;  ///< looks of the search for the sensor clock
   MonoTime searched_{};   ///< when the last search ended
-  MonoTime told_{};       ///< the last look whose wind was told
+  MonoTime told_{};       ///< the last read whose wind was published
   MonoTime last_news_{};  ///< the last look that found any change
   MonoTime due_{};        ///< when the next look should be, if the console does not write just then
   int failures_ = 0;      ///< in a row

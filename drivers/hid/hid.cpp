@@ -1,14 +1,14 @@
-// USB weather stations that are HID devices. Their reports stand in drivers/decode, their conversations in
-// drivers/stations, one file a family:
+// USB weather stations that are HID devices. Their reports are decoded in drivers/decode, their protocols run in
+// drivers/stations, one file per family:
 //
-//   station      USB id      speaks                     wind every
+//   station      USB id      sends                      wind every
 //   wmr100       0fde:ca01   by itself                  14 s       Oregon Scientific WMR100, WMR88, RMS300, RMS600 ...
 //   wmr300       0fde:ca08   while it gets a heartbeat  2.75 s     Oregon Scientific WMR300
 //   fineoffset   1941:8021   when asked                 48 s       Fine Offset WH1080, WH2080, WH3080 and their clones
 //   acurite      24c0:0003   when asked                 18 s       AcuRite 01025, 01035, 01036, 02032, 02064
 //   te923        1130:6801   when asked                 33 s       Hideki TE923: Meade, TFA Nexus, Mebus, IROX
 //
-// Source: ../shared/sensors.md 2.
+// Source: drivers/SOURCES.md S2.
 #include <algorithm>
 #include <array>
 #include <string>

@@ -32,7 +32,7 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
   if (talk.now() < next_step_) return look_after(talk);
 
   const Result<StationStep, Failure> step = station_->step(talk);
-  if (is_interrupted_) return talk.now();  // whatever the step says, it was cut short
+  if (is_interrupted_) return talk.now();  // the step's result does not count: it was cut short
   if (!step) return Failure{name_ + " " + (step.error().message.empty() ? why_useless(talk) : step.error().message)};
   if (step->health == StationHealth::kWell) is_well(sink, name_);
   if (step->health == StationHealth::kUnwell) is_unwell(sink, name_ + " " + step->trouble);

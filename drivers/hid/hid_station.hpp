@@ -13,14 +13,14 @@
 
 namespace yuragi {
 
-/// How a station is doing, as far as one step shows.
+/// The state of a station after one step.
 enum class StationHealth : std::uint8_t {
   kSame,    ///< as before
   kWell,    ///< it gave a wind
-  kUnwell,  ///< it is there, but does not say what it should
+  kUnwell,  ///< it is there, but sends no valid wind
 };
 
-/// What came of one step of a conversation.
+/// The result of one step of the protocol.
 struct StationStep {
   MonoTime next;  ///< when the next step is due
   StationHealth health = StationHealth::kSame;
@@ -33,20 +33,20 @@ struct StationStep {
   }
 };
 
-/// The conversation with one family of stations, from the moment that the device was opened: made anew each time.
+/// The protocol of one family of stations, from the moment that the device was opened: made anew each time.
 class HidStation {
  public:
   virtual ~HidStation() = default;
 
-  /// The next piece of the conversation, no longer than the station's own time-out. The failure says why the device
-  /// must be opened again; an empty message: it is gone, or takes nothing.
+  /// The next step of the protocol, no longer than the station's own time-out. On failure the device must be opened
+  /// again; the text is the reason, empty if it is gone or takes nothing.
   virtual Result<StationStep, Failure> step(HidTalk& talk) = 0;
 };
 
 /// When a station does what.
 struct StationTiming {
   double pace = 1.0;             ///< how many times as fast as a real one it runs: above 1 for simulated ones alone
-  Nanoseconds poll_interval{0};  ///< from one question to the next; 0: the station's own
+  Nanoseconds poll_interval{0};  ///< from one request to the next; 0: the station's own
 
   /// A duration of the real station as it is here.
   Nanoseconds paced(Nanoseconds duration) const { return from_seconds(seconds(duration) / pace); }

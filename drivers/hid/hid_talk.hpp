@@ -11,13 +11,13 @@
 
 namespace yuragi {
 
-/// What came of listening.
+/// The result of a read.
 struct HidMessage {
   HidStatus status = HidStatus::kSilence;
   ByteSpan bytes;  ///< for kReport; until the talk's next message
 };
 
-/// A station's device, clock and sink, for the time of one poll(): whatever goes to and fro is shown to the sink.
+/// A station's device, clock and sink, for the time of one poll(): every message is shown to the sink.
 /// Owns nothing. Thread-safe: no.
 class HidTalk {
  public:
@@ -30,7 +30,7 @@ class HidTalk {
   bool send(std::span<const std::uint8_t> bytes);
   HidMessage get_input_report(std::uint8_t id, std::size_t size);
 
-  /// Throws away what came before anybody asked: late answers. False: the device is gone.
+  /// Discards reports that came before the request: late answers. False: the device is gone.
   bool discard_waiting();
 
   void refuse(Refusal why) { sink_.refused(why); }

@@ -1,5 +1,5 @@
 // Hideki TE923: asked for a block of its memory, answers in several reports, and wants them acknowledged. The wind in
-// it is new every 33 s. Blocks: drivers/decode/hid/te923.hpp. Source: ../shared/sensors.md 2.5.
+// it is new every 33 s. Blocks: drivers/decode/hid/te923.hpp. Source: drivers/SOURCES.md S2.5.
 #include <array>
 
 #include "drivers/decode/hid/te923.hpp"

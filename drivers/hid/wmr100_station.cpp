@@ -1,5 +1,5 @@
 // Oregon Scientific WMR100: it sends a stream of frames by itself once it was sent a start report, the wind about every
-// 14 s. Reports and frames: drivers/decode/hid/wmr100.hpp. Source: ../shared/sensors.md 2.1.
+// 14 s. Reports and frames: drivers/decode/hid/wmr100.hpp. Source: drivers/SOURCES.md S2.1.
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/hid/hid_station.hpp"
 
@@ -47,7 +47,7 @@ class Wmr100Station final : public HidStation {
     }
   }
 
-  /// It speaks. Of the wind, too?
+  /// It sends frames. Those of the wind, too?
   void miss_the_wind(StationStep& step) const {
     if (step.next - wind_ < timing_.paced(kWmr100NoWind)) return;
     step.health = StationHealth::kUnwell;

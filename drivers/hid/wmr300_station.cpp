@@ -1,8 +1,7 @@
-// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, once it was told to begin and for as
-// long as it gets a heartbeat every 20 s and each data packet is acknowledged. Packets: drivers/decode/hid/wmr300.hpp.
-// Source:
-// ../shared/sensors.md 2.2; weewx wmr300.py (a console that has fallen silent comes back when the device is opened
-// again).
+// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, once it was asked to begin and for
+// as long as it gets a heartbeat every 20 s and each data packet is acknowledged. Packets:
+// drivers/decode/hid/wmr300.hpp. Source: drivers/SOURCES.md S2.2; weewx wmr300.py (a console that has fallen silent
+// comes back when the device is opened again).
 #include "drivers/decode/hid/wmr300.hpp"
 #include "drivers/hid/hid_station.hpp"
 
@@ -45,7 +44,7 @@ class Wmr300Station final : public HidStation {
     if (is_sound) heard_ = step.next;
     if (!wants_wmr300_acknowledgement(packet)) {
       if (!is_sound) talk.refuse(Refusal::kMalformed);
-      // It says who it is. If no data came since the heartbeat before, it wants to be told to begin.
+      // It identifies itself. If no data came since the heartbeat before, it must be asked to begin.
       const bool is_idle = step.next - data_ > timing_.paced(kWmr300HeartbeatEvery) / 2;
       return !is_wmr300_identity(packet) || !is_idle || talk.send(encode_wmr300_begin(packet));
     }

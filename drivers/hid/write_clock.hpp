@@ -6,15 +6,16 @@
 
 namespace yuragi {
 
-/// When a console does something that it does at regular intervals, learned from outside: by looks at it that find that
-/// it has happened since the look before. What is known is an interval of time, narrowed by every further look. Two
-/// clocks drift apart: its owner lets it forget from time to time. Thread-safe: no. Realtime-safe: yes.
+/// When a console does something that it does at regular intervals, learned from outside: by reads that find that it
+/// has happened since the read before. The result is an interval of time, narrowed by every further read. Two clocks
+/// drift apart: its owner resets it from time to time. Thread-safe: no. Realtime-safe: yes.
 class WriteClock {
  public:
   /// `period`: from one time to the next. `margin`: how far to keep away, before and after.
   WriteClock(Nanoseconds period, Nanoseconds margin) : period_(period), margin_(margin) {}
 
-  /// It happened after `from` and not later than `to`. Looks that are a period or more apart teach nothing: false.
+  /// It happened after `from` and not later than `to`. Reads that are a period or more apart carry no information:
+  /// false.
   bool happened_between(MonoTime from, MonoTime to);
 
   void forget() { window_.reset(); }

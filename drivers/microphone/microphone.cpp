@@ -1,5 +1,5 @@
-// A bare microphone outdoors as an anemometer: what it hears of the wind is pressure, whose root mean square in a low
-// band goes as a power of the speed. One to four channels, by PortAudio, in a process of its own.
+// A bare microphone outdoors as an anemometer: wind is stagnation pressure at the microphone, whose root mean square in
+// a low band goes as a power of the speed. One to four channels, by PortAudio, in a process of its own.
 //
 //   mic-worker (process)                                this driver
 //   PortAudio -> SpscRing -> band powers, cross powers -> pipe -> coherence, noise floor, calibration -> WindReading

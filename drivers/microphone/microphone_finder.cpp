@@ -1,5 +1,5 @@
-// What `yuragi sensors list` says of microphones: the worker is asked, in a process of its own, since a sound system
-// may hang while it looks at its devices.
+// The microphones of `yuragi sensors list`: listed by the worker, in a process of its own, since a sound library may
+// hang while it enumerates devices.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -24,7 +24,7 @@ constexpr std::string_view kProgram = "yuragi";
 constexpr auto kListTimeout = std::chrono::seconds(10);
 constexpr std::size_t kMostText = 1U << 16U;
 
-/// All that a program says until it ends; what it has said by then if it takes too long.
+/// The output of a program until it ends, or until it takes too long.
 std::string output_of(BytePort& port) {
   std::string text;
   if (!port.open()) return text;
@@ -61,7 +61,7 @@ std::string quoted(std::string_view text) {
   return out + "\"";
 }
 
-/// Inputs that the system has and we may not open: PortAudio leaves them out without a word.
+/// Inputs that the system has and this user may not open: PortAudio omits them silently.
 void add_forbidden(std::vector<FoundDevice>& found) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator("/dev/snd", none)) {

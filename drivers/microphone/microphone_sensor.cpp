@@ -8,7 +8,7 @@
 namespace yuragi {
 namespace {
 
-/// A time stamp that is not within this of now is of another clock, or of a worker that dreams.
+/// A time stamp farther than this from now is of another clock, or wrong.
 constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
 }  // namespace
@@ -74,8 +74,8 @@ void MicrophoneSensor::take(const MicFrameReader::Item& item, const Clock& clock
   }
 }
 
-/// A stream begins. What an earlier one taught (the noise of a calm, automatic gain, gusts) is kept where it has the
-/// same shape.
+/// A stream begins. What was estimated from an earlier one (the noise of a calm, automatic gain, gusts) is kept if its
+/// format is the same.
 void MicrophoneSensor::take(const MicHello& hello) {
   if (estimator_ && estimator_->hello() == hello) {
     estimator_->restart();
@@ -107,7 +107,7 @@ void MicrophoneSensor::take(const MicBlock& block, const Instant& now, SensorSin
 
 void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now,
                                SensorSink& sink) {
-  // The block's stamp is of the system's monotonic clock; it is only believed where that can be ours.
+  // The block's stamp is of the system's monotonic clock; it is only used where that can be ours.
   const MonoTime end{Nanoseconds(block.end_mono_ns)};
   const bool is_ours = end <= now.mono && now.mono - end < kBelievableAge;
   const Nanoseconds age =

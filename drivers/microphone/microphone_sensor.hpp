@@ -17,13 +17,13 @@ namespace yuragi {
 struct MicrophoneSettings {
   MicEstimatorOptions estimator{};
   bool is_calibrated = false;                            ///< if not, every reading is uncertain
-  Nanoseconds start_timeout = std::chrono::seconds(15);  ///< for the worker's first word: sound systems begin slowly
+  Nanoseconds start_timeout = std::chrono::seconds(15);  ///< for the worker's first frame: sound systems start slowly
   Nanoseconds sound_timeout = std::chrono::seconds(3);   ///< from block to block, of which there are four a second
 };
 
-/// The wind that a microphone hears. The sound system lives in another process, the worker, whose frames come through
-/// `port`; this is its watchdog: a worker that ends, says nothing sensible in time, or says what is wrong is killed and
-/// begun anew, for ever. A reading a block, timed by the middle of the window that it is the mean of.
+/// Wind by microphone. The sound library runs in another process, the worker, whose frames come through `port`; this is
+/// its watchdog: a worker that ends, sends no valid frame in time, or reports a failure is killed and started again,
+/// without limit. One reading per block, with the time of the middle of the window that it is the mean of.
 class MicrophoneSensor final : public ReopeningSensor {
  public:
   MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<BytePort> port);
@@ -47,7 +47,7 @@ class MicrophoneSensor final : public ReopeningSensor {
   MicFrameReader reader_;
   std::optional<MicHello> hello_;
   std::optional<MicEstimator> estimator_;
-  std::string trouble_;  ///< the worker's last word
+  std::string trouble_;  ///< the worker's last message
   MonoTime deadline_{};
   std::array<std::uint8_t, 8192> buffer_{};
 };

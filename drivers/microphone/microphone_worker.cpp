@@ -23,7 +23,7 @@ namespace {
 constexpr Nanoseconds kSoundTimeout = std::chrono::milliseconds(1500);
 constexpr Nanoseconds kTurn = std::chrono::milliseconds(20);
 
-/// Writes all of it. False: nobody reads any more.
+/// Writes all of it. False: the reader has closed the pipe.
 bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t size = write(descriptor, bytes.data(), bytes.size());
@@ -34,7 +34,7 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// The pieces of a stream, made into blocks with the time at which they were heard.
+/// The pieces of a stream, made into blocks with the time at which they were recorded.
 class Listener {
  public:
   Listener(const MicAnalyserOptions& options, std::string device)

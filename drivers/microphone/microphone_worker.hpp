@@ -9,18 +9,18 @@
 
 namespace yuragi {
 
-/// What the worker process of a microphone is to do.
+/// The options of a microphone's worker process.
 struct MicWorkerOptions {
   AudioChoice choice{};
   double low_hz = 20.0;  ///< the wind's band
   double high_hz = 200.0;
 };
 
-/// The work of `yuragi mic-worker`: hears the microphone and says what it hears in frames
-/// (drivers/decode/microphone/mic_frame.hpp) to `output`, until nobody reads them any more, the device stops, or
-/// `is_over`. It gives up soon, and says why: a process that is begun anew is the one cure that PortAudio has.
+/// The work of `yuragi mic-worker`: records the microphone, analyses the sound and writes frames
+/// (drivers/decode/microphone/mic_frame.hpp) to `output`, until the reader closes it, the device stops, or `is_over`.
+/// After an error it ends soon and reports why: restarting the process is the only reliable recovery of PortAudio.
 ///
-/// Blocks. Returns true if it was told to end, false if the microphone failed (a trouble frame has said how). The
+/// Blocks. Returns true if it was asked to end, false if the microphone failed (a trouble frame has the reason). The
 /// caller then ends the process without destroying `input`, whose library may hang.
 bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, const Clock& clock, int output,
                            const std::atomic<bool>& is_over);

@@ -11,8 +11,8 @@
 namespace yuragi {
 namespace {
 
-/// Silence on a connection that was dropped without a word looks like a device that is slow: this many requests in a
-/// row decide.
+/// A connection that was dropped silently looks like a slow device: after so many requests in a row without an answer
+/// it is taken for lost.
 constexpr int kSilentRequestsBeforeReopen = 3;
 
 ModbusTrouble trouble(ModbusTrouble::Kind kind) {
@@ -32,7 +32,7 @@ std::string settings_of(const ModbusLine& line) {
   return fmt::format("{} 8{}{}", line.baud, line.parity, line.stop_bits);
 }
 
-/// What two names of one line have in common.
+/// The key of a line: the same for all its names.
 std::string address_of(const ModbusLine& line) {
   if (line.framing == ModbusFraming::kTcp) return describe(line);
   std::error_code ignored;
@@ -42,7 +42,7 @@ std::string address_of(const ModbusLine& line) {
 
 }  // namespace
 
-/// A place in the queue: begins at its end, and is over when this is. The first in the queue has the line.
+/// A place in the queue: taken at its end, and left when this object is destroyed. The first in the queue has the line.
 class ModbusBus::Turn {
  public:
   Turn(ModbusBus& bus, const Interruption& interruption) : bus_(bus) {
@@ -108,7 +108,7 @@ void ModbusBus::keep_gap(Nanoseconds min_gap) {
 }
 
 Result<MonoTime, Failure> ModbusBus::open(const Interruption& interruption, const Clock& clock) {
-  // Mostly it is open, and then nobody has to wait to hear so.
+  // Mostly it is open, and this returns without waiting for the turn.
   const auto open_since = [this] {
     const std::lock_guard lock(mutex_);
     return open_since_;
@@ -140,7 +140,7 @@ ModbusBus::Answer ModbusBus::ask(ModbusRequest request, const ModbusPatience& pa
   request.transaction = ++transaction_;
   const Answer answer = exchange(request, patience, interruption, sink);
 
-  // What was not answered may be yet.
+  // A request that was not answered may still be.
   const MonoTime now = clock.now().mono;
   turn.begin_gap(now);
   const bool may_come_late = !answer && (answer.error().kind == kSilence || answer.error().kind == kOthersOnly ||
@@ -223,7 +223,7 @@ ModbusTrouble ModbusBus::fail(BusStatus status, bool heard_others, SensorSink& s
   return trouble(kLost);
 }
 
-/// A message came, and it is no use. Where one TCP message ends and the next begins is not known any more.
+/// A message came and was refused. Where one TCP message ends and the next begins is not known any more.
 ModbusTrouble ModbusBus::refuse(const ModbusRefusal& refusal, SensorSink& sink) {
   sink.refused(refusal.why);
   if (refusal.why != Refusal::kException && line_.framing == ModbusFraming::kTcp) close_line();

@@ -14,12 +14,12 @@
 
 namespace yuragi {
 
-/// Why a question brought no registers. What could be counted has been.
+/// Why a request brought no registers. Refusals have been counted.
 struct ModbusTrouble {
   enum class Kind : std::uint8_t {
     kSilence,      ///< nothing came in time
-    kOthersOnly,   ///< others were heard, and not whom we asked
-    kRefused,      ///< a message came that is no use: `refusal`
+    kOthersOnly,   ///< only messages of other slaves came
+    kRefused,      ///< a message was refused: `refusal`
     kLost,         ///< the connection is gone
     kInterrupted,  ///< the interruption was set
   };
@@ -30,13 +30,13 @@ struct ModbusTrouble {
 /// One line with Modbus devices: a serial port, or a host and port. All sensors on that line share it, each from a
 /// thread of its own, and are served one after the other in the order in which they asked.
 ///
-/// A late answer to one request is never taken for that to another. Over TCP each request has a number of its own. On a
-/// serial line nothing tells them apart but the slave's id, so whoever did not answer in time is to be let be for
-/// another response time-out (ready_at()), and after any trouble nothing is sent before the line has been quiet. A
-/// device that is slower than two time-outs needs a longer one.
+/// A late answer to one request is never taken for that to another. Over TCP each request has a transaction id. On a
+/// serial line only the slave's id distinguishes answers, so a slave that did not answer in time is not asked again for
+/// another response time-out (ready_at()), and after any error nothing is sent before the line has been quiet. A device
+/// that is slower than two time-outs needs a longer one.
 ///
-/// Thread-safe: yes. Whoever waits, waits for those before him, each for one response time-out at most; his
-/// `interruption` ends that.
+/// Thread-safe: yes. A caller waits for those before it, each for one response time-out at most; its `interruption`
+/// ends that.
 class ModbusBus {
  public:
   using Answer = Result<ModbusRegisters, ModbusTrouble>;
@@ -47,13 +47,13 @@ class ModbusBus {
   const std::string& where() const noexcept { return where_; }
   ModbusFraming framing() const noexcept { return line_.framing; }
 
-  /// Can sensors share it that want it so? The failure says what differs.
+  /// Can sensors with these settings share it? The failure's text says what differs.
   Result<void, Failure> suits(const ModbusLine& line) const;
 
-  /// From an answer to the next request, whoever sends it: the longest that anybody has asked for holds.
+  /// From an answer to the next request, of any sensor: the longest gap asked for is kept.
   void keep_gap(Nanoseconds min_gap);
 
-  /// Opens the line if it is not open. Returns when that was, or says why it failed and what to do.
+  /// Opens the line if it is not open. Returns when that was; the failure's text: why, and what to do.
   Result<MonoTime, Failure> open(const Interruption& interruption, const Clock& clock);
 
   /// From when on a device may be asked; a time that has passed, mostly.
@@ -67,7 +67,7 @@ class ModbusBus {
   /// How many have asked and not been answered yet.
   std::size_t waiting_count() const;
 
-  /// To be called after an interruption was set, so that whoever waits for his turn with it looks at it.
+  /// To be called after an interruption was set, so that a caller that waits for its turn notices it.
   void wake_waiters() noexcept;
 
  private:
@@ -91,17 +91,17 @@ class ModbusBus {
   std::array<MonoTime, 256> unit_ready_at_{};  ///< when a late answer of that unit is over
   std::optional<MonoTime> open_since_;         ///< empty: the line is not open
 
-  // Of whoever has the turn.
+  // Of the caller that has the turn.
   std::unique_ptr<ModbusConnection> connection_;
   bool is_unsettled_ = true;  ///< something may still be under way on the line
-  int silent_requests_ = 0;   ///< in a row, whomever they asked
+  int silent_requests_ = 0;   ///< in a row, to any slave
   std::uint16_t transaction_ = 0;
   std::array<std::uint8_t, kModbusMaxMessage> buffer_{};
 };
 
-/// The bus of that line: the one that somebody holds already, or a new one. A serial port is known by what its name
-/// leads to. Throws std::runtime_error where it is in use with another baud rate, parity or number of stop bits.
-/// Thread-safe: yes.
+/// The bus of that line: the existing one, if another sensor has it, or a new one. A serial port is identified by the
+/// device that its name links to. Throws std::runtime_error where it is in use with another baud rate, parity or number
+/// of stop bits. Thread-safe: yes.
 std::shared_ptr<ModbusBus> shared_modbus_bus(const ModbusLine& line);
 
 }  // namespace yuragi

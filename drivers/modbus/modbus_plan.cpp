@@ -26,7 +26,7 @@ std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead&
     return std::nullopt;
   }
 
-  // Registers from the first to the last of both, and how many of them nobody asked for.
+  // Registers from the first to the last of both, and how many of them are not needed.
   const int begin = std::min(one.request.address, other.request.address);
   const int end = std::max(one.request.address + one.request.count, other.request.address + other.request.count);
   const int count = end - begin;

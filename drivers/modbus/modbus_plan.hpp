@@ -11,7 +11,7 @@ namespace yuragi {
 
 enum class ModbusMeasure : std::uint8_t { kSpeed, kDirection, kGust };
 
-/// One request, and what its answer tells.
+/// One request, and the quantities in its answer.
 struct ModbusRead {
   ModbusRequest request;
   std::vector<ModbusMeasure> measures;
@@ -24,7 +24,7 @@ struct ModbusRead {
 /// `is_direction_apart`: the direction is on a line of its own.
 std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_direction_apart = false);
 
-/// Where the profile says that `measure` stands; it must have it.
+/// The quantity of `measure` in the profile, which must have it.
 const ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure);
 
 /// The part of an answer to `request` that belongs to `quantity`.

@@ -14,7 +14,7 @@ namespace {
 
 using Registers = Result<ModbusRegisters, ModbusRefusal>;
 
-/// How long a line must be quiet between two questions: shorter than in service, since most of them meet silence.
+/// How long a line must be quiet between two requests: shorter than in service, since most stay unanswered.
 constexpr Nanoseconds kProbeQuiet = std::chrono::milliseconds(20);
 
 /// What nearly every device has: a first register of the one kind or the other.
@@ -35,7 +35,7 @@ bool is_home_of(const ModbusLine& line, const ModbusProfile& profile) {
          (line.baud == profile.baud && line.parity == profile.parity && line.stop_bits == profile.stop_bits);
 }
 
-/// One open line, which is asked whatever is to be known, and nothing twice.
+/// One open line. Answers are cached, so that nothing is requested twice.
 class ProbedLine {
  public:
   ProbedLine(const ModbusLine& line, Nanoseconds response_timeout, const Interruption& interruption)
@@ -60,7 +60,7 @@ class ProbedLine {
     constexpr ModbusRefusal kSilence{Refusal::kTimeout};
     std::array<std::uint8_t, kModbusMaxMessage> buffer{};
     request.transaction = ++transaction_;
-    // A TCP peer that says no Modbus may hang up.
+    // A TCP peer that is no Modbus server may close the connection.
     if (!connection_->is_open() && !connection_->open(interruption_)) return kSilence;
     connection_->settle(buffer, patience_, interruption_);
     if (!connection_->send(request, patience_)) {
@@ -84,13 +84,13 @@ class ProbedLine {
   std::uint16_t transaction_ = 0;
 };
 
-/// Is somebody there who said this? A gateway's word that nobody is does not count.
+/// Does this answer come from a slave? A gateway's exception that none is there does not count.
 bool is_sign_of_life(const Registers& answer) {
   return answer || (answer.error().why == Refusal::kException && !is_gateway_silence(answer.error().exception));
 }
 
-/// Enters what one answer tells into `fit`. False: it makes no sense. A mark for "no value" does, but not in place of
-/// the speed.
+/// Enters the value of one answer into `fit`. False: it is not plausible. A mark for "no value" does, but not in place
+/// of the speed.
 bool take(const ModbusProfile& profile, const ModbusRead& read, const ModbusRegisters& registers, ModbusFit& fit) {
   for (const ModbusMeasure measure : read.measures) {
     const ModbusQuantity& quantity = quantity_of(profile, measure);
@@ -106,7 +106,7 @@ bool take(const ModbusProfile& profile, const ModbusRead& read, const ModbusRegi
   return true;
 }
 
-/// What the profile reads on that line, if all those reads are answered and make sense.
+/// The profile's values on that line, if all of its reads are answered with plausible values.
 std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& profile,
                                 const std::vector<ModbusRead>& reads, ProbedLine& line) {
   ModbusFit fit{.profile = name,
@@ -124,7 +124,7 @@ std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& pr
   return fit;
 }
 
-/// What the vane of a pair would say if it had this id.
+/// The reading of a pair's vane, if it had this id.
 std::optional<ModbusFit> vane_fit_of(const NamedModbusProfile& named, std::uint8_t id, ProbedLine& line) {
   ModbusProfile profile = named.profile;
   profile.direction->slave = id;
@@ -134,8 +134,8 @@ std::optional<ModbusFit> vane_fit_of(const NamedModbusProfile& named, std::uint8
   return fit_of(named.name, profile, reads, line);
 }
 
-/// Does anybody of this id answer? Devices that pass over what they do not have are asked for what their own profile
-/// reads, where they would be at home.
+/// Does a slave of this id answer? Devices that ignore requests for registers that they do not have are asked for those
+/// of their own profile, with its line settings.
 bool answers_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
   for (ModbusRequest knock : kKnocks) {
     knock.unit = id;
@@ -155,7 +155,7 @@ std::vector<ModbusFit> fits_of(std::uint8_t id, const ModbusLine& settings, cons
   std::vector<ModbusFit> fits;
   for (const NamedModbusProfile& named : plan.profiles) {
     if (interruption.is_set() || has_side_effects(named.profile)) continue;
-    // One of several slaves is looked for where the profile says that they are.
+    // One of several slaves is searched for under the profile's ids.
     const bool is_pair = !has_one_slave(named.profile);
     if (is_pair && named.profile.speed.slave != id) continue;
     ModbusProfile profile = named.profile;

@@ -23,10 +23,10 @@ struct ModbusProbePlan {
   std::vector<std::uint8_t> ids;  ///< slaves to ask
   std::vector<NamedModbusProfile> profiles;
   Nanoseconds response_timeout = std::chrono::milliseconds(200);
-  bool tries_all_lines = false;  ///< go on after a line on which somebody answered
+  bool tries_all_lines = false;  ///< go on after a line on which a slave answered
 };
 
-/// A profile that makes sense of what a device answers.
+/// A profile whose registers a device answers with plausible values.
 struct ModbusFit {
   std::string profile;  ///< by the name that a configuration uses
   std::string device;
@@ -46,14 +46,14 @@ struct ModbusHit {
       fits;  ///< the best first; none: a device that no profile knows. Vanes only where nothing else fits
 };
 
-/// Tells of the progress: what is about to be tried, and how much of all that has been done, 0 to 1.
+/// Called with the progress: what is about to be tried, and the part of all that is done, 0 to 1.
 using ModbusProbeProgress = std::function<void(const ModbusLine& line, std::uint8_t id, double done)>;
-/// Told of each slave that was found, as soon as it is.
+/// Called with each slave that is found, at once.
 using ModbusProbeFound = std::function<void(const ModbusHit& hit)>;
 
-/// Asks every id on every line for a register or two, and whoever answers for what the profiles know. Reads only, and
-/// leaves out every profile in which a reading has side effects. Returns how many slaves were found, or why a line
-/// cannot be opened. Ends soon after `interruption` was set.
+/// Requests a register or two from every id on every line, and the profiles' registers from those that answer. Reads
+/// only, and leaves out every profile in which a reading has side effects. Returns how many slaves were found, or why a
+/// line cannot be opened. Ends soon after `interruption` was set.
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
                                   const ModbusProbeFound& found, const Interruption& interruption);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Takes values out of one table of the file, checks them, and knows what was never taken.
+/// Takes values out of one table of the file, checks them, and records which keys were taken.
 class TableReader {
  public:
   TableReader(const toml::table& table, std::string path, std::string_view file)
@@ -131,7 +131,7 @@ class TableReader {
     return {node != nullptr ? *node->as_table() : kEmpty, path_ + std::string(key) + ".", file_};
   }
 
-  /// Refuses whatever nobody asked for.
+  /// Refuses keys that were not taken.
   void finish() const {
     for (const auto& [key, node] : table_) {
       if (taken_.contains(std::string(key.str()))) continue;

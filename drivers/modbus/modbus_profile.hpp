@@ -15,8 +15,8 @@ namespace yuragi {
 /// The rates that a serial line may have, bit/s.
 inline constexpr std::array<std::int64_t, 8> kModbusBauds = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
-/// What a device says over Modbus and how it wants to be asked: one TOML file in drivers/modbus/profiles. README.md
-/// there lists the keys.
+/// A device's register map and request timing: one TOML file in drivers/modbus/profiles.
+/// drivers/modbus/profiles/README.md lists the keys, drivers/SOURCES.md S1 the devices and their documents.
 struct ModbusProfile {
   std::string name;      ///< of the device, for people
   std::string source;    ///< where its register map was read
@@ -27,12 +27,12 @@ struct ModbusProfile {
   char parity = 'N';  ///< N, E or O
   int stop_bits = 1;
 
-  Nanoseconds poll_interval = std::chrono::milliseconds(250);     ///< asking more often brings nothing new
+  Nanoseconds poll_interval = std::chrono::milliseconds(250);     ///< more frequent requests bring nothing new
   Nanoseconds min_gap{0};                                         ///< from an answer to the next request
   Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< longest wait for an answer
   Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< serial line: silence that ends a message
   Nanoseconds delay_after_open{0};                                ///< from opening to the first request
-  Nanoseconds warm_up{0};                                         ///< from opening until what it says can be believed
+  Nanoseconds warm_up{0};                                         ///< from opening until readings are valid
 
   bool block_read = true;         ///< registers that adjoin may be read by one request
   int block_gap = 0;              ///< so many registers between two quantities may be read along with them
@@ -47,7 +47,7 @@ struct ModbusProfile {
 /// used in that text only. Keys that no profile has are refused.
 ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file);
 
-/// The device has another id than the profile says: the speed moves there, and whatever else was on the same slave.
+/// The device has another id than in the profile: the speed moves there, and all else that was on the same slave.
 void set_slave(ModbusProfile& profile, std::uint8_t id);
 
 /// Finds and reads a profile: a path, if `name` contains '/' or ends in ".toml"; otherwise NAME.toml in `directory` (if

@@ -1,4 +1,4 @@
-// Where profiles are looked for.
+// Where profiles are searched for.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> profile_directories(const std::string& first) {
   std::vector<fs::path> directories;
   if (!first.empty()) directories.emplace_back(first);
-  // Read during set-up, when nobody changes the environment.
+  // Read during set-up, when no thread changes the environment.
   const char* const set = std::getenv("YURAGI_PROFILE_DIR");  // NOLINT(concurrency-mt-unsafe)
   if (set != nullptr && *set != '\0') {
     directories.emplace_back(set);

@@ -26,7 +26,7 @@ std::string without(const ModbusRead& read) {
                      has_gust ? "gust" : "");
 }
 
-/// Did the question take its whole time-out, or a gateway's?
+/// Did the request take its whole time-out, or a gateway's?
 bool has_cost_time(const ModbusTrouble& trouble) {
   return trouble.kind == ModbusTrouble::Kind::kSilence || trouble.kind == ModbusTrouble::Kind::kOthersOnly ||
          trouble.refusal.why == Refusal::kTooShort || is_silence_by_proxy(trouble);

@@ -16,8 +16,8 @@ namespace yuragi {
 /// along with it (direction, gust).
 ///
 /// Each round publishes one reading at most, timed when the speed arrived. Without a speed there is none; without a
-/// direction or gust it goes without. A slave that does not answer is asked less and less often, so that it slows
-/// nobody down: after waits that double from 0.25 s up to 10 s.
+/// direction or gust it goes without. A slave that does not answer is asked less and less often, so that it does
+/// not slow the others down: after waits that double from 0.25 s up to 10 s.
 class ModbusSensor final : public ReopeningSensor {
  public:
   /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
@@ -30,7 +30,7 @@ class ModbusSensor final : public ReopeningSensor {
  protected:
   Result<MonoTime, Failure> open(const Clock& clock) override;
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
-  /// The line may be another sensor's too: the bus itself closes what is of no use any more.
+  /// The line may be shared: the bus itself closes it when it has failed.
   void close() noexcept override {}
 
  private:
@@ -39,7 +39,7 @@ class ModbusSensor final : public ReopeningSensor {
     ModbusRead what;
     ModbusBus* bus;
     Backoff backoff;
-    MonoTime not_before{};  ///< its slave has not answered: let it be until then
+    MonoTime not_before{};  ///< its slave has not answered: not asked before
     std::string trouble;    ///< why the readings come without it; empty if they do not
   };
 

@@ -1,6 +1,6 @@
 // Wind that somebody publishes on an MQTT broker (OASIS, "MQTT Version 3.1.1", 2014): a home's weather station, a
 // gateway, a microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own.
-// What is common has a preset, which single settings change:
+// Common publishers have a preset, which single settings override:
 //
 //   preset     topic               speed                 direction           gust              unit
 //   number     (yours, one each)   the payload is the number                                   m/s
@@ -12,8 +12,8 @@
 // tasmota/xsns_35_tx20.ino, Tx2xShow (TX20 in place of TX23 for the older sensor; its SpeedUnit is km/h unless it was
 // changed); merbanan/rtl_433 src/devices/fineoffset_ws80.c, as for most wind sensors; windnerd.net/docs, MQTT.
 //
-// A retained message was kept by the broker for whoever comes: nobody knows how old it is, and it is never taken for
-// the wind of now.
+// A retained message was kept by the broker for later subscribers: its age is unknown, and it is never taken for the
+// live wind.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -169,7 +169,7 @@ class MqttSensor final : public ReopeningSensor {
     if (status == MqttStatus::kLost) return Failure{client_->trouble()};
     if (status == MqttStatus::kMessage) take(message, now, sink);
     if (now.mono - heard_at_ >= settings_.silence) {
-      has_heard_ = true;  // what is told now is more than that it waits
+      has_heard_ = true;  // the status now reports more than waiting
       is_unwell(sink, fmt::format("no wind has come on {} for {:g} s: check that whoever publishes it runs", where_,
                                   seconds(settings_.silence)));
     }
@@ -185,8 +185,7 @@ class MqttSensor final : public ReopeningSensor {
     if (message.is_retained) return sink.refused(Refusal::kInvalid);
     const std::string_view payload(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
 
-    // A direction and a gust wait for the next speed; one that cannot be read takes the place of the last one all the
-    // same.
+    // A direction and a gust are kept until the next speed; one that cannot be read still replaces the last one.
     for (const auto& [source, held] : {std::pair{&settings_.direction, &direction_}, {&settings_.gust, &gust_}}) {
       if (!mqtt_topic_matches(message.topic, source->topic)) continue;
       const auto number = number_in(payload, source->place);
@@ -256,7 +255,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   if (settings.speed.topic.empty())
     throw std::runtime_error("topic: is missing; give the topic that the speed is published on");
 
-  // Without a topic of its own a quantity comes with the speed, if anything says where in the message it stands.
+  // Without a topic of its own a quantity comes with the speed, if its place in the message is configured.
   const auto source_of = [&](std::string_view topic, std::string_view path, std::string_view preset_path) {
     MqttSource source = {values.text(topic), {text_or(path, preset_path)}};
     if (source.topic.empty() && source.place.is_json()) source.topic = settings.speed.topic;

@@ -19,10 +19,10 @@ struct PayloadPlace {
 /// Is it a JSON pointer, or empty?
 bool is_json_pointer(const std::string& text);
 
-/// The number at that place; nothing where a JSON payload does not have the place, or has null there. A text that is a
-/// number is one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends it (unavailable,
-/// unknown, none, an empty payload). kMalformed: not JSON, or something else there. Never throws for any payload.
-/// Thread-safe: yes.
+/// The number at that place; nothing where a JSON payload does not have the place, or has null there. Text that reads
+/// as a number counts as one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends it
+/// (unavailable, unknown, none, an empty payload). kMalformed: not JSON, or something else there. Never throws for any
+/// payload. Thread-safe: yes.
 Result<std::optional<double>, Refusal> number_in(std::string_view payload, const PayloadPlace& place);
 
 }  // namespace yuragi

@@ -3,8 +3,8 @@
 //
 //   oscsend HOST 9000 /wind ff 4.2 270        speed in m/s, and where it comes from in degrees
 //
-// Any address and any order of the arguments will do; they are numbers of any of OSC's types. What is no number, or
-// missing, is not known.
+// Address and order of the arguments are configurable; they are numbers of any of OSC's types. An argument that is no
+// number, or missing, is an unknown value.
 #include <array>
 #include <stdexcept>
 
@@ -131,7 +131,7 @@ class OscSensor final : public ReopeningSensor {
     if (arrival.status == ByteStatus::kForeign) sink.refused(Refusal::kNotMine);
     if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
     if (now.mono - heard_at_ >= settings_.silence) {
-      has_heard_ = true;  // what is told now is more than that it waits
+      has_heard_ = true;  // the status now reports more than waiting
       is_unwell(sink, fmt::format(
                           "no wind has come to {} for {:g} s: check that the sender runs, that it sends {} there, and "
                           "that no firewall stops it",

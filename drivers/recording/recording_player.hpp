@@ -8,7 +8,7 @@
 
 namespace yuragi {
 
-/// What a recording that plays is to do.
+/// A request to a recording that plays.
 struct PlayerOrder {
   enum class Kind : std::uint8_t { kPause, kResume, kStep, kSeek, kRate };
   Kind kind = Kind::kPause;
@@ -17,7 +17,7 @@ struct PlayerOrder {
   double rate = 1.0;        ///< kRate: above 0
 };
 
-/// How a recording that plays does.
+/// The status of a recording that plays.
 struct PlayerReport {
   std::string file;
   std::optional<PlayerPosition> position;  ///< nothing while it cannot be read
@@ -31,7 +31,7 @@ class RecordingPlayer {
  public:
   virtual ~RecordingPlayer() = default;
 
-  /// Takes an order, and answers its number, counted from 1; nothing where too many wait.
+  /// Queues an order and returns its number, counted from 1; nothing where the queue is full.
   virtual std::optional<std::uint64_t> order(const PlayerOrder& order) = 0;
 
   /// As of the last poll().

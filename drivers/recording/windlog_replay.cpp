@@ -103,7 +103,7 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   }
 
  private:
-  /// What the link tells about.
+  /// What the link state is reported about.
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
   void carry_out_orders(const Instant& now) {
@@ -140,7 +140,7 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
     }
   }
 
-  /// Tells the link when what it does has changed.
+  /// Reports the link state when it has changed.
   void tell(SensorSink& sink) {
     const Doing doing = player_->is_finished() ? Doing::kFinished
                         : player_->is_paused() ? Doing::kPaused

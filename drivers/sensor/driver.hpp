@@ -22,10 +22,10 @@ struct DriverDescription {
   /// What is plugged in that this driver could read; nullptr where there is nothing to plug in. Opens nothing for
   /// longer than it takes to look at it.
   std::vector<FoundDevice> (*find)() = nullptr;
-  /// It plays what was recorded: nobody may take it for the wind of now.
+  /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
-  /// How its readings rise and fall is to be believed, but not their scale, which depends on where it hangs: it is
-  /// compared with no other sensor, and beside others only its gusts count, unless the configuration says otherwise.
+  /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it
+  /// hangs. It is compared with no other sensor, and beside others only its gusts count, unless configured otherwise.
   bool is_relative = false;
 };
 

@@ -9,11 +9,11 @@
 
 namespace yuragi {
 
-/// A sensor whose device comes and goes: finds and opens it, works with it for as long as it lasts, and opens it again
-/// for ever, after waits that double from 0.25 s up to 10 s, each a little shorter at random. What a driver adds is the
+/// A sensor whose device may come and go: finds and opens it, works with it until it fails, and opens it again, without
+/// limit, after waits that double from 0.25 s up to 10 s, each a little shorter at random. A driver implements the
 /// device.
 ///
-/// The waits begin small again once the device has said something of use, not when it merely opened.
+/// The waits begin small again once the device has sent a valid message, not when it merely opened.
 class ReopeningSensor : public Sensor {
  public:
   MonoTime poll(const Clock& clock, SensorSink& sink) final;
@@ -22,24 +22,24 @@ class ReopeningSensor : public Sensor {
   /// `seed` makes the waits of several sensors differ.
   explicit ReopeningSensor(std::uint32_t seed);
 
-  /// Finds the device by its stable name and opens it. Returns when to begin to work. The failure says what is missing
-  /// and what to do.
+  /// Finds the device by its stable name and opens it. Returns when to call work() first. The failure's text: what is
+  /// missing and what to do.
   virtual Result<MonoTime, Failure> open(const Clock& clock) = 0;
 
-  /// The next piece of work with the open device, no longer than the device's own time-out. Returns when to go on. The
-  /// failure says why the device cannot be used any more: it is closed, and opened again.
+  /// One exchange with the open device, no longer than the device's own time-out. Returns when to call it next. On
+  /// failure the device is closed and opened again; its text is the reason.
   virtual Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) = 0;
 
-  /// Lets go of the device. Called after a failed work() too; never twice.
+  /// Closes the device. Called after a failed work() too; never twice.
   virtual void close() noexcept = 0;
 
   /// Has the device come back, as far as can be seen without waiting? Asked at each poll() that comes too early for the
   /// next attempt to open it, which is then made at once.
   virtual bool has_returned() { return false; }
 
-  /// For work(): the device is there and says something of use. `detail` is for people: what it is, and where.
+  /// For work(): the device sends valid messages. `detail` is for people: what it is, and where.
   void is_well(SensorSink& sink, const std::string& detail);
-  /// For work(): the device is open, but does not say what it should; why, and what to do.
+  /// For work(): the device is open, but sends no valid messages; why, and what to do.
   void is_unwell(SensorSink& sink, const std::string& detail);
   /// For work(): what there was to read has been read to its end.
   void is_at_its_end(SensorSink& sink, const std::string& detail);

@@ -10,11 +10,11 @@
 
 namespace yuragi {
 
-/// Does the device answer?
+/// The state of the link to the device.
 enum class LinkState : std::uint8_t {
-  kConnecting,  ///< looking for it; also between attempts
+  kConnecting,  ///< searching for the device, or waiting for the next attempt
   kConnected,   ///< open, and the last exchange was answered
-  kFinished,    ///< a recording that came to its end; nothing more will come
+  kFinished,    ///< the end of a recording: no more readings follow
 };
 
 std::string_view name_of(LinkState state);
@@ -22,22 +22,23 @@ std::string_view name_of(LinkState state);
 /// Which way a message went.
 enum class RawDirection : std::uint8_t { kReceived, kSent };
 
-/// Where a sensor puts what it has. Called on the thread that polls; the strings need to live for the call only.
+/// Receives a sensor's readings, link state, refusals and raw messages. Called on the thread that polls; strings are
+/// valid during the call only.
 class SensorSink {
  public:
   virtual ~SensorSink() = default;
   virtual void reading(const WindReading& reading) = 0;
   virtual void refused(Refusal why) = 0;
-  /// Told at each change, and with each failed attempt: what happened, and what to do about it.
+  /// Called at each change, and for each failed attempt: what happened, and what to do about it.
   virtual void link(LinkState state, std::string_view detail) = 0;
-  /// Each message as it came from the device or went to it, before anybody judges it: a line, a report, a request. What
-  /// is received counts as a frame; a trace shows the bytes.
+  /// Each message from or to the device, before it is decoded: a line, a report, a request. Received ones count as
+  /// frames; a trace shows the bytes.
   virtual void raw(RawDirection direction, std::span<const std::uint8_t> message) = 0;
 };
 
 class RecordingPlayer;
 
-/// An open sensor, real or not. It holds its device for as long as it lives and finds it again for ever.
+/// A sensor, real or not. It owns the connection to its device, and reconnects without limit.
 class Sensor {
  public:
   virtual ~Sensor() = default;
@@ -47,7 +48,7 @@ class Sensor {
   /// anything that a device does.
   virtual MonoTime poll(const Clock& clock, SensorSink& sink) = 0;
 
-  /// Ends a poll() that waits, from another thread, so that shutting down waits for nobody. No poll() follows.
+  /// Ends a poll() that waits, from another thread, so that shutting down is quick. No poll() follows.
   virtual void interrupt() noexcept {}
 
   /// The controls (drivers/recording/recording_player.hpp) of one that plays a recording; nullptr for any other. Lives

@@ -8,12 +8,12 @@
 
 namespace yuragi {
 
-/// How often something comes, learnt from the last of its arrivals, and for how long it has not come now. An outage is
-/// not learnt from, unless it happens again and again: then that is how often it comes.
+/// Measures the usual pause between messages from the last arrivals, and the time since the last one. An outage is left
+/// out of it, unless it repeats: then it is the usual pause.
 /// Realtime-safe: yes.
 class ArrivalWatch {
  public:
-  /// Begins to wait anew: a pause in which nothing could come says nothing about how often it does.
+  /// Restarts the wait: a pause in which nothing could arrive does not count.
   void restart(MonoTime now) noexcept {
     last_ = now;
     has_come_ = false;
@@ -32,7 +32,7 @@ class ArrivalWatch {
   Nanoseconds usual_pause() const noexcept { return *std::ranges::max_element(pauses_); }
 
  private:
-  static constexpr std::size_t kKnown = 3;  // pauses that say what is usual
+  static constexpr std::size_t kKnown = 3;  // pauses that the usual one is taken from
   static constexpr int kOutage = 5;         // times the usual pause
   static constexpr int kOutagesInARow = 3;
 

@@ -15,7 +15,7 @@ std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, dou
 /// The address in such values. Throws std::runtime_error, saying what to do, where they cannot work together.
 BytePortAddress byte_port_address_of(const ParameterValues& values);
 
-/// The serial ports that are plugged in. Whether an anemometer is behind one, and which, nobody can tell before it is
+/// The serial ports that are plugged in. Whether an anemometer is behind one, and which, is not known before it is
 /// opened; `settings` are what else stands in its [[sensor]] table.
 std::vector<FoundDevice> find_behind_serial_ports(const std::string& settings);
 

@@ -1,5 +1,5 @@
-// A microcontroller that prints numbers: columns ("4.2,270,6.1") or keys ("speed=4.2 direction=270"), as the parameters
-// say; what lines may look like stands in drivers/decode/text/line.hpp.
+// A microcontroller that prints numbers: columns ("4.2,270,6.1") or keys ("speed=4.2 direction=270"), by its
+// parameters. The formats: drivers/decode/text/line.hpp.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -138,7 +138,7 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   settings.line = line_options_of(values);
   settings.north_offset_deg = values.number("north_offset");
 
-  // Nothing but the end of the line before it says that a line is whole from its beginning on.
+  // Only the end of the line before it proves that a line is complete from its beginning on.
   const bool flows =
       settings.text.address.kind == BytePortKind::kSerial || settings.text.address.kind == BytePortKind::kTcpClient;
   const bool is_asked = settings.text.poll_interval > Nanoseconds::zero();

@@ -19,7 +19,7 @@ struct LineSensorSettings {
   double north_offset_deg = 0.0;  ///< what to add to each direction
 };
 
-/// The parameters that say how a line is read: the driver's first ones, and what `yuragi decode line` can be told.
+/// The parameters of the format of a line: the driver's first ones, and the options of `yuragi decode line`.
 std::span<const Parameter> line_reading_parameters();
 
 /// Their values. Throws std::runtime_error, `name: what is wrong`, where they cannot work together.
@@ -28,9 +28,9 @@ LineOptions line_options_of(const ParameterValues& values);
 /// The values of kLineDriver's parameters. Throws std::runtime_error where they cannot work together.
 LineSensorSettings line_sensor_settings_of(const ParameterValues& values);
 
-/// A microcontroller that prints numbers, one reading a line, without a checksum. What a checksum would find is found
-/// by what the lines have in common: a line of another shape than the one before it, or next to bytes that are no text,
-/// is not believed.
+/// A microcontroller that prints numbers, one reading a line, without a checksum. In place of a
+/// checksum the shape of lines is checked: a line of another shape than the one before it, or next to bytes that are no
+/// text, is refused.
 class LineSensor final : public TextSensor {
  public:
   LineSensor(LineSensorSettings settings, std::unique_ptr<BytePort> port);
@@ -41,7 +41,7 @@ class LineSensor final : public TextSensor {
   std::string name() const override { return "lines of numbers"; }
 
   LineSensorSettings settings_;
-  std::optional<std::size_t> shape_;       // of the lines that are believed
+  std::optional<std::size_t> shape_;       // of the lines that are accepted
   std::optional<std::size_t> last_shape_;  // of the line before
   bool follows_garbage_ = false;
 };

@@ -1,11 +1,11 @@
-// Anemometers that say text, by themselves or when asked: NMEA 0183 and what its users make of it, and the formats of
-// Gill, FT Technologies and Lufft, over a serial line, a TCP server, UDP datagrams, a file or a pipe. What the lines
-// look like stands with their decoders, each with its source: drivers/decode/{nmea,gill,ft,umb}.hpp. What is asked:
+// Anemometers that send text, unasked or on request: NMEA 0183 and its variants (drivers/SOURCES.md S4), and the
+// formats of Gill, FT Technologies and Lufft, over a serial line, a TCP server, UDP datagrams, a file or a pipe. The
+// formats are described with their decoders: drivers/decode/{nmea,gill,ft,umb}.hpp. Requests:
 //
 //   format  request                   source
 //   umb     "01TR4" CR                Lufft V200A-UMB manual V25, 20.5.4
 //   ft      "$01,WV?*hh" CR LF        FT Technologies FT702LT manual, 5.3
-//   others  what the installation says (a WindSonic in polled mode M3 wants its node letter)
+//   others  as configured (a WindSonic in polled mode M3 needs its node letter)
 #include <array>
 #include <stdexcept>
 
@@ -122,7 +122,7 @@ std::string request_of(NmeaFormat format, const std::string& device) {
 void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
   TextSensorSettings& text = settings.text;
   const bool can_be_asked = text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
-  // A Lufft says nothing by itself.
+  // A Lufft sends nothing unasked.
   if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_asked) {
     text.poll_interval = kUmbInterval;
   }

@@ -17,7 +17,7 @@ namespace {
 /// A direction and a speed that come in two messages belong together if they come so close.
 constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
 
-/// What a line is by its look. Gill's begin with one letter, and have an ETX before the checksum.
+/// The format of a line. Gill's begin with one letter, and have an ETX before the checksum.
 NmeaFormat format_by_look(std::string_view line) {
   const std::string_view text = trimmed(line);
   const std::size_t dollar = text.rfind('$');
@@ -30,7 +30,7 @@ NmeaFormat format_by_look(std::string_view line) {
   return sentence.find(",WVP=") != std::string_view::npos ? NmeaFormat::kFt : NmeaFormat::kNmea;
 }
 
-/// Who says a line that has been decoded, and in which sentence.
+/// Talker and sentence of a decoded line.
 struct MessageName {
   std::string_view talker;
   std::string_view sentence;
@@ -47,7 +47,7 @@ MessageName name_of_message(NmeaFormat format, std::string_view line) {
   return {.talker = word.substr(0, talker_size), .sentence = word.substr(talker_size)};
 }
 
-/// MWD and MDA say nothing of their frame in a calm, when they leave out the direction: what they are does.
+/// The frame of MWD and MDA follows from the sentence: in a calm they leave out the direction, and its letter.
 WindFrame frame_of(std::string_view sentence, WindReference reference) {
   if (sentence == "MWD" || sentence == "MDA") return WindFrame::kNorth;
   if (reference == WindReference::kTrue) return WindFrame::kTrue;
@@ -96,20 +96,20 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
   const auto wind = decode(format, line);
   if (!wind) return wind.error();
 
-  // Is it one of those that are asked for?
+  // Is it one of the configured sentences?
   const MessageName message = name_of_message(format, line);
   const bool is_asked_for = settings_.sentences.empty() ||
                             std::ranges::find(settings_.sentences, message.sentence) != settings_.sentences.end();
   if (!is_asked_for || (!settings_.talker.empty() && message.talker != settings_.talker)) return Refusal::kNotMine;
 
-  // Does it say the wind, or has another one said it?
+  // Publish it, or has another source sent the same?
   const WindChoice::Source source = {.name = fmt::format("{} of {}", message.sentence, message.talker),
                                      .frame = frame_of(message.sentence, wind->reference)};
   const auto verdict = choice_.offer(source, now.mono);
   if (verdict == WindChoice::Verdict::kForeign) return Refusal::kNotMine;
   if (verdict == WindChoice::Verdict::kPass) return std::optional<WindReading>();
 
-  // A direction alone waits for its speed.
+  // A direction alone is kept until its speed comes.
   std::optional<double> direction_deg = choice_.has_direction() ? north_direction_deg(*wind) : std::nullopt;
   if (!wind->speed_m_s) {
     if (direction_deg) lone_direction_ = LoneDirection{source.name, *direction_deg, now.mono};

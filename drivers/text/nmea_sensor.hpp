@@ -15,9 +15,9 @@
 
 namespace yuragi {
 
-/// How an anemometer says its wind.
+/// The text format of an anemometer.
 enum class NmeaFormat : std::uint8_t {
-  kAuto,  ///< each line by its look
+  kAuto,  ///< detected, line by line
   kNmea,
   kGill,
   kFt,
@@ -27,10 +27,10 @@ enum class NmeaFormat : std::uint8_t {
 struct NmeaSensorSettings {
   TextSensorSettings text;
   NmeaFormat format = NmeaFormat::kAuto;
-  std::vector<std::string> sentences;           ///< take these only (MWV, MWD, ...); none: all
-  std::string talker;                           ///< take this one only; empty: any
-  std::optional<WindFrame> frame;               ///< take what is measured from there only; nothing: the best there is
-  WhenMissing checksum = WhenMissing::kRefuse;  ///< of NMEA sentences
+  std::vector<std::string> sentences;                  ///< take these only (MWV, MWD, ...); none: all
+  std::string talker;                                  ///< take this one only; empty: any
+  std::optional<WindFrame> frame;                      ///< accept this frame only; nothing: the best received
+  WhenMissing checksum = WhenMissing::kRefuse;         ///< of NMEA sentences
   WhenMissing makers_checksum = WhenMissing::kRefuse;  ///< of the makers' own formats, which always have one
   WhenMissing status = WhenMissing::kAccept;
   double north_offset_deg = 0.0;  ///< what to add to a direction from the device's own mark
@@ -42,7 +42,7 @@ struct NmeaSensorSettings {
 /// The values of kNmeaDriver's parameters. Throws std::runtime_error where they cannot work together.
 NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values);
 
-/// An anemometer that says NMEA 0183, or the text of Gill, FT Technologies or Lufft.
+/// An anemometer that sends NMEA 0183, or the text of Gill, FT Technologies or Lufft.
 class NmeaSensor final : public TextSensor {
  public:
   NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<BytePort> port);
@@ -57,7 +57,7 @@ class NmeaSensor final : public TextSensor {
   Result<DecodedWind, Refusal> decode(NmeaFormat format, std::string_view line) const;
   std::optional<double> north_direction_deg(const DecodedWind& wind) const;
 
-  /// A direction that came alone, and waits for the speed of the same source.
+  /// A direction that came in a message of its own, kept until the speed of the same source.
   struct LoneDirection {
     std::string source;
     double direction_deg = 0.0;

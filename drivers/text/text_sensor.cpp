@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A read returns so often, so that what depends on time is looked at.
+/// A read returns at least so often, so that time-outs are checked.
 constexpr Nanoseconds kLongestRead = 200ms;
 /// The messages of one burst follow each other faster.
 constexpr Nanoseconds kBurstEnd = 200ms;
@@ -20,7 +20,7 @@ constexpr Nanoseconds kBurstEnd = 200ms;
 constexpr Nanoseconds kLineCut = 500ms;
 /// Without a reading for so long, or for five times the usual pause, something is wrong.
 constexpr Nanoseconds kPatience = 3s;
-/// A device whose pace is not known yet is opened again after this.
+/// A device whose usual pause is not known yet is opened again after this.
 constexpr Nanoseconds kFirstSilence = 120s;
 /// An answer that has not come by then never will.
 constexpr Nanoseconds kLatestAnswer = 2s;
@@ -28,7 +28,7 @@ constexpr Nanoseconds kLatestAnswer = 2s;
 constexpr int kMostDoublings = 6;
 /// A device that does not answer is asked less often: up to so many times the interval.
 constexpr int kRarestRequest = 8;
-/// So many blocks at most are thrown away at the beginning; a device that says more never ends.
+/// So many blocks at most are discarded at the beginning; a device that sends more does not stop.
 constexpr int kForgottenBlocks = 64;
 constexpr std::size_t kShownOfLine = 60;
 constexpr Nanoseconds kForAges = 1h;
@@ -232,7 +232,7 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink
   if (!judgement) {
     const bool is_readable = is_text(line);
     ++(is_readable ? readable_lines_ : garbled_lines_);
-    // What is not ours may be our own request, as a line with one pair of wires echoes it: the answer is still to come.
+    // A foreign line may be our own request, echoed by a line with one pair of wires: the answer is still to come.
     if (judgement.error() != Refusal::kNotMine) awaits_answer_ = false;
     refuse(is_readable ? judgement.error() : Refusal::kMalformed, line, sink);
     return false;
@@ -266,8 +266,8 @@ void TextSensor::refuse(Refusal why, std::string_view line, SensorSink& sink) {
   sink.refused(why);
 }
 
-/// Each opening in vain doubles the limit: a device that is slow at first, or that starts anew whenever it is opened,
-/// has its time at last.
+/// Each opening without a reading doubles the limit: so a device that is slow at first, or that restarts whenever it is
+/// opened, gets enough time in the end.
 Nanoseconds TextSensor::silence_limit() const {
   if (settings_.silence_timeout > 0ns) return settings_.silence_timeout;
   const Nanoseconds usual = readings_.usual_pause();
@@ -275,7 +275,7 @@ Nanoseconds TextSensor::silence_limit() const {
   return first * (1 << vain_openings_);
 }
 
-/// Says what is wrong where no reading comes.
+/// Reports the cause where no reading comes.
 void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
@@ -285,7 +285,7 @@ void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
   if (late_lines_ > 0 || !has_lines) {
     is_unwell(sink, trouble_without_lines());
   } else if (why == Refusal::kInvalid || why == Refusal::kImplausible) {
-    // It is there and speaks: what it says is another matter.
+    // It is there and sends: whether that is valid is checked elsewhere.
     is_well(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
   } else {
     is_unwell(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
@@ -296,7 +296,7 @@ std::size_t TextSensor::cut_lines() const {
   return refused_[static_cast<std::size_t>(Refusal::kTooShort)].count;
 }
 
-/// Why most lines were refused: those that are merely others count only where there is nothing else.
+/// The reason why most lines were refused: lines of other formats count only where there is nothing else.
 Refusal TextSensor::main_refusal() const {
   constexpr auto kOthers = static_cast<std::size_t>(Refusal::kNotMine);
   std::size_t most = kOthers;

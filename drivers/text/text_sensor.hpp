@@ -18,39 +18,38 @@
 
 namespace yuragi {
 
-/// How a device that says lines is read.
+/// How a device that sends lines of text is read.
 struct TextSensorSettings {
   BytePortAddress address;
   LineEnding ending = LineEnding::kNewline;
-  bool doubts_first_line =
-      false;  ///< on a line that one joins at any moment, the first is likely to lack its beginning
-  Nanoseconds delay_after_open{};  ///< what comes so early is not believed
-  Nanoseconds silence_timeout{};   ///< until the device is opened again; zero: by what is usual for it
+  bool doubts_first_line = false;  ///< joined in the middle of a line, the first one lacks its beginning
+  Nanoseconds delay_after_open{};  ///< messages before that are discarded
+  Nanoseconds silence_timeout{};   ///< after which the device is opened again; zero: from its usual pauses
   double play_rate_hz = 0.0;       ///< of a file that is played
   std::string request;             ///< what to send for one answer
-  Nanoseconds poll_interval{};     ///< zero: the device speaks by itself
+  Nanoseconds poll_interval{};     ///< zero: the device sends unasked
   Nanoseconds response_timeout{};  ///< at most the poll interval
 };
 
 /// Those of the parameters that with_byte_port_parameters() adds. Throws std::runtime_error.
 TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
 
-/// A device that says one line a reading, by itself or when it is asked. This base makes lines of the bytes, asks,
-/// notices silence and nonsense, and says what is wrong; what a driver adds is what a line means.
+/// A device that sends one line per reading, unasked or on request. This base assembles lines from the bytes, sends
+/// requests, detects silence and invalid lines, and reports them; a driver decodes a line.
 class TextSensor : public ReopeningSensor {
  public:
   void interrupt() noexcept final { port_->interrupt(); }
 
  protected:
-  /// What a line comes to: a reading, or nothing to publish for now, or a refusal.
+  /// Decodes a line: a reading, or nothing to publish for now, or a refusal.
   using Judgement = Result<std::optional<WindReading>, Refusal>;
 
   TextSensor(const TextSensorSettings& settings, std::unique_ptr<BytePort> port);
 
   virtual Judgement judge(std::string_view line, const Instant& now) = 0;
-  /// After a pause, in which what came in one burst has ended: a reading that waited for that.
+  /// After a pause that ends a burst of messages: a reading that was held until then.
   virtual std::optional<WindReading> take_held() { return {}; }
-  /// The device was opened again: what came before has nothing to do with what comes now.
+  /// The device was opened again: forget the messages before.
   virtual void begin() {}
   /// What the device is, for people.
   virtual std::string name() const = 0;
@@ -91,7 +90,7 @@ class TextSensor : public ReopeningSensor {
   std::unique_ptr<BytePort> port_;
   LineAssembler assembler_;
   std::vector<std::uint8_t> buffer_;
-  std::span<const std::uint8_t> rest_;  // of the buffer: what has not been looked at yet
+  std::span<const std::uint8_t> rest_;  // of the buffer: not processed yet
   bool ends_with_rest_ = false;         // rest_ is the end of a datagram
   bool is_fresh_ = false;
   bool skips_line_ = false;
@@ -106,7 +105,7 @@ class TextSensor : public ReopeningSensor {
   ArrivalWatch readings_;
   int vain_openings_ = 0;
 
-  // What has come since the last reading, to say what is wrong where none comes.
+  // Received since the last reading: to report the cause where none follows.
   struct Refused {
     std::size_t count = 0;
     std::string first_line;

@@ -30,7 +30,7 @@ WindChoice::Verdict WindChoice::offer(const Source& source, MonoTime now) {
   last_ = now;
   pause_ = {};
   if (is_silent) return Verdict::kTake;
-  // Later than in the first burst, the other one has said this wind already.
+  // Later than in the first burst: the other source has sent this measurement already.
   return is_settled_ ? Verdict::kPass : Verdict::kHold;
 }
 

@@ -15,14 +15,14 @@ enum class WindFrame : std::uint8_t {
   kTrue,      ///< the same mark, with the device's own motion taken out
 };
 
-/// Which of the messages of one device say its wind. A device with several sentences says one wind in each of them, in
-/// one burst; taking all would publish it several times over, each time turned differently.
+/// Selects which of a device's messages to publish. A device with several sentences repeats one measurement in each of
+/// them, in one burst; taking all would publish it several times, in different frames.
 ///
-/// One source, the best there is, is taken, and another only when that one has fallen silent. Directions come in one
-/// frame for ever, the best that was ever heard: in another they would be wrong by whatever lies between the two.
+/// The best source (sentence and talker) is taken, and another only when that one has fallen silent. Directions are in
+/// one frame throughout, the best one received so far: in another they would differ by the angle between the two.
 class WindChoice {
  public:
-  /// Who says it, in which sentence, in which frame.
+  /// Talker, sentence and frame of a message.
   struct Source {
     std::string name;
     WindFrame frame = WindFrame::kRelative;
@@ -32,11 +32,11 @@ class WindChoice {
   enum class Verdict : std::uint8_t {
     kTake,     ///< this is the wind
     kHold,     ///< this is the wind, unless a better one comes in the same burst
-    kPass,     ///< another one says it already
-    kForeign,  ///< not in the frame that is asked for
+    kPass,     ///< the same measurement as another source's
+    kForeign,  ///< not in the configured frame
   };
 
-  /// `frame`: take this one only; nothing: the best.
+  /// `frame`: accept only this one; nothing: the best.
   explicit WindChoice(std::optional<WindFrame> frame) : wanted_(frame) {}
 
   /// A message of `source` has come.

@@ -21,26 +21,26 @@ struct DaqWiring {
   std::optional<std::uint8_t> reference_channel = {};  ///< the voltage over the vane's track; empty: it is known
 };
 
-/// What a device tells of itself.
+/// What a device reports about itself.
 struct DaqIdentity {
   std::string serial;  ///< empty where it has no serial number but the one that the bus shows
 };
 
-/// What one round of questions brings.
+/// The values of one round of requests.
 struct DaqSample {
   std::uint32_t count = 0;
   std::optional<double> wiper_v;
   std::optional<double> reference_v;
 };
 
-/// Why one brought nothing. What there was to count has been counted.
+/// Why a round failed. Refusals have been counted.
 struct DaqTrouble {
   std::string message;   ///< behind the device's name: "does not answer"
   bool is_lost = false;  ///< the device has to be opened again; otherwise the next round may do
 };
 
-/// How one kind of counter and ADC device is spoken to. Holds what it knows of the device from start() on; one is made
-/// each time that the device is opened. Every message is shown to the sink, every refusal counted there.
+/// The protocol of one kind of counter and ADC device. Holds the device's state from start() on; one is made each time
+/// that the device is opened. Every message is shown to the sink, every refusal counted there.
 class UsbDaq {
  public:
   virtual ~UsbDaq() = default;
@@ -67,7 +67,7 @@ extern const UsbDaqModel kLabjackModel;
 /// Every model.
 std::span<const UsbDaqModel* const> usb_daq_models();
 
-/// What of the wiring the model does not have; empty where all is well.
+/// A channel of the wiring that the model does not have; empty: none.
 std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring);
 
 /// What a transfer that did not succeed means, counted in `sink`.

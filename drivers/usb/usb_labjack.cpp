@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint8_t kLabjackCommands = 1;  // the end points
 constexpr std::uint8_t kLabjackReplies = 2;
-/// Of a device that says something else than it was asked: so many messages, and then it is enough.
+/// The number of messages that answer something else before the request is given up.
 constexpr int kMostStrangers = 16;
 
 class LabjackDaq final : public UsbDaq {

@@ -12,7 +12,7 @@ class Mcc1208Daq final : public UsbDaq {
   Mcc1208Daq(const DaqWiring& wiring, Nanoseconds timeout) : wiring_(wiring), timeout_(timeout) {}
 
   Result<DaqIdentity, DaqTrouble> start(UsbDevice& device, SensorSink& sink) override {
-    // The counter is not reset: nothing here needs it to begin at 0, and somebody else may.
+    // The counter is not reset: nothing here needs it to begin at 0, and another program may read it.
     for (const auto& [channel, calibration] :
          {std::pair{wiring_.vane_channel, &vane_}, {wiring_.reference_channel, &reference_}}) {
       if (!channel) continue;
@@ -20,7 +20,7 @@ class Mcc1208Daq final : public UsbDaq {
       if (!reply) return reply.error();
       const auto decoded = decode_mcc1208_calibration(*reply);
       if (!decoded && decoded.error() != Refusal::kInvalid) return trouble_of(decoded.error(), sink);
-      *calibration = decoded ? *decoded : Mcc1208Calibration{};  // never written: what the codes say by themselves
+      *calibration = decoded ? *decoded : Mcc1208Calibration{};  // never written: nominal values
     }
     return DaqIdentity{};
   }

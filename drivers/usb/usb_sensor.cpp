@@ -9,9 +9,9 @@
 namespace yuragi {
 namespace {
 
-/// A device that hangs looks like one that is slow: so many rounds in a row without a sample decide.
+/// A device that hangs looks like one that is slow: after so many rounds in a row without a sample it counts as hung.
 constexpr int kRoundsBeforeReopen = 3;
-/// Two counts make a speed only if the time between them is so many times what is not known of it: to within 20 %.
+/// Two counts give a speed only if the time between them is so many times its uncertainty: to within 20 %.
 constexpr int kLeastTimesOfDoubt = 5;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
@@ -47,7 +47,7 @@ Result<MonoTime, Failure> UsbSensor::open(const Clock& clock) {
                                name_of_wanted())};
   }
 
-  // Where one cannot be opened or turns out to be another, the next one has its turn.
+  // Where one cannot be opened or turns out to be another, the next one is tried.
   const PluggedUsbDevice& chosen = (*plugged)[turn_ % plugged->size()];
   const UsbDaqModel& model = model_of(chosen.id);
   if (const std::string wrong = wrong_wiring(model, settings_.wiring); !wrong.empty()) {
@@ -93,8 +93,8 @@ Result<MonoTime, Failure> UsbSensor::work(const Clock& clock, SensorSink& sink) 
 }
 
 void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, SensorSink& sink) {
-  // The device has counted at some moment since it was asked. Where bus or scheduler took their time, the count waits
-  // for the next one: a thread that was held up is neither a lull nor a gust.
+  // The device has counted at some moment since the request. Where bus or scheduler delayed it, the count is kept for
+  // the next one: a thread that was held up is neither a lull nor a gust.
   const Nanoseconds doubt = now.mono - asked_at;
   const bool is_too_vague = kLeastTimesOfDoubt * (doubt + counted_doubt_) > now.mono - counted_at_;
   if (cup_.last_count && is_too_vague) return;
@@ -102,7 +102,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, Se
   const double elapsed_s = seconds(now.mono - std::exchange(counted_at_, now.mono));
   const auto speed_m_s = advance_cup(cup_, settings_.cup, sample.count, elapsed_s);
 
-  // What came with a count that cannot be is not to be believed either.
+  // A direction that came with an impossible count is discarded, too.
   if (speed_m_s && !*speed_m_s) {
     sink.refused(speed_m_s->error());
     direction_.clear();
@@ -140,7 +140,7 @@ Result<MonoTime, Failure> UsbSensor::suffer(const DaqTrouble& trouble, MonoTime 
 bool UsbSensor::is_wanted(const PluggedUsbDevice& device) const {
   const bool is_kind = std::ranges::count(settings_.models, device.id, &UsbDaqModel::id) != 0;
   const bool is_there = settings_.port.empty() || device.port == settings_.port;
-  // One that shows no serial number tells it when it is asked.
+  // One that shows no serial number on the bus sends it on request.
   const bool may_be_it = settings_.serial.empty() || device.serial.empty() || device.serial == settings_.serial;
   return is_kind && is_there && may_be_it;
 }

@@ -12,7 +12,7 @@
 
 namespace yuragi {
 
-/// What a cup and a vane on a counter and ADC device are like, and which device it is.
+/// Calibration of a cup and a vane on a counter and ADC device, and which device it is.
 struct UsbSettings {
   std::vector<const UsbDaqModel*> models;  ///< any of these
   std::string port;                        ///< the one that is plugged in there; empty: anywhere
@@ -21,7 +21,7 @@ struct UsbSettings {
   CupCalibration cup;
   VaneCalibration vane;
   double reference_v = 5.0;                             ///< over the vane's track, where it is not measured
-  Nanoseconds period = std::chrono::milliseconds(100);  ///< from one round of questions to the next
+  Nanoseconds period = std::chrono::milliseconds(100);  ///< from one round of requests to the next
   Nanoseconds timeout = std::chrono::milliseconds(500);
 };
 

@@ -18,7 +18,7 @@ inline constexpr std::int64_t kFormatVersion = 1;           ///< `PRAGMA user_ve
 /// Times outside are not times of a wind: they could not be subtracted without overflow. About 146 years.
 inline constexpr std::int64_t kMaxTime_ns = std::numeric_limits<std::int64_t>::max() / 2;
 
-/// The comments stay in the file and explain it to whoever opens it.
+/// The comments stay in the file and explain it to its readers.
 inline constexpr const char* kSchema = R"sql(
 CREATE TABLE session (  -- one run of the program that recorded
   id              INTEGER PRIMARY KEY,

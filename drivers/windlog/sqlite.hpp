@@ -15,12 +15,12 @@ namespace yuragi::sqlite {
 
 enum class Access : std::uint8_t {
   kReadOnly,
-  kReadFrozen,  ///< reads a file that nobody writes, with no lock: for folders in which nothing can be created
+  kReadFrozen,  ///< reads a file without a writer, with no lock: for folders in which nothing can be created
   kReadWrite,   ///< creates the file if it is not there
   kCalculator,  ///< no file at all
 };
 
-/// How long a statement waits for another writer of the same file: nobody but a second recorder, or a checkpoint.
+/// How long a statement waits for another writer of the same file: a second recorder, or a checkpoint.
 inline constexpr int kBusyTimeout_ms = 1000;
 
 /// A prepared statement. Texts that are bound must live until the statement is reset. Thread-safe: no.

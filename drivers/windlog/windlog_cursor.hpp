@@ -18,18 +18,18 @@ namespace yuragi {
 /// tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogCursor {
  public:
-  /// `sensor`: its name; empty: the one that spoke first; "*": all of them. Throws also where there is no such sensor,
-  /// or no reading at all.
+  /// `sensor`: its name; empty: the one with the first reading; "*": all of them. Throws also where there is no such
+  /// sensor, or no reading at all.
   WindlogCursor(const std::filesystem::path& file, std::string_view sensor);
 
   /// The next reading; nothing at the end, until more has been recorded.
   std::optional<LoggedReading> next();
 
-  /// Makes next() answer the first reading at or after a log time.
+  /// Makes next() return the first reading at or after a log time.
   void seek(Nanoseconds log_time);
 
-  /// The log time of a place that a person named; for UTC that of the first reading at or after it. Nothing if all are
-  /// before it.
+  /// The log time of a place as a person writes it; for UTC that of the first reading at or after it. Nothing if all
+  /// are before it.
   std::optional<Nanoseconds> find(const LogMoment& moment);
 
   /// The log time of the last reading, as of the opening.

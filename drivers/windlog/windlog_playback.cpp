@@ -21,7 +21,7 @@ Nanoseconds begin_of_playback(WindlogCursor& cursor, std::string_view start) {
   const auto begin = cursor.find(*moment);
   if (!begin) throw std::runtime_error(file + ": ends before " + std::string(start));
 
-  // There must be something to play, or a loop would look for it for ever.
+  // There must be something to play, or a loop would search without end.
   cursor.seek(*begin);
   if (!cursor.next()) {
     throw std::runtime_error(file + ": has no reading from " + (start.empty() ? "its beginning" : std::string(start)) +

@@ -20,7 +20,7 @@ struct PlaybackOptions {
   std::string start = {};
   /// Begin again at `start` when the end is reached; log time runs on.
   bool loop = false;
-  /// The name of the sensor to play; empty: the one that spoke first; "*": all of them.
+  /// The name of the sensor to play; empty: the one with the first reading; "*": all of them.
   std::string sensor = {};
 };
 
@@ -31,7 +31,7 @@ struct PlayedReading {
   std::string_view sensor;  ///< its sensor's name; lives as long as the playback
 };
 
-/// Plays a recording (.windlog) in log time, with no clock: whoever asks decides when a reading is due. Log time
+/// Plays a recording (.windlog) in log time, with no clock: the caller decides when a reading is due. Log time
 /// follows the monotonic clock inside a session and the UTC gap between two sessions (never less than zero), so that
 /// setting the clock of the recording machine neither stretches nor shrinks a replay.
 ///
@@ -61,10 +61,10 @@ class WindlogPlayback {
 
 class WindlogCursor;
 
-/// Places a cursor where `start` says, and answers that log time. Throws as WindlogPlayback does.
+/// Moves a cursor to `start`, and returns that log time. Throws as WindlogPlayback does.
 Nanoseconds begin_of_playback(WindlogCursor& cursor, std::string_view start);
 
-/// Is this a `start` that PlaybackOptions takes? The failure says what it takes.
+/// Is this a `start` that PlaybackOptions takes? The failure's text: what it takes.
 Result<void, Failure> check_playback_start(std::string_view start);
 
 }  // namespace yuragi

@@ -20,7 +20,7 @@ constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
 // A cross-fade has so many readings at least, or it would be a step; and is no more than this part of the recording.
 constexpr int kLeastReadingsOfFade = 3;
 constexpr int kParts = 3;
-// What is held is said again no more often than this.
+// A held reading is repeated no more often than this.
 constexpr Nanoseconds kLeastHoldInterval = std::chrono::milliseconds(100);
 
 /// A difference of times from `duration_s`, which may be anything.
@@ -59,7 +59,7 @@ WindReading between(const WindReading& from, const WindReading& to, double part)
   return reading;
 }
 
-// ---- a voice ----
+// ---- a voice: one place of the recording that is played ----
 
 MonoTime WindlogPlayer::Voice::due(double rate) const {
   return anchor + wait_of(seconds(upcoming->log_time - anchor_log) / rate);
@@ -139,7 +139,7 @@ void WindlogPlayer::begin_again(const Instant& now, MonoTime at) {
 
 /// Goes on from `target` at a moment, and fades what was playing out.
 void WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
-  // In the middle of a fade the wind of that moment stands for the two that were heard, and the older one is free.
+  // In the middle of a fade the blended wind of that moment replaces both voices, and the older one is free.
   const bool was_fading = is_fading(at);
   leaving_.is_frozen = true;
   leaving_.cursor.seek(target);
@@ -164,9 +164,9 @@ Nanoseconds WindlogPlayer::fade_duration() const {
   return wait_of(std::min(std::max(options_.seam_s, kLeastReadingsOfFade * interval_s), span_s / kParts));
 }
 
-/// Says what the playing voice said last, as of a time, blended with what is left of a voice that fades out.
+/// The last reading of the playing voice, as of a time, blended with that of a voice that is fading out.
 void WindlogPlayer::say(MonoTime time, const Instant& now, const Use& use) {
-  // Whatever was done to the pace: time does not go backward.
+  // After a change of the rate: time does not go backward.
   if (last_out_) time = std::max(time, last_out_->time.mono);
   WindReading reading = blended(time);
   reading.time = {time, now.utc - (now.mono - time)};
@@ -183,7 +183,7 @@ WindReading WindlogPlayer::blended(MonoTime time) {
   return between(*leaving_.said, *playing_.said, part);
 }
 
-/// Lets the voice that fades out go on to a time; where it cannot be read it holds what it said.
+/// Advances the voice that is fading out to a time; where it cannot be read it repeats its last reading.
 void WindlogPlayer::follow_leaving(MonoTime time) {
   if (leaving_.is_frozen || is_paused_) return;
   try {
@@ -197,7 +197,7 @@ void WindlogPlayer::follow_leaving(MonoTime time) {
   }
 }
 
-/// While it is paused: the same again and again, so that nobody takes the sensor for dead.
+/// While it is paused: repeats the reading, so that the sensor does not become stale.
 MonoTime WindlogPlayer::hold(const Instant& now, const Use& use) {
   if (!playing_.said) {
     if (!look_ahead(now)) return now.mono + kAfterTheEnd;
@@ -230,7 +230,7 @@ Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {
 
 // ---- orders ----
 
-/// Both voices go on from where they are now: the pace is about to change.
+/// Anchors both voices where they are now: the rate is about to change.
 void WindlogPlayer::settle(MonoTime now) {
   for (Voice* voice : {&playing_, &leaving_}) {
     if (!is_paused_) voice->anchor_log = voice->place(now, rate_);

@@ -19,7 +19,7 @@ struct PlayerOptions {
   double rate = 1.0;            ///< seconds of the recording in one second; above 0
   double seam_s = 5.0;          ///< how long a jump (a loop's seam, a seek) takes; 0: no cross-fade
   bool is_paused = false;       ///< stand at the first reading until resume() or step()
-  bool at_time_of_day = false;  ///< begin, and begin again, where the recording's clock shows what the wall's shows
+  bool at_time_of_day = false;  ///< begin, and begin again, at the place whose recorded local time is the time now
   UtcOffset recorded_offset = machine_utc_offset;  ///< of the place where it was recorded
   UtcOffset offset_here = machine_utc_offset;
 };
@@ -39,13 +39,13 @@ struct PlayerPosition {
 /// Plays a recording (.windlog) against a clock that the caller reads: pause, step, seek, rate, loop.
 ///
 /// Each reading comes out with the time at which it was due on the caller's clock, and that time never goes backward,
-/// whatever is done. A jump (a seek, or the seam of a loop) is a cross-fade of `seam_s`: what the old place goes on to
-/// say and what the new one says are blended as vectors, so that there is no step; a loop begins again `seam_s` before
-/// its end for that. While it is paused it says the same reading again and again, marked as held, at its usual
-/// interval: the wind holds, and nobody takes the sensor for dead. Where the recording has a gap, so has the replay.
+/// with any order. A jump (a seek, or the seam of a loop) is a cross-fade of `seam_s`: the readings of the old place
+/// and of the new one are blended as vectors, so that there is no step; for that a loop begins again `seam_s` before
+/// its end. While it is paused it repeats its reading, marked as held, at its usual interval: the wind holds, and the
+/// sensor does not become stale. Where the recording has a gap, so has the replay.
 ///
 /// Every function but position() throws std::runtime_error where the file cannot be read, or does not hold what is
-/// asked for, saying so; a failed order changes nothing, and play() tries the same place again.
+/// asked for, with the reason; a failed order changes nothing, and play() tries the same place again.
 /// Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayer {
  public:
@@ -57,8 +57,8 @@ class WindlogPlayer {
   /// Opens the recording; `now` is when its first moment is due.
   WindlogPlayer(const std::filesystem::path& file, PlayerOptions options, const Instant& now);
 
-  /// Hands on what is due by now, oldest first; answers when the next reading is. `now` must not go back. After a halt
-  /// of more than a second it goes on from where it was, rather than pour out what it missed.
+  /// Passes on the readings that are due by now, oldest first; returns when the next one is due. `now` must not go
+  /// back. After a halt of more than a second it continues from where it was, and does not play what it missed.
   MonoTime play(const Instant& now, const Use& use);
 
   void pause(const Instant& now);
@@ -76,14 +76,14 @@ class WindlogPlayer {
   bool is_finished() const noexcept { return is_finished_; }
 
  private:
-  /// One place of the recording that speaks. While a jump lasts there are two.
+  /// One place of the recording that is played. During a jump there are two.
   struct Voice {
     WindlogCursor cursor;
     std::optional<LoggedReading> upcoming = {};
     std::optional<WindReading> said = {};
     MonoTime anchor{};  ///< when `anchor_log` is, or was, due
     Nanoseconds anchor_log{0};
-    bool is_frozen = false;  ///< holds what it said
+    bool is_frozen = false;  ///< repeats its last reading
 
     MonoTime due(double rate) const;
     Nanoseconds place(MonoTime now, double rate) const;

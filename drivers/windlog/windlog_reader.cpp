@@ -15,7 +15,7 @@ namespace {
 using sqlite::Statement;
 
 constexpr std::int64_t kBlockRows = 512;
-// More than a recorder makes in years; what claims more is no recording.
+// More than a recorder makes in years; a file with more is no recording.
 constexpr std::size_t kMaxSessions = 1'000'000;
 constexpr std::size_t kMaxSensors = 1'000'000;
 
@@ -193,7 +193,7 @@ Result<std::optional<LoggedReading>, Failure> WindlogReader::next() {
   return std::optional<LoggedReading>(block_[next_in_block_++]);
 }
 
-/// Reads the next rows of the present session; answers how many there were.
+/// Reads the next rows of the present session; returns their number.
 Result<std::int64_t, Failure> WindlogReader::read_block() {
   const LoggedSession& session = sessions_[session_index_];
   block_.clear();

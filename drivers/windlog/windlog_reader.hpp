@@ -43,12 +43,13 @@ struct LoggedReading {
 /// Reads a recording (.windlog, format.hpp), in blocks, in the order of log time: sessions one after the other, inside
 /// a session by the monotonic clock, between two by the UTC gap (at least zero).
 ///
-/// Believes nothing that a file says: what cannot be a reading is passed over and counted, what is not a recording or
-/// is damaged is a failure that says so.
+/// A file's content is not trusted: rows that cannot be readings are skipped and counted; a file that is no recording,
+/// or is damaged, is a failure.
 ///
 /// Reads a recording that another process is writing (the readings committed so far, and later ones as they come), and
 /// one that a killed process left with FILE-wal beside it; SQLite then creates FILE-shm, which needs a folder that can
-/// be written to. Where nothing can be created it reads what was properly closed, and refuses the rest in words.
+/// be written to. Where nothing can be created it reads files that were properly closed, and refuses others
+/// with the reason.
 /// Owns the open file; holds no lock between calls. Thread-safe: no. Realtime-safe: no.
 class WindlogReader {
  public:
@@ -69,14 +70,14 @@ class WindlogReader {
   /// place again.
   Result<std::optional<LoggedReading>, Failure> next();
 
-  /// Makes next() answer the first reading at or after a log time.
+  /// Makes next() return the first reading at or after a log time.
   void seek(Nanoseconds log_time);
 
   /// The log time of the first reading at or after a moment; nothing if all are before it. Scans one session.
   Result<std::optional<Nanoseconds>, Failure> log_time_of(UtcTime moment);
 
-  /// The log time of the last reading of those sensors (one flag for each of sensors()); nothing if they never spoke.
-  /// Walks back from the end to it.
+  /// The log time of the last reading of those sensors (one flag for each of sensors()); nothing if they have no
+  /// reading. Walks back from the end to it.
   Result<std::optional<Nanoseconds>, Failure> last_log_time(const std::vector<bool>& of_sensors);
 
   /// Writes a copy of the whole recording as it is at one moment, as one file, which must not be there yet.

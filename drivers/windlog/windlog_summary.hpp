@@ -27,7 +27,7 @@ struct WindlogSummary {
   Nanoseconds duration{0};  ///< in log time
   UtcTime first{};          ///< of the first and the last reading in log time
   UtcTime last{};
-  std::vector<Sensor> sensors;  ///< by name, in the order in which they first spoke
+  std::vector<Sensor> sensors;  ///< by name, in the order of their first readings
 };
 
 /// Reads a whole recording once. Fails as WindlogReader does. Realtime-safe: no.

@@ -21,9 +21,9 @@ struct WindlogSession {
 /// Writes a recording (.windlog, format.hpp). What is committed survives the death of the process and a power cut; what
 /// was written since is lost with either, so commit at least every half second.
 ///
-/// A call that fails undoes everything since the last commit and says which file and what to do; the writer can be used
-/// on (a full disk that has room again), or destroyed and opened again.
-/// Owns the open file. Thread-safe: no; one thread. Realtime-safe: no; commit() waits for the disk.
+/// A call that fails undoes everything since the last commit; its text names the file and what to do; the writer can be
+/// used on (a full disk that has room again), or destroyed and opened again. Owns the open file. Thread-safe: no; one
+/// thread. Realtime-safe: no; commit() waits for the disk.
 class WindlogWriter {
  public:
   /// Opens a recording to append to, or creates it. Refuses a file that is something else, and one of a newer format,
@@ -32,13 +32,13 @@ class WindlogWriter {
 
   WindlogWriter(WindlogWriter&&) noexcept = default;
   WindlogWriter& operator=(WindlogWriter&&) = delete;
-  /// Closes, if close() was not called, and cannot say whether it went well.
+  /// Closes, if close() was not called, without reporting errors.
   ~WindlogWriter();
 
   /// Begins a session, to which the sensors and readings that follow belong.
   Result<void, Failure> begin_session(const WindlogSession& session);
 
-  /// Adds a sensor to the session; answers the id that append() takes.
+  /// Adds a sensor to the session; returns the id that append() takes.
   Result<std::int64_t, Failure> add_sensor(std::string_view name, std::string_view driver, std::string_view options);
 
   /// Adds a reading. One that is not plausible, or whose time cannot be, is a failure of the caller's and undoes

@@ -7,7 +7,7 @@
 // What stands in a kernel file: plain loops over raw pointers, in an anonymous namespace, and one constant table of
 // functions named by YURAGI_ROW_NAME. What it includes may only hold declarations, plain structs, and functions that
 // are always inlined (engine/math/trig.hpp). An ordinary inline function or template would be compiled in all three
-// rows, and the linker keeps one of the copies, perhaps the AVX-512 one, for everybody.
+// rows, and the linker keeps one of the copies, perhaps the AVX-512 one, for all rows.
 
 #define YURAGI_JOIN_TOKENS(left, right) left##_##right
 #define YURAGI_JOIN(left, right) YURAGI_JOIN_TOKENS(left, right)

@@ -7,7 +7,8 @@
 
 namespace yuragi {
 
-/// A triple buffer: one writer hands the newest value to one reader; older values that nobody read are lost, by intent.
+/// A triple buffer: one writer hands the newest value to one reader; older values that were not read are lost, by
+/// intent.
 ///
 /// Ownership: holds three T. The writer fills writable() and calls publish(); the reader calls refresh() and reads
 /// value(). Neither ever waits for the other.

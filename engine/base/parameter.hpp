@@ -26,7 +26,7 @@ struct Parameter {
   double max = std::numeric_limits<double>::infinity();
   std::string_view help;
   std::span<const std::string_view> choices = {};  ///< texts only; empty: any text
-  /// What it means where nobody gives it, which none of its values says ("at the windward edge"). Then it has no
+  /// What it means where it is not given, which none of its values can express ("at the windward edge"). Then it has no
   /// default, and values have it only if it was given. Empty: default_value, of which otherwise only the type counts.
   std::string_view left_out = {};
 };

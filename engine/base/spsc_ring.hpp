@@ -6,8 +6,8 @@
 
 namespace yuragi {
 
-/// A bounded queue from one thread to one other, for streams in which every value matters: push() says false when it is
-/// full, and the caller counts what it could not hand over.
+/// A bounded queue from one thread to one other, for streams in which every value matters: push() returns false when it
+/// is full, and the caller counts what it could not hand over.
 ///
 /// Thread-safe: for one producer and one consumer. Realtime-safe after construction: yes.
 template <class T>

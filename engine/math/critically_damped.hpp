@@ -16,7 +16,7 @@ struct CriticallyDamped {
   double value = 0.0;
   double rate_per_s = 0.0;
 
-  /// Goes on by dt_s toward `target`. A larger omega_rad_s (at least 0) follows faster: after 4.75 / omega_rad_s, 95 %
+  /// Advances by dt_s toward `target`. A larger omega_rad_s (at least 0) follows faster: after 4.75 / omega_rad_s, 95 %
   /// of a step is done. Time that does not go on (dt_s not above 0) changes nothing.
   void step(double target, double omega_rad_s, double dt_s) noexcept {
     if (!(dt_s > 0.0)) return;

@@ -22,7 +22,7 @@ namespace yuragi {
 ///
 /// Owns its tile, spectrum and transform. Thread-safe: no. Realtime-safe: advance() and tile() are; set-up allocates.
 /// Phases are fixed-point, so that nothing drifts in a year. Every SIMD row computes the same bits. Cost: about
-/// 0.33 ms a frame at 256 x 256. Source: wind.md 1 (non-frozen turbulence); the turnover rate of an eddy of size l goes
+/// 0.33 ms a frame at 256 x 256. Source: engine/METHOD.md M6; the turnover rate of an eddy of size l goes
 /// as l^(-2/3) (Kolmogorov 1941).
 class EvolvingNoise {
  public:
@@ -32,7 +32,7 @@ class EvolvingNoise {
                                                 SimdRow row = best_simd_row());
   static constexpr double kMaxTurn_rad_s = 100.0;
 
-  /// Goes on by dt_s (finite; backwards if below 0).
+  /// Advances by dt_s (finite; backwards if below 0).
   void advance(double dt_s) noexcept;
 
   /// The field now. Valid for this object's life; advance() changes it.

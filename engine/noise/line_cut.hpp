@@ -18,7 +18,7 @@ class LineCut {
   static constexpr double kEast = 0.85065080835203993;
   static constexpr double kSouth = 0.52573111211913361;
 
-  /// Goes on by `distance_m` (finite) along the line over a tile of period `period_m` (above 0).
+  /// Advances by `distance_m` (finite) along the line over a tile of period `period_m` (above 0).
   void add(double distance_m, double period_m) noexcept {
     x_.add(distance_m * kEast, period_m);
     z_.add(distance_m * kSouth, period_m);

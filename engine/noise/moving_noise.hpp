@@ -47,7 +47,7 @@ SharedVariance shared_variance(int dims, std::size_t size, const WavePower& one,
 /// samples on an axis are left out, since they cannot be carried by a part of a sample, and so is the constant one.
 /// Same settings, same bits. Owns its modes and samples: 8 bytes a sample and field, and 20 a sample besides.
 /// Thread-safe: reading, yes. Realtime-safe: no; 256 x 256 takes a few milliseconds a field, 128 x 128 x 128 a tenth of
-/// a second. Source: Taylor 1938 (k . X), wind.md 1 (turning).
+/// a second. Source: Taylor 1938 (k . X), engine/METHOD.md M6 (turning).
 class MovingNoise {
  public:
   /// `dims` 2 or 3, `size` a power of two that make_noise_2d or make_noise_3d allows. Throws std::invalid_argument,

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between EvolvingNoise and its kernels; nobody else needs this.
+// Internal: between EvolvingNoise and its kernels.
 
 namespace yuragi {
 

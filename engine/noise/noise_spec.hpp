@@ -57,7 +57,7 @@ enum class NoiseError : std::uint8_t {
 std::string_view name_of(NoiseError error) noexcept;
 std::string_view name_of(BetaMeaning meaning) noexcept;
 
-/// One sentence that says what is allowed.
+/// One sentence for people: what is allowed.
 std::string_view explain(NoiseError error) noexcept;
 
 [[noreturn]] inline void throw_exception_from_error(NoiseError error, const boost::source_location&) {

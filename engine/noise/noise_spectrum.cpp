@@ -10,7 +10,7 @@ namespace {
 
 using Mode = std::complex<double>;
 
-/// 1 / (2 pi 1.339), in cycles: with it the integral scale of a line cut is that of the spec (wind.md 1).
+/// 1 / (2 pi 1.339), in cycles: with it the integral scale of a line cut is that of the spec (engine/METHOD.md M2).
 constexpr double kCornerPerScale = 1.0 / (2.0 * std::numbers::pi * 1.339);
 
 /// A mode's own place in the random stream: its signed wave numbers side by side, 24, 24 and 16 bits.

@@ -14,7 +14,7 @@
 #include "engine/noise/noise_spec.hpp"
 
 // How a noise's modes are drawn and its samples standardised: what make_noise_1d, 2d, 3d and EvolvingNoise share.
-// Between the sources of this folder; nobody else needs this.
+// Internal to this folder.
 
 namespace yuragi {
 

@@ -8,7 +8,7 @@ namespace yuragi {
 
 // Places on the torus that a noise tile covers, in fixed point: 2^32 is one period, so that wrapping costs nothing, is
 // exact, and a place is as fine after a year as at the start (256 m / 2^32 = 60 nm). A field that has moved by X is
-// read at x - X (Chiba, section 2-2; method, decision 2).
+// read at x - X (Chiba, section 2-2; engine/METHOD.md M9, D2).
 
 /// A place on a torus: x toward east, z toward south. Arithmetic wraps.
 struct TorusPhase {

@@ -26,7 +26,7 @@ struct TurningNoise2 {
 /// Makes both. For a band of wavenumbers, an octave or so: an eddy's rate goes as |k|^(2/3), and here there is one for
 /// all (EvolvingNoise has one for each mode, and pays a transform a frame). Waves of two samples along an axis cannot
 /// turn: spec.to_cycles is at most half the size, else they are missing in `quarter`. Set-up work; allocates.
-/// Thread-safe: yes. Realtime-safe: no. Fails as make_noise_2d(). Source: wind.md 1 (non-frozen turbulence).
+/// Thread-safe: yes. Realtime-safe: no. Fails as make_noise_2d(). Source: engine/METHOD.md M7.
 Result<TurningNoise2, NoiseError> make_turning_noise_2d(const NoiseSpec& spec);
 
 /// The same for many noises one after the other, to the same bits: it keeps the transforms, whose memory is half of the

@@ -65,9 +65,9 @@ class CoarseCloth {
   std::vector<float> lean_;
 };
 
-/// The hybrid's dynamics (wind.md 3): position-based dynamics of a coarse cloth (XPBD; Mueller et al. 2007, "Position
-/// based dynamics"; Macklin et al. 2019, "Small steps in physics simulation"), which noise alone does not have: weight,
-/// inertia, overshoot.
+/// The hybrid's dynamics (engine/METHOD.md M26): position-based dynamics of a coarse cloth (XPBD; Mueller et al. 2007,
+/// "Position based dynamics"; Macklin et al. 2019, "Small steps in physics simulation"), which noise alone does not
+/// have: weight, inertia, overshoot.
 ///
 /// Substeps of at most 1/600 s, ten in a tick at 60 Hz. Threads do not stretch: a distance constraint a link
 /// (compliance 0), from the fixed edge on, and long-range attachments of each point to its own fixed joint (Kim,
@@ -104,7 +104,7 @@ struct ClothDynamicsJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says. A tick longer than 0.1 s is
+  /// Runs the job unless validate() finds a problem; returns the result of validate(). A tick longer than 0.1 s is
   /// simulated for 0.1 s.
   Problem run() const noexcept;
 };

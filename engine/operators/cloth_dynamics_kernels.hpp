@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// Between the cloth's dynamics and their kernel; nobody else needs this.
+// Internal: between the cloth's dynamics and their kernel.
 
 namespace yuragi {
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// Between the cloth's jobs and their kernels; nobody else needs this.
+// Internal: between the cloth's jobs and their kernels.
 
 namespace yuragi {
 

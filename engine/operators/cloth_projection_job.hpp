@@ -27,7 +27,7 @@ ClothThreads make_threads(std::size_t links, float link_length_m, std::span<cons
 
 /// The projection of a cloth: points each link to where it leans, and adds the links up from the fixed edge to the
 /// joints' offsets, in GridPose's meaning. Links turn and do not stretch: threads keep their length to rounding (about
-/// 1e-6). The leans of rest give exactly no offset, and the fixed edge stays where it is said to be.
+/// 1e-6). The leans of rest give exactly no offset, and the fixed edge stays at its offset.
 ///
 /// A job does the links from first_link on, as many as `lean` has rows, and takes the joints where they begin from the
 /// pose: so a cloth is done in bands that stay in the nearest cache, from the fixed edge on. With first_link 0 it also
@@ -53,7 +53,7 @@ struct ClothProjectionJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

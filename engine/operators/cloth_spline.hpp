@@ -62,7 +62,7 @@ struct ClothSplineJob {
   enum class Problem : std::uint8_t { kNone, kNoSpline, kShareNotFinite, kSizesDiffer, kRowNotRunnable };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 
@@ -82,7 +82,7 @@ struct ClothLineJob {
   enum class Problem : std::uint8_t { kNone, kNoSpline, kSizesDiffer, kRowNotRunnable };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between the jobs that move a tree's crown (SplitJob, BranchForceJob, TiltJob, LeafResponseJob, FlutterJob) and their
-// kernels; nobody else needs this.
+// Internal: between the jobs that move a tree's crown (SplitJob, BranchForceJob, TiltJob, LeafResponseJob, FlutterJob)
+// and their kernels.
 
 namespace yuragi {
 

@@ -20,7 +20,7 @@ struct GridNoiseLayer {
   float weight = 1.0F;
 };
 
-/// The sampling operator over a grid (Chiba, section 2-2 (2)): what SampleJob says, bit for bit, of the places
+/// The sampling operator over a grid (Chiba, section 2-2 (2)): the values of SampleJob, bit for bit, at the places
 /// (column_x, row_z), row after row: out = sum of weight * noise(place - offset). Where a column is on the tile is
 /// found once for all rows, and neighbours' samples are read together: two to three times as fast.
 ///
@@ -44,7 +44,7 @@ struct GridSampleJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between GridSampleJob and its kernel; nobody else needs this.
+// Internal: between GridSampleJob and its kernel.
 
 namespace yuragi {
 

@@ -34,7 +34,7 @@ struct LocalBendingJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between the jobs of this folder and their kernels; nobody else needs this.
+// Internal: between the jobs of this folder and their kernels.
 
 namespace yuragi {
 

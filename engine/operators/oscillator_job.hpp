@@ -10,7 +10,7 @@
 
 namespace yuragi {
 
-/// How a damped oscillator goes on by one tick: four constants for all that sway alike.
+/// One tick of a damped oscillator (engine/METHOD.md M17): four constants, the same for all that sway alike.
 struct OscillatorStep {
   double q_from_e = 0.0;  ///< with e = q - g: q <- g + q_from_e e + q_from_v v
   double q_from_v = 0.0;
@@ -35,11 +35,11 @@ struct OscillatorSteps {
   explicit OscillatorSteps(std::size_t count = 0)
       : q_from_e(count), q_from_v(count), v_from_e(count), v_from_v(count) {}
 
-  /// Element i goes on by this (finite) step. Thread-safe: on different elements, yes. Realtime-safe: yes.
+  /// Sets the (finite) step of element i. Thread-safe: on different elements, yes. Realtime-safe: yes.
   void set(std::size_t i, const OscillatorStep& step) noexcept;
 
-  /// All go on by OscillatorStep::exact, each at its own rate (an element each), in ticks of dt_s. The rates are always
-  /// the same: this computes anew only where dt_s is another than before. Thread-safe: no. Realtime-safe: yes.
+  /// Sets all steps by OscillatorStep::exact, each at its own rate (an element each), for ticks of dt_s. The rates
+  /// never change: this recomputes only where dt_s is another than before. Thread-safe: no. Realtime-safe: yes.
   void set_pace(std::span<const float> natural_hz, double damping_ratio, double dt_s) noexcept;
 
   std::vector<float> q_from_e, q_from_v, v_from_e, v_from_v;
@@ -57,8 +57,8 @@ struct Oscillators {
 };
 
 /// The hybrid projection: each element is a damped oscillator in two axes that the noise's angle drives, so that it
-/// overshoots, sways on after a gust, and follows fast noise the less (the paper's second future work; formulas and
-/// figures: exact solution of the driven damped oscillator).
+/// overshoots, sways on after a gust, and follows fast noise the less (the paper's second future work; engine/METHOD.md
+/// M17).
 ///
 /// `east` and `south` hold the noise's angle g on entry, and g + blend (q - g) afterwards; with blend 0 they keep every
 /// bit, and the oscillators rest. What has died away to below 1e-9 is set to 0, so that calm ends in the rest pose.
@@ -86,7 +86,7 @@ struct OscillatorJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

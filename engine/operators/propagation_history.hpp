@@ -23,7 +23,7 @@ class PropagationHistory {
 
   std::size_t width() const noexcept { return width_; }
 
-  /// Goes on by dt_s (above 0; else nothing happens) to `values`, which has width() elements.
+  /// Advances by dt_s (above 0; else nothing happens) to `values`, which has width() elements.
   void push(std::span<const float> values, double dt_s) noexcept;
 
   /// Two rows of width() values with the wanted one on the straight line between them.

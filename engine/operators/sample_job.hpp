@@ -25,10 +25,10 @@ struct NoiseLayer {
 /// The sampling operator: reads shifted noise at many places and brings it into the range that the projection wants,
 /// out = clamp(bias + scale * sum of weight * noise(place - offset), low, high) (Chiba, section 2-2 (2)).
 ///
-/// One layer is the paper's; two tiles of different size and direction keep a repeat from being seen (method, decision
-/// 7); octaves by themselves, added up, are a noise whose spectrum the moment decides. One value out for each place
-/// (one a strand: what bends as a whole is read once). Owns nothing; `out` overlaps no input. Thread-safe: jobs with
-/// different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits, and layers are added in their
+/// One layer is the paper's; two tiles of different size and direction keep a repeat from being seen (engine/METHOD.md
+/// M10, D7); octaves by themselves, added up, are a noise whose spectrum the moment decides. One value out for each
+/// place (one a strand: what bends as a whole is read once). Owns nothing; `out` overlaps no input. Thread-safe: jobs
+/// with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits, and layers are added in their
 /// order. The weight is the layer's, or the layer's times the place's. A place's weight is used as it is: finite.
 /// Cost: about 2 ns a place and layer.
 struct SampleJob {
@@ -53,7 +53,7 @@ struct SampleJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

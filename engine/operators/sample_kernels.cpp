@@ -97,7 +97,7 @@ template <class Number>
   return above > high ? high : above;
 }
 
-/// `known_layers`: how many there are, where the loop over them is to be unrolled; 0: as many as `in` says.
+/// `known_layers`: how many there are, where the loop over them is to be unrolled; 0: in.layer_count.
 template <std::size_t known_layers>
 [[gnu::always_inline]] inline void sample_all(const SampleKernelArguments& in) noexcept {
   const std::size_t layers = known_layers > 0 ? known_layers : in.layer_count;

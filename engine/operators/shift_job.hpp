@@ -9,8 +9,8 @@ namespace yuragi {
 /// The shifting operator: the wind carries its turbulence along (Taylor's frozen turbulence), offset += wind dt.
 ///
 /// An integral, never wind times time, so that a new reading bends the path and never jumps the field (Chiba, section
-/// 2-2 (1); method, decision 2); and the field itself is never turned, for turning a tile would sweep far places
-/// sideways (decision 3). The offset moves to where the wind blows: x east, z south. Metres, seconds. Owns nothing.
+/// 2-2 (1); engine/METHOD.md M9, D2); and the field itself is never turned, for turning a tile would sweep far places
+/// sideways (D3). The offset moves to where the wind blows: x east, z south. Metres, seconds. Owns nothing.
 /// Thread-safe: different offsets, yes. Realtime-safe: yes.
 struct ShiftJob {
   double wind_east_m_s = 0.0;
@@ -29,7 +29,7 @@ struct ShiftJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

@@ -13,10 +13,10 @@ namespace yuragi {
 ///
 /// The threshold rises along a ramp, threshold + threshold_rise * ramp[i]. A change of the noise goes to `above` in the
 /// share of a smooth step around the threshold, `width` wide, and the rest to `below`; no noise is (0, 0). So the sum
-/// is the noise, both parts rise with it and neither ever faster than it, and no place flips between the two (method,
-/// decision 6). A moving ramp moves the parts by at most as much as the threshold.
-/// All spans have the same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with different
-/// outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 1 ns an element (x86-64-v3).
+/// is the noise, both parts rise with it and neither ever faster than it, and no place flips between the two
+/// (engine/METHOD.md M30, D6). A moving ramp moves the parts by at most as much as the threshold. All spans have the
+/// same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with different outputs, yes.
+/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 1 ns an element (x86-64-v3).
 struct SplitJob {
   std::span<const float> noise;
   std::span<const float> ramp;
@@ -37,7 +37,7 @@ struct SplitJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

@@ -8,7 +8,7 @@ namespace yuragi {
 /// unit; 0.77 at that speed. Square roots and a quotient alone: the same bits on every machine.
 ///
 /// In a weak wind it grows with the square of the speed, as the drag of what is stiff. Above the streamline speed twigs
-/// and leaves fold together, and it grows as U^(2 + E) with Vogel's exponent E = -3/4, for ever: nothing saturates.
+/// and leaves fold together, and it grows as U^(2 + E) with Vogel's exponent E = -3/4, without a limit.
 /// (Vogel 1989, "Drag and reconfiguration of broad leaves in high winds": -0.2 to -1.2, as trees have by de Langre
 /// 2008, "Effects of wind on plants". A multiple of 1/8 needs no logarithm.)
 [[gnu::always_inline]] inline float streamlined_drag(float speed_square) noexcept {

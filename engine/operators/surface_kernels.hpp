@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between ThresholdRampJob, ColorMapJob, DisplacementJob and their kernels; nobody else needs this.
+// Internal: between ThresholdRampJob, ColorMapJob, DisplacementJob and their kernels.
 
 namespace yuragi {
 

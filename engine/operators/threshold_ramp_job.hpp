@@ -13,7 +13,7 @@ namespace yuragi {
 ///
 /// level = smooth((noise - threshold) / edge), threshold = first + (last - first) along, where smooth(t) goes from 0 at
 /// t <= 0 to 1 at t >= 1 as t^2 (3 - 2 t): a soft edge, at most 1.5 / edge steep, so that nothing flickers. `along`
-/// says how far along the axis each place is: 0 at the first threshold, 1 at the last, beyond it further on. Owns
+/// is how far along the axis each place is: 0 at the first threshold, 1 at the last, beyond it further on. Owns
 /// nothing; `level` may be `noise` itself, and overlaps nothing else. Thread-safe: jobs with different `level`, yes.
 /// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.3 ns a place (x86-64-v3).
 struct ThresholdRampJob {
@@ -35,7 +35,7 @@ struct ThresholdRampJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

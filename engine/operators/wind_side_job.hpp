@@ -10,10 +10,10 @@ namespace yuragi {
 ///
 /// It is 1 plus the projection of a thing's place on the wind's unit vector, kept above `floor` by a smooth bend, so
 /// that it changes smoothly as the wind veers: by no more than a place's distance from the middle times the angle
-/// (method, decision 5). A calm has no windward side, so the unit vector is taken as wind / sqrt(wind^2 + calm^2): as
-/// the wind dies away, everything goes to 1, and nothing jumps when it comes back from elsewhere. Places in radii, x
-/// east, z south, from the middle. All spans have the same size. Owns nothing. Thread-safe: jobs with different
-/// outputs, yes. Realtime-safe: yes; the same bits on every machine.
+/// (engine/METHOD.md M29, D5). A calm has no windward side (D9), so the unit vector is taken as wind / sqrt(wind^2 +
+/// calm^2): as the wind dies away, everything goes to 1, and nothing jumps when it comes back from elsewhere. Places in
+/// radii, x east, z south, from the middle. All spans have the same size. Owns nothing. Thread-safe: jobs with
+/// different outputs, yes. Realtime-safe: yes; the same bits on every machine.
 struct WindSideJob {
   double wind_east_m_s = 0.0;
   double wind_south_m_s = 0.0;
@@ -33,7 +33,7 @@ struct WindSideJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between quantise.cpp and its kernel; nobody else needs this.
+// Internal: between quantise.cpp and its kernel.
 
 namespace yuragi {
 

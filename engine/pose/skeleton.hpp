@@ -65,7 +65,7 @@ struct GridPose {
 
 /// One generation of a tree's strands: the trunk, the limbs, the twigs, the leaves.
 ///
-/// `strands` tells where they are while nothing moves. Strand s of a level above the first grows from the joint behind
+/// `strands` is where they are while nothing moves. Strand s of a level above the first grows from the joint behind
 /// link parent_link[s] (from 0) of strand parent[s] of level parent_level, and goes with it: its root stays at that
 /// joint, and its rest direction and curl are turned with that link. Where `is_turned_by_block` is set, the 16 strands
 /// of a block all take the turn of the first one's parent link (a spray of leaves on a twig), each its own root.

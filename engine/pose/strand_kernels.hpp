@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// Between StrandKinematicsJob, TreeKinematicsJob and their kernel; nobody else needs this.
+// Internal: between StrandKinematicsJob, TreeKinematicsJob and their kernel.
 
 namespace yuragi {
 

@@ -53,9 +53,9 @@ class JointPositions {
 /// Link i of n (from 1) is its rest direction, turned by i/n of the bend about the horizontal axis up x bend
 /// (Rodrigues). An upright link bent by theta toward (sin phi, -cos phi) so points along (sin theta sin phi, cos theta,
 /// -sin theta cos phi): the paper's tip formula (Chiba, section 3.1) read as a direction, since a link keeps its length
-/// whatever the wind (method, decision 1); the paper's z is north, ours south. Links keep their length to 1e-5 of it,
-/// as far as a float at the joint's place can say so. The bend (0, 0) gives the rest pose; every other finite one has
-/// finite joints too: one of more than pi is taken as pi, and a curl beyond 32 rad as 32 rad.
+/// whatever the wind (engine/METHOD.md M13, D1); the paper's z is north, ours south. Links keep their length to 1e-5 of
+/// it, as far as a float at the joint's place can say so. The bend (0, 0) gives the rest pose; every other finite one
+/// has finite joints too: one of more than pi is taken as pi, and a curl beyond 32 rad as 32 rad.
 ///
 /// World metres. Owns nothing; skeleton, pose and joints must outlive run(). Different jobs may run at the same time.
 /// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.6 ns a joint of strands of ten links
@@ -78,7 +78,7 @@ struct StrandKinematicsJob {
   };
   [[nodiscard]] Problem validate() const noexcept;
 
-  /// Does the work, if validate() has nothing against it; returns what validate() says.
+  /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 };
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between TreeKinematicsJob and its kernels; nobody else needs this.
+// Internal: between TreeKinematicsJob and its kernels.
 
 namespace yuragi {
 

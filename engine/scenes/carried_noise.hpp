@@ -13,13 +13,13 @@
 
 namespace yuragi {
 
-/// What a carried noise is like.
+/// Parameters of a carried noise.
 struct CarriedNoiseSpec {
   double period_m = 256.0;    ///< of the first tile, above 0
   std::size_t samples = 512;  ///< an edge of each tile: a power of two
   double beta = 5.0 / 3.0;
   BetaMeaning meaning = BetaMeaning::kTransect;
-  bool has_two_tiles = true;  ///< false: one tile, the paper's letter
+  bool has_two_tiles = true;  ///< false: one tile, as in the paper
   /// Only waves of these lengths, at least an octave apart, metres; 0 and infinity: all that the tile has. A band has
   /// variance 1 as it is read, and is not cut by the tick rate: keep its shortest waves above twice what a tick passes.
   double shortest_m = 0.0;
@@ -41,12 +41,12 @@ struct CarriedPlaces {
 /// A 2-D noise that the wind carries along: the shifting and sampling operators (ShiftJob, SampleJob) as most scenes
 /// use them. Mean 0, variance 1.
 ///
-/// Two tiles are added: the second is turned by one radian and its period is that of the first times the golden ratio,
-/// so that the sum has no period and no repeat is seen. Both have the same spectrum in rad/m, and both are carried by
-/// the same wind. Both are band-limited by the tick rate (BandLimitedTile2): in a storm what is too fine to be shown
-/// fades out, and nothing jitters from tick to tick. Allocates when it is made and in places(), never afterwards. May
-/// throw std::bad_alloc, and what make_noise_2d says. Thread-safe: sample() among themselves, yes. Realtime-safe:
-/// shift() and sample().
+/// Two tiles are added (engine/METHOD.md D7): the second is turned by one radian and its period is that of the first
+/// times the golden ratio, so that the sum has no period and no repeat is seen. Both have the same spectrum in rad/m,
+/// and both are carried by the same wind. Both are band-limited by the tick rate (BandLimitedTile2, D16): in a storm
+/// what is too fine to be shown fades out, and nothing jitters from tick to tick. Allocates when it is made and in
+/// places(), never afterwards. May throw std::bad_alloc, and the errors of make_noise_2d. Thread-safe: sample() among
+/// themselves, yes. Realtime-safe: shift() and sample().
 class CarriedNoise {
  public:
   explicit CarriedNoise(const CarriedNoiseSpec& spec);
@@ -68,10 +68,10 @@ class CarriedNoise {
   /// the band limit the most by which two levels differ; and never more than from the lowest value to the highest.
   double largest_change(double speed_m_s, double step_m_s, double dt_s) const noexcept;
 
-  /// The spec of a band of waves for whatever flutters: 1/f along a line, in tiles of eight of the longest waves with
-  /// 4.5 samples or more to the shortest. One tile is read in half the time, and enough where it is about as large as
-  /// what reads it: it lies turned by an angle whose tangent is the golden section, so that waves that go east or south
-  /// for hours close on themselves as late as they can.
+  /// The spec of a band of waves for things that flutter (engine/METHOD.md D10): 1/f along a line, in tiles of eight of
+  /// the longest waves with 4.5 samples or more to the shortest. One tile is read in half the time, and enough where it
+  /// is about as large as what reads it: it lies turned by an angle whose tangent is the golden section, so that waves
+  /// that go east or south for hours close on themselves as late as they can.
   static CarriedNoiseSpec band(double shortest_m, double longest_m, std::uint64_t seed, bool has_two_tiles = true);
 
   /// Between these its values are.

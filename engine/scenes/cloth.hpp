@@ -44,8 +44,8 @@ struct ClothTurn {
   double cosine = 1.0;
 };
 
-/// A cloth that hangs by an edge: the paper's 2-D links (Chiba, section 3.2). A scene says on a coarse grid how the
-/// links lean, by what the wind and its noise make of them, and the cloth projects it:
+/// A cloth that hangs by an edge: the paper's 2-D links (Chiba, section 3.2). A scene sets the leans of
+/// the links on a coarse grid, from the wind and its noise, and the cloth projects them:
 ///
 ///   spread    a spline goes through the knots' leans              ClothSpline, ClothLineJob
 ///   project   links turn by their lean, and add up to offsets     ClothProjectionJob
@@ -87,7 +87,7 @@ class Cloth {
   /// (-1 to 1; a value a column of the knots, stride in all). Does nothing where hybrid is 0.
   void blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept;
 
-  /// Goes on by dt_s. `rest_kept`: how much of its rest lean the cloth keeps (folds that the wind blows smooth), 0 to
+  /// Advances by dt_s. `rest_kept`: how much of its rest lean the cloth keeps (folds that the wind blows smooth), 0 to
   /// 1. `turn`: of the whole cloth about its first column, where that is fixed.
   void project(double dt_s, double rest_kept = 1.0, ClothTurn turn = {}) noexcept;
 

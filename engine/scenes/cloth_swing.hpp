@@ -23,7 +23,7 @@ struct ClothSwing {
     double rate_per_s = 1.0;  ///< above 0
   };
 
-  /// Goes on by dt_s (above 0). `target` within limits.value; natural_hz at least 0; damping_per_s: c, at least 0.
+  /// Advances by dt_s (above 0). `target` within limits.value; natural_hz at least 0; damping_per_s: c, at least 0.
   void step(double target, double natural_hz, double damping_per_s, Limits limits, double dt_s) noexcept {
     if (target == 0.0 && std::abs(value) < kAtRest && std::abs(rate_per_s) < kAtRest) {
       *this = {};

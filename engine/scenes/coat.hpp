@@ -8,7 +8,7 @@
 
 namespace yuragi {
 
-/// What a coat of fur is like, and the body that wears it: an ellipsoid that lies along x, resting on the ground.
+/// Parameters of a coat of fur, and of the body under it: an ellipsoid that lies along x, resting on the ground.
 struct CoatSpec {
   std::size_t hairs_along = 200;   ///< rows from one end of the body to the other
   std::size_t hairs_around = 150;  ///< in each row
@@ -32,9 +32,9 @@ struct Coat {
   std::vector<float> flexibility;           ///< 1 on average. padded_count() elements, like all here
 };
 
-/// Lays a coat out. Hairs are spread evenly, lie toward -x and down the flanks, and differ by 2-D noises of a large
-/// beta and a small scale, so that neighbours lie alike in locks (Chiba, section 3.1). Deterministic by seed.
-/// Allocates; may throw std::bad_alloc, and std::invalid_argument for more than 4096 hairs along or around.
+/// Creates the layout of a coat. Hairs are spread evenly, lie toward -x and down the flanks, and differ by 2-D noises
+/// of a large beta and a small scale, so that neighbours lie alike in locks (Chiba, section 3.1). Deterministic by
+/// seed. Allocates; may throw std::bad_alloc, and std::invalid_argument for more than 4096 hairs along or around.
 /// Thread-safe: yes.
 Coat make_coat(const CoatSpec& spec);
 

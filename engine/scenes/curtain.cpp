@@ -17,17 +17,17 @@
 // A curtain in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine
 // for fluctuation phenomena" (Iwate University), section 3.2 and figures 9 and 10:
 //
-//   shift    the wind carries two 2-D noises over the ground: as it blows along the curtain, so they run    ShiftJob
-//   sample   each part of the curtain reads them where it hangs: gusts, and flutter of the hem              SampleJob
-//   project  the wind blows each part out: the base sway; and the flutter propagates from the top to the    Cloth
-//            hem, growing PropagationJob
+//   shift    the wind carries two 2-D noises over the ground, and so along the curtain           ShiftJob
+//   sample   each part of the curtain reads them where it hangs: gusts, and flutter of the hem   SampleJob
+//   project  the wind blows each part out: the base sway;                                        Cloth
+//            and the flutter propagates from the top to the hem, growing                         PropagationJob
 //
 // The wind's force is along the cloth's normal, q of the weight when it hangs: at an angle a to the vertical its normal
-// part is q cos^2 a, that of the weight sin a, so that q cos^2 a = sin a. It blows the curtain out by P = tan a, each
-// column of the knots as a pendulum: a hanging chain's first two modes, 1.2024 sqrt(g / L) / 2 pi and the second 2.295
-// times as fast (D. Bernoulli 1733), faster as the wind tightens it by sqrt(1 + P^2), so that it swings on after a
-// gust. Its hem is heavy: steep above, it hangs nearly upright at the hem. A wave runs down in 2 sqrt(L / g), sooner in
-// a curtain that is blown out.
+// part is q cos^2 a, that of the weight sin a, so that q cos^2 a = sin a (engine/METHOD.md M24). It blows the curtain
+// out by P = tan a. Each column of the knots swings as a pendulum in a hanging chain's first two modes, 1.2024 sqrt(g /
+// L) / 2 pi and the second 2.295 times as fast (D. Bernoulli 1733), both faster by (1 + P^2)^(1/4), since the wind
+// raises the tension by sqrt(1 + P^2): so it swings on after a gust. Its hem is heavy: steep above, it hangs nearly
+// upright at the hem. A wave runs down in 2 sqrt(L / g), sooner in a curtain that is blown out.
 //
 // At rest it hangs in gathered folds that open a little toward the hem.
 //

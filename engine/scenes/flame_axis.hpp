@@ -12,8 +12,7 @@
 
 namespace yuragi {
 
-/// What a wind makes of a fire in the open, measured on burning cribs and pools: how far it lies over, and how much of
-/// its length is left.
+/// Tilt and length of a fire in the open in a wind, measured on burning cribs and pools (engine/METHOD.md M36).
 ///
 /// u* = u / (g m D / rho)^(1/3), m the fuel that burns (0.02 kg/(m2 s): wood), D the width of its foot. The tilt from
 /// upright has cos = (1 + u*^2)^(-1/4): u*^(-1/2) in a wind (American Gas Association 1974, LNG Safety Research
@@ -27,7 +26,7 @@ struct FlameInWind {
   static FlameInWind at(double relative_wind) noexcept;
 };
 
-/// What a flame's axis is like.
+/// Parameters of a flame's axis.
 struct FlameAxisSpec {
   std::size_t rows = 96;        ///< 2 or more, evenly from the foot to the top
   double height_m = 1.2;        ///< of the axis, in calm air
@@ -51,7 +50,7 @@ class FlameAxis {
  public:
   explicit FlameAxis(const FlameAxisSpec& spec);
 
-  /// Goes on by dt_s (above 0) in this wind (m/s, toward east and south).
+  /// Advances by dt_s (above 0) in this wind (m/s, toward east and south).
   void step(double east_m_s, double south_m_s, double dt_s) noexcept;
 
   /// How each row is moved, as SurfacePose has it; `rows` elements each.

@@ -17,7 +17,8 @@ namespace {
 constexpr double kPanelHeight = 1.35;
 constexpr double kPanelReach = 0.7;
 
-/// A body is this much of sqrt(v) (1 - v) of its half width thick, v from foot to top: as thick as it says at a third.
+/// A body is this much of sqrt(v) (1 - v) of its half width thick, v from foot to top: thickest, as thick as its width,
+/// at a third.
 constexpr double kThickest = 1.5 * 1.7320508075688772;
 
 /// The noise moves the foot by so much of what it moves the rest, from this part of the height on.

@@ -12,7 +12,7 @@ namespace yuragi {
 /// A body of flame is nested shells, of these parts of its width, from the outermost inward.
 inline constexpr std::array<double, 3> kFlameShells = {1.0, 0.65, 0.35};
 
-/// What a flame's body is like.
+/// Parameters of a flame's body.
 struct FlameBodySpec {
   bool is_panel = false;     ///< a flat upright panel for a picture of the flame, and not its own shape
   std::size_t columns = 96;  ///< points across the panel; of a body, around all of its shells together
@@ -21,7 +21,7 @@ struct FlameBodySpec {
   double width_m = 0.5;   ///< of its thickest part
 };
 
-/// The surface that a flame is shown on, and what its operators need to know of each point or row.
+/// The surface that a flame is shown on, and its operators' data for each point or row.
 ///
 /// A panel stands along the scene's east and faces its south, with the flame in its middle. A body is closed around its
 /// axis, round, pointed at the foot and at the top, and thickest at a third of its height; its rows move. Rows go from

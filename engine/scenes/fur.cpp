@@ -37,7 +37,7 @@ constexpr std::array kStrokeWaves_m = {0.24, 0.52};
 constexpr double kLargestStroke = 2.2;
 constexpr double kStrokeAcross = 0.5;
 
-/// Where the coat reads its strokes for the second time: as good as another noise.
+/// Where the coat reads its strokes for the second time: so far away that it is an independent noise.
 constexpr float kElsewhere_m = 1618.034F;
 
 /// How much less the wind bends hairs on the side that faces away from it.

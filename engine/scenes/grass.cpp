@@ -10,7 +10,7 @@
 #include "engine/scenes/strand_sway.hpp"
 
 // Grass in the wind (Chiba, section 3.1): a meadow laid out by noise, and the wind on the ground that passes over it
-// (StrandSway, which says how).
+// (StrandSway).
 
 namespace yuragi {
 namespace {

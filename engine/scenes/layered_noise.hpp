@@ -30,12 +30,12 @@ struct NoiseLayerSpec {
 /// one would pass by as a picture. (A CarriedNoise goes one way, with the wind.) Mean 0, variance the sum of the
 /// squared weights.
 ///
-/// Allocates when it is made, never afterwards; throws what make_noise_2d says, and std::bad_alloc. Thread-safe:
+/// Allocates when it is made, never afterwards; throws the errors of make_noise_2d, and std::bad_alloc. Thread-safe:
 /// sample() among themselves, yes. Realtime-safe: all but construction.
 class LayeredNoise {
  public:
   /// Layers: 1 to SampleJob::kMaxLayers. Places: coordinates in metres, as many of x as of z.
-  /// Where they are the rows of a grid, `columns` says how many stand in a row: if rows go along x, as in a scene that
+  /// Where they are the rows of a grid, `columns` is how many stand in a row: if rows go along x, as in a scene that
   /// is not turned, they are read faster, by GridSampleJob, to the same bits. Such a grid has one to
   /// GridSampleJob::kMaxLayers layers, none of which is turned or has an x of its own, and does not lean.
   LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<const float> x_m, std::span<const float> z_m,

@@ -75,7 +75,7 @@ Meadow make_meadow(const MeadowSpec& spec) {
     skeleton.rest_curl_rad[strand] =
         varied(spec.curl_deg * kRadPerDeg / links, 0.5, curl_noise.at(across, deep), 0.0, 2.5);
 
-    // Length, and with it how easily the wind has it.
+    // Length, and with it flexibility.
     const float length_m = varied(spec.length_m, spec.length_variation, length_noise.at(across, deep), 0.35, 1.8);
     skeleton.link_length_m[strand] = length_m / static_cast<float>(links);
     const float stiffness_noise = tilt_noise.at(across, deep) * curl_noise.at(across, deep);

@@ -8,7 +8,7 @@
 
 namespace yuragi {
 
-/// What a meadow is like.
+/// Parameters of a meadow.
 struct MeadowSpec {
   std::size_t blades_across = 100;    ///< along x
   std::size_t blades_deep = 100;      ///< along z
@@ -30,11 +30,11 @@ struct Meadow {
   std::vector<float> flexibility;  ///< 1 on average, more for longer ones; padded_count() elements
 };
 
-/// Lays a meadow out around the world's origin, on the ground y = 0: place, length, heading, tilt and curl of each
-/// blade come from 2-D noises of a small beta and a large scale, so that neighbours differ and yet patches show (Chiba,
-/// section 3.1). Rows along x, from north to south, each from west to east. Deterministic by seed. Allocates; may throw
-/// std::bad_alloc, and std::invalid_argument for more than 4096 blades along an edge. Thread-safe: yes. Realtime-safe:
-/// no.
+/// Creates the layout of a meadow around the world's origin, on the ground y = 0: place, length, heading, tilt and curl
+/// of each blade come from 2-D noises of a small beta and a large scale, so that neighbours differ and yet patches show
+/// (Chiba, section 3.1). Rows along x, from north to south, each from west to east. Deterministic by seed. Allocates;
+/// may throw std::bad_alloc, and std::invalid_argument for more than 4096 blades along an edge. Thread-safe: yes.
+/// Realtime-safe: no.
 Meadow make_meadow(const MeadowSpec& spec);
 
 }  // namespace yuragi

@@ -42,7 +42,7 @@ class RoughWater {
   std::size_t node_columns() const noexcept { return node_columns_; }
   std::size_t node_rows() const noexcept { return node_rows_; }
 
-  /// Goes on by dt_s under these winds (m/s, at least 0; what is above kStrongestSceneWind_m_s counts as that), one a
+  /// Advances by dt_s under these winds (m/s, at least 0; what is above kStrongestSceneWind_m_s counts as that), one a
   /// node.
   void step(std::span<const float> wind_m_s, double dt_s) noexcept;
 

@@ -25,14 +25,14 @@ class Scene {
  public:
   virtual ~Scene() = default;
 
-  /// Goes on by dt_s (above 0) under `wind` (finite).
+  /// Advances by dt_s (above 0) under `wind` (finite).
   void tick(const GroundWind& wind, double dt_s) noexcept {
     shift(wind, dt_s);
     sample();
     project(dt_s);
   }
 
-  // The three steps of a tick, in this order; by themselves for who measures them, or shares them out.
+  // The three steps of a tick, in this order, one by one: for benchmarks, and for work that threads share.
   virtual void shift(const GroundWind& wind, double dt_s) noexcept = 0;  ///< the wind carries the noise on
   virtual void sample() noexcept = 0;                                    ///< each element reads it
   virtual void project(double dt_s) noexcept = 0;                        ///< and is moved: the pose
@@ -49,8 +49,8 @@ class Scene {
   /// What never changes. Valid for the scene's life.
   virtual const Skeleton& skeleton() const noexcept = 0;
 
-  /// No joint moves farther than this in one tick of dt_s, whatever the wind does: steps, gaps, turns. How the bound
-  /// comes about stands in the scene's file.
+  /// No joint moves farther than this in one tick of dt_s, whatever the wind does: steps, gaps, turns. The bound is
+  /// derived in the scene's file.
   virtual double largest_joint_step_m(double dt_s) const noexcept = 0;
 
   /// The pose after the last tick; the rest pose before the first.
@@ -70,7 +70,7 @@ struct SceneSetup {
   std::uint64_t seed = 0;  ///< everything random in the model and its noises comes from it
   ScenePlacement placement = {};
   SimdRow row = best_simd_row();
-  /// The gusts of the wind that the scene will be given, shared with all other scenes and with whoever makes the wind.
+  /// The gusts of the wind that the scene will be given, shared with all other scenes and with the wind's source.
   /// Without, the wind is the same everywhere, and what differs from place to place is the scene's own noise.
   std::shared_ptr<const GustNoise> gusts = nullptr;
 };

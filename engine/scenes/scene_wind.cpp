@@ -10,7 +10,7 @@
 namespace yuragi {
 namespace {
 
-/// What is left of a wind that has ceased: below it a wind moves nothing, and the filter would go on for ever in
+/// What is left of a wind that has ceased: below it a wind moves nothing, and the filter would decay without end in
 /// numbers that processors are slow with.
 constexpr double kCalm_m_s = 1e-12;
 

@@ -32,7 +32,7 @@ class SceneWind {
   explicit SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts = nullptr,
                      WindPart part = WindPart::kAll);
 
-  /// Goes on by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
+  /// Advances by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
   void step(const GroundWind& wind, double dt_s) noexcept;
 
   double east_m_s() const noexcept { return east_.value; }

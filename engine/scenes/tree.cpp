@@ -399,7 +399,7 @@ void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlac
   wood.count = strands.strand_count;
   wood.damping_ratio = std::min(kDamping[level] * damping_ratio_, kLargestDamping);
 
-  // Thickness and length against the median branch of its kind say how far it bends, and how fast it sways.
+  // Thickness and length relative to the median branch of its kind set how far it bends, and how fast it sways.
   std::vector<double> thickness_m;
   std::vector<double> length_m;
   for (std::size_t i = 0; i < wood.count; ++i) {
@@ -459,7 +459,7 @@ void Tree::add_leaves(const TreeLevel& level, std::uint64_t seed) {
     leaves_.largest_give = std::max(leaves_.largest_give, species_.petiole * liveliness);
     leaves_.liveliest = std::max(leaves_.liveliest, liveliness);
 
-    // It nods, about an axis across its own direction; one that hangs straight down, to wherever.
+    // It nods about an axis across its own direction; one that hangs straight down, about any level axis.
     const double twist_rad = kLargestTwist_rad * (2.0 * random.uniform(2 * i + 1) - 1.0);
     const auto rest_x = static_cast<double>(strands.rest_x[i]);
     const auto rest_z = static_cast<double>(strands.rest_z[i]);
@@ -574,10 +574,10 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
 
 // The bend of a leaf is give lean W + axis flutter V noise, W and V being how it answers the wind u at its twig, 0
 // to 1. u is that of the ground (at most L, and changing by at most dL a tick: SceneWind, WindGrid) times a factor for
-// the crown's gusts and the tree's own, each the noise (cut at n, and changing by at most its CarriedNoise says) times
-// its deviation d. So u is at most L (1 + sum of d n), and changes by at most dL (1 + sum of d n) + L (sum of d dn).
-// W and V are nowhere steeper over u than LeafResponseJob says, and the leaves' noise is cut and carried as the others.
-// Neither part changes by more than from one extreme to the other.
+// the crown's gusts and the tree's own, each the noise (cut at n, and changing by at most largest_change() of its
+// CarriedNoise) times its deviation d. So u is at most L (1 + sum of d n), and changes by at most dL (1 + sum of d n) +
+// L (sum of d dn). W and V are nowhere steeper over u than LeafResponseJob's constants, and the leaves' noise is cut
+// and carried as the others. Neither part changes by more than from one extreme to the other.
 double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
   const auto change = [&](const CarriedNoise& noise, double carry, double largest) {

@@ -8,8 +8,8 @@
 
 namespace yuragi {
 
-/// How a generation of branches grows out of the one before. What has two numbers goes evenly from the first, at the
-/// foot of the parent, to the second, at its tip.
+/// How a generation of branches grows out of the one before. Of pairs of numbers the first holds at the foot of the
+/// parent, the second at its tip, linear between.
 struct BranchHabit {
   double first_at = 0.0;                    ///< the lowest stands at this part of the parent's length
   std::array<double, 2> angle_deg = {};     ///< away from the parent's own direction
@@ -29,7 +29,7 @@ struct TreeHabit {
   double leaf_droop_deg = 40.0;   ///< from petiole to tip
 };
 
-/// What a tree is like. At least one of each.
+/// Parameters of a tree. At least one of each.
 struct TreeSpec {
   TreeHabit habit;
   std::size_t limbs = 15;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kFewestNodes = 4;
 constexpr std::size_t kMostNodes = 64;
 
-/// What is left of a wind that has ceased is nothing: numbers too small are slow.
+/// Below this a wind is set to 0: denormal numbers are slow.
 constexpr float kNoWind_m_s = 1e-12F;
 
 /// How many nodes of an axis are read from these places on it: up to the one behind the last place.

@@ -31,7 +31,7 @@ class WindGrid {
   WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m, SimdRow row,
            double finest_cell_m = 0.5, std::size_t columns = 0);
 
-  /// Goes on by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
+  /// Advances by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
   void step(const GroundWind& wind, double dt_s) noexcept;
 
   /// The wind at as many places as the outputs have, from place `first` on.

@@ -7,14 +7,14 @@
 
 namespace yuragi {
 
-/// How much a reading is worth by its own source's word.
+/// The quality of a reading as its own device reports it.
 enum class ReadingQuality : std::uint8_t {
-  kGood,       ///< measured, and the device says it is well
+  kGood,       ///< measured, without a flag by the device
   kUncertain,  ///< measured, but the device flags it (low battery, partial data)
-  kSimulated,  ///< made up by a simulation; nobody may take it for the real wind
+  kSimulated,  ///< made by a simulation: never to be taken for the real wind
 };
 
-/// What a sensor said once, decoded, in SI units, before calibration. Finite and physical by the time it is published.
+/// One reading of a sensor, decoded, in SI units, before calibration. Finite and physical by the time it is published.
 struct WindReading {
   Instant time;            ///< when the answer arrived
   double speed_m_s = 0.0;  ///< at least 0
@@ -22,8 +22,8 @@ struct WindReading {
       direction_deg;               ///< where the wind comes *from*, clockwise from north, [0, 360); empty: not known
   std::optional<double> gust_m_s;  ///< the strongest of the device's own recent past
   ReadingQuality quality = ReadingQuality::kGood;
-  /// The reading before, said again because it still holds (a recording that stands still): its source is not silent,
-  /// but there is nothing to learn from it, to judge, or to record.
+  /// A repetition of the reading before, which still holds (a paused recording): its source is not silent, but the
+  /// repetition is not fitted to, checked or recorded.
   bool is_held = false;
 };
 

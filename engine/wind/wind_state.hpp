@@ -9,7 +9,7 @@ namespace yuragi {
 
 /// Where the wind of a moment comes from.
 enum class WindSource : std::uint8_t {
-  kDefault,   ///< no sensor speaks: the installation's default synthetic wind
+  kDefault,   ///< no live sensor: the installation's default synthetic wind
   kHandover,  ///< on the way from one to the other
   kLive,      ///< a sensor
 };
@@ -22,10 +22,10 @@ struct WindState {
   double live_weight = 0.0;    ///< 0: all default wind; 1: all sensor
   double reading_age_s = 0.0;  ///< of the newest reading that took part; 0 where there was none
   /// This is the wind so far upwind of the middle of the scenes (below 0: downwind): at their windward edge, or where
-  /// the sensor is said to stand. What blows there now crosses the scenes.
+  /// the sensor's configured position is. What blows there now crosses the scenes.
   double upwind_m = 0.0;
   double to_middle_s = 0.0;  ///< how long a gust takes from there to the middle; 0 where it has passed it already
-  /// There the sensors are said to stand; otherwise it is the windward edge.
+  /// That place is the sensors' configured position; otherwise it is the windward edge.
   bool is_place_told = false;
 };
 

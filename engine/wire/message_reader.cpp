@@ -5,7 +5,7 @@ namespace yuragi::wire {
 MessageReader::MessageReader(std::size_t max_message_bytes) : max_message_bytes_(max_message_bytes) {}
 
 void MessageReader::feed(std::span<const std::uint8_t> bytes) {
-  // A whole message of the greatest length already waits: nobody takes them out.
+  // A whole message of the greatest length already waits: the caller takes none out.
   if (buffered_bytes() >= kSizePrefixBytes + max_message_bytes_) broken_ = true;
   if (broken_) return;
 

@@ -15,8 +15,8 @@ namespace yuragi::wire {
 ///     reader.feed(received);
 ///     while (auto message = reader.next()) { if (!*message) ...; else use(**message); }
 ///
-/// A size prefix above the limit ends the stream: where the next message begins can no longer be known, so next() says
-/// kTooLong from then on. Any other bad message is told once and skipped.
+/// A size prefix above the limit ends the stream: where the next message begins can no longer be known, so next()
+/// returns kTooLong from then on. Any other bad message is reported once and skipped.
 ///
 /// Memory: what was received of one message, at most the limit, plus one feed. A prefix alone reserves nothing, and a
 /// caller who feeds on without calling next() is cut off with kTooLong.

@@ -31,7 +31,7 @@ inline constexpr std::size_t kMaxServerMessageBytes = 256u << 20;  ///< of what 
 inline constexpr std::size_t kMaxClientMessageBytes = 4096;        ///< of what the server reads
 inline constexpr std::uint16_t kDefaultPort = 7410;
 
-// What decode() believes at most; pose.fbs tells others.
+// The limits that decode() accepts; pose.fbs documents them for other clients.
 inline constexpr std::size_t kMaxTextBytes = 1024;  ///< encoders cut longer texts
 inline constexpr std::size_t kMaxScenes = 64;
 /// Strands, joints of cloth and points of surfaces, of all scenes of a message together.
@@ -146,9 +146,9 @@ struct PlayerWish {
   double rate = 1.0;        ///< kRate: kMinPlayRate to kMaxPlayRate
 };
 
-/// A wish to show or hide scenes; or, with `player`, to change how recordings are played.
+/// A request to show or hide scenes; or, with `player`, to change how recordings are played.
 struct Control {
-  std::string scene;  ///< its name; empty: change nothing, only tell how things are
+  std::string scene;  ///< its name; empty: change nothing, only report the status
   bool shown = true;
   bool hide_others = false;  ///< and hide every other scene, in the same time
   double over_s = 2.0;       ///< 0 to kMaxFade_s
@@ -161,7 +161,7 @@ struct SceneState {
   bool shown = true;  ///< what it is, or what it is fading to
 };
 
-/// How a sensor that plays a recording does.
+/// The status of a sensor that plays a recording.
 struct PlayerState {
   std::string sensor;
   std::string file;

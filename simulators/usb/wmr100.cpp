@@ -1,5 +1,5 @@
-// Oregon Scientific WMR100 (0fde:ca01). Sources: WLoggerDaemon Station_protocol.md (reports, frames, sums); weewx
-// wmr100.py (start report, wind frame).
+// Oregon Scientific WMR100 (0fde:ca01). Sources: ejeklint/WLoggerDaemon's description of the protocol (reports, frames,
+// sums); weewx wmr100.py (start report, wind frame).
 //
 // Says nothing before the start report, 20 00 08 01 00 00 00 00. Then a stream of bytes in reports of 8: the number of
 // valid ones, 1 to 7, and those. Frames stand between ff ff and end with the sum of their bytes, low byte first.

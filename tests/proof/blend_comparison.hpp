@@ -21,7 +21,7 @@ struct Blade {
 inline constexpr std::array<Blade, 3> kBlades = {{{3.0, -3.0}, {-20.0, 5.0}, {60.0, 25.0}}};
 
 inline constexpr double kTick_hz = 60.0;
-/// What the issue asks of the spectrum reaches from here to there; above, the noise is compared with its own model.
+/// The bounds of the spectrum reach from here to there; above, the noise is compared with its own model.
 inline constexpr double kFromHz = 0.003;
 inline constexpr double kToHz = 0.6;
 inline constexpr double kTopHz = 5.0;

@@ -18,8 +18,8 @@ struct SonicRecord {
   double duration_s() const { return static_cast<double>(samples.size()) / rate_hz; }
 };
 
-/// The two recordings of ../shared/data/sonic, by their number 0 or 1 (20 July 2018, 13:30 and 14:00, Finse; CSAT3, 10
-/// Hz). Empty where the folder is not there. Throws std::runtime_error for a file that cannot be read.
+/// The two recordings of Finse (engine/wind/README.md), by their number 0 or 1 (20 July 2018, 13:30 and 14:00, Finse;
+/// CSAT3, 10 Hz). Empty where the folder is not there. Throws std::runtime_error for a file that cannot be read.
 std::optional<SonicRecord> load_sonic(int number);
 
 /// What a slower sensor would have said: vector means over blocks of `interval_s`, each heard at the end of its block.

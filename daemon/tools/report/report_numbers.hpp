@@ -71,7 +71,7 @@ struct DirectionPoint {
 };
 
 inline constexpr std::size_t kRoseSectors = 16;
-/// Lower edges of the rose's speed classes; below the first is a calm (wind.md: about 0.5 m/s).
+/// Lower edges of the rose's speed classes; below the first is a calm (engine/wind/README.md W37).
 inline constexpr std::array<double, 6> kRoseClasses_m_s = {0.5, 2.0, 4.0, 6.0, 8.0, 11.0};
 
 /// Where the wind came from: shares of the readings with a direction.

@@ -10,10 +10,9 @@
 namespace yuragi {
 
 // AcuRite 01025, 01035, 01036, 02032, 02064 (USB 24c0:0003).
-// Source: ../shared/sensors.md 2.4, which read weewx drivers/acurite.py and weewx issue 39; wxforum topic 27244
-// (speed).
+// Source: weewx drivers/acurite.py and issue 39; wxforum topic 27244 (speed); drivers/SOURCES.md S2.4.
 //
-// Nothing comes by itself: input report 1 is asked for every 18 s. Its contents alternate, so that a direction comes
+// Nothing is sent unasked: input report 1 is requested every 18 s. Its contents alternate, so that a direction comes
 // every 36 s.
 //
 //   0   1, the report's id
@@ -28,8 +27,9 @@ namespace yuragi {
 inline constexpr std::size_t kAcuriteReport1 = 10;
 
 /// The wind of report 1 with its id in front, or the first thing that is wrong: kTooShort, kNotMine (another report),
-/// kMalformed (too long, or marks that no report has: a console gone mad), kInvalid (no sensor, or old numbers). A
-/// report without a direction leaves it empty: it is not kept from the one before. Thread-safe and realtime-safe: yes.
+/// kMalformed (too long, or marks that no report has: a console in a bad state), kInvalid (no sensor, or old numbers).
+/// A report without a direction leaves it empty: it is not kept from the one before. Thread-safe and realtime-safe:
+/// yes.
 Result<DecodedWind, Refusal> decode_acurite(ByteSpan report) noexcept;
 
 }  // namespace yuragi

@@ -12,10 +12,10 @@
 namespace yuragi {
 
 // Fine Offset WH1080, WH1090, WH2080, WH3080 and their many names (USB 1941:8021).
-// Source: ../shared/sensors.md 2.3, which read weewx drivers/fousb.py and pywws weatherstation.py.
+// Source: weewx drivers/fousb.py and pywws weatherstation.py; drivers/SOURCES.md S2.3.
 //
 // The console's memory of 64 KiB is read in blocks of 32 bytes: a fixed block at 0, then a ring of records, of which
-// the fixed block says the current one.
+// the fixed block has the address of the current one.
 //
 //   request       a1, address high, low, 20, and the same four again; 32 bytes come in four input reports
 //   fixed block   0, 1     55 aa, or another mark that consoles have been seen with
@@ -32,10 +32,10 @@ namespace yuragi {
 inline constexpr std::size_t kFineOffsetBlock = 32;             ///< bytes of one read
 inline constexpr std::uint16_t kFineOffsetFirstRecord = 0x100;  ///< where the ring begins; it ends with the memory
 
-/// How long a console's records are.
+/// The length of a console's records.
 enum class FineOffsetModel : std::uint8_t { kWh1080 = 16, kWh3080 = 20 };
 
-/// What the fixed block says.
+/// The fields of the fixed block that are used.
 struct FineOffsetFixedBlock {
   std::uint8_t read_period_min = 0;
   std::uint16_t record_count = 0;

@@ -12,8 +12,8 @@
 namespace yuragi {
 
 // Hideki TE923 (Meade, TFA Nexus, Mebus, IROX; USB 1130:6801).
-// Source: ../shared/sensors.md 2.5, and weewx drivers/te923.py, whose indices count from behind the header byte: ours
-// count from the block's first byte, and are one more.
+// Source: weewx drivers/te923.py, whose indices count from behind the header byte: ours count from the block's first
+// byte, and are one more; drivers/SOURCES.md S2.5.
 //
 // A block is asked for with an output report of 8 bytes, comes in input reports of 8 bytes (how many of the next 7 are
 // valid, then those), and is acknowledged.

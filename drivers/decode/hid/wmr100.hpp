@@ -13,8 +13,8 @@
 namespace yuragi {
 
 // Oregon Scientific WMR100, WMR100N, WMR88, WMRS200, RMS300, RMS600 (USB 0fde:ca01).
-// Source: ../shared/sensors.md 2.1, which read weewx drivers/wmr100.py, WLoggerDaemon's Station_protocol.md and
-// barnybug/wmr100.
+// Source: weewx drivers/wmr100.py, ejeklint/WLoggerDaemon's description of the protocol, and barnybug/wmr100;
+// drivers/SOURCES.md S2.1.
 //
 // An input report of 8 bytes: how many of the next 7 are valid, then those. The valid bytes of all reports are one
 // stream of frames, with ff ff between two of them; one ff alone is data.
@@ -31,7 +31,7 @@ namespace yuragi {
 /// No frame is longer (rain).
 inline constexpr std::size_t kWmr100LongestFrame = 17;
 
-/// The report to send once to make the console talk (without report id).
+/// The report that starts the console's sending (without report id).
 inline constexpr std::array<std::uint8_t, 8> kWmr100Start = {0x20, 0x00, 0x08, 0x01, 0x00, 0x00, 0x00, 0x00};
 
 /// The valid bytes of one input report, which may be empty. A count beyond the report is clamped to it. It points into
@@ -53,12 +53,12 @@ struct Wmr100Stream {
 /// Memory is bounded. Realtime-safe: yes; thread-safe: for distinct streams.
 std::optional<Result<DecodedWind, Refusal>> take_wmr100_byte(Wmr100Stream& stream, std::uint8_t byte) noexcept;
 
-/// The stream ends here: what its last frame says if it was still waiting for the ff ff behind it; nothing if not.
+/// The stream ends here: the wind of its last frame if that was still waiting for the ff ff behind it; nothing if not.
 std::optional<Result<DecodedWind, Refusal>> finish_wmr100(Wmr100Stream& stream) noexcept;
 
 /// The wind of one frame without its ff ff, or the first thing that is wrong: kTooShort, kBadChecksum, kNotMine
 /// (another sensor's), kMalformed (longer than a wind frame), kImplausible. A gust below the average does come: it is
-/// passed on as the device says it. Thread-safe and realtime-safe: yes.
+/// passed on as the device sends it. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept;
 
 }  // namespace yuragi

@@ -12,12 +12,12 @@
 namespace yuragi {
 
 // Oregon Scientific WMR300 (USB 0fde:ca08).
-// Source: ../shared/sensors.md 2.2, which read weewx drivers/wmr300.py.
+// Source: weewx drivers/wmr300.py; drivers/SOURCES.md S2.2.
 //
-// Every packet is one input report. A heartbeat is answered by who the console is (0x57 "WMR300,A002," and two bytes,
-// at 12 and 13, which go back to it in the packet 73 e5 0a 26 that begins the sending of data). It sends for about 100
-// s by itself, and goes on while it gets a heartbeat every 20 s and an acknowledgement of every packet 0xD1 to 0xDC.
-// Wind, every 2.5 to 3 s, is packet 0xD4 (54 bytes, numbers big-endian, 0x7Fxx: no data):
+// Every packet is one input report. A heartbeat is answered by the console's identification (0x57 "WMR300,A002," and
+// two bytes, at 12 and 13, which go back to it in the packet 73 e5 0a 26 that begins the sending of data). It sends for
+// about 100 s by itself, and goes on while it gets a heartbeat every 20 s and an acknowledgement of every packet 0xD1
+// to 0xDC. Wind, every 2.5 to 3 s, is packet 0xD4 (54 bytes, numbers big-endian, 0x7Fxx: no data):
 //
 //   0        0xD4
 //   1        54, the packet's length
@@ -30,7 +30,7 @@ namespace yuragi {
 
 inline constexpr std::size_t kWmr300WindPacket = 54;
 
-/// What keeps the console talking.
+/// The heartbeat that keeps the console sending.
 inline constexpr std::array<std::uint8_t, 5> kWmr300Heartbeat = {0xA6, 0x91, 0xCA, 0x45, 0x52};
 
 /// The wind of a packet, or the first thing that is wrong: kTooShort, kNotMine (another packet), kMalformed (a length
@@ -38,13 +38,13 @@ inline constexpr std::array<std::uint8_t, 5> kWmr300Heartbeat = {0xA6, 0x91, 0xC
 /// padding. The packet's state is all in itself: nothing is kept. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept;
 
-/// Is this the console's answer to a heartbeat? It then asks to be told to begin, if it does not send data yet.
+/// Is this the console's answer to a heartbeat? If it does not send data yet, it must be asked to begin.
 bool is_wmr300_identity(ByteSpan packet) noexcept;
 
 /// What makes the console that answered `identity` send data; is_wmr300_identity() holds for it.
 std::array<std::uint8_t, 6> encode_wmr300_begin(ByteSpan identity) noexcept;
 
-/// Is the packet whole and undamaged, whatever it says? Data packets end with a sum; what has none passes by its head
+/// Is the packet whole and undamaged, whatever its kind? Data packets end with a sum; what has none passes by its head
 /// alone. Thread-safe and realtime-safe: yes.
 bool is_sound_wmr300(ByteSpan packet) noexcept;
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kShortestSegment_s = 0.125;
 constexpr double kBlock_s = 0.25;
-/// Two of these, in a row or not, are full scale for every converter of 8 bits and more.
+/// Samples of at least this magnitude are full scale for every converter of 8 bits and more.
 constexpr float kClipLevel = 0.99F;
 constexpr float kNoMicrophoneSays = 10.0F;
 /// The band above the wind's, by which automatic gain shows.

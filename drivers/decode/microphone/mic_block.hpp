@@ -8,9 +8,9 @@
 
 namespace yuragi {
 
-// What is known of a quarter of a second of sound: sums of Welch periodograms (Welch 1967, "The use of fast Fourier
-// transform for the estimation of power spectra"), small enough for a pipe and enough for everything that the wind is
-// computed from. Powers are mean squares, full scale = 1: a sine that just reaches full scale has 0.5.
+// The features of a quarter of a second of sound: sums of Welch periodograms (Welch 1967, "The use of fast Fourier
+// transform for the estimation of power spectra"), small enough for a pipe, and all that the wind is computed from.
+// Powers are mean squares, full scale = 1: a sine that just reaches full scale has 0.5.
 
 inline constexpr std::size_t kMicMaxChannels = 4;
 inline constexpr std::size_t kMicMaxBands = 12;

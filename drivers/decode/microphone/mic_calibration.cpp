@@ -277,7 +277,7 @@ Result<MicFit, Failure> fit_mic_calibration(Pairs pairs, double noise_power, Mic
   for (const Fit& fit : allowed) {
     const auto whole = fit(pairs);
     if (!whole) continue;
-    // Each half is tried by what the other taught; too few pairs for halves are tried on themselves.
+    // Each half is tested with the fit to the other; too few pairs for halves are tested with their own fit.
     const auto by_even = fit(even);
     const auto by_odd = fit(odd);
     const double error = by_even && by_odd

@@ -12,9 +12,9 @@
 
 namespace yuragi {
 
-// From how loud the wind is to how fast it blows. A bare microphone hears stagnation pressure, whose root mean square
-// in a low band goes as U^n; published exponents range from 1.3 to 3.2 with site and mount, so that both numbers belong
-// to one installation and are fitted there, beside any other anemometer.
+// From the level of wind noise to wind speed (drivers/SOURCES.md S6.1). A bare microphone measures stagnation pressure,
+// whose root mean square in a low band goes as U^n; published exponents range from 1.3 to 3.2 with site and mount, so
+// that gain and exponent belong to one installation and are fitted there, beside any other anemometer.
 
 /// U = gain (P - P_noise)^(1 / (2 n)), with P the mean square in the band (full scale 1) and P_noise that of a calm.
 struct MicPowerLaw {
@@ -46,15 +46,15 @@ using MicCalibration = std::variant<MicPowerLaw, MicCurve>;
 /// by a power law. Thread-safe and realtime-safe: yes.
 double mic_speed_m_s(const MicCalibration& calibration, double power, double noise_power) noexcept;
 
-/// The way back: the level of a band that is taken for this wind, dB. Nothing where many levels are (a calm).
+/// The inverse: the level of a band, dB, that gives this wind. Nothing where many levels do (a calm).
 /// Thread-safe and realtime-safe: yes.
 std::optional<double> mic_level_db(const MicCalibration& calibration, double speed_m_s, double noise_power) noexcept;
 
-/// "-62:0 -50:1.2 -40:3.4" (dB:m/s). The failure says what is wrong.
+/// "-62:0 -50:1.2 -40:3.4" (dB:m/s). The failure's text: what is wrong.
 Result<MicCurve, Failure> parse_mic_curve(std::string_view text);
 std::string format_mic_curve(const MicCurve& curve);
 
-/// What came of a fit.
+/// The result of a fit.
 struct MicFit {
   MicCalibration calibration;
   double mean_error_m_s = 0.0;  ///< mean absolute error on pairs that the fit did not see (see fit_mic_calibration)
@@ -72,11 +72,11 @@ Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft,
 /// likewise.
 Result<MicCurve, Failure> fit_mic_curve(std::span<const MicLevelAndSpeed> pairs);
 
-/// What may come of a fit: a power law needs levels from which the noise of a calm can be taken off (or has been), a
-/// curve such as hold it.
+/// Which fits to try: a power law needs levels from which the noise of a calm can be taken off (or has been), a curve
+/// levels that include it.
 enum class MicFitKind : std::uint8_t { kPowerLawOrCurve, kPowerLaw, kCurve };
 
-/// A power law, which knows what lies beyond the pairs, unless a curve is better by a tenth. Each is fitted to every
+/// A power law, which extrapolates beyond the pairs, unless a curve is better by a tenth. Each is fitted to every
 /// second pair and tried on the others, by the mean absolute error, and what is chosen is fitted to all. Pairs in the
 /// order of time, each a mean of some seconds; at least 8, over at least 1 m/s and 3 dB.
 Result<MicFit, Failure> fit_mic_calibration(std::span<const MicLevelAndSpeed> pairs, double noise_power = 0.0,

@@ -73,7 +73,7 @@ std::optional<MicDirectionEstimate> MicDirection::add(std::span<const double> sp
     now.east += fit_[i].east * speeds_m_s[i];
   }
 
-  // Smoothed as a vector that grows with the wind: a gust says more than a lull.
+  // Smoothed as a vector that grows with the wind: a gust weighs more than a lull.
   const double keep = std::exp(-duration_s / smoothing_s_);
   const auto follow = [&](double& value, double next) { value = keep * value + (1.0 - keep) * next; };
   follow(north_, now.north);

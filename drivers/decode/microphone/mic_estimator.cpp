@@ -117,7 +117,7 @@ MicEstimator::Levels MicEstimator::levels_of_window() const {
     }
   }
 
-  // How much of each band all hear alike: the mean over the pairs, so that it is the same for every channel, and faces
+  // The coherence of each band: the mean over the pairs, so that it is the same for every channel, and faces
   // in the lee are not taken for quiet ones.
   std::array<double, kMicMaxBands> wind_part{};
   wind_part.fill(1.0);

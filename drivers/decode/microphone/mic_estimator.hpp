@@ -22,7 +22,7 @@ struct MicEstimatorOptions {
   /// Of a calm, dB re full scale; nothing: found while running (MicNoiseFloor). A curve needs none.
   std::optional<double> noise_floor_db = std::nullopt;
   double noise_memory_s = 86400.0;
-  /// Does what all microphones hear alike count as sound, not wind? With one microphone it cannot be told.
+  /// Is what all microphones record alike taken for sound, not wind? One microphone alone cannot distinguish them.
   bool ignores_sound = true;
   double window_s = 1.0;            ///< over which level and coherence are taken
   std::vector<double> faces_deg{};  ///< where each microphone faces; empty: no direction
@@ -30,7 +30,7 @@ struct MicEstimatorOptions {
   double least_confidence = 0.3;  ///< of a direction; below it there is none
 };
 
-/// The wind as one block leaves it.
+/// The estimate after one block.
 struct MicEstimate {
   double speed_m_s = 0.0;
   std::optional<double> direction_deg;  ///< where it comes from, clockwise from north, [0, 360)
@@ -39,17 +39,18 @@ struct MicEstimate {
   double level_db = 0.0;                ///< of the wind in its band, without sound; what a calibration is made of
   double floor_db = 0.0;                ///< what was taken for a calm; -200: nothing
   double sound_part = 0.0;              ///< of the band's power that was taken for sound, 0 to 1
-  unsigned silent_channels = 0;         ///< a bit for each that says nothing at all
+  unsigned silent_channels = 0;         ///< a bit for each that is digitally silent
   bool is_clipping = false;
   bool suspects_automatic_gain = false;
 };
 
-/// From blocks of sound to wind. Wind noise is made at each microphone by itself, so that two of them hear it
-/// incoherently, and ambient sound alike: of each band's power the part 1 - |gamma| is wind, with gamma the complex
-/// coherence. With few averages even noise looks coherent by 1/N in |gamma|^2, which is taken off (Carter, Knapp and
-/// Nuttall 1973, "Estimation of the magnitude-squared coherence function via overlapped FFT processing").
+/// From blocks of sound to wind. Wind noise arises at each microphone independently, so that it is incoherent between
+/// two of them, while ambient sound is coherent: of each band's power the part 1 - |gamma| is wind, with gamma the
+/// complex coherence (drivers/SOURCES.md S6.2). With few averages even noise looks coherent by 1/N in |gamma|^2, which
+/// is taken off (Carter, Knapp and Nuttall 1973, "Estimation of the magnitude-squared coherence function via overlapped
+/// FFT processing").
 ///
-/// A microphone that clips hears less than there is: a Gaussian signal that is at full scale for a part p of the time
+/// Clipping reduces the recorded power: a Gaussian signal that is at full scale for a part p of the time
 /// has the standard deviation 1 / Phi^-1(1 - p/2), and the level is raised to that; it is never lowered. Pure: no
 /// clock, no I/O. Thread-safe: no. Realtime-safe: no (it keeps ten minutes of gusts in a deque).
 class MicEstimator {
@@ -57,9 +58,9 @@ class MicEstimator {
   /// Throws std::invalid_argument for faces that are no direction's, or more than there are channels.
   MicEstimator(const MicEstimatorOptions& options, const MicHello& hello);
 
-  /// Nothing until a whole window has been heard. Refuses: kInvalid (digital silence: muted, or unplugged and not told;
-  /// or samples that are no numbers), kImplausible (noise at full scale, as strong above the wind's band as in it: a
-  /// broken cable or a wrong sample format). A refused block empties the window.
+  /// Nothing until a whole window has been recorded. Refuses: kInvalid (digital silence: muted, or unplugged without an
+  /// error; or samples that are no numbers), kImplausible (noise at full scale, as strong above the wind's band as in
+  /// it: a broken cable or a wrong sample format). A refused block empties the window.
   Result<std::optional<MicEstimate>, Refusal> add(const MicBlock& block);
 
   const MicHello& hello() const noexcept { return hello_; }

@@ -15,7 +15,7 @@
 
 namespace yuragi {
 
-// What `yuragi mic-worker` says through its pipe. All numbers little-endian, real ones IEEE 754.
+// The frames that `yuragi mic-worker` writes to its pipe. All numbers little-endian, real ones IEEE 754.
 //
 //   bytes  meaning of a frame
 //     4    "YMIC"
@@ -27,8 +27,8 @@ namespace yuragi {
 //   size   payload
 //
 //   hello    f64 rate_hz, u8 channels, u8 bands, u16 high_bins, u16 bins[bands], text device
-//   block    u64 end_sample, i64 end_mono_ns, u32 lost_samples, u32 invalid_samples, u16 segments, u8 channels, u8
-//   bands,
+//   block    u64 end_sample, i64 end_mono_ns, u32 lost_samples, u32 invalid_samples,
+//            u16 segments, u8 channels, u8 bands,
 //            for each channel: f32 high, f32 total, f32 clipped, f32 peak, f32 power[bands]
 //            for each pair (mic_pair): f32 real, f32 imaginary for each band
 //   trouble  text: what is wrong and what to do
@@ -46,13 +46,13 @@ using MicFrame = std::variant<MicHello, MicBlock, MicTrouble>;
 
 /// A frame as bytes. A text is cut to what fits.
 std::vector<std::uint8_t> encode_mic_frame(const MicHello& hello);
-/// `hello` says how much of the block there is.
+/// `hello` determines the size of the block.
 std::vector<std::uint8_t> encode_mic_frame(const MicBlock& block, const MicHello& hello);
 std::vector<std::uint8_t> encode_mic_frame(const MicTrouble& trouble);
 
 /// Finds frames among bytes, however these were split on their way. Bounded; every byte may be hostile.
 ///
-/// A block is worth something only after a hello that it agrees with. What a block says is finite, powers are not
+/// A block is accepted only after a hello that it agrees with. Its numbers are finite, powers are not
 /// negative, and parts lie between 0 and 1. Thread-safe: no.
 class MicFrameReader {
  public:
@@ -71,7 +71,7 @@ class MicFrameReader {
   /// Forgets everything, for a new worker.
   void clear();
 
-  /// What has come and is no whole frame yet; after next() has said nothing, no more than one frame.
+  /// Bytes that are no whole frame yet; after next() has returned nothing, no more than one frame.
   std::size_t waiting_bytes() const noexcept { return waiting_.size(); }
 
  private:

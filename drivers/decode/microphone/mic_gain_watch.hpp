@@ -20,7 +20,7 @@ struct RunningPair {
   double correlation() const noexcept;
 };
 
-/// Looks for automatic gain in the device, which makes a microphone useless as an anemometer and cannot be seen in one
+/// Detects automatic gain in the device, which makes a microphone useless as an anemometer and cannot be seen in one
 /// level alone. Three signs, over some minutes:
 ///  - when the wind's band grows louder, the band above it grows softer: the gain went down at once. Wind and sound
 ///    raise both, or one of them.
@@ -28,7 +28,7 @@ struct RunningPair {
 ///    that follows, before and after look the same.
 ///  - the wind's band is loud and hardly varies: no wind does that. (A machine beside the microphone does: the same
 ///    advice.)
-/// Somebody who talks all the time can hide the second. Thread-safe: no. Realtime-safe: yes.
+/// Continuous speech can hide the second. Thread-safe: no. Realtime-safe: yes.
 class MicGainWatch {
  public:
   /// Levels in dB re full scale, before any weighting, held for `duration_s`, a quarter of a second or so; `high_db`

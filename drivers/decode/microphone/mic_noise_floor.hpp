@@ -11,8 +11,8 @@ namespace yuragi {
 /// a histogram that forgets, so that it costs the same for an hour and for a week.
 ///
 /// A wind that never dies down raises it: in an hour of wind of 10 % turbulence, the quietest moments have half the
-/// power of the rest, and taking that off would cost a fifth of the speed. So nothing is said in the first hour, and
-/// the memory should hold a night. Thread-safe: no. Realtime-safe: yes.
+/// power of the rest, and taking that off would cost a fifth of the speed. So there is no estimate in the first hour,
+/// and the memory should span a night. Thread-safe: no. Realtime-safe: yes.
 class MicNoiseFloor {
  public:
   /// `memory_s`: how long until a level is forgotten to a third.
@@ -21,7 +21,7 @@ class MicNoiseFloor {
   /// Level in dB re full scale, held for `duration_s`.
   void add(double level_db, double duration_s) noexcept;
 
-  /// The floor in dB; nothing until an hour has been heard, or half the memory if that is less.
+  /// The floor in dB; nothing until an hour has been recorded, or half the memory if that is less.
   std::optional<double> floor_db() const noexcept;
 
  private:

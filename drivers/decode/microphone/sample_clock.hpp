@@ -4,7 +4,7 @@
 
 namespace yuragi {
 
-/// When a sample was at the microphone. A sound system says that once a buffer, late by whatever the scheduler did; the
+/// When a sample was at the microphone. A sound system reports that once a buffer, with the scheduler's jitter; the
 /// converter's clock is steady, and this follows it: a second-order delay-locked loop (Adriaensen 2005, "Using a DLL to
 /// filter time", Linux Audio Conference). Its band starts wide, to lock soon, and narrows.
 /// Times are nanoseconds of any steady clock. Thread-safe: no. Realtime-safe: yes.

@@ -26,7 +26,7 @@ enum class ModbusFraming : std::uint8_t {
   kRtu,  ///< slave id in front, CRC behind
 };
 
-/// A question for registers.
+/// A request for registers.
 struct ModbusRequest {
   std::uint16_t transaction = 0;  ///< TCP only
   std::uint8_t unit = 1;          ///< slave id
@@ -58,7 +58,7 @@ struct ModbusRefusal {
 };
 
 /// The registers in one whole message that came after `request`, or the first thing that is wrong with it, in this
-/// order: kTooShort (no header, or it ends before its own length), kMalformed (not Modbus, or longer than it says),
+/// order: kTooShort (no header, or it ends before its own length), kMalformed (not Modbus, or longer than its length),
 /// kNotMine (another transaction or unit), kException, kMalformed (another function or byte count). Reads any bytes
 /// whatsoever. Thread-safe and realtime-safe: yes.
 Result<ModbusRegisters, ModbusRefusal> decode_tcp(const ModbusRequest& request,
@@ -78,7 +78,7 @@ std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) noexcept;
 /// "illegal data address" for 2; "unknown exception" for a code that the specification does not have.
 std::string_view modbus_exception_name(std::uint8_t code) noexcept;
 
-/// Is this exception a gateway's word that the slave behind it does not answer?
+/// Is this exception a gateway's report that the slave behind it does not answer?
 bool is_gateway_silence(std::uint8_t exception) noexcept;
 
 }  // namespace yuragi

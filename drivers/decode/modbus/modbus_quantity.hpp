@@ -13,8 +13,7 @@
 
 namespace yuragi {
 
-/// How a device writes one number into its registers. The texts of these enums, in their order, are what a profile
-/// says.
+/// How a device writes one number into its registers. The texts of these enums, in their order, are those of profiles.
 enum class RegisterType : std::uint8_t { kU16, kI16, kU32, kI32, kF32 };
 inline constexpr std::array<std::string_view, 5> kRegisterTypeNames = {"u16", "i16", "u32", "i32", "f32"};
 
@@ -30,7 +29,7 @@ inline constexpr std::array<std::string_view, 5> kQuantityUnitNames = {"m/s", "k
 enum class DirectionMap : std::uint8_t { kDegrees, kGear8, kPoint16 };
 inline constexpr std::array<std::string_view, 3> kDirectionMapNames = {"degrees", "8-gear", "16-point"};
 
-/// One quantity of a device: where it stands and how it is read.
+/// One quantity of a device: its registers and how they are decoded.
 struct ModbusQuantity {
   std::uint8_t slave = 1;
   std::uint8_t function = 3;

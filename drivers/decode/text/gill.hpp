@@ -26,7 +26,7 @@ struct GillOptions {
   WhenMissing checksum = WhenMissing::kRefuse;
   WhenMissing status = WhenMissing::kRefuse;  ///< not of MaxiMet, which leaves it out as it is configured
   std::optional<char> node;                   ///< take only this one's messages
-  /// In a slower wind than this the device does not measure the direction (its setting K), whatever the field says.
+  /// In a slower wind than this the device does not measure the direction (its setting K), even if the field has one.
   double least_speed_with_direction_m_s = 0.05;
 };
 

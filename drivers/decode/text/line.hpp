@@ -16,8 +16,8 @@ namespace yuragi {
 //   4.2,270,6.1                      columns
 //   speed=4.2 direction=270; gust=6.1    keys; ':' does as well as '=', and blank, tab, ',', ';' and '&' separate
 //
-// There is no standard: the options say what stands where. What Arduino's Serial.print writes for a number that is none
-// (nan) means that the value is not known, as do an empty field and "null".
+// There is no standard: the options define the columns or keys. "nan", as Arduino's Serial.print writes it, an empty
+// field and "null" mean that the value is not known.
 
 enum class LineFormat : std::uint8_t {
   kAuto,  ///< keys if the line has '=' or ':', otherwise columns
@@ -25,7 +25,7 @@ enum class LineFormat : std::uint8_t {
   kKeys,
 };
 
-/// Where a quantity stands and what it means: value * scale + offset is in m/s, or in degrees.
+/// The column or key of a quantity, and its scale: value * scale + offset is in m/s, or in degrees.
 struct LineQuantity {
   std::optional<std::size_t> column;  ///< from 0; none: the line never has it as a column
   std::string key;                    ///< exact; empty: the line never has it as a key

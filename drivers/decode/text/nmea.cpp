@@ -46,7 +46,7 @@ NmeaValue first_speed(const TextFields& fields, std::initializer_list<SpeedPlace
 NmeaAnswer decode_mwv(const NmeaOptions& options, const TextFields& fields) {
   DecodedWind wind;
 
-  // The status first: what an invalid sentence says otherwise does not matter.
+  // The status first: the other fields of an invalid sentence do not matter.
   const std::string_view status = fields[5];
   if (status.empty()) {
     if (options.status == WhenMissing::kRefuse) return Refusal::kMalformed;
@@ -110,7 +110,7 @@ NmeaAnswer decode_side(const TextFields& fields, WindReference reference) {
   return checked(wind);
 }
 
-/// What an XDR quadruple's id says of an angle or a speed.
+/// The statistic (least, mean, greatest) that an XDR quadruple's id stands for.
 enum class XdrRole : std::uint8_t { kNone, kLeast, kMean, kGreatest };
 
 /// Only a number is one: a boat's heel is an angle too, and its id is HEEL.

@@ -17,9 +17,9 @@ namespace yuragi {
 //   $--XDR,A,deg,D,id,...,S,speed,M|N|K|S,id,...*hh     Vaisala WXT: id is address + 0 least, 1 mean, 2 greatest
 //
 // hh is the exclusive or of what stands between '$' and '*'. Sources: gpsd www/NMEA.adoc; SignalK nmea0183-signalk
-// hooks; Lufft V200A-UMB manual V25 20.5.4 (S is mph); Gill 1405-PS-0019 (status 00 and 60 are good); ../shared/
-// sensors.md 4 for what devices do instead: lower-case checksums, a trailing dot, angles of 360 and beyond, lines
-// longer than 82 characters, NUL bytes in front, no status, no checksum, other sentences and comments in between.
+// hooks; Lufft V200A-UMB manual V25 20.5.4 (S is mph); Gill 1405-PS-0019 (status 00 and 60 are good). Devices do
+// otherwise (drivers/SOURCES.md S4.6): lower-case checksums, a trailing dot, angles of 360 and beyond, lines longer
+// than 82 characters, NUL bytes in front, no status, no checksum, other sentences and comments in between.
 
 struct NmeaOptions {
   WhenMissing checksum = WhenMissing::kRefuse;

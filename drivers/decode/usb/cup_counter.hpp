@@ -8,12 +8,12 @@
 
 namespace yuragi {
 
-// A cup anemometer on a counter: speed from how many pulses came in how long.
-// Source: ../shared/sensors.md 3 ("Conversion").
+// A cup anemometer on a counter: speed from the number of pulses in a window of time.
+// Source: drivers/SOURCES.md S3.3.
 //
-// Polled ten times a second, a cup gives 0 or 1 pulses a poll, and a speed of each poll would be noise. So the window
-// varies: it is open until enough pulses have come, or as long as one wants to wait for a speed. A storm is seen within
-// a poll, a breeze within a second.
+// Polled ten times a second, a cup gives 0 or 1 pulses a poll, and a speed from each poll would be noise. So the window
+// varies: it is open until enough pulses have come, or for longest_window_s. A storm is measured within a poll, a
+// breeze within a second.
 
 /// The cup's line and the window. What it must satisfy: metres_per_pulse > 0, 0 < shortest_window_s <=
 /// longest_window_s, all finite.
@@ -25,7 +25,7 @@ struct CupCalibration {
   double longest_window_s = 1.0;
 };
 
-/// What must be known of the past; the owner keeps one for each time that the device was opened.
+/// The state between calls; the owner keeps one for each time that the device was opened.
 struct CupState {
   std::optional<std::uint32_t> last_count;
   std::uint64_t pulses = 0;  ///< in the open window
@@ -36,7 +36,7 @@ struct CupState {
 /// closes the window: the speed in m/s, exactly 0 if no pulse came. Nothing while it stays open, and for the first
 /// value. The counter may wrap at 2^32. kImplausible where it has gone back (the device was reset), or on by more than
 /// any wind can drive it, or where time has not gone on (negative, not finite): the window begins anew with this value.
-/// A reset that looks like a wrap (from just below 2^32 to a small count) cannot be told, and is bounded by the same.
+/// A reset that looks like a wrap (from just below 2^32 to a small count) is not detected, but bounded in the same way.
 /// Realtime-safe: yes; thread-safe: for distinct states.
 std::optional<Result<double, Refusal>> advance_cup(CupState& state, const CupCalibration& cup, std::uint32_t count,
                                                    double elapsed_s) noexcept;

@@ -46,8 +46,8 @@ struct LabjackRefusal {
 };
 
 // All functions: thread-safe and realtime-safe. A reply is refused for the first thing that is wrong with it: kTooShort
-// (no header, or it ends before its own length), kMalformed (not a frame, or longer than it says), kBadChecksum,
-// kNotMine (another command or echo), kException (the device says what), kMalformed (another number of values).
+// (no header, or it ends before its own length), kMalformed (not a frame, or longer than its length), kBadChecksum,
+// kNotMine (another command or echo), kException (an error code of the device), kMalformed (another number of values).
 
 /// Counter 0 or 1 alone, on FIO4 (also on the U3-HV), and FIO0 to FIO3 analogue: what LabjackRequest relies on. The
 /// counter begins at 0.
@@ -63,7 +63,7 @@ struct LabjackRequest {
   std::optional<std::uint8_t> counter = 0;             ///< 0 or 1; not reset by it
 };
 
-/// What a reply holds: as much as was asked for. What wind it means, advance_cup() and vane_direction_deg() say.
+/// The values of a reply, those that were requested. advance_cup() and vane_direction_deg() convert them to wind.
 struct LabjackReply {
   std::optional<std::uint16_t> analog;
   std::optional<std::uint16_t> reference;

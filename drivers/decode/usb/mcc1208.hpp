@@ -50,8 +50,8 @@ struct Mcc1208Calibration {
   double intercept_steps = 0.0;
 };
 
-// The replies to these, by their length: kTooShort, kMalformed (longer, or more than 12 bits). What wind they mean,
-// advance_cup() and vane_direction_deg() say. Thread-safe and realtime-safe: yes.
+// The replies to these, by their length: kTooShort, kMalformed (longer, or more than 12 bits). advance_cup() and
+// vane_direction_deg() convert the values to wind. Thread-safe and realtime-safe: yes.
 
 Result<std::uint32_t, Refusal> decode_mcc1208_count(ByteSpan reply) noexcept;
 Result<std::uint16_t, Refusal> decode_mcc1208_analog(ByteSpan reply) noexcept;

@@ -5,7 +5,7 @@
 namespace yuragi {
 
 // A vane on a potentiometer: direction from the voltage of the wiper, as a share of the voltage over the track.
-// Source: ../shared/sensors.md 3 ("Conversion").
+// Source: drivers/SOURCES.md S3.4.
 //
 // The track does not go round: between its end and its beginning the wiper touches nothing (the dead band, 4 degrees,
 // say). There the input floats, or a resistor pulls it to a rail; both must come out as no direction. A vane whose

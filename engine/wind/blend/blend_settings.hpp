@@ -8,25 +8,26 @@
 
 namespace yuragi {
 
-/// What an installation knows of one source of a blend.
+/// The configuration of one source of a blend.
 struct BlendSourceSettings {
-  /// Only how its readings rise and fall is believed, neither their scale nor their mean (a microphone): it gives the
-  /// gusts that are too quick for the absolute sources. Alone it is taken as it is.
+  /// Relative: only the fluctuations of its readings are used, neither their scale nor their mean (a microphone). It
+  /// supplies the gusts that are too fast for the absolute sources. Where it is the only source its readings are used
+  /// unchanged.
   bool is_relative = false;
   int priority = 0;                 ///< lower first; equal ones share; 0: its place among the sources, from 1
   double weight = 1.0;              ///< among those of the same priority; above 0
-  bool has_place = false;           ///< it is known where it stands; otherwise it is taken for the windward edge
+  bool has_place = false;           ///< its position is configured; otherwise it is the windward edge
   double east_m = 0.0;              ///< where it stands, from the middle of the scenes
   double south_m = 0.0;             ///< (a relative one is taken to stand where those do whose gusts it fills)
-  double lead_m = 0.0;              ///< it is taken to stand so far upwind of there: more is known, and known later
-  double length_m = 0.0;            ///< how far its gusts reach, until it tells more of them; 0: the blend's length
-  bool teaches_site = false;        ///< what it measures is the wind of this site and of now
+  double lead_m = 0.0;              ///< its pen is placed so far upwind: more of the wind is known, but later
+  double length_m = 0.0;            ///< integral length scale before anything is measured; 0: the blend's length
+  bool teaches_site = false;        ///< its readings are live and of this site: they update the site's spectrum
   double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
-  double direction_step_deg = 0.0;  ///< its vane knows only every so many degrees; 0: found out
+  double direction_step_deg = 0.0;  ///< resolution of its vane; 0: detected
 };
 
 struct BlendSettings {
-  SyntheticWindSettings climate;  ///< the wind where nobody measures: mean, direction, turbulence intensity, seed
+  SyntheticWindSettings climate;  ///< the wind without a sensor: mean, direction, turbulence intensity, seed
   double length_m = 57.0;         ///< how far its gusts reach: the integral length scale
   double gustiness = 0.0;         ///< 0 to 0.6: deviation of the logarithm of gusts' strength; 0: all of one strength
   double handover_s = 3.0;        ///< about how long the way from one source to another takes
@@ -36,8 +37,8 @@ struct BlendSettings {
   double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
   double reach_m = 0.0;           ///< from the middle of the scenes to the farthest place of any of them
   double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
-  /// What is known of the site's gusts: corrects the noise of slow sources, and is taught by those that may teach. Of
-  /// the estimator's thread. None: nothing is corrected.
+  /// The site's measured spectrum: corrects the noise of slow sources, and is updated by sources with `teaches_site`.
+  /// Used on the estimator's thread only. None: no correction.
   std::shared_ptr<SiteSpectrum> site{};
   std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults
 };

@@ -7,35 +7,36 @@
 namespace yuragi {
 namespace {
 
-/// The weight of a band is a half at this over the sensor's interval. What its averaging, its being held and the
-/// breadth of the bands leave of it has half the power at 0.25 over the interval: there sensor and noise cross.
+/// The weight of a band is 0.5 at this over the sensor's interval. With averaging, hold and the width of the bands the
+/// sensor's part has half the power at 0.25 over the interval: the crossover of sensor and noise.
 constexpr double kHalfTrustTimesInterval = 0.5;
-/// A reading is late after so many of its intervals; until then what is known is not yet old.
+/// A reading is late after so many of its intervals; until then weights do not decay.
 constexpr double kLateAfterIntervals = 1.5;
-/// A source that has spoken once is taken for one of those that speak seldom: its reading is worth a while, and tells
-/// the mean, while the gusts are left to the noise until it has spoken again.
+/// The interval assumed of a source that has sent one reading: a long one, so that the reading counts for a while and
+/// sets the mean, while the gusts are left to the noise until the next.
 constexpr double kUnknownInterval_s = 10.0;
-/// A gap of so many intervals separates what the fit may compare.
+/// The fit compares no readings across a gap of so many intervals.
 constexpr double kGapIntervals = 3.0;
-/// Trust goes where it should within about 4.75 s: what comes back is believed by and by.
+/// The rate at which weights are slewed: 95 % of the way in 4.75 s.
 constexpr double kTrustRate_rad_s = 1.0;
 /// The slow mean of the speed, by which turbulence is measured.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kFitEvery_s = 1.0;
 
-/// A length that is a source's own is worth more than the climate's intensity, which is any wind's: means over times
-/// that are longer than a gust tell the product of the variance and the time scale, and what one of them is believed to
-/// be says what the other is. Found with two half hours at 4.4 m and made-up storms of 20 m/s at 15 m (site_proof).
+/// A configured length of a source weighs more than the climate's intensity, which is not specific to the site: means
+/// over times that are longer than a gust determine only the product of the variance and the time scale, so that the
+/// prior of one fixes the other. Found with two half hours at 4.4 m and made-up storms of 20 m/s at 15 m (site_proof).
 constexpr double kOwnLengthWeight = 5.0;
 constexpr double kOwnLengthIntensityWeight = 1.0;
 
-/// The weight of a band while a source that tells of so long a time at once speaks as it should.
+/// The weight of a band of a source with this interval, or averaging time, while its readings are on time
+/// (engine/wind/README.md W18).
 double full_trust_at(double frequency_hz, double interval_s) noexcept {
   const double ratio = frequency_hz * interval_s / kHalfTrustTimesInterval;
   return 1.0 / (1.0 + ratio * ratio * ratio * ratio);
 }
 
-/// The mean of a wave over so many of its cycles, that have passed: how high it is, and how much later.
+/// The mean of a wave over so many of its past cycles, as a complex factor: sinc(cycles) exp(-i pi cycles).
 std::complex<double> mean_of_past(double cycles) noexcept {
   const double angle_rad = std::numbers::pi * cycles;
   const double sine = std::sin(angle_rad);
@@ -43,7 +44,7 @@ std::complex<double> mean_of_past(double cycles) noexcept {
   return {height * std::cos(angle_rad), -height * sine};
 }
 
-/// A mean over `averaging_s`, held for `interval_s`: what both leave of a wave, and how much later it is.
+/// The response of a mean over `averaging_s` that is held for `interval_s`, as a complex factor (W19).
 std::complex<double> averaged_and_held(double frequency_hz, double averaging_s, double interval_s) noexcept {
   const std::complex<double> held = mean_of_past(frequency_hz * interval_s);
   return held * (averaging_s == interval_s ? held : mean_of_past(frequency_hz * averaging_s));
@@ -88,7 +89,7 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   if (!is_plausible(reading)) return false;
   const bool is_first = !record_.has_spoken();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
-  if (gap_s < 0.0) return false;  // older than what is known
+  if (gap_s < 0.0) return false;  // older than the last reading
   if (reading.is_held && !is_first) {
     record_.hold(reading.time);
     return true;
@@ -117,8 +118,8 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   return true;
 }
 
-/// With its first reading it is what it says, believed at once: nothing of it is shown yet, and how it comes into the
-/// wind is SourceChoice's.
+/// The first reading has its full weight at once: nothing of the source is shown yet, and SourceChoice fades it into
+/// the wind.
 void BlendSource::begin() noexcept {
   follower_.begin(wind_);
   speed_m_s_ = record_.last()->speed_m_s;
@@ -152,7 +153,7 @@ void BlendSource::set_full_trust() noexcept {
   }
 }
 
-/// Notes the turbulence of the wind that was read, a mean over so long; the site learns of it, if it may.
+/// Adds a reading, a mean over so long, to the turbulence, and to the site's spectrum if the source may update it.
 void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   const bool tells_across = has_vane() && !is_coarse();
@@ -163,7 +164,7 @@ void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
       measured_, *site_);
 }
 
-/// Fits the turbulence to what was measured, and works out what the noise should have of it.
+/// Fits the turbulence to the readings, and computes the variance of each octave of the noise from the fit.
 void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   fitted_s_ = 0.0;
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
@@ -180,7 +181,7 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
     return variances;
   };
   along_ = strengths(measured_.along());
-  // What no vane tells, or one of few points, is as a rule.
+  // Without a vane, or with one of few points: the usual ratio.
   if (has_vane() && !is_coarse()) {
     across_ = strengths(measured_.across());
   } else {
@@ -193,10 +194,10 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
 void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept {
   follower_.step(wind_, parts);
 
-  // What was known of a band is forgotten as fast as its waves pass, and as the gusts do.
+  // The weight of a band decays as fast as its waves pass, and as the gusts do (W21).
   const double late_s = std::max(0.0, record_.age_s(now) - kLateAfterIntervals * interval_s_);
   if (late_s == 0.0) {
-    // Until it has spoken for so long, the mean of all that it has said.
+    // Until its readings span the memory, the mean of all of them.
     spoken_s_ = std::min(spoken_s_ + dt_s, kSpeedMemory_s);
     if (spoken_s_ > 0.0) {
       speed_m_s_ += -std::expm1(-dt_s / spoken_s_) * (record_.last()->speed_m_s - speed_m_s_);

@@ -27,11 +27,12 @@ struct SourceResponse {
   std::complex<double> along, across;
 };
 
-/// What is believed of a source's turbulence before it has told of it. Pure.
+/// The prior of a source's turbulence, before it has sent readings. Pure.
 TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept;
 
-/// One source of a blend: what it says, taken apart into octave bands, how far each is to be believed, and the
-/// turbulence that its readings show. Thread-safe: no. Realtime-safe after construction: yes.
+/// One source of a blend: its readings split into octave bands (engine/wind/README.md W17), the weight of each band
+/// (W18, W21), and the turbulence fitted to its readings (W28, W29). Thread-safe: no. Realtime-safe after construction:
+/// yes.
 class BlendSource {
  public:
   BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings, const GustNoise& noise);
@@ -46,7 +47,7 @@ class BlendSource {
   /// Takes a reading; false for one that is impossible or older than what is known.
   bool accept(const WindReading& reading, const Around& around) noexcept;
 
-  /// Goes on to `now`. Only when it has spoken.
+  /// Advances to `now`. Precondition: it has sent a reading.
   void step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept;
 
   const SourceRecord& record() const noexcept { return record_; }
@@ -57,16 +58,16 @@ class BlendSource {
   WindVector band(std::size_t band) const noexcept { return follower_.band(band); }
   double speed_m_s() const noexcept { return speed_m_s_; }  ///< slow mean of its speeds
 
-  /// How far the mean and each band are believed, 0 to 1, slewed; and how far they would be if it spoke on time.
+  /// The weights of the mean and of each band, 0 to 1, slewed; and those that it has while its readings are on time.
   const BandWeights& trust() const noexcept { return trust_; }
   const BandWeights& full_trust() const noexcept { return full_trust_; }
   /// What its averaging and the holding of its readings leave of a wave in the middle of each band.
   const BandWeights& passed() const noexcept { return passed_; }
 
-  /// What its averaging, the holding of its readings and its vane leave of a wave of the real wind: times what its
-  /// bands pass of it (OctaveFollower::Response), that is what it says of it.
+  /// Its frequency response (W19): what averaging, the holding of readings and its vane leave of a wave of the real
+  /// wind. Times the response of its bands (OctaveFollower::Response) it is the source's part of the blend.
   SourceResponse passed_of(double frequency_hz) const noexcept;
-  /// How far a wave of this frequency is believed while it speaks on time.
+  /// The weight of a wave of this frequency while readings are on time (W18).
   double trust_at(double frequency_hz) const noexcept;
 
   const Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
@@ -108,7 +109,8 @@ class BlendSource {
 };
 
 /// The group delay of the blend, s: how much later than the wind the part of it at this frequency is that comes from a
-/// source which speaks every `interval_s`, each time the mean over `averaging_s`. Pure.
+/// source that sends a reading every `interval_s`, each the mean over `averaging_s`. Pure. Source:
+/// engine/wind/README.md W22.
 double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept;
 
 }  // namespace yuragi

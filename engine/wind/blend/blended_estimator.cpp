@@ -16,11 +16,11 @@ constexpr double kLeastAdvection_m_s = 0.3;
 constexpr double kCalm_m_s = 0.5;
 constexpr double kTurnRate_hz = 0.1;
 
-/// Gusts of an absolute source tell something new after so many of its intervals.
+/// Gusts of an absolute source are independent after so many of its intervals.
 constexpr double kIntervalsOfAGust = 3.0;
 /// A low pass has done 98 % of its way after 4 time constants.
 constexpr double kPlaneRateTimesHandover = 4.0;
-/// Sources at a place of their own count at least so much there.
+/// Sources at a place of their own have at least so much weight there.
 constexpr double kLeastWord = 1e-6;
 /// Less than this is nothing.
 constexpr double kLeastShare = 1e-9;
@@ -96,15 +96,16 @@ bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
   return false;
 }
 
-/// What each source has of the mean and of each band.
+/// The shares of each source in the mean and in each band.
 void BlendedEstimator::share_out(double dt_s) noexcept {
   share_words();
   share_mean(dt_s);
   for (std::size_t pen = 0; pen < pens_.size(); ++pen) share_at(pen);
 }
 
-/// Of a band that is known together each source has a part by its word times trust. What is known together is the mean
-/// of their trusts, weighted in the same way: as much as the one knows who knows. Returns the sum of the shares.
+/// The shares of the sources in a band, by weight times trust; their sum is the mean of the trusts, weighted in the
+/// same way, so that sources which do not resolve the band take nothing from one that does (engine/wind/README.md W23).
+/// Returns the sum of the shares.
 double BlendedEstimator::share_level(std::size_t level, std::span<const double> words,
                                      std::span<double> shares) const noexcept {
   double all = 0.0;
@@ -125,7 +126,7 @@ double BlendedEstimator::share_level(std::size_t level, std::span<const double> 
   return known;
 }
 
-/// Of all sources together, wherever they stand.
+/// The shares among all sources, wherever they stand.
 void BlendedEstimator::share_words() noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) words_[i] = choice_.word(i);
   for (std::size_t level = 0; level <= kBands; ++level) {
@@ -134,8 +135,8 @@ void BlendedEstimator::share_words() noexcept {
   }
 }
 
-/// The means make a plane. A second place at once makes a slope, however small its share: its weights follow as slowly
-/// as a hand-over.
+/// The means make a plane. A second place makes a slope at once, however small its share: so the plane's weights follow
+/// as slowly as a hand-over.
 void BlendedEstimator::share_mean(double dt_s) noexcept {
   const double plane_part = -std::expm1(-kPlaneRateTimesHandover / settings_.handover_s * dt_s);
   for (std::size_t i = 0; i < sources_.size(); ++i) level_shares_[i] = shares_[i].word[0];
@@ -149,8 +150,9 @@ void BlendedEstimator::share_mean(double dt_s) noexcept {
   }
 }
 
-/// Of the bands at one place those who stand there know all that can be known, however small their part among others
-/// is; how far they count at all is the pen's presence. Relative sources have of the gusts what is left.
+/// The shares in the bands at one place: the sources that stand there share all of them, however small their weight
+/// among others is; how far the place counts at all is the pen's presence. Relative sources have the gusts that are
+/// left.
 void BlendedEstimator::share_at(std::size_t index) noexcept {
   Pen& pen = pens_[index];
   double all = 0.0;
@@ -159,7 +161,7 @@ void BlendedEstimator::share_at(std::size_t index) noexcept {
     all += choice_.word(i);
     if (places_.pen_of(i) == index) pen.word += choice_.word(i);
   }
-  // Where none of them counts at present, they are written all the same: nothing leaps when one begins to count.
+  // Where none of them is selected at present, they are written all the same: nothing jumps when one is selected.
   const double own = pens_.size() == 1 ? 0.0 : kLeastWord;
   const double sum = pen.word + own * static_cast<double>(places_.sources_at(index));
   const double times = sum > kLeastShare ? all / sum : 0.0;
@@ -175,7 +177,7 @@ void BlendedEstimator::share_at(std::size_t index) noexcept {
   }
 }
 
-/// What a source says of the mean, or of a band.
+/// A source's mean (level 0) or band, with the gain of a relative one.
 WindVector BlendedEstimator::said(std::size_t index, std::size_t level) const noexcept {
   const BlendSource& source = sources_[index];
   const WindVector value = level == 0 ? source.mean() : source.band(level - 1);
@@ -183,7 +185,7 @@ WindVector BlendedEstimator::said(std::size_t index, std::size_t level) const no
   return (level == 0 ? source.scale.mean_gain() : source.scale.gust_gain()) * value;
 }
 
-/// How much stronger than they say relative sources are, from the absolute ones that have the word.
+/// Updates the gains of relative sources, from the selected absolute ones.
 void BlendedEstimator::learn_scales(double dt_s) noexcept {
   for (std::size_t r = 0; r < sources_.size(); ++r) {
     if (!settings_.sources[r].is_relative || !sources_[r].record().is_live(state_.time, settings_.stale_intervals)) {
@@ -242,7 +244,7 @@ BlendedEstimator::Heard BlendedEstimator::hear() noexcept {
   return heard;
 }
 
-/// Of the bands that those who have the word could know: 1 while they speak.
+/// The part of the bands that the selected sources can resolve: 1 while their readings are on time.
 double BlendedEstimator::trust() const noexcept {
   double known = 0.0;
   double knowable = 0.0;
@@ -255,7 +257,7 @@ double BlendedEstimator::trust() const noexcept {
   return knowable > 0.0 ? std::clamp(known / std::max(knowable, known), 0.0, 1.0) : 0.0;
 }
 
-/// All that is said at one place adds up by amplitude.
+/// The sources at one place add up by amplitude.
 BlendedEstimator::Power BlendedEstimator::power_heard(const OctaveFollower::Response& bands,
                                                       std::span<const BandWeights> shares) const noexcept {
   SourceResponse sum;
@@ -267,7 +269,7 @@ BlendedEstimator::Power BlendedEstimator::power_heard(const OctaveFollower::Resp
   return {std::clamp(std::norm(sum.along), 0.0, 1.0), std::clamp(std::norm(sum.across), 0.0, 1.0)};
 }
 
-/// The mean wind carries the gusts, and says where ahead is; their eddies turn over as the turbulence does.
+/// The mean wind carries the gusts, and sets the downwind direction; their eddies turn over as the turbulence does.
 void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   WindVector& ahead = ground_.gusts.ahead;
   const double speed_m_s = speed_of(heard.mean);
@@ -296,8 +298,7 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
 }
 
-/// How far gusts reach as the installation says it, which the coherence law asks for: a fit to quick readings knows
-/// little of it.
+/// The integral length scale for the coherence law, as it is configured: a fit to fast readings determines it poorly.
 double BlendedEstimator::gust_length_m(const Heard& heard) const noexcept {
   double length_m = (1.0 - heard.weight) * settings_.length_m;
   double all = 1.0 - heard.weight;
@@ -360,8 +361,8 @@ void BlendedEstimator::write_gusts() noexcept {
   }
 }
 
-/// How much a source's turbulence counts at a frequency, over the square of the mean speed: its part of the mean; above
-/// what the absolute ones know, that of the relative ones.
+/// The weight of a source's turbulence at a frequency, over the square of the mean speed: its share in the mean; above
+/// the frequencies that absolute sources resolve, that of the relative ones.
 double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, const Heard& heard) const noexcept {
   double gusts = 0.0;
   double unknown = 0.0;
@@ -379,17 +380,17 @@ double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, 
   return kept + heard.weight * choice_.gusts(index) * given * std::min(strength * strength, 4.0);
 }
 
-/// How strong each octave of the noise is, and how much of it the sensors know already. What the way brings is less
-/// what they know; of the tiles' octaves that is for each place to say.
+/// The strength of each octave of the noise, and the part of it that the sensors measure (engine/wind/README.md W20).
+/// The octaves of the way are reduced by that part here; those of the tiles at each place.
 void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
-  // A new fit, or another interval of a sensor, is a step that nobody shall see.
+  // A new fit, or another interval of a sensor, is a step, which must not show.
   const auto part = static_cast<float>(is_first_ ? 1.0 : -std::expm1(-dt_s / kStrengthMemory_s));
   for (std::size_t i = 0; i < kOctaves; ++i) weigh_octave(i, heard, part);
 }
 
 void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept {
   const double frequency_hz = centre_hz(noise_->octaves()[octave], advection_m_s_);
-  // What would jitter from one picture to the next is left out, by and by over the octave before.
+  // What would jitter from frame to frame is faded out over the octave before.
   const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / frequency_hz), 0.0, 1.0);
   double variance_along = (1.0 - heard.weight) * climate_along_[octave];
   double variance_across = (1.0 - heard.weight) * climate_across_[octave];
@@ -405,8 +406,8 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, floa
   float& along_m_s = ground_.gusts.along_m_s[octave];
   float& across_m_s = ground_.gusts.across_m_s[octave];
 
-  // Waves of a plane that run aslant pass more slowly than their length tells: what a tile's octave brings is lower by
-  // about half an octave, and that is where it would come on top of what the sensors say.
+  // Waves of a plane that run aslant pass more slowly than their length suggests: the frequencies of a tile's octave
+  // are lower by about half an octave, and there it would add to what the sensors measure.
   const bool is_way = octave < GustNoise::kFirstTileOctave;
   const double known_hz = is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2;
   const OctaveFollower::Response bands(known_hz);
@@ -486,7 +487,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   last_step_s_ = passed_s;
   state_.time = now;
 
-  // Who has the word, and what each says.
+  // The weights of the sources, and their bands.
   const OctaveFollower::Parts parts = OctaveFollower::parts(dt_s);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     choice_.set_live(i, sources_[i].record().is_live(now, settings_.stale_intervals));

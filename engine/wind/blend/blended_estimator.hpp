@@ -19,24 +19,25 @@ namespace yuragi {
 /// The wind that moves things: the live signal where the sensors know, noise of the same spectrum where they do not,
 /// counted once.
 ///
-/// In each octave band of frequency the sensor's word has a weight a: 1 far below the crossover of 0.25 / its interval
-/// (where sensor and noise have the same power), 0 far above, less the longer it is silent. The noise has the rest *in
-/// power*, sqrt(1 - |a A|^2), A being what the sensor's own averaging and the holding of its readings leave of that
-/// band, and the strength that von Karman's spectrum has there; its turbulence intensity and length are fitted to the
-/// readings of the past, and go back to the climate's while nothing is known. The noise is read from a pattern that the
-/// mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and across it. A mean that
-/// nobody measures fades into the climate's. Everything is made of vectors; weights slew by critically damped filters,
-/// so nothing jumps.
+/// In each octave band of frequency the sensor's readings have a weight a: 1 far below the crossover of 0.25 / its
+/// interval (where sensor and noise have the same power), 0 far above, less the longer it is silent. The noise has the
+/// rest *in power*, sqrt(1 - |a A|^2), A being what the sensor's own averaging and the holding of its readings leave of
+/// that band, and the strength that von Karman's spectrum has there; its turbulence intensity and length are fitted to
+/// past readings, and return to the climate's where there are none (engine/wind/README.md W17 to W21). The noise is
+/// read from a pattern that the mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and
+/// across it. A mean that is no longer measured fades into the climate's. All averages are of vectors; weights are
+/// slewed by critically damped filters, so that nothing jumps.
 ///
 /// Where: what is measured is written where the sensor stands (PenPlaces), which is at the windward edge of the scenes
-/// unless it is told, and goes on from there with the mean wind: stroke() is what a tick adds to the tapes (WindTapes),
-/// ground() says how strong the noise is that fills what is not known. The state is the wind at that place; of several
-/// places their mean, by the sensors' weights.
+/// unless its position is configured, and is carried from there by the mean wind: stroke() is what a tick adds to the
+/// tapes (WindTapes), ground() holds the strength of the noise that fills what is not measured. The state is the wind
+/// at that place; of several places their mean, by the sensors' weights.
 ///
-/// Several sources: SourceChoice says which of them count. Those that count at one place share each band by weight
-/// times trust, so that a slow one rules the mean and a fast one the gusts; a relative one gives the gusts that they
-/// leave, scaled to theirs. Sources at several places each have a tape of their own, and their means make a plane
-/// (WallPlane). Across the wind a source without a vane knows nothing, and one of few points only what is slow.
+/// Several sources: SourceChoice selects and weights them. Those selected at one place share each band by weight times
+/// trust (W23), so that a slow one dominates the mean and a fast one the gusts; a relative one supplies the gusts that
+/// they do not resolve, scaled to theirs. Sources at several places each have a tape of their own, and their means make
+/// a plane (WallPlane). A source without a vane contributes nothing across the wind, and
+/// one with 8 or 16 points only slow fluctuations.
 ///
 /// Delay: what comes from a sensor is later than the wind by half of what it averages over, half of the interval that a
 /// reading is held for, and the group delay of the weighted bands, 0.36 to 0.2 of the interval: blend_group_delay_s().
@@ -48,7 +49,7 @@ namespace yuragi {
 /// Source: Taylor 1938, The spectrum of turbulence (frozen turbulence).
 class BlendedEstimator final : public WindEstimator {
  public:
-  /// `noise`: shared with whoever wants to know the wind at other places. The climate's seed says where on it the gusts
+  /// `noise`: shared with whoever reads the wind at other places. The climate's seed selects where on it the gusts
   /// begin. Allocates.
   BlendedEstimator(std::size_t source_count, const BlendSettings& settings, std::shared_ptr<const GustNoise> noise);
 
@@ -68,9 +69,9 @@ class BlendedEstimator final : public WindEstimator {
   static constexpr std::size_t kBands = OctaveFollower::kBands;
   static constexpr std::size_t kOctaves = GustNoise::kOctaves;
 
-  /// What a source has of the wind at the moment: of the mean, and of the bands by the word of all together.
+  /// The shares of a source at the moment: of the mean, and of the bands among all sources together.
   struct Share {
-    BandWeights word{};   ///< of the mean (0) and each band (1 + band), as one whose readings count
+    BandWeights word{};   ///< of the mean (0) and each band (1 + band), among the selected sources
     double middle = 0.0;  ///< of the mean in the middle of the scenes
     double tilt = 0.0;    ///< what the plane adds there; it and the slopes follow the plane slowly
     double per_m_east = 0.0, per_m_south = 0.0;
@@ -80,15 +81,15 @@ class BlendedEstimator final : public WindEstimator {
   struct Pen {
     std::vector<BandWeights> shares;   ///< of each source: of the mean, and of the bands at this place
     std::vector<BandWeights> written;  ///< as far as the tape can hold them
-    double word = 0.0;                 ///< of its sources, of that of all
+    double word = 0.0;                 ///< the sum of its sources' weights (SourceChoice)
   };
 
-  /// What all sources together say of the mean, and how far it is to be believed.
+  /// The mean by all sources together, and its weight.
   struct Heard {
     WindVector mean;
     double weight = 0.0;     ///< of the means that are measured; the climate's has the rest
     double speed_m_s = 0.0;  ///< slow mean
-    double trust = 0.0;      ///< of the bands that can be known: 1 while the sensors speak
+    double trust = 0.0;      ///< of the bands that can be measured: 1 while readings are on time
   };
   /// The part of the power at a frequency that comes from the sensors.
   struct Power {

@@ -9,15 +9,15 @@
 namespace yuragi {
 namespace {
 
-/// Below this a vane's word counts less and less.
+/// Below this a vane's direction has less and less weight.
 constexpr double kVaneCalm_m_s = 0.5;
-/// So many turns in a row tell a coarse vane; a fine one makes such turns by chance, one in 15 at most, and must make
-/// more of them to be taken for one.
+/// After so many whole steps in a row a vane is taken for a coarse one; a fine one makes such steps by chance, one in
+/// 15 at most, so that after other turns more of them are needed.
 constexpr std::size_t kTurnsToTell = 3;
 constexpr std::size_t kTurnsToTellIfFine = 12;
 /// 22.5 degrees may come as 22 or 23.
 constexpr double kRounding_deg = 0.6;
-/// However little turbulence is expected, a coarse vane that has turned is believed after about 100 s.
+/// The longest smoothing: a coarse vane that has turned is followed within about 100 s, however low the turbulence.
 constexpr double kLongestMemory_s = 100.0;
 
 bool is_multiple(double turn_deg, double step_deg) noexcept {
@@ -64,7 +64,7 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
     memory_s_ = 0.0;
     return;
   }
-  // The stairs' noise forgets from one reading to the next where the swing covers the steps, else as slowly as gusts.
+  // Quantisation noise is white where the fluctuation covers the steps, else as slow as the gusts.
   const double step_rad = step_deg() * kRadPerDeg;
   const double steps = std::numbers::pi * swing_rad / step_rad;
   const double correlated_s = interval_s + time_scale_s * std::exp(-2.0 * steps * steps);
@@ -75,7 +75,7 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
   memory_s_ = std::min(1.0 / (2.0 * std::numbers::pi * corner_hz), kLongestMemory_s);
 }
 
-/// A reading that says what the one before said tells nothing of the step.
+/// A reading equal to the one before carries no information on the step.
 void DirectionKeeper::note_step(double direction_deg) noexcept {
   const double turn_deg = direction_deg - last_deg_;
   const bool is_first = last_deg_ < 0.0;

@@ -7,19 +7,20 @@
 
 namespace yuragi {
 
-/// Which way the wind of a source blows, as a unit vector: what its vane says, as far as that can be believed.
+/// The direction of a source's wind, as a unit vector: that of its vane, held in a calm and smoothed where it is
+/// coarse.
 ///
-/// A reading without a direction has the last one, or another that is offered. In a calm (below 0.5 m/s) a vane points
-/// anywhere: the direction is held, the more the calmer it is. A vane of 8 or 16 points leaps: its directions are
-/// smoothed up to the frequency at which the stairs tell less than the turbulence has. All turns are the shorter way
-/// round. Thread-safe: no. Realtime-safe: yes.
+/// A reading without a direction keeps the last one, or takes another that is offered. In a calm (below 0.5 m/s) a vane
+/// points anywhere: the direction is held, the more the calmer it is (engine/wind/README.md W37). A vane of 8 or 16
+/// points jumps: its directions are low-passed at the frequency above which its quantisation noise is stronger than the
+/// turbulence (W31). All turns are the shorter way round. Thread-safe: no. Realtime-safe: yes.
 class DirectionKeeper {
  public:
-  /// `step_deg`: of the vane; 0: found out from how its readings differ.
+  /// `step_deg`: resolution of the vane; 0: detected from the differences of its readings.
   explicit DirectionKeeper(double step_deg) : given_step_deg_(step_deg) {}
 
-  /// Takes what a reading says, `dt_s` after the one before. `otherwise` is the direction for a source that never said
-  /// any, and, where `otherwise_is_live`, for every reading without one. A unit vector, downwind.
+  /// Takes a reading, `dt_s` after the one before. `otherwise` is the direction for a source that never sent any, and,
+  /// where `otherwise_is_live`, for every reading without one. Returns a unit vector, downwind.
   WindVector take(const WindReading& reading, double dt_s, WindVector otherwise, bool otherwise_is_live) noexcept;
 
   /// Did the last reading have a direction?
@@ -32,10 +33,11 @@ class DirectionKeeper {
   /// The time constant of the smoothing; 0 for a fine vane.
   double memory_s() const noexcept { return memory_s_; }
 
-  /// Sets it from the turbulence, to where the stairs' own noise is as strong as the swing of the direction. That noise
-  /// is step^2 / 12 (Bennett 1948), spread over the frequencies that readings every `interval_s` can have, or, the less
-  /// the swing covers the steps, over those of the gusts (Widrow 1961: by the swing's characteristic function). The
-  /// swing is in von Karman's inertial range, of deviation `swing_rad` and time scale `time_scale_s`.
+  /// Sets it from the turbulence (W31): to the frequency at which quantisation noise and the fluctuation of the
+  /// direction have the same density. That noise is step^2 / 12 (Bennett 1948), spread over the frequencies that
+  /// readings every `interval_s` can have, or, the less the fluctuation covers the steps, over those of the gusts
+  /// (Widrow 1961: by its characteristic function). The fluctuation is in von Karman's inertial range, of deviation
+  /// `swing_rad` and time scale `time_scale_s`.
   void expect(double swing_rad, double time_scale_s, double interval_s) noexcept;
 
  private:

@@ -9,8 +9,8 @@
 
 namespace yuragi {
 
-/// The places where measured wind is written: one for all sensors of which nobody said where they stand (the windward
-/// edge of the scenes), and one for each place that was said. Sensors closer together than half a metre share one; of
+/// The places where measured wind is written: one for all sensors without a configured position (the windward edge of
+/// the scenes), and one for each configured position. Sensors closer together than half a metre share one; of
 /// more than WindStroke::kMostPens places the last ones share the nearest. Relative sources stand where the first
 /// absolute one does. Allocates at construction only. Thread-safe: reading, yes.
 class PenPlaces {
@@ -20,7 +20,7 @@ class PenPlaces {
   struct Place {
     bool is_edge = true;
     double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
-    double lead_m = 0.0;                 ///< the wind is written so far upwind of there
+    double lead_m = 0.0;                 ///< the pen is so far upwind of there
   };
   /// 0 where there are no sources.
   std::size_t count() const noexcept { return places_.size(); }

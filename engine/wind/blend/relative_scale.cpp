@@ -8,11 +8,11 @@ namespace {
 
 constexpr double kLeastScale = 0.05;
 constexpr double kMostScale = 20.0;
-/// The mean speeds are believed in full when far more time than this is behind them.
+/// The gain of the mean has full weight after far more time than this.
 constexpr double kTimeToBelieve_s = 15.0;
-/// And the gusts when far more of them than these are.
+/// And that of the gusts after far more independent gusts than these.
 constexpr double kGustsToBelieve = 4.0;
-/// Is added to both sides of a ratio: where there is hardly any wind, it is 1.
+/// Added to both sides of a ratio: with hardly any wind it is 1.
 constexpr double kLeastSum = 1e-3;
 
 double log_ratio(double above, double below) noexcept {

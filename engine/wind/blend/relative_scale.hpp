@@ -2,8 +2,7 @@
 
 namespace yuragi {
 
-/// How many times stronger than it says the wind of a relative source is: a slow regression against what the absolute
-/// sources say of the same time.
+/// The gain of a relative source: a slow regression against the absolute sources at the same time.
 ///
 /// The gusts' gain comes from the deviations of both in the bands that both know, the mean's from the mean speeds;
 /// where little is known of the deviations, the gusts have the mean's gain, and where nothing is known both are 1.
@@ -13,13 +12,13 @@ class RelativeScale {
  public:
   explicit RelativeScale(double memory_s) : memory_s_(memory_s) {}
 
-  /// What both say at a moment.
+  /// Both at one moment.
   struct Pair {
     double speed_m_s = 0.0;  ///< slow mean, absolute
     double relative_speed_m_s = 0.0;
     double gust_m_s = 0.0;  ///< in the bands that both know, less the mean, absolute
     double relative_gust_m_s = 0.0;
-    double independent_after_s = 0.0;  ///< from one gust to the next that tells something new; above 0
+    double independent_after_s = 0.0;  ///< time between independent gusts; above 0
   };
   void learn(const Pair& pair, double dt_s) noexcept;
 

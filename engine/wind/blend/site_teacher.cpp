@@ -6,12 +6,12 @@
 namespace yuragi {
 namespace {
 
-/// The slow sensor that is played: it says nothing of waves above 0.37 over this, 0.026 Hz.
+/// The interval of the simulated slow sensor: it resolves no waves above 0.37 over this, 0.026 Hz.
 constexpr double kPlayedInterval_s = 14.0;
 constexpr double kLeastTaught_m_s = 1.0;
 /// The fit must have seen so many differences of neighbouring means.
 constexpr double kEnough = 15.0;
-/// Haar's differences of means over tau see most of the waves of 0.37 / tau.
+/// Haar's differences of means over tau respond most to waves of 0.37 / tau.
 constexpr double kSeenTimesTau = 0.37;
 /// An octave may lie by so many octaves above the quickest scale.
 constexpr double kBeyond_octaves = 0.5;
@@ -59,7 +59,7 @@ void SiteTeacher::teach(const Heard& heard, const WindTurbulence& quick, SiteSpe
     };
     const double low = measured(below);
     const double excess_db = 10.0 * (t > 0.0 ? low + t * (measured(below + 1) - low) : low);
-    site.learn(octave, excess_db, kPlayedInterval_s);  // what is not finite is nothing
+    site.learn(octave, excess_db, kPlayedInterval_s);  // a number that is not finite is ignored
   }
 }
 

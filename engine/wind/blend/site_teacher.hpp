@@ -7,10 +7,10 @@
 
 namespace yuragi {
 
-/// Teaches a SiteSpectrum what a quick source shows: beside it, its means over 14 s are fitted as if they were a slow
-/// sensor at the same mast, and the power that Haar's differences of its readings have at each octave is compared with
-/// what that fit says there. Both components count together, where there is a vane.
-/// Allocates at construction only. Thread-safe: no. Realtime-safe: yes; a fit every 14 s.
+/// Updates a SiteSpectrum from a fast source: its means over 14 s are fitted as if they came from a slow sensor on the
+/// same mast, and the power of the fast readings at each octave (Haar's differences) is compared with that fit. Both
+/// components count together, where there is a vane. Allocates at construction only. Thread-safe: no. Realtime-safe:
+/// yes; a fit every 14 s.
 class SiteTeacher {
  public:
   /// `prior` and `fit_memory_s`: of the slow source that is to be corrected.
@@ -23,8 +23,8 @@ class SiteTeacher {
     double interval_s = 0.0;
     bool tells_across = false;
   };
-  /// Takes what the source said, and what its own readings show (`quick`, which has taken the reading). What is slower
-  /// than SiteSpectrum::kQuick_s teaches nothing, nor does a wind of less than 1 m/s.
+  /// Takes a reading of the source, and the turbulence of its own readings (`quick`, which has taken the reading).
+  /// Sources slower than SiteSpectrum::kQuick_s and winds below 1 m/s change nothing.
   void hear(const Heard& heard, const WindTurbulence& quick, SiteSpectrum& site) noexcept;
   /// After a gap.
   void break_off() noexcept;

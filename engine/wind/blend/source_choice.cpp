@@ -8,7 +8,7 @@
 namespace yuragi {
 namespace {
 
-/// A critically damped step has done 91 % of its way after 4 time constants.
+/// A critically damped step has covered 91 % after 4 time constants (engine/METHOD.md M18).
 constexpr double kRateTimesHandover = 4.0;
 constexpr int kMostFailures = 7;
 constexpr double kForgivenAfter_s = 600.0;
@@ -41,8 +41,8 @@ void SourceChoice::note_failures(Entry& entry, double dt_s) const noexcept {
   entry.was_live = entry.is_live;
 }
 
-/// Shares `wanted` out among those of the lowest priority that may take it. Where nobody may, it changes nothing, and
-/// says false.
+/// Shares `wanted` out among those of the lowest priority that may take it. Where none may, it changes nothing and
+/// returns false.
 template <class MayTake>
 bool SourceChoice::give(double Entry::*wanted, bool relative, MayTake may_take) noexcept {
   int lowest = std::numeric_limits<int>::max();
@@ -66,7 +66,7 @@ void SourceChoice::step(double dt_s) noexcept {
   const auto is_ready = [](const Entry& entry) { return entry.is_ready; };
   const auto is_live = [](const Entry& entry) { return entry.is_live; };
 
-  // The word; who has it needs to wait for nothing. Then the gusts.
+  // The weights; a source that is selected already need not wait. Then those of the gusts.
   const bool given = give(&Entry::word_wanted, false, is_ready) || give(&Entry::word_wanted, true, is_ready) > 0.0 ||
                      give(&Entry::word_wanted, false, is_live) || give(&Entry::word_wanted, true, is_live);
   bool relative_has_word = false;
@@ -80,7 +80,7 @@ void SourceChoice::step(double dt_s) noexcept {
     if (!give(&Entry::gusts_wanted, true, is_ready)) give(&Entry::gusts_wanted, true, is_live);
   }
 
-  // Before anything was shown there is nobody to hand over from.
+  // The first step: there is nothing to fade from.
   const bool is_first = !std::exchange(has_begun_, true);
   for (Entry& entry : entries_) {
     if (is_first) {

@@ -10,29 +10,30 @@
 
 namespace yuragi {
 
-/// Which of several sources has the word, and how much of it: by role, priority and weight, with hysteresis, slewed.
+/// Selects among several sources and weights them: by role, priority and weight, with hysteresis, slewed. (In names,
+/// `word` is a source's weight.)
 ///
-/// The live absolute sources of the lowest priority number share the word by their weights; where there are none, the
-/// relative ones do; where nobody is live, those who had it keep it. A source that has failed is chosen again only when
-/// it has been live for `return_after_s`, and for twice as long after each further failure (up to 64 times; ten minutes
-/// without one and all is forgiven), so that a flapping one does not make the wind flap; unless there is nobody else.
-/// While absolute sources have the word, the live relative ones of the lowest number have the gusts. All weights move
-/// by critically damped filters; only what the first step finds is taken at once. Allocates at construction only.
-/// Thread-safe: no. Realtime-safe: yes.
+/// The live absolute sources of the lowest priority number share the total weight of 1 by their settings; where there
+/// are none, the relative ones do; where no source is live, the weights stay. A source that has failed is chosen again
+/// only when it has been live for `return_after_s`, and for twice as long after each further failure (up to 64 times;
+/// ten minutes without one reset that), so that an unreliable one does not make the wind change over and over; unless
+/// there is no other source. While absolute sources are selected, the live relative ones of the lowest number supply
+/// the gusts. All weights are slewed by critically damped filters; only the first step sets them at once. Allocates at
+/// construction only. Thread-safe: no. Realtime-safe: yes.
 class SourceChoice {
  public:
   /// A source for each of the settings.
   SourceChoice(std::span<const BlendSourceSettings> sources, double handover_s, double return_after_s);
 
-  /// Time goes on by dt_s; tell with set_live() before who is live.
+  /// Advances by dt_s; set_live() has been called for each source before.
   void set_live(std::size_t source, bool is_live) noexcept { entries_[source].is_live = is_live; }
   void step(double dt_s) noexcept;
 
-  /// Has it the word, or a part of the gusts, or is it on the way there?
+  /// Is it selected, for the mean or for gusts, or still being faded in?
   bool is_chosen(std::size_t source) const noexcept { return entries_[source].is_chosen; }
-  /// The part of the word that it has, 0 to 1: the mean and all that it knows of the gusts.
+  /// Its weight, 0 to 1, in the mean and in the gusts that it resolves.
   double word(std::size_t source) const noexcept { return std::clamp(entries_[source].word.value, 0.0, 1.0); }
-  /// The part of the gusts that it has, 0 to 1, where those who have the word know nothing.
+  /// Its weight, 0 to 1, in the gusts that the selected absolute sources do not resolve.
   double gusts(std::size_t source) const noexcept { return std::clamp(entries_[source].gusts.value, 0.0, 1.0); }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace yuragi {
 
-/// What an estimator remembers of one source: its last reading, and how often it speaks.
+/// What an estimator remembers of one source: its last reading, and the interval between readings.
 /// Thread-safe: no. Realtime-safe: yes.
 class SourceRecord {
  public:
@@ -25,7 +25,7 @@ class SourceRecord {
     last_ = reading;
   }
 
-  /// What it said last still holds at `time`: nothing new, but it is not silent.
+  /// Its last reading still holds at `time`: nothing new, but it is not silent.
   void hold(Instant time) noexcept {
     if (last_) last_->time = time;
   }
@@ -35,13 +35,13 @@ class SourceRecord {
 
   /// The median of the last intervals; 0 before the second reading.
   double interval_s() const noexcept { return interval_s_; }
-  /// The same, with a guess for a source that has spoken once.
+  /// The same, with an assumption for a source that has sent one reading.
   double expected_interval_s() const noexcept { return interval_s_ > 0.0 ? interval_s_ : kAssumedInterval_s; }
 
   /// Of the last reading; 0 before the first.
   double age_s(MonoTime now) const noexcept { return last_ ? std::max(0.0, seconds(now - last_->time.mono)) : 0.0; }
 
-  /// Has it spoken within `stale_intervals` of its own intervals (and never less than a second)?
+  /// Has it sent a reading within `stale_intervals` of its own intervals (at least a second)?
   bool is_live(MonoTime now, double stale_intervals) const noexcept {
     return last_ && age_s(now) <= std::max(kMinStaleAfter_s, stale_intervals * expected_interval_s());
   }

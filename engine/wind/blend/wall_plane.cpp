@@ -6,7 +6,8 @@
 namespace yuragi {
 namespace {
 
-/// Over the wall's length squared: two sensors at its ends, whose own spread is 0.25, lose 1 % of the slope.
+/// The ridge, over the square of the sensors' extent: two sensors at its ends, whose own spread is 0.25, lose 1 % of
+/// the slope.
 constexpr double kRidge = 0.0025;
 constexpr double kLeastWallShare = 1e-9;
 

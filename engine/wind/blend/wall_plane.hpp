@@ -12,8 +12,8 @@ struct PlaceWeights {
   double middle = 0.0, per_m_east = 0.0, per_m_south = 0.0;
 };
 
-/// The plane through what several absolute sources say at their places, by weighted least squares. It is given as the
-/// weights of what they say, which may be vectors, and follows a source as its share fades and returns.
+/// The plane through the values of several absolute sources at their places, by weighted least squares. It is given as
+/// the weights of their values, which may be vectors, and follows a source as its share fades and returns.
 ///
 /// A small ridge makes the slope fade where one place alone is left, and bounds it where those that are left stand
 /// close together. Thread-safe: reading, yes. Realtime-safe: yes.

@@ -10,9 +10,9 @@
 
 namespace yuragi {
 
-/// How a source of readings does, seen from the estimator.
+/// The state of a source of readings, seen from the estimator.
 enum class SourceHealth : std::uint8_t {
-  kSilent,  ///< has not spoken yet
+  kSilent,  ///< no reading yet
   kLive,
   kStale,  ///< silent for longer than its own measured interval explains
 };
@@ -37,7 +37,7 @@ class WindEstimator {
   /// answered with false.
   virtual bool accept(std::size_t source, const WindReading& reading) noexcept = 0;
 
-  /// Goes on to `now` and says what the wind is where it is measured.
+  /// Advances to `now` and returns the wind where it is measured.
   virtual WindState advance(MonoTime now) noexcept = 0;
 
   /// The same wind over the ground, as of the last advance(); without tapes.

@@ -37,7 +37,7 @@ struct WindFieldSettings {
 ///
 /// A point sees von Karman's spectrum of (U, TI, L) for u, the transverse one for v and w; two points across the wind
 /// have von_karman_coherence(). What is longer than the tile is the same everywhere in it: a 1-D noise along the way
-/// that the wind has come. What is shorter than two samples is missing, and variance_m2_s2() says what is there. The
+/// that the wind has come. What is shorter than two samples is missing, and variance_m2_s2() counts what is there. The
 /// tile repeats every samples x spacing; a frozen one comes round after that length of way. The field is not free of
 /// divergence.
 ///

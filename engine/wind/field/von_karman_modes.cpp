@@ -6,7 +6,8 @@
 namespace yuragi {
 namespace {
 
-/// With this the integral scale of a line cut is the one that was asked for (wind.md 1): 70.8 = (2 pi 1.339)^2.
+/// With this the integral scale of a line cut is the one that was asked for: 70.8 = (2 pi 1.339)^2
+/// (engine/wind/README.md W5).
 constexpr double kCornerTimesLength = 1.339;
 
 }  // namespace

@@ -22,8 +22,8 @@ struct WindVector3 {
   double w_m_s = 0.0;
 };
 
-/// The wind everywhere at one moment, mean and gusts together. Going on in time is each kind's own affair.
-/// Thread-safe: yes, while nobody moves the field on. Realtime-safe: yes. Finite at every finite place.
+/// The wind everywhere at one moment, mean and gusts together. How it advances in time depends on the kind.
+/// Thread-safe: yes, while the field is not advanced. Realtime-safe: yes. Finite at every finite place.
 class WindField {
  public:
   virtual ~WindField() = default;

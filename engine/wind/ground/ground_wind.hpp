@@ -11,8 +11,8 @@
 
 namespace yuragi {
 
-/// How the measured wind changes from place to place where several anemometers stand along a wall: a plane through what
-/// they say, which goes on level beyond the outermost of them. Without a slope: the same everywhere.
+/// How the measured mean wind changes from place to place where several anemometers stand apart: a plane through their
+/// means, constant beyond the outermost of them. Without a slope: the same everywhere.
 struct WindSlope {
   WindVector per_m_east, per_m_south;   ///< (m/s) / m
   double west_m = 0.0, east_m = 0.0;    ///< where the plane ends, metres east of the middle of the scene
@@ -26,15 +26,16 @@ struct WindSlope {
   }
 };
 
-/// The wind over the ground at one moment: what was measured, where the wind has carried it to by now, and the noise
-/// that fills what is not known there. Finite. Refers to the tapes of what was measured; without them (nothing is
-/// measured, or a test) all places have the same but for their own gusts. Thread-safe and realtime-safe: reading, yes.
+/// The wind over the ground at one moment: the measured wind, where it has been carried to by now, and the noise that
+/// fills what is not measured there (engine/wind/README.md W26). Finite. Refers to the tapes of what was measured;
+/// without them (nothing is measured, or a test) all places have the same but for their own gusts. Thread-safe and
+/// realtime-safe: reading, yes.
 struct GroundWind {
   WindVector everywhere;    ///< without tapes: the wind of all places, less the gusts of the tiles
   WindSlope slope;          ///< of the mean; none unless sensors stand at several places
-  GustNoise::Moment gusts;  ///< the noise, as strong as it is where nothing is known
+  GustNoise::Moment gusts;  ///< the noise, at its strength where nothing is measured
   const WindTapes* tapes = nullptr;
-  double gain = 1.0;       ///< on all that the tapes say
+  double gain = 1.0;       ///< on all wind that is read from the tapes
   double gust_gain = 1.0;  ///< and on its gusts besides
   WindVector breeze;       ///< blows everywhere besides
 
@@ -74,7 +75,7 @@ struct GroundWind {
     return measured(reading, east_m, south_m) + reading.gain * noise.local(left_of(reading), east_m, south_m);
   }
 
-  /// The noise that is left where this is known.
+  /// The noise where this is measured.
   GustNoise::Moment left_of(const WindTapes::Reading& reading) const noexcept {
     GustNoise::Moment left = gusts;
     for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
@@ -86,8 +87,8 @@ struct GroundWind {
 };
 
 /// The wind that moves the scenes: what it is where it is measured, for people to see; over the ground; and what it
-/// adds to the tapes. Whoever reads `ground` at a place has WindTapes of its own, writes `stroke` of every moment onto
-/// them, and lets `ground` refer to them: Latest may drop a moment, and the tapes go straight on over it.
+/// adds to the tapes. A reader of `ground` has WindTapes of its own, writes `stroke` of every moment onto them, and
+/// lets `ground` refer to them: Latest may drop a moment, over which the tapes are interpolated.
 struct DrivingWind {
   WindState state;
   GroundWind ground{};

@@ -6,15 +6,17 @@
 
 namespace yuragi {
 
-/// How much of a gust that was measured at one place is still known at another: the root coherence
+/// The part of a gust measured at one place that is still known at another (engine/wind/README.md W24): the root
+/// coherence
 ///
-///     g = exp(-distance kappa(f)),  kappa(f) = sqrt(k^2 + 1 / (1.339 L)^2),  k = 2 pi f / U,
+///     g = exp(-distance q kappa(f)),  kappa(f) = sqrt(k^2 + 1 / (1.339 L)^2),  k = 2 pi f / U,
 ///
 /// where `distance` counts metres across the wind C_y / (2 pi) times and metres along it C_x / (2 pi) times. Across,
 /// C_y = 12 (IEC 61400-1:2005, annex B.2, whose 0.12 d / L_c is the term with L; Davenport 1961 has 10 to 16). Along,
 /// C_x grows with the turbulence intensity: 0.025 + 5.7 TI (Simley and Pao 2015, A longitudinal spatial coherence model
 /// for wind evolution based on large-eddy simulation; half of it, since theirs is the squared coherence, with a total
-/// deviation of 1.35 sigma_u). What is slower than some minutes is weather, alike everywhere, and is never lost.
+/// deviation of 1.35 sigma_u). What is slower than some minutes is weather, alike everywhere, and is never lost:
+/// q goes from 0 to 1 over the octave above 0.003 Hz, or above the frequency of the longest wave.
 ///
 /// A value. All functions: thread-safe and realtime-safe.
 struct GustCoherence {
@@ -35,7 +37,7 @@ struct GustCoherence {
     return (kDecayAcross * std::abs(across_m) + decay_along * std::abs(along_m)) / (2.0 * std::numbers::pi);
   }
 
-  /// kappa(f), 1/m; 0 for what is alike everywhere.
+  /// q kappa(f), 1/m; 0 for what is alike everywhere.
   double loss_per_m(double frequency_hz) const noexcept {
     constexpr double kWeather_hz = 0.003;
     const double wavenumber_rad_m = 2.0 * std::numbers::pi * frequency_hz / speed_m_s;

@@ -10,15 +10,14 @@
 
 namespace yuragi {
 
-/// What sensors at several places say together of the gusts at another: simple kriging, wave by wave (Krige 1951;
-/// Chiles and Delfiner 2012, Geostatistics, 3.2). Their weights are
+/// The gusts at a place by sensors at several others: simple kriging, one octave at a time (Krige 1951; Chiles and
+/// Delfiner 2012, Geostatistics, 3.2; engine/wind/README.md W27). The weights of the sensors are
 ///
 ///     w = (C + N)^-1 c,
 ///
-/// c_i how coherent sensor i is with the place, C_ij with each other, N a small nugget. Of one that comes or goes they
-/// are the mean of those with it and those without it, by its presence, so that nothing moves at once, however alike
-/// two sensors are. Known is w' C w of the power, at most all of it. One lane a wave: all lanes are computed side by
-/// side.
+/// c_i the coherence of sensor i with the place, C_ij that of two sensors, N a small nugget. While a sensor comes or
+/// goes its presence is between 0 and 1, and the weights are the mean of those with it and those without it, so that
+/// nothing jumps, however alike two sensors are. The part w' C w of the power is known, at most 1. One lane an octave.
 ///
 /// Thread-safe: reading, yes. Realtime-safe: yes.
 template <std::size_t lanes>

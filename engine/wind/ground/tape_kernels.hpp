@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// Between WindTapes and its kernel; nobody else needs this.
+// Internal: between WindTapes and its kernel.
 
 namespace yuragi {
 

@@ -19,10 +19,10 @@ static_assert(OctaveFollower::kBands <= kBandLanes);
 using BandLanes = std::array<float, kBandLanes>;
 using OctaveLanes = std::array<float, kOctaveLanes>;
 
-/// What was known of the wind at one place at one moment.
+/// The measured wind at one place and moment.
 struct alignas(64) WindSample {
-  BandLanes east_m_s{}, north_m_s{};          ///< the measured gusts of each band, as far as they are believed
-  OctaveLanes known_along{}, known_across{};  ///< the part of each noise octave's power that they know already
+  BandLanes east_m_s{}, north_m_s{};          ///< the measured gusts of each band, times their weights
+  OctaveLanes known_along{}, known_across{};  ///< the part of each noise octave's power that they cover
   WindVector mean;                            ///< slower than all bands
   WindVector way;                             ///< the noise's waves that are longer than the ground
   double east_m = 0.0, south_m = 0.0;         ///< the place, less how far the wind had carried the gusts by then
@@ -32,7 +32,7 @@ struct alignas(64) WindSample {
 /// A sample between two.
 WindSample between(const WindSample& first, const WindSample& second, double fraction) noexcept;
 
-/// Where measured wind is written: the place of a sensor, or the windward edge of the scenes.
+/// Where measured wind is written onto a tape: the place of a sensor, or the windward edge of the scenes.
 struct WindPen {
   double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
   double part = 1.0;                   ///< of the wind that is shown to people
@@ -43,7 +43,7 @@ struct WindPen {
   WindSample written;  ///< the same without waves that are too short for the tape
 };
 
-/// What one tick of the estimator puts on the tapes. A value of some kilobytes that goes from thread to thread.
+/// What one tick of the estimator adds to the tapes. A value of some kilobytes that is passed from thread to thread.
 struct WindStroke {
   static constexpr std::size_t kMostPens = 4;
 

@@ -12,19 +12,19 @@
 namespace yuragi {
 namespace {
 
-/// The power of a measured wave of which less than this is on the tape is none.
+/// Less of a wave's power than this on the tape counts as none.
 constexpr double kNothing = 1e-12;
-/// Over so much of its end a tape's gusts fade out.
+/// The length at its end over which a tape's gusts fade out.
 constexpr double kTapeEnd_m = 16.0;
-/// The mean at a place is that of the sensor that stands nearest; those within this of it count alike.
+/// The mean at a place is weighted by 1 / (this + distance) of each sensor.
 constexpr double kNearby_m = 1.0;
 
 constexpr KernelRows<TapeKernels> kTapeRows = YURAGI_KERNEL_ROWS(tape_kernels);
 
-/// Places are found so many at a time, and then read.
+/// Places are processed so many at a time.
 constexpr std::size_t kPlacesAtOnce = 32;
 
-/// What is left of a sensor's gusts beyond what the place's distance from it takes.
+/// The part that is left of a sensor's gusts, relative to what is left by the place's distance alone.
 template <std::size_t lanes>
 std::array<float, lanes> part_of(const std::array<float, lanes>& kept, const std::array<float, lanes>& by_distance,
                                  float besides) noexcept {
@@ -58,8 +58,8 @@ double WindTapes::distance_of(std::size_t row) noexcept {
   return std::ldexp(within, kFirstOctave + static_cast<int>(step / kRowsAnOctave));
 }
 
-/// Rows stand on a straight line within an octave of the distance: its exponent and the first bits of its mantissa say
-/// which they are.
+/// Rows stand on a straight line within an octave of the distance: its exponent and the first bits of its mantissa give
+/// their index.
 inline WindTapes::Row WindTapes::row_of(double distance_m) noexcept {
   constexpr float kShortest_m = 1.0F / 32.0F;
   static_assert(kFirstOctave == -5 && kRowsAnOctave == 4);
@@ -100,7 +100,7 @@ void WindTapes::renew_rows(bool all) noexcept {
   next_row_ = (next_row_ + kRowsATick) % kRows;
 }
 
-/// What is left at some distances: of each band, and of each octave of the noise, which is in several bands.
+/// The part that is left at some distances, of each band and of each octave of the noise, which is in several bands.
 void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
   for (std::size_t row = first_row; row < first_row + count; ++row) {
     const double distance_m = distance_of(row);
@@ -121,7 +121,8 @@ void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
         for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
           left[1 + band] *= static_cast<double>(here.bands[band]);
         }
-        // Where nothing is measured yet: as its own wave, so that what comes is known at the pen at once.
+        // Where nothing is measured yet: that of its own frequency, so that the first readings count at the pen at
+        // once.
         const double own = std::exp(-2.0 * distance_of(row) * static_cast<double>(octave_loss_per_m_[i]));
         const double kept = all > kNothing ? std::norm(response.weighted(left)) / all : own;
         here.octaves[i] = static_cast<float>(std::clamp(kept, 0.0, 1.0));
@@ -154,7 +155,7 @@ inline WindTapes::Found WindTapes::find(std::size_t tape, double east_m, double 
   return found;
 }
 
-/// By which gusts would be lost by the place alone: how far from the pen it is, along and across the wind.
+/// The distance of the coherence law by the place alone: from the pen, along and across the wind.
 double WindTapes::from_pen_m(std::size_t tape, double east_m, double south_m) const noexcept {
   const WindPen& pen = stroke_.pens[tape];
   const double north_m = pen.south_m - south_m;
@@ -254,7 +255,7 @@ WindTapes::Reading WindTapes::at_pen(const WindSample& now) noexcept {
   return reading;
 }
 
-/// Where the kernel reads: lanes stand one behind the other in a sample, and in what is kept.
+/// The kernel's view of a place: the lanes of a sample, and of the table of losses, are contiguous.
 TapeKernelPlace WindTapes::on_tape(const Found& found) const noexcept {
   static_assert(kBandLanes == kTapeBandLanes && kOctaveLanes == kTapeOctaveLanes);
   static_assert(std::is_standard_layout_v<WindSample> && std::is_standard_layout_v<Kept>);
@@ -273,7 +274,7 @@ TapeKernelPlace WindTapes::on_tape(const Found& found) const noexcept {
           .kept = found.kept};
 }
 
-/// What is slower than all bands.
+/// The part that is slower than all bands.
 WindTapes::Known WindTapes::slow_part(const WindTape::Place& place) noexcept {
   const WindSample& first = *place.first;
   const WindSample& second = *place.second;
@@ -283,7 +284,7 @@ WindTapes::Known WindTapes::slow_part(const WindTape::Place& place) noexcept {
           .gain = first.gain + place.fraction * (second.gain - first.gain)};
 }
 
-/// Of the amplitude of each band, what is left at a distance.
+/// The part of each band's amplitude that is left at a distance.
 BandLanes WindTapes::bands_kept(std::size_t tape, double distance_m) const noexcept {
   const Row row = row_of(distance_m);
   const BandLanes& near = kept_[tape][row.below].bands;
@@ -293,7 +294,7 @@ BandLanes WindTapes::bands_kept(std::size_t tape, double distance_m) const noexc
   return result;
 }
 
-/// Of each octave of the noise, as the bands keep it.
+/// The part of each noise octave's amplitude that is left, by the bands that carry it.
 OctaveLanes WindTapes::octaves_kept(std::size_t tape, double distance_m) const noexcept {
   const Row row = row_of(distance_m);
   const OctaveLanes& near = kept_[tape][row.below].octaves;
@@ -305,8 +306,8 @@ OctaveLanes WindTapes::octaves_kept(std::size_t tape, double distance_m) const n
   return result;
 }
 
-/// What the sensors say together follows from where they and the place stand. What is lost besides (a gust that has not
-/// come yet, a wind that has turned, the end of a tape) is lost of each sensor's own part.
+/// The weights of the sensors follow from their places and this one (GustKriging). What is lost besides (a gust that
+/// has not come yet, a wind that has turned, the end of a tape) is lost of each sensor's own part.
 WindTapes::Reading WindTapes::at_several(double east_m, double south_m) const noexcept {
   constexpr std::size_t kMost = WindStroke::kMostPens;
   std::array<WindSample, kMost> samples;

@@ -13,18 +13,18 @@
 
 namespace yuragi {
 
-/// What has been measured, where it is by now: the tapes of all places that have a sensor, and how much of what is
-/// written on them still holds at any place over the ground.
+/// The measured wind, where it is by now: the tapes of all places that have a sensor, and how much of what is written
+/// on them is still valid at any place over the ground (engine/wind/README.md W24 to W27).
 ///
 /// At a place x, a way D = (x - pen) . ahead downwind of the pen, the tape is read D of the way ago. The air of that
 /// moment is by now at P = its pen + how far it has been carried since, and the place is |x - P| away from it: across
 /// the wind in a steady wind, farther where the wind has turned. So the distance by which gusts are lost
-/// (GustCoherence) has two parts, that way across and D along; a place upwind of the pen reads the newest sample, which
-/// holds the less the longer the gust still takes to the pen (wave by wave exp(-kappa |D|), as a reading of that age).
+/// (GustCoherence) has two parts, that way across and D along; a place upwind of the pen reads the newest sample, whose
+/// weight is the less the longer the gust still takes to the pen (per wave exp(-kappa |D|), as a reading of that age).
 /// What is lost, the noise fills in power: an octave of which the part k was known at the pen is there with the factor
 /// sqrt(1 - k g^2), g being what the bands that carry this octave have kept of it together.
 ///
-/// Several places: GustKriging wave by wave; the mean and the way's noise from all of them, the nearest most.
+/// Several places: GustKriging per octave; the mean and the way's noise from all of them, the nearest most.
 ///
 /// This is conditional simulation with the condition at a place, as PyConTurb (Rinker 2018) and TurbSim do it for a
 /// whole recorded box, but it goes on in time. Known limits: frozen noise does not forget along the way, so that with a
@@ -35,21 +35,21 @@ namespace yuragi {
 /// Realtime-safe: all but construction. Every SIMD row computes the same bits.
 class WindTapes {
  public:
-  /// Tapes for so many pens; what further ones write is not kept.
+  /// Tapes for so many pens; further ones are ignored.
   explicit WindTapes(std::size_t most_pens = WindStroke::kMostPens, SimdRow row = best_simd_row());
 
-  /// Takes a tick's stroke in. A way that goes back begins anew.
+  /// Adds a tick's stroke. Where the way goes back, the tapes begin anew.
   void write(const WindStroke& stroke) noexcept;
 
   /// Is there anything written?
   bool is_written() const noexcept { return pen_count_ > 0; }
 
-  /// What is known at a place.
+  /// The measured wind at a place.
   struct Known {
     WindVector mean, way, gusts;  ///< gusts: all measured bands, with what they have kept
     double gain = 1.0;            ///< of the ceiling, when this wind was measured
   };
-  /// And what is left of the noise.
+  /// And the factors on the noise.
   struct Reading : Known {
     OctaveLanes noise_along{}, noise_across{};  ///< factors on each octave of the tiles, 0 to 1
   };

@@ -8,16 +8,16 @@
 
 namespace yuragi {
 
-/// One point of a calibration curve: where the sensor says `measured_m_s`, the wind blows at `true_m_s`.
+/// One point of a calibration curve: a reading of `measured_m_s` means a wind of `true_m_s`.
 struct CalibrationPoint {
   double measured_m_s = 0.0;
   double true_m_s = 0.0;
 };
 
-/// From what a sensor says to the wind at the scene's height: speed * unit * gain + offset, then the curve, then the
-/// change of the wind with height; direction + north offset. By itself it changes nothing.
+/// From a sensor's reading to the wind at the scene's height: speed * unit * gain + offset, then the curve, then the
+/// change of the wind with height; direction + north offset (engine/wind/README.md W32). The default changes nothing.
 ///
-/// A reading of 0 stays 0: a cup that stands still says nothing of its offset. The gust goes the same way as the speed.
+/// A reading of 0 stays 0: a cup that stands still does not reveal its offset. The gust is converted like the speed.
 /// Thread-safe: yes. Realtime-safe: applied_to() is.
 struct Calibration {
   double unit_m_s = 1.0;  ///< how much one of the sensor's own units is, where its driver takes them for m/s
@@ -30,12 +30,12 @@ struct Calibration {
   WindReading applied_to(const WindReading& reading) const noexcept;
 };
 
-/// What the sensor says, in m/s (its unit counted), where the calibration makes 0 of it: where its straight line
-/// crosses 0. May be below 0. Thread-safe and realtime-safe: yes.
+/// The reading in m/s (after its unit) that the calibration maps to 0: where its straight line crosses 0. May be below
+/// 0. Thread-safe and realtime-safe: yes.
 double zero_point_m_s(const Calibration& calibration) noexcept;
 
 /// Points "measured:true" in m/s, separated by blanks: "0:0 5:5.2 12:12.9". At least two, both numbers rising from each
-/// to the next. An empty text is no curve. The failure says what is allowed.
+/// to the next. An empty text is no curve. The failure's text says what is allowed.
 Result<std::vector<CalibrationPoint>, Failure> parse_calibration_curve(std::string_view text);
 
 /// How much stronger the wind is at `to_m` than at `from_m` above the ground, by the logarithmic profile over ground of

@@ -32,7 +32,7 @@ constexpr double kReach_m_s = 10.0;  // how far beyond the last bin the last poi
 constexpr std::size_t kFewestInBin = 3;
 constexpr std::size_t kFewestBins = 3;
 
-/// A number as a sentence wants it.
+/// A number as text for a sentence.
 std::string figure(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3).ptr;
@@ -45,7 +45,7 @@ double mean_of(std::span<const double> values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// The pairs in which the sensor felt a wind: 0 stays 0 whatever the calibration is.
+/// The pairs with a reading above 0: 0 stays 0 in every calibration.
 std::vector<CalibrationPoint> windy(std::span<const CalibrationPoint> pairs) {
   std::vector<CalibrationPoint> some;
   for (const CalibrationPoint& pair : pairs) {
@@ -90,7 +90,7 @@ Result<void, Failure> check_r_squared(double r_squared) {
                  "): they are in different winds, or one lags; bring them closer together, or measure longer"};
 }
 
-/// How well `truth_of(said)` explains the pairs.
+/// How well `truth_of(reading)` explains the pairs.
 template <class TruthOf>
 void measure_fit(std::span<const CalibrationPoint> pairs, const TruthOf& truth_of, double& r_squared,
                  double& residual_m_s) {
@@ -108,8 +108,8 @@ void measure_fit(std::span<const CalibrationPoint> pairs, const TruthOf& truth_o
   residual_m_s = std::sqrt(unexplained / count);
 }
 
-/// The line of least squares: about the means, so that nothing large is subtracted from something large. The sensor has
-/// said at least two things.
+/// The line of least squares: about the means, so that nothing large is subtracted from something large. There are
+/// at least two different readings.
 LineFit least_squares(std::span<const CalibrationPoint> pairs) {
   const auto count = static_cast<double>(pairs.size());
   CalibrationPoint mean;
@@ -128,7 +128,7 @@ LineFit least_squares(std::span<const CalibrationPoint> pairs) {
   return fit;
 }
 
-/// How steep some of the pairs are: no less than half of the whole, and no more than twice, whatever their scatter.
+/// The slope of some of the pairs, limited to half and twice that of all, against scatter.
 double gain_of_part(std::span<const CalibrationPoint> part, double whole_gain) {
   const double gain = part.size() >= 2 ? least_squares(part).gain : whole_gain;
   return std::isfinite(gain) ? std::clamp(gain, 0.5 * whole_gain, 2.0 * whole_gain) : whole_gain;
@@ -150,14 +150,14 @@ struct Bin {
   }
 };
 
-/// Does b lie behind a, far enough that the line between them means something, and above it?
+/// Is b to the right of a, far enough for a meaningful slope, and above it?
 bool rises(const Bin& a, const Bin& b) {
   return b.mean().measured_m_s - a.mean().measured_m_s >= 0.25 * kBin_m_s &&
          b.mean().true_m_s - a.mean().true_m_s >= 0.01 * kBin_m_s;
 }
 
-/// A point at either end, since a curve goes on as its last two points say, and two bins may say anything: as steeply
-/// as the slower half of the pairs down to 0, and as the faster half up.
+/// A point at either end, since a curve is extrapolated from its last two points, and two bins may have any slope: as
+/// steep as the slower half of the pairs down to 0, and as the faster half up.
 void extend(std::vector<CalibrationPoint>& curve, std::vector<CalibrationPoint>& pairs, double whole_gain) {
   std::ranges::sort(pairs, {}, &CalibrationPoint::measured_m_s);
   const std::size_t half = pairs.size() / 2;
@@ -186,7 +186,7 @@ Result<StillAir, Failure> measure_still_air(std::span<const double> said_m_s) {
   for (const double value : said_m_s) squares += (value - air.mean_m_s) * (value - air.mean_m_s);
   air.noise_m_s = std::sqrt(squares / static_cast<double>(air.count - 1));
 
-  // Air that moves shows at once, air that comes to rest in the two halves.
+  // Moving air shows in the scatter, air that comes to rest in the difference of the two halves.
   const double drift_m_s =
       mean_of(said_m_s.subspan(air.count / 2)) - mean_of(said_m_s.subspan(0, air.count - air.count / 2));
   const bool is_calm = air.noise_m_s <= kMostStillNoise_m_s && std::abs(drift_m_s) <= kMostStillDrift_m_s;

@@ -9,10 +9,10 @@
 
 namespace yuragi {
 
-// What a calibration is made of: from what a sensor said beside something known to gain, offset, curve and north
-// offset. Speeds that a sensor said are in m/s, its unit counted and nothing else of its calibration. Each function
-// refuses what would make the wall worse than no calibration, in words that tell a person what to do. All are pure;
-// thread-safe: yes; realtime-safe: no.
+// Fits a calibration: from a sensor's readings beside a reference to gain, offset, curve and north offset
+// (engine/wind/README.md W34). The sensor's speeds are in m/s: its unit is applied, nothing else of its calibration.
+// Each function refuses data that would make a calibration worse than none; the failure's text says what to do. All are
+// pure; thread-safe: yes; realtime-safe: no.
 
 // ---- zero ----
 
@@ -41,11 +41,11 @@ struct DirectionMean {
 /// Of any directions, degrees; all fields are 0 for none.
 DirectionMean direction_mean(std::span<const double> directions_deg) noexcept;
 
-/// A vane that somebody holds. Refuses fewer than 5 readings, and a vane that moved.
+/// The direction of a vane that is held by hand. Refuses fewer than 5 readings, and a vane that moved.
 Result<DirectionMean, Failure> measure_held_vane(std::span<const double> said_deg);
 
-/// Two vanes in the same wind, by the angle from what one said to what the other says is true, degrees. Refuses fewer
-/// than 20, and vanes that do not turn together.
+/// The turn between two vanes in the same wind, from the angles sensor to reference, degrees. Refuses fewer than 20,
+/// and vanes that do not turn together.
 Result<DirectionMean, Failure> measure_turn(std::span<const double> turns_deg);
 
 /// A direction at a time, s; the origin is the caller's.
@@ -55,7 +55,7 @@ struct TimedDirection {
 };
 
 /// Two vanes side by side: the turn from the mean of the one to the mean of the other in each block of `block_s` in
-/// which both spoke, degrees in (-180, 180].
+/// which both have readings, degrees in (-180, 180].
 std::vector<double> pair_turns(std::span<const TimedDirection> said, std::span<const TimedDirection> truth,
                                double block_s);
 
@@ -64,7 +64,7 @@ double signed_degrees(double angle_deg) noexcept;
 
 // ---- span ----
 
-/// true = gain * said + offset, and how well it fits.
+/// true = gain * reading + offset, and how well it fits.
 struct LineFit {
   std::size_t count = 0;
   double gain = 1.0;
@@ -73,7 +73,7 @@ struct LineFit {
   double residual_m_s = 0.0;  ///< root mean square distance of the true speeds from the line
 };
 
-/// Least squares over pairs, of which those without wind (said 0) count for nothing. Refuses fewer than two speeds,
+/// Least squares over pairs; those with a reading of 0 are left out. Refuses fewer than two speeds,
 /// less than 2 m/s between the slowest and the fastest, a gain that no sensor has, and pairs of which the line explains
 /// too little.
 Result<LineFit, Failure> fit_line(std::span<const CalibrationPoint> pairs);
@@ -82,8 +82,8 @@ Result<LineFit, Failure> fit_line(std::span<const CalibrationPoint> pairs);
 /// that no sensor has.
 Result<LineFit, Failure> fit_line_from_zero(double zero_m_s, const CalibrationPoint& pair);
 
-/// A curve by the method of bins, as IEC 61400-12-1 averages power curves: pairs are averaged in bins of what was said,
-/// and bins that do not rise are joined.
+/// A curve by the method of bins, as IEC 61400-12-1 averages power curves: pairs are averaged in bins of the
+/// reading, and bins that do not rise are joined.
 struct CurveFit {
   std::vector<CalibrationPoint> curve;
   double r_squared = 1.0;
@@ -100,7 +100,8 @@ struct TimedSpeed {
   double speed_m_s = 0.0;
 };
 
-/// Two sensors side by side: means over blocks of `block_s`, of the blocks in which both spoke. In the order of time.
+/// Two sensors side by side: means over blocks of `block_s`, of the blocks in which both have readings. In the order of
+/// time.
 std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> said, std::span<const TimedSpeed> truth,
                                          double block_s);
 

@@ -9,28 +9,30 @@ namespace {
 
 constexpr double kRobustDeviations = 5.0;
 constexpr double kDeviationPerMad = 1.4826;
-/// A sensor that makes things up has a large deviation, too: beyond so many times the least nothing is believed at
-/// once.
+/// A sensor whose values are random has a large deviation, too: beyond so many times the least spike every reading is
+/// suspect.
 constexpr double kMostPerLeast = 2.0;
-/// A step that has been said so often is believed, however quick: recordings can be played a hundred times too fast.
+/// A step that has been repeated so often is accepted, however quick: recordings can be played a hundred times too
+/// fast.
 constexpr std::size_t kEnoughRepeats = 20;
-/// What was said so long ago is no measure for what is said now.
+/// Readings older than this are no measure for new ones.
 constexpr double kForgotten_s = 600.0;
-/// How many readings the share of bad ones is counted over, and where a sensor is given up and trusted again.
+/// The number of readings that the share of bad ones is taken over, and the shares at which a sensor is rejected and
+/// accepted again.
 constexpr double kReadingsCounted = 20.0;
 constexpr double kGiveUpShare = 0.3;
 constexpr double kTrustShare = 0.05;
-/// Below this nothing is told from a calm.
+/// Below this a wind cannot be told from a calm.
 constexpr double kNoWind_m_s = 0.3;
 constexpr double kStill_m_s = 0.05;
 /// The turbulence that a sensor's steps are compared with, and how much longer a coarse one may repeat itself.
 constexpr double kLittleTurbulence = 0.05;
 constexpr double kCoarsePatience = 10.0;
-/// How much longer than it usually does, and how much longer one that has never said anything else.
+/// How many times longer than it usually repeats a value; and for a sensor that has never sent another one.
 constexpr double kRepeatingPatience = 10.0;
 constexpr double kNeverMovedPatience = 20.0;
 constexpr double kRunsRemembered = 16.0;
-/// A silence is no stillness: between two readings it counts for so long at most.
+/// A gap between two readings counts as a calm for so long at most.
 constexpr double kLongestStep_s = 600.0;
 constexpr double kDay_s = 86400.0;
 
@@ -41,7 +43,7 @@ double median(std::array<double, N> values) noexcept {
   return *middle;
 }
 
-/// Without a direction only the speed is compared: as if all came from one side.
+/// Without a direction only the speed is compared: as if all winds came from one direction.
 WindVector vector_of(const WindReading& reading) noexcept {
   return wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
 }
@@ -68,7 +70,7 @@ bool ReadingJudge::judge(const WindReading& reading, std::optional<double> other
 }
 
 void ReadingJudge::count_impossible(std::uint64_t readings) noexcept {
-  // More than are remembered change nothing any more.
+  // More readings than the memory spans change nothing further.
   const auto counted = std::min(static_cast<double>(readings), 10.0 * kReadingsCounted);
   for (double i = 0.0; i < counted; ++i) count(true);
   if (is_implausible_ && fault_ <= ReadingFault::kImplausible) fault_ = ReadingFault::kImplausible;
@@ -81,7 +83,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
   const bool is_dead = is_seized(reading.speed_m_s, time_s, others_m_s);
   if (is_out_of_range || is_repeated || is_dead) {
     dismiss_suspicion();
-    believed_ = 0;  // what it said so is no measure for what it will say
+    believed_ = 0;  // old readings are no measure for new ones
     if (is_out_of_range) count(true);
     if (is_repeated) return ReadingFault::kFrozen;
     if (is_dead) return ReadingFault::kSeized;
@@ -98,7 +100,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
   return is_held_back ? ReadingFault::kSpike : ReadingFault::kNone;
 }
 
-/// A spike, or the beginning of a step? What comes next will tell.
+/// A spike, or the beginning of a step? The next readings decide.
 bool ReadingJudge::is_spike(WindVector wind, double time_s) noexcept {
   if (!is_suspect(wind)) {
     dismiss_suspicion();
@@ -111,11 +113,11 @@ bool ReadingJudge::is_spike(WindVector wind, double time_s) noexcept {
   ++suspicion_->repeats;
   if (!is_confirmed(time_s)) return true;
   suspicion_.reset();
-  believed_ = 0;  // a new wind: what was before is no measure for it
+  believed_ = 0;  // a new wind: the readings before are no measure for it
   return false;
 }
 
-/// What was held back was a spike.
+/// The suspect was a spike.
 void ReadingJudge::dismiss_suspicion() noexcept {
   if (!suspicion_) return;
   spikes_ += suspicion_->repeats;
@@ -123,7 +125,7 @@ void ReadingJudge::dismiss_suspicion() noexcept {
   suspicion_.reset();
 }
 
-/// The median of what was believed last, east and north.
+/// The median of the last accepted readings, east and north.
 WindVector ReadingJudge::middle() const noexcept {
   std::array<double, kWindow> u{};
   std::array<double, kWindow> v{};
@@ -145,7 +147,7 @@ bool ReadingJudge::is_suspect(WindVector wind) const noexcept {
   return speed_of(wind - usual) > allowed_m_s;
 }
 
-/// Has the step been there for as long as the wind would take to make it, and been said more than once?
+/// Has the step lasted for as long as the wind would take to make it, and been repeated?
 bool ReadingJudge::is_confirmed(double time_s) const noexcept {
   const double needed_s = suspicion_->jump_m_s / settings_.slew_m_s2;
   return suspicion_->repeats >= kEnoughRepeats ||
@@ -167,7 +169,7 @@ bool ReadingJudge::is_frozen(const WindReading& reading, double time_s) noexcept
     if (same_) {
       const double step_m_s = std::abs(reading.speed_m_s - same_->speed_m_s);
       if (step_m_s > 0.0) resolution_m_s_ = resolution_m_s_ > 0.0 ? std::min(resolution_m_s_, step_m_s) : step_m_s;
-      // How long it usually stays with a value. A calm says nothing of that, and a freeze little.
+      // How long it usually repeats a value. A calm carries no information on that, and a freeze little.
       const double run_s = std::min(time_s - same_since_s_, frozen_patience() * settings_.frozen_s);
       if (!usual_run_s_) usual_run_s_ = std::min(run_s, settings_.frozen_s);
       if (same_->speed_m_s >= kNoWind_m_s) *usual_run_s_ += (run_s - *usual_run_s_) / kRunsRemembered;
@@ -185,10 +187,10 @@ bool ReadingJudge::is_frozen(const WindReading& reading, double time_s) noexcept
          time_s - same_since_s_ >= longest_s;
 }
 
-/// How many times longer than another this sensor may repeat itself.
+/// How many times longer than usual this sensor may repeat its value.
 double ReadingJudge::frozen_patience() const noexcept {
   if (!usual_run_s_) return kNeverMovedPatience;
-  // Steps as large as the turbulence: the same number for a while is no wonder.
+  // A resolution as coarse as the turbulence repeats the same number by nature.
   const bool is_coarse = same_ && resolution_m_s_ > kLittleTurbulence * same_->speed_m_s;
   return is_coarse ? kCoarsePatience : 1.0;
 }
@@ -206,7 +208,7 @@ bool ReadingJudge::is_seized(double speed_m_s, double time_s, std::optional<doub
   const double step_s = std::exchange(is_still_, true) ? std::min(passed_s, kLongestStep_s) : 0.0;
   still_s_ += step_s;
   if (others_are_windy) windy_still_s_ += step_s;
-  // Until it moves: a calm that comes over the others mends nothing.
+  // Until it moves: a calm of the other sensors does not clear it.
   is_seized_ = is_seized_ || (others_m_s ? others_are_windy && windy_still_s_ >= settings_.seized_s
                                          : usual_m_s_ > settings_.windy_m_s && still_s_ >= settings_.seized_alone_s);
   return is_seized_;

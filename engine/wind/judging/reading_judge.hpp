@@ -11,13 +11,13 @@
 
 namespace yuragi {
 
-/// What is wrong with what a sensor says, seen from the readings alone.
+/// A fault of a sensor, detected from its readings alone.
 enum class ReadingFault : std::uint8_t {
   kNone,
-  kSpike,        ///< far from all that came before, and not said again
+  kSpike,        ///< far from all readings before, and not repeated
   kImplausible,  ///< out of range, or a spike, again and again
-  kFrozen,       ///< exactly the same again and again, while a wind that is no calm never is
-  kSeized,       ///< nothing for hours where a wind blows
+  kFrozen,       ///< exactly the same value for too long
+  kSeized,       ///< 0 for hours in a wind
 };
 inline constexpr std::array<std::string_view, 5> kReadingFaultNames = {"none", "spike", "implausible", "frozen",
                                                                        "seized"};
@@ -25,42 +25,42 @@ inline constexpr std::array<std::string_view, 5> kReadingFaultNames = {"none", "
 struct JudgeSettings {
   /// Faster than this is out of the sensor's range.
   double max_speed_m_s = kMaxPlausibleSpeed_m_s;
-  /// A step is believed when it has been said again for as long as a wind of this acceleration would take to make it.
+  /// A step is accepted once it has been repeated for as long as a wind of this acceleration would take to make it.
   double slew_m_s2 = 5.0;
   /// What differs by less than this and half the wind is no spike.
   double least_spike_m_s = 4.0;
   /// The same for so many readings, and for so long, is frozen; longer where the sensor is one that repeats itself.
   std::size_t frozen_readings = 20;
   double frozen_s = 30.0;
-  /// A calm for so long is a seizure where the other sensors say that it is windy; alone, a calm for so long where the
-  /// last day was (nights are calm, too).
+  /// A sensor that reads 0 for so long has seized, if the other sensors measure wind; a single sensor, after the longer
+  /// time, if the last day was windy (nights are calm, too).
   double seized_s = 7200.0;
   double seized_alone_s = 43200.0;
   double windy_m_s = 3.0;
 };
 
-/// Judges one sensor's readings one by one, as they come: which to believe, and what is wrong with the sensor.
+/// Checks one sensor's readings one by one, as they arrive: which to accept, and which fault the sensor has.
 ///
 /// Spikes: a reading is suspect if it is further than 5 robust standard deviations (1.4826 times the median of the
 /// distances from the median of the last 7), and further than `least_spike_m_s` and half the wind, from that median
 /// (Hampel 1974, "The influence curve and its role in robust estimation"); further than twice that, it is suspect
-/// whatever the deviation. A suspect is held back; if what follows says the same for long enough, or 20 times, it was a
-/// step, and is believed from then on; otherwise it was a spike, and is not.
+/// whatever the deviation. A suspect is held back; if the following readings agree with it for long enough, or 20
+/// times, it was a step and is accepted from then on; otherwise it was a spike and is rejected.
 /// Implausible: three of ten of its last 20 or so readings were spikes or out of range, until one of twenty is.
 /// Frozen: bit for bit the same speed, direction and gust, above a calm, and ten times longer than the sensor usually
 /// stays with a value: one that is asked more often than it measures, or whose resolution is coarse for the wind's
-/// turbulence, repeats itself by nature. One that never said anything else has twenty times the time: it may be a
+/// turbulence, repeats itself by nature. One that never sent another value has twenty times the time: it may be a
 /// simulator whose wind is steady. After ten minutes of silence a freeze and a spike are judged anew.
 /// Thread-safe: no. Realtime-safe: yes.
 class ReadingJudge {
  public:
   explicit ReadingJudge(const JudgeSettings& settings = {}) : settings_(settings) {}
 
-  /// Is it to be believed? Readings come in the order of their times; one that is late is not believed. `others_m_s`:
-  /// what the other sensors say of the wind, where there are any.
+  /// True: accept the reading. Readings come in the order of their times; one that is late is rejected. `others_m_s`:
+  /// the speed by the other sensors, where there are any.
   bool judge(const WindReading& reading, std::optional<double> others_m_s = {}) noexcept;
 
-  /// Tells of readings that were refused before they came here, since what they said was impossible.
+  /// Counts readings that were refused before they came here as impossible.
   void count_impossible(std::uint64_t readings) noexcept;
 
   /// What is wrong at the moment: kImplausible, kFrozen or kSeized for as long as it lasts, kSpike while a suspect is
@@ -70,7 +70,7 @@ class ReadingJudge {
   /// Readings that turned out to be spikes.
   std::uint64_t spikes() const noexcept { return spikes_; }
 
-  /// For the fault's reason: how often and for how long it has said the same; for how long it has stood still; which
+  /// For the fault's reason: how often and for how long it has repeated its value; for how long it has read 0; which
   /// part of its last readings were spikes or out of range.
   std::size_t same_count() const noexcept { return same_count_; }
   double same_for_s() const noexcept { return same_ ? last_s_ - same_since_s_ : 0.0; }
@@ -97,7 +97,7 @@ class ReadingJudge {
   std::size_t believed_ = 0;
 
   struct Suspicion {
-    WindVector wind;     ///< what was said first
+    WindVector wind;     ///< the first suspect reading
     double since_s = 0;  ///< and when
     double jump_m_s = 0;
     std::size_t repeats = 0;

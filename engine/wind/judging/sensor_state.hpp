@@ -7,15 +7,15 @@
 
 namespace yuragi {
 
-/// How a sensor is, in one word for a person. The stream (pose.fbs) has the same in the same order.
+/// The state of a sensor, one word for a person. The stream (pose.fbs) has the same in the same order.
 enum class SensorState : std::uint8_t {
-  kConnecting,    ///< its device is looked for, or has not said a reading yet
-  kLive,          ///< it speaks, and is believed
+  kConnecting,    ///< its device is searched for, or has sent no reading yet
+  kLive,          ///< readings arrive and are accepted
   kStale,         ///< its device is there, but silent for longer than its own interval explains
-  kFrozen,        ///< it says exactly the same again and again
-  kSeized,        ///< it stands still for hours where a wind blows
-  kImplausible,   ///< it says what cannot be, again and again, or what the other sensors deny
-  kDisconnected,  ///< it spoke, and its device has gone
+  kFrozen,        ///< its value does not change at all
+  kSeized,        ///< it reads 0 for hours in a wind
+  kImplausible,   ///< many impossible readings, or it contradicts the other sensors
+  kDisconnected,  ///< it sent readings, and its device has gone
   kSimulated,     ///< as live, but a simulation
   kReplayed,      ///< as live, but a recording
 };
@@ -27,7 +27,7 @@ constexpr std::string_view name_of(SensorState state) {
   return number < kSensorStateNames.size() ? kSensorStateNames[number] : "?";
 }
 
-/// Does what the sensor says make the wind?
+/// Are the sensor's readings used for the wind?
 constexpr bool is_believed(SensorState state) {
   return state == SensorState::kLive || state == SensorState::kSimulated || state == SensorState::kReplayed;
 }

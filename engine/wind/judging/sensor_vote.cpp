@@ -6,7 +6,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kCountEvery_s = 1.0;
-/// After a halt of the machine, time goes on as if it had been so long.
+/// A halt of the machine counts as so long at most.
 constexpr double kLongestCount_s = 10.0;
 
 /// A judgement with a memory: it needs the whole patience to change either way.
@@ -26,7 +26,7 @@ void SensorVote::hear(std::size_t sensor, MonoTime time, double speed_m_s) noexc
   Voter& voter = voters_[sensor];
   const double passed_s = voter.last ? seconds(time - *voter.last) : 0.0;
   if (passed_s < 0.0) return;
-  // A mean of all that was heard until there is enough of it, then one that forgets.
+  // The mean of all readings until they span the memory, then an exponential one.
   const bool is_first = !voter.last || passed_s > settings_.memory_s;
   voter.heard_s = is_first ? 0.0 : voter.heard_s + passed_s;
   const double part = is_first ? 1.0 : passed_s / std::max(passed_s, std::min(voter.heard_s, settings_.memory_s));
@@ -51,7 +51,7 @@ void SensorVote::advance(MonoTime now) noexcept {
         std::ranges::any_of(voters_, [&](const Voter& other) { return &other != &voter && can_be_compared(other); });
     if (has_others) voter.others_m_s = median_without(&voter);
 
-    // Without a majority an earlier sentence stands.
+    // Without a majority the earlier result stays.
     const bool is_compared = can_be_compared(voter);
     if (majority && is_compared) {
       const double sign = agree(voter.mean_m_s, *majority) ? -1.0 : 1.0;

@@ -9,11 +9,11 @@
 
 namespace yuragi {
 
-/// What the other sensors say of one.
+/// The result of comparing one sensor with the others.
 enum class Vote : std::uint8_t {
-  kNone,      ///< there is nothing to say, or nobody to say it
-  kDisputed,  ///< they differ, and nobody can tell who is right
-  kOutvoted,  ///< most of them agree, and this one does not
+  kNone,      ///< no contradiction, or no other sensor to compare with
+  kDisputed,  ///< they differ, without a majority
+  kOutvoted,  ///< a majority agrees, and this one does not
 };
 
 struct VoteSettings {
@@ -23,16 +23,16 @@ struct VoteSettings {
   /// different places, and a courtyard has half the wind of a roof.
   double factor = 3.0;
   double offset_m_s = 3.0;
-  /// For how long one must differ before it is outvoted, and agree before it is heard again.
+  /// For how long one must differ before it is outvoted, and agree before it is accepted again.
   double patience_s = 600.0;
 };
 
 /// Compares the sensors of an installation by their slow mean speeds.
 ///
 /// Three or more can vote: where more than half of them agree with the median of all, one that does not agree with it,
-/// for as long as `patience_s`, is outvoted; it must agree for as long to be heard again, and while there is no such
-/// majority it stays as it is. Where there is none (two sensors, or each says something else) those that differ are
-/// disputed, which condemns nobody. A sensor takes part once it has been heard for `memory_s` without a longer silence.
+/// for as long as `patience_s`, is outvoted; it must agree for as long to be accepted again, and while there is no such
+/// majority its state is kept. Without a majority (two sensors, or all differ) those that differ are disputed, and all
+/// are still used. A sensor takes part once it has sent readings for `memory_s` without a longer gap.
 /// Thread-safe: no. Realtime-safe after construction: yes.
 class SensorVote {
  public:
@@ -41,10 +41,10 @@ class SensorVote {
   /// Takes a reading of a sensor, at its own time, calibrated. One that is earlier than the last changes nothing.
   void hear(std::size_t sensor, MonoTime time, double speed_m_s) noexcept;
 
-  /// Says whether a sensor can be compared at the moment: it speaks, of the wind of now, and is not frozen.
+  /// Whether a sensor can be compared at the moment: it is live, not a recording, and not frozen.
   void seat(std::size_t sensor, bool takes_part) noexcept { voters_[sensor].is_seated = takes_part; }
 
-  /// Goes on to `now`. Counts votes about once a second.
+  /// Advances to `now`. Counts votes about once a second.
   void advance(MonoTime now) noexcept;
 
   Vote vote_on(std::size_t sensor) const noexcept;

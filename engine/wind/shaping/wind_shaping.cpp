@@ -7,27 +7,27 @@
 namespace yuragi {
 namespace {
 
-/// A critically damped step has done 95 % of its way after 4.75 time constants.
+/// A critically damped step has covered 95 % after 4.75 time constants (engine/METHOD.md M18).
 constexpr double kPhaseOfArrival = 4.75;
-/// How long the floor's gain takes to where the mean says.
+/// The time that the floor's gain takes to follow the mean.
 constexpr double kFloorGainOver_s = 5.0;
-/// A front is felt within this, so that the gain of a calm does not meet a storm ...
+/// A front is detected within this, so that the gain of a calm is not applied to a storm ...
 constexpr double kQuickOver_s = 4.0;
-/// ... and is told from a gust by being so many times the slow mean.
+/// ... and is distinguished from a gust by being so many times the slow mean.
 constexpr double kFrontTimesMean = 2.0;
-/// Longer than any way to anywhere: the first call begins there.
+/// Longer than every transition: the first call starts at the targets.
 constexpr double kForEver_s = 1e12;
 
 constexpr double kRememberEvery_s = 1.0;
-/// So much live wind must be known (or this share of a short memory) until the site's percentiles are believed.
+/// So much live wind must be known (or this share of a short memory) until the site's percentiles have full weight.
 constexpr double kKnownAfter_s = 6.0 * 3600.0;
 constexpr double kKnownShare = 0.25;
 constexpr double kMedian = 0.50;
 constexpr double kStrong = 0.95;
-/// Slower than anything that a sensor tells from calm.
+/// Below what a sensor can tell from calm.
 constexpr double kLeastMedian_m_s = 0.05;
 
-/// Goes on, and ends its way at the target itself, not ever nearer to it.
+/// Advances the filter, and ends exactly at the target, not ever nearer to it.
 void follow_to_the_end(CriticallyDamped& value, double target, double over_s, double dt_s) noexcept {
   constexpr double kArrived = 1e-6;
   value.step(target, kPhaseOfArrival / over_s, dt_s);
@@ -47,7 +47,7 @@ void carry_tapes(WindStroke& stroke, WindVector blown_m, double way_m) noexcept 
   }
 }
 
-/// Of gusts that have become stronger by some that nobody measures, the same is a smaller part.
+/// Gusts become stronger by some that are not measured: the measured ones are then a smaller part of the power.
 void know_less(WindStroke& stroke, const GustNoise::Moment& real, const GustNoise::Moment& all) noexcept {
   const auto part = [](float of_m_s, float all_m_s) {
     return all_m_s > 0.0F ? of_m_s * of_m_s / (all_m_s * all_m_s) : 0.0F;
@@ -85,7 +85,7 @@ void WindShaping::shape(DrivingWind& wind, bool is_open, bool is_of_site) noexce
   mean_.step(speed_m_s, kPhaseOfArrival / settings_.over_s, way_s);
   quick_mean_.step(speed_m_s, kPhaseOfArrival / kQuickOver_s, way_s);
   live_s_ = is_of_site && state.live_weight > 0.5 ? live_s_ + dt_s : 0.0;
-  // By then the mean has forgotten what was before.
+  // By then the mean has forgotten the wind before.
   if (live_s_ > settings_.over_s) remember(mean_.value, dt_s);
   follow(state.live_weight, is_open, way_s);
 
@@ -109,7 +109,7 @@ void WindShaping::apply_gains(DrivingWind& wind) const noexcept {
   wind.state.wind = wind_where_measured(wind.ground, wind.stroke, *noise_);
 }
 
-/// The ceiling: on what is measured now, and on that for as long as it crosses the ground.
+/// The ceiling: on the wind measured now, for as long as it crosses the ground.
 void WindShaping::hold_back(DrivingWind& wind) noexcept {
   speed_m_s_ = speed_of(wind.state.wind);
   ceiling_gain_ = settings_.ceiling.gain(speed_m_s_);
@@ -124,7 +124,7 @@ bool WindShaping::restore(std::span<const double> times_s) noexcept {
   return true;
 }
 
-/// Tells the memory of the site, now and then, what blew.
+/// Adds the speed to the site's memory, at most once a second.
 void WindShaping::remember(double mean_m_s, double dt_s) noexcept {
   if (settings_.site.median_m_s <= 0.0) return;
   heard_s_ += dt_s;
@@ -146,7 +146,7 @@ double WindShaping::site_gain_of(double mean_m_s) const noexcept {
   const double trust = std::min(1.0, known_s_ / trusted_s);
   const auto limited = [&site](double gain) { return std::clamp(gain, 1.0 / site.most_gain, site.most_gain); };
 
-  // Where the two percentiles go to; what lies between them goes between.
+  // The gains of the two percentiles; between them the mean is interpolated.
   const double median_m_s = std::max(median_m_s_, kLeastMedian_m_s);
   const double median_gain = limited(site.median_m_s / median_m_s);
   if (site.strong_m_s <= 0.0) return 1.0 + trust * (median_gain - 1.0);
@@ -158,13 +158,13 @@ double WindShaping::site_gain_of(double mean_m_s) const noexcept {
   return 1.0 + trust * (wanted_m_s / mean - 1.0);
 }
 
-/// Leads each gain toward where the means and the opening hours want it.
+/// Advances each gain toward its target by the means and the opening hours.
 void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept {
-  // The default wind is no wind of the site: it is what somebody wanted to see.
+  // The default wind is not the site's: it is configured.
   const double site_gain = 1.0 + live_weight * (site_gain_of(mean_.value) - 1.0);
   follow_to_the_end(site_, site_gain, settings_.over_s, dt_s);
 
-  // A front has the word before the slow mean knows of it.
+  // A front counts before the slow mean has followed it.
   const double mean_m_s = std::max({mean_.value, quick_mean_.value / kFrontTimesMean, 0.0});
   const double floor_m_s = settings_.floor_m_s;
   const double least_m_s = floor_m_s / kMostFloorGain;
@@ -177,8 +177,8 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
   follow_to_the_end(opening_, is_open ? 1.0 : settings_.closed_level, settings_.fade_s, dt_s);
 }
 
-/// The wind that blows although there is none: with a mean where the wind last came from, and gusts of its own, which
-/// it carries along. In power they are what a wind of the floor's strength has more than one that lacks the breeze.
+/// Adds the floor's breeze: a mean from where the wind last came, and gusts of its own, which it carries along. Their
+/// power is the difference between a wind of the floor's strength and one without the breeze.
 void WindShaping::add_breeze(DrivingWind& wind, double dt_s) noexcept {
   const double breeze_m_s = std::clamp(breeze_.value, 0.0, settings_.floor_m_s);
   if (breeze_m_s <= 0.0 && blown_m_.u_m_s == 0.0 && blown_m_.v_m_s == 0.0) return;

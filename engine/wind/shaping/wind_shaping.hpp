@@ -52,7 +52,7 @@ struct WindShapingReport {
 ///
 ///  1. Site gain: the wind is made stronger or weaker by a factor that takes the site's median to `site.median_m_s`
 ///     and its 95th percentile to `site.strong_m_s`; between the two the mean goes on a straight line, and beyond them
-///     the factor stays. It grows from 1 while the first hours of live wind are heard, and is 1 for the default wind.
+///     the factor stays. It grows from 1 during the first hours of live wind, and is 1 for the default wind.
 ///  2. Floor: a mean below it is raised to it by a factor of up to kMostFloorGain; what then still lacks is a breeze
 ///     that blows where the wind last came from, with the turbulence of the climate at that level. It carries the
 ///     gusts on: those that no sensor measured are others from then on than in the real wind.
@@ -95,7 +95,7 @@ class WindShaping {
   GustVariances along_, across_;  ///< of the breeze
   SpeedMemory memory_;
   double live_s_ = 0.0;   ///< for how long the wind has been a sensor's
-  double heard_s_ = 0.0;  ///< time since the memory was told
+  double heard_s_ = 0.0;  ///< time since the memory was updated
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
   CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
   CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0};

@@ -33,7 +33,7 @@ constexpr double kStrengthFromCycles = 5.12;
 constexpr double kStrengthToCycles = 20.48;
 constexpr std::size_t kStrengthSamples = 128;
 
-/// An octave weaker than this moves nothing, and is not read.
+/// An octave weaker than this is not read.
 constexpr float kNothing_m_s = 1e-4F;
 
 /// `along` and `across` of a unit vector, in the world.

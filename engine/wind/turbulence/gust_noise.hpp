@@ -12,7 +12,7 @@
 
 namespace yuragi {
 
-/// What the noise of gusts is like.
+/// Parameters of the noise of gusts.
 struct GustNoiseSettings {
   double period_m = 256.0;    ///< of the first chain's middle tile
   std::size_t samples = 512;  ///< an edge of the largest tiles: a power of two, 128 to 2048
@@ -23,7 +23,8 @@ struct GustNoiseSettings {
 };
 
 /// Gusts as a pattern that the wind carries over the ground, taken apart into octaves of the wavenumber, so that each
-/// can be given the strength that the moment asks for. Every octave has mean 0 and variance 1 as it is read.
+/// can be given its own strength at each moment (engine/wind/README.md W14). Every octave has mean 0 and variance 1 as
+/// it is read.
 ///
 /// Two chains of octaves are added, the second's waves longer than the first's by the golden section, so that no repeat
 /// is seen. A chain's waves of 2048 m down to 0.25 m are 2-D noises on three tori, each turned by an angle of its own:
@@ -33,11 +34,11 @@ struct GustNoiseSettings {
 /// octave's shortest wave has four samples or more.
 ///
 /// Where it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (TurningNoise2), and
-/// its angle a goes on by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
+/// its angle a advances by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
 /// 1941), turnover being the cube root of the dissipation, eddy_turnover_m23_s().
 ///
-/// Gusts come in bursts: where the moment asks for it, all octaves of the tiles are stronger together in some places
-/// and weaker in others, by envelope(). It travels with them.
+/// Gusts come in bursts: with a moment's gustiness above 0, all octaves of the tiles are stronger together in some
+/// places and weaker in others, by envelope() (W16). It travels with them.
 ///
 /// Owns its tiles (13 MB at 512 samples, 26 MB if it evolves). Set-up work. Thread-safe: reading, yes. Realtime-safe:
 /// all but construction.
@@ -53,7 +54,7 @@ class GustNoise {
   static constexpr std::size_t kFirstTileOctave = 2 * kWayOctaves;
   static constexpr std::size_t kOctaves = 2 * (kWayOctaves + kTileOctaves);
 
-  /// Throws what make_noise_2d says, and std::bad_alloc.
+  /// Throws the errors of make_noise_2d, and std::bad_alloc.
   explicit GustNoise(const GustNoiseSettings& settings);
 
   /// An octave: its waves, and which part of the power at its wavenumbers is its own (the two chains share).

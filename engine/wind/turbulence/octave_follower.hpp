@@ -10,9 +10,9 @@
 
 namespace yuragi {
 
-/// A slow signal of vectors taken apart into octave bands, as it comes: a row of one-pole low passes an octave apart,
-/// all fed with the last reading; a band is the difference between two neighbours, and the slow mean what the lowest
-/// passes. All bands and the mean add up to what the highest passes.
+/// Splits a signal of vectors into octave bands as it arrives (engine/wind/README.md W17): a bank of one-pole low
+/// passes an octave apart, all fed with the last reading; a band is the difference between two neighbours, and the slow
+/// mean what the lowest passes. All bands and the mean add up to what the highest passes.
 ///
 /// The steps are exact for a reading that is held. Thread-safe: no. Realtime-safe: yes.
 class OctaveFollower {
@@ -25,7 +25,7 @@ class OctaveFollower {
   static double edge_hz(std::size_t band) noexcept { return std::ldexp(kLowest_hz, static_cast<int>(band)); }
   static double centre_hz(std::size_t band) noexcept { return std::numbers::sqrt2 * edge_hz(band); }
 
-  /// Begins with this, as if it had been there for ever.
+  /// Begins with this value, settled.
   void begin(WindVector value) noexcept { passed_.fill(value); }
 
   /// How far each low pass goes toward its input within a step: the same for all followers.
@@ -36,7 +36,7 @@ class OctaveFollower {
     return parts;
   }
 
-  /// Goes on by that with `held`.
+  /// Advances by that step, with `held` as input.
   void step(WindVector held, const Parts& parts) noexcept {
     for (std::size_t i = 0; i <= kBands; ++i) passed_[i] = passed_[i] + parts[i] * (held - passed_[i]);
   }

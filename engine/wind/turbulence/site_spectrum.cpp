@@ -8,13 +8,13 @@ namespace yuragi {
 namespace {
 
 constexpr double kMemory_s = 3.0 * 86400.0;
-/// What is expected counts like so much learning ...
+/// The prior weighs like so much learning ...
 constexpr double kExpectedFor_s = 6.0 * 3600.0;
-/// ... and where nothing is, nothing counts like so much: the first minutes are believed by and by.
+/// ... and without one, 0 dB counts like so much: the first minutes are taken over gradually.
 constexpr double kNothingFor_s = 600.0;
-/// Half an hour of a gusty day may differ by as much.
+/// A single half hour of a gusty day may differ by as much.
 constexpr double kMostLearnt_db = 20.0;
-/// The quickest waves that readings of an interval tell of (TurbulenceFit), over one of them.
+/// The fastest waves that readings resolve (TurbulenceFit): frequency times interval.
 constexpr double kToldUpTo = 0.37;
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace yuragi {
 
-/// The wind of a place where nobody measures: a mean, and how unruly it is.
+/// The wind of a place without a sensor: its mean and its turbulence.
 struct SyntheticWindSettings {
   double mean_speed_m_s = 4.0;
   double mean_direction_deg = 240.0;   ///< where it comes from

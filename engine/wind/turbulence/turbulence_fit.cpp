@@ -17,7 +17,7 @@ constexpr double kLongestTimeScale_s = 300.0;
 constexpr int kTimeScaleSteps = 48;
 /// A scale counts as at most so many observations, so that the finest, which have the most, do not alone decide.
 constexpr double kMostObservations = 50.0;
-/// A correction is believed in full when far more observations than these are behind it.
+/// A correction has full weight after far more independent observations than these.
 constexpr double kObservationsToBelieve = 4.0;
 /// Haar's response to a frequency f is strongest at 0.37 / tau.
 constexpr double kStrongestAt = 0.37;
@@ -135,7 +135,8 @@ void TurbulenceFit::forget(double dt_s) noexcept {
 void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
   if (!(interval_s > 0.0) || !(speed_m_s > 0.0)) return;
 
-  // What each scale says, and how much it counts: neighbouring differences overlap, so 2^scale of them are about one.
+  // The variance at each scale, and its weight: neighbouring differences overlap, so 2^scale of them count about as
+  // one.
   std::array<double, kScales> log_variance{};
   std::array<double, kScales> weight{};
   std::array<double, kScales> independent{};

@@ -6,13 +6,13 @@
 
 namespace yuragi {
 
-/// How unruly one component of the wind is: von Karman's spectrum, and how the real one differs from it.
+/// The turbulence of one component of the wind: the parameters of von Karman's spectrum.
 struct Turbulence {
   double intensity = 0.2;     ///< standard deviation over the mean speed
   double time_scale_s = 8.0;  ///< integral length scale over the mean speed, L / U
 };
 
-/// What a fit believes before it has seen anything, and goes back to where it sees little.
+/// The prior of a fit, which it keeps to where there are few readings.
 struct TurbulencePrior {
   double intensity = 0.2;       ///< standard deviation over the mean speed
   double length_m = 57.0;       ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
@@ -20,7 +20,8 @@ struct TurbulencePrior {
   double intensity_weight = 10.0;  ///< and the intensity
 };
 
-/// Fits turbulence to the readings of one component as they come: a rolling fit that knows the past alone.
+/// Fits turbulence to the readings of one component as they arrive: a rolling fit over past readings alone
+/// (engine/wind/README.md W28, W29).
 ///
 /// It looks at Haar's variances: the mean squares of the differences between neighbouring means over 1, 2, 4 ...
 /// readings. Each is what a reading's averaging leaves of von Karman's spectrum, in closed form but for one integral
@@ -54,7 +55,7 @@ class TurbulenceFit {
   double measured(std::size_t scale) const noexcept {
     return weights_[scale] > 0.0 ? squares_[scale] / weights_[scale] : 0.0;
   }
-  /// What the fit says the mean square of differences between neighbouring means over tau_s (above 0) is.
+  /// The mean square of differences between neighbouring means over tau_s (above 0), by the fit.
   double expected(double tau_s) const noexcept;
 
   /// By how much the measured power differs from von Karman's at a frequency: 1 where nothing is known.

@@ -60,7 +60,7 @@ double iec_kaimal(double x) noexcept {
   return blunt(4.0, 6.0, x);
 }
 
-/// What a model says of one component.
+/// A model's formula for one component.
 struct Form {
   Shape shape = nullptr;  ///< nullptr: nothing
   double integral = 0.0;  ///< of the shape over x, exact for the constants as they are printed

@@ -14,26 +14,26 @@ namespace yuragi {
 
 // How the energy of the wind's fluctuations is spread over frequency: the named models, for analysis, fitting and
 // tests. All are one-sided densities S(f) in m^2/s^2/Hz: their integral over f from 0 on is the component's variance.
-// n = f z / U is the reduced frequency, u* the friction velocity, s the component's standard deviation.
+// n = f z / U is the reduced frequency, u* the friction velocity, s the component's standard deviation, z the height in
+// m, U the mean speed in m/s. The same table, with the integrals: engine/wind/README.md W1 to W6.
 //
+// clang-format off
 //   model        component  f S                                                   source
 //   simiu        u          u*^2 200 n / (1 + 50 n)^(5/3)                         Simiu and Scanlan 1996, Wind Effects
-//   on
-//                v          u*^2 15 n / (1 + 9.5 n)^(5/3)                         Structures, ch. 2
+//                v          u*^2 15 n / (1 + 9.5 n)^(5/3)                         on Structures, ch. 2
 //                w          u*^2 3.36 n / (1 + 10 n^(5/3))
-//   kaimal       u          u*^2 105 n / (1 + 33 n)^(5/3)                         Kaimal, Wyngaard, Izumi and Cote
-//   1972,
-//                v          u*^2 17 n / (1 + 9.5 n)^(5/3)                         Spectral characteristics of
-//                surface-layer w          u*^2 2.1 n / (1 + 5.3 n^(5/3))                        turbulence
+//   kaimal       u          u*^2 105 n / (1 + 33 n)^(5/3)                         Kaimal, Wyngaard, Izumi, Cote 1972,
+//                v          u*^2 17 n / (1 + 9.5 n)^(5/3)                         Spectral characteristics of surface-
+//                w          u*^2 2.1 n / (1 + 5.3 n^(5/3))                        layer turbulence
 //   davenport    u          u*^2 4 x^2 / (1 + x^2)^(4/3), x = 1200 f / U(10 m)    Davenport 1961, The spectrum of
-//   horizontal
-//                                                                                 gustiness near the ground in high
-//                                                                                 winds
+//                                                                                 horizontal gustiness near the ground
+//                                                                                 in high winds
 //   von-karman   u          s^2 4 x / (1 + 70.8 x^2)^(5/6), x = f L_u / U         von Karman 1948, Progress in the
 //                v, w       s^2 4 x (1 + 755.2 x^2) / (1 + 283.2 x^2)^(11/6),     statistical theory of turbulence
 //                           x = f L_u / (2 U)
 //   iec-kaimal   u, v, w    s^2 4 f T / (1 + 6 f T)^(5/3), T = L / U,             IEC 61400-1:2005, annex B.2
 //                           L = (8.1, 2.7, 0.66) Lambda
+// clang-format on
 
 enum class SpectrumModel : std::uint8_t { kSimiu, kKaimal, kDavenport, kVonKarman, kIecKaimal };
 inline constexpr std::array<std::string_view, 5> kSpectrumModelNames = {"simiu", "kaimal", "davenport", "von-karman",
@@ -85,7 +85,7 @@ class WindSpectrum {
   double variance_m2_s2() const noexcept { return variance_m2_s2_; }
 
  private:
-  /// f S = scale shape(f time), where shape is the model's, without its unit.
+  /// S(f) = scale time shape(f time), where shape is the model's, without a unit: f S / scale over f time.
   double (*shape_)(double reduced) noexcept = nullptr;
   double scale_m2_s2_ = 0.0;
   double time_s_ = 0.0;  ///< reduced frequency over frequency

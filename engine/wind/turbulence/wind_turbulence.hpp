@@ -16,7 +16,7 @@ namespace yuragi {
 /// and a fit in which all count alike makes the gusts of the stronger wind behind it too strong.
 ///
 /// A difference is at most the mean speed: a wind that rises out of a calm differs by many times the mean that
-/// it rises from, which tells how fast that mean follows and not how strong the gusts are. Allocates at construction
+/// it rises from, which shows how fast that mean follows and not how strong the gusts are. Allocates at construction
 /// only. Thread-safe: no. Realtime-safe: yes.
 class WindTurbulence {
  public:

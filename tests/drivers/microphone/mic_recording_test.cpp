@@ -1,4 +1,4 @@
-// A real recording: two microphones beside a cup anemometer in front of a fan (../shared/data/SOURCES.txt). Prints its
+// A real recording: two microphones beside a cup anemometer in front of a fan (drivers/SOURCES.md S6). Prints its
 // figures, and skips where the recording is not there.
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Every profile that is shipped: which registers it reads, and what it makes of them. The frames are those of the
-// shared collection, and such as were written by hand from the makers' register maps.
+// Every profile that is shipped: which registers it reads, and what it makes of them. The frames are published
+// ones (drivers/SOURCES.md S1), and such as were written by hand from the makers' register maps.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -75,7 +75,7 @@ const std::vector<KnownReading> kKnownReadings = {
     {"dfrobot-sen0483-sen0482", 3, {{0, 324}}, 32.4, 32.4, {}},
     {"dfrobot-sen0483-sen0482-v1", 3, {{0, 15}}, 1.5, 337.5, {}},
     {"renke-multi-station", 3, {{500, 123}, {502, 6}}, 12.3, 270.0, {}},
-    // 95.000 degrees; most 5.000, mean 3.500 m/s: the frame of the shared collection.
+    // 95.000 degrees; most 5.000, mean 3.500 m/s: a published frame (drivers/SOURCES.md S1).
     {"seeed-sensecap-one",
      4,
      {{8, 1},
@@ -215,7 +215,7 @@ TEST(ShippedProfiles, KeepTheirSerialLinesAndPaces) {
   EXPECT_EQ(shipped_profile("thies-clima-sensor-us").speed.address, 0x7533);
 }
 
-/// The registers that a frame of the shared collection carries.
+/// The registers that a published frame carries.
 DeviceRegisters registers_of(const ModbusVector& vector) {
   DeviceRegisters registers;
   const int from = (vector.request[2] << 8) | vector.request[3];

@@ -1,4 +1,4 @@
-// The power laws of the noise, measured as wind.md 5 says: plain periodograms of the periodic field, least squares in
+// The power laws of the noise, measured by plain periodograms of the periodic field, least squares in
 // log-log. In one dimension a seed scatters by 0.06 (N = 4096: pi / sqrt(6) over the root of 509 values of ln k of
 // standard deviation 1), in two by 0.05 (256^2) or 0.025 (512^2).
 
