@@ -581,18 +581,23 @@ turbulence = 0
             free.bind(("127.0.0.1", 0))
             return "127.0.0.1:%d" % free.getsockname()[1]
 
+    def raw_lines(self, watch, pattern, least):
+        """The lines of this form that `sensors watch --raw` shows, until there are so many; then it is ended."""
+        lines = watch.wait_until(lambda text: (found := re.findall(f"(?m)^{pattern}\n", text)) and len(found) >= least and found)
+        self.assertTrue(lines, watch.text())
+        watch.end(signal.SIGINT)
+        return [line.rstrip("\n") for line in lines]
+
     def test_raw_messages_are_shown_as_they_come(self):
         config = self.modbus_config(self.start_simulator().address())
         daemon = self.start_daemon("--config", config)
-        shown = run("sensors", "watch", "--raw", "roof", "--listen", daemon.address(), "--duration", "1.5")
-        self.assertEqual(shown.returncode, 0, shown.stderr)
-        self.assertIn("daemon at " + daemon.address(), shown.stderr)
-        lines = shown.stdout.splitlines()
-        self.assertGreater(len(lines), 4)
+        watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--listen", daemon.address())
+        lines = self.raw_lines(watch, r"\d\d:\d\d:\d\d\.\d{3} roof .*", 8)
+        self.assertIn("daemon at " + daemon.address(), watch.text())
         # Transaction, protocol 0, length 6, slave 1, function 3, register 0, one of them; and its answer.
         asked = [line for line in lines if re.match(r"\d\d:\d\d:\d\d\.\d{3} roof +-> .. .. 00 00 00 06 01 03 00 00 00 01 ", line)]
         answered = [line for line in lines if re.match(r"\d\d:\d\d:\d\d\.\d{3} roof +<- .. .. 00 00 00 05 01 03 02 ", line)]
-        self.assertTrue(asked and answered, shown.stdout)
+        self.assertTrue(asked and answered, lines)
 
         unknown = run("sensors", "watch", "--raw", "mast", "--listen", daemon.address(), "--duration", "5")
         self.assertEqual(unknown.returncode, 64)
@@ -615,13 +620,13 @@ turbulence = 0
     def test_raw_messages_are_what_decode_reads(self):
         config = self.modbus_config(self.start_simulator().address())
         for listen in (self.start_daemon("--config", config).address(), self.free_address()):
-            messages = run("sensors", "watch", "--raw", "roof", "--hex", "--listen", listen, "--config", config, "--duration", "1.5")
-            self.assertEqual(messages.returncode, 0, messages.stderr)
-            path = self.file("roof.hex", messages.stdout)
+            watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--hex", "--listen", listen, "--config", config)
+            lines = self.raw_lines(watch, "[0-9a-f |]+", 24)
+            path = self.file("roof.hex", "\n".join(lines) + "\n")
             decoded = run("decode", "modbus:" + RENKE, path, "--hex", "--refused")
             self.assertEqual(decoded.returncode, 0, decoded.stderr)
             readings = [json.loads(line) for line in decoded.stdout.splitlines()]
-            self.assertGreater(len(readings), 4, messages.stdout + messages.stderr)
+            self.assertGreater(len(readings), 4, watch.text())
             # It may begin between a request and its answer, which then says nothing.
             self.assertEqual([reading for reading in readings[1:] if "refused" in reading], [])
             readings = [reading for reading in readings if "refused" not in reading]

@@ -37,16 +37,21 @@ class Program:
         with self.news:
             return self.said.decode("utf-8", "replace")
 
-    def wait_for(self, pattern, timeout_s=HANG_S):
-        """Waits until the output matches, and answers the match."""
-        def match():
-            return re.search(pattern, self.said.decode("utf-8", "replace"))
-
+    def wait_until(self, find):
+        """Waits until find(text) answers something in what it has said so far, and answers that; None where it never does."""
         with self.news:
-            self.news.wait_for(lambda: self.is_silent or match(), timeout_s)
-            if match():
-                return match()
-        raise AssertionError(f"no {pattern!r} in the output of {self.process.args}:\n{self.text()}")
+            def found():
+                return find(self.said.decode("utf-8", "replace"))
+
+            self.news.wait_for(lambda: self.is_silent or found(), HANG_S)
+            return found() or None
+
+    def wait_for(self, pattern):
+        """Waits until the output matches, and answers the match."""
+        match = self.wait_until(lambda text: re.search(pattern, text))
+        if match is None:
+            raise AssertionError(f"no {pattern!r} in the output of {self.process.args}:\n{self.text()}")
+        return match
 
     def address(self):
         """HOST:PORT that it listens on."""
