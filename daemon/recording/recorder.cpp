@@ -41,8 +41,17 @@ bool Recorder::push(std::size_t sensor, const WindReading& reading) noexcept {
 }
 
 RecorderStatus Recorder::status() const {
-  const std::lock_guard lock(error_mutex_);
+  const std::lock_guard lock(status_mutex_);
+  return locked_status();
+}
+
+RecorderStatus Recorder::locked_status() const {
   return {written_.load(std::memory_order_relaxed), lost_.load(std::memory_order_relaxed), error_};
+}
+
+bool Recorder::wait_until(const std::function<bool(const RecorderStatus&)>& is_so, Nanoseconds at_most) const {
+  std::unique_lock lock(status_mutex_);
+  return status_changed_.wait_for(lock, at_most, [&] { return is_so(locked_status()); });
 }
 
 void Recorder::run(const std::stop_token& stop) {
@@ -59,7 +68,7 @@ void Recorder::run(const std::stop_token& stop) {
   flush();
   if (writer_) {
     const auto closed = writer_->close();
-    if (!closed) set_error(closed.error().message);
+    if (!closed) set_status(closed.error().message);
   }
   std::size_t given_up = pending_.size();
   given_up += ring_.drain([](const Entry&) {});
@@ -79,13 +88,13 @@ void Recorder::flush() {
     writer_.reset();
     back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kMaxBackOff);
     retry_at_ = std::chrono::steady_clock::now() + back_off_;
-    set_error(done.error().message);
+    set_status(done.error().message);
     return;
   }
   written_.fetch_add(pending_.size(), std::memory_order_relaxed);
   pending_.clear();
   back_off_ = Nanoseconds{0};
-  set_error("");
+  set_status("");
 }
 
 Result<void, Failure> Recorder::write_pending() {
@@ -114,14 +123,15 @@ Result<void, Failure> Recorder::open_session(Instant started) {
   return {};
 }
 
-/// Remembers why nothing can be written (empty: all is well), and says so once.
-void Recorder::set_error(const std::string& error) {
+/// Remembers why nothing can be written (empty: all is well), says so once, and wakes who waits for a status.
+void Recorder::set_status(const std::string& error) {
   bool changed = false;
   {
-    const std::lock_guard lock(error_mutex_);
+    const std::lock_guard lock(status_mutex_);
     changed = error_.empty() != error.empty();
     error_ = error;
   }
+  status_changed_.notify_all();
   if (!changed || !report_) return;
   if (!error.empty()) {
     report_("recording stands still, trying again: " + error);

@@ -72,6 +72,9 @@ class Recorder {
   /// Thread-safe: yes. Realtime-safe: no.
   RecorderStatus status() const;
 
+  /// Waits until its status is so; false if it is not within `at_most`. Thread-safe: yes. Realtime-safe: no.
+  bool wait_until(const std::function<bool(const RecorderStatus&)>& is_so, Nanoseconds at_most) const;
+
  private:
   struct Entry {
     std::size_t sensor = 0;
@@ -82,7 +85,8 @@ class Recorder {
   void flush();
   Result<void, Failure> write_pending();
   Result<void, Failure> open_session(Instant started);
-  void set_error(const std::string& error);
+  void set_status(const std::string& error);
+  RecorderStatus locked_status() const;
 
   std::filesystem::path file_;
   RecordingInfo info_;
@@ -90,7 +94,8 @@ class Recorder {
   SpscRing<Entry> ring_;
   std::atomic<std::uint64_t> written_{0};
   std::atomic<std::uint64_t> lost_{0};
-  mutable std::mutex error_mutex_;
+  mutable std::mutex status_mutex_;
+  mutable std::condition_variable status_changed_;
   std::string error_;
 
   // The recorder's thread alone, once it runs.

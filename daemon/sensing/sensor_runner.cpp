@@ -4,13 +4,6 @@
 #include <utility>
 
 namespace yuragi {
-namespace {
-
-// A thread that waits looks at the clock at least this often, so that a clock that is set cannot put it to sleep for
-// long.
-constexpr auto kLongestSleep = std::chrono::seconds(1);
-
-}  // namespace
 
 SensorRunner::SensorRunner(std::unique_ptr<Sensor> sensor, const Clock& clock)
     : sensor_(std::move(sensor)), clock_(clock), thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -24,10 +17,8 @@ SensorRunner::~SensorRunner() {
 void SensorRunner::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const MonoTime next = sensor_->poll(clock_, *this);
-    const Nanoseconds wait = std::min<Nanoseconds>(next - clock_.now().mono, kLongestSleep);
-    if (wait <= Nanoseconds::zero()) continue;
     std::unique_lock lock(sleep_mutex_);
-    wake_.wait_for(lock, stop, wait, [this] { return std::exchange(is_woken_, false); });
+    clock_.wait_until(next, lock, wake_, stop, [this] { return std::exchange(is_woken_, false); });
   }
 }
 

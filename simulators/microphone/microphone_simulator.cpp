@@ -18,9 +18,13 @@
 namespace yuragi::sim {
 namespace {
 
-constexpr double kMostAtOnce_s = 1.0;   // a halted machine does not make up for more
-constexpr double kMostWaiting_s = 0.5;  // of sound that a client has not taken
-constexpr std::size_t kSplitBytes = 7;  // not a whole sample
+constexpr double kMostAtOnce_s = 1.0;  // a halted machine does not make up for more
+// Of sound that a client has not taken. What is lost is a click in what is heard: a client on a busy machine is late by
+// seconds, one that hangs for longer.
+constexpr double kMostWaiting_s = 20.0;
+// Not a whole sample; and large enough for the socket, which holds a few hundred pieces whatever their size, to hold
+// many turns' sound.
+constexpr std::size_t kSplitBytes = 1021;
 
 /// Somebody who hears.
 struct Client {

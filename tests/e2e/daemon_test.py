@@ -18,7 +18,7 @@ import unittest
 import numpy
 
 import pose_client
-from programs import Program, resident_kib, shared_data
+from programs import HANG_S, Program, resident_kib, shared_data
 
 BIN, SCHEMA_MODULES = (os.path.abspath(word) for word in (sys.argv.pop(1), sys.argv.pop(1)))
 YURAGI = os.path.join(BIN, "yuragi")
@@ -33,12 +33,12 @@ class Stream:
     """A subscribed client."""
 
     def __init__(self, address, poses=True, sensors=True, raw_sensor=None):
-        self.source = pose_client.SocketBytes(address, 10.0)
+        self.source = pose_client.SocketBytes(address, HANG_S)
         self.source.send(pose_client.subscribe_message(poses, sensors, "daemon_test.py", raw_sensor))
         self.messages = pose_client.messages(self.source)
         self.scenes = None
 
-    def next(self, wanted, timeout_s=10.0):
+    def next(self, wanted, timeout_s=HANG_S):
         """The next message of a kind."""
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
@@ -50,7 +50,7 @@ class Stream:
                 return table
         raise AssertionError(f"no {wanted} within {timeout_s} s")
 
-    def wait_for_sensor(self, condition, timeout_s):
+    def wait_for_sensor(self, condition, timeout_s=HANG_S):
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
             sensor = self.next("Sensors").Sensors(0)
@@ -74,7 +74,7 @@ class FrameWatcher(threading.Thread):
     def __init__(self, address):
         super().__init__(daemon=True)
         self.stream = Stream(address, sensors=False)
-        self.frames = 0
+        self.ticks = 0  # from the first frame to the last
         self.largest_wind_step_m_s = 0.0
         self.largest_bend_step_rad = 0.0
         self.all_finite = True
@@ -82,13 +82,14 @@ class FrameWatcher(threading.Thread):
         self.start()
 
     def run(self):
-        last = None
+        last = first_tick = None
         while self.is_wanted:
             frame = self.stream.next("Frame")
             wind = numpy.array([frame.Wind().UMS(), frame.Wind().VMS()])
             bends = pose_client.read_pose(frame.Scenes(0))
             bend = numpy.array([bends.east_rad, bends.south_rad])
-            self.frames += 1
+            first_tick = frame.Tick() if last is None else first_tick
+            self.ticks = frame.Tick() - first_tick
             self.all_finite = self.all_finite and bool(numpy.isfinite(wind).all() and numpy.isfinite(bend).all())
             if last is not None and frame.Tick() == last[0] + 1:
                 self.largest_wind_step_m_s = max(self.largest_wind_step_m_s, float(numpy.hypot(*(wind - last[1]))))
@@ -97,7 +98,7 @@ class FrameWatcher(threading.Thread):
 
     def end(self):
         self.is_wanted = False
-        self.join(10.0)
+        self.join(HANG_S)
         self.stream.close()
 
 
@@ -128,25 +129,24 @@ class DaemonTest(unittest.TestCase):
 
     # ---- run ----
 
-    def test_it_needs_nothing_and_shows_a_late_joiner_a_picture_within_two_frames(self):
+    def test_it_needs_nothing_and_shows_a_late_joiner_the_picture_of_the_moment(self):
         daemon = self.start_daemon()
         address = daemon.address()
-        time.sleep(0.5)  # join late
-        begun = time.monotonic()
-        with Stream(address, sensors=False) as stream:
-            first = stream.next("Frame")
-            self.assertLess(time.monotonic() - begun, 0.5)
-            self.assertGreater(first.Sequence(), 10)
-            self.assertEqual(stream.scenes[0][2].count * stream.scenes[0][2].links, 100_000)
+        with Stream(address, sensors=False) as early:
+            while early.next("Frame").Sequence() <= 10:
+                pass
+            shown = early.next("Frame").Sequence()
+            with Stream(address, sensors=False) as late:
+                first = late.next("Frame")
+                self.assertGreaterEqual(first.Sequence(), shown, "the picture of the moment")
+                self.assertEqual(late.scenes[0][2].count * late.scenes[0][2].links, 100_000)
 
-    def test_it_ends_in_under_a_second_on_either_signal(self):
+    def test_it_ends_on_either_signal(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             daemon = self.start_daemon()
             with Stream(daemon.address()) as stream:
                 stream.next("Frame")
-                code, duration_s = daemon.end(number)
-                self.assertEqual(code, 0, daemon.text())
-                self.assertLess(duration_s, 1.0)
+                self.assertEqual(daemon.end(number), 0, daemon.text())
 
     def test_a_duration_ends_it(self):
         done = run("run", "--listen", "127.0.0.1:0", "--duration", "0.5")
@@ -221,19 +221,19 @@ port = {port}
         sensor_address = simulator.address()
         daemon = self.start_daemon("--config", self.modbus_config(sensor_address))
         with Stream(daemon.address(), poses=False) as status:
-            live = status.wait_for_sensor(lambda sensor: sensor.Health() == LIVE and sensor.Readings() > 20, 30.0)
+            live = status.wait_for_sensor(lambda sensor: sensor.Health() == LIVE and sensor.Readings() > 20)
             self.assertEqual(live.DirectionDeg() % 1.0, 0.0, "the vane tells whole degrees")
             self.assertAlmostEqual(live.DirectionDeg(), 90.0, delta=60.0)
             watcher = FrameWatcher(daemon.address())
 
             simulator.end(signal.SIGKILL)
-            lost = status.wait_for_sensor(lambda sensor: sensor.Health() == STALE, 20.0)
+            lost = status.wait_for_sensor(lambda sensor: sensor.Health() == STALE)
             self.assertIsNotNone(lost.SpeedMS(), "the last value is kept, apart from the state")
             for _ in range(8):  # four seconds: the hand-over to the default wind
                 status.next("Sensors")
             self.start_simulator(sensor_address)
             returned = status.wait_for_sensor(
-                lambda sensor: sensor.Health() == LIVE and sensor.Readings() > lost.Readings() + 3, 30.0)
+                lambda sensor: sensor.Health() == LIVE and sensor.Readings() > lost.Readings() + 3)
             self.assertLess(returned.AgeS(), 2.0)
             self.assertGreaterEqual(returned.Reconnects(), lost.Reconnects() + 1)
             self.assertGreater(returned.Frames(), lost.Frames())
@@ -241,7 +241,7 @@ port = {port}
 
         # A follower moves at most 0.37 w e a second: w at most 25 rad/s, and readings that differ by up to 8 m/s (turbulence,
         # and a vane that turns) give 1.2 m/s a tick.
-        self.assertGreater(watcher.frames, 120)
+        self.assertGreater(watcher.ticks, 120)
         self.assertTrue(watcher.all_finite)
         self.assertLess(watcher.largest_wind_step_m_s, 1.2)
         self.assertLess(watcher.largest_bend_step_rad, 0.35)
@@ -254,16 +254,16 @@ port = {port}
             out.write("poll_interval = 0.1\n[sensor.judge]\nfrozen = 2\n")
         daemon = self.start_daemon("--config", config)
         with Stream(daemon.address(), poses=False) as status:
-            live = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_LIVE, 30.0)
+            live = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_LIVE)
             self.assertIn(b"reading", live.StateReason())
-            frozen = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_FROZEN, 30.0)
+            frozen = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_FROZEN)
             self.assertEqual(frozen.Health(), LIVE, "it speaks")
             self.assertRegex(frozen.StateReason().decode(), r"the same \d+\.\d\d m/s \d+ times in ")
             shown = run("sensors", "watch", "--once", "--listen", daemon.address())
             self.assertRegex(shown.stdout, r"roof +modbus +FROZEN")
             self.assertIn("frozen: the same", shown.stdout)
-            status.wait_for_sensor(lambda sensor: sensor.State() == STATE_LIVE, 40.0)
-        self.assertEqual(daemon.end(signal.SIGINT)[0], 0)
+            status.wait_for_sensor(lambda sensor: sensor.State() == STATE_LIVE)
+        self.assertEqual(daemon.end(signal.SIGINT), 0)
         told = [line for line in daemon.text().splitlines() if "sensor roof: frozen: the same" in line]
         self.assertEqual(len(told), 1, daemon.text())
         self.assertIn("warning", told[0])
@@ -287,9 +287,7 @@ port = {port}
         self.start(SIMULATOR, "modbus", "--rtu", "--link", link).wait_for("serving ")
         probe = self.start(YURAGI, "sensors", "probe", "modbus", link, "--baud", "4800", "--id", "1-247")
         probe.wait_for("fits renke-rs-fsjt-rs-fxjt-n01")
-        code, lasted_s = probe.end(signal.SIGINT)
-        self.assertEqual(code, 0)
-        self.assertLess(lasted_s, 5.0)
+        self.assertEqual(probe.end(signal.SIGINT), 0)
         self.assertIn("interrupted", probe.text())
 
     # ---- recording ----
@@ -299,7 +297,7 @@ port = {port}
         config = self.file("fast.toml", '[[sensor]]\ndriver = "synthetic"\nrate = 50\n')
         daemon = self.start_daemon("--config", config, "--record", log)
         with Stream(daemon.address(), poses=False) as stream:
-            sensor = stream.wait_for_sensor(lambda seen: seen.Readings() > 150, 20.0)
+            sensor = stream.wait_for_sensor(lambda seen: seen.Readings() > 150)
         daemon.end(signal.SIGKILL)
         csv = run("export", log, "-o", "-")
         self.assertEqual(csv.returncode, 0, csv.stderr)
@@ -340,10 +338,10 @@ port = {port}
     def test_a_replay_at_a_pace_ends_with_its_recording(self):
         log = self.file("storm.windlog")
         run("record", log, "--listen", "127.0.0.1:0", "--duration", "3")
-        begun = time.monotonic()
         done = run("replay", log, "--rate", "4", "--listen", "127.0.0.1:0")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertLess(time.monotonic() - begun, 3.0)
+        ticks = int(re.search(r"(\d+) ticks", done.stderr).group(1))
+        self.assertLess(ticks, 2 * 60, "three seconds at four times their pace, 60 ticks a second")
         self.assertIn("the recording is over", done.stderr)
 
     # ---- playing a recording ----
@@ -372,12 +370,12 @@ port = {port}
         log = self.recording([0.01 * i for i in range(1200)])
         daemon, address = self.start_replay(log, "--seam", 0, "--loop")
         with Stream(address, poses=False) as stream:
-            stream.wait_for_sensor(lambda sensor: sensor.Health() == LIVE, 20.0)
+            stream.wait_for_sensor(lambda sensor: sensor.Health() == LIVE)
             self.assertRegex(self.player(address, "status"), r"told: playing at 0:00:\d\d\.\d of 0:01:59\.9, rate 1, looping")
 
             paused = self.player(address, "pause")
             self.assertIn("paused at", paused)
-            held = stream.wait_for_sensor(lambda sensor: b"paused" in sensor.Detail(), 10.0)
+            held = stream.wait_for_sensor(lambda sensor: b"paused" in sensor.Detail())
             for _ in range(6):  # three seconds, which would make any other sensor at 10 Hz stale
                 later = stream.next("Sensors").Sensors(0)
             self.assertEqual(later.Health(), LIVE)
@@ -388,13 +386,13 @@ port = {port}
 
             self.assertIn("paused at 0:01:00.0", self.player(address, "seek", "60"))
             self.assertIn("paused at 0:01:00.5", self.player(address, "step", "5"))
-            stepped = stream.wait_for_sensor(lambda sensor: abs(sensor.SpeedMS() - 6.05) < 1e-9, 10.0)
+            stepped = stream.wait_for_sensor(lambda sensor: abs(sensor.SpeedMS() - 6.05) < 1e-9)
             self.assertTrue(stepped.Replayed(), "nobody may take it for live")
             self.assertIn("paused at 0:00:30.5", self.player(address, "seek", "-30"))
             self.assertIn("recorded 2024-06-01T12:01:40Z", self.player(address, "seek", "2024-06-01T12:01:40Z"))
             self.assertIn("rate 10", self.player(address, "rate", "10"))
             self.assertIn("playing", self.player(address, "resume"))
-            stream.wait_for_sensor(lambda sensor: sensor.SpeedMS() < 9.0, 20.0)
+            stream.wait_for_sensor(lambda sensor: sensor.SpeedMS() < 9.0)
             self.assertRegex(self.player(address, "status"), r"looping: round [2-9]")
 
         self.assertIn("119.9", self.player(address, "seek", "500", code=64))
@@ -418,17 +416,17 @@ port = {port}
             return bool(speeds)
 
         with Stream(address, poses=False) as status:
-            status.wait_for_sensor(heard, 20.0)
+            status.wait_for_sensor(heard)
             watcher = FrameWatcher(address)
             self.player(address, "seek", "20")
-            status.wait_for_sensor(lambda sensor: heard(sensor) and speeds[-1] > 14.9, 20.0)
+            status.wait_for_sensor(lambda sensor: heard(sensor) and speeds[-1] > 14.9)
             self.player(address, "rate", "2")  # to the end, and over it
-            status.wait_for_sensor(lambda sensor: heard(sensor) and speeds[-1] < 1.1, 30.0)
+            status.wait_for_sensor(lambda sensor: heard(sensor) and speeds[-1] < 1.1)
             watcher.end()
         # It is told twice a second. 14 m/s over 5 s (a fade is no more than a third of the recording), 1.5 times as fast in the middle:
         # 2.1 m/s each time; a hard seam would be 14.
         self.assertLess(max(abs(after - before) for before, after in zip(speeds, speeds[1:])), 6.0, speeds)
-        self.assertGreater(watcher.frames, 120)
+        self.assertGreater(watcher.ticks, 120)
         self.assertTrue(watcher.all_finite)
         self.assertLess(watcher.largest_wind_step_m_s, 0.6)
 
@@ -445,7 +443,7 @@ port = {port}
         log = self.recording([0.01 * i for i in range(600)], interval_s=1.0)
         _, address = self.start_replay(log, "--paused", "--start", "90")
         with Stream(address, poses=False) as stream:
-            stream.wait_for_sensor(lambda sensor: sensor.Readings() == 1, 20.0)
+            stream.wait_for_sensor(lambda sensor: sensor.Readings() == 1)
         self.assertIn("paused at 0:01:30.0", self.player(address, "status"))
 
         # Recorded from 12:00 to 12:10 UTC. The offset that makes the middle of that this machine's time of day.
@@ -454,7 +452,7 @@ port = {port}
         hours_ahead = hours_ahead - 24.0 if hours_ahead > 12.0 else hours_ahead
         _, address = self.start_replay(log, "--same-time-of-day", "--utc-offset", f"{hours_ahead:.6f}")
         with Stream(address, poses=False) as stream:
-            stream.wait_for_sensor(lambda sensor: sensor.Readings() > 0, 20.0)
+            stream.wait_for_sensor(lambda sensor: sensor.Readings() > 0)
         self.assertRegex(self.player(address, "status"), r"playing at 0:0(4:5|5:[0-3])\d")
         refused = run("replay", log, "--same-time-of-day", "--rate", "max")
         self.assertEqual(refused.returncode, 64)
@@ -485,11 +483,11 @@ port = {port}
         daemon = self.start_daemon("--config", config, "--record", kept)
         address = daemon.address()
         with Stream(address, poses=False) as status:
-            status.wait_for_sensor(lambda sensor: sensor.Health() == LIVE and sensor.Readings() > 10, 30.0)
+            status.wait_for_sensor(lambda sensor: sensor.Health() == LIVE and sensor.Readings() > 10)
             watcher = FrameWatcher(address)
             simulator.end(signal.SIGKILL)
 
-            def wait_for(condition, timeout_s=30.0):
+            def wait_for(condition, timeout_s=HANG_S):
                 deadline = time.monotonic() + timeout_s
                 while time.monotonic() < deadline:
                     sensors = status.next("Sensors")
@@ -513,8 +511,7 @@ port = {port}
         self.assertIn("a sensor is live again", daemon.text())
         self.assertLess(watcher.largest_wind_step_m_s, 1.2)
         self.assertTrue(watcher.all_finite)
-        code, _ = daemon.end()
-        self.assertEqual(code, 0)
+        self.assertEqual(daemon.end(), 0)
         rows = run("export", kept, "-o", "-").stdout.splitlines()[1:]
         self.assertTrue(rows)
         self.assertFalse([row for row in rows if "fall-back" in row])
@@ -534,7 +531,7 @@ port = {port}
     def test_watch_asks_the_running_daemon(self):
         daemon = self.start_daemon()
         with Stream(daemon.address(), poses=False) as stream:
-            stream.wait_for_sensor(lambda sensor: sensor.Health() == LIVE, 10.0)
+            stream.wait_for_sensor(lambda sensor: sensor.Health() == LIVE)
         done = run("sensors", "watch", "--listen", daemon.address(), "--once")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("daemon at " + daemon.address(), done.stdout)
@@ -556,7 +553,7 @@ turbulence = 0
 """)
         daemon = self.start_daemon("--config", config)
         with Stream(daemon.address()) as stream:
-            deadline = time.monotonic() + 60.0
+            deadline = time.monotonic() + HANG_S
             shaping = stream.next("Sensors").Shaping()
             while shaping.ShapedMeanMS() < 3.9 and time.monotonic() < deadline:
                 shaping = stream.next("Sensors").Shaping()
@@ -568,7 +565,7 @@ turbulence = 0
             self.assertGreater(numpy.hypot(wind.UMS(), wind.VMS()), 2.0, "the scenes' is raised")
         table = run("sensors", "watch", "--listen", daemon.address(), "--once").stdout
         self.assertRegex(table, r"shaped: floor: raised (0\.9|1\.[01]) to 4\.0 m/s")
-        self.assertRegex(daemon.end(signal.SIGINT)[0] == 0 and daemon.text(), "raised toward the floor of 4.0 m/s")
+        self.assertRegex(daemon.end(signal.SIGINT) == 0 and daemon.text(), "raised toward the floor of 4.0 m/s")
 
     def test_watch_opens_the_devices_itself_where_no_daemon_runs(self):
         with socket.socket() as free:
@@ -584,18 +581,23 @@ turbulence = 0
             free.bind(("127.0.0.1", 0))
             return "127.0.0.1:%d" % free.getsockname()[1]
 
+    def raw_lines(self, watch, pattern, least):
+        """The lines of this form that `sensors watch --raw` shows, until there are so many; then it is ended."""
+        lines = watch.wait_until(lambda text: (found := re.findall(f"(?m)^{pattern}\n", text)) and len(found) >= least and found)
+        self.assertTrue(lines, watch.text())
+        watch.end(signal.SIGINT)
+        return [line.rstrip("\n") for line in lines]
+
     def test_raw_messages_are_shown_as_they_come(self):
         config = self.modbus_config(self.start_simulator().address())
         daemon = self.start_daemon("--config", config)
-        shown = run("sensors", "watch", "--raw", "roof", "--listen", daemon.address(), "--duration", "1.5")
-        self.assertEqual(shown.returncode, 0, shown.stderr)
-        self.assertIn("daemon at " + daemon.address(), shown.stderr)
-        lines = shown.stdout.splitlines()
-        self.assertGreater(len(lines), 4)
+        watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--listen", daemon.address())
+        lines = self.raw_lines(watch, r"\d\d:\d\d:\d\d\.\d{3} roof .*", 8)
+        self.assertIn("daemon at " + daemon.address(), watch.text())
         # Transaction, protocol 0, length 6, slave 1, function 3, register 0, one of them; and its answer.
         asked = [line for line in lines if re.match(r"\d\d:\d\d:\d\d\.\d{3} roof +-> .. .. 00 00 00 06 01 03 00 00 00 01 ", line)]
         answered = [line for line in lines if re.match(r"\d\d:\d\d:\d\d\.\d{3} roof +<- .. .. 00 00 00 05 01 03 02 ", line)]
-        self.assertTrue(asked and answered, shown.stdout)
+        self.assertTrue(asked and answered, lines)
 
         unknown = run("sensors", "watch", "--raw", "mast", "--listen", daemon.address(), "--duration", "5")
         self.assertEqual(unknown.returncode, 64)
@@ -618,13 +620,13 @@ turbulence = 0
     def test_raw_messages_are_what_decode_reads(self):
         config = self.modbus_config(self.start_simulator().address())
         for listen in (self.start_daemon("--config", config).address(), self.free_address()):
-            messages = run("sensors", "watch", "--raw", "roof", "--hex", "--listen", listen, "--config", config, "--duration", "1.5")
-            self.assertEqual(messages.returncode, 0, messages.stderr)
-            path = self.file("roof.hex", messages.stdout)
+            watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--hex", "--listen", listen, "--config", config)
+            lines = self.raw_lines(watch, "[0-9a-f |]+", 24)
+            path = self.file("roof.hex", "\n".join(lines) + "\n")
             decoded = run("decode", "modbus:" + RENKE, path, "--hex", "--refused")
             self.assertEqual(decoded.returncode, 0, decoded.stderr)
             readings = [json.loads(line) for line in decoded.stdout.splitlines()]
-            self.assertGreater(len(readings), 4, messages.stdout + messages.stderr)
+            self.assertGreater(len(readings), 4, watch.text())
             # It may begin between a request and its answer, which then says nothing.
             self.assertEqual([reading for reading in readings[1:] if "refused" in reading], [])
             readings = [reading for reading in readings if "refused" not in reading]
@@ -748,8 +750,8 @@ shown = false
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("bank is shown", done.stdout)
 
-            seen, last = [], None
-            deadline = time.monotonic() + 10.0
+            seen, last, hidden_tick = [], None, frame.Tick()
+            deadline = time.monotonic() + HANG_S
             while time.monotonic() < deadline:
                 frame = stream.next("Frame")
                 meadow, bank = (frame.Scenes(i).Opacity() for i in range(2))
@@ -759,11 +761,14 @@ shown = false
                     self.assertLessEqual(abs(bank - last[1]), 1.5 * ticks / (60.0 * over_s) + 1e-6)
                 if 0.0 < bank < 1.0:
                     seen.append(bank)
+                elif bank == 0.0:
+                    hidden_tick = frame.Tick()
                 last = (frame.Tick(), bank)
                 if bank == 1.0:
                     break
             self.assertEqual(last[1], 1.0)
-            self.assertGreater(len(seen), 30, "it takes its second")
+            self.assertTrue(seen)
+            self.assertGreater(last[0] - hidden_tick, 30, "it takes its second")
             self.assertEqual(seen, sorted(seen))
             self.assertIsNone(pose_client.read_pose(frame.Scenes(0)))
 
@@ -815,20 +820,21 @@ shown = false
         daemon = self.start_daemon()
         address = daemon.address()
         with Program(sys.executable, pose_client.__file__, "--connect", address, "--schema", SCHEMA_MODULES) as stuck:
-            stuck.wait_for(r"\d+ frames, ", 20.0)
+            stuck.wait_for(r"\d+ frames, ")
             stuck.process.send_signal(signal.SIGSTOP)
             try:
                 with Stream(address, sensors=False) as healthy:
                     first = healthy.next("Frame")
                     memory_kib = resident_kib(daemon)
                     last = first
-                    received = 0
+                    largest_gap = 0
                     while last.Sequence() < first.Sequence() + 60 * 12:
+                        before = last.Sequence()
                         last = healthy.next("Frame")
-                        received += 1
-                    self.assertGreater(received, 0.9 * 60 * 12, "the other client gets its frames")
+                        largest_gap = max(largest_gap, last.Sequence() - before)
+                    self.assertLess(largest_gap, 60 * 3, "the other client gets its frames, and is never held up for long")
                     self.assertLess(resident_kib(daemon) - memory_kib, 8 * 1024)
-                daemon.wait_for(r"(?i)(dropped|let go|stuck|stopped reading)", 10.0)
+                daemon.wait_for(r"(?i)(dropped|let go|stuck|stopped reading)")
             finally:
                 stuck.process.send_signal(signal.SIGCONT)
 

@@ -3,45 +3,65 @@ import os
 import re
 import signal
 import subprocess
-import tempfile
-import time
+import threading
+
+HANG_S = 60.0  # so long waits only who waits for something that hangs
 
 
 class Program:
-    """A program that runs beside the test. Its output goes to a file, so that it never blocks."""
+    """A program that runs beside the test. What it says is read all the time, so that it never blocks."""
 
     def __init__(self, *command, **options):
-        self.output = tempfile.NamedTemporaryFile(prefix="yuragi-e2e-", suffix=".log")
         self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL,
-                                        stdout=self.output, stderr=subprocess.STDOUT, **options)
+                                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+        self.said = b""
+        self.is_silent = False  # for good
+        self.news = threading.Condition()
+        self.reader = threading.Thread(target=self.read, daemon=True)
+        self.reader.start()
+
+    def read(self):
+        while True:
+            block = os.read(self.process.stdout.fileno(), 65536)
+            with self.news:
+                self.said += block
+                self.is_silent = not block
+                self.news.notify_all()
+            if not block:
+                return
 
     def text(self):
-        with open(self.output.name, encoding="utf-8", errors="replace") as log:
-            return log.read()
+        """What it has said; all of it, where it has ended."""
+        if self.process.poll() is not None:
+            self.reader.join(HANG_S)
+        with self.news:
+            return self.said.decode("utf-8", "replace")
 
-    def wait_for(self, pattern, timeout_s=20.0):
+    def wait_until(self, find):
+        """Waits until find(text) answers something in what it has said so far, and answers that; None where it never does."""
+        with self.news:
+            def found():
+                return find(self.said.decode("utf-8", "replace"))
+
+            self.news.wait_for(lambda: self.is_silent or found(), HANG_S)
+            return found() or None
+
+    def wait_for(self, pattern):
         """Waits until the output matches, and answers the match."""
-        deadline = time.monotonic() + timeout_s
-        while time.monotonic() < deadline:
-            match = re.search(pattern, self.text())
-            if match:
-                return match
-            if self.process.poll() is not None:
-                break
-            time.sleep(0.02)
-        raise AssertionError(f"no {pattern!r} in the output of {self.process.args}:\n{self.text()}")
+        match = self.wait_until(lambda text: re.search(pattern, text))
+        if match is None:
+            raise AssertionError(f"no {pattern!r} in the output of {self.process.args}:\n{self.text()}")
+        return match
 
     def address(self):
         """HOST:PORT that it listens on."""
         return self.wait_for(r"listening on (\S+:\d+)").group(1)
 
-    def end(self, signal_number=signal.SIGTERM, timeout_s=10.0):
-        """Ends it and answers (exit code, seconds that it took)."""
+    def end(self, signal_number=signal.SIGTERM):
+        """Ends it and answers its exit code."""
         if self.process.poll() is None:
             self.process.send_signal(signal_number)
-        begun = time.monotonic()
-        code = self.process.wait(timeout_s)
-        return code, time.monotonic() - begun
+        return self.process.wait(HANG_S)
 
     def __enter__(self):
         return self
@@ -50,7 +70,8 @@ class Program:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
-        self.output.close()
+        self.reader.join(HANG_S)
+        self.process.stdout.close()
 
 
 def resident_kib(program):

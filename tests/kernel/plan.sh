@@ -22,8 +22,8 @@ run_plan() {
     >/results/daemon.log 2>&1 &
   daemon=$!
 
-  wait_for 200 grep -q "sensor cup: connected" /results/daemon.log
-  wait_for 200 grep -q "sensor station: connected" /results/daemon.log
+  wait_for 600 grep -q "sensor cup: connected" /results/daemon.log
+  wait_for 600 grep -q "sensor station: connected" /results/daemon.log
   sleep 8
   milestone "unplugging the counter"
   echo "unplug 4" >/run/usb

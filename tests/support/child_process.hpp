@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <stdexcept>
 #include <string>
@@ -57,14 +56,13 @@ class ChildProcess {
   /// A signal that does not end it (SIGSTOP, SIGCONT).
   void send(int signal_number) const { kill(pid_, signal_number); }
 
-  /// What follows `beginning` on the next line that begins so. Throws if the output ends first, or none comes in 20 s.
+  /// What follows `beginning` on the next line that begins so. Throws if the output ends first, or nothing comes for 60
+  /// s.
   std::string line_after(const std::string& beginning) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    for (std::string line; std::chrono::steady_clock::now() < deadline;) {
+    for (std::string line;;) {
       pollfd wait{out_.get(), POLLIN, 0};
-      if (poll(&wait, 1, 100) == 0) continue;
       char c = 0;
-      if (read(out_.get(), &c, 1) != 1) break;
+      if (poll(&wait, 1, 60'000) != 1 || read(out_.get(), &c, 1) != 1) break;
       if (c != '\n') {
         line += c;
         continue;

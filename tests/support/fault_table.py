@@ -4,8 +4,8 @@
 usage: fault_table.py RESULTS.xml [RESULTS.xml ...]
 
 Reads CTest's JUnit files and takes the tests that are named `<Driver>Fault.<Kind>` (with whatever GoogleTest adds to
-either name). A cell says how many tests it stands for; "-" is a fault that the driver cannot suffer. Ends with 1 if a test
-of the table failed or did not run, or if there is none.
+either name), or `<Driver>/Fault.<Kind>` where drivers share a suite. A cell says how many tests it stands for; "-" is a
+fault that the driver cannot suffer. Ends with 1 if a test of the table failed or did not run, or if there is none.
 """
 import collections
 import re
@@ -15,7 +15,7 @@ import xml.etree.ElementTree
 KINDS = (
     "Silence Freeze Spike Garbage Split Partial BadChecksum WrongId WrongTransaction Late Exception Disconnect Unplug"
 ).split()
-NAME = re.compile(r"(?:^|/)(?P<driver>[A-Z]\w*?)Fault\.(?P<kind>" + "|".join(KINDS) + r")(?P<variant>\w*)(?:/|$)")
+NAME = re.compile(r"(?:^|/)(?P<driver>[A-Z]\w*?)/?Fault\.(?P<kind>" + "|".join(KINDS) + r")(?P<variant>\w*)(?:/|$)")
 
 
 def cells_of(files):

@@ -1,18 +1,17 @@
 #pragma once
 
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "daemon/sensing/system_clock.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/recording_sink.hpp"
+#include "tests/support/running_sensor.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::test {
@@ -30,28 +29,30 @@ class MicrophoneRig {
   void open(ParameterValues::Map given) {
     given.try_emplace("worker", built_path("bin/yuragi"));
     for (const DriverDescription* driver : driver_table()) {
-      if (driver->name == "microphone") sensor_ = driver->open(*ParameterValues::resolve(driver->parameters, given));
+      if (driver->name != "microphone") continue;
+      sensor_.emplace(driver->open(*ParameterValues::resolve(driver->parameters, given)));
+      return;
     }
-    if (!sensor_) throw std::logic_error("no driver named microphone");
+    throw std::logic_error("no driver named microphone");
+  }
+  /// Ends the driver, as the daemon does.
+  void close() {
+    sensor_->end();
+    wait_until([] { return true; });
+    sensor_.reset();
   }
 
-  /// Polls until `is_there`; false if that takes longer than anything should.
+  /// Waits until `holds()`, which looks at the sink; false if it hangs, or does not within a shorter time.
   template <class Condition>
-  bool poll_until(Condition&& is_there, double limit_s = 40.0) {
-    const MonoTime deadline = clock_.now().mono + from_seconds(limit_s);
-    while (!is_there() && clock_.now().mono < deadline) {
-      const MonoTime next = sensor_->poll(clock_, sink);
-      // Between attempts there is nothing to poll for; the driver's own reads wait by themselves.
-      const Nanoseconds wait = std::min<Nanoseconds>(next - clock_.now().mono, std::chrono::milliseconds(20));
-      if (wait > Nanoseconds::zero()) std::this_thread::sleep_for(wait);
-    }
-    return is_there();
+  bool wait_until(Condition&& holds, Nanoseconds at_most = RunningSensor::kHang) {
+    return sensor_->take_until(sink, std::forward<Condition>(holds), at_most);
   }
 
   /// The mean of the next `count` speeds; throws if they do not come.
   double next_speed_m_s(std::size_t count = 4) {
+    wait_until([] { return true; });
     const std::size_t before = sink.readings.size();
-    if (!poll_until([&] { return sink.readings.size() >= before + count; })) {
+    if (!wait_until([&] { return sink.readings.size() >= before + count; })) {
       throw std::runtime_error("no readings: " + sink.last_detail());
     }
     double sum = 0.0;
@@ -60,15 +61,12 @@ class MicrophoneRig {
   }
 
   std::filesystem::path file(const std::string& name) const { return folder_ / name; }
-  const SystemClock& clock() const { return clock_; }
-  Sensor& sensor() { return *sensor_; }
 
   RecordingSink sink;
 
  private:
   TemporaryFolder folder_;
-  SystemClock clock_;
-  std::unique_ptr<Sensor> sensor_;
+  std::optional<RunningSensor> sensor_;
 };
 
 /// `yuragi-sim microphone`, told what to do by lines.

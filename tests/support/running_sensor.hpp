@@ -2,11 +2,15 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include "daemon/sensing/system_clock.hpp"
 #include "drivers/sensor/sensor.hpp"
 #include "tests/support/recording_sink.hpp"
 
@@ -17,18 +21,30 @@ class RunningSensor final : private SensorSink {
  public:
   explicit RunningSensor(std::unique_ptr<Sensor> sensor)
       : sensor_(std::move(sensor)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
-  ~RunningSensor() override {
-    thread_.request_stop();
-    sensor_->interrupt();
-  }
+  ~RunningSensor() override { end(); }
   RunningSensor(const RunningSensor&) = delete;
   RunningSensor& operator=(const RunningSensor&) = delete;
 
-  /// Waits until `holds(sink)`; false if that takes longer than anything should.
+  /// So long waits only who waits for something that hangs.
+  static constexpr std::chrono::seconds kHang{60};
+
+  /// Waits until `holds(sink)`; false if it hangs, or does not within a shorter time.
   template <class Condition>
-  bool wait_until(Condition&& holds, std::chrono::seconds at_most = std::chrono::seconds(30)) {
+  bool wait_until(Condition&& holds, Nanoseconds at_most = kHang) {
     std::unique_lock lock(mutex_);
     return said_.wait_for(lock, at_most, [&] { return holds(std::as_const(sink_)); });
+  }
+  /// Moves what it said in whole polls into the test's own sink, until `holds()`; false as above.
+  template <class Condition>
+  bool take_until(RecordingSink& taken, Condition&& holds, Nanoseconds at_most = kHang) {
+    std::unique_lock lock(mutex_);
+    return said_.wait_for(lock, at_most, [&] {
+      for (const WindReading& reading : take(sink_.readings, whole_.readings)) taken.reading(reading);
+      for (const Refusal why : take(sink_.refusals, whole_.refusals)) taken.refused(why);
+      for (const auto& link : take(sink_.links, whole_.links)) taken.link(link.state, link.detail);
+      for (const auto& raw : take(sink_.raws, whole_.raws)) taken.raw(raw.direction, raw.message);
+      return holds();
+    });
   }
   /// What `use(sink)` returns, while the sensor holds still.
   template <class Use>
@@ -36,29 +52,54 @@ class RunningSensor final : private SensorSink {
     const std::lock_guard lock(mutex_);
     return use(std::as_const(sink_));
   }
+  /// Ends it as the daemon does: what it waits for is interrupted, and it is polled once more.
+  void end() {
+    if (!thread_.joinable()) return;
+    thread_.request_stop();
+    sensor_->interrupt();
+    thread_.join();
+    poll();
+  }
   /// Forgets readings, refusals and messages; what the link was stays.
   void forget() {
     const std::lock_guard lock(mutex_);
     sink_.readings.clear();
     sink_.refusals.clear();
     sink_.raws.clear();
+    whole_ = {.links = sink_.links.size()};
   }
 
  private:
-  class SteadyClock final : public Clock {
-    Instant now() const noexcept override {
-      return {.mono = std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()),
-              .utc = std::chrono::time_point_cast<Nanoseconds>(std::chrono::system_clock::now())};
-    }
+  /// How much of what is in the sink was said in polls that are over.
+  struct Whole {
+    std::size_t readings = 0;
+    std::size_t refusals = 0;
+    std::size_t links = 0;
+    std::size_t raws = 0;
   };
 
+  /// The first `count` of these, which are no longer there then.
+  template <class Said>
+  static std::vector<Said> take(std::vector<Said>& said, std::size_t& count) {
+    const auto end = said.begin() + static_cast<std::ptrdiff_t>(std::exchange(count, 0));
+    std::vector<Said> taken(std::make_move_iterator(said.begin()), std::make_move_iterator(end));
+    said.erase(said.begin(), end);
+    return taken;
+  }
+
+  MonoTime poll() {
+    const MonoTime next = sensor_->poll(clock_, *this);
+    change([this](const RecordingSink& sink) {
+      whole_ = {sink.readings.size(), sink.refusals.size(), sink.links.size(), sink.raws.size()};
+    });
+    return next;
+  }
+
   void run(const std::stop_token& stop) {
-    const SteadyClock owned;
-    const Clock& clock = owned;
     while (!stop.stop_requested()) {
-      const MonoTime next = sensor_->poll(clock, *this);
+      const MonoTime next = poll();
       std::unique_lock lock(sleep_mutex_);
-      sleep_.wait_until(lock, stop, next, [] { return false; });
+      clock_.wait_until(next, lock, sleep_, stop, [] { return false; });
     }
   }
 
@@ -83,10 +124,12 @@ class RunningSensor final : private SensorSink {
     change([&](RecordingSink& sink) { sink.raw(direction, message); });
   }
 
+  const SystemClock clock_;
   std::unique_ptr<Sensor> sensor_;
   std::mutex mutex_;
   std::condition_variable said_;
   RecordingSink sink_;
+  Whole whole_;
   std::mutex sleep_mutex_;
   std::condition_variable_any sleep_;
   std::jthread thread_;  // last: it uses all of the above

@@ -2,7 +2,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -29,13 +32,16 @@ class SimulatorThread {
   SimulatorThread(const SimulatorThread&) = delete;
   SimulatorThread& operator=(const SimulatorThread&) = delete;
 
+  /// Comes back when the simulator has done what the fault, or the end of one, makes it do.
   void set_fault(std::optional<sim::FaultKind> fault) {
-    fault_ = fault ? static_cast<int>(*fault) : kNone;
+    std::unique_lock lock(mutex_);
+    fault_ = fault;
+    const std::uint64_t wanted = ++set_;
     eventfd_write(wake_.get(), 1);
+    served_changed_.wait(lock, [&] { return served_ >= wanted; });
   }
 
  private:
-  static constexpr int kNone = -1;
   static constexpr int kTurn_ms = 5;
 
   void run() {
@@ -53,16 +59,26 @@ class SimulatorThread {
         if (wait.revents != 0) ready.push_back(wait.fd);
       }
       const double time_s = pace_ * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const int fault = fault_;
-      simulator_->serve(ready, time_s,
-                        fault == kNone ? std::nullopt : std::optional(static_cast<sim::FaultKind>(fault)));
+      std::unique_lock lock(mutex_);
+      const auto fault = fault_;
+      const std::uint64_t set = set_;
+      lock.unlock();
+      simulator_->serve(ready, time_s, fault);
+      lock.lock();
+      served_ = set;
+      lock.unlock();
+      served_changed_.notify_all();
     }
     simulator_.reset();
   }
 
   std::unique_ptr<sim::Simulator> simulator_;
   double pace_;
-  std::atomic<int> fault_ = kNone;
+  std::mutex mutex_;
+  std::condition_variable served_changed_;
+  std::optional<sim::FaultKind> fault_;
+  std::uint64_t set_ = 0;     ///< how often the fault was set
+  std::uint64_t served_ = 0;  ///< the one of them that it has served with
   std::atomic<bool> is_wanted_ = true;
   Descriptor wake_{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
   std::thread thread_;

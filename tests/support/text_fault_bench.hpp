@@ -18,13 +18,14 @@ namespace yuragi {
 /// The set-up of a test of what a device that says lines can do wrong: its driver, a simulator in a wind that stands
 /// still, and a real wire of the test's choice between them.
 class TextFaultBench : public testing::Test {
- protected:
+ public:
   enum class Wire { kPty, kTcp, kUdp };
 
+ protected:
   /// Makes the driver of its values, to speak through the bench's port.
   using MakeSensor = std::function<std::unique_ptr<Sensor>(const ParameterValues& values, TextBench& bench)>;
 
-  TextFaultBench(std::string driver, sim::PlayedMoment wind) : driver_(std::move(driver)), wind_(wind) {}
+  TextFaultBench(std::string driver, sim::PlayedMoment wind) : driver_name_(std::move(driver)), wind_(wind) {}
 
   /// `rate_hz`: how often the device speaks; 0: when it is asked. `given`: what is not the driver's default.
   void connect(Wire wire, std::unique_ptr<sim::TextDevice> device, double rate_hz, ParameterValues::Map given,
@@ -43,7 +44,7 @@ class TextFaultBench : public testing::Test {
     }
     bench_.put(std::make_unique<sim::TextSimulator>(std::move(device), bench_.told(std::move(carried)), rate_hz,
                                                     sim::MeasuredWind(std::make_unique<StillWind>(wind_)), 1),
-               make_sensor(values_for(driver_, given), bench_));
+               make_sensor(values_for(driver_name_, given), bench_));
   }
 
   /// Every reading that came is the wind.
@@ -72,7 +73,7 @@ class TextFaultBench : public testing::Test {
   TextBench bench_;
 
  private:
-  std::string driver_;
+  std::string driver_name_;
   sim::PlayedMoment wind_;
   const std::uint16_t udp_port_ = free_port(SOCK_DGRAM);
   test::TemporaryFolder folder_;

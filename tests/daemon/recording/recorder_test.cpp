@@ -29,10 +29,9 @@ RecordingInfo info_of(std::vector<RecordedSensor> sensors) {
           .sensors = std::move(sensors)};
 }
 
-/// Waits until the recorder's status is as wished; the test's own time limit ends a wait in vain.
-template <class Wish>
-void wait_for(const Recorder& recorder, Wish wish) {
-  while (!wish(recorder.status())) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+/// Waits until the recorder's status is so; only a recorder that hangs makes it give up.
+void wait_for(const Recorder& recorder, const std::function<bool(const RecorderStatus&)>& is_so) {
+  ASSERT_TRUE(recorder.wait_until(is_so, std::chrono::seconds(60)));
 }
 
 TEST(Recorder, WritesEverythingByItsEndAndLeavesOneFile) {

@@ -3,12 +3,12 @@
 
 #include <atomic>
 #include <fstream>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "daemon/sensing/sensor_hub.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
+#include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -16,19 +16,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::write_session;
-
-/// Moved by hand, and read by the sensors' threads.
-class FallbackClock final : public Clock {
- public:
-  Instant now() const noexcept override {
-    const Nanoseconds now{now_ns_.load()};
-    return {MonoTime(now), UtcTime(now)};
-  }
-  void advance(Nanoseconds by) { now_ns_ += by.count(); }
-
- private:
-  std::atomic<std::int64_t> now_ns_{1'000'000'000};
-};
 
 /// A sensor that speaks ten times a second while `is_answering`.
 std::atomic<bool> is_answering{false};
@@ -79,13 +66,13 @@ class FallbackRecordingTest : public ::testing::Test {
 
   std::filesystem::path file() const { return folder_ / "calm.windlog"; }
 
-  /// Ticks, with time for the sensors' threads, until the condition holds; false if it does not for two minutes of the
-  /// clock's. Watches that the wind makes no step.
+  /// Ticks, each when the sensors' threads have done what was due, until the condition holds; false if it does not for
+  /// two minutes of the clock's. Watches that the wind makes no step.
   bool tick_until(SensorHub& hub, const std::function<bool()>& condition) {
     for (int tick = 0; tick < 120 * 60; ++tick) {
       if (condition()) return true;
       clock_.advance(from_seconds(1.0 / 60.0));
-      std::this_thread::sleep_for(1ms);
+      if (!clock_.wait_for_waiters(hub.status().size())) return false;
       const WindVector wind = hub.advance().wind;
       if (tick > 0 || has_ticked_) largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(wind - last_));
       last_ = wind;
@@ -99,7 +86,7 @@ class FallbackRecordingTest : public ::testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  FallbackClock clock_;
+  ManualClock clock_;
   Config config_;
   WindVector last_{};
   double largest_step_m_s_ = 0.0;

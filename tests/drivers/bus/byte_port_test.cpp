@@ -28,25 +28,27 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-/// What comes within 5 s, until it is as long as expected.
+constexpr auto kHang = 60s;  // so long waits only who waits for something that hangs
+
+/// What comes, until it is as long as expected.
 std::string read_text(BytePort& port, std::size_t size) {
   std::string text;
   std::vector<std::uint8_t> buffer(kLargestDatagram);
-  const auto deadline = std::chrono::steady_clock::now() + 5s;
-  while (text.size() < size && std::chrono::steady_clock::now() < deadline) {
-    const ByteArrival arrival = port.read(buffer, 100ms);
+  while (text.size() < size) {
+    const ByteArrival arrival = port.read(buffer, kHang);
     if (arrival.status == ByteStatus::kBytes)
       text.append(buffer.begin(), buffer.begin() + static_cast<long>(arrival.size));
-    if (arrival.status == ByteStatus::kLost || arrival.status == ByteStatus::kEnd) break;
+    if (arrival.status != ByteStatus::kBytes) break;
   }
   return text;
 }
 
-/// The status of a read once it is what is waited for; the last one after 5 s.
+/// The status of a read once it is what is waited for; the last one if it hangs.
 ByteStatus status_until(BytePort& port, ByteStatus wanted) {
   std::vector<std::uint8_t> buffer(kLargestDatagram);
   ByteStatus status = ByteStatus::kSilence;
-  for (int i = 0; i < 50 && status != wanted; ++i) status = port.read(buffer, 100ms).status;
+  const auto deadline = std::chrono::steady_clock::now() + kHang;
+  while (status != wanted && std::chrono::steady_clock::now() < deadline) status = port.read(buffer, 100ms).status;
   return status;
 }
 
@@ -54,18 +56,16 @@ bool write_text(BytePort& port, std::string_view text) {
   return port.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-/// A read that waits for long ends soon when somebody interrupts it.
+/// A read that waits for ever ends when somebody interrupts it.
 void expect_interrupt_ends_read(BytePort& port) {
   std::vector<std::uint8_t> buffer(16);
-  const auto begin = std::chrono::steady_clock::now();
   std::thread other([&port] {
     std::this_thread::yield();
     port.interrupt();
   });
-  EXPECT_EQ(port.read(buffer, 60s).status, ByteStatus::kInterrupted);
+  EXPECT_EQ(port.read(buffer, 1h).status, ByteStatus::kInterrupted);
   other.join();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, 30s);
-  EXPECT_EQ(port.read(buffer, 60s).status, ByteStatus::kInterrupted);
+  EXPECT_EQ(port.read(buffer, 1h).status, ByteStatus::kInterrupted);
   EXPECT_FALSE(port.open().has_value());
 }
 
@@ -141,7 +141,7 @@ TEST_F(SerialBytePortTest, ForgetsWhatCameBeforeItWasOpened) {
   cfmakeraw(&raw);
   tcsetattr(kept_.get(), TCSANOW, &raw);
   far_end_says("old");
-  const auto deadline = std::chrono::steady_clock::now() + 5s;
+  const auto deadline = std::chrono::steady_clock::now() + kHang;
   for (int waiting = 0; waiting < 3 && std::chrono::steady_clock::now() < deadline;) {
     ioctl(kept_.get(), FIONREAD, &waiting);
   }
@@ -264,11 +264,11 @@ TEST(HostLookup, FindsAddressesAndNamesAndGivesUpAtItsTime) {
   ASSERT_TRUE(address.has_value());
   EXPECT_EQ(address->front().address().to_string(), "192.0.2.7");
   EXPECT_EQ(address->front().port(), 502);
-  EXPECT_TRUE(HostLookup("localhost", 502).find(10s).has_value());
-  EXPECT_FALSE(HostLookup("no-such-host.invalid", 502).find(10s).has_value());
+  EXPECT_TRUE(HostLookup("localhost", 502).find(kHang).has_value());
+  EXPECT_FALSE(HostLookup("no-such-host.invalid", 502).find(kHang).has_value());
   HostLookup interrupted("no-such-host.invalid", 502);
   interrupted.interrupt();
-  EXPECT_FALSE(interrupted.find(60s).has_value());
+  EXPECT_FALSE(interrupted.find(1h).has_value());
 }
 
 /// A socket to send datagrams from, at an address of its own.
@@ -312,7 +312,7 @@ TEST_F(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
 
   std::vector<std::uint8_t> buffer(kLargestDatagram);
   for (const std::size_t size : {std::size_t{3}, std::size_t{3}, longest.size()}) {
-    const ByteArrival arrival = port->read(buffer, 5s);
+    const ByteArrival arrival = port->read(buffer, kHang);
     EXPECT_EQ(arrival.status, ByteStatus::kBytes);
     EXPECT_EQ(arrival.size, size);
     EXPECT_TRUE(arrival.is_whole_datagram);
@@ -327,9 +327,9 @@ TEST_F(UdpBytePort, TakesOnlyTheSenderThatItIsTold) {
   const Talker other("127.0.0.1");
   std::vector<std::uint8_t> buffer(kLargestDatagram);
   other.say("other", port_);
-  EXPECT_EQ(port->read(buffer, 5s).status, ByteStatus::kForeign);
+  EXPECT_EQ(port->read(buffer, kHang).status, ByteStatus::kForeign);
   wanted.say("wanted", port_);
-  const ByteArrival arrival = port->read(buffer, 5s);
+  const ByteArrival arrival = port->read(buffer, kHang);
   EXPECT_EQ(arrival.status, ByteStatus::kBytes);
   EXPECT_EQ(arrival.size, 6U);
 }

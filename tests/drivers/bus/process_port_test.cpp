@@ -7,15 +7,17 @@
 #include <string>
 #include <thread>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "daemon/sensing/system_clock.hpp"
 #include "drivers/microphone/microphone_sensor.hpp"
-#include "tests/support/recording_sink.hpp"
+#include "tests/support/descriptor.hpp"
+#include "tests/support/live_sensor.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -24,26 +26,18 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-/// Does a condition come true within some seconds?
-template <class Condition>
-bool comes_true(Condition&& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + 10s;
-  while (!condition() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(2ms);
-  return condition();
-}
+constexpr auto kHang = 60s;  // so long waits only who waits for something that hangs
 
 class ProcessPortTest : public testing::Test {
  protected:
-  /// A program of this text, which leaves its number in the file "pid".
+  /// A program of this text, which leaves its number in the file "pid" first.
   std::string script(const std::string& text) {
     std::string path = folder_ / "script";
-    std::ofstream(path) << "#!/bin/sh\necho $$ > " << (folder_ / "pid").string() << ".new\nmv "
-                        << (folder_ / "pid").string() << ".new " << (folder_ / "pid").string() << "\n"
-                        << text << "\n";
+    std::ofstream(path) << "#!/bin/sh\necho $$ > " << (folder_ / "pid").string() << "\n" << text << "\n";
     chmod(path.c_str(), 0755);
     return path;
   }
-  /// The number that the script left; 0 before.
+  /// The number that the script left.
   pid_t script_pid() const {
     pid_t pid = 0;
     std::ifstream(folder_ / "pid") >> pid;
@@ -57,20 +51,17 @@ class ProcessPortTest : public testing::Test {
     std::string state;
     return !(stat >> number >> name >> state);
   }
-  /// Ended, though whoever has inherited it may not have noticed.
-  static bool has_ended(pid_t pid) {
-    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-    std::string number;
-    std::string name;
-    std::string state;
-    return !(stat >> number >> name >> state) || state == "Z" || state == "X";
+  /// Waits for the program's first word.
+  static bool says_something(BytePort& port) {
+    std::array<std::uint8_t, 64> buffer{};
+    return port.read(buffer, kHang).status == ByteStatus::kBytes;
   }
 
   static std::string read_all(BytePort& port) {
     std::string text;
     std::array<std::uint8_t, 64> buffer{};
     for (;;) {
-      const ByteArrival arrival = port.read(buffer, 5s);
+      const ByteArrival arrival = port.read(buffer, kHang);
       if (arrival.status != ByteStatus::kBytes) return text;
       text.append(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(arrival.size));
     }
@@ -84,7 +75,7 @@ TEST_F(ProcessPortTest, ReadsWhatAProgramSaysUntilItEnds) {
   ASSERT_TRUE(port->open());
   EXPECT_EQ(read_all(*port), "one\ntwo\nargument three\n");
   std::array<std::uint8_t, 8> buffer{};
-  EXPECT_EQ(port->read(buffer, 1s).status, ByteStatus::kLost);
+  EXPECT_EQ(port->read(buffer, kHang).status, ByteStatus::kLost);
   ASSERT_TRUE(port->open()) << "again";
   EXPECT_EQ(read_all(*port), "one\ntwo\nargument three\n");
 }
@@ -107,41 +98,42 @@ TEST_F(ProcessPortTest, WaitsNoLongerThanItShould) {
 }
 
 TEST_F(ProcessPortTest, KillsAProgramThatSpinsAndWillNotEnd) {
-  const auto port = make_process_port({script("trap '' TERM INT HUP\nwhile :; do :; done")});
+  const auto port = make_process_port({script("trap '' TERM INT HUP\necho here\nwhile :; do :; done")});
   ASSERT_TRUE(port->open());
-  ASSERT_TRUE(comes_true([&] { return script_pid() > 0; }));
-  const auto begun = std::chrono::steady_clock::now();
+  ASSERT_TRUE(says_something(*port));
   port->close();
-  EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s);
   EXPECT_TRUE(is_gone(script_pid()));
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "no zombie is left";
 }
 
 TEST_F(ProcessPortTest, LeavesNoProgramBehindWhenItIsDestroyed) {
   {
-    const auto port = make_process_port({script("exec sleep 1000")});
+    const auto port = make_process_port({script("echo here\nexec sleep 1000")});
     ASSERT_TRUE(port->open());
-    ASSERT_TRUE(comes_true([&] { return script_pid() > 0; }));
+    ASSERT_TRUE(says_something(*port));
   }
   EXPECT_TRUE(is_gone(script_pid()));
 }
 
 TEST_F(ProcessPortTest, TheProgramDiesWithItsParent) {
-  const std::string path = script("exec sleep 1000");
+  // The program holds the only other end of this pipe: it ends when the program does.
+  const std::string alive = folder_ / "alive";
+  ASSERT_EQ(mkfifo(alive.c_str(), 0600), 0);
+  const std::string path = script("exec 3>" + alive + "\necho here\nexec sleep 1000");
+  const Descriptor still_alive(open(alive.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   const pid_t parent = fork();
   ASSERT_GE(parent, 0);
   if (parent == 0) {
     const auto port = make_process_port({path});
-    if (!port->open()) _exit(1);
-    while (script_pid() == 0) std::this_thread::sleep_for(2ms);
+    if (!port->open() || !says_something(*port)) _exit(1);
     kill(getpid(), SIGKILL);  // nobody tidies up
   }
   int status = 0;
   waitpid(parent, &status, 0);
   ASSERT_TRUE(WIFSIGNALED(status));
-  const pid_t child = script_pid();
-  ASSERT_GT(child, 0);
-  EXPECT_TRUE(comes_true([&] { return has_ended(child); }));
+  pollfd ended{still_alive.get(), 0, 0};
+  EXPECT_EQ(poll(&ended, 1, 60'000), 1) << "the program lives on";
+  EXPECT_NE(ended.revents & POLLHUP, 0);
 }
 
 TEST_F(ProcessPortTest, InterruptEndsAWaitFromAnotherThread) {
@@ -152,9 +144,10 @@ TEST_F(ProcessPortTest, InterruptEndsAWaitFromAnotherThread) {
   std::thread reader([&] {
     std::array<std::uint8_t, 8> buffer{};
     is_waiting = true;
-    status = port->read(buffer, 100s).status;
+    is_waiting.notify_one();
+    status = port->read(buffer, kHang).status;
   });
-  comes_true([&] { return is_waiting.load(); });
+  is_waiting.wait(false);
   port->interrupt();
   reader.join();
   EXPECT_EQ(status, ByteStatus::kInterrupted);
@@ -164,33 +157,39 @@ TEST_F(ProcessPortTest, InterruptEndsAWaitFromAnotherThread) {
 /// A sensor whose worker is a script; impatient, so that the test is short.
 class MicrophoneWatchdog : public ProcessPortTest {
  protected:
-  std::string detail_after(const std::string& worker_text, std::size_t attempts = 2) {
+  MicrophoneWatchdog() {
+    if (mkfifo((folder_ / "attempts").c_str(), 0600) != 0) throw std::runtime_error("no pipe");
+    attempts_ = Descriptor(open((folder_ / "attempts").c_str(), O_RDWR | O_CLOEXEC));
+  }
+
+  /// What the sensor says of a worker, when it has been started so often.
+  std::string detail_after(const std::string& worker_text, int attempts = 3) {
     MicrophoneSettings settings;
     settings.start_timeout = 300ms;
     settings.sound_timeout = 300ms;
-    MicrophoneSensor sensor(settings, 1, make_process_port({script(worker_text)}));
-    MonoTime next{};
-    comes_true([&] {
-      if (clock_.now().mono >= next) next = sensor.poll(clock_, sink_);
-      return !sink_.links.empty() && failures() >= attempts;
-    });
-    EXPECT_GE(failures(), attempts);
+    test::LiveSensor sensor(std::make_unique<MicrophoneSensor>(settings, 1, make_process_port({script(worker_text)})));
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+      pollfd wait{attempts_.get(), POLLIN, 0};
+      char newline = 0;
+      EXPECT_EQ(poll(&wait, 1, 60'000), 1) << "it was not started again";
+      EXPECT_EQ(read(attempts_.get(), &newline, 1), 1);
+    }
+    sensor.wait_until([&] { return !sensor.sink.links.empty(); });
+    sink_ = std::move(sensor.sink);
     return sink_.last_detail();
   }
-  /// ReopeningSensor says the same thing once: attempts are counted by what the script leaves.
-  std::size_t failures() const {
-    std::ifstream in(folder_ / "attempts");
-    return static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>(in), {}, '\n'));
-  }
-  std::string count() const { return "echo >> " + (folder_ / "attempts").string() + "\n"; }
+  /// A worker's first line: it is counted.
+  std::string count() const { return "echo > " + (folder_ / "attempts").string() + "\n"; }
 
-  SystemClock clock_;
   RecordingSink sink_;
+
+ private:
+  Descriptor attempts_;
 };
 
 TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatSpins) {
   EXPECT_THAT(detail_after(count() + "while :; do :; done"), HasSubstr("has not begun within 0.3 s"));
-  EXPECT_TRUE(comes_true([&] { return is_gone(script_pid()); }));
+  EXPECT_TRUE(is_gone(script_pid()));
   EXPECT_TRUE(sink_.readings.empty());
 }
 
@@ -203,6 +202,15 @@ TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatBabbles) {
   EXPECT_THAT(detail_after(count() + "yes YMIC | head -c 100000; exec sleep 1000"), HasSubstr("has not begun"));
   EXPECT_GT(sink_.count(Refusal::kMalformed), 0);
   EXPECT_TRUE(sink_.readings.empty());
+}
+
+TEST_F(MicrophoneWatchdog, InterruptEndsItsWaitForTheWorker) {
+  MicrophoneSettings settings;
+  settings.start_timeout = 1h;
+  test::LiveSensor sensor(
+      std::make_unique<MicrophoneSensor>(settings, 1, make_process_port({script("exec sleep 10000")})));
+  sensor.end();  // hangs if it waits for the worker
+  EXPECT_EQ(sensor.sink.count(Refusal::kTimeout), 0);
 }
 
 }  // namespace

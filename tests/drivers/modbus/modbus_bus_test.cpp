@@ -10,7 +10,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/eventfd.h>
 
+#include "daemon/sensing/system_clock.hpp"
+#include "drivers/bus/interruption.hpp"
+#include "tests/support/descriptor.hpp"
 #include "tests/support/fake_modbus_line.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
@@ -23,12 +27,7 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using Kind = ModbusTrouble::Kind;
 
-class RealClock final : public Clock {
- public:
-  Instant now() const noexcept override {
-    return {.mono = std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()), .utc = {}};
-  }
-};
+constexpr auto kHang = 60s;  // so long waits only who waits for something that hangs
 
 /// A device that answers when the test lets it, and remembers when it was asked.
 class HeldConnection final : public ModbusConnection {
@@ -50,25 +49,21 @@ class HeldConnection final : public ModbusConnection {
     return true;
   }
   BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
-    std::unique_lock lock(mutex_);
-    while (may_answer_ == 0) {
-      if (interruption.is_set()) return {BusStatus::kInterrupted};
-      changed_.wait_for(lock, 5ms);
+    if (interruption.wait(may_answer_.get(), WaitFor::kReadable, kHang) != WaitEnd::kReady) {
+      return {BusStatus::kInterrupted};
     }
-    --may_answer_;
+    eventfd_t one = 0;
+    eventfd_read(may_answer_.get(), &one);
+    const std::lock_guard lock(mutex_);
     const auto bytes = answer_with(asked_.back(), {86});
     std::ranges::copy(bytes, buffer.begin());
     return {BusStatus::kMessage, bytes.size()};
   }
 
-  void let_answer(int count) {
-    const std::lock_guard lock(mutex_);
-    may_answer_ += count;
-    changed_.notify_all();
-  }
+  void let_answer(int count) { eventfd_write(may_answer_.get(), static_cast<eventfd_t>(count)); }
   bool wait_for_questions(std::size_t count) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, 20s, [&] { return asked_.size() >= count; });
+    return changed_.wait_for(lock, kHang, [&] { return asked_.size() >= count; });
   }
   std::vector<int> asked_units() {
     const std::lock_guard lock(mutex_);
@@ -85,7 +80,7 @@ class HeldConnection final : public ModbusConnection {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_open_ = false;
-  int may_answer_ = 0;
+  Descriptor may_answer_{eventfd(0, EFD_CLOEXEC | EFD_SEMAPHORE)};
   std::vector<ModbusRequest> asked_;
   std::vector<std::chrono::steady_clock::time_point> asked_at_;
 };
@@ -125,13 +120,12 @@ class ModbusBusTest : public testing::Test {
   }
   /// Until `count` of them stand in the queue, or have the line.
   void wait_until_waiting(std::size_t count) {
-    const auto deadline = std::chrono::steady_clock::now() + 20s;
-    while (bus_->waiting_count() < count && std::chrono::steady_clock::now() < deadline)
-      std::this_thread::sleep_for(1ms);
+    const auto deadline = std::chrono::steady_clock::now() + kHang;
+    while (bus_->waiting_count() < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
     ASSERT_EQ(bus_->waiting_count(), count);
   }
 
-  RealClock clock_;
+  SystemClock clock_;
   HeldConnection* connection_ = nullptr;
   std::unique_ptr<ModbusBus> bus_;
   std::vector<std::unique_ptr<Asker>> askers_;

@@ -14,7 +14,7 @@
 #include "simulators/usb/hid_stations.hpp"
 #include "simulators/usb/umockdev_simulator.hpp"
 #include "tests/simulators/usb/steady_wind.hpp"
-#include "tests/support/real_sensor_bench.hpp"
+#include "tests/support/live_sensor.hpp"
 #include "tests/support/simulator_thread.hpp"
 
 namespace yuragi {
@@ -58,9 +58,9 @@ struct PluggedIn {
 
 /// One device, its driver, and how far a reading may be from the wind that is played. The driver ends before the
 /// device.
-struct RealBench : PluggedIn, test::RealSensorBench {
+struct RealBench : PluggedIn, test::LiveSensor {
   RealBench(std::unique_ptr<sim::UsbDevice> device, std::unique_ptr<Sensor> sensor, double tolerance)
-      : PluggedIn(std::move(device)), test::RealSensorBench(std::move(sensor)), tolerance_m_s(tolerance) {}
+      : PluggedIn(std::move(device)), test::LiveSensor(std::move(sensor)), tolerance_m_s(tolerance) {}
 
   void expect_the_played_wind() const {
     ASSERT_FALSE(sink.readings.empty());
@@ -77,19 +77,19 @@ struct RealBench : PluggedIn, test::RealSensorBench {
 
   /// The device suffers, which is told in time; nothing false is published; the readings return by themselves.
   void expect_it_suffers_and_returns(FaultKind kind) {
-    ASSERT_TRUE(poll_for_readings(2));
+    ASSERT_TRUE(wait_for_readings(2));
     ASSERT_EQ(sink.last_state(), LinkState::kConnected);
     const std::size_t refusals_before = sink.refusals.size();
     simulator.set_fault(kind);
-    ASSERT_TRUE(poll_until([&] { return sink.last_state() == LinkState::kConnecting; }));
+    ASSERT_TRUE(wait_until([&] { return sink.last_state() == LinkState::kConnecting; }));
     EXPECT_FALSE(sink.last_detail().empty());
     const std::size_t readings_before = sink.readings.size();
-    poll_for(300ms);
-    EXPECT_TRUE(kind == FaultKind::kUnplug || poll_until([&] { return sink.refusals.size() > refusals_before; }));
+    listen_for(300ms);
+    EXPECT_TRUE(kind == FaultKind::kUnplug || wait_until([&] { return sink.refusals.size() > refusals_before; }));
     EXPECT_EQ(sink.readings.size(), readings_before);
 
     simulator.set_fault(std::nullopt);
-    ASSERT_TRUE(poll_for_readings(2));
+    ASSERT_TRUE(wait_for_readings(2));
     EXPECT_EQ(sink.last_state(), LinkState::kConnected);
     expect_the_played_wind();
   }
@@ -117,7 +117,7 @@ class HidReal : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(HidReal, SaysTheWindThatIsPlayed) {
   RealBench bench = station_bench(GetParam());
-  ASSERT_TRUE(bench.poll_for_readings(2));
+  ASSERT_TRUE(bench.wait_for_readings(2));
   bench.expect_the_played_wind();
   EXPECT_THAT(bench.sink.last_detail(), testing::HasSubstr("USB port 1-1"));
 }
@@ -180,7 +180,7 @@ class UsbReal : public testing::TestWithParam<std::string> {};
 
 TEST_P(UsbReal, SaysTheWindThatIsPlayed) {
   RealBench bench = daq_bench(GetParam());
-  ASSERT_TRUE(bench.poll_for_readings(6));
+  ASSERT_TRUE(bench.wait_for_readings(6));
   bench.expect_the_played_wind();
 }
 

@@ -53,7 +53,7 @@ TEST(MicrophoneAndSimulator, FourFacesTellSpeedAndDirection) {
   const auto& readings = rig.sink.readings;
   const double span_s = seconds(readings.back().time.mono - readings[4].time.mono);
   EXPECT_NEAR(span_s / static_cast<double>(readings.size() - 5), 0.256, 0.02);
-  EXPECT_LT(seconds(rig.clock().now().mono - readings.back().time.mono), 2.0);
+  EXPECT_LT(seconds(std::chrono::steady_clock::now() - readings.back().time.mono), 2.0);
   for (std::size_t i = 5; i < readings.size(); ++i) {
     EXPECT_NEAR(seconds(readings[i].time.mono - readings[i - 1].time.mono), 0.256, 0.12)
         << "the time stamps are smoothed";
@@ -113,10 +113,9 @@ TEST_F(MicrophoneFault, UnplugUnderPulseAudio) {
 
   // The source is unloaded, as when a USB microphone is pulled out.
   server_.unload(module_);
-  EXPECT_TRUE(rig_.poll_until([&] { return rig_.sink.last_state() == LinkState::kConnecting; }));
+  EXPECT_TRUE(rig_.wait_until([&] { return rig_.sink.last_state() == LinkState::kConnecting; }));
   rig_.sink.readings.clear();
-  rig_.poll_until([&] { return !rig_.sink.readings.empty(); }, 2.0);
-  EXPECT_TRUE(rig_.sink.readings.empty());
+  EXPECT_FALSE(rig_.wait_until([&] { return !rig_.sink.readings.empty(); }, std::chrono::seconds(2)));
 
   plug_in();
   EXPECT_NEAR(rig_.next_speed_m_s(), usual_m_s, 0.25 * usual_m_s);

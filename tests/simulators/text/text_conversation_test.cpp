@@ -2,18 +2,16 @@
 // terminal, TCP and UDP, and with socat, which knows nothing of either.
 #include <chrono>
 #include <filesystem>
-#include <functional>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/sensing/system_clock.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
+#include "tests/support/live_sensor.hpp"
 #include "tests/support/places.hpp"
-#include "tests/support/real_clock.hpp"
-#include "tests/support/recording_sink.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -44,26 +42,16 @@ class TextSimulatorProcess {
   std::string place_;
 };
 
-/// A sensor of the table on the machine's clock.
-class LiveSensor {
+/// A sensor of the table, as the daemon runs it.
+class TextSensorRun : public test::LiveSensor {
  public:
-  LiveSensor(std::string_view driver, const ParameterValues::Map& given)
-      : sensor_(driver_named(driver).open(values_for(driver, given))) {}
+  TextSensorRun(std::string_view driver, const ParameterValues::Map& given)
+      : LiveSensor(driver_named(driver).open(values_for(driver, given))) {}
 
-  /// Polls until `holds`; false if that takes longer than anything should.
-  template <class Condition>
-  bool poll_until(Condition&& holds) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (!holds() && std::chrono::steady_clock::now() < deadline) {
-      const MonoTime next = sensor_->poll(clock_, sink);
-      // As the daemon does: nothing is due before.
-      if (next > clock_.now().mono) std::this_thread::sleep_until(std::min(next, clock_.now().mono + kLongestSleep));
-    }
-    return holds();
-  }
-  bool poll_for_readings(std::ptrdiff_t count) {
+  bool hears(std::size_t readings) {
+    wait_until([] { return true; });
     sink.readings.clear();
-    return poll_until([&] { return std::ssize(sink.readings) >= count; });
+    return wait_for_readings(readings);
   }
   void expect_the_wind() const {
     ASSERT_FALSE(sink.readings.empty());
@@ -73,14 +61,6 @@ class LiveSensor {
       EXPECT_NEAR(*reading.direction_deg, 123.0, 0.6);
     }
   }
-
-  Sensor& sensor() { return *sensor_; }
-  RecordingSink sink;
-
- private:
-  static constexpr Nanoseconds kLongestSleep = std::chrono::milliseconds(100);
-  RealClock clock_;
-  std::unique_ptr<Sensor> sensor_;
 };
 
 ParameterValues::Map tcp_to(std::int64_t port) {
@@ -94,10 +74,10 @@ TEST(TextConversation, AgreesOnTheWindInEveryFormat) {
     const std::string link = (folder / "anemometer").string();
     TextSimulatorProcess simulator("nmea", {"--pty", "--link", link, "--format", format, "--rate", "20"});
     EXPECT_EQ(simulator.place(), link);
-    LiveSensor live("nmea", {{"device", link},
-                             {"format", std::string(format == "umb" ? "umb" : "auto")},
-                             {"poll_interval", format == "umb" ? 0.1 : 0.0}});
-    ASSERT_TRUE(live.poll_for_readings(3)) << live.sink.last_detail();
+    TextSensorRun live("nmea", {{"device", link},
+                                {"format", std::string(format == "umb" ? "umb" : "auto")},
+                                {"poll_interval", format == "umb" ? 0.1 : 0.0}});
+    ASSERT_TRUE(live.hears(3)) << live.sink.last_detail();
     live.expect_the_wind();
     EXPECT_TRUE(live.sink.refusals.empty());
   }
@@ -105,15 +85,15 @@ TEST(TextConversation, AgreesOnTheWindInEveryFormat) {
 
 TEST(TextConversation, AgreesOverTcpAndUdp) {
   TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--format", "mwd,mwv", "--rate", "20"});
-  LiveSensor client("nmea", tcp_to(server.port()));
-  ASSERT_TRUE(client.poll_for_readings(5)) << client.sink.last_detail();
+  TextSensorRun client("nmea", tcp_to(server.port()));
+  ASSERT_TRUE(client.hears(5)) << client.sink.last_detail();
   client.expect_the_wind();
   EXPECT_TRUE(client.sink.refusals.empty());
 
   const std::int64_t udp_port = free_port(SOCK_DGRAM);
   TextSimulatorProcess talker("nmea", {"--udp", "127.0.0.1:" + std::to_string(udp_port), "--rate", "20"});
-  LiveSensor listener("nmea", {{"transport", std::string("udp")}, {"port", udp_port}});
-  ASSERT_TRUE(listener.poll_for_readings(5)) << listener.sink.last_detail();
+  TextSensorRun listener("nmea", {{"transport", std::string("udp")}, {"port", udp_port}});
+  ASSERT_TRUE(listener.hears(5)) << listener.sink.last_detail();
   listener.expect_the_wind();
 }
 
@@ -122,16 +102,16 @@ TEST(TextConversation, AsksOverTcp) {
   auto given = tcp_to(server.port());
   given["format"] = std::string("ft");
   given["poll_interval"] = 0.1;
-  LiveSensor client("nmea", given);
-  ASSERT_TRUE(client.poll_for_readings(5)) << client.sink.last_detail();
+  TextSensorRun client("nmea", given);
+  ASSERT_TRUE(client.hears(5)) << client.sink.last_detail();
   client.expect_the_wind();
 }
 
 TEST(TextConversation, AgreesOnLinesOfNumbers) {
   for (const std::string format : {"csv", "key-value"}) {
     TextSimulatorProcess simulator("line", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "20"});
-    LiveSensor live("line", tcp_to(simulator.port()));
-    ASSERT_TRUE(live.poll_for_readings(5)) << live.sink.last_detail();
+    TextSensorRun live("line", tcp_to(simulator.port()));
+    ASSERT_TRUE(live.hears(5)) << live.sink.last_detail();
     live.expect_the_wind();
     EXPECT_TRUE(live.sink.refusals.empty());
   }
@@ -141,8 +121,8 @@ TEST(TextConversation, ComesBackFromEveryFault) {
   const test::TemporaryFolder folder;
   const std::string link = (folder / "anemometer").string();
   TextSimulatorProcess simulator("nmea", {"--pty", "--link", link, "--rate", "20"});
-  LiveSensor live("nmea", {{"device", link}, {"talker", std::string("WI")}});
-  ASSERT_TRUE(live.poll_for_readings(10));
+  TextSensorRun live("nmea", {{"device", link}, {"talker", std::string("WI")}});
+  ASSERT_TRUE(live.hears(10));
 
   const std::vector<std::pair<std::string, std::string>> faults = {
       {"silence", "says nothing"}, {"garbage", "but no line: check baud"},
@@ -153,14 +133,14 @@ TEST(TextConversation, ComesBackFromEveryFault) {
     SCOPED_TRACE(fault);
     simulator.process().type(fault + " 600");
     simulator.process().line_after(fault + " for 600 s");
-    ASSERT_TRUE(live.poll_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
-    EXPECT_TRUE(live.poll_until([&, said = detail] { return live.sink.last_detail().find(said) != std::string::npos; }))
+    ASSERT_TRUE(live.wait_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
+    EXPECT_TRUE(live.wait_until([&, said = detail] { return live.sink.last_detail().find(said) != std::string::npos; }))
         << live.sink.last_detail();
     live.expect_the_wind();  // all that came until then
 
     simulator.process().type("clear");
     simulator.process().line_after("no faults");
-    ASSERT_TRUE(live.poll_for_readings(10)) << live.sink.last_detail();
+    ASSERT_TRUE(live.hears(10)) << live.sink.last_detail();
     live.expect_the_wind();
     EXPECT_EQ(live.sink.last_state(), LinkState::kConnected);
   }
@@ -171,34 +151,43 @@ TEST(TextConversation, FindsASimulatorAgainThatWasKilled) {
   const std::string link = (folder / "anemometer").string();
   const std::vector<std::string> options = {"--pty", "--link", link, "--rate", "20"};
   auto simulator = std::make_unique<TextSimulatorProcess>("line", options);
-  LiveSensor live("line", {{"device", link}, {"delay_after_open", 0.0}});
-  ASSERT_TRUE(live.poll_for_readings(3));
+  TextSensorRun live("line", {{"device", link}, {"delay_after_open", 0.0}});
+  ASSERT_TRUE(live.hears(3));
   simulator->process().end(SIGKILL);
-  EXPECT_TRUE(live.poll_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
+  EXPECT_TRUE(live.wait_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
   simulator = std::make_unique<TextSimulatorProcess>("line", options);
-  ASSERT_TRUE(live.poll_for_readings(3)) << live.sink.last_detail();
+  ASSERT_TRUE(live.hears(3)) << live.sink.last_detail();
   live.expect_the_wind();
 }
 
-/// Whoever shuts the daemon down waits for no device.
+/// Whoever shuts the daemon down waits for no device: nothing is read any more, and nothing is looked up.
 TEST(TextConversation, CanBeInterruptedWhateverItWaitsFor) {
-  const test::TemporaryFolder folder;
-  const std::string link = (folder / "anemometer").string();
-  TextSimulatorProcess mute("nmea", {"--pty", "--link", link, "--rate", "0"});
-  const std::vector<ParameterValues::Map> all = {
-      {{"device", link}},
-      {{"transport", std::string("udp")}, {"port", std::int64_t{free_port(SOCK_DGRAM)}}},
-      {{"transport", std::string("tcp")}, {"host", std::string("no-such-host.invalid")}},
-  };
-  for (const auto& given : all) {
-    LiveSensor live("nmea", given);
-    RealClock clock;
-    live.sensor().poll(clock, live.sink);
-    const auto begin = std::chrono::steady_clock::now();
-    live.sensor().interrupt();
-    live.sensor().poll(clock, live.sink);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(150));
+  const SystemClock clock;
+  const std::int64_t udp_port = free_port(SOCK_DGRAM);
+  TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--rate", "20"});
+  TextSimulatorProcess talker("nmea", {"--udp", "127.0.0.1:" + std::to_string(udp_port), "--rate", "20"});
+  for (const auto& given : {tcp_to(server.port()), {{"transport", std::string("udp")}, {"port", udp_port}}}) {
+    const auto sensor = driver_named("nmea").open(values_for("nmea", given));
+    RecordingSink sink;
+    while (sink.readings.empty()) sensor->poll(clock, sink);
+    sensor->interrupt();
+    sink.readings.clear();
+    for (int i = 0; i < 10; ++i) sensor->poll(clock, sink);
+    EXPECT_TRUE(sink.readings.empty()) << "it still reads";
   }
+  TextSensorRun lost("nmea", {{"transport", std::string("tcp")}, {"host", std::string("no-such-host.invalid")}});
+  lost.end();
+  EXPECT_FALSE(lost.sink.links.empty());
+}
+
+/// Lets the far end say something, again and again as a device does, until it is heard.
+void expect_heard(TextSensorRun& listener, ChildProcess& far_end, const std::string& line) {
+  const auto is_heard = [&] { return !listener.sink.readings.empty(); };
+  const MonoTime hang = std::chrono::steady_clock::now() + RunningSensor::kHang;
+  do {
+    far_end.type(line);
+  } while (!listener.wait_until(is_heard, std::chrono::milliseconds(100)) && std::chrono::steady_clock::now() < hang);
+  ASSERT_TRUE(is_heard());
 }
 
 TEST(TextConversation, ListensToSocat) {
@@ -207,21 +196,15 @@ TEST(TextConversation, ListensToSocat) {
   const test::TemporaryFolder folder;
   const std::string link = (folder / "line").string();
   ChildProcess serial({"/usr/bin/socat", "-u", "STDIN", "PTY,rawer,link=" + link});
-  LiveSensor live("nmea", {{"device", link}});
-  ASSERT_TRUE(live.poll_until([&] {
-    if (std::filesystem::exists(link)) serial.type("$HDMWV,260.1,R,21.5,K,A*07\r");  // a real one, of Sassnitz
-    return !live.sink.readings.empty();
-  }));
+  TextSensorRun live("nmea", {{"device", link}});
+  expect_heard(live, serial, "$HDMWV,260.1,R,21.5,K,A*07\r");  // a real one, of Sassnitz
   EXPECT_NEAR(live.sink.readings.back().speed_m_s, 21.5 / 3.6, 1e-9);
   EXPECT_EQ(live.sink.readings.back().direction_deg, 260.1);
 
   const std::int64_t udp_port = free_port(SOCK_DGRAM);
   ChildProcess talker({"/usr/bin/socat", "-u", "STDIN", "UDP4-SENDTO:127.0.0.1:" + std::to_string(udp_port)});
-  LiveSensor listener("line", {{"transport", std::string("udp")}, {"port", udp_port}});
-  ASSERT_TRUE(listener.poll_until([&] {
-    talker.type("4.2,270");
-    return !listener.sink.readings.empty();
-  }));
+  TextSensorRun listener("line", {{"transport", std::string("udp")}, {"port", udp_port}});
+  expect_heard(listener, talker, "4.2,270");
   EXPECT_DOUBLE_EQ(listener.sink.readings.back().speed_m_s, 4.2);
 }
 

@@ -46,7 +46,7 @@ class UsbipServerTest : public testing::Test {
   /// Serves until so many bytes have come, or the server has closed the connection; what has come.
   UsbBytes answer(const Descriptor& client, std::size_t size, std::optional<FaultKind> fault = std::nullopt) {
     UsbBytes got;
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (got.size() < size && std::chrono::steady_clock::now() < deadline) {
       serve_once(fault);
       std::array<std::uint8_t, 4096> block{};
@@ -63,7 +63,7 @@ class UsbipServerTest : public testing::Test {
   }
   /// Serves until the server closes the connection; false: it never does.
   bool is_closed(const Descriptor& client, std::optional<FaultKind> fault = std::nullopt) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
       serve_once(fault);
       std::uint8_t byte = 0;

@@ -65,9 +65,9 @@ class Viewer {
  public:
   explicit Viewer(StreamOptions options) : connection(std::move(options)) {}
 
-  /// Takes what comes until `is_done` (or half a minute).
+  /// Takes what comes until `is_done` (or for a minute, if it hangs).
   bool wait_until(const std::function<bool()>& is_done) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     for (;;) {
       Inbox inbox = connection.take();
       if (inbox.scenes) scenes.push_back(inbox.scenes->scenes.at(0).name);

@@ -1,6 +1,5 @@
 #include "daemon/tools/calibration/calibration_source.hpp"
 
-#include <atomic>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -8,6 +7,7 @@
 
 #include "daemon/settings/exit.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
+#include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -16,18 +16,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr const char* kNoDaemon = "127.0.0.1:1";
-
-/// Moved by the test alone, and read by the sensor's thread too.
-class SteppedClock final : public Clock {
- public:
-  Instant now() const noexcept override {
-    return {.mono = MonoTime(std::chrono::nanoseconds(now_ns_.load())), .utc = {}};
-  }
-  void advance(double duration_s) { now_ns_ += from_seconds(duration_s).count(); }
-
- private:
-  std::atomic<std::int64_t> now_ns_{1'000'000'000};
-};
 
 /// A sensor that says 3 m/s from 350 degrees whenever it is asked, or only that it is looking for its device.
 template <bool kSpeaks>
@@ -59,7 +47,7 @@ SensorConfig sensor_named(const std::string& name, const DriverDescription& driv
 }
 
 TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
-  SteppedClock clock;
+  ManualClock clock;
   SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
   roof.calibration.set("gain", 2.0);
   const auto source = make_live_source({&roof}, kNoDaemon, clock);
@@ -73,7 +61,7 @@ TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
     EXPECT_GE(elapsed_s, last_s);
     last_s = elapsed_s;
     ++told;
-    clock.advance(0.5);
+    clock.advance(std::chrono::milliseconds(500));
   });
   EXPECT_GE(last_s, 5.0);
   EXPECT_GE(told, 10);
@@ -85,14 +73,14 @@ TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
 }
 
 TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
-  SteppedClock clock;
+  ManualClock clock;
   const SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
   const SensorConfig mast = sensor_named("mast", kAskedDriver<false>);
   const auto source = make_live_source({&roof, &mast}, kNoDaemon, clock);
   try {
     source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard&) {
       EXPECT_EQ(elapsed_s, 0.0) << "the time runs when both have spoken";
-      clock.advance(10.0);
+      clock.advance(std::chrono::seconds(10));
     });
     FAIL() << "it waits for ever, or not at all";
   } catch (const ExitError& error) {
