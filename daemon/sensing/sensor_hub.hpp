@@ -75,10 +75,8 @@ class SensorHub {
 
   struct Channel {
     SensorConfig config;
-    Calibration calibration;
     ReadingJudge judge;
-    bool is_judged = true;
-    bool is_compared = true;
+    bool is_compared = false;
     std::unique_ptr<SensorRunner> runner;
     SourceRecord said;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
