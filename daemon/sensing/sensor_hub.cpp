@@ -222,50 +222,34 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
 
 std::vector<wire::SensorStatus> SensorHub::status() const {
   std::vector<wire::SensorStatus> all;
+  const MonoTime now = clock_.now().mono;
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     const Channel& channel = channels_[index];
     const LinkReport link = channel.runner->link();
-    SensorEvidence evidence = evidence_of(index, clock_.now().mono);
-    evidence.link = link.state;
-    evidence.link_detail = link.detail;
-    const SourceReport& report = evidence.said;
-
-    wire::SensorStatus status;
-    status.name = channel.config.name;
-    status.driver = channel.config.driver->name;
-    status.link = static_cast<std::uint8_t>(link.state);
-    status.health = static_cast<std::uint8_t>(report.health);
-    status.detail = link.detail;
-    if (report.last) {
-      status.speed_m_s = report.last->speed_m_s;
-      status.direction_deg = report.last->direction_deg;
-      status.gust_m_s = report.last->gust_m_s;
-      status.simulated = report.last->quality == ReadingQuality::kSimulated;
-    }
-    if (channel.last_raw) {
-      status.raw_speed_m_s = channel.last_raw->speed_m_s;
-      status.raw_direction_deg = channel.last_raw->direction_deg;
-    }
-    status.age_s = report.age_s;
-    status.interval_s = report.interval_s;
-    status.readings = channel.readings;
-    for (std::size_t why = 0; why < kRefusalCount; ++why) {
-      const auto refusal = static_cast<Refusal>(why);
-      if (const std::uint64_t count = channel.runner->refused_count(refusal)) {
-        status.refused.emplace_back(name_of(refusal), count);
-      }
-    }
-    if (channel.not_believed > 0) status.refused.emplace_back("not believed", channel.not_believed);
-    if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
-    status.frames = channel.runner->frame_count();
-    status.reconnects = channel.runner->reconnect_count();
-    status.replayed = channel.config.driver->plays_recordings;
-    status.state = state_of(evidence);
-    status.state_reason = reason_of(status.state, evidence);
-    all.push_back(std::move(status));
+    SensorFacts facts{.name = channel.config.name,
+                      .driver = channel.config.driver->name,
+                      .evidence = evidence_of(index, now),
+                      .last_raw = channel.last_raw,
+                      .counts = counts_of(channel)};
+    facts.evidence.link = link.state;
+    facts.evidence.link_detail = link.detail;
+    all.push_back(sensor_status(facts));
   }
   if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
   return all;
+}
+
+SensorCounts SensorHub::counts_of(const Channel& channel) {
+  const SensorRunner& runner = *channel.runner;
+  SensorCounts counts{.readings = channel.readings,
+                      .not_believed = channel.not_believed,
+                      .lost = runner.lost_count(),
+                      .frames = runner.frame_count(),
+                      .reconnects = runner.reconnect_count()};
+  for (std::size_t why = 0; why < kRefusalCount; ++why) {
+    counts.refused[why] = runner.refused_count(static_cast<Refusal>(why));
+  }
+  return counts;
 }
 
 bool SensorHub::is_any_live() const {
