@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "daemon/settings/wind_settings.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi {
@@ -10,24 +9,20 @@ namespace {
 
 /// No more places than sensors can write: a tape is half a megabyte.
 std::size_t most_pens(const Config& config) {
-  return std::min(WindStroke::kMostPens, config.sensors.size() + (has_fallback(config) ? 1 : 0));
+  return std::min(WindStroke::kMostPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
 }
 
 }  // namespace
 
 Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts)
-    : pool_(static_cast<std::size_t>(config.animation.integer("threads"))), tapes_(most_pens(config)) {
+    : pool_(config.animation.threads), tapes_(most_pens(config)) {
   for (const SceneConfig& scene : config.scenes) {
-    const ScenePlacement placement{.x_m = scene.values.number("x"),
-                                   .y_m = scene.values.number("y"),
-                                   .z_m = scene.values.number("z"),
-                                   .heading_deg = scene.values.number("heading")};
     names_.push_back(scene.name);
     kinds_.emplace_back(scene.kind->name);
-    scenes_.push_back(
-        scene.kind->make(scene.values, {.seed = config.seed + scenes_.size(), .placement = placement, .gusts = gusts}));
-    gains_.push_back(scene.values.number("gain"));
-    fades_.emplace_back(scene.values.flag("shown"));
+    scenes_.push_back(scene.kind->make(
+        scene.values, {.seed = config.seed + scenes_.size(), .placement = scene.placement, .gusts = gusts}));
+    gains_.push_back(scene.wind_gain);
+    fades_.emplace_back(scene.is_shown);
     skeletons_.push_back(&scenes_.back()->skeleton());
     poses_.push_back(&scenes_.back()->pose());
     opacities_.push_back(fades_.back().opacity());

@@ -9,9 +9,9 @@
 namespace yuragi {
 
 SceneDirector::SceneDirector(const Config& config, Hand hand)
-    : allowed_(config.stream.text("control")), hand_(std::move(hand)) {
+    : allowed_(config.stream.control), hand_(std::move(hand)) {
   for (const SceneConfig& scene : config.scenes)
-    scenes_.push_back({scene.name, std::string(scene.kind->name), scene.values.flag("shown")});
+    scenes_.push_back({scene.name, std::string(scene.kind->name), scene.is_shown});
 }
 
 wire::ControlReply SceneDirector::answer(const wire::Control& wish, bool is_local) {

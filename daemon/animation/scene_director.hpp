@@ -26,7 +26,7 @@ class SceneDirector {
  private:
   wire::ControlReply refuse(std::string why) const;
 
-  std::string allowed_;  ///< of [stream] control
+  ControlPermission allowed_;
   std::vector<wire::SceneState> scenes_;
   Hand hand_;
 };

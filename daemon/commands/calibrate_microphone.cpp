@@ -33,11 +33,10 @@ struct HeardThrough {
   bool operator==(const HeardThrough&) const = default;
 };
 
-HeardThrough heard_through(const ParameterValues& values) {
-  HeardThrough through{.calibration = mic_calibration_of(values)};
-  const double floor_db = values.number("noise_floor");
-  if (floor_db < 0.0) {
-    through.noise_power = std::pow(10.0, 0.1 * floor_db);
+HeardThrough heard_through(const MicLevelSettings& settings) {
+  HeardThrough through{.calibration = settings.calibration};
+  if (settings.noise_floor_db) {
+    through.noise_power = std::pow(10.0, 0.1 * *settings.noise_floor_db);
     through.kind = MicFitKind::kPowerLawOrCurve;
   } else if (std::holds_alternative<MicCurve>(through.calibration)) {
     through.kind = MicFitKind::kCurve;
@@ -45,9 +44,17 @@ HeardThrough heard_through(const ParameterValues& values) {
   return through;
 }
 
+void refuse_another_band(std::string_view key, double then_hz, double now_hz) {
+  if (then_hz == now_hz) return;
+  refuse(
+      {fmt::format("the recording was made with {} = {:g} Hz, and the configuration has {:g}: levels of "
+                   "another band are of no use",
+                   key, then_hz, now_hz)});
+}
+
 /// Of a recording the settings that it was made with, else those of the configuration.
 HeardThrough heard_through(const CalibrationSession& session, const HeardSensor& heard) {
-  const ParameterValues& now = session.sensor().values;
+  const MicLevelSettings now = mic_level_settings_of(session.sensor().values);
   std::vector<HeardThrough> all;
   for (const std::string& text : heard.settings) {
     const auto values = parse_values(text, session.sensor().driver->parameters);
@@ -55,15 +62,10 @@ HeardThrough heard_through(const CalibrationSession& session, const HeardSensor&
       refuse(
           {"the recording says of this microphone what this version does not understand: " + values.error().message});
     }
-    for (const char* key : {"band_low", "band_high"}) {
-      if (values->number(key) != now.number(key)) {
-        refuse(
-            {fmt::format("the recording was made with {} = {:g} Hz, and the configuration has {:g}: levels of "
-                         "another band are of no use",
-                         key, values->number(key), now.number(key))});
-      }
-    }
-    all.push_back(heard_through(*values));
+    const MicLevelSettings then = mic_level_settings_of(*values);
+    refuse_another_band("band_low", then.band_low_hz, now.band_low_hz);
+    refuse_another_band("band_high", then.band_high_hz, now.band_high_hz);
+    all.push_back(heard_through(then));
   }
   if (all.empty()) return heard_through(now);
   if (std::ranges::any_of(all, [&all](const HeardThrough& one) { return !(one == all.front()); })) {

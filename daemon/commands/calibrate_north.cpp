@@ -51,9 +51,8 @@ double turn_by_reference(CalibrationSession& session) {
   const Heard heard = session.hear("Both vanes must be in the same wind, of more than 1 m/s.");
   Calibration without_north = session.calibration();
   without_north.north_offset_deg = 0.0;
-  const std::vector<double> turns_deg =
-      pair_turns(directions_of(heard[0], without_north), directions_of(heard[1], calibration_of(*session.reference())),
-                 kTurnBlock_s);
+  const std::vector<double> turns_deg = pair_turns(
+      directions_of(heard[0], without_north), directions_of(heard[1], session.reference()->calibration), kTurnBlock_s);
   const DirectionMean turn = value_or_refuse(measure_turn(turns_deg));
   session.dialog().say(
       fmt::format("\nIt has to be turned by {:+.1f} deg, scattered by {:.1f} deg, over {} means of "

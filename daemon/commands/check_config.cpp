@@ -7,19 +7,18 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/sensing/fallback_recording.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/wind_settings.hpp"
+#include "daemon/settings/sensor_blend.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 
 namespace yuragi {
 namespace {
 
-std::string length_reason(const Config& config, const SensorConfig& sensor) {
-  if (config.wind.number("default_length") > 0.0) return " (default_length)";
-  const double height_m = sensor.calibration.number("height");
-  if (height_m <= 0.0) return " (its calibration tells no height)";
-  const double scene_height_m = sensor.calibration.number("scene_height");
-  const std::string brought = scene_height_m != height_m ? fmt::format(", brought to {:g} m", scene_height_m) : "";
-  return fmt::format(" (it stands {:g} m high{})", height_m, brought);
+std::string length_reason(const WindConfig& wind, const SensorConfig& sensor) {
+  if (wind.default_length_m) return " (default_length)";
+  const auto [height_m, scene_height_m] = sensor.heights;
+  if (!height_m) return " (its calibration tells no height)";
+  const std::string brought = scene_height_m != *height_m ? fmt::format(", brought to {:g} m", scene_height_m) : "";
+  return fmt::format(" (it stands {:g} m high{})", *height_m, brought);
 }
 
 void add_check_config(CLI::App& app) {
@@ -34,7 +33,7 @@ void add_check_config(CLI::App& app) {
   command->callback([file, full] {
     const Config config = load_config(*file);
     for (const SensorConfig& sensor : config.sensors) open_sensor(sensor);
-    if (has_fallback(config)) check_fallback(config);
+    if (config.wind.fallback) check_fallback(*config.wind.fallback);
     if (*full) {
       fmt::print("{}", to_toml(config));
       return;
@@ -42,8 +41,7 @@ void add_check_config(CLI::App& app) {
     fmt::print("{}: all right\n", file->string());
     for (const SensorConfig& sensor : config.sensors) {
       fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
-                 place_text(blend_source_of(sensor.blend, *sensor.driver)), gust_length_m(config, sensor),
-                 length_reason(config, sensor));
+                 place_text(sensor.blend), gust_length_m(config.wind, sensor), length_reason(config.wind, sensor));
     }
     for (const SceneConfig& scene : config.scenes) fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
   });

@@ -281,9 +281,9 @@ void run_field(FieldOptions options) {
     Config config = options.config_file ? load_config(*options.config_file) : default_config();
     config.sensors.resize(1);
     if (options.seed) config.seed = *options.seed;
-    if (options.is_frozen || options.is_evolving) config.wind.set("evolving", options.is_evolving);
+    if (options.is_frozen || options.is_evolving) config.wind.is_evolving = options.is_evolving;
     description["wind"] = {{"recording", options.recording->filename().string()},
-                           {"evolves", config.wind.flag("evolving")},
+                           {"evolves", config.wind.is_evolving},
                            {"seed", config.seed}};
     title = fmt::format("Wind over the ground, {:g} s after the start of {}", options.frames.first_s,
                         options.recording->filename().string());

@@ -49,7 +49,7 @@ SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
                                      {"sensor", options.playback.sensor}};
     auto values = ParameterValues::resolve(driver->parameters, given);
     if (!values) throw ExitError(kExitUsage, values.error().name + ": " + values.error().message);
-    return {options.file.stem().string(), driver, *values, no_calibration(), {}};
+    return default_sensor(options.file.stem().string(), *driver, *values);
   }
   throw std::logic_error("no windlog driver");
 }
@@ -88,7 +88,7 @@ void replay(const ReplayOptions& options) {
 
   Config config = options.run.config();
   config.sensors = {replay_sensor(options, parse_rate(options.rate))};
-  config.wind.set("fallback_recording", std::string{});
+  config.wind.fallback.reset();
   Service(config, {.record = {}, .duration_s = options.run.duration_s, .end_with_recordings = true}).run();
 }
 

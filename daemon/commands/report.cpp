@@ -15,7 +15,6 @@
 #include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/settings/site_octaves.hpp"
-#include "daemon/settings/wind_settings.hpp"
 #include "daemon/tools/report/measure_recording.hpp"
 #include "daemon/tools/report/report_figures.hpp"
 #include "daemon/tools/report/report_json.hpp"
@@ -97,15 +96,15 @@ class Told {
 /// What the gusts of a sensor are taken for: by --height, or by the calibration of the sensor of this name.
 TurbulencePrior prior_of(const Config& config, double height_m, const std::string& name) {
   BlendSourceSettings source;
-  if (height_m == 0.0) {
+  if (height_m == 0.0 && !config.wind.default_length_m) {
     for (const SensorConfig& sensor : config.sensors) {
-      if (sensor.name == name && is_length_by_height(config, sensor)) height_m = sensor.calibration.number("height");
+      if (sensor.name == name) height_m = sensor.heights.sensor_m.value_or(0.0);
     }
   }
   // As it was recorded: not brought to another height.
   if (height_m > 0.0) source.length_m = iec_length_scale_m(WindComponent::kAlong, height_m);
-  return turbulence_prior({.climate = {.turbulence_intensity = config.wind.number("default_turbulence")},
-                           .length_m = default_gust_length_m(config)},
+  return turbulence_prior({.climate = {.turbulence_intensity = config.wind.default_turbulence_intensity},
+                           .length_m = config.wind.gust_length_m()},
                           source);
 }
 
@@ -133,7 +132,7 @@ void run_report(const ReportOptions& options) {
   const Config config = options.config_file ? load_config(*options.config_file) : default_config();
   ReportSettings settings;
   settings.sensors = options.sensors;
-  settings.stale_intervals = config.wind.number("stale_intervals");
+  settings.stale_intervals = config.wind.stale_intervals;
   settings.utc_offset = local_offset;
   settings.prior = [&](const std::string& sensor) { return prior_of(config, options.height_m, sensor); };
   if (!options.from.empty()) settings.range.from = moment_of(*reader, "--from", options.from);

@@ -18,8 +18,7 @@ void RunOptions::add_to(CLI::App& command) {
 
 Config RunOptions::config() const {
   Config config = config_file ? load_config(*config_file) : default_config();
-  if (listen) config.stream.set("listen", *listen);
-  return config;
+  return listen ? listening_at(std::move(config), *listen) : config;
 }
 
 void RunOptions::set_up_log() const {

@@ -171,7 +171,7 @@ void watch(const WatchOptions& options) {
   options.run.set_up_log();
   if (!options.run.verbose) spdlog::set_level(spdlog::level::warn);  // the table tells the rest
   const Config config = options.run.config();
-  const std::string& address = config.stream.text("listen");
+  const std::string& address = config.stream.listen;
   std::unique_ptr<Screen> screen;
   if (options.raw) {
     screen = std::make_unique<RawScreen>(options);

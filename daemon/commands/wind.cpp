@@ -20,7 +20,6 @@
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
-#include "daemon/settings/shaping_config.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
@@ -235,7 +234,7 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
 
   const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
   BlendedEstimator estimator(settings.sources.size(), settings, gusts);
-  WindShaping shaping(shaping_settings(config), gusts);
+  WindShaping shaping(config.shaping.settings, gusts);
   WindAtPlaces at_places(gusts, std::move(places));
   Table table(out, at_places.places());
   const bool is_watched = isatty(STDERR_FILENO) != 0;
@@ -261,7 +260,7 @@ void run_wind(WindOptions options) {
   Config config = options.config_file ? load_config(*options.config_file) : default_config();
   config.sensors.resize(1);
   if (options.seed) config.seed = *options.seed;
-  options.offline.judge = judge_settings_of(config.sensors[0]);
+  options.offline.judge = config.sensors[0].judge;
 
   if (options.output == "-") return write_wind(options, config, stdout);
   OutputFile output(options.output, options.force);

@@ -5,7 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "daemon/settings/wind_settings.hpp"
+#include "daemon/sensing/sensor_status.hpp"
 #include "drivers/windlog/windlog_cursor.hpp"
 
 namespace yuragi {
@@ -14,39 +14,39 @@ namespace {
 // A recording that is not there is looked for again after so long.
 constexpr Nanoseconds kRetryInterval = std::chrono::minutes(1);
 
-SensorConfig fallback_sensor(const Config& config) {
+SensorConfig fallback_sensor(const FallbackConfig& fallback) {
   const auto drivers = driver_table();
   const auto windlog =
       std::ranges::find_if(drivers, [](const DriverDescription* driver) { return driver->name == "windlog"; });
-  const ParameterValues::Map given{
-      {"file", config.wind.text("fallback_recording")}, {"loop", true}, {"same_time_of_day", true}};
-  return {"fall-back", *windlog, ParameterValues::resolve((*windlog)->parameters, given).value(), no_calibration(),
-          config.fallback_origin};
+  const ParameterValues::Map given{{"file", fallback.recording.string()}, {"loop", true}, {"same_time_of_day", true}};
+  return default_sensor("fall-back", **windlog, ParameterValues::resolve((*windlog)->parameters, given).value(),
+                        fallback.origin);
 }
 
 }  // namespace
 
-std::string check_fallback(const Config& config) {
+std::string check_fallback(const FallbackConfig& fallback) {
   try {
-    WindlogCursor cursor(config.wind.text("fallback_recording"), "");
+    WindlogCursor cursor(fallback.recording, "");
     return cursor.sensor_of(cursor.next().value()).name;
   } catch (const std::exception& error) {
-    const std::string place = config.fallback_origin.empty() ? "" : config.fallback_origin + ": ";
+    const std::string place = fallback.origin.empty() ? "" : fallback.origin + ": ";
     throw ConfigError(place + "wind.fallback_recording: " + error.what());
   }
 }
 
 FallbackRecording::FallbackRecording(const Config& config, const Clock& clock) : clock_(clock) {
-  if (!has_fallback(config)) return;
-  const std::string recorded = check_fallback(config);
+  if (!config.wind.fallback) return;
+  const FallbackConfig& fallback = *config.wind.fallback;
+  const std::string recorded = check_fallback(fallback);
   const auto same = std::ranges::find(config.sensors, recorded, &SensorConfig::name);
   if (same != config.sensors.end()) {
-    calibration_ = calibration_of(*same);
-    judged_by_ = judge_settings_of(*same);
+    calibration_ = same->calibration;
+    judged_by_ = same->judge;
   }
-  sensor_ = fallback_sensor(config);
-  file_ = config.wind.text("fallback_recording");
-  after_ = from_seconds(config.wind.number("fallback_after"));
+  sensor_ = fallback_sensor(fallback);
+  file_ = fallback.recording.string();
+  after_ = from_seconds(fallback.after_s);
 }
 
 void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
@@ -107,26 +107,7 @@ void FallbackRecording::log_changes() {
 
 std::optional<wire::SensorStatus> FallbackRecording::status(const SourceReport& report) const {
   if (!runner_) return std::nullopt;
-  const LinkReport link = runner_->link();
-  wire::SensorStatus status;
-  status.name = sensor_->name;
-  status.driver = sensor_->driver->name;
-  status.link = static_cast<std::uint8_t>(link.state);
-  status.health = static_cast<std::uint8_t>(report.health);
-  status.detail = "all sensors are silent: " + link.detail;
-  if (report.last) {
-    status.speed_m_s = report.last->speed_m_s;
-    status.direction_deg = report.last->direction_deg;
-    status.gust_m_s = report.last->gust_m_s;
-    status.simulated = report.last->quality == ReadingQuality::kSimulated;
-  }
-  status.age_s = report.age_s;
-  status.interval_s = report.interval_s;
-  status.readings = readings_;
-  status.replayed = true;
-  status.state = report.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
-  status.state_reason = status.detail;
-  return status;
+  return fallback_status(sensor_->name, sensor_->driver->name, runner_->link(), report, readings_);
 }
 
 }  // namespace yuragi

@@ -41,10 +41,10 @@ class FallbackRecording {
 
   const Clock& clock_;
   std::optional<SensorConfig> sensor_;  ///< nothing: none is configured
+  std::string file_;
   Calibration calibration_;
   std::optional<JudgeSettings> judged_by_{JudgeSettings{}};  ///< nothing: all is believed
   ReadingJudge judge_;
-  std::string file_;
   Nanoseconds after_{0};
 
   std::unique_ptr<SensorRunner> runner_;  ///< while it plays
@@ -57,6 +57,6 @@ class FallbackRecording {
 
 /// Can it be played? Throws ConfigError, at its place in the file, where it cannot. Answers the name of the sensor that
 /// was recorded.
-std::string check_fallback(const Config& config);
+std::string check_fallback(const FallbackConfig& fallback);
 
 }  // namespace yuragi

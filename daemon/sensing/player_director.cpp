@@ -48,8 +48,8 @@ std::string text_of(const wire::PlayerWish& wish) {
 
 }  // namespace
 
-PlayerDirector::PlayerDirector(std::string allowed, std::vector<NamedPlayer> players)
-    : allowed_(std::move(allowed)), players_(std::move(players)) {}
+PlayerDirector::PlayerDirector(ControlPermission allowed, std::vector<NamedPlayer> players)
+    : allowed_(allowed), players_(std::move(players)) {}
 
 wire::ControlReply PlayerDirector::answer(const wire::PlayerWish& wish, bool is_local) {
   wire::ControlReply reply;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/settings/control_permission.hpp"
 #include "drivers/recording/recording_player.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -24,7 +25,7 @@ struct NamedPlayer {
 class PlayerDirector {
  public:
   /// `allowed`: [stream] control.
-  PlayerDirector(std::string allowed, std::vector<NamedPlayer> players);
+  PlayerDirector(ControlPermission allowed, std::vector<NamedPlayer> players);
 
   /// Gives the orders that a client asks for, or says why not. `is_local`: it asks from this machine.
   wire::ControlReply answer(const wire::PlayerWish& wish, bool is_local);
@@ -32,7 +33,7 @@ class PlayerDirector {
  private:
   wire::PlayerState state_of(const NamedPlayer& named) const;
 
-  std::string allowed_;
+  ControlPermission allowed_;
   std::vector<NamedPlayer> players_;
 };
 

@@ -8,7 +8,6 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/sensing/refusal_text.hpp"
-#include "daemon/settings/wind_settings.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
@@ -37,35 +36,38 @@ std::string passed_over_text(const ChangeGate& gate) {
   return fmt::format("; {} changes in between did not last", gate.passed_over());
 }
 
+/// What a configuration expects of its site, with nothing learnt.
+std::shared_ptr<SiteSpectrum> make_site_spectrum(const WindConfig& wind) {
+  auto site = std::make_shared<SiteSpectrum>();
+  site->expect(wind.site_octaves_db);
+  return site;
+}
+
 }  // namespace
 
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
-  auto noise = std::make_shared<const GustNoise>(
-      GustNoiseSettings{.seed = config.seed, .evolves = config.wind.flag("evolving")});
+  auto noise =
+      std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed, .evolves = config.wind.is_evolving});
   malloc_trim(0);  // the C library would keep the 9 MB in which it was made
   return noise;
 }
 
 BlendSettings blend_settings_of(const Config& config) {
-  BlendSettings settings{.climate = {.mean_speed_m_s = config.wind.number("default_speed"),
-                                     .mean_direction_deg = config.wind.number("default_direction"),
-                                     .turbulence_intensity = config.wind.number("default_turbulence"),
+  const WindConfig& wind = config.wind;
+  BlendSettings settings{.climate = {.mean_speed_m_s = wind.default_speed_m_s,
+                                     .mean_direction_deg = wind.default_direction_deg,
+                                     .turbulence_intensity = wind.default_turbulence_intensity,
                                      .seed = config.seed},
-                         .length_m = default_gust_length_m(config),
-                         .gustiness = config.wind.number("gustiness"),
-                         .handover_s = config.wind.number("handover"),
-                         .stale_intervals = config.wind.number("stale_intervals"),
-                         .return_after_s = config.wind.number("return_after"),
-                         .rate_hz = config.animation.number("rate"),
-                         .site = make_site_spectrum(config)};
-  for (const SensorConfig& sensor : config.sensors) {
-    settings.sources.push_back(blend_source_of(sensor.blend, *sensor.driver));
-    BlendSourceSettings& source = settings.sources.back();
-    if (is_length_by_height(config, sensor)) source.length_m = gust_length_m(config, sensor);
-    source.teaches_site = !source.is_relative && !sensor.driver->plays_recordings;
-  }
+                         .length_m = wind.gust_length_m(),
+                         .gustiness = wind.gustiness,
+                         .handover_s = wind.handover_s,
+                         .stale_intervals = wind.stale_intervals,
+                         .return_after_s = wind.return_after_s,
+                         .rate_hz = config.animation.rate_hz,
+                         .site = make_site_spectrum(wind)};
+  for (const SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
   // Behind all sensors, whatever their priorities.
-  if (has_fallback(config)) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
+  if (wind.fallback) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
   return settings;
 }
 
@@ -82,9 +84,9 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
                      Listener listener, double reach_m)
     : clock_(clock),
       listener_(std::move(listener)),
-      site_(make_site_spectrum(config)),
+      site_(make_site_spectrum(config.wind)),
       estimator_(make_estimator(config, std::move(noise), reach_m, site_)),
-      stale_intervals_(config.wind.number("stale_intervals")),
+      stale_intervals_(config.wind.stale_intervals),
       vote_(config.sensors.size()),
       fallback_(config, clock) {
   // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
@@ -93,13 +95,10 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
   for (std::size_t index = 0; index < sensors.size(); ++index) {
     Channel channel;
     channel.config = config.sensors[index];
-    channel.calibration = calibration_of(channel.config);
-    const std::optional<JudgeSettings> judged_by = judge_settings_of(channel.config);
-    channel.is_judged = judged_by.has_value();
+    const std::optional<JudgeSettings>& judged_by = channel.config.judge;
     channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
     // A sensor whose scale is not to be believed is no witness.
-    const bool is_relative = blend_source_of(channel.config.blend, *channel.config.driver).is_relative;
-    channel.is_compared = channel.is_judged && channel.config.judge.flag("compare") && !is_relative;
+    channel.is_compared = judged_by && channel.config.is_compared && !channel.config.blend.is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
   }
@@ -133,11 +132,11 @@ const WindState& SensorHub::advance() {
 /// A reading as it was said: what it comes to, and whether it is to be believed.
 void SensorHub::take(std::size_t index, const WindReading& said) {
   Channel& channel = channels_[index];
-  WindReading reading = channel.calibration.applied_to(said);
+  WindReading reading = channel.config.calibration.applied_to(said);
   // Nothing was said in the future: such a reading would make all that follow late ones.
   reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
   if (!is_plausible(reading)) {
-    if (channel.is_judged) channel.judge.count_impossible(1);
+    if (channel.config.judge) channel.judge.count_impossible(1);
     return;
   }
   if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
@@ -149,7 +148,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
   channel.said.take(reading);
 
   // What a simulation makes up may be as steady as it likes.
-  const bool is_judged = channel.is_judged && reading.quality != ReadingQuality::kSimulated;
+  const bool is_judged = channel.config.judge && reading.quality != ReadingQuality::kSimulated;
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
   if (makes_sense) vote_.hear(index, reading.time.mono, reading.speed_m_s);
   if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
@@ -162,7 +161,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
 /// Readings that were refused before they came to the hub speak against the sensor, too.
 void SensorHub::judge_refusals(Channel& channel) const {
   const std::uint64_t impossible = channel.runner->refused_count(Refusal::kImplausible);
-  if (channel.is_judged) channel.judge.count_impossible(impossible - channel.impossible);
+  if (channel.config.judge) channel.judge.count_impossible(impossible - channel.impossible);
   channel.impossible = impossible;
 }
 
@@ -223,50 +222,34 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
 
 std::vector<wire::SensorStatus> SensorHub::status() const {
   std::vector<wire::SensorStatus> all;
+  const MonoTime now = clock_.now().mono;
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     const Channel& channel = channels_[index];
     const LinkReport link = channel.runner->link();
-    SensorEvidence evidence = evidence_of(index, clock_.now().mono);
-    evidence.link = link.state;
-    evidence.link_detail = link.detail;
-    const SourceReport& report = evidence.said;
-
-    wire::SensorStatus status;
-    status.name = channel.config.name;
-    status.driver = channel.config.driver->name;
-    status.link = static_cast<std::uint8_t>(link.state);
-    status.health = static_cast<std::uint8_t>(report.health);
-    status.detail = link.detail;
-    if (report.last) {
-      status.speed_m_s = report.last->speed_m_s;
-      status.direction_deg = report.last->direction_deg;
-      status.gust_m_s = report.last->gust_m_s;
-      status.simulated = report.last->quality == ReadingQuality::kSimulated;
-    }
-    if (channel.last_raw) {
-      status.raw_speed_m_s = channel.last_raw->speed_m_s;
-      status.raw_direction_deg = channel.last_raw->direction_deg;
-    }
-    status.age_s = report.age_s;
-    status.interval_s = report.interval_s;
-    status.readings = channel.readings;
-    for (std::size_t why = 0; why < kRefusalCount; ++why) {
-      const auto refusal = static_cast<Refusal>(why);
-      if (const std::uint64_t count = channel.runner->refused_count(refusal)) {
-        status.refused.emplace_back(name_of(refusal), count);
-      }
-    }
-    if (channel.not_believed > 0) status.refused.emplace_back("not believed", channel.not_believed);
-    if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
-    status.frames = channel.runner->frame_count();
-    status.reconnects = channel.runner->reconnect_count();
-    status.replayed = channel.config.driver->plays_recordings;
-    status.state = state_of(evidence);
-    status.state_reason = reason_of(status.state, evidence);
-    all.push_back(std::move(status));
+    SensorFacts facts{.name = channel.config.name,
+                      .driver = channel.config.driver->name,
+                      .evidence = evidence_of(index, now),
+                      .last_raw = channel.last_raw,
+                      .counts = counts_of(channel)};
+    facts.evidence.link = link.state;
+    facts.evidence.link_detail = link.detail;
+    all.push_back(sensor_status(facts));
   }
   if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
   return all;
+}
+
+SensorCounts SensorHub::counts_of(const Channel& channel) {
+  const SensorRunner& runner = *channel.runner;
+  SensorCounts counts{.readings = channel.readings,
+                      .not_believed = channel.not_believed,
+                      .lost = runner.lost_count(),
+                      .frames = runner.frame_count(),
+                      .reconnects = runner.reconnect_count()};
+  for (std::size_t why = 0; why < kRefusalCount; ++why) {
+    counts.refused[why] = runner.refused_count(static_cast<Refusal>(why));
+  }
+  return counts;
 }
 
 bool SensorHub::is_any_live() const {

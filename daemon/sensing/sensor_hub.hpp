@@ -11,6 +11,7 @@
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/sensor_diagnosis.hpp"
 #include "daemon/sensing/sensor_runner.hpp"
+#include "daemon/sensing/sensor_status.hpp"
 #include "daemon/settings/config.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/source_record.hpp"
@@ -75,10 +76,8 @@ class SensorHub {
 
   struct Channel {
     SensorConfig config;
-    Calibration calibration;
     ReadingJudge judge;
-    bool is_judged = true;
-    bool is_compared = true;
+    bool is_compared = false;
     std::unique_ptr<SensorRunner> runner;
     SourceRecord said;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
@@ -92,6 +91,7 @@ class SensorHub {
   };
 
   void take(std::size_t index, const WindReading& reading);
+  static SensorCounts counts_of(const Channel& channel);
   void judge_refusals(Channel& channel) const;
   void compare(MonoTime now);
   SensorEvidence evidence_of(std::size_t index, MonoTime now) const;

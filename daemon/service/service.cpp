@@ -38,15 +38,15 @@ class Service::Io {
  public:
   Io(const Config& config, const ServiceOptions& options)
       : options_(options),
-        rate_hz_(config.animation.number("rate")),
+        rate_hz_(config.animation.rate_hz),
         gusts_(make_gust_noise(config)),
         animation_(options.with_scenes ? std::make_unique<Animation>(config, gusts_) : nullptr),
         director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
-        stream_(io_, config.stream.text("listen"), stream_settings(config)),
+        stream_(io_, config.stream.listen, stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0),
         shaper_(config, gusts_),
-        players_(config.stream.text("control"), hub_.players()) {
+        players_(config.stream.control, hub_.players()) {
     if (animation_) {
       shaper_.keep_site_file(hub_.site());
       loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
@@ -103,7 +103,7 @@ class Service::Io {
       refuse_what_no_client_takes(settings.scenes);
     }
     settings.on_control = [this](const wire::Control& wish, bool is_local) { return answer(wish, is_local); };
-    settings.max_clients = static_cast<std::size_t>(config.stream.integer("max_clients"));
+    settings.max_clients = config.stream.max_clients;
     return settings;
   }
 

@@ -8,10 +8,8 @@
 
 #include <toml++/toml.h>
 
+#include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
-#include "daemon/settings/site_octaves.hpp"
-#include "drivers/sensor/speed_unit.hpp"
-#include "engine/base/address.hpp"
 
 namespace yuragi {
 namespace {
@@ -60,40 +58,47 @@ class ConfigReader {
     check_top_level(root);
     const ParameterValues general = read_top_level(root);
     config.seed = static_cast<std::uint64_t>(general.integer("seed"));
-    config.stream = read_table(root, "", "stream", stream_parameters());
-    check_listen(root, config.stream);
-    config.animation = read_table(root, "", "animation", animation_parameters());
-    config.wind = read_table(root, "", "wind", wind_parameters());
-    check_site_octaves(root, config.wind);
-    config.shaping = read_table(root, "", "shaping", shaping_parameters());
-    check_shaping(root, config.shaping);
-    if (const toml::node* node = root["wind"]["fallback_recording"].node()) {
-      config.fallback_origin = place(node->source());
-    }
+    config.by_name.stream = read_table(root, "", "stream", stream_parameters());
+    config.stream = typed(root, "", "stream", stream_config_of(config.by_name.stream));
+    config.by_name.animation = read_table(root, "", "animation", animation_parameters());
+    config.animation = animation_config_of(config.by_name.animation);
+    config.by_name.wind = read_table(root, "", "wind", wind_parameters());
+    config.wind = typed(root, "", "wind", wind_config_of(config.by_name.wind));
+    if (config.wind.fallback) config.wind.fallback->origin = place(root["wind"]["fallback_recording"].node()->source());
+    config.by_name.shaping = read_table(root, "", "shaping", shaping_parameters());
+    config.shaping = typed(root, "", "shaping", shaping_config_of(config.by_name.shaping, config.wind));
 
     for_each_entry(root, "sensor", "driver", driver_table(),
-                   [&](const auto& name, auto* driver, const auto& values, const toml::table& entry) {
-                     const ParameterValues calibration =
-                         read_table(entry, "sensor.", kCalibrationKey, calibration_parameters());
-                     check_is_table(entry, kCalibrationKey);
-                     check_curve(entry, calibration);
-                     check_is_table(entry, kJudgeKey);
-                     const ParameterValues judge = read_table(entry, "sensor.", kJudgeKey, judge_parameters());
-                     config.sensors.push_back({name, driver, values, calibration, place(entry.source()), judge});
-                     check_is_table(entry, kBlendKey);
-                     config.sensors.back().blend = read_table(entry, "sensor.", kBlendKey, sensor_blend_parameters());
-                     check_blend(entry, config.sensors.back().blend);
+                   [&](const std::string& name, const DriverDescription& driver, const ParameterValues& values,
+                       const toml::table& entry) {
+                     config.sensors.push_back(read_sensor(entry, name, driver, values, config.wind));
+                     config.sensors.back().origin = place(entry.source());
                    });
     for_each_entry(root, "scene", "kind", scene_table(),
-                   [&](const auto& name, auto* kind, const auto& values, const auto&) {
-                     config.scenes.push_back({name, kind, values});
-                   });
+                   [&](const std::string& name, const SceneDescription& kind, const ParameterValues& values,
+                       const toml::table&) { config.scenes.push_back(scene_config_of(name, kind, values)); });
 
     if (!mistakes_.empty()) throw ConfigError(mistakes_);
-    const Config defaults = default_config();
-    if (config.sensors.empty()) config.sensors = defaults.sensors;
-    if (config.scenes.empty()) config.scenes = defaults.scenes;
     return config;
+  }
+
+  /// The tables that a sensor of any driver may have.
+  SensorConfig read_sensor(const toml::table& entry, std::string name, const DriverDescription& driver,
+                           ParameterValues values, const WindConfig& wind) {
+    SensorConfig sensor{.name = std::move(name), .driver = &driver, .values = std::move(values)};
+    SensorTables& tables = sensor.by_name;
+    tables.calibration = read_sensor_table(entry, kCalibrationKey, calibration_parameters());
+    sensor.calibration = typed(entry, "sensor.", kCalibrationKey, calibration_of(tables.calibration));
+    sensor.heights = sensor_heights_of(tables.calibration);
+    tables.judge = read_sensor_table(entry, kJudgeKey, judge_parameters());
+    sensor.judge = judge_settings_of(tables.judge);
+    sensor.is_compared = is_compared(tables.judge);
+    tables.blend = read_sensor_table(entry, kBlendKey, sensor_blend_parameters());
+    sensor.blend = typed(entry, "sensor.", kBlendKey, blend_source_of(tables.blend, driver));
+    if (sensor.heights.sensor_m && !wind.default_length_m) {
+      sensor.blend.length_m = gust_length_at_height_m(*sensor.heights.sensor_m, sensor.calibration);
+    }
+    return sensor;
   }
 
  private:
@@ -146,45 +151,35 @@ class ConfigReader {
     return read_values(table != nullptr ? *table : kNothing, prefix + std::string(name) + ".", parameters, {});
   }
 
-  void check_is_table(const toml::table& sensor, std::string_view key) {
-    if (const toml::node* node = sensor.get(key); node != nullptr && !node->is_table()) {
-      const std::string path = "sensor." + std::string(key);
+  ParameterValues read_sensor_table(const toml::table& entry, std::string_view name,
+                                    std::span<const Parameter> parameters) {
+    if (const toml::node* node = entry.get(name); node != nullptr && !node->is_table()) {
+      const std::string path = "sensor." + std::string(name);
       mistake(node->source(), path, "is a value; write it as a table, [" + path + "]");
     }
+    return read_table(entry, "sensor.", name, parameters);
   }
 
-  void check_shaping(const toml::table& root, const ParameterValues& shaping) {
-    // A mistake that a default takes part in stands at the table.
-    for (const ParameterError& error : shaping_mistakes(shaping)) {
-      const toml::node* table = root.get("shaping");
-      const toml::node* node = table != nullptr && table->is_table() ? table->as_table()->get(error.name) : nullptr;
-      const toml::node& place = node != nullptr ? *node : table != nullptr ? *table : root;
-      mistake(place.source(), "shaping." + error.name, error.message);
-    }
+  /// What the values of a table come to, or what does not fit together in them, each mistake told at its key.
+  template <class Type, class Error>
+  Type typed(const toml::table& around, const std::string& prefix, std::string_view name, Result<Type, Error> made) {
+    if (made) return std::move(*made);
+    tell(around, prefix, name, made.error());
+    return {};
   }
 
-  void check_site_octaves(const toml::table& root, const ParameterValues& wind) {
-    if (const auto octaves = parse_site_octaves(wind.text("site_octaves")); !octaves) {
-      mistake(root["wind"]["site_octaves"].node()->source(), "wind.site_octaves", octaves.error().message);
-    }
+  void tell(const toml::table& around, const std::string& prefix, std::string_view name,
+            const std::vector<ParameterError>& errors) {
+    for (const ParameterError& error : errors) tell(around, prefix, name, error);
   }
 
-  void check_curve(const toml::table& sensor, const ParameterValues& calibration) {
-    if (const auto curve = parse_calibration_curve(calibration.text("curve")); !curve) {
-      mistake(sensor[kCalibrationKey]["curve"].node()->source(), "sensor.calibration.curve", curve.error().message);
-    }
-  }
-
-  void check_blend(const toml::table& sensor, const ParameterValues& blend) {
-    if (const auto error = sensor_blend_mistake(blend)) {
-      mistake(sensor[kBlendKey][error->name].node()->source(), "sensor.blend." + error->name, error->message);
-    }
-  }
-
-  void check_listen(const toml::table& root, const ParameterValues& stream) {
-    if (const auto address = parse_address(stream.text("listen")); !address) {
-      mistake(root["stream"]["listen"].node()->source(), "stream.listen", address.error().message);
-    }
+  /// A mistake that a default takes part in stands at the table.
+  void tell(const toml::table& around, const std::string& prefix, std::string_view name, const ParameterError& error) {
+    const toml::node* node = around.get(name);
+    const toml::table* table = node != nullptr ? node->as_table() : nullptr;
+    const toml::node* value = table != nullptr ? table->get(error.name) : nullptr;
+    const toml::node& where = value != nullptr ? *value : node != nullptr ? *node : around;
+    mistake(where.source(), prefix + std::string(name) + "." + error.name, error.message);
   }
 
   /// The values of one table; keys in `aside` are read elsewhere.
@@ -241,7 +236,7 @@ class ConfigReader {
       if (list == "sensor") aside.insert(kBlendKey);
       const ParameterValues values =
           read_values(*entry, prefix, parameters_of(*description), aside, retired_of(*description));
-      use(name, description, values, *entry);
+      use(name, *description, values, *entry);
     }
   }
 
@@ -274,15 +269,26 @@ class ConfigReader {
 };
 
 template <class Description>
-const Description* find_by_name(std::span<const Description* const> table, std::string_view name) {
+const Description& description_named(std::span<const Description* const> table, std::string_view name) {
   for (const Description* description : table) {
-    if (description->name == name) return description;
+    if (description->name == name) return *description;
   }
   throw std::logic_error("no " + std::string(name) + " in its table");
 }
 
-ParameterValues defaults_of(std::span<const Parameter> parameters) {
-  return ParameterValues::resolve(parameters, {}).value();
+template <class Description>
+ParameterValues defaults_of(const Description& description) {
+  return ParameterValues::resolve(parameters_of(description), {}).value();
+}
+
+// What there is where a file tells of no sensor, and of no scene.
+SensorConfig synthetic_sensor() {
+  const DriverDescription& synthetic = description_named(driver_table(), "synthetic");
+  return default_sensor(std::string(synthetic.name), synthetic, defaults_of(synthetic));
+}
+SceneConfig grass_scene() {
+  const SceneDescription& grass = description_named(scene_table(), "grass");
+  return scene_config_of(std::string(grass.name), grass, defaults_of(grass));
 }
 
 toml::table to_table(const ParameterValues& values) {
@@ -295,51 +301,20 @@ toml::table to_table(const ParameterValues& values) {
 
 }  // namespace
 
-ParameterValues no_calibration() {
-  return defaults_of(calibration_parameters());
-}
-
-ParameterValues default_judge() {
-  return defaults_of(judge_parameters());
-}
-
-std::optional<JudgeSettings> judge_settings_of(const SensorConfig& sensor) {
-  constexpr double kAlonePatience = 6.0;
-  const ParameterValues& values = sensor.judge;
-  if (!values.flag("enabled")) return std::nullopt;
-  return JudgeSettings{.max_speed_m_s = values.number("max_speed"),
-                       .slew_m_s2 = values.number("slew"),
-                       .least_spike_m_s = values.number("spike"),
-                       .frozen_s = values.number("frozen"),
-                       .seized_s = values.number("seized"),
-                       .seized_alone_s = kAlonePatience * values.number("seized")};
-}
-
-Calibration calibration_of(const SensorConfig& sensor) {
-  const ParameterValues& values = sensor.calibration;
-  auto curve = parse_calibration_curve(values.text("curve"));
-  if (!curve) throw ConfigError(sensor.origin + ": sensor.calibration.curve: " + curve.error().message);
-  Calibration calibration{.unit_m_s = metres_per_second_in(values.text("unit")),
-                          .gain = values.number("gain"),
-                          .offset_m_s = values.number("offset"),
-                          .curve = std::move(*curve),
-                          .north_offset_deg = values.number("north_offset")};
-  if (const double height_m = values.number("height"); height_m > 0.0) {
-    calibration.height_factor = height_factor(height_m, values.number("scene_height"), values.number("roughness"));
-  }
-  return calibration;
-}
-
 Config default_config() {
-  Config config;
-  config.stream = defaults_of(stream_parameters());
-  config.animation = defaults_of(animation_parameters());
-  config.wind = defaults_of(wind_parameters());
-  config.shaping = defaults_of(shaping_parameters());
-  const auto* synthetic = find_by_name(driver_table(), "synthetic");
-  config.sensors.push_back({"synthetic", synthetic, defaults_of(parameters_of(*synthetic)), no_calibration(), {}});
-  const auto* grass = find_by_name(scene_table(), "grass");
-  config.scenes.push_back({"grass", grass, defaults_of(parameters_of(*grass))});
+  return parse_config("", "");
+}
+
+SensorConfig default_sensor(std::string name, const DriverDescription& driver, ParameterValues values,
+                            std::string origin) {
+  SensorConfig sensor = ConfigReader("").read_sensor({}, std::move(name), driver, std::move(values), {});
+  sensor.origin = std::move(origin);
+  return sensor;
+}
+
+Config listening_at(Config config, const std::string& address) {
+  config.stream.listen = address;
+  config.by_name.stream.set("listen", address);
   return config;
 }
 
@@ -353,7 +328,10 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
          << ": TOML: " << error.description();
     throw ConfigError(line.str());
   }
-  return ConfigReader(source_name).read(root);
+  Config config = ConfigReader(source_name).read(root);
+  if (config.sensors.empty()) config.sensors.push_back(synthetic_sensor());
+  if (config.scenes.empty()) config.scenes.push_back(grass_scene());
+  return config;
 }
 
 std::string read_config_text(const std::filesystem::path& file) {
@@ -379,10 +357,10 @@ std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor) {
 std::string to_toml(const Config& config) {
   toml::table root;
   root.insert("seed", static_cast<std::int64_t>(config.seed));
-  root.insert("stream", to_table(config.stream));
-  root.insert("animation", to_table(config.animation));
-  root.insert("wind", to_table(config.wind));
-  root.insert("shaping", to_table(config.shaping));
+  root.insert("stream", to_table(config.by_name.stream));
+  root.insert("animation", to_table(config.by_name.animation));
+  root.insert("wind", to_table(config.by_name.wind));
+  root.insert("shaping", to_table(config.by_name.shaping));
 
   const auto append = [&root](const char* list, const char* kind_key, std::string_view kind, const std::string& name,
                               const ParameterValues& values) {
@@ -394,9 +372,9 @@ std::string to_toml(const Config& config) {
   };
   for (const SensorConfig& sensor : config.sensors) {
     append("sensor", "driver", sensor.driver->name, sensor.name, sensor.values);
-    root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.calibration));
-    root["sensor"].as_array()->back().as_table()->insert(kJudgeKey, to_table(sensor.judge));
-    root["sensor"].as_array()->back().as_table()->insert(kBlendKey, to_table(sensor.blend));
+    root["sensor"].as_array()->back().as_table()->insert(kCalibrationKey, to_table(sensor.by_name.calibration));
+    root["sensor"].as_array()->back().as_table()->insert(kJudgeKey, to_table(sensor.by_name.judge));
+    root["sensor"].as_array()->back().as_table()->insert(kBlendKey, to_table(sensor.by_name.blend));
   }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
 

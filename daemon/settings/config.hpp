@@ -3,62 +3,42 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "daemon/settings/animation_config.hpp"
 #include "daemon/settings/config_tables.hpp"
-#include "daemon/settings/sensor_blend.hpp"
+#include "daemon/settings/scene_config.hpp"
+#include "daemon/settings/sensor_config.hpp"
+#include "daemon/settings/shaping_config.hpp"
+#include "daemon/settings/stream_config.hpp"
+#include "daemon/settings/wind_config.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/parameter.hpp"
-#include "engine/scenes/scene.hpp"
-#include "engine/wind/judging/calibration.hpp"
-#include "engine/wind/judging/reading_judge.hpp"
 
 namespace yuragi {
 
-/// [sensor.calibration] and [sensor.judge] where they are not written.
-ParameterValues no_calibration();
-ParameterValues default_judge();
-
-/// A sensor or a scene of an installation: which kind, how it is called, and its own parameters.
-struct SensorConfig {
-  std::string name;
-  const DriverDescription* driver = nullptr;
-  ParameterValues values;
-  ParameterValues calibration;                     ///< calibration_parameters()
-  std::string origin;                              ///< `file:line:column` of its entry; empty for the built-in default
-  ParameterValues judge = default_judge();         ///< judge_parameters()
-  ParameterValues blend = default_sensor_blend();  ///< sensor_blend_parameters()
-};
-
-struct SceneConfig {
-  std::string name;
-  const SceneDescription* kind = nullptr;
-  ParameterValues values;  ///< its kind's own, and common_scene_parameters()
-};
-
-/// An installation, read from TOML. Every value is there and within its range; what the file leaves out has its
-/// default.
+/// An installation, read from TOML and made into types once. Every value is within its range; what the file leaves out
+/// has its default. The self-described tables (config_tables.hpp, shaping_parameters.hpp, sensor_blend.hpp) say what
+/// may be written.
 struct Config {
   std::uint64_t seed = 1;
-  ParameterValues stream;             ///< stream_parameters()
-  ParameterValues animation;          ///< animation_parameters()
-  ParameterValues wind;               ///< wind_parameters()
-  ParameterValues shaping;            ///< shaping_parameters()
-  std::string fallback_origin;        ///< `file:line:column` of wind.fallback_recording; empty where it is not set
+  StreamConfig stream;
+  AnimationConfig animation;
+  WindConfig wind;
+  ShapingConfig shaping;
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
+
+  /// The values of the tables under their names, of which these members were made: what writes the configuration out
+  /// reads them, and nobody else.
+  struct ByName {
+    ParameterValues stream, animation, wind, shaping;
+  } by_name;
 };
-
-/// What a sensor's calibration says. Throws ConfigError for a curve that is none.
-Calibration calibration_of(const SensorConfig& sensor);
-
-/// How strictly a sensor's readings are judged; nothing where they are not.
-std::optional<JudgeSettings> judge_settings_of(const SensorConfig& sensor);
 
 /// What is wrong with a configuration, one line for each mistake: `file:line:column: key: what is wrong; what is
 /// allowed`.
@@ -69,6 +49,13 @@ class ConfigError : public std::runtime_error {
 
 /// What `yuragi run` does without a file: one synthetic sensor and one grass scene.
 Config default_config();
+
+/// A sensor that no file tells of, with the defaults of the tables that every sensor has.
+SensorConfig default_sensor(std::string name, const DriverDescription& driver, ParameterValues values,
+                            std::string origin = {});
+
+/// The same installation, listening at another address, which is not looked at.
+Config listening_at(Config config, const std::string& address);
 
 /// Reads a configuration. `source_name` stands in messages. Throws ConfigError with every mistake that was found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
@@ -83,7 +70,7 @@ Config load_config(const std::filesystem::path& file);
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor);
 
 /// The configuration as TOML with every value written out, but for what has none where it is left out: what a recording
-/// keeps, and what `check-config` shows.
+/// keeps, and what `check-config` shows. Of its values by name: what was changed in the other members is not seen.
 std::string to_toml(const Config& config);
 std::string to_toml(const ParameterValues& values);
 

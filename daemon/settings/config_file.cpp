@@ -44,7 +44,6 @@ void prove(const std::filesystem::path& file, const Config& before) {
   try {
     const Config config = load_config(file);
     for (std::size_t index = 0; index < config.sensors.size(); ++index) {
-      calibration_of(config.sensors[index]);
       if (can_be_opened(before.sensors.at(index))) open_sensor(config.sensors[index]);
     }
   } catch (const ConfigError& error) {

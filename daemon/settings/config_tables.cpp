@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "daemon/settings/control_permission.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 
@@ -17,8 +18,6 @@ const std::array kGeneralParameters = {
               .min = 0,
               .help = "everything random comes from it: the same seed and wind give the same motion"},
 };
-
-constexpr std::array<std::string_view, 3> kControlChoices = {"loopback", "anywhere", "nobody"};
 
 const std::array kStreamParameters = {
     Parameter{.name = "listen",
@@ -35,7 +34,7 @@ const std::array kStreamParameters = {
               .unit = "",
               .default_value = std::string("loopback"),
               .help = "from where scenes may be shown and hidden (yuragi scene): this machine, anywhere, or nobody",
-              .choices = kControlChoices},
+              .choices = kControlPermissionNames},
 };
 
 const std::array kAnimationParameters = {

@@ -78,17 +78,6 @@ std::span<const Parameter> sensor_blend_parameters() {
   return kSensorBlendParameters;
 }
 
-ParameterValues default_sensor_blend() {
-  return ParameterValues::resolve(kSensorBlendParameters, {}).value();
-}
-
-std::optional<ParameterError> sensor_blend_mistake(const ParameterValues& values) {
-  if (values.number("lead") > 0.0 && !values.has("x") && !values.has("z")) {
-    return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
-  }
-  return std::nullopt;
-}
-
 std::string place_text(const BlendSourceSettings& source) {
   if (!source.has_place) return "at the windward edge of the scenes";
   const auto way = [](double way_m, const char* to, const char* back) {
@@ -102,18 +91,26 @@ std::string place_text(const BlendSourceSettings& source) {
   return text;
 }
 
-BlendSourceSettings blend_source_of(const ParameterValues& values, const DriverDescription& driver) {
+Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
+                                                            const DriverDescription& driver) {
   const std::string& role = values.text("role");
+  const bool is_relative = role == kRelative || (role == kOfDriver && driver.is_relative);
+  const bool has_place = values.has("x") || values.has("z");
+  const double lead_m = values.number("lead");
+  if (lead_m > 0.0 && !has_place) {
+    return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
+  }
   const auto number_or_0 = [&values](std::string_view name) { return values.has(name) ? values.number(name) : 0.0; };
-  return {.is_relative = role == kRelative || (role == kOfDriver && driver.is_relative),
-          .priority = static_cast<int>(values.integer("priority")),
-          .weight = values.number("weight"),
-          .has_place = values.has("x") || values.has("z"),
-          .east_m = number_or_0("x"),
-          .south_m = number_or_0("z"),
-          .lead_m = values.number("lead"),
-          .averaging_s = values.number("averaging"),
-          .direction_step_deg = values.number("direction_step")};
+  return BlendSourceSettings{.is_relative = is_relative,
+                             .priority = static_cast<int>(values.integer("priority")),
+                             .weight = values.number("weight"),
+                             .has_place = has_place,
+                             .east_m = number_or_0("x"),
+                             .south_m = number_or_0("z"),
+                             .lead_m = lead_m,
+                             .teaches_site = !is_relative && !driver.plays_recordings,
+                             .averaging_s = values.number("averaging"),
+                             .direction_step_deg = values.number("direction_step")};
 }
 
 }  // namespace yuragi

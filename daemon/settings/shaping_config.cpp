@@ -1,36 +1,57 @@
 #include "daemon/settings/shaping_config.hpp"
 
-#include "daemon/settings/wind_settings.hpp"
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace yuragi {
 namespace {
 
 constexpr double kSecondsPerDay = 86400.0;
 
-}  // namespace
-
-WindShapingSettings shaping_settings(const Config& config) {
-  const ParameterValues& shaping = config.shaping;
-  WindShapingSettings settings{.floor_m_s = shaping.number("floor"),
-                               .site = {.median_m_s = shaping.number("site_median"),
-                                        .strong_m_s = shaping.number("site_strong"),
-                                        .most_gain = shaping.number("site_most_gain")},
-                               .site_memory_s = kSecondsPerDay * shaping.number("site_memory"),
-                               .over_s = shaping.number("over"),
-                               .gusts = shaping.number("gusts"),
-                               .ceiling = {},
-                               .closed_level = shaping.number("closed"),
-                               .fade_s = shaping.number("fade"),
-                               .turbulence_intensity = config.wind.number("default_turbulence"),
-                               .length_m = default_gust_length_m(config)};
-  if (const double ceiling_m_s = shaping.number("ceiling"); ceiling_m_s > 0.0) {
-    settings.ceiling = {.from_m_s = ceiling_m_s, .most_m_s = shaping.number("ceiling_most")};
+/// What the speeds that site gain and ceiling are given by do not fit together in.
+std::vector<ParameterError> speed_mistakes(const SiteRange& site, double ceiling_m_s, double ceiling_most_m_s) {
+  std::vector<ParameterError> mistakes;
+  if (site.strong_m_s > 0.0 && !(site.median_m_s > 0.0 && site.strong_m_s > site.median_m_s)) {
+    mistakes.push_back({"site_strong", fmt::format("is {}, with site_median {}; allowed: 0, or more than a "
+                                                   "site_median that is above 0",
+                                                   site.strong_m_s, site.median_m_s)});
   }
-  return settings;
+  if (ceiling_m_s > 0.0 && !(ceiling_most_m_s > ceiling_m_s)) {
+    mistakes.push_back(
+        {"ceiling_most", fmt::format("is {}; allowed: more than ceiling, which is {}", ceiling_most_m_s, ceiling_m_s)});
+  }
+  return mistakes;
 }
 
-OpeningHours opening_hours(const Config& config) {
-  return OpeningHours::parse(config.shaping.text("hours"), config.shaping.text("zone")).value();
+}  // namespace
+
+Result<ShapingConfig, std::vector<ParameterError>> shaping_config_of(const ParameterValues& values,
+                                                                     const WindConfig& wind) {
+  const SiteRange site{.median_m_s = values.number("site_median"),
+                       .strong_m_s = values.number("site_strong"),
+                       .most_gain = values.number("site_most_gain")};
+  const double ceiling_m_s = values.number("ceiling");
+  const double ceiling_most_m_s = values.number("ceiling_most");
+  std::vector<ParameterError> mistakes = speed_mistakes(site, ceiling_m_s, ceiling_most_m_s);
+  auto hours = OpeningHours::parse(values.text("hours"), values.text("zone"));
+  if (!hours) mistakes.push_back(hours.error());
+  if (!mistakes.empty()) return mistakes;
+
+  ShapingConfig shaping{.settings = {.floor_m_s = values.number("floor"),
+                                     .site = site,
+                                     .site_memory_s = kSecondsPerDay * values.number("site_memory"),
+                                     .over_s = values.number("over"),
+                                     .gusts = values.number("gusts"),
+                                     .ceiling = {},
+                                     .closed_level = values.number("closed"),
+                                     .fade_s = values.number("fade"),
+                                     .turbulence_intensity = wind.default_turbulence_intensity,
+                                     .length_m = wind.gust_length_m()},
+                        .hours = std::move(*hours),
+                        .site_file = values.text("site_file")};
+  if (ceiling_m_s > 0.0) shaping.settings.ceiling = {.from_m_s = ceiling_m_s, .most_m_s = ceiling_most_m_s};
+  return shaping;
 }
 
 }  // namespace yuragi

@@ -1,10 +1,7 @@
 #include "daemon/settings/shaping_parameters.hpp"
 
 #include <array>
-
-#include <fmt/format.h>
-
-#include "daemon/settings/opening_hours.hpp"
+#include <string>
 
 namespace yuragi {
 namespace {
@@ -99,26 +96,6 @@ const std::array kShapingParameters = {
 
 std::span<const Parameter> shaping_parameters() {
   return kShapingParameters;
-}
-
-std::vector<ParameterError> shaping_mistakes(const ParameterValues& shaping) {
-  std::vector<ParameterError> mistakes;
-  const double median_m_s = shaping.number("site_median");
-  const double strong_m_s = shaping.number("site_strong");
-  if (strong_m_s > 0.0 && !(median_m_s > 0.0 && strong_m_s > median_m_s)) {
-    mistakes.push_back({"site_strong", fmt::format("is {}, with site_median {}; allowed: 0, or more than a "
-                                                   "site_median that is above 0",
-                                                   strong_m_s, median_m_s)});
-  }
-  const double ceiling_m_s = shaping.number("ceiling");
-  if (const double most_m_s = shaping.number("ceiling_most"); ceiling_m_s > 0.0 && !(most_m_s > ceiling_m_s)) {
-    mistakes.push_back(
-        {"ceiling_most", fmt::format("is {}; allowed: more than ceiling, which is {}", most_m_s, ceiling_m_s)});
-  }
-  if (const auto hours = OpeningHours::parse(shaping.text("hours"), shaping.text("zone")); !hours) {
-    mistakes.push_back(hours.error());
-  }
-  return mistakes;
 }
 
 }  // namespace yuragi

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "engine/base/parameter.hpp"
 
@@ -9,8 +8,5 @@ namespace yuragi {
 
 /// What the table [shaping] may hold.
 std::span<const Parameter> shaping_parameters();
-
-/// What does not fit together in it, and hours that are none: each with the key that it is about.
-std::vector<ParameterError> shaping_mistakes(const ParameterValues& shaping);
 
 }  // namespace yuragi

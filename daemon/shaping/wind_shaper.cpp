@@ -6,7 +6,6 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/settings/duration_text.hpp"
-#include "daemon/settings/shaping_config.hpp"
 
 namespace yuragi {
 namespace {
@@ -25,10 +24,10 @@ constexpr double kSiteGainNews = 1.2;
 }  // namespace
 
 WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> noise)
-    : shaping_(shaping_settings(config), std::move(noise)), hours_(opening_hours(config)) {
+    : shaping_(config.shaping.settings, std::move(noise)), hours_(config.shaping.hours) {
   const bool is_of_this_site =
       std::ranges::none_of(config.sensors, [](const SensorConfig& sensor) { return sensor.driver->plays_recordings; });
-  if (is_of_this_site) site_path_ = config.shaping.text("site_file");
+  if (is_of_this_site) site_path_ = config.shaping.site_file;
   if (const double gusts = shaping_.settings().gusts; gusts != 1.0) {
     spdlog::info("shaping: gusts {:.2f} times the real ones", gusts);
   }

@@ -148,8 +148,9 @@ MicrophoneSettings settings_of(const ParameterValues& values) {
   MicrophoneSettings settings;
   MicEstimatorOptions& estimator = settings.estimator;
   settings.is_calibrated = values.number("gain") > 0.0 || !values.text("curve").empty();
-  estimator.calibration = mic_calibration_of(values);
-  if (values.number("noise_floor") < 0.0) estimator.noise_floor_db = values.number("noise_floor");
+  const MicLevelSettings level = mic_level_settings_of(values);
+  estimator.calibration = level.calibration;
+  estimator.noise_floor_db = level.noise_floor_db;
   estimator.noise_memory_s = values.number("noise_memory");
   estimator.ignores_sound = values.flag("ignore_sound");
   estimator.window_s = values.number("window");
@@ -168,7 +169,7 @@ MicrophoneSettings settings_of(const ParameterValues& values) {
       throw std::runtime_error(std::string("faces: ") + error.what());
     }
   }
-  if (values.number("band_high") < 1.5 * values.number("band_low")) {
+  if (level.band_high_hz < 1.5 * level.band_low_hz) {
     throw std::runtime_error("band_high must be half as much again as band_low, at least");
   }
   return settings;

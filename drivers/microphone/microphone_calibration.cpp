@@ -25,4 +25,12 @@ ParameterValues::Map parameters_of(const MicCalibration& calibration) {
   return {{"curve", format_mic_curve(std::get<MicCurve>(calibration))}};
 }
 
+MicLevelSettings mic_level_settings_of(const ParameterValues& values) {
+  MicLevelSettings settings{.calibration = mic_calibration_of(values),
+                            .band_low_hz = values.number("band_low"),
+                            .band_high_hz = values.number("band_high")};
+  if (const double floor_db = values.number("noise_floor"); floor_db < 0.0) settings.noise_floor_db = floor_db;
+  return settings;
+}
+
 }  // namespace yuragi

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "drivers/decode/microphone/mic_calibration.hpp"
 #include "engine/base/parameter.hpp"
 
@@ -11,5 +13,16 @@ MicCalibration mic_calibration_of(const ParameterValues& values);
 
 /// The inverse: the parameters gain, exponent and curve, with as many digits as a microphone's accuracy justifies.
 ParameterValues::Map parameters_of(const MicCalibration& calibration);
+
+/// What a microphone's level is measured in, and which speed it stands for.
+struct MicLevelSettings {
+  MicCalibration calibration{};
+  std::optional<double> noise_floor_db{};  ///< level of a calm, below 0; none: it is estimated while running
+  double band_low_hz = 0.0;                ///< the band whose power is the level
+  double band_high_hz = 0.0;
+};
+
+/// The same by the microphone driver's parameters. Throws std::runtime_error for a curve that is none.
+MicLevelSettings mic_level_settings_of(const ParameterValues& values);
 
 }  // namespace yuragi

@@ -149,7 +149,7 @@ class TheCheck(unittest.TestCase):
         "drivers/SOURCES.md": "## S2. USB\n\n| **S2.1** | WMR100 |\n\n- **S6.3.** clipping\n",
     }
 
-    FILES = {"drivers/decode/text/nmea.hpp"}
+    FILES = {"drivers/decode/nmea.hpp"}
 
     REFUSED = [
         ("engine/noise/a.hpp", "/// Source: wind.md 1."),
@@ -158,12 +158,12 @@ class TheCheck(unittest.TestCase):
         ("engine/noise/a.cpp", "// engine/METHOD.md M7"),
         ("engine/noise/a.cpp", "// (engine/METHOD.md M1,\n// D3)"),
         ("engine/noise/a.cpp", "// engine/METHOD.md M9: it is only mentioned there"),
-        ("drivers/hid/hid.cpp", "// Source: ../shared/sensors.md 2.1"),
-        ("drivers/hid/hid.cpp", 'open("../shared/data/a.log");  // from ../shared/data'),
-        ("drivers/hid/hid.cpp", "double way_m = 2'048.0;  // sensors.md's"),
-        ("drivers/hid/hid.cpp", "// Reports: drivers/decode/wmr.hpp."),
+        ("drivers/hid.cpp", "// Source: ../shared/sensors.md 2.1"),
+        ("drivers/hid.cpp", 'open("../shared/data/a.log");  // from ../shared/data'),
+        ("drivers/hid.cpp", "double way_m = 2'048.0;  // sensors.md's"),
+        ("drivers/hid.cpp", "// Reports: drivers/decode/wmr.hpp."),
         ("drivers/profiles/a.toml", 'name = "A"  # sensors.md 1'),
-        ("drivers/hid/hid.cpp", "const char c = '\"';  // drivers/SOURCES.md S2.2"),
+        ("drivers/hid.cpp", "const char c = '\"';  // drivers/SOURCES.md S2.2"),
         ("tests/drivers/a_test.cpp", "// ../shared/data/nmea, and nothing reads it"),
         ("tests/drivers/a_test.cpp", 'read("../shared/data/a");  // ../shared/answer'),
         ("tests/e2e/a_test.py", '"""As testing.md says."""'),
@@ -176,9 +176,9 @@ class TheCheck(unittest.TestCase):
         ("engine/noise/a.hpp", "/// (engine/METHOD.md\n/// M1)"),
         ("engine/noise/a.hpp", 'const char* name = "wind.md";'),
         ("engine/a.hpp", "/// METHOD.md M1: of the folder of this file"),
-        ("drivers/hid/hid.cpp", "// drivers/SOURCES.md S2, S2.1 and S6.3"),
-        ("drivers/hid/hid.cpp", "// drivers/decode/text/nmea.hpp, and weewx drivers/wmr.py; gpsd/drivers/driver.cpp"),
-        ("drivers/hid/hid.cpp", 'log("see ../shared/a.md");  // 20 % of M7'),
+        ("drivers/hid.cpp", "// drivers/SOURCES.md S2, S2.1 and S6.3"),
+        ("drivers/hid.cpp", "// drivers/decode/nmea.hpp, and weewx drivers/wmr.py; gpsd/drivers/driver.cpp"),
+        ("drivers/hid.cpp", 'log("see ../shared/a.md");  // 20 % of M7'),
         ("tests/drivers/a_test.cpp", '// Reads ../shared/data.\nread("../shared/data/a");'),
         ("tests/e2e/a_test.py", '"""A recording of ../shared/data."""\nfind("shared", "data")'),
         ("tests/notes.txt", "# wind.md"),

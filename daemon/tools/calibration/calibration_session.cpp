@@ -50,7 +50,7 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Hea
 std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
   if (heard.readings.empty()) return fmt::format("{}: waiting for it", sensor.name);
   const WindReading& last = heard.readings.back().reading;
-  const double speed_m_s = last.speed_m_s * calibration_of(sensor).unit_m_s;
+  const double speed_m_s = last.speed_m_s * sensor.calibration.unit_m_s;
   return fmt::format("{}: {:.2f} m/s{}, {} readings", sensor.name, speed_m_s,
                      last.direction_deg ? fmt::format(" from {:.0f} deg", *last.direction_deg) : "",
                      heard.readings.size());
@@ -86,7 +86,7 @@ CalibrationSession::CalibrationSession(const CalibrationRequest& request, double
 void CalibrationSession::open_source() {
   std::vector<const SensorConfig*> sensors = {&sensor()};
   if (reference_) sensors.push_back(reference());
-  const std::string address = request_.listen.value_or(config_.stream.text("listen"));
+  const std::string address = request_.listen.value_or(config_.stream.listen);
   source_ = is_live() ? make_live_source(std::move(sensors), address, clock_)
                       : make_recorded_source(std::move(sensors), request_.recording);
   dialog_.say(fmt::format("Calibrating the sensor \"{}\" ({}) of {}, from {}.", sensor().name, sensor().driver->name,
@@ -147,18 +147,18 @@ std::string CalibrationSession::progress_line(double elapsed_s, const Heard& hea
 }
 
 ParameterValue CalibrationSession::value_now(const ConfigChange& change) const {
-  return (change.table.empty() ? sensor().values : sensor().calibration).all().at(change.key);
+  return (change.table.empty() ? sensor().values : sensor().by_name.calibration).all().at(change.key);
 }
 
 std::vector<std::string> CalibrationSession::speed_effect(std::span<const ConfigChange> wanted,
                                                           std::span<const double> said_m_s) const {
-  SensorConfig changed = sensor();
+  ParameterValues changed = sensor().by_name.calibration;
   for (const ConfigChange& change : wanted) {
-    if (!change.table.empty()) changed.calibration.set(change.key, change.value);
+    if (!change.table.empty()) changed.set(change.key, change.value);
   }
   // At the sensor: the way to the height of the scenes comes after, and does not change.
   Calibration now = calibration();
-  Calibration then = calibration_of(changed);
+  Calibration then = calibration_of(changed).value();
   now.height_factor = then.height_factor = 1.0;
   std::vector<std::string> lines = {"where it says   is taken now for   then for"};
   for (const double said : said_m_s) {
@@ -207,9 +207,9 @@ std::vector<double> said_speeds_m_s(const HeardSensor& heard, const Calibration&
 ReferencePairs pair_with_reference(const CalibrationSession& session, const Heard& heard, double least_block_s) {
   // Heights count only where both are known: else the two are taken to stand side by side.
   const Calibration calibration = session.calibration();
-  Calibration reference = calibration_of(*session.reference());
+  Calibration reference = session.reference()->calibration;
   const bool has_heights =
-      session.sensor().calibration.number("height") > 0.0 && session.reference()->calibration.number("height") > 0.0;
+      session.sensor().heights.sensor_m.has_value() && session.reference()->heights.sensor_m.has_value();
   if (!has_heights) reference.height_factor = 1.0;
   const double to_sensor = has_heights ? 1.0 / calibration.height_factor : 1.0;
 

@@ -39,7 +39,7 @@ class CalibrationSession {
   const SensorConfig& sensor() const { return config_.sensors[sensor_]; }
   /// nullptr: there is none.
   const SensorConfig* reference() const { return reference_ ? &config_.sensors[*reference_] : nullptr; }
-  Calibration calibration() const { return calibration_of(sensor()); }
+  const Calibration& calibration() const { return sensor().calibration; }
   bool is_live() const { return request_.recording.empty(); }
   std::size_t part_count() const { return request_.parts.size(); }
   CalibrationDialog& dialog() { return dialog_; }

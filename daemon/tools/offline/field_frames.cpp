@@ -40,7 +40,7 @@ void make_recorded_frames(const std::filesystem::path& recording, const Playback
   // Some ticks a frame. A frame is of the first tick at its time or after it.
   OfflineWindOptions offline;
   offline.rate_hz = frames.rate_hz * std::ceil(kLeastTickRate_hz / frames.rate_hz);
-  offline.judge = judge_settings_of(config.sensors[0]);
+  offline.judge = config.sensors[0].judge;
   const double tick_s = 1.0 / offline.rate_hz;
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());

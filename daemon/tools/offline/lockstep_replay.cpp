@@ -4,7 +4,6 @@
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
-#include "daemon/settings/shaping_config.hpp"
 #include "engine/pose/pose_hash.hpp"
 
 namespace yuragi {
@@ -25,15 +24,15 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   Animation animation(config, gusts);
   Config one_source = config;
   one_source.sensors.resize(1);
-  one_source.wind.set("fallback_recording", std::string{});
+  one_source.wind.fallback.reset();
   const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts, animation.reach_m());
-  WindShaping shaping(shaping_settings(config), gusts);
+  WindShaping shaping(config.shaping.settings, gusts);
 
-  const double rate_hz = config.animation.number("rate");
+  const double rate_hz = config.animation.rate_hz;
   const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
   LockstepResult result;
   std::uint64_t followed_ticks = 0;
-  const std::optional<JudgeSettings> judged_by = judge_settings_of(one_source.sensors[0]);
+  const std::optional<JudgeSettings>& judged_by = one_source.sensors[0].judge;
   ReadingJudge judge(judged_by.value_or(JudgeSettings{}));
 
   for (std::uint64_t tick = 0; !player.is_finished(); ++tick) {

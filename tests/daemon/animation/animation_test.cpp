@@ -74,9 +74,9 @@ TEST(AnimationTest, GainIsAFactorOnTheWindThatASceneFeels) {
 }
 
 TEST(AnimationTest, PosesDoNotDependOnHowManyThreadsShareATick) {
-  const auto hash_with = [](std::int64_t threads) {
+  const auto hash_with = [](std::size_t threads) {
     Config config = installation("", "");
-    config.animation.set("threads", threads);
+    config.animation.threads = threads;
     Animation animation = animation_of(config);
     for (int tick = 0; tick < 30; ++tick) animation.step(everywhere({6.0, 2.0}), kTick_s);
     std::uint64_t hash = kPoseHashSeed;
@@ -185,9 +185,9 @@ TEST(AnimationTest, AMeasuredGustReachesASceneAfterItsWay) {
 }
 
 TEST(AnimationTest, WhatIsMeasuredMovesScenesAlikeHoweverManyThreadsThereAre) {
-  const auto hash_with = [](std::int64_t threads) {
+  const auto hash_with = [](std::size_t threads) {
     Config config = installation("z = 16", "z = -14");
-    config.animation.set("threads", threads);
+    config.animation.threads = threads;
     Animation animation = animation_of(config);
     MeasuredGust wind;
     for (int tick = 0; tick < 22 * 60; ++tick) animation.step(wind.next(), kTick_s);

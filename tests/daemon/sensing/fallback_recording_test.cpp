@@ -55,13 +55,11 @@ class FallbackRecordingTest : public ::testing::Test {
     }
     write_session(file(), readings, "mast");
     config_ = default_config();
-    config_.sensors = {{"roof", &kWilfulDriver, {}, no_calibration(), ""},
-                       {"yard", &kWilfulDriver, {}, no_calibration(), ""}};
-    config_.wind.set("default_speed", 1.0);
-    config_.wind.set("default_direction", 270.0);
-    config_.wind.set("default_turbulence", 0.0);
-    config_.wind.set("fallback_recording", file().string());
-    config_.wind.set("fallback_after", 5.0);
+    config_.sensors = {default_sensor("roof", kWilfulDriver, {}), default_sensor("yard", kWilfulDriver, {})};
+    config_.wind.default_speed_m_s = 1.0;
+    config_.wind.default_direction_deg = 270.0;
+    config_.wind.default_turbulence_intensity = 0.0;
+    config_.wind.fallback = {.recording = file(), .after_s = 5.0};
   }
 
   std::filesystem::path file() const { return folder_ / "calm.windlog"; }
@@ -123,7 +121,7 @@ TEST_F(FallbackRecordingTest, PlaysWhileEverySensorIsSilentAndEndsWhenOneIsLiveA
 
 TEST_F(FallbackRecordingTest, GetsTheCalibrationOfTheSensorThatWasRecorded) {
   config_.sensors[1].name = "mast";
-  config_.sensors[1].calibration.set("gain", 2.0);
+  config_.sensors[1].calibration.gain = 2.0;
   SensorHub hub(config_, clock_, make_gust_noise(config_));
   ASSERT_TRUE(tick_until(hub, [&] { return plays(hub); }));
   EXPECT_EQ(hub.status().at(2).speed_m_s, 8.0);

@@ -24,7 +24,7 @@ struct NotedPlayer final : RecordingPlayer {
 
 class PlayerDirectorTest : public testing::Test {
  protected:
-  PlayerDirector director(const std::string& control) {
+  PlayerDirector director(ControlPermission control) {
     return {control, {{"roof", &roof_, [this] { ++woken_; }}, {"yard", &yard_, [this] { ++woken_; }}}};
   }
 
@@ -33,7 +33,7 @@ class PlayerDirectorTest : public testing::Test {
 };
 
 TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
-  PlayerDirector here = director("loopback");
+  PlayerDirector here = director(ControlPermission::kLoopback);
   const auto one = here.answer({.action = wire::PlayerAction::kSeek, .sensor = "yard", .place = "+30"}, true);
   EXPECT_TRUE(one.done);
   EXPECT_EQ(one.message, "yard is told to go to +30");
@@ -66,7 +66,7 @@ TEST_F(PlayerDirectorTest, TellsEveryoneHowThingsAreAndChangesNothing) {
                                            .rounds = 3},
                 .orders_done = 4,
                 .refusal = "no"};
-  const auto reply = director("nobody").answer({}, false);
+  const auto reply = director(ControlPermission::kNobody).answer({}, false);
   EXPECT_TRUE(reply.done);
   ASSERT_EQ(reply.players.size(), 2U);
   EXPECT_EQ(reply.players[0].sensor, "roof");
@@ -84,23 +84,23 @@ TEST_F(PlayerDirectorTest, TellsEveryoneHowThingsAreAndChangesNothing) {
 
 TEST_F(PlayerDirectorTest, TakesOrdersOnlyFromThoseWhoMay) {
   const wire::PlayerWish pause{.action = wire::PlayerAction::kPause};
-  EXPECT_FALSE(director("nobody").answer(pause, true).done);
-  EXPECT_FALSE(director("loopback").answer(pause, false).done);
+  EXPECT_FALSE(director(ControlPermission::kNobody).answer(pause, true).done);
+  EXPECT_FALSE(director(ControlPermission::kLoopback).answer(pause, false).done);
   EXPECT_TRUE(roof_.orders.empty());
-  EXPECT_THAT(director("loopback").answer(pause, false).message, HasSubstr("[stream] control"));
-  EXPECT_TRUE(director("anywhere").answer(pause, false).done);
+  EXPECT_THAT(director(ControlPermission::kLoopback).answer(pause, false).message, HasSubstr("[stream] control"));
+  EXPECT_TRUE(director(ControlPermission::kAnywhere).answer(pause, false).done);
 }
 
 TEST_F(PlayerDirectorTest, SaysWhatThereIsWhereNothingFits) {
-  const auto unknown = director("loopback").answer({.sensor = "cellar"}, true);
+  const auto unknown = director(ControlPermission::kLoopback).answer({.sensor = "cellar"}, true);
   EXPECT_FALSE(unknown.done);
   EXPECT_TRUE(unknown.players.empty());
   EXPECT_THAT(unknown.message, HasSubstr("roof, yard"));
-  const auto none = PlayerDirector("loopback", {}).answer({}, true);
+  const auto none = PlayerDirector(ControlPermission::kLoopback, {}).answer({}, true);
   EXPECT_FALSE(none.done);
   EXPECT_THAT(none.message, HasSubstr("no sensor here"));
   roof_.is_full = true;
-  const auto full = director("loopback").answer({.action = wire::PlayerAction::kPause}, true);
+  const auto full = director(ControlPermission::kLoopback).answer({.action = wire::PlayerAction::kPause}, true);
   EXPECT_FALSE(full.done);
   EXPECT_EQ(full.players[0].order, 0U);
 }

@@ -47,7 +47,7 @@ class SensorHubTest : public ::testing::Test {
   SensorHubTest() {
     script = &script_;
     config_ = default_config();
-    config_.sensors = {{"roof", &kScriptedDriver, {}, no_calibration(), "wall.toml:3:1"}};
+    config_.sensors = {default_sensor("roof", kScriptedDriver, {}, "wall.toml:3:1")};
   }
 
   ManualClock clock_;
@@ -73,10 +73,10 @@ WindState wind_after_a_while(SensorHub& hub, ManualClock& clock) {
 }
 
 TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid) {
-  config_.wind.set("default_turbulence", 0.0);
+  config_.wind.default_turbulence_intensity = 0.0;
   script_.first_poll = [](const Clock& clock, SensorSink& sink) { sink.reading(reading_at(clock, 6.0)); };
-  config_.sensors[0].calibration.set("gain", 1.5);
-  config_.sensors[0].calibration.set("north_offset", 180.0);
+  config_.sensors[0].calibration.gain = 1.5;
+  config_.sensors[0].calibration.north_offset_deg = 180.0;
   std::vector<double> heard;
   SensorHub hub(config_, clock_, make_gust_noise(config_),
                 [&](std::size_t, const WindReading& reading) { heard.push_back(reading.speed_m_s); });
@@ -89,7 +89,7 @@ TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid
 }
 
 TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
-  config_.wind.set("default_turbulence", 0.0);
+  config_.wind.default_turbulence_intensity = 0.0;
   script_.first_poll = [](const Clock& clock, SensorSink& sink) {
     sink.link(LinkState::kConnected, "here");
     sink.reading(reading_at(clock, 6.0));
@@ -303,7 +303,7 @@ TEST(SensorHub, ASensorThatCannotBeMadeIsAMistakeAtItsPlaceInTheFile) {
       .parameters = {},
       .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { throw std::runtime_error("no such profile"); }};
   try {
-    open_sensor({"roof", &refusing, {}, no_calibration(), "wall.toml:3:1"});
+    open_sensor(default_sensor("roof", refusing, {}, "wall.toml:3:1"));
     FAIL() << "it was made";
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(), "wall.toml:3:1: sensor: no such profile");

@@ -58,7 +58,7 @@ class SensorJudgement : public ::testing::Test {
  protected:
   explicit SensorJudgement(std::size_t sensor_count = 1) {
     config_ = default_config();
-    config_.wind.set("default_speed", 2.0);
+    config_.wind.default_speed_m_s = 2.0;
     config_.sensors.clear();
     for (std::size_t i = 0; i < sensor_count; ++i) add_sensor(kSpokenDriver);
     auto logger = std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log_));
@@ -72,7 +72,7 @@ class SensorJudgement : public ::testing::Test {
 
   void add_sensor(const DriverDescription& driver) {
     const std::string name = std::string(driver.name) + std::to_string(config_.sensors.size());
-    config_.sensors.push_back({name, &driver, {}, no_calibration(), "wall.toml:3:1"});
+    config_.sensors.push_back(default_sensor(name, driver, {}, "wall.toml:3:1"));
   }
 
   void start() {
@@ -209,7 +209,7 @@ TEST_F(SensorJudgement, ASimulationMayBeAsSteadyAsItLikesAndSoMayOneThatIsNotJud
 }
 
 TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
-  config_.sensors[0].judge.set("enabled", false);
+  config_.sensors[0].judge.reset();
   start();
   go_on(60, [&] { say(0, breeze()); });
   go_on(300, [&] { say(0, 6.0); });
@@ -218,8 +218,8 @@ TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
 }
 
 TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
-  config_.sensors[0].judge.set("frozen", 100.0);
-  config_.sensors[0].judge.set("max_speed", 40.0);
+  config_.sensors[0].judge->frozen_s = 100.0;
+  config_.sensors[0].judge->max_speed_m_s = 40.0;
   start();
   go_on(60, [&] { say(0, breeze()); });
   go_on(95, [&] { say(0, 6.0); });
@@ -288,7 +288,7 @@ TEST_F(SensorJudgementOfThree, TheOneThatIsOutvotedLosesTheWindToTheNext) {
 }
 
 TEST_F(SensorJudgementOfThree, WhoIsNotToBeComparedIsNeverOutvoted) {
-  config_.sensors[0].judge.set("compare", false);
+  config_.sensors[0].is_compared = false;
   start();
   go_on(1000, [&] {
     say(0, breeze(33.0));
@@ -313,7 +313,7 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
 }
 
 TEST_F(SensorJudgementOfTwo, ACupThatStandsStillWhereTheOtherHasWindIsSeized) {
-  config_.sensors[0].judge.set("seized", 900.0);
+  config_.sensors[0].judge->seized_s = 900.0;
   start();
   const auto other_says = [&] { say(1, breeze(7.0)); };
   go_on(60, [&] { say(0, breeze()), other_says(); });

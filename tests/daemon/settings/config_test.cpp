@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/site_octaves.hpp"
-#include "daemon/settings/wind_settings.hpp"
+#include "engine/wind/turbulence/site_spectrum.hpp"
 
 namespace yuragi {
 namespace {
@@ -28,8 +29,8 @@ TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
   EXPECT_EQ(config.sensors[0].driver->name, "synthetic");
   ASSERT_EQ(config.scenes.size(), 1U);
   EXPECT_EQ(config.scenes[0].kind->name, "grass");
-  EXPECT_EQ(config.stream.text("listen"), "127.0.0.1:7410");
-  EXPECT_EQ(config.animation.number("rate"), 60.0);
+  EXPECT_EQ(config.stream.listen, "127.0.0.1:7410");
+  EXPECT_EQ(config.animation.rate_hz, 60.0);
 }
 
 TEST(Config, TakesWhatTheFileSaysAndDefaultsForTheRest) {
@@ -47,8 +48,8 @@ name = "meadow"
 )",
                                      "wall.toml");
   EXPECT_EQ(config.seed, 12U);
-  EXPECT_EQ(config.wind.number("default_speed"), 7.0) << "a whole number passes for a number";
-  EXPECT_EQ(config.wind.number("default_direction"), 240.0);
+  EXPECT_EQ(config.wind.default_speed_m_s, 7.0) << "a whole number passes for a number";
+  EXPECT_EQ(config.wind.default_direction_deg, 240.0);
   EXPECT_EQ(config.sensors[0].name, "attic");
   EXPECT_EQ(config.sensors[0].values.number("speed"), 9.5);
   EXPECT_EQ(config.sensors[0].origin, "wall.toml:5:1");
@@ -98,17 +99,17 @@ driver = "synthetic"
 name = "other"
 )",
                                      "wall.toml");
-  const Calibration calibration = calibration_of(config.sensors[0]);
+  const Calibration& calibration = config.sensors[0].calibration;
   EXPECT_EQ(calibration.gain, 1.05);
   EXPECT_EQ(calibration.curve.size(), 2U);
   EXPECT_EQ(calibration.height_factor, height_factor(2.0, 10.0, 0.03));
-  EXPECT_EQ(calibration_of(config.sensors[1]).gain, 1.0);
-  EXPECT_EQ(calibration_of(config.sensors[1]).height_factor, 1.0);
+  EXPECT_EQ(config.sensors[1].calibration.gain, 1.0);
+  EXPECT_EQ(config.sensors[1].calibration.height_factor, 1.0);
   EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
 
   const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
   const Config in_km_h = parse_config(sensor + "[sensor.calibration]\nunit = \"km/h\"\n", "wall.toml");
-  EXPECT_EQ(calibration_of(in_km_h.sensors[0]).unit_m_s, 1.0 / 3.6);
+  EXPECT_EQ(in_km_h.sensors[0].calibration.unit_m_s, 1.0 / 3.6);
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\nunit = \"km\"\n"), HasSubstr("sensor.calibration.unit: is"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ngain = 0\n"),
               StartsWith("wall.toml:4:8: sensor.calibration.gain: is 0; allowed: number from 0.01 to 100"));
@@ -128,21 +129,24 @@ TEST(Config, GustsReachAsFarAsTheHeightOfASensorSaysUnlessTheirLengthIsSet) {
       "[[sensor]]\nname = \"any\"\ndriver = \"synthetic\"\n";
   const Config derived = parse_config(sensors, "test");
   ASSERT_EQ(derived.sensors.size(), 4U);
-  EXPECT_NEAR(gust_length_m(derived, derived.sensors[0]), 25.0, 0.1);
-  EXPECT_NEAR(gust_length_m(derived, derived.sensors[1]), 85.0, 0.1);
+  EXPECT_NEAR(gust_length_m(derived.wind, derived.sensors[0]), 25.0, 0.1);
+  EXPECT_NEAR(gust_length_m(derived.wind, derived.sensors[1]), 85.0, 0.1);
   // Brought to 10 m, speed and length by the same factor: it passes in the same time.
-  EXPECT_NEAR(gust_length_m(derived, derived.sensors[2]), 24.95 * height_factor(4.4, 10.0, 0.03), 0.1);
-  EXPECT_EQ(gust_length_m(derived, derived.sensors[3]), 57.0);
-  EXPECT_EQ(default_gust_length_m(derived), 57.0);
+  EXPECT_NEAR(gust_length_m(derived.wind, derived.sensors[2]), 24.95 * height_factor(4.4, 10.0, 0.03), 0.1);
+  EXPECT_EQ(gust_length_m(derived.wind, derived.sensors[3]), 57.0);
+  EXPECT_EQ(derived.wind.gust_length_m(), 57.0);
 
   const Config set = parse_config("[wind]\ndefault_length = 40\n" + sensors, "test");
-  for (const SensorConfig& sensor : set.sensors) EXPECT_EQ(gust_length_m(set, sensor), 40.0) << sensor.name;
-  EXPECT_EQ(default_gust_length_m(set), 40.0);
+  for (const SensorConfig& sensor : set.sensors) EXPECT_EQ(gust_length_m(set.wind, sensor), 40.0) << sensor.name;
+  EXPECT_EQ(set.wind.gust_length_m(), 40.0);
 }
 
 TEST(Config, TheOctavesOfASiteAreARowOfDecibels) {
   const Config config = parse_config("[wind]\nsite_octaves = \"+1.2 -0.4 3\"\n", "test");
-  const SiteSpectrum::Decibels octaves_db = make_site_spectrum(config)->octaves_db();
+  EXPECT_EQ(config.wind.site_octaves_db, (std::vector{1.2, -0.4, 3.0}));
+  SiteSpectrum site;
+  site.expect(config.wind.site_octaves_db);
+  const SiteSpectrum::Decibels octaves_db = site.octaves_db();
   EXPECT_NEAR(octaves_db[0], 1.2, 1e-9);
   EXPECT_NEAR(octaves_db[1], -0.4, 1e-9);
   EXPECT_NEAR(octaves_db[2], 3.0, 1e-9);
@@ -170,7 +174,8 @@ TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {
   EXPECT_THAT(mistakes_of("shaping = 3\n"), StartsWith("wall.toml:1:1: shaping: is a value; write it as a table"));
   const Config config =
       parse_config("[shaping]\nceiling = 0\nceiling_most = 1\nhours = \"10:00-18:00\"\n", "wall.toml");
-  EXPECT_EQ(config.shaping.number("ceiling"), 0.0);
+  EXPECT_EQ(config.shaping.settings.ceiling.gain(60.0), 1.0) << "nothing is held back";
+  EXPECT_FALSE(config.shaping.hours.is_always_open());
   EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
 }
 
@@ -181,12 +186,12 @@ TEST(Config, ASensorHasItsPartAmongSeveral) {
       "[[sensor]]\ndriver = \"synthetic\"\nname = \"microphone\"\n[sensor.blend]\nrole = \"relative\"\n"
       "priority = 3\nweight = 2\nx = -4.5\nz = 2\naveraging = 600\ndirection_step = 22.5\n",
       "wall.toml");
-  EXPECT_EQ(config.wind.number("return_after"), 20.0);
-  const BlendSourceSettings roof = blend_source_of(config.sensors[0].blend, *config.sensors[0].driver);
+  EXPECT_EQ(config.wind.return_after_s, 20.0);
+  const BlendSourceSettings& roof = config.sensors[0].blend;
   EXPECT_FALSE(roof.is_relative);
   EXPECT_EQ(roof.priority, 0);
   EXPECT_EQ(roof.weight, 1.0);
-  const BlendSourceSettings microphone = blend_source_of(config.sensors[1].blend, *config.sensors[1].driver);
+  const BlendSourceSettings& microphone = config.sensors[1].blend;
   EXPECT_TRUE(microphone.is_relative);
   EXPECT_EQ(microphone.priority, 3);
   EXPECT_EQ(microphone.weight, 2.0);
@@ -207,9 +212,7 @@ TEST(Config, ASensorHasItsPartAmongSeveral) {
 
 TEST(Config, WhereASensorStandsIsToldOrNotAndStaysSoWhenWrittenOut) {
   const std::string sensor = "[[sensor]]\ndriver = \"synthetic\"\n";
-  const auto source_of = [](const Config& config) {
-    return blend_source_of(config.sensors.at(0).blend, *config.sensors.at(0).driver);
-  };
+  const auto source_of = [](const Config& config) { return config.sensors.at(0).blend; };
   struct Case {
     const char* blend;
     bool has_place;
@@ -248,14 +251,15 @@ TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
       "[[scene]]\nkind = \"grass\"\nx = 3\nz = -2.5\nheading = 90\ngain = 1.5\nshown = false\nblades_across = 50\n"
       "[[scene]]\nkind = \"grass\"\nname = \"other\"\n",
       "wall.toml");
-  const ParameterValues& placed = config.scenes[0].values;
-  EXPECT_EQ(placed.number("x"), 3.0);
-  EXPECT_EQ(placed.number("z"), -2.5);
-  EXPECT_EQ(placed.number("heading"), 90.0);
-  EXPECT_EQ(placed.number("gain"), 1.5);
-  EXPECT_FALSE(placed.flag("shown"));
-  EXPECT_EQ(config.scenes[1].values.number("gain"), 1.0);
-  EXPECT_TRUE(config.scenes[1].values.flag("shown"));
+  const SceneConfig& placed = config.scenes[0];
+  EXPECT_EQ(placed.placement.x_m, 3.0);
+  EXPECT_EQ(placed.placement.y_m, 0.0);
+  EXPECT_EQ(placed.placement.z_m, -2.5);
+  EXPECT_EQ(placed.placement.heading_deg, 90.0);
+  EXPECT_EQ(placed.wind_gain, 1.5);
+  EXPECT_FALSE(placed.is_shown);
+  EXPECT_EQ(config.scenes[1].wind_gain, 1.0);
+  EXPECT_TRUE(config.scenes[1].is_shown);
   EXPECT_THAT(to_toml(config), HasSubstr("heading = 90.0"));
 
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\ngain = 11\n"),
@@ -303,13 +307,13 @@ TEST(Config, ASensorsJudgeHasLimitsOfItsOwnAndDefaults) {
       "[[sensor]]\nname = \"free\"\ndriver = \"synthetic\"\n[sensor.judge]\nenabled = false\n"
       "[[sensor]]\nname = \"usual\"\ndriver = \"synthetic\"\n",
       "wall.toml");
-  const auto strict = judge_settings_of(config.sensors[0]);
+  const std::optional<JudgeSettings>& strict = config.sensors[0].judge;
   ASSERT_TRUE(strict.has_value());
   EXPECT_EQ(strict->frozen_s, 120.0);
   EXPECT_EQ(strict->seized_s, 600.0);
   EXPECT_EQ(strict->seized_alone_s, 3600.0);
-  EXPECT_FALSE(judge_settings_of(config.sensors[1]).has_value());
-  const auto usual = judge_settings_of(config.sensors[2]);
+  EXPECT_FALSE(config.sensors[1].judge.has_value());
+  const std::optional<JudgeSettings>& usual = config.sensors[2].judge;
   ASSERT_TRUE(usual.has_value());
   const JudgeSettings defaults;
   EXPECT_EQ(usual->max_speed_m_s, defaults.max_speed_m_s);
@@ -327,6 +331,90 @@ TEST(Config, MistakesOfAJudgeAreToldAtTheirPlaces) {
   EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfrozen = 0\n"),
               HasSubstr("wall.toml:4:10: sensor.judge.frozen: is 0"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfreeze = 10\n"), HasSubstr("sensor.judge.freeze"));
+}
+
+TEST(Config, EveryTableIsATypeInTheUnitsOfItsMembers) {
+  const Config config = parse_config(R"(
+[stream]
+max_clients = 5
+control = "anywhere"
+[animation]
+threads = 3
+[wind]
+default_turbulence = 0.2
+default_length = 0.5
+gustiness = 0.4
+evolving = false
+handover = 4
+stale_intervals = 6
+fallback_recording = "good-day.windlog"
+fallback_after = 90
+[shaping]
+floor = 1.5
+site_median = 3
+site_strong = 9
+site_most_gain = 2
+site_memory = 2
+site_file = "site.json"
+over = 60
+ceiling = 15
+ceiling_most = 20
+closed = 0.25
+fade = 30
+)",
+                                     "wall.toml");
+  EXPECT_EQ(config.stream.max_clients, 5U);
+  EXPECT_EQ(config.stream.control, ControlPermission::kAnywhere);
+  EXPECT_EQ(parse_config("", "").stream.control, ControlPermission::kLoopback);
+  EXPECT_EQ(parse_config("[stream]\ncontrol = \"nobody\"\n", "").stream.control, ControlPermission::kNobody);
+  EXPECT_EQ(config.animation.threads, 3U);
+
+  EXPECT_EQ(config.wind.default_turbulence_intensity, 0.2);
+  EXPECT_EQ(config.wind.default_length_m, 1.0) << "no gusts are shorter";
+  EXPECT_EQ(config.wind.gustiness, 0.4);
+  EXPECT_FALSE(config.wind.is_evolving);
+  EXPECT_EQ(config.wind.handover_s, 4.0);
+  EXPECT_EQ(config.wind.stale_intervals, 6.0);
+  ASSERT_TRUE(config.wind.fallback);
+  EXPECT_EQ(config.wind.fallback->recording, "good-day.windlog");
+  EXPECT_EQ(config.wind.fallback->after_s, 90.0);
+  EXPECT_EQ(config.wind.fallback->origin, "wall.toml:14:22");
+  EXPECT_FALSE(default_config().wind.fallback);
+  EXPECT_FALSE(default_config().wind.default_length_m);
+
+  const WindShapingSettings& shaping = config.shaping.settings;
+  EXPECT_EQ(shaping.floor_m_s, 1.5);
+  EXPECT_EQ(shaping.site.median_m_s, 3.0);
+  EXPECT_EQ(shaping.site.strong_m_s, 9.0);
+  EXPECT_EQ(shaping.site.most_gain, 2.0);
+  EXPECT_EQ(shaping.site_memory_s, 2.0 * 86400.0);
+  EXPECT_EQ(shaping.over_s, 60.0);
+  EXPECT_EQ(shaping.ceiling.from_m_s, 15.0);
+  EXPECT_EQ(shaping.ceiling.most_m_s, 20.0);
+  EXPECT_EQ(shaping.closed_level, 0.25);
+  EXPECT_EQ(shaping.fade_s, 30.0);
+  EXPECT_EQ(shaping.turbulence_intensity, 0.2) << "the breeze has that of the wind";
+  EXPECT_EQ(shaping.length_m, 1.0);
+  EXPECT_EQ(config.shaping.site_file, "site.json");
+  EXPECT_TRUE(config.shaping.hours.is_always_open());
+}
+
+TEST(Config, AnotherAddressIsWrittenOutToo) {
+  const Config config = listening_at(default_config(), "0.0.0.0:7411");
+  EXPECT_EQ(config.stream.listen, "0.0.0.0:7411");
+  EXPECT_EQ(parse_config(to_toml(config), "again.toml").stream.listen, "0.0.0.0:7411");
+}
+
+TEST(Config, ASensorOfNoFileHasTheDefaultsOfOneInAFile) {
+  const Config config = parse_config("[[sensor]]\ndriver = \"microphone\"\n", "wall.toml");
+  const SensorConfig& written = config.sensors[0];
+  Config by_hand = config;
+  by_hand.sensors = {default_sensor(written.name, *written.driver, written.values, "here")};
+  EXPECT_EQ(by_hand.sensors[0].origin, "here");
+  EXPECT_EQ(by_hand.sensors[0].blend.is_relative, written.blend.is_relative);
+  EXPECT_TRUE(by_hand.sensors[0].judge.has_value());
+  EXPECT_TRUE(by_hand.sensors[0].is_compared);
+  EXPECT_EQ(to_toml(by_hand), to_toml(config));
 }
 
 TEST(Config, WrittenOutAndReadAgainItIsTheSame) {

@@ -12,7 +12,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "daemon/settings/shaping_config.hpp"
+#include "daemon/settings/config.hpp"
 #include "tests/support/gusty_wind.hpp"
 
 namespace yuragi {
@@ -94,8 +94,8 @@ TEST(WindShaper, NothingButTheCeilingIsOnByDefault) {
 }
 
 TEST(WindShaper, TellsHowStrongGustsAreWhereTheyAreNotTheRealOnes) {
-  EXPECT_EQ(shaping_settings(parse_config("", "wall.toml")).gusts, 1.0);
-  const WindShapingSettings settings = shaping_settings(parse_config("[shaping]\ngusts = 1.5\n", "wall.toml"));
+  EXPECT_EQ(parse_config("", "wall.toml").shaping.settings.gusts, 1.0);
+  const WindShapingSettings settings = parse_config("[shaping]\ngusts = 1.5\n", "wall.toml").shaping.settings;
   EXPECT_EQ(settings.gusts, 1.5);
   EXPECT_EQ(shaping_text({.gusts = 1.5}, settings, {}), "gusts 1.50 times the real ones");
   EXPECT_EQ(shaping_text({.gusts = 1.0}, settings, {}), "");

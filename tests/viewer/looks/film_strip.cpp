@@ -165,7 +165,7 @@ void make_strip(const StripOptions& options) {
   Sheet sheet(options, blocks * rows * options.columns);
 
   const Config config = options.config.empty() ? default_config() : load_config(options.config);
-  const double tick_s = 1.0 / config.animation.number("rate");
+  const double tick_s = 1.0 / config.animation.rate_hz;
   const double start_s = std::max(0.0, options.from_s - kBefore_s);
   const double first_s = options.from_s - start_s;
   PlayerOptions player;

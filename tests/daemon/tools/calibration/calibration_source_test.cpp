@@ -38,18 +38,10 @@ const DriverDescription kAskedDriver{
     .parameters = {},
     .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { return std::make_unique<AskedSensor<kSpeaks>>(); }};
 
-SensorConfig sensor_named(const std::string& name, const DriverDescription& driver) {
-  SensorConfig sensor;
-  sensor.name = name;
-  sensor.driver = &driver;
-  sensor.calibration = no_calibration();
-  return sensor;
-}
-
 TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
   ManualClock clock;
-  SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
-  roof.calibration.set("gain", 2.0);
+  SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
+  roof.calibration.gain = 2.0;
   const auto source = make_live_source({&roof}, kNoDaemon, clock);
   EXPECT_EQ(source->description(), "the devices themselves");
   EXPECT_TRUE(source->is_live());
@@ -74,8 +66,8 @@ TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
 
 TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
   ManualClock clock;
-  const SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
-  const SensorConfig mast = sensor_named("mast", kAskedDriver<false>);
+  const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
+  const SensorConfig mast = default_sensor("mast", kAskedDriver<false>, {});
   const auto source = make_live_source({&roof, &mast}, kNoDaemon, clock);
   try {
     source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard&) {
@@ -111,7 +103,7 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
     }
     ASSERT_TRUE(writer.close());
   }
-  const SensorConfig roof = sensor_named("roof", kAskedDriver<true>);
+  const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
   const auto source = make_recorded_source({&roof}, file);
   EXPECT_FALSE(source->is_live());
   const auto hear = [&](const Stretch& stretch) { return source->hear(stretch, [](double, const Heard&) {})[0]; };
@@ -123,7 +115,7 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
   EXPECT_EQ(part.readings.front().time_s, 10.0);
   EXPECT_EQ(part.settings, std::set<std::string>{"gain = 1.0"});
 
-  const SensorConfig mast = sensor_named("mast", kAskedDriver<true>);
+  const SensorConfig mast = default_sensor("mast", kAskedDriver<true>, {});
   EXPECT_THROW(make_recorded_source({&mast}, file), ExitError);
   EXPECT_THROW(make_recorded_source({&roof}, folder / "none.windlog"), ExitError);
 }

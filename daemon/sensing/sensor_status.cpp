@@ -1,0 +1,66 @@
+#include "daemon/sensing/sensor_status.hpp"
+
+#include <cstddef>
+
+namespace yuragi {
+namespace {
+
+/// What is told of a sensor and of the fall-back alike.
+wire::SensorStatus status_of_source(std::string_view name, std::string_view driver, LinkState link,
+                                    const SourceReport& said) {
+  wire::SensorStatus status;
+  status.name = name;
+  status.driver = driver;
+  status.link = static_cast<std::uint8_t>(link);
+  status.health = static_cast<std::uint8_t>(said.health);
+  if (said.last) {
+    status.speed_m_s = said.last->speed_m_s;
+    status.direction_deg = said.last->direction_deg;
+    status.gust_m_s = said.last->gust_m_s;
+    status.simulated = said.last->quality == ReadingQuality::kSimulated;
+  }
+  status.age_s = said.age_s;
+  status.interval_s = said.interval_s;
+  return status;
+}
+
+}  // namespace
+
+wire::SensorStatus sensor_status(const SensorFacts& facts) {
+  const SensorEvidence& evidence = facts.evidence;
+  wire::SensorStatus status = status_of_source(facts.name, facts.driver, evidence.link, evidence.said);
+  status.detail = evidence.link_detail;
+  if (facts.last_raw) {
+    status.raw_speed_m_s = facts.last_raw->speed_m_s;
+    status.raw_direction_deg = facts.last_raw->direction_deg;
+  }
+  const SensorCounts& counts = facts.counts;
+  status.readings = counts.readings;
+  const auto add_refused = [&status](std::string_view why, std::uint64_t count) {
+    if (count > 0) status.refused.emplace_back(why, count);
+  };
+  for (std::size_t why = 0; why < kRefusalCount; ++why) {
+    add_refused(name_of(static_cast<Refusal>(why)), counts.refused[why]);
+  }
+  add_refused("not believed", counts.not_believed);
+  add_refused("lost", counts.lost);
+  status.frames = counts.frames;
+  status.reconnects = counts.reconnects;
+  status.replayed = evidence.is_replay;
+  status.state = state_of(evidence);
+  status.state_reason = reason_of(status.state, evidence);
+  return status;
+}
+
+wire::SensorStatus fallback_status(std::string_view name, std::string_view driver, const LinkReport& link,
+                                   const SourceReport& said, std::uint64_t readings) {
+  wire::SensorStatus status = status_of_source(name, driver, link.state, said);
+  status.detail = "all sensors are silent: " + link.detail;
+  status.readings = readings;
+  status.replayed = true;
+  status.state = said.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
+  status.state_reason = status.detail;
+  return status;
+}
+
+}  // namespace yuragi

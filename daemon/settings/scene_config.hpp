@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "engine/base/parameter.hpp"
+#include "engine/scenes/scene.hpp"
+
+namespace yuragi {
+
+/// A scene of an installation.
+struct SceneConfig {
+  std::string name;
+  const SceneDescription* kind = nullptr;
+  ParameterValues values{};  ///< its kind's own, which it reads when it is made, and common_scene_parameters()
+
+  ScenePlacement placement{};
+  double wind_gain = 1.0;  ///< how many times stronger than it is the wind is for this scene
+  bool is_shown = true;    ///< from the start
+};
+
+/// `values`: of common_scene_parameters(), and the kind's own.
+SceneConfig scene_config_of(std::string name, const SceneDescription& kind, ParameterValues values);
+
+}  // namespace yuragi
