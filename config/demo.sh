@@ -11,11 +11,49 @@ duration_s=${1:-30}
 [[ "$duration_s" =~ ^[0-9]+$ && "$duration_s" -ge 5 ]] || { echo "usage: config/demo.sh [SECONDS, at least 5]" >&2; exit 64; }
 picture=$PWD/demo.png
 cd "$(dirname "$0")/.."
+project=$PWD
 
 config/setup.sh
-echo "demo: building (about a minute the first time)"
-cmake --preset release >/dev/null
-cmake --build --preset release
+
+# ---- Build what the demo runs ----
+
+log=$project/build/demo.log
+mkdir -p build
+
+# Shows ninja's lines "@DONE ALL SECONDS ..." as one line that says how long it will go on; without a terminal, as a line now and then.
+# The time left is that of the steps so far for as many more.
+show_progress() {
+  local mark done all elapsed_s left line shown_s=-30
+  while read -r mark done all elapsed_s line; do
+    [ "$mark" = @ ] || continue
+    elapsed_s=${elapsed_s%.*}
+    left="a moment"
+    [ $((all - done)) -eq 0 ] || left=$(awk -v d="$done" -v a="$all" -v s="$elapsed_s" 'BEGIN { s *= (a - d) / d; printf s < 90 ? "%d s" : "%.1f minutes", s < 90 ? s : s / 60 }')
+    line="demo: building, step $done of $all, about $left left"
+    if [ -t 1 ]; then
+      printf '\r\033[K%s' "$line"
+    elif [ "$elapsed_s" -ge $((shown_s + 30)) ]; then
+      shown_s=$elapsed_s
+      echo "$line"
+    fi
+  done
+  [ ! -t 1 ] || printf '\r\033[K'
+}
+
+build() {
+  cmake --preset release >"$log" 2>&1 &&
+    NINJA_STATUS='@ %f %t %e ' cmake --build --preset release --target yuragi yuragi-sim yuragi-viewer 2>&1 | tee -a "$log" | show_progress
+}
+began=$SECONDS
+if ! build; then
+  tail -n 30 "$log" >&2
+  echo "demo: the build failed; all that it said is in $log" >&2
+  exit 1
+fi
+echo "demo: built in $((SECONDS - began)) s"
+config/examples.sh
+
+# ---- Run it ----
 
 # A Modbus anemometer that is not there: the simulator plays its wind on the real protocol. Each part takes a free port and
 # says which.
@@ -70,3 +108,14 @@ else
   wait "$viewer" || { cat "$work/viewer.log" >&2; exit 1; }
   echo "demo: picture written to $picture"
 fi
+
+cat <<TEXT
+
+demo: what to try next. The programs on PATH, and recordings, a log and configurations to play with:
+  source $project/config/env.sh
+  cd $project/build/examples
+  yuragi replay storm.windlog
+and in a second terminal, after the same two lines, what moves in that storm:
+  yuragi-viewer
+There is more in $project/README.md
+TEXT

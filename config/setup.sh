@@ -8,7 +8,7 @@
 set -euo pipefail
 
 build_packages=(
-  build-essential cmake ninja-build ccache pkg-config
+  build-essential cmake ninja-build ccache pkg-config python3
   libboost1.81-dev          # Asio; Debian's default 1.74 does not fit C++20, and the two exclude each other
   libfftw3-dev libsqlite3-dev libfccp-dev libhowardhinnant-date-dev
   libmodbus-dev libhidapi-dev libusb-1.0-0-dev portaudio19-dev libmosquitto-dev liblo-dev # the sensors
@@ -22,7 +22,7 @@ build_packages=(
 test_packages=(
   libgtest-dev libbenchmark-dev
   clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev
-  python3 python3-numpy python3-flatbuffers
+  python3-numpy python3-flatbuffers
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
   mosquitto liblo-tools socat                             # independent MQTT and OSC peers; serial lines
   python3-nmea2                                           # an independent reader of NMEA 0183

@@ -12,5 +12,6 @@ void add_nmea_command(CLI::App& app);
 void add_line_command(CLI::App& app);
 void add_hid_command(CLI::App& app);
 void add_usb_command(CLI::App& app);
+void add_recording_command(CLI::App& app);
 
 }  // namespace yuragi::sim

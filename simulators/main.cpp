@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   yuragi::sim::add_line_command(app);
   yuragi::sim::add_hid_command(app);
   yuragi::sim::add_usb_command(app);
+  yuragi::sim::add_recording_command(app);
   try {
     app.parse(argc, argv);
     return 0;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "engine/wind/turbulence/synthetic_wind.hpp"
 #include "tests/support/places.hpp"
 
 namespace yuragi::proof {
@@ -34,6 +35,17 @@ std::optional<SonicRecord> load_sonic(int number) {
     record.samples.push_back(wind);
   }
   if (record.samples.size() < 10000) throw std::runtime_error(file + ": ends too soon");
+  return record;
+}
+
+SonicRecord sonic_or_synthetic(int number) {
+  if (auto record = load_sonic(number)) return *record;
+  const SyntheticWind wind({.mean_speed_m_s = 7.0,
+                            .mean_direction_deg = 270.0,
+                            .turbulence_intensity = 0.2,
+                            .seed = static_cast<std::uint64_t>(number) + 1});
+  SonicRecord record{.name = "synthetic", .samples = {}};
+  for (int i = 0; i < 18'000; ++i) record.samples.push_back(wind.at(i / record.rate_hz));
   return record;
 }
 

@@ -22,6 +22,10 @@ struct SonicRecord {
 /// CSAT3, 10 Hz). Empty where the folder is not there. Throws std::runtime_error for a file that cannot be read.
 std::optional<SonicRecord> load_sonic(int number);
 
+/// load_sonic(number), or where it is not there half an hour of SyntheticWind with the same mean and turbulence: for
+/// what has to hold in any wind.
+SonicRecord sonic_or_synthetic(int number);
+
 /// What a slower sensor would have said: vector means over blocks of `interval_s`, each heard at the end of its block.
 /// Their times begin at 0 with the record. A block that is not full at the end is left out.
 std::vector<WindReading> block_means(const SonicRecord& record, double interval_s);

@@ -4,6 +4,7 @@
 passed=0
 failed=0
 skipped=0
+without_record=0 # of those that were skipped: for want of the real recordings in ../shared/data
 stage_times=()
 complaints=()
 
@@ -19,11 +20,12 @@ stage() {
   stage_times+=("$(printf '%-16s %5d s' "$name" $((SECONDS - started)))")
 }
 
-# add PASSED FAILED SKIPPED
+# add PASSED FAILED [SKIPPED [OF THESE WITHOUT THE RECORD]]
 add() {
   passed=$((passed + $1))
   failed=$((failed + $2))
-  skipped=$((skipped + $3))
+  skipped=$((skipped + ${3:-0}))
+  without_record=$((without_record + ${4:-0}))
 }
 
 # check WHAT COMMAND...: a stage's step that counts as one failed test if it fails, and is otherwise not counted.
@@ -37,15 +39,15 @@ check() {
   return 1
 }
 
-# count_results FILE: "PASSED FAILED SKIPPED" of CTest's JUnit file, then the last words of the first five tests that
-# failed, and the names of all. CTest also calls skipped what could not be started (a missing program, a failed fixture):
-# that is a failure here.
+# count_results FILE: "PASSED FAILED SKIPPED WITHOUT_RECORD" of CTest's JUnit file, then the last words of the first five tests
+# that failed, and the names of all. CTest also calls skipped what could not be started (a missing program, a failed fixture):
+# that is a failure here. A test that is skipped for want of a real recording names it.
 count_results() {
   /usr/bin/python3 - "$1" <<'PYTHON'
 import sys
 import xml.etree.ElementTree
 
-counts = [0, 0, 0]
+counts = [0, 0, 0, 0]
 failures = []
 for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
     reason = case.find("skipped")
@@ -54,6 +56,7 @@ for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
         counts[0] += 1
     elif case.get("status") == "disabled" or asked_to_skip:
         counts[2] += 1
+        counts[3] += "shared/data" in case.findtext("system-out", "")
     else:
         counts[1] += 1
         failures.append(case)
@@ -76,7 +79,7 @@ collect() {
   while IFS= read -r line; do
     [ -z "$line" ] || complaints+=("$line")
   done < <(tail -n +2 <<<"$counts")
-  # shellcheck disable=SC2046  # three words
+  # shellcheck disable=SC2046  # four words
   add $(head -n 1 <<<"$counts")
   # A complaint that stands in no test's result: no test matched, say.
   if [ "$status" -ne 0 ] && [ "$failed" -eq "$failed_before" ]; then
@@ -100,7 +103,8 @@ test_preset() {
 # nothing ran.
 finish() {
   local line="$passed passed, $failed failed"
-  [ "$skipped" -eq 0 ] || line+=", $skipped skipped"
+  [ "$without_record" -eq 0 ] || line+=", $without_record skipped: ../shared/data is not there"
+  [ "$skipped" -eq "$without_record" ] || line+=", $((skipped - without_record)) skipped for other reasons"
   if [ ${#stage_times[@]} -gt 1 ]; then
     printf '%s\n' "${stage_times[@]}"
     printf '%-16s %5d s\n' total "$SECONDS"

@@ -1,24 +1,29 @@
-// Real recordings through the whole driver, from a file and over TCP, against what the decoder alone makes of each
-// line.
+// Logs through the whole driver, from a file and over TCP, against what the decoder alone makes of each line: one that
+// is made up here, and real ones where they stand beside the project.
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
 #include "drivers/decode/text/nmea.hpp"
+#include "engine/wind/turbulence/synthetic_wind.hpp"
+#include "tests/support/decoded_text.hpp"
 #include "tests/support/descriptor.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/recording_sink.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
 namespace {
 
-struct RealLog {
+struct Log {
   std::string file;
   ParameterValues::Map settings;
   std::vector<DecodedWind> expected;
@@ -37,9 +42,27 @@ std::vector<DecodedWind> winds_in(const std::string& path, std::string_view begi
   return winds;
 }
 
-std::vector<RealLog> real_logs() {
+/// A minute of an anemometer at sea, with other instruments on the same line and a few damaged sentences.
+void write_log(const std::string& path) {
+  std::ofstream out(path, std::ios::binary);
+  SyntheticWind wind({.mean_speed_m_s = 7.0, .mean_direction_deg = 50.0});
+  for (int number = 0; number < 120; ++number) {
+    const WindVector now = wind.at(0.5 * number);
+    std::string line = sentence(fmt::format("WIMWV,{:.1f},R,{:.1f},M,A", direction_from_deg(now), speed_of(now)));
+    if (number % 17 == 5) line[8] = '#';
+    if (number % 23 == 7) line.resize(11);
+    out << line << "\r\n";
+    if (number % 4 == 0) out << sentence("SDDBT,36.1,f,11.0,M,6.0,F") << "\r\n";
+  }
+}
+
+/// The logs that are there; the one that is made up is written to `folder`.
+std::vector<Log> logs_here(const test::TemporaryFolder& folder) {
+  const std::string made_up = (folder / "made_up.log").string();
+  write_log(made_up);
   const auto path = [](const std::string& name) { return test::source_path("../shared/data/nmea/" + name); };
-  std::vector<RealLog> logs = {
+  std::vector<Log> logs = {
+      {made_up, {}, {}},
       // A plotter that says one wind in three sentences.
       {path("gpsd_bundg_zeus_9.log"), {}, {}},
       {path("gpsd_bundg_zeus_9.log"), {{"reference", std::string("relative")}}, {}},
@@ -47,8 +70,9 @@ std::vector<RealLog> real_logs() {
       {path("signalk_n2kd-183-merrimac.log"), {{"talker", std::string("02")}}, {}},
       {path("signalk_n2kd-183-merrimac.log"), {{"talker", std::string("24")}}, {}},
   };
-  const std::array<std::string_view, 4> wanted = {"$WIMWD", "$WIMWV", "$02MWV", "$24MWV"};
+  const std::array<std::string_view, 5> wanted = {"$WIMWV", "$WIMWD", "$WIMWV", "$02MWV", "$24MWV"};
   for (std::size_t i = 0; i < logs.size(); ++i) logs[i].expected = winds_in(logs[i].file, wanted[i]);
+  std::erase_if(logs, [](const Log& log) { return !std::filesystem::exists(log.file); });
   return logs;
 }
 
@@ -67,8 +91,8 @@ void expect_the_log(const std::vector<WindReading>& readings, const std::vector<
 }
 
 TEST(TextLog, IsReadFromAFileToItsLastReading) {
-  for (RealLog& log : real_logs()) {
-    if (log.expected.empty()) GTEST_SKIP() << log.file << " is not here";
+  const test::TemporaryFolder folder;
+  for (Log& log : logs_here(folder)) {
     SCOPED_TRACE(log.file);
     log.settings["transport"] = std::string("file");
     log.settings["file"] = log.file;
@@ -126,8 +150,8 @@ class LogServer {
 };
 
 TEST(TextLog, IsReadOverTcpToItsLastReading) {
-  for (RealLog& log : real_logs()) {
-    if (log.expected.empty()) GTEST_SKIP() << log.file << " is not here";
+  const test::TemporaryFolder folder;
+  for (Log& log : logs_here(folder)) {
     SCOPED_TRACE(log.file);
     const LogServer server(log.file);
     log.settings["transport"] = std::string("tcp");

@@ -252,8 +252,9 @@ TEST(CsvImport, OfAnyBytesEndsWithReadingsOrAFailure) {
 }
 
 TEST(CsvImport, OfTheFinseSonicNeedsNoOptions) {
-  std::ifstream in(test::source_path("../shared/data/sonic/finse_csat3_10hz_20180720T140000.csv"));
-  if (!in) GTEST_SKIP() << "the real recordings do not stand beside the project";
+  const std::string file = test::source_path("../shared/data/sonic/finse_csat3_10hz_20180720T140000.csv");
+  std::ifstream in(file);
+  if (!in) GTEST_SKIP() << file << " is not here";
   double sum = 0.0;
   double max = 0.0;
   Instant last;
