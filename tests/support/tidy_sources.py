@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-RULES = re.compile(r"\.clang-tidy|CMakePresets\.json|config/cmake/.*")
+RULES = re.compile(r"\.clang-tidy|CMakePresets\.json")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
 

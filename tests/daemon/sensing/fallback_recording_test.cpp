@@ -49,7 +49,8 @@ class FallbackRecordingTest : public ::testing::Test {
   FallbackRecordingTest() {
     is_answering = false;
     std::vector<WindReading> readings;
-    for (int i = 0; i < 1500; ++i) {
+    readings.reserve(1500);
+    for (std::int64_t i = 0; i < 1500; ++i) {
       readings.push_back(test::reading_at(20 * i, 4.0));
       readings.back().direction_deg = 270.0;
     }
@@ -129,7 +130,8 @@ TEST_F(FallbackRecordingTest, GetsTheCalibrationOfTheSensorThatWasRecorded) {
 
 TEST_F(FallbackRecordingTest, ASpikeThatWasRecordedMovesNothing) {
   std::vector<WindReading> readings;
-  for (int i = 0; i < 1500; ++i) readings.push_back(test::reading_at(20 * i, i % 40 == 39 ? 60.0 : 4.0));
+  readings.reserve(1500);
+  for (std::int64_t i = 0; i < 1500; ++i) readings.push_back(test::reading_at(20 * i, i % 40 == 39 ? 60.0 : 4.0));
   std::filesystem::remove(file());
   write_session(file(), readings, "mast");
   SensorHub hub(config_, clock_, make_gust_noise(config_));
