@@ -7,7 +7,7 @@
 
 #include "daemon/sensing/sensor_diagnosis.hpp"
 #include "daemon/sensing/sensor_runner.hpp"
-#include "drivers/decode/refusal.hpp"
+#include "drivers/sensor/sensor.hpp"
 #include "engine/wind/wind_reading.hpp"
 #include "engine/wire/wire.hpp"
 

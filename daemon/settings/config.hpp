@@ -54,7 +54,7 @@ Config default_config();
 SensorConfig default_sensor(std::string name, const DriverDescription& driver, ParameterValues values,
                             std::string origin = {});
 
-/// The same installation, listening at another address, which is not looked at.
+/// The same installation, listening at another address. The address is not checked.
 Config listening_at(Config config, const std::string& address);
 
 /// Reads a configuration. `source_name` stands in messages. Throws ConfigError with every mistake that was found.
@@ -70,7 +70,8 @@ Config load_config(const std::filesystem::path& file);
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor);
 
 /// The configuration as TOML with every value written out, but for what has none where it is left out: what a recording
-/// keeps, and what `check-config` shows. Of its values by name: what was changed in the other members is not seen.
+/// keeps, and what `check-config` shows. It writes the seed and the values by name; a change of the types alone does
+/// not show.
 std::string to_toml(const Config& config);
 std::string to_toml(const ParameterValues& values);
 

@@ -82,27 +82,57 @@ constexpr double kDragHalfSpeed_m_s = 4.5;
 constexpr double kBellyOmega_rad_s = 2.0;
 constexpr double kFullBelly = 0.2;
 
+/// The values of kBannerParameters, which says what each means.
+struct BannerSettings {
+  std::size_t columns;
+  std::size_t rows;
+  double width_m;
+  double height_m;
+  double clearance_m;
+  bool turns;
+  double belly;
+  double max_flutter_deg;
+  double half_flutter_speed_m_s;
+  double wave_length_m;
+  double wave_speed;
+  double hybrid;
+};
+BannerSettings banner_settings(const ParameterValues& values) {
+  return {.columns = static_cast<std::size_t>(values.integer("columns")),
+          .rows = static_cast<std::size_t>(values.integer("rows")),
+          .width_m = values.number("width"),
+          .height_m = values.number("height"),
+          .clearance_m = values.number("clearance"),
+          .turns = values.flag("turns"),
+          .belly = values.number("belly"),
+          .max_flutter_deg = values.number("max_flutter"),
+          .half_flutter_speed_m_s = values.number("half_flutter_speed"),
+          .wave_length_m = values.number("wave_length"),
+          .wave_speed = values.number("wave_speed"),
+          .hybrid = values.number("hybrid")};
+}
+
 /// In the hybrid the cloth is taut from the pole to the free side, and by its loops the pole takes most of the wind.
-ClothSpec banner_spec(const ParameterValues& values) {
-  return {.rows = static_cast<std::size_t>(values.integer("rows")),
-          .length_m = values.number("height"),
+ClothSpec banner_spec(const BannerSettings& settings) {
+  return {.rows = settings.rows,
+          .length_m = settings.height_m,
           .is_first_column_fixed = true,
-          .knots_across_m = values.number("width") / 5.0,
-          .knots_along_m = values.number("wave_length") / kBannerKnotsAWave,
-          .hybrid = values.number("hybrid"),
+          .knots_across_m = settings.width_m / 5.0,
+          .knots_along_m = settings.wave_length_m / kBannerKnotsAWave,
+          .hybrid = settings.hybrid,
           .normal_drag_per_m = 0.6 * drag_per_m(kDragHalfSpeed_m_s),
           .skin_drag_per_m = 0.05 * drag_per_m(kDragHalfSpeed_m_s),
           .across_stiffness_s2 = 6'000.0};
 }
 
 /// The pole stands at the scene's origin, the cross-arm points to the scene's east.
-ClothEdge banner_edge(const ParameterValues& values, const SceneSetup& setup) {
-  ClothEdge edge(static_cast<std::size_t>(values.integer("columns")));
-  const double pitch_m = values.number("width") / static_cast<double>(edge.columns - 1);
+ClothEdge banner_edge(const BannerSettings& settings, const SceneSetup& setup) {
+  ClothEdge edge(settings.columns);
+  const double pitch_m = settings.width_m / static_cast<double>(edge.columns - 1);
   for (std::size_t column = 0; column < edge.stride(); ++column) {
     const Turned place = turned(setup.placement, pitch_m * static_cast<double>(column), 0.0);
     edge.x_m[column] = static_cast<float>(setup.placement.x_m + place.east);
-    edge.y_m[column] = static_cast<float>(setup.placement.y_m + values.number("height") + values.number("clearance"));
+    edge.y_m[column] = static_cast<float>(setup.placement.y_m + settings.height_m + settings.clearance_m);
     edge.z_m[column] = static_cast<float>(setup.placement.z_m + place.south);
   }
   return edge;
@@ -110,7 +140,8 @@ ClothEdge banner_edge(const ParameterValues& values, const SceneSetup& setup) {
 
 class Banner final : public Scene {
  public:
-  Banner(const ParameterValues& values, const SceneSetup& setup) : Banner(banner_edge(values, setup), values, setup) {}
+  Banner(const BannerSettings& settings, const SceneSetup& setup)
+      : Banner(banner_edge(settings, setup), settings, setup) {}
 
   const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const Pose& pose() const noexcept override { return cloth_.pose(); }
@@ -173,19 +204,19 @@ class Banner final : public Scene {
     std::vector<float> ahead_m, aside_m;
   };
 
-  Banner(const ClothEdge& edge, const ParameterValues& values, const SceneSetup& setup)
-      : width_m_(values.number("width")),
-        turns_(values.flag("turns")),
-        belly_(values.number("belly")),
-        flutter_rad_(values.number("max_flutter") / ClothNoise::kLargest * kRadPerDeg),
-        half_flutter_speed_m_s_(values.number("half_flutter_speed")),
-        wave_speed_(values.number("wave_speed")),
+  Banner(const ClothEdge& edge, const BannerSettings& settings, const SceneSetup& setup)
+      : width_m_(settings.width_m),
+        turns_(settings.turns),
+        belly_(settings.belly),
+        flutter_rad_(settings.max_flutter_deg / ClothNoise::kLargest * kRadPerDeg),
+        half_flutter_speed_m_s_(settings.half_flutter_speed_m_s),
+        wave_speed_(settings.wave_speed),
         arm_(turned(setup.placement, 1.0, 0.0)),
         wind_(setup.placement, setup.gusts),
-        cloth_(banner_spec(values), edge, setup.row),
-        knot_link_m_(values.number("height") / static_cast<double>(cloth_.knots().links)),
+        cloth_(banner_spec(settings), edge, setup.row),
+        knot_link_m_(settings.height_m / static_cast<double>(cloth_.knots().links)),
         per_link_m_(static_cast<float>(1.0 / knot_link_m_)),
-        waves_(values.number("wave_length") / kBannerBand, values.number("wave_length"),
+        waves_(settings.wave_length_m / kBannerBand, settings.wave_length_m,
                {.first_m = 0.0,
                 .step_m = knot_link_m_,
                 .rows = cloth_.knots().links + 2 + static_cast<std::size_t>(kSlant * 2.0 * width_m_ / knot_link_m_),
@@ -300,8 +331,10 @@ const SceneDescription kBannerScene = {
     .name = "banner",
     .summary = "a nobori, held by its pole and cross-arm, that flutters in the wind",
     .parameters = kBannerParameters,
-    .make = [](const ParameterValues& values,
-               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Banner>(values, setup)); },
+    .make =
+        [](const ParameterValues& values, const SceneSetup& setup) {
+          return std::unique_ptr<Scene>(std::make_unique<Banner>(banner_settings(values), setup));
+        },
     .retired = kRetiredBannerParameters};
 
 }  // namespace yuragi

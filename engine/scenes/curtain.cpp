@@ -90,22 +90,62 @@ constexpr double kHemWeight = 0.25;
 /// How much of the wind's force its sides take, which spills past them; the middle takes all.
 constexpr double kSideForce = 0.75;
 
-ClothSpec curtain_spec(const ParameterValues& values) {
-  return {.rows = static_cast<std::size_t>(values.integer("rows")),
-          .length_m = values.number("height"),
-          .knots_across_m = std::min(0.12, values.number("wave_length") / 16.0),
-          .knots_along_m = values.number("height") / 24.0,
-          .hybrid = values.number("hybrid"),
-          .normal_drag_per_m = drag_per_m(values.number("half_sway_speed")),
-          .skin_drag_per_m = 0.05 * drag_per_m(values.number("half_sway_speed"))};
+/// The values of kCurtainParameters, which says what each means.
+struct CurtainSettings {
+  std::size_t columns;
+  std::size_t rows;
+  double width_m;
+  double height_m;
+  double clearance_m;
+  double folds;
+  double fold_depth_m;
+  double max_sway_deg;
+  double half_sway_speed_m_s;
+  double give_sideways;
+  double bulges;
+  double max_flutter_deg;
+  double half_flutter_speed_m_s;
+  double wave_length_m;
+  double wave_speed;
+  double damping;
+  double hybrid;
+};
+CurtainSettings curtain_settings(const ParameterValues& values) {
+  return {.columns = static_cast<std::size_t>(values.integer("columns")),
+          .rows = static_cast<std::size_t>(values.integer("rows")),
+          .width_m = values.number("width"),
+          .height_m = values.number("height"),
+          .clearance_m = values.number("clearance"),
+          .folds = values.number("folds"),
+          .fold_depth_m = values.number("fold_depth"),
+          .max_sway_deg = values.number("max_sway"),
+          .half_sway_speed_m_s = values.number("half_sway_speed"),
+          .give_sideways = values.number("give_sideways"),
+          .bulges = values.number("bulges"),
+          .max_flutter_deg = values.number("max_flutter"),
+          .half_flutter_speed_m_s = values.number("half_flutter_speed"),
+          .wave_length_m = values.number("wave_length"),
+          .wave_speed = values.number("wave_speed"),
+          .damping = values.number("damping"),
+          .hybrid = values.number("hybrid")};
+}
+
+ClothSpec curtain_spec(const CurtainSettings& settings) {
+  return {.rows = settings.rows,
+          .length_m = settings.height_m,
+          .knots_across_m = std::min(0.12, settings.wave_length_m / 16.0),
+          .knots_along_m = settings.height_m / 24.0,
+          .hybrid = settings.hybrid,
+          .normal_drag_per_m = drag_per_m(settings.half_sway_speed_m_s),
+          .skin_drag_per_m = 0.05 * drag_per_m(settings.half_sway_speed_m_s)};
 }
 
 /// The columns from west to east at a heading of 0, folded toward north and south.
-ClothEdge curtain_edge(const ParameterValues& values, const SceneSetup& setup) {
-  ClothEdge edge(static_cast<std::size_t>(values.integer("columns")));
-  const double height_m = values.number("height");
-  const double depth_m = 0.5 * values.number("fold_depth");
-  const double pitch_m = values.number("width") / static_cast<double>(edge.columns - 1);
+ClothEdge curtain_edge(const CurtainSettings& settings, const SceneSetup& setup) {
+  ClothEdge edge(settings.columns);
+  const double height_m = settings.height_m;
+  const double depth_m = 0.5 * settings.fold_depth_m;
+  const double pitch_m = settings.width_m / static_cast<double>(edge.columns - 1);
   const RandomStream random(setup.seed, stream_id("curtain folds"));
   const double first_phase_rad = 2.0 * kPi * random.uniform(0);
   const double second_phase_rad = 2.0 * kPi * random.uniform(1);
@@ -113,12 +153,12 @@ ClothEdge curtain_edge(const ParameterValues& values, const SceneSetup& setup) {
     // No two folds are alike: their phase and depth stray slowly along the curtain.
     const double along = static_cast<double>(column) / static_cast<double>(edge.columns - 1);
     const double stray = std::sin(2.0 * kPi * 1.7 * along + first_phase_rad);
-    const double fold = std::sin(2.0 * kPi * values.number("folds") * along + 0.9 * stray + second_phase_rad) *
+    const double fold = std::sin(2.0 * kPi * settings.folds * along + 0.9 * stray + second_phase_rad) *
                         (1.0 + 0.25 * std::sin(2.0 * kPi * 2.9 * along + second_phase_rad));
     const Turned place =
-        turned(setup.placement, pitch_m * static_cast<double>(column) - 0.5 * values.number("width"), depth_m * fold);
+        turned(setup.placement, pitch_m * static_cast<double>(column) - 0.5 * settings.width_m, depth_m * fold);
     edge.x_m[column] = static_cast<float>(setup.placement.x_m + place.east);
-    edge.y_m[column] = static_cast<float>(setup.placement.y_m + height_m + values.number("clearance"));
+    edge.y_m[column] = static_cast<float>(setup.placement.y_m + height_m + settings.clearance_m);
     edge.z_m[column] = static_cast<float>(setup.placement.z_m + place.south);
 
     // The hem's folds are half as deep again.
@@ -131,8 +171,8 @@ ClothEdge curtain_edge(const ParameterValues& values, const SceneSetup& setup) {
 
 class Curtain final : public Scene {
  public:
-  Curtain(const ParameterValues& values, const SceneSetup& setup)
-      : Curtain(curtain_edge(values, setup), values, setup) {}
+  Curtain(const CurtainSettings& settings, const SceneSetup& setup)
+      : Curtain(curtain_edge(settings, setup), settings, setup) {}
 
   const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const Pose& pose() const noexcept override { return cloth_.pose(); }
@@ -226,25 +266,25 @@ class Curtain final : public Scene {
   }
 
  private:
-  Curtain(const ClothEdge& edge, const ParameterValues& values, const SceneSetup& setup)
+  Curtain(const ClothEdge& edge, const CurtainSettings& settings, const SceneSetup& setup)
       : row_(setup.row),
-        half_sway_speed_m_s_(values.number("half_sway_speed")),
-        give_sideways_(values.number("give_sideways")),
-        largest_sine_(std::sin(values.number("max_sway") * kRadPerDeg)),
-        bulges_(values.number("bulges")),
-        flutter_(0.5 * values.number("max_flutter") / ClothNoise::kLargest * kRadPerDeg),
-        half_flutter_speed_m_s_(values.number("half_flutter_speed")),
-        wave_speed_(values.number("wave_speed")),
-        damping_(values.number("damping")),
-        first_hz_(kChainFirstMode * std::sqrt(kCurtainGravity_m_s2 / values.number("height")) / (2.0 * kPi)),
-        calm_delay_s_(2.0 * std::sqrt(values.number("height") / kCurtainGravity_m_s2)),
+        half_sway_speed_m_s_(settings.half_sway_speed_m_s),
+        give_sideways_(settings.give_sideways),
+        largest_sine_(std::sin(settings.max_sway_deg * kRadPerDeg)),
+        bulges_(settings.bulges),
+        flutter_(0.5 * settings.max_flutter_deg / ClothNoise::kLargest * kRadPerDeg),
+        half_flutter_speed_m_s_(settings.half_flutter_speed_m_s),
+        wave_speed_(settings.wave_speed),
+        damping_(settings.damping),
+        first_hz_(kChainFirstMode * std::sqrt(kCurtainGravity_m_s2 / settings.height_m) / (2.0 * kPi)),
+        calm_delay_s_(2.0 * std::sqrt(settings.height_m / kCurtainGravity_m_s2)),
         along_(turned(setup.placement, 1.0, 0.0)),
         wind_(setup.placement, setup.gusts),
-        gust_noise_(values.number("wave_length") / kCurtainBand, values.number("wave_length"),
+        gust_noise_(settings.wave_length_m / kCurtainBand, settings.wave_length_m,
                     setup.seed ^ stream_id("curtain gusts"), setup.row),
-        hem_noise_(kHemWaves * values.number("wave_length") / kCurtainBand, kHemWaves * values.number("wave_length"),
+        hem_noise_(kHemWaves * settings.wave_length_m / kCurtainBand, kHemWaves * settings.wave_length_m,
                    setup.seed ^ stream_id("curtain noise"), setup.row),
-        cloth_(curtain_spec(values), edge, setup.row),
+        cloth_(curtain_spec(settings), edge, setup.row),
         gust_(cloth_.knots().stride),
         flutter_now_(gust_.size()),
         out_(gust_.size()),
@@ -256,7 +296,7 @@ class Curtain final : public Scene {
     std::vector<float> x_m;
     std::vector<float> z_m;
     for (std::size_t i = 0; i < gust_.size(); ++i) {
-      const Turned place = turned(setup.placement, (cloth_.across(i) - 0.5) * values.number("width"), 0.0);
+      const Turned place = turned(setup.placement, (cloth_.across(i) - 0.5) * settings.width_m, 0.0);
       x_m.push_back(static_cast<float>(setup.placement.x_m + place.east));
       z_m.push_back(static_cast<float>(setup.placement.z_m + place.south));
       side_.push_back(kSideForce + (1.0 - kSideForce) * std::sin(kPi * std::clamp(cloth_.across(i), 0.0, 1.0)));
@@ -326,8 +366,10 @@ const SceneDescription kCurtainScene = {
     .name = "curtain",
     .summary = "a curtain that billows, and waves that run down and along it",
     .parameters = kCurtainParameters,
-    .make = [](const ParameterValues& values,
-               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Curtain>(values, setup)); },
+    .make =
+        [](const ParameterValues& values, const SceneSetup& setup) {
+          return std::unique_ptr<Scene>(std::make_unique<Curtain>(curtain_settings(values), setup));
+        },
     .retired = kRetiredCurtainParameters};
 
 }  // namespace yuragi

@@ -84,31 +84,71 @@ constexpr double kKnotsAWave = 32.0;
 
 constexpr double kFlagLiftDamping = 0.7;
 
-ClothSpec flag_spec(const ParameterValues& values) {
-  return {.rows = static_cast<std::size_t>(values.integer("rows")),
+/// The values of kFlagParameters, which says what each means.
+struct FlagSettings {
+  std::size_t columns;
+  std::size_t rows;
+  double length_m;
+  double hoist_m;
+  double pole_height_m;
+  double droop_deg;
+  double folds;
+  double fold_angle_deg;
+  double half_lift_speed_m_s;
+  double lift_rate_hz;
+  double max_flutter_deg;
+  double half_flutter_speed_m_s;
+  double wave_length_m;
+  double wave_speed;
+  double growth;
+  double edge_flutter;
+  double hybrid;
+};
+FlagSettings flag_settings(const ParameterValues& values) {
+  return {.columns = static_cast<std::size_t>(values.integer("columns")),
+          .rows = static_cast<std::size_t>(values.integer("rows")),
           .length_m = values.number("length"),
+          .hoist_m = values.number("hoist"),
+          .pole_height_m = values.number("pole_height"),
+          .droop_deg = values.number("droop"),
+          .folds = values.number("folds"),
+          .fold_angle_deg = values.number("fold_angle"),
+          .half_lift_speed_m_s = values.number("half_lift_speed"),
+          .lift_rate_hz = values.number("lift_rate"),
+          .max_flutter_deg = values.number("max_flutter"),
+          .half_flutter_speed_m_s = values.number("half_flutter_speed"),
+          .wave_length_m = values.number("wave_length"),
+          .wave_speed = values.number("wave_speed"),
+          .growth = values.number("growth"),
+          .edge_flutter = values.number("edge_flutter"),
+          .hybrid = values.number("hybrid")};
+}
+
+ClothSpec flag_spec(const FlagSettings& settings) {
+  return {.rows = settings.rows,
+          .length_m = settings.length_m,
           .knots_across_m = 0.1,
-          .knots_along_m = values.number("wave_length") / kKnotsAWave,
-          .hybrid = values.number("hybrid"),
-          .normal_drag_per_m = 4.0 * drag_per_m(values.number("half_lift_speed")),
-          .skin_drag_per_m = 1.0 * drag_per_m(values.number("half_lift_speed"))};
+          .knots_along_m = settings.wave_length_m / kKnotsAWave,
+          .hybrid = settings.hybrid,
+          .normal_drag_per_m = 4.0 * drag_per_m(settings.half_lift_speed_m_s),
+          .skin_drag_per_m = 1.0 * drag_per_m(settings.half_lift_speed_m_s)};
 }
 
 /// The columns from the top down, on the pole.
-ClothEdge flag_edge(const ParameterValues& values, const SceneSetup& setup) {
-  ClothEdge edge(static_cast<std::size_t>(values.integer("columns")));
-  const double pitch_m = values.number("hoist") / static_cast<double>(edge.columns - 1);
+ClothEdge flag_edge(const FlagSettings& settings, const SceneSetup& setup) {
+  ClothEdge edge(settings.columns);
+  const double pitch_m = settings.hoist_m / static_cast<double>(edge.columns - 1);
   const RandomStream random(setup.seed, stream_id("flag folds"));
   const double phase_rad = 2.0 * kPi * random.uniform(0);
   for (std::size_t column = 0; column < edge.stride(); ++column) {
     const double along = static_cast<double>(column) / static_cast<double>(edge.columns - 1);
-    const double fold = std::sin(2.0 * kPi * values.number("folds") * along + phase_rad);
+    const double fold = std::sin(2.0 * kPi * settings.folds * along + phase_rad);
     edge.x_m[column] = static_cast<float>(setup.placement.x_m);
     edge.y_m[column] =
-        static_cast<float>(setup.placement.y_m + values.number("pole_height") - pitch_m * static_cast<double>(column));
+        static_cast<float>(setup.placement.y_m + settings.pole_height_m - pitch_m * static_cast<double>(column));
     edge.z_m[column] = static_cast<float>(setup.placement.z_m);
     const Turned lean =
-        turned(setup.placement, fold * lean_of_deg(values.number("fold_angle")), -lean_of_deg(values.number("droop")));
+        turned(setup.placement, fold * lean_of_deg(settings.fold_angle_deg), -lean_of_deg(settings.droop_deg));
     edge.lean_east[column] = static_cast<float>(lean.east);
     edge.lean_south[column] = static_cast<float>(lean.south);
   }
@@ -117,7 +157,7 @@ ClothEdge flag_edge(const ParameterValues& values, const SceneSetup& setup) {
 
 class Flag final : public Scene {
  public:
-  Flag(const ParameterValues& values, const SceneSetup& setup) : Flag(flag_edge(values, setup), values, setup) {}
+  Flag(const FlagSettings& settings, const SceneSetup& setup) : Flag(flag_edge(settings, setup), settings, setup) {}
 
   const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const Pose& pose() const noexcept override { return cloth_.pose(); }
@@ -207,27 +247,26 @@ class Flag final : public Scene {
     }
   };
 
-  Flag(const ClothEdge& edge, const ParameterValues& values, const SceneSetup& setup)
-      : half_lift_speed_m_s_(values.number("half_lift_speed")),
-        lift_hz_(values.number("lift_rate")),
-        flutter_rad_(values.number("max_flutter") / ClothNoise::kLargest * kRadPerDeg),
-        half_flutter_speed_m_s_(values.number("half_flutter_speed")),
-        wave_speed_(values.number("wave_speed")),
-        edge_flutter_(values.number("edge_flutter")),
-        longest_rest_(std::hypot(lean_of_deg(values.number("droop")), lean_of_deg(values.number("fold_angle")))),
+  Flag(const ClothEdge& edge, const FlagSettings& settings, const SceneSetup& setup)
+      : half_lift_speed_m_s_(settings.half_lift_speed_m_s),
+        lift_hz_(settings.lift_rate_hz),
+        flutter_rad_(settings.max_flutter_deg / ClothNoise::kLargest * kRadPerDeg),
+        half_flutter_speed_m_s_(settings.half_flutter_speed_m_s),
+        wave_speed_(settings.wave_speed),
+        edge_flutter_(settings.edge_flutter),
+        longest_rest_(std::hypot(lean_of_deg(settings.droop_deg), lean_of_deg(settings.fold_angle_deg))),
         wind_(setup.placement, setup.gusts),
-        cloth_(flag_spec(values), edge, setup.row),
-        down_m_(heights_m(cloth_, values.number("hoist"))),
-        waves_(values.number("wave_length") / kFlagBand, values.number("wave_length"), wave_grid(values, 0.0),
+        cloth_(flag_spec(settings), edge, setup.row),
+        down_m_(heights_m(cloth_, settings.hoist_m)),
+        waves_(settings.wave_length_m / kFlagBand, settings.wave_length_m, wave_grid(settings, 0.0),
                setup.seed ^ stream_id("flag noise"), setup.row),
-        edge_waves_(kFlagEdgeWaves * values.number("wave_length") / kFlagBand,
-                    kFlagEdgeWaves * values.number("wave_length"), wave_grid(values, kFlagEdgeBegins),
-                    setup.seed ^ stream_id("flag edge noise"), setup.row),
+        edge_waves_(kFlagEdgeWaves * settings.wave_length_m / kFlagBand, kFlagEdgeWaves * settings.wave_length_m,
+                    wave_grid(settings, kFlagEdgeBegins), setup.seed ^ stream_id("flag edge noise"), setup.row),
         angle_rad_(cloth_.knots().stride),
         gusts_(cloth_.knots().stride) {
     for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
       const double along = cloth_.along(link);
-      wave_rad_.push_back(static_cast<float>(flutter_rad_ * std::pow(along, values.number("growth"))));
+      wave_rad_.push_back(static_cast<float>(flutter_rad_ * std::pow(along, settings.growth)));
       if (along < kFlagEdgeBegins) continue;
       edge_rad_.push_back(
           static_cast<float>(flutter_rad_ * edge_flutter_ * (along - kFlagEdgeBegins) / (1.0 - kFlagEdgeBegins)));
@@ -244,10 +283,10 @@ class Flag final : public Scene {
   }
 
   /// The knots from `begins` on, as a part of the way to the fly.
-  ClothWaveGrid wave_grid(const ParameterValues& values, double begins) const {
+  ClothWaveGrid wave_grid(const FlagSettings& settings, double begins) const {
     std::size_t first = 0;
     while (cloth_.along(first) < begins) ++first;
-    const double length_m = values.number("length");
+    const double length_m = settings.length_m;
     return {.first_m = cloth_.along(first) * length_m,
             .step_m = length_m / static_cast<double>(cloth_.knots().links),
             .rows = cloth_.knots().links - first,
@@ -288,8 +327,10 @@ const SceneDescription kFlagScene = {
     .name = "flag",
     .summary = "a flag that hangs limp in calm air, and flies downwind of its pole",
     .parameters = kFlagParameters,
-    .make = [](const ParameterValues& values,
-               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Flag>(values, setup)); },
+    .make =
+        [](const ParameterValues& values, const SceneSetup& setup) {
+          return std::unique_ptr<Scene>(std::make_unique<Flag>(flag_settings(values), setup));
+        },
     .retired = kRetiredFlagParameters};
 
 }  // namespace yuragi

@@ -120,6 +120,32 @@ constexpr std::array kRetiredFlameParameters = {
     RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches it"},
 };
 
+/// The values of kFlameParameters, which says what each means.
+struct FlameSettings {
+  bool is_panel;
+  std::size_t columns;
+  std::size_t rows;
+  double height_m;
+  double width_m;
+  double rise_speed_m_s;
+  double flicker;
+  double puffing;
+  double exposure;
+  double beta;
+};
+FlameSettings flame_settings(const ParameterValues& values) {
+  return {.is_panel = values.text("form") == "texture",
+          .columns = static_cast<std::size_t>(values.integer("columns")),
+          .rows = static_cast<std::size_t>(values.integer("rows")),
+          .height_m = values.number("height"),
+          .width_m = values.number("width"),
+          .rise_speed_m_s = values.number("rise_speed"),
+          .flicker = values.number("flicker"),
+          .puffing = values.number("puffing"),
+          .exposure = values.number("exposure"),
+          .beta = values.number("beta")};
+}
+
 /// The points' coordinates along the tiles: two noises at right angles to each other through a body, both across a
 /// panel.
 struct FlamePlaces {
@@ -133,25 +159,23 @@ FlamePlaces places_on_tiles(const FlameBody& body, double across) {
   return places;
 }
 
-std::array<NoiseLayerSpec, 2> flame_layers(const ParameterValues& values, std::uint64_t seed) {
-  const double period_m = values.number("rise_speed") * kCrossed_s;
+std::array<NoiseLayerSpec, 2> flame_layers(const FlameSettings& settings, std::uint64_t seed) {
+  const double period_m = settings.rise_speed_m_s * kCrossed_s;
   const auto layer = [&](std::uint64_t which, double longer, float weight) {
-    return NoiseLayerSpec{.noise = {.size = kNoiseSamples,
-                                    .beta = values.number("beta"),
-                                    .seed = seed ^ which,
-                                    .from_cycles = kFewestWaves},
-                          .period_x_m = longer * period_m,
-                          .period_z_m = longer * period_m,
-                          .weight = weight,
-                          .turn_cos = LineCut::kEast,
-                          .turn_sin = LineCut::kSouth};
+    return NoiseLayerSpec{
+        .noise = {.size = kNoiseSamples, .beta = settings.beta, .seed = seed ^ which, .from_cycles = kFewestWaves},
+        .period_x_m = longer * period_m,
+        .period_z_m = longer * period_m,
+        .weight = weight,
+        .turn_cos = LineCut::kEast,
+        .turn_sin = LineCut::kSouth};
   };
   return {layer(stream_id("flame"), 1.0, 0.8F), layer(stream_id("flame tongues"), kSecondFaster, 0.6F)};
 }
 
-LayeredNoise flame_noise(const FlameBody& body, const ParameterValues& values, double across, std::uint64_t seed) {
+LayeredNoise flame_noise(const FlameBody& body, const FlameSettings& settings, double across, std::uint64_t seed) {
   const FlamePlaces places = places_on_tiles(body, across);
-  std::array<NoiseLayerSpec, 2> layers = flame_layers(values, seed);
+  std::array<NoiseLayerSpec, 2> layers = flame_layers(settings, seed);
   layers[1].x_m = places.second_m;
   return {layers, places.first_m, body.up_m};
 }
@@ -168,14 +192,14 @@ NoiseTile2 pace_of_puffs(std::uint64_t seed) {
 
 class Flame final : public Scene {
  public:
-  Flame(const ParameterValues& values, const SceneSetup& setup)
-      : Flame(make_flame_body({.is_panel = values.text("form") == "texture",
-                               .columns = static_cast<std::size_t>(values.integer("columns")),
-                               .rows = static_cast<std::size_t>(values.integer("rows")),
-                               .height_m = values.number("height"),
-                               .width_m = values.number("width")},
+  Flame(const FlameSettings& settings, const SceneSetup& setup)
+      : Flame(make_flame_body({.is_panel = settings.is_panel,
+                               .columns = settings.columns,
+                               .rows = settings.rows,
+                               .height_m = settings.height_m,
+                               .width_m = settings.width_m},
                               setup.placement),
-              values, setup) {}
+              settings, setup) {}
 
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
@@ -256,26 +280,26 @@ class Flame final : public Scene {
   }
 
  private:
-  Flame(FlameBody body, const ParameterValues& values, const SceneSetup& setup)
+  Flame(FlameBody body, const FlameSettings& settings, const SceneSetup& setup)
       : row_(setup.row),
-        rise_m_s_(values.number("rise_speed")),
-        height_m_(values.number("height")),
-        width_m_(values.number("width")),
-        flicker_(values.number("flicker")),
-        puffing_(values.number("puffing")),
-        exposure_(values.number("exposure")),
-        puff_hz_(kPuff_hz_sqrt_m / std::sqrt(values.number("width"))),
-        across_(kWidthOfTile * kCrossed_s * values.number("rise_speed") / values.number("width")),
+        rise_m_s_(settings.rise_speed_m_s),
+        height_m_(settings.height_m),
+        width_m_(settings.width_m),
+        flicker_(settings.flicker),
+        puffing_(settings.puffing),
+        exposure_(settings.exposure),
+        puff_hz_(kPuff_hz_sqrt_m / std::sqrt(settings.width_m)),
+        across_(kWidthOfTile * kCrossed_s * settings.rise_speed_m_s / settings.width_m),
         wind_(setup.placement, setup.gusts),
         axis_({.rows = body.surface.rows,
-               .height_m = values.number("height") * static_cast<double>(body.along.back()),
-               .felt_at_m = values.number("height") / 2.0,
-               .foot_m = values.number("width"),
-               .rise_m_s = values.number("rise_speed"),
-               .wobble = kWobblePerFlicker * values.number("flicker"),
-               .strongest_m_s = kStrongestSceneWind_m_s * values.number("exposure"),
+               .height_m = settings.height_m * static_cast<double>(body.along.back()),
+               .felt_at_m = settings.height_m / 2.0,
+               .foot_m = settings.width_m,
+               .rise_m_s = settings.rise_speed_m_s,
+               .wobble = kWobblePerFlicker * settings.flicker,
+               .strongest_m_s = kStrongestSceneWind_m_s * settings.exposure,
                .seed = setup.seed}),
-        noise_(flame_noise(body, values, across_, setup.seed)),
+        noise_(flame_noise(body, settings, across_, setup.seed)),
         pace_(pace_of_puffs(setup.seed)),
         values_(body.east_m.size(), 0.0F),
         along_(body.east_m.size(), 0.0F),
@@ -370,8 +394,10 @@ const SceneDescription kFlameScene = {
     .name = "flame",
     .summary = "a flame: tongues of noise rise, it breathes, and the wind lays it over",
     .parameters = kFlameParameters,
-    .make = [](const ParameterValues& values,
-               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Flame>(values, setup)); },
+    .make =
+        [](const ParameterValues& values, const SceneSetup& setup) {
+          return std::unique_ptr<Scene>(std::make_unique<Flame>(flame_settings(values), setup));
+        },
     .is_still_in_calm = false,
     .retired = kRetiredFlameParameters};
 

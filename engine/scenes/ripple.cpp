@@ -91,8 +91,32 @@ constexpr std::array kRetiredRippleParameters = {
     RetiredParameter{"half_speed", "is now onset: the wind that raises the first ripples"},
 };
 
+/// The values of kRippleParameters, which says what each means.
+struct RippleSettings {
+  std::size_t columns;
+  std::size_t rows;
+  double width_m;
+  double depth_m;
+  double steepness;
+  double wave_length_m;
+  double onset_m_s;
+  double gustiness;
+  double beta;
+};
+RippleSettings ripple_settings(const ParameterValues& values) {
+  return {.columns = static_cast<std::size_t>(values.integer("columns")),
+          .rows = static_cast<std::size_t>(values.integer("rows")),
+          .width_m = values.number("width"),
+          .depth_m = values.number("depth"),
+          .steepness = values.number("steepness"),
+          .wave_length_m = values.number("wave_length"),
+          .onset_m_s = values.number("onset"),
+          .gustiness = values.number("gustiness"),
+          .beta = values.number("beta")};
+}
+
 /// A level grid around the world's origin, rows along x from north to south.
-SurfaceSkeleton level_water(const ParameterValues& values, std::size_t columns, std::size_t rows) {
+SurfaceSkeleton level_water(const RippleSettings& settings, std::size_t columns, std::size_t rows) {
   SurfaceSkeleton water;
   water.columns = columns;
   water.rows = rows;
@@ -101,8 +125,8 @@ SurfaceSkeleton level_water(const ParameterValues& values, std::size_t columns, 
   };
   for (std::size_t row = 0; row < water.rows; ++row) {
     for (std::size_t column = 0; column < water.columns; ++column) {
-      water.rest_x_m.push_back(at(column, water.columns, values.number("width")));
-      water.rest_z_m.push_back(at(row, water.rows, values.number("depth")));
+      water.rest_x_m.push_back(at(column, water.columns, settings.width_m));
+      water.rest_z_m.push_back(at(row, water.rows, settings.depth_m));
     }
   }
   const std::size_t count = water.rest_x_m.size();
@@ -113,21 +137,21 @@ SurfaceSkeleton level_water(const ParameterValues& values, std::size_t columns, 
   return water;
 }
 
-SurfaceSkeleton placed_water(const ParameterValues& values, std::size_t columns, std::size_t rows,
+SurfaceSkeleton placed_water(const RippleSettings& settings, std::size_t columns, std::size_t rows,
                              const ScenePlacement& placement) {
-  SurfaceSkeleton water = level_water(values, columns, rows);
+  SurfaceSkeleton water = level_water(settings, columns, rows);
   place(placement, water);
   return water;
 }
 
-RoughWaterSpec roughness_of(const ParameterValues& values) {
-  return {.columns = static_cast<std::size_t>(values.integer("columns")),
-          .rows = static_cast<std::size_t>(values.integer("rows")),
-          .width_m = values.number("width"),
-          .depth_m = values.number("depth"),
+RoughWaterSpec roughness_of(const RippleSettings& settings) {
+  return {.columns = settings.columns,
+          .rows = settings.rows,
+          .width_m = settings.width_m,
+          .depth_m = settings.depth_m,
           .finest_cell_m = kFinestCell_m,
-          .part = values.number("steepness"),
-          .onset_m_s = values.number("onset")};
+          .part = settings.steepness,
+          .onset_m_s = settings.onset_m_s};
 }
 
 /// The speed of waves on deep water, which gravity and the surface's tension drive.
@@ -143,9 +167,9 @@ double square_of(double value) {
 /// The two fields. Beyond the strongest wave, of length wave_length, their spectrum falls as 1/f^beta, and before it
 /// there is little: in two dimensions von Karman's spectrum of scale L has most power in the ring of wavelength
 /// 2 pi sqrt(beta) 1.339 L.
-std::array<NoiseLayerSpec, 2> wave_layers(const ParameterValues& values, std::uint64_t seed) {
-  const double beta = values.number("beta");
-  const double period_m = kWavesPerTile * values.number("wave_length");
+std::array<NoiseLayerSpec, 2> wave_layers(const RippleSettings& settings, std::uint64_t seed) {
+  const double beta = settings.beta;
+  const double period_m = kWavesPerTile * settings.wave_length_m;
   const double scale = 1.0 / (kWavesPerTile * 2.0 * std::numbers::pi * std::sqrt(beta) * 1.339);
   const auto waves = [&](std::uint64_t which) {
     return NoiseSpec{.size = kWaveSamples,
@@ -160,10 +184,8 @@ std::array<NoiseLayerSpec, 2> wave_layers(const ParameterValues& values, std::ui
 
 class Ripple final : public Scene {
  public:
-  Ripple(const ParameterValues& values, const SceneSetup& setup)
-      : Ripple(placed_water(values, static_cast<std::size_t>(values.integer("columns")),
-                            static_cast<std::size_t>(values.integer("rows")), setup.placement),
-               values, setup) {}
+  Ripple(const RippleSettings& settings, const SceneSetup& setup)
+      : Ripple(placed_water(settings, settings.columns, settings.rows, setup.placement), settings, setup) {}
 
   const Skeleton& skeleton() const noexcept override { return skeleton_; }
   const Pose& pose() const noexcept override { return pose_; }
@@ -236,19 +258,19 @@ class Ripple final : public Scene {
   }
 
  private:
-  Ripple(SurfaceSkeleton water, const ParameterValues& values, const SceneSetup& setup)
+  Ripple(SurfaceSkeleton water, const RippleSettings& settings, const SceneSetup& setup)
       : row_(setup.row),
-        gustiness_(values.number("gustiness")),
-        wave_speed_m_s_{wave_speed(values.number("wave_length")), wave_speed(kShorter * values.number("wave_length"))},
+        gustiness_(settings.gustiness),
+        wave_speed_m_s_{wave_speed(settings.wave_length_m), wave_speed(kShorter * settings.wave_length_m)},
         wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
-        waves_(wave_layers(values, setup.seed), water.rest_x_m, water.rest_z_m, water.columns),
+        waves_(wave_layers(settings, setup.seed), water.rest_x_m, water.rest_z_m, water.columns),
         gusts_({.has_two_tiles = false, .seed = setup.seed ^ stream_id("ripple gusts")}),
-        rough_(roughness_of(values)),
+        rough_(roughness_of(settings)),
         noise_(water.rest_x_m.size(), 0.0F),
         slope_(water.rest_x_m.size(), 0.0F),
         skeleton_(std::move(water)),
         pose_(rest_pose(skeleton_)) {
-    const SurfaceSkeleton nodes = placed_water(values, rough_.node_columns(), rough_.node_rows(), setup.placement);
+    const SurfaceSkeleton nodes = placed_water(settings, rough_.node_columns(), rough_.node_rows(), setup.placement);
     const std::size_t count = nodes.rest_x_m.size();
     node_wind_m_s_.assign(count, 0.0F);
     if (setup.gusts) {
@@ -298,8 +320,10 @@ const SceneDescription kRippleScene = {
     .name = "ripple",
     .summary = "water under the wind: waves rise, and gusts roughen it as they pass",
     .parameters = kRippleParameters,
-    .make = [](const ParameterValues& values,
-               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Ripple>(values, setup)); },
+    .make =
+        [](const ParameterValues& values, const SceneSetup& setup) {
+          return std::unique_ptr<Scene>(std::make_unique<Ripple>(ripple_settings(values), setup));
+        },
     .retired = kRetiredRippleParameters};
 
 }  // namespace yuragi

@@ -103,6 +103,9 @@ name = "other"
   EXPECT_EQ(calibration.gain, 1.05);
   EXPECT_EQ(calibration.curve.size(), 2U);
   EXPECT_EQ(calibration.height_factor, height_factor(2.0, 10.0, 0.03));
+  EXPECT_EQ(config.sensors[0].heights.sensor_m, 2.0);
+  EXPECT_EQ(config.sensors[0].heights.scene_m, 10.0);
+  EXPECT_FALSE(config.sensors[1].heights.sensor_m.has_value());
   EXPECT_EQ(config.sensors[1].calibration.gain, 1.0);
   EXPECT_EQ(config.sensors[1].calibration.height_factor, 1.0);
   EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
