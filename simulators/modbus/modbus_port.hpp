@@ -10,10 +10,10 @@
 
 namespace yuragi::sim {
 
-/// Where a simulated Modbus bus is reached: a TCP port or a serial one.
+/// The connection of a simulated Modbus bus: a TCP port or a serial one.
 class ModbusPort {
  public:
-  /// A question, and whom to answer.
+  /// A request, and the client to reply to.
   struct Heard {
     int client;
     ModbusQuestion question;
@@ -26,19 +26,19 @@ class ModbusPort {
   virtual std::string name() const = 0;
 
   virtual std::vector<int> descriptors() const = 0;
-  /// The questions that have come over those descriptors that can be read. Never waits.
+  /// The requests that have arrived on the descriptors that can be read. Never waits.
   virtual std::vector<Heard> hear(std::span<const int> ready) = 0;
-  /// Says bytes to a client; to one that is gone, nothing.
+  /// Sends bytes to a client; does nothing for one that has gone.
   virtual void say(int client, std::span<const std::uint8_t> bytes) = 0;
 
-  /// Goes away: connections are closed, the port is there no more.
+  /// Closes all connections and the port.
   virtual void leave() = 0;
-  /// Is there again under the same name, if it had left and can be.
+  /// Opens the port again under the same name, if it was closed and that is possible.
   virtual void come_back() = 0;
 };
 
 /// Listens at once; port 0 takes a free one. Serves any number of clients. Throws std::runtime_error for an address
-/// that cannot be had.
+/// that cannot be listened on.
 std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::uint16_t port);
 
 /// A pseudo terminal, and, if it is not empty, a `link` to it. Throws std::system_error.

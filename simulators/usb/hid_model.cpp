@@ -1,4 +1,4 @@
-// What USB and the HID class ask of a device (USB 2.0 specification, 9.6; HID 1.11 specification, 6.2 and 7.2).
+// What USB and the HID class require of a device (USB 2.0 specification, 9.6; HID 1.11 specification, 6.2 and 7.2).
 #include "simulators/usb/hid_model.hpp"
 
 #include <algorithm>

@@ -61,7 +61,7 @@ void put_long(UsbBytes& bytes, std::uint32_t value) {
   put_word(bytes, static_cast<std::uint16_t>(value));
 }
 
-/// A text in a field of a fixed size, with at least one zero behind it.
+/// A text in a field of a fixed size, with at least one zero at its end.
 void put_text(UsbBytes& bytes, std::string_view text, std::size_t size) {
   const std::size_t end = bytes.size() + size;
   text = text.substr(0, size - 1);
