@@ -59,7 +59,7 @@ const char* point_of_compass(double direction_deg) {
   return kPoints[static_cast<std::size_t>(std::lround(direction_deg / 45.0)) % kPoints.size()];
 }
 
-/// A rose that turns with the camera, and an arrow the way the wind blows.
+/// A compass that turns with the camera, and an arrow toward which the wind blows.
 void draw_compass(const WindState& wind, double heading_deg, float radius) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -100,7 +100,7 @@ void draw_compass(const WindState& wind, double heading_deg, float radius) {
   list->AddTriangleFilled(tip, beside(26.0, radius * 0.30F), beside(-26.0, radius * 0.30F), kArrow);
 }
 
-/// Is this true of every sensor that speaks, and does one?
+/// Is this true of every sensor that has sent a reading, and is there one?
 template <class Property>
 bool is_true_of_all_that_speak(const wire::Sensors* sensors, Property property) {
   if (sensors == nullptr) return false;
