@@ -67,7 +67,7 @@ using GlProgram = GlObject<GlProgramKind>;
 /// Where a program finds the block of uniforms that all looks share (view.hpp).
 inline constexpr GLuint kViewBinding = 0;
 
-/// Compiles and links. Each stage begins with #version and shaders/common.glsl; On an error throws std::runtime_error
+/// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error
 /// with `name` and the compiler's message. The uniform block View is bound to kViewBinding.
 GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
 

@@ -23,7 +23,7 @@ struct TreePart {
   std::array<float, 3> facing{};  ///< of a leaf: the normal of its upper side; of a branch: a direction across it
   std::array<float, 3> rest{};    ///< of a leaf: unit vector from foot to tip at rest
   std::uint32_t strand = 0;
-  std::int32_t root_at = -1;  ///< index in the array of the x of its parent's joint; below 0: it stands on the ground
+  std::int32_t root_at = -1;  ///< index of the x of the joint that it grows from; below 0: it stands on the ground
 };
 
 /// The index in that array at which the joints of a level begin.
