@@ -59,7 +59,7 @@ const char* point_of_compass(double direction_deg) {
   return kPoints[static_cast<std::size_t>(std::lround(direction_deg / 45.0)) % kPoints.size()];
 }
 
-/// A compass that turns with the camera, and an arrow toward which the wind blows.
+/// A rose that turns with the camera, and an arrow the way the wind blows.
 void draw_compass(const WindState& wind, double heading_deg, float radius) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();

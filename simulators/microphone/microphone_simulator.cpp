@@ -18,7 +18,7 @@
 namespace yuragi::sim {
 namespace {
 
-constexpr double kMostAtOnce_s = 1.0;   // after a halt of the machine, no more than this is made up for
+constexpr double kMostAtOnce_s = 1.0;   // a halted machine does not make up for more
 constexpr double kMostWaiting_s = 0.5;  // of sound that a client has not taken
 constexpr std::size_t kSplitBytes = 7;  // not a whole sample
 

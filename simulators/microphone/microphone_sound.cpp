@@ -14,10 +14,10 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kReference_m_s = 10.0;
 constexpr double kPressureSlope = 7.0 / 3.0;
 constexpr double kCorner_hz = 5.0;
-constexpr double kTile_s = 16.0;  // after which the noise repeats; its strength, the wind's, does not
+constexpr double kTile_s = 16.0;  // after which the noise repeats; nobody hears it, the wind on top does not repeat
 constexpr double kKarman = 1.339;
-/// By how much the face toward the wind exceeds the mean of all faces, and the one in the lee falls below it, as a part
-/// of the speed.
+/// How much louder the face in the wind hears it than the mean of all, and the one in the lee less, as a part of the
+/// speed.
 constexpr double kFaceEffect = 0.35;
 
 double amplitude_of(double level_db) {

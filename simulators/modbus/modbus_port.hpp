@@ -13,7 +13,7 @@ namespace yuragi::sim {
 /// The connection of a simulated Modbus bus: a TCP port or a serial one.
 class ModbusPort {
  public:
-  /// A request, and the client to reply to.
+  /// A question, and whom to answer.
   struct Heard {
     int client;
     ModbusQuestion question;
@@ -26,9 +26,9 @@ class ModbusPort {
   virtual std::string name() const = 0;
 
   virtual std::vector<int> descriptors() const = 0;
-  /// The requests that have arrived on the descriptors that can be read. Never waits.
+  /// The questions that have come over those descriptors that can be read. Never waits.
   virtual std::vector<Heard> hear(std::span<const int> ready) = 0;
-  /// Sends bytes to a client; does nothing for one that has gone.
+  /// Says bytes to a client; to one that is gone, nothing.
   virtual void say(int client, std::span<const std::uint8_t> bytes) = 0;
 
   /// Closes all connections and the port.

@@ -124,7 +124,7 @@ class ModbusSimulator::State {
   }
 
   void answer(const ModbusPort::Heard& heard) {
-    // No slave has that id: a gateway replies with an exception, a serial line stays silent.
+    // Where nobody has that id, a gateway says so, and a serial line stays silent.
     const ModbusQuestion& question = heard.question;
     SimulatedSlave* const slave = slave_of(question.unit);
     if (slave == nullptr) {

@@ -29,8 +29,7 @@ struct TreePart {
 /// The index in that array at which the joints of a level begin.
 std::size_t first_joint_at(const TreeSkeleton& tree, std::size_t level);
 
-/// Colours by the tree's name: green, but for trees in blossom ("sakura", "blossom") and in autumn ("autumn",
-/// "momiji").
+/// Colours by the tree's name: green, but for what is in blossom ("sakura", "blossom") or turns ("autumn", "momiji").
 enum class Foliage : std::uint8_t { kGreen, kBlossom, kAutumn };
 Foliage foliage_of(std::string_view name);
 
