@@ -26,7 +26,7 @@ enum class FaultKind : std::uint8_t {
   kLate,              ///< replies after the client's time-out
   kException,         ///< replies with a Modbus exception
   kDisconnect,        ///< closes its connections and accepts no new ones
-  kUnplug,            ///< the device is gone: its port, its socket, its place on the bus; plugged in again afterwards
+  kUnplug,            ///< removes the device (port, socket, place on the bus) and restores it afterwards
 };
 inline constexpr std::array<std::string_view, 13> kFaultNames = {
     "silence",           "freeze", "spike",     "garbage",    "split", "partial", "bad-checksum", "wrong-id",

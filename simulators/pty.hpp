@@ -40,7 +40,7 @@ class Pty {
   std::string link_;
   std::string port_;
   int master_ = -1;
-  int kept_slave_ = -1;  // or reading would fail whenever nobody has the port open
+  int kept_slave_ = -1;  // kept open, or reading would fail while no program has the port open
 };
 
 }  // namespace yuragi::sim

@@ -35,7 +35,7 @@ UsbBytes device_descriptor(const HidIdentity& identity) {
           0x01,  // USB 1.1
           0,
           0,
-          0,                                                           // class: the interface says it
+          0,                                                           // class: given by the interface
           static_cast<std::uint8_t>(identity.is_full_speed ? 64 : 8),  // packet of end point 0
           low_byte(identity.vendor),
           high_byte(identity.vendor),

@@ -90,7 +90,7 @@ UsbDescriptors labjack_descriptors() {
                             7, 5, 0x82, 2, 64, 0,    0,                // bulk in: replies
                             7, 5, 0x83, 2, 64, 0,    0},               // bulk in: streamed samples
           .hid_report = {},
-          .strings = {"LabJack Corporation", "LabJack U3"}};  // no serial number: ConfigU3 tells it
+          .strings = {"LabJack Corporation", "LabJack U3"}};  // no serial number: ConfigU3 reports it
 }
 
 class Labjack final : public UsbDevice {

@@ -1,8 +1,8 @@
 // Hideki TE923 (1130:6801). Source: weewx te923.py.
 //
-// Asked by the output report 05 af, address (low, middle, high), the exclusive or of these four, 00 00, it answers with
-// 34 bytes in input reports of 8 (how many of the next 7 are valid, then those): 5a, 32 bytes of memory, the exclusive
-// or of all 33. The host acknowledges with 24 af ... A request with a wrong check byte gets no answer.
+// On the output report 05 af, address (low, middle, high), the exclusive or of these four, 00 00, it answers with 34
+// bytes in input reports of 8 (how many of the next 7 are valid, then those): 5a, 32 bytes of memory, the exclusive or
+// of all 33. The host acknowledges with 24 af ... A request with a wrong check byte gets no reply.
 //
 // Memory from 0x020001 on (counted from the header as byte 0): 26, 27 gust; 28, 29 speed, decimal digits of 0.1 mph:
 // ones and tenths, then tens (and 0x10: a hundred); 30 point of the compass. New every 33 s.

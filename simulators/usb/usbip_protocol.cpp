@@ -1,7 +1,7 @@
 // Bytes of USB/IP 1.1.1, all big-endian but the setup bytes of a control transfer, which are as on the wire.
 //
-//   question     u16 version 0x0111, u16 code, u32 status; an import adds char[32] bus id
-//   its answer   the same head with the code's top bit clear; a list adds u32 count and records with 4 bytes for each
+//   request      u16 version 0x0111, u16 code, u32 status; an import adds char[32] bus id
+//   its reply    the same head with the code's top bit clear; a list adds u32 count and records with 4 bytes for each
 //                interface behind each, an import one record
 //   record       char[256] path, char[32] bus id, u32 bus, u32 device, u32 speed, u16 vendor, u16 product, u16 release,
 //                u8 class, subclass, protocol, configuration value, configurations, interfaces
@@ -33,7 +33,7 @@ constexpr std::uint32_t kUnlink = 2;
 constexpr std::uint32_t kSubmitReply = 3;
 constexpr std::uint32_t kUnlinkReply = 4;
 constexpr std::uint32_t kDirectionIn = 1;
-constexpr std::uint32_t kNotIsochronous = 0xFFFFFFFF;  // as packets; 0 says the same
+constexpr std::uint32_t kNotIsochronous = 0xFFFFFFFF;  // as the number of packets; 0 means the same
 
 constexpr std::uint32_t kFullSpeed = 2;  // 12 Mbit/s
 constexpr std::uint32_t kBus = 1;
