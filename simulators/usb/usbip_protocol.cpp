@@ -8,8 +8,9 @@
 //   transfer     u32 command, u32 number, u32 device, u32 direction, u32 end point; then
 //     submit 1   u32 flags, u32 length, u32 start frame, u32 packets, u32 interval, u8[8] setup, the data that is sent
 //     unlink 2   u32 the number that is meant, 24 bytes of nothing
-//     reply 3    u32 status, u32 length, u32 start frame, u32 packets, u32 errors, 8 bytes of nothing, the data that is
-//     read reply 4    u32 status, 24 bytes of nothing
+//     reply 3    u32 status, u32 length, u32 start frame, u32 packets, u32 errors, 8 bytes of nothing,
+//                the data that is read
+//     reply 4    u32 status, 24 bytes of nothing
 #include "simulators/usb/usbip_protocol.hpp"
 
 #include <algorithm>
