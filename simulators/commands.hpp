@@ -4,7 +4,8 @@
 
 namespace yuragi::sim {
 
-// Each adds one kind of simulator as a subcommand, in a file of its own. What a callback throws, main reports.
+// Each adds one kind of simulator as a subcommand, from a file of its own. main() reports the exceptions of the
+// callbacks.
 
 void add_microphone_command(CLI::App& app);
 void add_modbus_command(CLI::App& app);

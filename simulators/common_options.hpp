@@ -13,7 +13,7 @@
 
 namespace yuragi::sim {
 
-/// The options that every simulator has: the wind that it plays, what goes wrong, and for how long it runs.
+/// The options that every simulator has: the wind that it plays, the faults, and for how long it runs.
 struct CommonOptions {
   std::string wind = "synthetic";
   SyntheticWindSettings synthetic;
@@ -24,18 +24,17 @@ struct CommonOptions {
 
   void add_to(CLI::App& command);
 
-  /// The wind that is asked for. Throws std::runtime_error where the recording cannot be played.
+  /// The configured wind. Throws std::runtime_error where the recording cannot be played.
   MeasuredWind make_wind() const;
 
-  /// The faults that are asked for, of those that are known. Throws CLI::ValidationError for any other.
+  /// The configured faults, which must be among those that are known. Throws CLI::ValidationError for any other.
   Faults make_faults(std::span<const FaultKind> known) const;
 
-  /// Runs the simulator with the faults that are asked for. Throws CLI::ValidationError for those that it does not
-  /// know.
+  /// Runs the simulator with the configured faults. Throws CLI::ValidationError for one that it cannot play.
   void run_simulator(Simulator& simulator) const;
 };
 
-/// What stands behind an option that takes HOST:PORT. Throws CLI::ValidationError, naming `option`.
+/// The value of an option that takes HOST:PORT. Throws CLI::ValidationError, naming `option`.
 Address address_option(const std::string& option, const std::string& text);
 
 }  // namespace yuragi::sim

@@ -44,7 +44,7 @@ std::optional<FaultKind> Faults::at(double time_s) const {
 
 std::optional<Fault> Faults::random_at(double time_s) const {
   if (!random_ || known_.empty() || time_s < 0.0) return std::nullopt;
-  // Each stretch of time draws its own two numbers: one for when, one for what.
+  // Two random numbers for each interval: one for the beginning of its fault, one for the kind.
   const double stretch = std::floor(time_s / random_->every_s);
   const auto [when, what] =
       RandomStream(random_->seed, stream_id("faults")).uniform_pair(static_cast<std::uint64_t>(stretch));

@@ -12,21 +12,21 @@
 
 namespace yuragi::sim {
 
-/// What can be made to go wrong. No simulator suffers all of it: each says which of these it knows.
+/// The faults that can be played. No simulator can play all of them: each lists its own (Simulator::known_faults).
 enum class FaultKind : std::uint8_t {
-  kSilence,           ///< hears, and says nothing
-  kFreeze,            ///< says what it said last, again and again
-  kSpike,             ///< says 55 m/s, which a wind can reach, but not from one moment to the next
-  kGarbage,           ///< says random bytes
-  kSplit,             ///< says the right bytes in pieces, with pauses between them
-  kPartial,           ///< stops before the end of what it says
-  kBadChecksum,       ///< says all, with a wrong checksum
-  kWrongId,           ///< answers as another device
-  kWrongTransaction,  ///< answers the request before this one
-  kLate,              ///< answers when nobody waits any more
-  kException,         ///< answers with a Modbus exception
-  kDisconnect,        ///< closes its connections and takes no new ones
-  kUnplug,            ///< the device is gone: its port, its socket, its place on the bus; plugged in again afterwards
+  kSilence,           ///< receives, and sends nothing
+  kFreeze,            ///< repeats its last values
+  kSpike,             ///< reports 55 m/s, which a wind can reach, but not from one moment to the next
+  kGarbage,           ///< sends random bytes
+  kSplit,             ///< sends the right bytes in pieces, with pauses between them
+  kPartial,           ///< stops before the end of a message
+  kBadChecksum,       ///< sends a whole message with a wrong checksum
+  kWrongId,           ///< replies with the id of another device
+  kWrongTransaction,  ///< replies to the request before this one
+  kLate,              ///< replies after the client's time-out
+  kException,         ///< replies with a Modbus exception
+  kDisconnect,        ///< closes its connections and accepts no new ones
+  kUnplug,            ///< removes the device (port, socket, place on the bus) and restores it afterwards
 };
 inline constexpr std::array<std::string_view, 13> kFaultNames = {
     "silence",           "freeze", "spike",     "garbage",    "split", "partial", "bad-checksum", "wrong-id",
@@ -47,11 +47,11 @@ struct RandomFaults {
   std::uint64_t seed = 1;
 };
 
-/// What goes wrong with one simulated sensor, and when. Where several faults overlap, the one that began last holds.
-/// Thread-safe: no.
+/// What goes wrong with one simulated sensor, and when. Of several faults that overlap, the one that began last is
+/// played. Thread-safe: no.
 class Faults {
  public:
-  /// `known`: what this simulator can suffer; must outlive this.
+  /// `known`: the faults that this simulator can play; must outlive this.
   explicit Faults(std::span<const FaultKind> known) : known_(known) {}
 
   void add(const Fault& fault) { faults_.push_back(fault); }
@@ -64,8 +64,8 @@ class Faults {
   /// Reads "silence@10+5": from second 10 on, for 5 s. The failure says what is allowed.
   Result<Fault, Failure> parse(std::string_view text) const;
 
-  /// Obeys a line that somebody typed at `time_s`: a kind and for how long ("silence 5"; 3 s if nothing is said),
-  /// "clear" or "help". Returns what to answer.
+  /// Carries out a command typed at `time_s`: a kind and a duration in seconds ("silence 5"; 3 s where none is given),
+  /// "clear" or "help". Returns the text to print.
   std::string obey(std::string_view line, double time_s);
 
  private:

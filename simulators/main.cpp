@@ -27,7 +27,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::RuntimeError& error) {
-    return error.get_exit_code();  // of a program that was launched
+    return error.get_exit_code();  // of the program that was launched (launched_program.hpp)
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kTurn_ms = 20;
 
-/// SIGINT and SIGTERM as something to read, for as long as this lives.
+/// SIGINT and SIGTERM as a descriptor to read from, for the lifetime of this object.
 class StopSignals {
  public:
   StopSignals() {
@@ -29,7 +29,7 @@ class StopSignals {
     if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
   }
   ~StopSignals() {
-    // A signal that was taken notice of must not end the program when it is let through again.
+    // A signal that has arrived must not end the program when the mask is restored.
     signalfd_siginfo taken{};
     while (read(descriptor_, &taken, sizeof taken) > 0) {
     }
@@ -47,7 +47,7 @@ class StopSignals {
   int descriptor_ = -1;
 };
 
-/// Standard input, line by line, for as long as it lasts.
+/// Standard input, line by line, until its end.
 class TypedLines {
  public:
   TypedLines() {
@@ -57,7 +57,7 @@ class TypedLines {
 
   bool is_open() const { return is_open_; }
 
-  /// What one read brings; `use` is called with each whole line.
+  /// Reads once; calls `use` with each whole line.
   template <class Use>
   void read_lines(Use&& use) {
     std::array<char, 512> block{};

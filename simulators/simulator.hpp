@@ -9,25 +9,26 @@
 
 namespace yuragi::sim {
 
-/// A simulated sensor: it says what it waits for, and works when that is there. It never reads a clock.
+/// A simulated sensor. It names the descriptors that it waits for, and is served when one of them can be read, or at a
+/// regular pace. It never reads a clock. Thread-safe: no.
 class Simulator {
  public:
   virtual ~Simulator() = default;
 
-  /// What it can suffer; a constant.
+  /// The faults that it can play; a constant.
   virtual std::span<const FaultKind> known_faults() const = 0;
 
-  /// The descriptors that bring it work.
+  /// The descriptors on which its clients' bytes and connections arrive.
   virtual std::vector<int> descriptors() const = 0;
 
-  /// Does what there is to do `time_s` after the start: `ready` are those of its descriptors that can be read, `fault`
-  /// is what goes wrong at the moment, one of its known ones. Called at least 20 times a second.
+  /// Advances to `time_s` after the start: `ready` are those of its descriptors that can be read, `fault` is the fault
+  /// of this moment, one of known_faults(). Called at least 20 times a second.
   virtual void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) = 0;
 
   /// One line for people.
   virtual std::string status() const = 0;
 
-  /// True: there is nothing left to do, and run() returns.
+  /// True: it has ended, and run() returns.
   virtual bool is_over() const { return false; }
 };
 
@@ -36,9 +37,9 @@ struct RunOptions {
   bool verbose = false;              ///< a status line a second, terminal or not
 };
 
-/// Runs a simulator in real time until it is over, the duration is over, or SIGINT or SIGTERM
-/// comes. Faults come by `faults` and, as
-/// lines, by standard input; its end changes nothing. The status goes to standard error.
+/// Runs a simulator in real time until it is over, the duration has passed, or SIGINT or SIGTERM arrives. Faults are
+/// those of `faults` and those that are typed as lines on standard input, which may end at any time. The status goes to
+/// standard error. Throws std::system_error where waiting itself fails.
 void run(Simulator& simulator, Faults faults, const RunOptions& options);
 
 }  // namespace yuragi::sim

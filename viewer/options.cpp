@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMaxSide_px = 16384;
 
-/// "1280x720" taken apart; what is wrong with it, or an empty text.
+/// Reads "1280x720"; returns what is wrong with it, or an empty text.
 std::string read_size(const std::string& text, ViewerOptions& options) {
   const char* const end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, options.width_px);

@@ -8,7 +8,7 @@
 
 namespace yuragi {
 
-/// What the command line says.
+/// The command line's options.
 struct ViewerOptions {
   std::string connect = "127.0.0.1:7410";
   std::string size = "1280x720";

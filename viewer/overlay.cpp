@@ -100,7 +100,7 @@ void draw_compass(const WindState& wind, double heading_deg, float radius) {
   list->AddTriangleFilled(tip, beside(26.0, radius * 0.30F), beside(-26.0, radius * 0.30F), kArrow);
 }
 
-/// Is this true of every sensor that speaks, and does one?
+/// Is this true of every sensor that has sent a reading, and is there one?
 template <class Property>
 bool is_true_of_all_that_speak(const wire::Sensors* sensors, Property property) {
   if (sensors == nullptr) return false;

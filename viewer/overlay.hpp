@@ -10,12 +10,12 @@ struct GLFWwindow;
 
 namespace yuragi {
 
-/// What the overlay tells.
+/// What the overlay shows.
 struct OverlayFacts {
   WindState wind;
   Playback playback = Playback::kNothing;
   StreamStatus stream;
-  const wire::Sensors* sensors = nullptr;  ///< null: not heard yet
+  const wire::Sensors* sensors = nullptr;  ///< null: none has come yet
   double pictures_per_s = 0.0;
   std::size_t nodes = 0;
   std::span<const wire::SceneModel> scenes;
@@ -23,7 +23,7 @@ struct OverlayFacts {
   double heading_deg = 0.0;          ///< of the camera: up on the compass
 };
 
-/// Small texts over the picture: wind, sensors, stream. Takes no clicks. One at a time; its window's context is
+/// Small texts over the picture: wind, sensors, stream. It takes no input. One at a time; its window's context is
 /// current.
 class Overlay {
  public:

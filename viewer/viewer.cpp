@@ -17,7 +17,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
-constexpr int kOverlayPictures = 2;  // until the overlay knows its own size
+constexpr int kOverlayPictures = 2;  // the overlay's size is known after the first
 constexpr int kSamples = 4;          // a pixel
 constexpr double kRateSmoothing = 0.05;
 
@@ -78,7 +78,7 @@ class Viewer::Show {
   }
 
   void run_screenshot() {
-    // Draw picture after picture, as news comes; where a moment is asked for, only then.
+    // Draws a picture for each arrival; with --at only those from that moment on.
     const PixelSize size{options_.width_px, options_.height_px};
     double first_pose_s = 0.0;
     int drawn = 0;
@@ -142,7 +142,7 @@ class Viewer::Show {
     if (input.toggle_overlay) has_overlay_ = !has_overlay_;
   }
 
-  /// Takes what has come, and goes on to now.
+  /// Takes what has arrived, and advances to now.
   void advance() {
     Inbox inbox = connection_.take();
     if (inbox.scenes) {
@@ -182,7 +182,7 @@ class Viewer::Show {
                     .heading_deg = camera_.place().heading_deg});
   }
 
-  /// Where the driver does not wait for the screen, wait here: no more pictures than the screen can show.
+  /// Waits where the driver does not wait for the screen: no more pictures than the screen can show.
   void keep_pace() {
     const double rest_s = 0.95 / window_.refresh_rate_hz() - (now_s() - last_s_);
     if (rest_s > 0.0) window_.wait(rest_s);
@@ -191,7 +191,7 @@ class Viewer::Show {
   const ViewerOptions options_;
   const std::atomic<bool>& is_stopping_;
   StreamConnection connection_;
-  Window window_;  // what follows is on its context
+  Window window_;  // the members below need its context
   std::optional<Stage> stage_;
   std::optional<Overlay> overlay_;
   std::optional<RenderTarget> target_;

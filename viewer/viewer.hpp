@@ -7,16 +7,17 @@
 
 namespace yuragi {
 
-/// The program: a window (or a picture) of what a daemon streams. On the main thread; throws ViewerExit.
+/// The viewer's main loop: a window, or a picture in a file, of what a daemon streams. On the main thread; throws
+/// ViewerExit.
 class Viewer {
  public:
-  /// `is_stopping` is set by someone else (a signal) to end run() at the next picture.
+  /// `is_stopping`: set by a signal handler, ends run() at the next picture; must outlive this.
   Viewer(const ViewerOptions& options, const std::atomic<bool>& is_stopping);
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  /// Until the window is closed, or the picture is written, or `is_stopping`.
+  /// Returns when the window is closed, the picture is written, or `is_stopping` is set.
   void run();
 
  private:

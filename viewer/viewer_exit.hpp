@@ -7,8 +7,7 @@
 
 namespace yuragi {
 
-/// A failure that ends the program: its text tells a person what to do, its code (sysexits.h) tells the shell. Caught
-/// once, in main.
+/// A failure that ends the program, with a text for a person and an exit code of sysexits.h. Caught once, in main.
 class ViewerExit : public std::runtime_error {
  public:
   ViewerExit(int code, const std::string& message) : std::runtime_error(message), code_(code) {}

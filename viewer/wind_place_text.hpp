@@ -6,7 +6,7 @@
 
 namespace yuragi {
 
-/// Where the wind is that the overlay shows, in few words: "at the edge, 0.7 s to the middle", "at the sensors, 12 m
+/// Where the wind that the overlay shows is measured: "at the edge, 0.7 s to the middle", "at the sensors, 12 m
 /// downwind". Empty where it is in the middle.
 std::string wind_place_text(const WindState& wind);
 

@@ -16,7 +16,7 @@ struct WindowOptions {
   std::optional<int> monitor;  ///< for full screen, counted from 0; empty: the primary one
 };
 
-/// What the hand did since the last look. Drags are shares of the window's height.
+/// The user's input since the last take_input(). Drags are shares of the window's height.
 struct WindowInput {
   double orbit_right = 0.0;
   double orbit_down = 0.0;
@@ -36,8 +36,8 @@ struct PixelSize {
   friend bool operator==(const PixelSize&, const PixelSize&) = default;
 };
 
-/// A window with a current OpenGL 3.3 core context; F11 makes it fill the screen, Esc and Q close it.
-/// One at a time, on the main thread. Throws ViewerExit (EX_UNAVAILABLE) where there is no display or no OpenGL 3.3.
+/// A window with a current OpenGL 3.3 core context; F11 toggles full screen, Esc and Q close it. One at a time, on the
+/// main thread. Throws ViewerExit (EX_UNAVAILABLE) where there is no display or no OpenGL 3.3.
 class Window {
  public:
   explicit Window(const WindowOptions& options);
@@ -48,20 +48,20 @@ class Window {
   GLFWwindow* handle() const;
   bool is_closing() const;
 
-  /// Of what is drawn into, in pixels; empty while it is minimised.
+  /// The size of the framebuffer, in pixels; empty while the window is minimised.
   PixelSize framebuffer_size() const;
-  /// How many pixels there are to a point on this screen: 2 on a fine one.
+  /// Pixels of this screen for each point of a text's size: 2 on a screen of high resolution.
   double content_scale() const;
-  /// Of the screen; 60 where it does not say.
+  /// Of the screen; 60 where it is unknown.
   double refresh_rate_hz() const;
 
-  /// Handles what has happened.
+  /// Handles pending events.
   void poll();
-  /// Waits until something happens, for at most so long, and handles it.
+  /// Waits for an event, for at most limit_s, and handles it.
   void wait(double limit_s);
   WindowInput take_input();
 
-  /// Shows what was drawn; waits for the screen where the driver can.
+  /// Shows what was drawn; waits for the screen's refresh where the driver can.
   void swap();
 
  private:

@@ -1,4 +1,4 @@
-# How the project's own targets are declared. A folder is a target: engine/wind is yuragi_engine_wind.
+# How the project's own targets are declared. A room (ARCHITECTURE.md) is a library: engine/wind is yuragi_engine_wind.
 
 # What one clone has compiled, another finds: nothing in a command line or in debug information says where a clone stands.
 find_program(CCACHE_PROGRAM ccache)

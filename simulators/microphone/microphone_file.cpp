@@ -37,7 +37,7 @@ class SampleWriter {
     put(static_cast<std::uint32_t>(std::lround(std::clamp(sample, -1.0F, 1.0F) * 32767.0F)) & 0xFFFFU, 2);
   }
 
-  /// False: nobody takes it.
+  /// False: the reader has closed it.
   bool flush() {
     const bool is_written = std::fwrite(bytes_.data(), 1, bytes_.size(), file_) == bytes_.size();
     bytes_.clear();
@@ -101,7 +101,7 @@ void write_microphone_file(const std::string& path, SampleFormat format, const M
     done += count;
     samples.clear();
     if (fault == FaultKind::kSilence) {
-      samples.resize(count * options.channels);  // a file cannot stop: it is digitally silent
+      samples.resize(count * options.channels);  // a file cannot pause: it is digitally silent
     } else {
       sound.render(wind.at(time_s, fault), count, fault, samples);
     }

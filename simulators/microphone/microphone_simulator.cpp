@@ -26,7 +26,7 @@ constexpr double kMostWaiting_s = 20.0;
 // many turns' sound.
 constexpr std::size_t kSplitBytes = 1021;
 
-/// Somebody who hears.
+/// One client, or the reader of the pipe.
 struct Client {
   int descriptor = -1;
   std::vector<std::uint8_t> waiting;  ///< bytes not yet taken; begins anywhere, ends with a frame
@@ -85,13 +85,13 @@ struct MicrophoneSimulator::State {
 
   void plug_in() {
     if (!outputs.socket.empty() && listener < 0) listener = listen_on(outputs.socket);
-    // Opens only while somebody reads it.
+    // It can be opened only while another program reads it.
     if (!outputs.pipe.empty() && pipe.descriptor < 0) {
       pipe.descriptor = open(outputs.pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
     }
   }
 
-  /// False: nobody hears any more.
+  /// False: the reader has gone.
   bool give(Client& client) const {
     const auto bytes = std::as_bytes(std::span(samples));
     const auto most = static_cast<std::size_t>(kMostWaiting_s * options.rate_hz) * options.channels * sizeof(float);
@@ -115,7 +115,7 @@ struct MicrophoneSimulator::State {
 
 MicrophoneSimulator::MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs, MeasuredWind wind)
     : state_(std::make_unique<State>(options, std::move(outputs), std::move(wind))) {
-  std::signal(SIGPIPE, SIG_IGN);  // a client that goes is not our end
+  std::signal(SIGPIPE, SIG_IGN);  // a client that closes its socket must not end the program
   state_->plug_in();
   if (!state_->outputs.socket.empty() && state_->listener < 0) {
     throw std::runtime_error(fmt::format("cannot listen on {} ({}): choose another path", state_->outputs.socket,
@@ -145,7 +145,7 @@ void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::
   state.fault = fault;
   state.moment = state.wind.at(time_s, fault);
 
-  // Gone: a disconnected device refuses whoever comes, an unplugged one has no name any more.
+  // A disconnected device refuses new clients; an unplugged one has no name.
   if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
     state.drop(fault == FaultKind::kUnplug);
     state.rendered_s = time_s;
@@ -158,7 +158,7 @@ void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::
     if (client >= 0) state.clients.push_back({client, {}});
   }
 
-  // The sound up to now; none is kept for later.
+  // The sound up to now.
   state.rendered_s = std::max(state.rendered_s, time_s - kMostAtOnce_s);
   const auto frames = static_cast<std::size_t>(std::max(0.0, (time_s - state.rendered_s) * state.options.rate_hz));
   state.rendered_s += static_cast<double>(frames) / state.options.rate_hz;

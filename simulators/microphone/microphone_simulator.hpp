@@ -8,14 +8,14 @@
 
 namespace yuragi::sim {
 
-/// Where the sound goes, at the pace at which it is made. Raw 32-bit floats, native byte order, frame after frame.
+/// The outputs of the sound, in real time. Raw 32-bit floats, native byte order, frame after frame.
 struct MicrophoneOutputs {
   std::string socket;  ///< a Unix stream socket to listen on, any number of clients; empty: none
-  std::string pipe;    ///< a named pipe that somebody else reads (PulseAudio's module-pipe-source); empty: none
+  std::string pipe;    ///< a named pipe that another program reads (PulseAudio's module-pipe-source); empty: none
 };
 
-/// Simulated microphones. A client too slow for the sound loses some of it, in whole frames. Unplugged, the socket and
-/// its name are gone, and the named pipe is closed; both come back.
+/// Simulated microphones. A client too slow for the sound loses some of it, in whole frames. While unplugged, the
+/// socket and its name do not exist and the named pipe is closed; both return.
 class MicrophoneSimulator final : public Simulator {
  public:
   /// Listens at once. Throws std::runtime_error where that fails.
@@ -32,7 +32,7 @@ class MicrophoneSimulator final : public Simulator {
   std::unique_ptr<State> state_;
 };
 
-/// What microphones can suffer.
+/// The faults that microphones can play.
 std::span<const FaultKind> microphone_faults();
 
 }  // namespace yuragi::sim

@@ -15,31 +15,31 @@ namespace yuragi::sim {
 
 inline constexpr std::size_t kMicrophoneMaxChannels = 4;
 
-/// Microphones in the wind, and how they hear it. Levels are root mean squares in dB re full scale.
+/// Microphones in the wind, and how they respond to it. Levels are root mean squares in dB re full scale.
 struct MicrophoneOptions {
   std::size_t channels = 1;  ///< 1 to kMicrophoneMaxChannels
   double rate_hz = 48000.0;
   double exponent = 2.0;             ///< the root mean square grows with the wind to this power
   double level_at_10_m_s_db = -20;   ///< of the whole wind noise, before it clips
   double noise_db = -80;             ///< of each microphone's own white noise
-  std::optional<double> voice_db{};  ///< somebody speaks; all microphones hear it alike
+  std::optional<double> voice_db{};  ///< of a voice, the same at all microphones; empty: none
   std::optional<double> music_db{};  ///< likewise
-  bool has_faces = false;  ///< the microphones face the directions 0, 360 / channels, ... and hear the wind by how it
-                           ///< meets them; else they hear it all the same
+  bool has_faces = false;  ///< the microphones face the directions 0, 360 / channels, ... and respond to the wind by
+                           ///< how it meets them; otherwise all respond alike
   std::uint64_t seed = 1;
 };
 
 /// The sound at each microphone. The wind's own noise is made at each by itself: pressure with the spectrum f^-7/3
-/// above 5 Hz (Raspet, Webster and Dillion 2006, "Framework for wind noise studies"), so that two microphones hear it
-/// independently. Voices and music reach all of them alike. What is beyond full scale is cut off, as a converter does.
-/// The same options give the same sound, bit for bit. Thread-safe: no.
+/// above 5 Hz (Raspet, Webster and Dillion 2006, "Framework for wind noise studies"), so that it is independent at two
+/// microphones. Voices and music reach all of them alike. What exceeds full scale is clipped, as by a converter. The
+/// same options give the same sound, bit for bit. Thread-safe: no.
 class MicrophoneSound {
  public:
   /// Throws std::invalid_argument for options out of range.
   explicit MicrophoneSound(const MicrophoneOptions& options);
 
-  /// Adds `frames` frames to `out`, a sample a channel, while the wind changes evenly to `moment`. kFreeze says the
-  /// last second again and again, kGarbage noise at full scale; the faults of the wind itself are the caller's.
+  /// Adds `frames` frames to `out`, a sample a channel, while the wind changes evenly to `moment`. kFreeze repeats the
+  /// last second, kGarbage is noise at full scale; faults of the wind itself are the caller's.
   void render(const PlayedMoment& moment, std::size_t frames, std::optional<FaultKind> fault, std::vector<float>& out);
 
  private:

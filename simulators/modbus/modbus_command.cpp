@@ -23,7 +23,7 @@ struct ModbusOptions {
   CommonOptions common;
 };
 
-/// The slaves of all devices. Throws CLI::ValidationError for a device that nobody knows.
+/// The slaves of all devices. Throws CLI::ValidationError for an unknown device.
 std::vector<ModbusSlave> slaves_of(std::vector<std::string> devices) {
   if (devices.empty()) devices.emplace_back("renke-rs-fsjt-rs-fxjt-n01");
   std::vector<ModbusSlave> slaves;

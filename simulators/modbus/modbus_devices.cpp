@@ -1,6 +1,5 @@
-// Simulated Modbus devices. Their registers stand here, and nowhere else in the simulators; the drivers have their own
-// (as profiles), so that a mistake on either side shows. Numbers are those on the wire. Sources: the makers' manuals,
-// as the profile of each device names them.
+// Simulated Modbus devices. Their register maps are written here, independently of the drivers' profiles, so that a
+// mistake on either side shows. Addresses are those on the wire. Sources: the makers' manuals, drivers/SOURCES.md S1.
 #include "simulators/modbus/modbus_devices.hpp"
 
 #include <algorithm>
@@ -169,7 +168,7 @@ constexpr std::array<DeviceEntry, 18> kModbusDevices = {{
 
 constexpr int kHighestSlaveId = 247;
 
-/// 0 for what is no id.
+/// 0 for a text that is no id.
 int slave_id_in(std::string_view text) {
   int id = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);

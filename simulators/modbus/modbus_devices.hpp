@@ -11,7 +11,7 @@
 
 namespace yuragi::sim {
 
-/// The air, as devices report it.
+/// The wind, as devices report it.
 struct ModbusAir {
   double speed_m_s = 0.0;
   double direction_deg = 0.0;  ///< where it comes from
@@ -20,7 +20,7 @@ struct ModbusAir {
   double mean_m_s = 0.0;
 };
 
-/// What stands in the registers of a device: 16 bits at an address as it goes on the wire.
+/// The content of a device's registers: 16 bits for each address, as on the wire.
 class ModbusRegisterBank {
  public:
   void set(int address, double value);      ///< as a whole number of 16 bits, negative ones in two's complement
@@ -38,17 +38,17 @@ class ModbusRegisterBank {
 /// One slave of a simulated bus.
 struct ModbusSlave {
   std::uint8_t id = 1;
-  std::uint8_t function = 3;  ///< the only one that it knows: 3 or 4
+  std::uint8_t function = 3;  ///< the only one that it supports: 3 or 4
   void (*measure)(const ModbusAir& air, ModbusRegisterBank& registers) = nullptr;
   /// A register whose reading clears lull, mean and gust; 0 where there is none.
   std::uint16_t clearing_register = 0;
 };
 
-/// The names that devices are known by.
+/// The names of all devices.
 std::vector<std::string> modbus_device_names();
 
 /// The slaves of a device: "NAME", or "NAME@ID" with the id of its first one; those of a device of several follow it.
-/// Throws std::runtime_error for a name that nobody has and an id that no slave can have.
+/// Throws std::runtime_error for an unknown name and for an id that no slave can have.
 std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id);
 
 }  // namespace yuragi::sim

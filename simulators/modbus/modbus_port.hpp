@@ -10,7 +10,7 @@
 
 namespace yuragi::sim {
 
-/// Where a simulated Modbus bus is reached: a TCP port or a serial one.
+/// The connection of a simulated Modbus bus: a TCP port or a serial one.
 class ModbusPort {
  public:
   /// A question, and whom to answer.
@@ -31,14 +31,14 @@ class ModbusPort {
   /// Says bytes to a client; to one that is gone, nothing.
   virtual void say(int client, std::span<const std::uint8_t> bytes) = 0;
 
-  /// Goes away: connections are closed, the port is there no more.
+  /// Closes all connections and the port.
   virtual void leave() = 0;
-  /// Is there again under the same name, if it had left and can be.
+  /// Opens the port again under the same name, if it was closed and that is possible.
   virtual void come_back() = 0;
 };
 
 /// Listens at once; port 0 takes a free one. Serves any number of clients. Throws std::runtime_error for an address
-/// that cannot be had.
+/// that cannot be listened on.
 std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::uint16_t port);
 
 /// A pseudo terminal, and, if it is not empty, a `link` to it. Throws std::system_error.

@@ -6,7 +6,7 @@
 namespace yuragi::sim {
 namespace {
 
-constexpr std::size_t kTcpHeader = 6;  // transaction, protocol, length; the unit belongs to what the length counts
+constexpr std::size_t kTcpHeader = 6;  // transaction, protocol, length; the unit is counted by the length
 constexpr std::size_t kLongestTcpBody = 254;
 constexpr std::size_t kShortestRtu = 4;
 constexpr std::size_t kLongestRtu = 256;
@@ -15,7 +15,7 @@ std::uint16_t word_at(const ModbusBytes& bytes, std::size_t at) {
   return at + 1 < bytes.size() ? static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]) : std::uint16_t{0};
 }
 
-/// The sums of all bytes, for a sum by table.
+/// The CRC of each byte, for a CRC by table.
 constexpr std::array<std::uint16_t, 256> make_table() {
   std::array<std::uint16_t, 256> table{};
   for (unsigned byte = 0; byte < table.size(); ++byte) {
@@ -33,7 +33,7 @@ std::uint16_t sum_of(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint16_t>(sum);
 }
 
-/// How long a request of this function is on a serial line, with its sum; 0 where that is not known yet.
+/// The length of a request of this function on a serial line, CRC included; 0 where that is not known yet.
 std::size_t rtu_length(const ModbusBytes& bytes) {
   constexpr std::size_t kFixed = 8;
   constexpr std::uint8_t kWriteCoils = 15;

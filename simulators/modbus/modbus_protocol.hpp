@@ -7,9 +7,9 @@
 
 namespace yuragi::sim {
 
-// Modbus from the slave's side, byte by byte: the faults need answers that no library would give.
-// Source: MODBUS Application Protocol V1.1b3 (sections 4, 6, 7); MODBUS over Serial Line V1.02 (2.5.1, 6.2.2); MODBUS
-// Messaging on TCP/IP V1.0b (3.1.3).
+// Modbus from the slave's side, byte by byte: the faults need replies that no library would send. Source: MODBUS
+// Application Protocol V1.1b3 (sections 4, 6, 7); MODBUS over Serial Line V1.02 (2.5.1, 6.2.2); MODBUS Messaging on
+// TCP/IP V1.0b (3.1.3).
 
 using ModbusBytes = std::vector<std::uint8_t>;
 
@@ -19,23 +19,23 @@ inline constexpr std::uint8_t kIllegalValue = 3;
 inline constexpr std::uint8_t kDeviceFailure = 4;
 inline constexpr std::uint8_t kGatewayTargetSilent = 11;
 
-/// What a master asks.
+/// A master's request.
 struct ModbusQuestion {
   std::uint16_t transaction = 0;  ///< TCP only
   std::uint8_t unit = 0;
   std::uint8_t function = 0;
-  std::uint16_t address = 0;  ///< for functions 1 to 4 alone; else whatever stands there
+  std::uint16_t address = 0;  ///< of functions 1 to 4; otherwise whatever is at that place
   std::uint16_t count = 0;
 };
 
-/// Takes the first whole question out of what a TCP client has sent; nothing if it is not all there yet. What cannot be
-/// Modbus empties `incoming`.
+/// Takes the first whole request out of the bytes of a TCP client; nothing while it is incomplete. Bytes that cannot be
+/// Modbus empty `incoming`.
 std::optional<ModbusQuestion> take_tcp_question(ModbusBytes& incoming);
 
-/// The same for a serial line: what has no right sum is passed over byte by byte.
+/// The same for a serial line: bytes without a valid CRC are skipped one by one.
 std::optional<ModbusQuestion> take_rtu_question(ModbusBytes& incoming);
 
-/// The part of an answer that both framings carry: these registers.
+/// The part of a reply that both framings carry: these registers.
 ModbusBytes registers_answer(std::uint8_t function, std::span<const std::uint16_t> registers);
 ModbusBytes exception_answer(std::uint8_t function, std::uint8_t code);
 

@@ -12,11 +12,11 @@ namespace yuragi::sim {
 namespace {
 
 constexpr double kWindow_s = 3.0;         // of gust, lull and mean
-constexpr double kPauseOfSplit_s = 0.03;  // between the pieces of an answer
+constexpr double kPauseOfSplit_s = 0.03;  // between the pieces of a reply
 constexpr std::size_t kMostRegisters = 125;
 constexpr std::size_t kGarbageBytes = 24;
 
-/// Speeds of a stretch of time.
+/// The speeds of the last seconds.
 class SpeedWindow {
  public:
   void add(double time_s, double speed_m_s) {
@@ -25,7 +25,7 @@ class SpeedWindow {
   }
   void clear() { speeds_.erase(speeds_.begin(), speeds_.empty() ? speeds_.end() : std::prev(speeds_.end())); }
 
-  /// The air with these speeds in it; at least one must have been added.
+  /// Gust, lull and mean of these speeds; at least one must have been added.
   ModbusAir air(double direction_deg) const {
     ModbusAir air{.speed_m_s = speeds_.back().second,
                   .direction_deg = direction_deg,
@@ -51,7 +51,7 @@ struct SimulatedSlave {
   ModbusRegisterBank registers;
 };
 
-/// Bytes that wait for their time.
+/// Bytes that are to be sent later.
 struct DueMessage {
   double due_s;
   int client;
@@ -75,7 +75,7 @@ class ModbusSimulator::State {
   const ModbusPort& port() const { return *port_; }
 
   void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
-    // The devices measure on, whoever asks.
+    // The devices go on measuring between requests.
     now_s_ = time_s;
     fault_ = fault;
     moment_ = wind_.at(time_s, fault);
@@ -84,7 +84,7 @@ class ModbusSimulator::State {
       slave.model.measure(slave.window.air(moment_.direction_deg), slave.registers);
     }
 
-    // Gone: nobody is served until the port is back.
+    // Unplugged or disconnected: no request is served until the port is open again.
     if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
       outgoing_.clear();
       return port_->leave();
@@ -106,7 +106,7 @@ class ModbusSimulator::State {
     return found != slaves_.end() ? &*found : nullptr;
   }
 
-  /// What a device answers that is well; a clearing register clears.
+  /// The reply of a device without a fault; reading a clearing register clears.
   static ModbusBytes right_answer(SimulatedSlave& slave, const ModbusQuestion& question) {
     if (question.function != slave.model.function) return exception_answer(question.function, kIllegalFunction);
     if (question.count < 1 || question.count > kMostRegisters) {

@@ -13,14 +13,14 @@
 namespace yuragi::sim {
 
 struct ModbusFaultOptions {
-  std::optional<std::uint8_t> id;  ///< the only slave that suffers; the others stay well. Freeze and spike are in the
-                                   ///< air, disconnect and unplug on the line: those are all slaves' at once
-  double late_s = 0.8;             ///< how late a late answer is
+  std::optional<std::uint8_t> id;  ///< the only slave with faults; the others work. Freeze and spike are of the
+                                   ///< wind, disconnect and unplug of the line: those concern all slaves
+  double late_s = 0.8;             ///< the delay of a late reply
   std::uint64_t seed = 1;          ///< of the bytes of the garbage fault
 };
 
-/// A bus of Modbus devices with the registers of real ones, over TCP (what a gateway with those devices behind it looks
-/// like) or a serial line.
+/// A bus of Modbus devices with the registers of real ones, over TCP (as a gateway with those devices behind it) or a
+/// serial line.
 class ModbusSimulator final : public Simulator {
  public:
   /// Throws std::runtime_error for two slaves of one id.
@@ -28,7 +28,7 @@ class ModbusSimulator final : public Simulator {
                   const ModbusFaultOptions& options = {});
   ~ModbusSimulator() override;
 
-  /// Where it is reached.
+  /// The address or path at which it is reached.
   std::string name() const;
 
   std::span<const FaultKind> known_faults() const override;

@@ -22,7 +22,7 @@ std::uint16_t listening_port(int socket) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   if (getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
-  // The port stands at the same place in both families' addresses.
+  // The port is at the same place in the addresses of both families.
   return ntohs(reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
 }
 
@@ -96,7 +96,7 @@ class TcpPort final : public ModbusPort {
     if (client >= 0) clients_[client] = {};
   }
 
-  /// False: the client is gone.
+  /// False: the client has closed the connection.
   static bool read_from(int client, ModbusBytes& incoming) {
     std::array<std::uint8_t, 512> block{};
     const ssize_t size = recv(client, block.data(), block.size(), 0);
@@ -108,7 +108,7 @@ class TcpPort final : public ModbusPort {
   std::string host_;
   std::uint16_t port_;
   int listener_ = -1;
-  std::map<int, ModbusBytes> clients_;  // with what they have sent and nobody has answered yet
+  std::map<int, ModbusBytes> clients_;  // with the bytes of incomplete requests
 };
 
 }  // namespace

@@ -1,15 +1,17 @@
-// What anemometers say, as the simulators have it. The formats stand here, and nowhere else in the simulators; the
-// drivers have their own, so that a mistake on either side shows.
+// The messages of anemometers. Their formats are written here, independently of the drivers' decoders, so that a
+// mistake on either side shows.
 //
-//   mwv      $WIMWV,230.6,R,3.42,M,A*hh                       angle from the mark, m/s; A: well
+// clang-format off
+//   mwv      $WIMWV,230.6,R,3.42,M,A*hh                       angle from the mark, m/s; A: good
 //   mwd      $WIMWD,230.6,T,,M,6.65,N,3.42,M*hh               from north; knots, m/s
 //   vwr vwt  $WIVWR,129.4,L,6.65,N,3.42,M,12.31,K*hh          from the bow to the left or right
 //   mda      $WIMDA,29.9200,I,1.0132,B,12.5,C,,,55.0,,3.7,C,230.6,T,,M,6.65,N,3.42,M*hh
-//   xdr      $WIXDR,A,226,D,0,A,231,D,1,A,236,D,2,S,3.1,M,0,S,3.4,M,1,S,3.8,M,2*hh    Vaisala WXT: least, mean,
-//   greatest gill     <STX>Q,231,003.42,M,00,<ETX>hh                   WindSonic; without a direction below 0.05 m/s
+//   xdr      $WIXDR,A,226,D,0,A,231,D,1,A,236,D,2,S,3.1,M,0,S,3.4,M,1,S,3.8,M,2*hh    Vaisala WXT: least, mean, greatest
+//   gill     <STX>Q,231,003.42,M,00,<ETX>hh                   WindSonic; without a direction below 0.05 m/s
 //   gill-uv  <STX>Q,+002.17,-002.64,M,00,<ETX>hh              +U blows to north, +V to west
-//   ft       $WI,WVP=003.4,231,0*hh                           FT7xx; by itself, and when asked "$01,WV?*hh"
-//   umb      $WIMWV,230.6,R,003.4,M,A*hh                      Lufft, only when asked "01TR4"
+//   ft       $WI,WVP=003.4,231,0*hh                           FT7xx; unasked, and on the request "$01,WV?*hh"
+//   umb      $WIMWV,230.6,R,003.4,M,A*hh                      Lufft; only on the request "01TR4"
+// clang-format on
 //
 // hh: the exclusive or of what stands between '$' and '*', or STX and ETX, in hexadecimal. CR LF ends each. Sources:
 // gpsd www/NMEA.adoc; Vaisala WXT520 user's guide (M210906EN), NMEA 0183 v3.0 query messages; Gill WindSonic manual
@@ -33,7 +35,7 @@ constexpr double kKnotsOfAMetrePerSecond = 3600.0 / 1852.0;
 constexpr double kKmhOfAMetrePerSecond = 3.6;
 constexpr double kGillCalm_m_s = 0.05;
 
-/// What differs when the device has a fault.
+/// What a fault changes in a message.
 struct Voice {
   std::string_view talker = "WI";
   char node = 'Q';

@@ -9,14 +9,14 @@
 
 namespace yuragi::sim {
 
-/// The names that NmeaDevice knows formats by: mwv, mwd, vwr, vwt, mda, xdr, gill, gill-uv, ft, umb.
+/// The formats of make_nmea_device(): mwv, mwd, vwr, vwt, mda, xdr, gill, gill-uv, ft, umb.
 std::vector<std::string> nmea_format_names();
 
-/// An anemometer that says its wind in one or several of those formats, one after the other in one burst. Throws
-/// std::runtime_error for a format that it does not know.
+/// An anemometer that sends its wind in one or several of those formats, one after the other in one burst. Throws
+/// std::runtime_error for an unknown format.
 std::unique_ptr<TextDevice> make_nmea_device(const std::vector<std::string>& formats);
 
-/// Does a device of this format say nothing unless it is asked?
+/// Does a device of this format send only on request?
 bool only_answers(std::string_view nmea_format);
 
 }  // namespace yuragi::sim

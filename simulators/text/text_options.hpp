@@ -10,7 +10,7 @@
 
 namespace yuragi::sim {
 
-/// The options of simulators that say text: over what, and how often.
+/// The options of simulators that send text: over which transport, and how often.
 struct TextOptions {
   bool pty = false;
   std::string link;
@@ -21,8 +21,9 @@ struct TextOptions {
 
   void add_to(CLI::App& command);
 
-  /// Runs the device until it is over, and says where it is first, for scripts that wait for that. Throws
-  /// CLI::ValidationError for options that do not fit, std::runtime_error for an address that cannot be had.
+  /// Prints the device's address, for scripts that wait for that line, and runs it to its end. Throws
+  /// CLI::ValidationError for options that contradict each other, std::runtime_error for an address that cannot be
+  /// listened on.
   void run(std::unique_ptr<TextDevice> device) const;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kTextGarbageBytes = 24;
 constexpr std::size_t kPieces = 3;
 constexpr double kPieceGap_s = 0.03;
-/// An answer that is late comes when nobody should wait any more.
+/// The delay of a late reply: longer than a client should wait.
 constexpr double kLate_s = 1.3;
 constexpr std::size_t kLongestRequest = 64;
 

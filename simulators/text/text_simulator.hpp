@@ -16,25 +16,26 @@
 
 namespace yuragi::sim {
 
-/// What a simulated device says. It computes: no socket, no file, no clock.
+/// The messages of a simulated device. Pure: no socket, no file, no clock. Thread-safe: no.
 class TextDevice {
  public:
   virtual ~TextDevice() = default;
 
-  /// Which of its own faults it has: freeze and spike are the wind's, and what happens to bytes is the simulator's.
+  /// The faults of its own that it can play; freeze and spike are the wind's (MeasuredWind), faults of bytes the
+  /// simulator's.
   virtual std::span<const FaultKind> known_faults() const = 0;
 
   /// Its messages about one moment, with their line ends.
   virtual std::vector<std::string> say(const PlayedMoment& moment, std::optional<FaultKind> fault) = 0;
 
-  /// Is that what it is asked with? Without the line end.
+  /// Is this line, without its end, the device's request?
   virtual bool is_request(std::string_view line) const = 0;
 };
 
-/// A device that says text over a wire: by itself, at a rate, or when it is asked.
+/// A device that sends text over a wire: unasked, at a rate, or on request.
 class TextSimulator final : public Simulator {
  public:
-  /// `rate_hz`: how often it speaks by itself; 0: only when asked. `seed` makes the bytes of the garbage fault.
+  /// `rate_hz`: how often it sends unasked; 0: only on request. `seed`: of the bytes of the garbage fault.
   TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz, MeasuredWind wind,
                 std::uint64_t seed);
 

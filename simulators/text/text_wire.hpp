@@ -11,23 +11,23 @@
 
 namespace yuragi::sim {
 
-/// What carries the bytes of a simulated device that says text. It never waits: what nobody takes is lost.
+/// The transport of a simulated device that sends text. It never waits: what no client reads is lost. Thread-safe: no.
 class TextWire {
  public:
   virtual ~TextWire() = default;
 
-  /// What can happen to the wire itself.
+  /// The faults of the transport itself.
   virtual std::span<const FaultKind> known_faults() const = 0;
-  /// What brings bytes, or somebody who wants to listen.
+  /// The descriptors on which bytes or new clients arrive.
   virtual std::vector<int> descriptors() const = 0;
-  /// What those who listen have said; `ready` are the descriptors that can be read.
+  /// The bytes that clients have sent; `ready` are the descriptors that can be read.
   virtual std::string read(std::span<const int> ready) = 0;
-  /// Says it to all who listen.
+  /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
 
-  /// The wire is gone: its port, its connections. Again: nothing.
+  /// Closes the port and all connections. A second call does nothing.
   virtual void take_away() = 0;
-  /// It is back where it was. Again: nothing.
+  /// Opens the port again under the same name. A second call does nothing.
   virtual void bring_back() = 0;
 
   /// "listening on /dev/pts/3", "listening on 127.0.0.1:10110", "sending to 127.0.0.1:10110".
@@ -37,10 +37,10 @@ class TextWire {
 /// A serial port; `link`, if not empty, is the name that it has each time it is plugged in. Throws std::system_error.
 std::unique_ptr<TextWire> make_pty_wire(const std::string& link);
 
-/// A TCP server; port 0 takes a free one. Throws std::runtime_error where the address cannot be had.
+/// A TCP server; port 0 takes a free one. Throws std::runtime_error where the address cannot be listened on.
 std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t port);
 
-/// Datagrams to one address, one for each write. Throws std::runtime_error for what is no address.
+/// Datagrams to one address, one for each write. Throws std::runtime_error for a text that is no address.
 std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port);
 
 }  // namespace yuragi::sim

@@ -1,6 +1,7 @@
 // AcuRite 01035 (24c0:0003). Source: weewx acurite.py; wxforum topic 27244 (speed).
 //
-// Nothing comes by itself; input reports are asked for. Report 1, 10 bytes, is new every 18 s, by turns of two kinds:
+// It sends nothing unasked; the host requests input reports. Report 1, 10 bytes, is new every 18 s, by turns of two
+// kinds:
 //
 //   01 channel and id (2)   71   speed high 5 bits   speed low 3 bits << 4 | direction   rain (2)               link ff
 //                           78                       ... | temperature, high 4 bits      temperature, humidity

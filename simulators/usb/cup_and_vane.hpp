@@ -6,11 +6,11 @@
 
 namespace yuragi::sim {
 
-/// What a cup and a vane say that stand in the played wind and are wired to a counter and an analogue input.
+/// A cup and a vane in the played wind, wired to a counter and an analogue input:
 ///
 ///   cup    one pulse for each 0.1 m of wind that has passed
 ///   vane   a potentiometer between ground and 5 V, whose track begins at north, runs clockwise and covers 356 degrees;
-///          in the 4 degrees without a track a resistor pulls the input to 5.5 V, where no track is
+///          in the 4 degrees without a track a resistor pulls the input to 5.5 V, outside of the track's range
 ///
 /// Thread-safe: no.
 class CupAndVane {
@@ -20,7 +20,7 @@ class CupAndVane {
   static constexpr double kTrack_deg = 356.0;
   static constexpr double kOpenWiper_v = 5.5;
 
-  /// Goes on to `time_s`, which never goes back. A cup that is jammed makes no pulses, and the vane beside it stands.
+  /// Advances to `time_s`, which must not decrease. A jammed cup makes no pulses, and the vane does not turn.
   void advance(double time_s, const PlayedMoment& wind, bool is_jammed);
 
   /// Pulses since the start.

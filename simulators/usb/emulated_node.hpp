@@ -6,7 +6,7 @@
 
 namespace yuragi::sim {
 
-/// A device node as the kernel would serve it: calls of programs are turned into transfers. Thread-safe: no.
+/// A device node, served as the kernel would: a program's system calls become transfers. Thread-safe: no.
 class EmulatedNode {
  public:
   virtual ~EmulatedNode() = default;
@@ -16,10 +16,10 @@ class EmulatedNode {
   const ProgramCallQueue& calls() const noexcept { return calls_; }
   bool is_open() const noexcept { return calls_.opens() > 0; }
 
-  /// Does what programs ask of the node, `time_s` after the start.
+  /// Serves the calls that wait, `time_s` after the start.
   virtual void serve(double time_s) = 0;
 
-  /// The device is gone: whatever is asked from now on fails as it does in the kernel then. Its host is not used again.
+  /// The device has been unplugged: from now on calls fail as they do in the kernel. Its host is not used again.
   virtual void unplug() = 0;
 
  protected:

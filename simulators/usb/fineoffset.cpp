@@ -10,7 +10,8 @@
 //           (2, low byte first)                  12 point of the compass     15 status: 0x40 no contact
 //
 // Every 48 s the console writes what it measured into the current record, every minute how old that is, and after some
-// minutes it goes on to the next one. It writes byte after byte, and a reader can see that.
+// minutes it goes on to the next one. It writes byte after byte, so a block that is read meanwhile is half old, half
+// new.
 #include "simulators/usb/fineoffset.hpp"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ constexpr double kWriteByte_s = 0.03;
 constexpr double kBlockAnswer_s = 0.02;      // from the request to the first report
 constexpr double kBlockReport_s = 0.01;      // from one report to the next
 constexpr double kBlockSplitReport_s = 0.3;  // with the fault
-constexpr double kBlockLateAnswer_s = 2.5;   // with the fault: hosts wait for a second
+constexpr double kBlockLateAnswer_s = 2.5;   // with the fault: longer than a host's time-out of 1 s
 
 }  // namespace
 
@@ -54,7 +55,7 @@ FineOffset::FineOffset(FineOffsetRecord record, const HidModelOptions& options)
       position_(kFirstRecord),
       next_update_s_(paced(kFirstUpdate_s)),
       next_minute_s_(paced(kFirstMinute_s)) {
-  // The fixed block of a console that somebody has set up, and one record, before it heard of its sensors.
+  // The fixed block of a console that has been set up, and one record from before the first message of its sensors.
   memory_[0x00] = 0x55;
   memory_[0x01] = 0xAA;
   std::fill(memory_.begin() + 0x10, memory_.begin() + 0x100, std::uint8_t{0});
@@ -65,7 +66,7 @@ FineOffset::FineOffset(FineOffsetRecord record, const HidModelOptions& options)
 }
 
 void FineOffset::play() {
-  if (!has_begun_) {  // it has been standing in this wind for some time
+  if (!has_begun_) {  // the first record is measured, as by a console that has run for a while
     has_begun_ = true;
     std::ranges::copy(measured(), memory_.begin() + position_);
   }
@@ -84,7 +85,7 @@ void FineOffset::play() {
   }
 }
 
-/// Bytes that will stand in the memory one after the other, behind those that are still under way.
+/// Writes bytes into the memory one after the other, after those that are still being written.
 void FineOffset::write(std::uint16_t address, std::span<const std::uint8_t> bytes) {
   double at_s = writes_.empty() ? now_s() : std::max(now_s(), writes_.back().at_s);
   for (const std::uint8_t byte : bytes) {
@@ -113,7 +114,7 @@ void FineOffset::update_current_record() {
   gust_m_s_ = 0.0;
 }
 
-/// One more minute has gone: the current record is a minute older, or it is kept and a new one begins.
+/// After each minute: the current record is a minute older, or it is kept and a new one begins.
 void FineOffset::end_minute() {
   ++delay_min_;
   if (delay_min_ < kMinutesPerRecord) {

@@ -1,4 +1,4 @@
-// What USB and the HID class ask of a device (USB 2.0 specification, 9.6; HID 1.11 specification, 6.2 and 7.2).
+// What USB and the HID class require of a device (USB 2.0 specification, 9.6; HID 1.11 specification, 6.2 and 7.2).
 #include "simulators/usb/hid_model.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ UsbBytes device_descriptor(const HidIdentity& identity) {
           0x01,  // USB 1.1
           0,
           0,
-          0,                                                           // class: the interface says it
+          0,                                                           // class: given by the interface
           static_cast<std::uint8_t>(identity.is_full_speed ? 64 : 8),  // packet of end point 0
           low_byte(identity.vendor),
           high_byte(identity.vendor),

@@ -37,8 +37,8 @@ struct HidModelOptions {
   std::uint64_t seed = 1;  ///< of the garbage fault
 };
 
-/// What every HID station shares: descriptors, the requests of the HID class, and the reports that wait for the host.
-/// What a station adds is what it says, and when.
+/// What every HID station shares: descriptors, the requests of the HID class, and the reports that wait for the host. A
+/// station adds the content of its reports, and when it sends them.
 ///
 /// kFreeze and kSpike come with the wind that it is given (MeasuredWind). Thread-safe: no.
 class HidModel : public UsbDevice {
@@ -54,22 +54,22 @@ class HidModel : public UsbDevice {
   /// `known_faults` must live for ever.
   HidModel(const HidIdentity& identity, std::span<const FaultKind> known_faults, const HidModelOptions& options);
 
-  /// Goes on to now_s().
+  /// Advances to now_s().
   virtual void play() = 0;
-  /// An output report came, by either way (without a report id). False: refused.
+  /// Takes an output report, received by either way (without a report id). False: refused.
   virtual bool take_output(std::span<const std::uint8_t> report) = 0;
-  /// What GET_REPORT brings of input report `id`; nothing: refused.
+  /// The reply to GET_REPORT for input report `id`; nothing: refused.
   virtual std::optional<UsbBytes> input_report(std::uint8_t id);
 
   double now_s() const noexcept { return now_s_; }
   const PlayedMoment& wind() const noexcept { return wind_; }
   bool suffers(FaultKind kind) const noexcept { return fault_ == kind; }
-  /// A duration of the real station as it is here.
+  /// A duration of the real station, divided by the pace.
   double paced(double duration_s) const noexcept { return duration_s / options_.pace; }
 
-  /// Lays a report ready for the host, to be fetched from `delay_s` on. What nobody fetches is lost after some seconds.
+  /// Queues a report for the host, to be fetched from `delay_s` on. What is not fetched is dropped after some seconds.
   void say(UsbBytes report, double delay_s = 0.0);
-  /// Takes back what has not been fetched.
+  /// Drops the reports that have not been fetched.
   void say_nothing_more() { waiting_.clear(); }
   UsbBytes random_bytes(std::size_t size);
   /// A number from 0 up to, but without, `end`.

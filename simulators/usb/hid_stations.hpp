@@ -9,12 +9,12 @@
 
 namespace yuragi::sim {
 
-/// The names that make_hid_station() knows: wmr100, wmr300, fineoffset (WH1080), fineoffset-wh3080, acurite, te923.
+/// The stations of make_hid_station(): wmr100, wmr300, fineoffset (WH1080), fineoffset-wh3080, acurite, te923.
 std::vector<std::string_view> hid_station_names();
 
-/// A USB HID weather station. `pace` says how many times as fast as the real one it goes: 20 makes a Fine Offset
-/// console write its record every 2.4 s and not every 48 s (USB itself keeps its speed). `seed` makes the bytes of the
-/// garbage fault. Throws std::runtime_error for a name that it does not know.
+/// A USB HID weather station. `pace`: how many times as fast as the real one it runs: with 20 a Fine Offset console
+/// writes its record every 2.4 s, not every 48 s (USB itself keeps its speed). `seed`: of the bytes of the garbage
+/// fault. Throws std::runtime_error for an unknown name.
 std::unique_ptr<UsbDevice> make_hid_station(std::string_view name, double pace = 1.0, std::uint64_t seed = 1);
 
 }  // namespace yuragi::sim

@@ -66,7 +66,7 @@ void HidrawNode::unplug() {
   for (ProgramCall& reader : readers_) reader.fail(EIO);
   readers_.clear();
   pending_.clear();
-  readiness_.set_ready(true);  // whoever waits finds out
+  readiness_.set_ready(true);  // a program that waits in poll() is told
 }
 
 void HidrawNode::read_reports() {
@@ -95,7 +95,7 @@ void HidrawNode::hand_out_reports() {
     readers_.pop_front();
     const UsbBytes report = std::move(reports_.front());
     reports_.pop_front();
-    // Before the answer: whoever has it may ask at once whether there is more, and read if there seems to be.
+    // Before the reply: the program may call poll() at once, and would read again if there seemed to be more.
     readiness_.set_ready(!reports_.empty());
     const ProgramMemory buffer = reader.argument();
     buffer.write(0, report);

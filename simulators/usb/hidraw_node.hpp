@@ -12,9 +12,9 @@
 
 namespace yuragi::sim {
 
-/// /dev/hidrawN of a simulated device, with the kernel's usbhid behind it: reports are read while somebody has it open,
-/// and kept for whoever reads them; writes become SET_REPORT, or go to the interrupt OUT end point where there is one.
-/// Source: Linux 6.1, drivers/hid/hidraw.c and drivers/hid/usbhid/hid-core.c.
+/// /dev/hidrawN of a simulated device, with the kernel's usbhid behind it: reports are read while a program has it
+/// open, and kept until it reads them; writes become SET_REPORT, or go to the interrupt OUT end point where there is
+/// one. Source: Linux 6.1, drivers/hid/hidraw.c and drivers/hid/usbhid/hid-core.c.
 class HidrawNode final : public EmulatedNode {
  public:
   /// `path`: the node's file inside the testbed. `host` must outlive unplug().
@@ -28,7 +28,7 @@ class HidrawNode final : public EmulatedNode {
   void obey_ioctl(ProgramCall call);
   void get_report(ProgramCall call, const ProgramMemory& buffer, std::uint16_t type);
   void set_report(ProgramCall call, std::span<const std::uint8_t> report, std::uint16_t type);
-  /// Submits it; whoever waits in `call` waits for kTimeout_s at most.
+  /// Submits a control transfer; the program that waits in `call` waits for kTimeout_s at most.
   void submit(const std::shared_ptr<ProgramCall>& call, UsbTransfer transfer, UsbHost::Then then);
   void give_up_late_ones();
   void read_reports();
@@ -38,7 +38,7 @@ class HidrawNode final : public EmulatedNode {
   struct Pending {
     std::uint64_t transfer = 0;
     double deadline_s = 0.0;
-    std::weak_ptr<ProgramCall> call;  // gone when it is answered
+    std::weak_ptr<ProgramCall> call;  // expired once it is answered
   };
 
   UsbHost* host_;

@@ -1,6 +1,6 @@
-// LabJack U3-HV, as labjack/exodriver talks to it (examples/U3/u3.c and u3.h, liblabjackusb/labjackusb.c). Commands
-// come in on bulk end point 1, replies go out on 2. Both begin with sum8, F8, words, command, sum16 (low byte first),
-// and go on with:
+// LabJack U3-HV, as labjack/exodriver uses it (examples/U3/u3.c and u3.h, liblabjackusb/labjackusb.c). Commands come in
+// on bulk end point 1, replies go out on 2. Both begin with sum8, F8, words, command, sum16 (low byte first), and go on
+// with:
 //
 //   00  Feedback   echo, then for each input: 01 channel 1f (AIN against ground), 36 00 (Counter0), 37 00 (Counter1)
 //                  reply: error, which of them, echo, then 2 bytes for an AIN, 4 for a counter
@@ -26,7 +26,7 @@ constexpr std::size_t kFrameHeader = 6;
 constexpr std::size_t kMostReplies = 16;
 constexpr std::uint32_t kSerialNumber = 320'012'345;
 constexpr std::uint8_t kCounterPin = 4;  // where the cup is wired to: FIO4
-/// The maker has a list of errors; which of them these are nobody has confirmed. None is 0.
+/// Error codes. The maker has a list; that these are the right ones of it is unconfirmed. None is 0.
 constexpr std::uint8_t kNotEnabled = 0x50;
 constexpr std::uint8_t kNotAnInput = 0x51;
 
@@ -90,7 +90,7 @@ UsbDescriptors labjack_descriptors() {
                             7, 5, 0x82, 2, 64, 0,    0,                // bulk in: replies
                             7, 5, 0x83, 2, 64, 0,    0},               // bulk in: streamed samples
           .hid_report = {},
-          .strings = {"LabJack Corporation", "LabJack U3"}};  // no serial number: ConfigU3 tells it
+          .strings = {"LabJack Corporation", "LabJack U3"}};  // no serial number: ConfigU3 reports it
 }
 
 class Labjack final : public UsbDevice {
@@ -115,7 +115,7 @@ class Labjack final : public UsbDevice {
     fault_ = fault;
     cup_and_vane_.advance(time_s, wind, fault == FaultKind::kFreeze);
     if (fault != FaultKind::kUnplug) return;
-    // It has lost its power, and with it all that it was told.
+    // Without power it loses its configuration.
     counted_from_ = cup_and_vane_.pulses();
     timers_and_counters_ = 0;
     digital_as_analog_ = {0, 0};
@@ -130,7 +130,7 @@ class Labjack final : public UsbDevice {
   bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) override {
     if (endpoint != kCommandEndpoint) return false;
     if (fault_ == FaultKind::kSilence) return true;
-    // What was late comes with the next command.
+    // A late reply is sent with the next command.
     std::ranges::move(late_, std::back_inserter(replies_));
     late_.clear();
     if (std::optional<UsbBytes> reply = answer(data)) {
@@ -246,7 +246,7 @@ class Labjack final : public UsbDevice {
     return frame_of(0x2D, data);
   }
 
-  /// What the ADC of 12 bits makes of the voltage at an input, in 16 bits.
+  /// The 12-bit ADC's code for the voltage at an input, in 16 bits.
   std::uint16_t convert(unsigned channel) const {
     double volts = 0.0;
     if (channel == 0) volts = cup_and_vane_.wiper_v();

@@ -29,7 +29,7 @@ LaunchedProgram::LaunchedProgram(const std::vector<std::string>& command, Simula
   const pid_t parent = getpid();
   process_ = fork();
   if (process_ == 0) {
-    // It must not outlive us, for its devices do not.
+    // It must not outlive the simulator, whose devices it uses.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(kNotThere);
     if (const int nothing = open("/dev/null", O_RDONLY); nothing >= 0) dup2(nothing, STDIN_FILENO);

@@ -10,8 +10,8 @@
 
 namespace yuragi::sim {
 
-/// A program that runs beside a simulator and in its world; with its end, all ends. Its standard input is empty, since
-/// ours takes the faults.
+/// A program that runs in the simulator's testbed; when it ends, the simulation ends. Its standard input is empty,
+/// since the simulator's own takes commands.
 class LaunchedProgram final : public Simulator {
  public:
   /// Starts it; `simulator` must outlive this. Throws std::system_error.
@@ -21,7 +21,8 @@ class LaunchedProgram final : public Simulator {
   LaunchedProgram(const LaunchedProgram&) = delete;
   LaunchedProgram& operator=(const LaunchedProgram&) = delete;
 
-  /// As a shell has it: 128 and more for a signal, 127 for a program that is not there. Nothing: it still runs.
+  /// As a shell reports it: 128 plus the number of a signal, 127 for a program that was not found. Empty: it still
+  /// runs.
   std::optional<int> exit_code() const noexcept { return exit_code_; }
 
   std::span<const FaultKind> known_faults() const override { return simulator_.known_faults(); }

@@ -1,4 +1,4 @@
-// MCC USB-1208FS-Plus, as wjasper/Linux_Drivers talks to it (USB/mcc-libusb/usb-1208FS-Plus.{h,c} and
+// MCC USB-1208FS-Plus, as wjasper/Linux_Drivers uses it (USB/mcc-libusb/usb-1208FS-Plus.{h,c} and
 // USB/python/usb_1208FS_Plus.py; W. J. Jasper, 2014 and 2020). Vendor requests to the device, numbers low byte first:
 //
 //   C0 10  wValue mode << 8 | channel    analogue input, 2 bytes, 12 bits; against ground (mode 0) -10 to 10 V only
@@ -31,7 +31,7 @@ void append_low_first(UsbBytes& bytes, std::uint32_t value, int size) {
   for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
-/// The ADC of each input is a little wrong, and its calibration says how.
+/// The ADC of each input has an error, which its calibration corrects.
 float slope_of(unsigned channel) {
   return 1.01F + 0.002F * static_cast<float>(channel);
 }
@@ -75,7 +75,7 @@ class Mcc1208 final : public UsbDevice {
   void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) override {
     fault_ = fault;
     cup_and_vane_.advance(time_s, wind, fault == FaultKind::kFreeze);
-    if (fault == FaultKind::kUnplug) counted_from_ = cup_and_vane_.pulses();  // it has lost its power
+    if (fault == FaultKind::kUnplug) counted_from_ = cup_and_vane_.pulses();  // without power the count is lost
   }
 
   std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> /*data*/) override {
@@ -125,7 +125,7 @@ class Mcc1208 final : public UsbDevice {
     return UsbBytes{};
   }
 
-  /// What the ADC makes of the voltage at an input.
+  /// The ADC's code for the voltage at an input.
   std::uint16_t convert(unsigned channel) const {
     double volts = 0.0;
     if (channel == 0) volts = cup_and_vane_.wiper_v();

@@ -5,15 +5,16 @@
 
 namespace yuragi::sim {
 
-/// A FIFO in the place of a device node of umockdev's, whose readiness is what we say. An ordinary file, as umockdev
-/// has it, is always ready: whoever waits for it with poll() never waits. What is read and written goes by other ways;
-/// only poll() sees this. Thread-safe: no.
+/// A FIFO in the place of a device node of umockdev's, whose readiness can be set. umockdev's own node is an ordinary
+/// file, which is always ready, so that poll() would never wait. Reads and writes are intercepted elsewhere
+/// (ProgramCallQueue); only poll() sees this file. Thread-safe: no.
 class ReadinessNode {
  public:
-  /// What we can say of it; in the other direction it is always ready, or never of interest.
+  /// The direction whose readiness is set; in the other one it is always ready, or never asked for.
   enum class Direction : std::uint8_t { kReadable, kWritable };
 
-  /// Makes it at `path` (an absolute path inside the testbed), in the place of what is there. Throws std::system_error.
+  /// Makes it at `path` (an absolute path inside the testbed), replacing the file that is there. Throws
+  /// std::system_error.
   ReadinessNode(const std::string& path, Direction direction);
   ~ReadinessNode();
   ReadinessNode(const ReadinessNode&) = delete;

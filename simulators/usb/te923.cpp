@@ -1,8 +1,8 @@
 // Hideki TE923 (1130:6801). Source: weewx te923.py.
 //
-// Asked by the output report 05 af, address (low, middle, high), the exclusive or of these four, 00 00, it answers with
-// 34 bytes in input reports of 8 (how many of the next 7 are valid, then those): 5a, 32 bytes of memory, the exclusive
-// or of all 33. The host says 24 af ... when it has them. A request with a wrong check byte gets no answer.
+// On the output report 05 af, address (low, middle, high), the exclusive or of these four, 00 00, it answers with 34
+// bytes in input reports of 8 (how many of the next 7 are valid, then those): 5a, 32 bytes of memory, the exclusive or
+// of all 33. The host acknowledges with 24 af ... A request with a wrong check byte gets no reply.
 //
 // Memory from 0x020001 on (counted from the header as byte 0): 26, 27 gust; 28, 29 speed, decimal digits of 0.1 mph:
 // ones and tenths, then tens (and 0x10: a hundred); 30 point of the compass. New every 33 s.
@@ -22,7 +22,7 @@ constexpr double kTe923Every_s = 33.0;
 constexpr double kTe923Answer_s = 0.05;      // from the request to the first report
 constexpr double kTe923Report_s = 0.01;      // from one report to the next
 constexpr double kTe923SplitReport_s = 0.3;  // with the fault
-constexpr double kTe923LateAnswer_s = 8.0;   // with the fault: longer than 5 s, which hosts wait
+constexpr double kTe923LateAnswer_s = 8.0;   // with the fault: longer than a host's time-out of 5 s
 constexpr unsigned kTe923ReadingsAt = 0x020001;
 constexpr double kMetrePerSecond_mph = 1.0 / 0.44704;
 
@@ -41,7 +41,7 @@ class Te923 final : public HidModel {
                   .product_name = "",
                   .report_descriptor = plain_report_descriptor(8)},
                  kTe923Faults, options) {
-    // Before it heard of its anemometer.
+    // Before the first message of its anemometer.
     constexpr std::array<std::uint8_t, 4> kNoSensor = {0xEE, 0x8E, 0xEE, 0x8E};
     std::ranges::copy(kNoSensor, readings_.begin() + 25);
   }

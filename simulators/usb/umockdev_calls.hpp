@@ -15,23 +15,24 @@ struct _UMockdevIoctlData;
 
 namespace yuragi::sim {
 
-/// Memory of the program under test, as umockdev lets us see it: a copy here, which goes back to the program with the
-/// answer to a call that leads to it. Copies of this refer to the same memory. Thread-safe: no.
+/// Memory of the program under test, as umockdev gives access to it: a copy, which is written back to the program with
+/// the reply to the call that it belongs to. Copies of this refer to the same memory. Thread-safe: no.
 class ProgramMemory {
  public:
   ProgramMemory() = default;
-  /// Takes the reference over.
+  /// Takes ownership of the reference.
   explicit ProgramMemory(_UMockdevIoctlData* data);
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
   std::span<const std::uint8_t> bytes() const;
-  /// Where it is in the program: what its pointers hold.
+  /// Its address in the program, which the program's pointers hold.
   std::uintptr_t address() const;
-  /// What the pointer at `offset` points to; nothing for a null pointer, no bytes, or a program that is gone.
+  /// The memory that the pointer at `offset` points to; empty for a null pointer, for no bytes, or a program that has
+  /// ended.
   ProgramMemory pointed_to(std::size_t offset, std::size_t size) const;
   /// Writes as much as there is room for.
   void write(std::size_t offset, std::span<const std::uint8_t> bytes) const;
-  /// Makes the pointer at `offset`, not looked at before, point to that memory.
+  /// Makes the pointer at `offset`, which has not been followed before, point to that memory.
   void point_to(std::size_t offset, const ProgramMemory& target) const;
 
   template <class T>
@@ -45,11 +46,11 @@ class ProgramMemory {
 
 enum class ProgramCallKind : std::uint8_t { kIoctl, kRead, kWrite };
 
-/// A call on a device node that the program under test waits in. It is answered once, or when it is destroyed: then
-/// with EIO. Movable. Thread-safe: no.
+/// A system call on a device node in which the program under test waits. It is answered once; on destruction with EIO,
+/// if it was not. Movable. Thread-safe: no.
 class ProgramCall {
  public:
-  /// Takes the reference over.
+  /// Takes ownership of the reference.
   ProgramCall(ProgramCallKind kind, _UMockdevIoctlClient* client);
   ProgramCall(ProgramCall&& other) noexcept;
   ProgramCall& operator=(ProgramCall&& other) noexcept;
@@ -73,7 +74,7 @@ class ProgramCall {
   _UMockdevIoctlClient* client_;
 };
 
-/// The calls on one device node, from umockdev's thread to ours.
+/// The calls on one device node, handed from umockdev's thread to the simulator's. Thread-safe: between those two.
 class ProgramCallQueue {
  public:
   ProgramCallQueue();
@@ -88,7 +89,7 @@ class ProgramCallQueue {
   /// How often the node is open at the moment.
   int opens() const noexcept;
 
-  /// What umockdev is to attach to the node; a new reference.
+  /// The handler for umockdev to attach to the node; a new reference, owned by the caller.
   _UMockdevIoctlBase* make_handler() const;
 
   struct State;

@@ -28,7 +28,7 @@ std::string hex(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-/// A device in the testbed: what sysfs says of it, and its nodes.
+/// A device in the testbed: its description in sysfs, and its nodes.
 struct PluggedDevice {
   std::vector<std::string> paths;  // of all its parts, without /sys, the deepest first
   std::vector<std::string> node_names;
@@ -59,7 +59,7 @@ struct UmockdevSimulator::State {
     const std::string usb_node = fmt::format("bus/usb/001/{:03}", device_number);
     const std::string hidraw_node = fmt::format("hidraw{}", index);
 
-    // The nodes first: who sees the device in sysfs can open it.
+    // The nodes first: a program that sees the device in sysfs can open it at once.
     add_node<UsbfsNode>(socket, device, usb_node);
     if (is_hid) add_node<HidrawNode>(socket, device, hidraw_node);
 
@@ -90,7 +90,7 @@ struct UmockdevSimulator::State {
     device.node_names.push_back(name);
   }
 
-  /// Makes it vanish. Its nodes go on for those who have them open, to tell them.
+  /// Removes it. Its nodes stay for the programs that have them open, whose calls now fail.
   void unplug(Socket& socket) {
     PluggedDevice device = std::move(*std::exchange(socket.plugged, std::nullopt));
     socket.host.cancel_all();
@@ -167,7 +167,7 @@ struct UmockdevSimulator::State {
   UmockdevTestbed testbed;
   std::vector<FaultKind> known_faults;
   std::vector<std::unique_ptr<Socket>> sockets;
-  std::vector<std::unique_ptr<EmulatedNode>> gone;  // of unplugged devices, still open somewhere
+  std::vector<std::unique_ptr<EmulatedNode>> gone;  // of unplugged devices, still open in a program
   unsigned device_number = 1;                       // the root hub's
   unsigned hid_number = 0;
   std::optional<FaultKind> fault;
@@ -202,7 +202,7 @@ void UmockdevSimulator::serve(std::span<const int> /*ready*/, double time_s, std
     if (!socket.plugged && socket.port->is_plugged_in()) state.plug_in(i);
     if (!socket.plugged) continue;
 
-    // What programs ask, what the device says to it, and who can be told.
+    // Calls of programs, the device's outcomes, and the calls that these complete.
     for (const auto& node : socket.plugged->nodes) node->serve(time_s);
     socket.host.serve();
     for (const auto& node : socket.plugged->nodes) node->serve(time_s);

@@ -32,7 +32,7 @@ bool is_in_umockdev() noexcept {
 }
 
 void restart_in_umockdev() {
-  // Words are separated by zeros there.
+  // The arguments in /proc/self/cmdline are separated by zero bytes.
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   std::vector<std::string> words = {"umockdev-wrapper", std::filesystem::read_symlink("/proc/self/exe").string()};

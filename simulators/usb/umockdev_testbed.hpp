@@ -9,14 +9,15 @@ struct _UMockdevTestbed;  // NOLINT(bugprone-reserved-identifier): the name is G
 
 namespace yuragi::sim {
 
-/// True: this program runs with umockdev's library before the C library's, as a testbed and those who use it must.
+/// True: this program runs with umockdev's library before the C library's, as a testbed and the programs that use it
+/// must.
 bool is_in_umockdev() noexcept;
 
 /// Starts this program anew, with the same arguments, under umockdev-wrapper (Debian: umockdev). Returns only by
 /// throwing std::runtime_error, saying what to install.
 [[noreturn]] void restart_in_umockdev();
 
-/// A /sys and a /dev of our own, for this program and those that it starts, for as long as this lives. One at a time.
+/// A separate /sys and /dev for this program and those that it starts, for the lifetime of this object. One at a time.
 /// Thread-safe: no.
 class UmockdevTestbed {
  public:
@@ -26,19 +27,19 @@ class UmockdevTestbed {
   UmockdevTestbed(const UmockdevTestbed&) = delete;
   UmockdevTestbed& operator=(const UmockdevTestbed&) = delete;
 
-  /// Where "/dev/..." of the testbed is in truth.
+  /// The real path of "/dev/..." in the testbed.
   std::string real_path(const std::string& path) const;
 
   /// Adds devices that are described as `umockdev-record` writes them. Throws std::runtime_error.
   void add(const std::string& description);
   /// Removes one, and its node.
   void remove(const std::string& sysfs_path);
-  /// Tells those who listen to the kernel, through udev: `action` is "add" or "remove".
+  /// Sends a uevent to udev's listeners: `action` is "add" or "remove".
   void tell(const std::string& sysfs_path, const std::string& action);
 
-  /// From now on calls on that node ("/dev/...") come into the queue. Throws std::runtime_error.
+  /// From now on calls on that node ("/dev/...") are put into the queue. Throws std::runtime_error.
   void attach(const std::string& node, const ProgramCallQueue& calls);
-  /// The node takes no new ones; who has it open goes on.
+  /// Programs that open the node from now on are not served; those that have it open continue.
   void detach(const std::string& node);
 
  private:

@@ -51,7 +51,7 @@ void serve_usbip(const UsbOptions& options, MakeUsbDevice make) {
 }
 
 #if YURAGI_UMOCKDEV
-/// Shows the devices to one program, and ends with it and as it does.
+/// Shows the devices to one program; ends when it ends, with its exit code.
 void launch_in_umockdev(const UsbOptions& options, MakeUsbDevice make) {
   if (options.program.empty()) throw CLI::RequiredError("PROGRAM");
   if (!is_in_umockdev()) restart_in_umockdev();

@@ -24,8 +24,7 @@ struct UsbSetup {
   bool is_to_host() const noexcept { return (request_type & 0x80U) != 0; }
 };
 
-/// What a device shows of itself, as the bytes that it would send (USB 2.0 specification, 9.5 and 9.6). One
-/// configuration.
+/// A device's descriptors, as the bytes that it would send (USB 2.0 specification, 9.5 and 9.6). One configuration.
 struct UsbDescriptors {
   UsbBytes device;                   ///< 18 bytes
   UsbBytes configuration;            ///< with interfaces, HID descriptors and end points behind it
@@ -33,8 +32,8 @@ struct UsbDescriptors {
   std::vector<std::string> strings;  ///< ASCII; number 1 first
 };
 
-/// A simulated USB device, the same for every way to attach it (USB/IP, umockdev). It computes: no socket, no file, no
-/// clock. What comes from the host is hostile: any bytes of any length.
+/// A simulated USB device, the same for every way to attach it (USB/IP, umockdev). Pure: no socket, no file, no clock.
+/// The host is hostile: any bytes of any length may come.
 ///
 /// Standard requests (descriptors, address, configuration) are answered for it by usb_standard.hpp: control() sees
 /// class and vendor requests only. Thread-safe: no.
@@ -45,19 +44,19 @@ class UsbDevice {
   virtual const UsbDescriptors& descriptors() const = 0;
   virtual std::span<const FaultKind> known_faults() const = 0;
 
-  /// Goes on to `time_s` after the start, in that wind. Called before anything else of that moment. kUnplug and
-  /// kSilence of the whole device are the carrier's to do; what the device says wrongly is its own.
+  /// Advances to `time_s` after the start, in that wind. Called before anything else of that moment. kUnplug and
+  /// kSilence of the whole device are played by UsbPort; wrong content is the device's own.
   virtual void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) = 0;
 
-  /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host gets, at most
-  /// `setup.length` bytes of it; nothing for a request that the device refuses (a stall).
+  /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host receives, at most
+  /// `setup.length` bytes; nothing for a request that the device refuses (a stall).
   virtual std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) = 0;
 
-  /// What waits at an IN end point (its number without the direction bit), at most `max_size` bytes of it: one
+  /// The data that waits at an IN end point (its number without the direction bit), at most `max_size` bytes: one
   /// interrupt report, or bulk data. Nothing: the host has to wait (NAK).
   virtual std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) = 0;
 
-  /// What the host sends to an OUT end point. False: refused (a stall).
+  /// Takes data that the host sends to an OUT end point. False: refused (a stall).
   virtual bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) = 0;
 };
 

@@ -9,8 +9,8 @@
 
 namespace yuragi::sim {
 
-/// The host's end of a port, for several users of one device: whoever submits a transfer says what to do then.
-/// Thread-safe: no.
+/// The host's end of a port, for several users of one device: each transfer is submitted with a function that takes its
+/// outcome. Thread-safe: no.
 class UsbHost {
  public:
   using Then = std::function<void(const UsbOutcome&)>;
@@ -28,7 +28,7 @@ class UsbHost {
     return last_id_;
   }
 
-  /// Forgets a transfer that waits; nothing is done then. False: it is not waiting.
+  /// Drops a transfer that waits, without calling its function. False: it is not waiting.
   bool cancel(std::uint64_t id) {
     port_.cancel(id);
     return waiting_.erase(id) != 0;
@@ -39,7 +39,7 @@ class UsbHost {
     waiting_.clear();
   }
 
-  /// Does what is to be done with the transfers that have come to their ends; these may submit others.
+  /// Calls the functions of the transfers that have completed; these may submit others.
   void serve() {
     for (int round = 0; round < kMostRounds; ++round) {
       const auto outcomes = port_.take_outcomes();

@@ -7,13 +7,13 @@
 namespace yuragi::sim {
 namespace {
 
-/// Every device can suffer these: by its wind, or by its port.
+/// The faults of every device: of its wind, or of its port.
 constexpr std::array kFaultsOfAPort = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike, FaultKind::kUnplug};
 
-/// How many transfers a host may have under way; a kernel has a few.
+/// The most transfers that a host may have pending; a kernel has a few.
 constexpr std::size_t kMostWaiting = 1024;
 
-/// A device that never stops talking must not keep us.
+/// The most messages that are read and dropped at once: a device that always has data would never be empty.
 constexpr int kMostLost = 1000;
 
 }  // namespace

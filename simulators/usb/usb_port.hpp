@@ -14,28 +14,28 @@
 
 namespace yuragi::sim {
 
-/// What a host asks of an end point. Number 0 is the control pipe; there `setup` counts.
+/// A transfer of the host to or from an end point. Number 0 is the control pipe; only there `setup` is used.
 struct UsbTransfer {
-  std::uint64_t id = 0;  ///< the carrier's own
+  std::uint64_t id = 0;  ///< chosen by the submitter
   std::uint8_t endpoint = 0;
   bool is_to_host = false;
   UsbSetup setup;
   UsbBytes data;             ///< what the host sends
-  std::size_t max_size = 0;  ///< how much it would take
+  std::size_t max_size = 0;  ///< the most that it would receive
 };
 
-/// What became of it.
+/// The outcome of a transfer.
 struct UsbOutcome {
   std::uint64_t id = 0;
-  bool is_refused = false;  ///< stalled; what follows is empty
-  UsbBytes data;            ///< what the host gets
-  std::size_t size = 0;     ///< how much went, whichever way
+  bool is_refused = false;  ///< stalled; the members below are empty
+  UsbBytes data;            ///< what the host receives
+  std::size_t size = 0;     ///< bytes transferred, in either direction
 };
 
-/// A simulated device in its wind, as whatever attaches it to a host sees it: transfers go in, outcomes come out, at
-/// once or when the device has something to say. Two faults are played here, for every device alike: a silent device
-/// hears and says nothing (but still tells what it is), an unplugged one is not there; what it would have said is lost.
-/// It computes; thread-safe: no.
+/// A simulated device in its wind, for the code that attaches it to a host (USB/IP, umockdev): transfers go in,
+/// outcomes come out, at once or when the device has data. Two faults are played here, for every device alike: a silent
+/// device receives and sends nothing (but its descriptors), an unplugged one does not exist, and its data is lost.
+/// Pure. Thread-safe: no.
 class UsbPort {
  public:
   UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind);
@@ -43,20 +43,20 @@ class UsbPort {
   const UsbSummary& summary() const noexcept { return summary_; }
   const UsbDescriptors& descriptors() const { return device_->descriptors(); }
   const PlayedMoment& moment() const noexcept { return moment_; }
-  /// What the device can suffer, and what its port can.
+  /// The faults of the device, and those of its port.
   std::span<const FaultKind> known_faults() const noexcept { return known_faults_; }
 
-  /// Goes on to a moment. Unplugging forgets all transfers.
+  /// Advances to `time_s` after the start. Unplugging drops all transfers.
   void advance(double time_s, std::optional<FaultKind> fault);
   bool is_plugged_in() const noexcept { return is_plugged_in_; }
 
   void submit(UsbTransfer transfer);
-  /// Forgets a transfer that has no outcome yet; false: it is not waiting.
+  /// Drops a transfer that has no outcome yet; false: it is not waiting.
   bool cancel(std::uint64_t id);
-  /// Forgets all transfers: the host is gone.
+  /// Drops all transfers, when the host has gone.
   void cancel_all();
 
-  /// What has come about since the last call. Transfers to one end point end in the order in which they came.
+  /// The outcomes since the last call. Transfers to one end point complete in the order in which they were submitted.
   std::vector<UsbOutcome> take_outcomes();
 
  private:

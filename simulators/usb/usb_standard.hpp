@@ -11,7 +11,7 @@
 
 namespace yuragi::sim {
 
-/// What the kernel shows of an interface in sysfs, and a USB/IP server in its list.
+/// An interface as the kernel shows it in sysfs, and a USB/IP server in its list.
 struct UsbInterface {
   std::uint8_t number = 0;
   std::uint8_t device_class = 0;
@@ -26,7 +26,7 @@ struct UsbEndpoint {
   std::uint16_t max_packet_size = 0;
 };
 
-/// A device's descriptors, read. What they lack stays zero.
+/// The fields of a device's descriptors. What they lack is zero.
 struct UsbSummary {
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
@@ -50,19 +50,19 @@ UsbSummary summary_of(const UsbDescriptors& descriptors);
 UsbSetup usb_setup_of(std::span<const std::uint8_t, 8> bytes);
 
 /// The control pipe of a simulated device: answers the standard requests (USB 2.0 specification, 9.4) from its
-/// descriptors, and hands the others to it. Any bytes may come from the host. Thread-safe: no.
+/// descriptors, and passes the others to it. Any bytes may come from the host. Thread-safe: no.
 class UsbControlPipe {
  public:
   /// `device` must outlive this.
   explicit UsbControlPipe(UsbDevice& device);
 
-  /// True: a request that is answered here, and is never seen by the device.
+  /// True: a request that is answered here and not passed to the device.
   static bool is_standard(const UsbSetup& setup) noexcept { return (setup.request_type & 0x60U) == 0; }
 
   /// As UsbDevice::control(), and never more than `setup.length` bytes.
   std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data);
 
-  /// What the host set; 0: not configured yet.
+  /// The configuration that the host has set; 0: none yet.
   std::uint8_t configuration() const noexcept { return configuration_; }
 
  private:

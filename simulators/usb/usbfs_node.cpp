@@ -25,7 +25,7 @@ UsbfsNode::UsbfsNode(UsbHost& host, const std::string& path)
 void UsbfsNode::serve(double /*time_s*/) {
   while (auto call = calls_.take()) obey(std::move(*call));
 
-  // A program that is gone waits for nothing.
+  // A program that has closed the node waits for no transfer.
   if (!is_open()) {
     for (const auto& [address, urb] : under_way_) {
       if (host_ != nullptr) host_->cancel(urb.transfer);

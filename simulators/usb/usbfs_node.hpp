@@ -12,8 +12,8 @@
 namespace yuragi::sim {
 
 /// /dev/bus/usb/BBB/DDD of a simulated device, as far as libusb uses it: transfers are submitted, discarded and reaped.
-/// Waiting for a transfer's end is real waiting: the node becomes writable then. Source: Linux 6.1,
-/// drivers/usb/core/devio.c and include/uapi/linux/usbdevice_fs.h; libusb 1.0.26, os/linux_usbfs.c.
+/// A program that waits for a transfer's end really waits: the node becomes writable when it has completed. Source:
+/// Linux 6.1, drivers/usb/core/devio.c and include/uapi/linux/usbdevice_fs.h; libusb 1.0.26, os/linux_usbfs.c.
 class UsbfsNode final : public EmulatedNode {
  public:
   /// `path`: the node's file inside the testbed. `host` must outlive unplug().

@@ -1,15 +1,16 @@
 // Bytes of USB/IP 1.1.1, all big-endian but the setup bytes of a control transfer, which are as on the wire.
 //
-//   question     u16 version 0x0111, u16 code, u32 status; an import adds char[32] bus id
-//   its answer   the same head with the code's top bit clear; a list adds u32 count and records with 4 bytes for each
+//   request      u16 version 0x0111, u16 code, u32 status; an import adds char[32] bus id
+//   its reply    the same head with the code's top bit clear; a list adds u32 count and records with 4 bytes for each
 //                interface behind each, an import one record
 //   record       char[256] path, char[32] bus id, u32 bus, u32 device, u32 speed, u16 vendor, u16 product, u16 release,
 //                u8 class, subclass, protocol, configuration value, configurations, interfaces
 //   transfer     u32 command, u32 number, u32 device, u32 direction, u32 end point; then
 //     submit 1   u32 flags, u32 length, u32 start frame, u32 packets, u32 interval, u8[8] setup, the data that is sent
 //     unlink 2   u32 the number that is meant, 24 bytes of nothing
-//     reply 3    u32 status, u32 length, u32 start frame, u32 packets, u32 errors, 8 bytes of nothing, the data that is
-//     read reply 4    u32 status, 24 bytes of nothing
+//     reply 3    u32 status, u32 length, u32 start frame, u32 packets, u32 errors, 8 bytes of nothing,
+//                the data that is read
+//     reply 4    u32 status, 24 bytes of nothing
 #include "simulators/usb/usbip_protocol.hpp"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ constexpr std::uint32_t kUnlink = 2;
 constexpr std::uint32_t kSubmitReply = 3;
 constexpr std::uint32_t kUnlinkReply = 4;
 constexpr std::uint32_t kDirectionIn = 1;
-constexpr std::uint32_t kNotIsochronous = 0xFFFFFFFF;  // as packets; 0 says the same
+constexpr std::uint32_t kNotIsochronous = 0xFFFFFFFF;  // as the number of packets; 0 means the same
 
 constexpr std::uint32_t kFullSpeed = 2;  // 12 Mbit/s
 constexpr std::uint32_t kBus = 1;
@@ -61,7 +62,7 @@ void put_long(UsbBytes& bytes, std::uint32_t value) {
   put_word(bytes, static_cast<std::uint16_t>(value));
 }
 
-/// A text in a field of a fixed size, with at least one zero behind it.
+/// A text in a field of a fixed size, with at least one zero at its end.
 void put_text(UsbBytes& bytes, std::string_view text, std::size_t size) {
   const std::size_t end = bytes.size() + size;
   text = text.substr(0, size - 1);

@@ -18,7 +18,7 @@ namespace {
 namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
-/// A host that lets so much lie unread is gone, or hostile.
+/// A host that leaves so many bytes unread has gone, or is hostile.
 constexpr std::size_t kMostUnread = std::size_t{1024} * 1024;
 constexpr std::size_t kMostClients = 64;
 
@@ -30,7 +30,7 @@ struct UsbipServer::State {
 
     tcp::socket socket;
     UsbipPhase phase = UsbipPhase::kQuestions;
-    std::optional<std::size_t> device;  // which of the ports it has
+    std::optional<std::size_t> device;  // the port that it has imported
     UsbBytes in;
     UsbBytes out;
     bool is_gone = false;
@@ -95,7 +95,7 @@ struct UsbipServer::State {
     }
   }
 
-  /// Obeys each whole message that has come.
+  /// Handles each whole message that has arrived.
   void obey(Client& client) {
     std::size_t done = 0;
     while (!client.is_gone && !client.ends_after_answer) {
@@ -143,7 +143,7 @@ struct UsbipServer::State {
                                    .setup = submit.setup,
                                    .data = submit.data,
                                    .max_size = submit.length});
-    // Now, so that an unlink behind it in the same bytes finds it answered or waiting.
+    // At once, so that an unlink later in the same bytes finds the transfer answered or waiting.
     tell_outcomes(client);
   }
 
@@ -176,7 +176,7 @@ struct UsbipServer::State {
   std::vector<FaultKind> known_faults;
   std::vector<std::unique_ptr<Client>> clients;
   std::optional<FaultKind> fault;
-  std::string trouble;  // what the last connection that was given up said wrongly
+  std::string trouble;  // what was wrong with the last connection that was closed
 };
 
 UsbipServer::UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<UsbPort>> ports)

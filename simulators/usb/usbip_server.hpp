@@ -10,12 +10,12 @@
 
 namespace yuragi::sim {
 
-/// Simulated USB devices as a USB/IP server: any Linux machine with the module vhci_hcd gets them as if they were
+/// Simulated USB devices as a USB/IP server: any Linux machine with the module vhci_hcd can attach them as if they were
 /// plugged in, by `usbip attach -r HOST -b 1-1` (the first; the second is 1-2, and so on). A device is given to one
 /// host at a time. Unplugged, it is not offered, and the connection of the host that has it is closed.
 class UsbipServer final : public Simulator {
  public:
-  /// Listens at once; port 0 takes a free one. Throws std::runtime_error for an address that cannot be had.
+  /// Listens at once; port 0 takes a free one. Throws std::runtime_error for an address that cannot be listened on.
   UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<UsbPort>> ports);
   ~UsbipServer() override;
 
@@ -32,7 +32,7 @@ class UsbipServer final : public Simulator {
   std::unique_ptr<State> state_;
 };
 
-/// What any of these devices can suffer; a device that does not know a fault suffers none.
+/// The faults that any of these devices can play; a device ignores a fault that it does not know.
 std::vector<FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports);
 
 }  // namespace yuragi::sim

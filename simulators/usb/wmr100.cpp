@@ -1,7 +1,7 @@
 // Oregon Scientific WMR100 (0fde:ca01). Sources: ejeklint/WLoggerDaemon's description of the protocol (reports, frames,
 // sums); weewx wmr100.py (start report, wind frame).
 //
-// Says nothing before the start report, 20 00 08 01 00 00 00 00. Then a stream of bytes in reports of 8: the number of
+// Sends nothing before the start report, 20 00 08 01 00 00 00 00. Then a stream of bytes in reports of 8: the number of
 // valid ones, 1 to 7, and those. Frames stand between ff ff and end with the sum of their bytes, low byte first.
 //
 //   every     frame (first byte: flags; second: kind)
@@ -103,7 +103,7 @@ class Wmr100 final : public HidModel {
     if (suffers(FaultKind::kPartial)) bytes.resize(bytes.size() / 2);
     bytes.insert(bytes.begin(), {0xFF, 0xFF});
 
-    // One or two bytes a report most often, as the real one does it; garbage does not know its own length.
+    // One or two bytes a report most often, as the real console does; the length of garbage is random.
     const double gap_s = suffers(FaultKind::kSplit) ? kWmr100SplitReport_s : kWmr100Report_s;
     report_from_s_ = std::max(report_from_s_, now_s());
     for (std::size_t at = 0; at < bytes.size();) {

@@ -1,9 +1,9 @@
 // Oregon Scientific WMR300 (0fde:ca08). Source: weewx wmr300.py (its comment).
 //
-// Interrupt end points of 64 bytes both ways. Each heartbeat (a6 91 ca 45 52) is answered with who it is (57 4d 52 33
-// 30 30 ...). Sends no data before 73 e5 0a 26 and two bytes of that answer, which it acknowledges, and none 100 s
-// after the last heartbeat or acknowledgement (41 43 4b kind channel). A packet: its kind, length, five bytes of date
-// and time, channel, ..., the sum of all before, high byte first.
+// Interrupt end points of 64 bytes both ways. Each heartbeat (a6 91 ca 45 52) is answered with the console's
+// identification (57 4d 52 33 30 30 ...). Sends no data before 73 e5 0a 26 and two bytes of that answer, which it
+// acknowledges, and none 100 s after the last heartbeat or acknowledgement (41 43 4b kind channel). A packet: its kind,
+// length, five bytes of date and time, channel, ..., the sum of all before, high byte first.
 //
 //   every     packet
 //   2.75 s    d4 wind, 54 bytes, big-endian from 8 on: gust 0.1 m/s, its direction, average 0.1 m/s, its direction
@@ -119,7 +119,7 @@ class Wmr300 final : public HidModel {
   }
 
   bool has_begun_ = false;
-  double heard_s_ = 0.0;  ///< the last word from the host
+  double heard_s_ = 0.0;  ///< when the host's last message came
   std::array<double, kPacketKinds.size()> next_s_{};
   double gust_m_s_ = 0.0;  ///< since the last wind packet
 };

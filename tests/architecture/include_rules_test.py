@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Holds every #include of the project against the table of rooms in ARCHITECTURE.md.
+"""Holds every #include of the project against the table of rooms in ARCHITECTURE.md, and each room's README.md against
+the files that there are.
 
 usage: include_rules_test.py PROJECT_ROOT
 
 A file belongs to the room that is its folder. A room may always include itself and the C++ standard library (see
 FORBIDDEN_IN_ENGINE); all else stands in its line of the table.
 """
+import fnmatch
 import pathlib
+import posixpath
 import re
 import sys
 import unittest
@@ -14,6 +17,15 @@ import unittest
 import rooms
 
 MOST_FILES = 60  # in a room, headers counted
+
+README_LINES = range(10, 61)
+LONG_README = "engine/wind"  # the theory stands in it
+
+# A README names a path by a link, as a file's name in backquotes, or from one of the project's folders on.
+LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)\)")
+FILE_NAME = re.compile(r"`([\w.*/-]+\.(?:[ch]pp|md|py|sh|toml|fbs|glsl|txt|rules))`")
+PATH = re.compile(rf"(?<![\w./-])(?:{'|'.join(rooms.TOPS)}|tests|config)/[\w./*-]*\w")
+PLACEHOLDER = "NAME"  # `NAME_job.hpp`: of a file that somebody is to write
 
 # The engine computes: it opens no file, starts no thread, reads no clock, writes no log, and draws no random number
 # whose bits the standard leaves open. What a room has all the same stands among its libraries in the table.
@@ -85,6 +97,29 @@ def faults_of(path, text, table):
     return faults
 
 
+def missing_paths(folder, text, files):
+    """The paths that a README in `folder` names and that do not exist. `files`: the paths of all files. A path counts
+    from the README's folder or from the root; the name of a file in backquotes may be the end of its path."""
+    all_files = set(files)
+    folders = {parent.as_posix() for file in files for parent in pathlib.PurePosixPath(file).parents}
+
+    def exists(path, may_be_end):
+        path = posixpath.normpath(path)
+        if path in folders or path in all_files or ("*" in path and fnmatch.filter(files, path)):
+            return True
+        return may_be_end and any(file.endswith("/" + path) for file in files)
+
+    named = {(path, False) for path in LINK.findall(text) + PATH.findall(text)}
+    named |= {(path, True) for path in FILE_NAME.findall(text)}
+    return sorted(
+        {
+            path
+            for path, may_be_end in named
+            if PLACEHOLDER not in path and not exists(path, may_be_end) and not exists(f"{folder}/{path}", False)
+        }
+    )
+
+
 class TheProject(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -100,6 +135,25 @@ class TheProject(unittest.TestCase):
 
     def test_has_every_room_of_the_table(self):
         self.assertEqual([room for room in self.table if not list((ROOT / room).glob("*.?pp"))], [])
+
+    def test_has_a_readme_in_every_room(self):
+        files = [
+            path.relative_to(ROOT).as_posix()
+            for top in (*rooms.TOPS, "tests", "config")
+            for path in (ROOT / top).rglob("*")
+            if path.is_file()
+        ] + [path.name for path in ROOT.glob("*.md")]
+        faults = []
+        for room in self.table:
+            if f"{room}/README.md" not in files:
+                faults.append(f"{room} has no README.md")
+                continue
+            text = (ROOT / room / "README.md").read_text(encoding="utf-8")
+            count = len(text.splitlines())
+            if count < README_LINES.start or (count >= README_LINES.stop and room != LONG_README):
+                faults.append(f"{room}/README.md has {count} lines")
+            faults += [f"{room}/README.md: {path} does not exist" for path in missing_paths(room, text, files)]
+        self.assertEqual(faults, [], "\n" + "\n".join(faults))
 
     def test_lets_no_room_include_one_that_includes_it(self):
         self.assertEqual(rooms.circle_in({room.name: room.may_include for room in self.table.values()}), [])
@@ -180,6 +234,32 @@ class TheCheck(unittest.TestCase):
         for path, text in self.PASSED:
             with self.subTest(path=path, text=text):
                 self.assertEqual(faults_of(path, text, self.table), [])
+
+    FILES = ["engine/base/a.hpp", "engine/pose/b.cpp", "tests/engine/base/a_test.cpp", "tests/answer/README.md"]
+
+    MISSING = [
+        ("see `c.hpp`", "c.hpp"),
+        ("see [the other](../cellar/README.md)", "../cellar/README.md"),
+        ("engine/cellar is below", "engine/cellar"),
+        ("    from engine/base/c.hpp on", "engine/base/c.hpp"),
+        ("`engine/*/c.*pp`", "engine/*/c.*pp"),
+    ]
+
+    PRESENT = [
+        "`a.hpp`, `engine/pose/b.cpp`, `base/a_test.cpp`, `engine/*/a.hpp`",
+        "engine/base's, (tests/engine/base), [answers](../../tests/answer/README.md), [paper](https://example.org/a.md)",
+        "`NAME_job.hpp`, and a.toml without backquotes",
+    ]
+
+    def test_finds_paths_that_are_not_there(self):
+        for text, path in self.MISSING:
+            with self.subTest(text=text):
+                self.assertEqual(missing_paths("engine/base", text, self.FILES), [path])
+
+    def test_passes_paths_that_are_there(self):
+        for text in self.PRESENT:
+            with self.subTest(text=text):
+                self.assertEqual(missing_paths("engine/base", text, self.FILES), [])
 
     def test_finds_circles(self):
         self.assertEqual(rooms.circle_in({"a": {"b", "c"}, "b": {"c"}, "c": set()}), [])

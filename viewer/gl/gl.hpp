@@ -67,27 +67,30 @@ using GlProgram = GlObject<GlProgramKind>;
 /// Where a program finds the block of uniforms that all looks share (view.hpp).
 inline constexpr GLuint kViewBinding = 0;
 
-/// Compiles and links. Each stage begins with #version and shaders/common.glsl; `name` stands in front of the
-/// compiler's words when it throws std::runtime_error. The uniform block View is bound to kViewBinding.
+/// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error
+/// with `name` and the compiler's message. The uniform block View is bound to kViewBinding.
 GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
 
-/// Sets a sampler of `program` to a texture unit. Unknown names are ignored, as the compiler may drop what is not used.
+/// Sets a sampler of `program` to a texture unit. Unknown names are ignored, since the compiler drops uniforms that are
+/// not used.
 void set_sampler(const GlProgram& program, const char* name, GLint unit);
 
-/// Puts new content into a buffer that is drawn from every frame; the old one may still be in use by the GPU.
+/// Gives new content to a buffer that is drawn from every frame, without waiting for the GPU, which may still read the
+/// old content.
 template <class T>
 void stream_to(GLenum target, const GlBuffer& buffer, std::span<const T> content) {
   glBindBuffer(target, buffer.name());
   glBufferData(target, static_cast<GLsizeiptr>(content.size_bytes()), content.data(), GL_STREAM_DRAW);
 }
 
-/// Is there no graphics hardware, but a driver that computes every pixel on the processor?
+/// Does the driver compute every pixel on the processor, without graphics hardware?
 bool is_software_renderer();
 
-/// From now on, what the driver complains of goes to standard error (KHR_debug; nothing where the driver has it not).
+/// From now on the driver's error messages go to standard error (KHR_debug; does nothing where the driver does not
+/// support it).
 void report_gl_errors();
 
-/// How many errors the driver has complained of since report_gl_errors(). For tests.
+/// How many errors the driver has reported since report_gl_errors(). For tests.
 int gl_error_count();
 
 }  // namespace yuragi

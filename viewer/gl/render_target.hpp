@@ -7,9 +7,8 @@
 
 namespace yuragi {
 
-/// A picture to draw into that needs no visible window: several samples a pixel, resolved into one;
-/// with depth and stencil.
-/// Needs a current context. Throws std::runtime_error where the driver cannot make it.
+/// An off-screen framebuffer, which needs no visible window: several samples a pixel, resolved into one; with depth and
+/// stencil. Needs a current context. Throws std::runtime_error where the driver cannot make it.
 class RenderTarget {
  public:
   /// As many samples as asked for, or as the driver has; see samples().
@@ -19,9 +18,9 @@ class RenderTarget {
   int height_px() const { return height_px_; }
   int samples() const { return samples_; }
 
-  /// What is drawn from here on goes into the samples.
+  /// What is drawn from now on goes into the samples.
   void begin();
-  /// Makes pixels of the samples; what is drawn from here on (the overlay) goes over these.
+  /// Resolves the samples to pixels; what is drawn from now on (the overlay) goes over these.
   void resolve();
   /// Copies the pixels to the window's framebuffer.
   void show(int window_width_px, int window_height_px);

@@ -13,7 +13,7 @@ void ScreenDoor::open(float opacity, std::size_t number) {
   glEnable(GL_STENCIL_TEST);
   is_half_open_ = opacity < 1.0F;
   if (is_half_open_) {
-    // Mark the pixels to be left out.
+    // Marks the pixels that are left out.
     glStencilMask(kBehindDoor);
     glStencilFunc(GL_ALWAYS, kBehindDoor, kBehindDoor);
     glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);

@@ -5,21 +5,21 @@
 namespace yuragi {
 
 // The bits of the stencil while the stage draws.
-inline constexpr GLuint kBehindDoor = 1;  ///< this pixel is not drawn on by the scene that fades
+inline constexpr GLuint kBehindDoor = 1;  ///< the scene that fades does not draw on this pixel
 inline constexpr GLuint kHole = 2;        ///< the ground is open here
 inline constexpr GLuint kShadow = 4;      ///< the ground is in a shadow here
 
-/// Fades a scene without sorting and without its shaders knowing of it: as if through a fly screen, it is drawn on a
-/// share of the pixels only. Needs a current context and a stencil.
+/// Screen-door transparency: fades a scene by drawing it on a share of the pixels only, so that nothing has to be
+/// sorted by depth and its shaders need not know of it. Needs a current context and a stencil.
 class ScreenDoor {
  public:
   ScreenDoor();
 
-  /// What is drawn from here on to close() falls on `opacity` (0 to 1) of the pixels, evenly spread; on others for each
-  /// `number`.
+  /// What is drawn until close() covers the share `opacity` (0 to 1) of the pixels, evenly spread; which ones depends
+  /// on `number`.
   void open(float opacity, std::size_t number);
-  /// What is drawn from here on to end_mark() is not seen, but sets a bit, wherever it would fall, behind something or
-  /// not. While the door is open.
+  /// What is drawn until end_mark() is not visible, but sets `bit` in the stencil of every pixel that it covers, hidden
+  /// or not. Only between open() and close().
   void begin_mark(GLuint bit);
   void end_mark();
   void close();

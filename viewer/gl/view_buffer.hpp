@@ -5,7 +5,7 @@
 
 namespace yuragi {
 
-/// The View on the GPU.
+/// The uniform buffer that holds a View. Needs a current context.
 class ViewBuffer {
  public:
   void set(const View& view);

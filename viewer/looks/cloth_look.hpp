@@ -10,7 +10,7 @@
 
 namespace yuragi {
 
-/// Draws a cloth and what it hangs from: a curtain of linen that light shines through, a flag, a nobori banner.
+/// Draws a cloth and what holds it: a curtain of linen that light shines through, a flag, a nobori banner.
 class ClothLook : public Look {
  public:
   /// `cloth` must outlive this.

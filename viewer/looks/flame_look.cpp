@@ -24,14 +24,14 @@ SolidMesh flame_bowl(const SurfaceSkeleton& surface) {
   const glm::vec3 size_m = bounds.high_m - bounds.low_m;
   const float foot_m = *std::min_element(surface.rest_y_m.begin(), surface.rest_y_m.end());
 
-  // As wide as the lowest tenth.
+  // As wide as the flame in its lowest tenth.
   Bounds foot{glm::vec3(1e9F), glm::vec3(-1e9F)};
   for (std::size_t i = 0; i < surface.rest_x_m.size(); ++i) {
     const glm::vec3 point(surface.rest_x_m[i], surface.rest_y_m[i], surface.rest_z_m[i]);
     if (point.y < foot_m + 0.1F * size_m.y) foot = united(foot, {point, point});
   }
   const glm::vec3 middle = (foot.low_m + foot.high_m) / 2.0F;
-  // (A sheet is wide so that its flames have room to lean; they burn from its middle.)
+  // (A flat sheet is wider, so that its flames have room to lean; they burn from its middle.)
   const float share = surface.is_closed ? 0.55F : 0.09F;
   const float radius_m = share * std::max(foot.high_m.x - foot.low_m.x, foot.high_m.z - foot.low_m.z) + 0.03F;
   const auto at = [&](float y_m) { return glm::vec3(middle.x, y_m, middle.z); };
@@ -83,7 +83,7 @@ void FlameLook::move_to(const Pose& pose) {
   sheet_.move_to(std::as_const(points_).data());
   sheet_.set_level(burning->heat);
 
-  // It glows from where the heat is.
+  // The glow's middle is that of the heat.
   float heat = 0.0F;
   glm::vec3 sum_m(0.0F);
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -111,7 +111,7 @@ void FlameLook::draw_light() {
   glBindVertexArray(no_attributes_.name());
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 
-  // The far side of a body before the near one, and what is within a shell between its two sides.
+  // The far side of a body is drawn before the near one, and the inner shells between the two sides of the outer.
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glUseProgram(program_.name());
   glActiveTexture(GL_TEXTURE0);

@@ -9,10 +9,10 @@
 namespace yuragi {
 namespace {
 
-constexpr float kDiscPerSpacing = 1.5F;  // so that discs overlap wherever roots stand close and far by chance
+constexpr float kDiscPerSpacing = 1.5F;  // so that discs overlap although roots are unevenly spread
 constexpr GLsizei kDiscCorners = 6;
 
-/// Tells a program where the body is: the ellipsoid in the box around the roots.
+/// Sets a program's uniforms of the body: the ellipsoid in the box around the roots.
 void set_body(const GlProgram& program, const StrandSkeleton& strands) {
   Bounds roots{glm::vec3(1e9F), glm::vec3(-1e9F)};
   for (std::size_t i = 0; i < strands.strand_count; ++i) {
@@ -25,7 +25,7 @@ void set_body(const GlProgram& program, const StrandSkeleton& strands) {
   glUniform3f(glGetUniformLocation(program.name(), "body_middle_m"), middle.x, middle.y, middle.z);
   glUniform3f(glGetUniformLocation(program.name(), "body_radius_m"), radius.x, radius.y, radius.z);
 
-  // The roots share about the upper half of the ellipsoid's skin.
+  // The roots cover about the upper half of the ellipsoid.
   const float area_m2 = 2.0F * (radius.x * radius.y + radius.y * radius.z + radius.z * radius.x);
   const auto count = static_cast<float>(std::max<std::size_t>(1, strands.strand_count));
   glUniform1f(glGetUniformLocation(program.name(), "disc_m"), kDiscPerSpacing * std::sqrt(area_m2 / count));

@@ -7,7 +7,7 @@ namespace {
 void describe_arrays(const GlBuffer& buffer, GLuint first, GLuint count, std::size_t size) {
   glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
   for (GLuint i = 0; i < count; ++i) {
-    // An offset in a buffer travels as a pointer: so OpenGL's interface is.
+    // OpenGL takes an offset in a buffer as a pointer.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
     const auto* const at = reinterpret_cast<const void*>(i * size * sizeof(float));
     glVertexAttribPointer(first + i, 1, GL_FLOAT, GL_FALSE, sizeof(float), at);
@@ -48,7 +48,7 @@ void GridSheet::draw() const {
 void GridSheet::draw_shell(std::size_t shell) const {
   glBindVertexArray(array_.name());
   const auto count = index_count_ / static_cast<GLsizei>(layout_.shells);
-  // An offset in a buffer travels as a pointer: so OpenGL's interface is.
+  // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto* const at = reinterpret_cast<const void*>(shell * static_cast<std::size_t>(count) * sizeof(std::uint32_t));
   glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, at);

@@ -7,7 +7,7 @@
 
 namespace yuragi {
 
-/// A cloth's or a surface's triangles on the GPU, as smooth as its normals. Needs a current context.
+/// The triangles of a cloth or a surface on the GPU, with smooth normals. Needs a current context.
 ///
 /// A shader finds the point in the attributes 0 to 2 (x, y, z, metres) and its normal in 3 to 5. Allocates nothing
 /// after it is made.
@@ -15,7 +15,7 @@ class GridSheet {
  public:
   explicit GridSheet(const GridLayout& layout);
 
-  /// Takes the points where they stand now: all x, then all y, then all z.
+  /// Takes the points' present positions: all x, then all y, then all z.
   void move_to(std::span<const float> points);
 
   std::size_t shells() const { return layout_.shells; }

@@ -7,7 +7,7 @@
 namespace yuragi {
 namespace {
 
-// As the shaders count.
+// The shaders have the same numbers.
 constexpr GLsizei kHillSteps = 2160;
 constexpr GLsizei kHillLines = 3;
 constexpr GLsizei kSkyColumns = 40;
@@ -41,7 +41,7 @@ void Landscape::draw() {
   }
   glDisable(GL_STENCIL_TEST);
 
-  // From near to far; the sky is at the far end of the depths.
+  // From near to far; the sky is at the far end of the depth range.
   glUseProgram(hills_.name());
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kHillSteps + 1), kHillLines);
   glDepthFunc(GL_LEQUAL);

@@ -4,8 +4,8 @@
 
 namespace yuragi {
 
-/// The ground and the evening sky around what sways. Drawn last: what is covered is not painted. Needs a current
-/// context.
+/// The ground and the evening sky around the scenes. Drawn after them, so that what they cover is not painted. Needs a
+/// current context.
 class Landscape {
  public:
   Landscape();

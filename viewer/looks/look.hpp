@@ -7,8 +7,8 @@
 
 namespace yuragi {
 
-/// How a scene is drawn. Owns its GPU objects; needs a current context; on its thread. Allocates nothing from picture
-/// to picture once it has drawn the first few.
+/// The renderer of a scene view. Owns its GPU objects; needs a current context; on its thread. Allocates nothing from
+/// picture to picture after the first few.
 class Look {
  public:
   Look() = default;
@@ -16,27 +16,28 @@ class Look {
   Look(const Look&) = delete;
   Look& operator=(const Look&) = delete;
 
-  /// Takes a pose that fits the skeleton; before anything is drawn, and for each picture.
+  /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn.
   virtual void move_to(const Pose& pose) = 0;
 
-  /// Draws what stands there. The View is bound (ViewBuffer::set). The stage has set depth and stencil tests; what a
-  /// look changes of OpenGL's state besides bindings it sets back.
+  /// Draws the opaque parts. The View is bound (ViewBuffer::set). The stage has set depth and stencil tests; other
+  /// OpenGL state that is changed here, but for bindings, is restored.
   virtual void draw(const View& view) = 0;
 
-  /// Draws, after everything else, what shines through: flames.
+  /// Draws, after everything else, what is blended over it: flames.
   virtual void draw_light() {}
 
-  /// Fills, into the stencil alone, where the ground is open: under water.
+  /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
 
-  /// Does it stand in the sun's way? Then draw() is also called with a View that lays everything flat on the ground.
+  /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
   virtual bool casts_shadow() const { return false; }
 
-  /// Does it cover the ground as a field that one stands in?
+  /// Does it cover the ground as a field, in which the camera stands?
   virtual bool is_field() const { return false; }
 };
 
-/// The look for the scene's kind of skeleton, and its own kind where there are several. `scene` must outlive it.
+/// The renderer for the scene's kind of skeleton, and for the scene's own kind where there are several. `scene` must
+/// outlive it.
 std::unique_ptr<Look> make_look(const wire::SceneModel& scene);
 
 }  // namespace yuragi

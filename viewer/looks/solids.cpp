@@ -18,7 +18,7 @@ Solids::Solids(const SolidMesh& mesh)
   glBindBuffer(GL_ARRAY_BUFFER, vertex_buffer_.name());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices().size() * sizeof(SolidVertex)),
                mesh.vertices().data(), GL_STATIC_DRAW);
-  // An offset in a buffer travels as a pointer: so OpenGL's interface is.
+  // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SolidVertex), at(offsetof(SolidVertex, place_m)));

@@ -7,12 +7,13 @@
 
 namespace yuragi {
 
-/// A SolidMesh on the GPU, lit as everything else. Needs a current context.
+/// A SolidMesh on the GPU, with its own program. Needs a current context.
 class Solids {
  public:
   explicit Solids(const SolidMesh& mesh);
 
-  /// Turns it about the vertical through a place (x, z), from how it was made, clockwise seen from above.
+  /// Turns it about the vertical through a place (x, z), clockwise seen from above, from the position in which it was
+  /// made.
   void turn(const glm::vec2& axis_m, float sine, float cosine);
 
   /// The View is bound (ViewBuffer::set).

@@ -7,7 +7,7 @@
 namespace yuragi {
 namespace {
 
-/// Around `chosen` of the bounds; nothing where there are none.
+/// The box around those of the bounds for which `is_chosen`; nothing where there are none.
 template <class IsChosen>
 std::optional<Bounds> around(const std::vector<Bounds>& bounds, IsChosen&& is_chosen) {
   std::optional<Bounds> all;

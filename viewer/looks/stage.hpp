@@ -14,11 +14,10 @@
 
 namespace yuragi {
 
-/// Everything that stands in the picture: the scenes, each with the look of its kind of skeleton, in a landscape.
-/// Needs a current context; on its thread.
+/// All scene views, each with its renderer (Look), in a landscape. Needs a current context; on its thread.
 class Stage {
  public:
-  /// Takes the scenes; draws nothing of those before.
+  /// Replaces the scenes.
   void set_scenes(std::vector<wire::SceneModel> scenes);
   const std::vector<wire::SceneModel>& scenes() const { return scenes_; }
 
@@ -27,13 +26,13 @@ class Stage {
   /// Draws only the first scene, then only the next, and after the last all again.
   void show_next();
 
-  /// Around all scenes that are drawn, and from where to look at them in a picture of width / height `aspect`.
+  /// The box around all scenes that are drawn, and the camera's first place for a picture of width / height `aspect`.
   Bounds bounds() const;
   CameraPlace home(double aspect) const;
-  /// How many joints move.
+  /// How many joints move in all scenes.
   std::size_t node_count() const;
 
-  /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit are left out.
+  /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarget& target);
 
  private:

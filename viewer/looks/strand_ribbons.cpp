@@ -6,7 +6,7 @@ namespace yuragi {
 namespace {
 
 void describe_blade(const GlVertexArray& array, const GlBuffer& buffer) {
-  // An offset in a buffer travels as a pointer: so OpenGL's interface is.
+  // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
   glBindVertexArray(array.name());
@@ -25,11 +25,11 @@ void describe_blade(const GlVertexArray& array, const GlBuffer& buffer) {
 StrandRibbons::StrandRibbons(const StrandSkeleton& strands, BladeStyle style)
     : strands_(&strands), sorter_(strands, style), joints_(strands) {
   describe_blade(blade_array_, blade_buffer_);
-  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // it is there, even if no pose is ever taken
+  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // creates the buffer, even if no pose is ever taken
 }
 
 void StrandRibbons::move_to(const StrandPose& pose) {
-  // The one forward kinematics, and its joints as they are.
+  // The forward kinematics of engine/pose; its joints are uploaded as they lie.
   const StrandKinematicsJob job{.skeleton = strands_, .pose = &pose, .row = {}, .joints = &joints_};
   if (job.run() != StrandKinematicsJob::Problem::kNone) return;
   stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(joints_).data()));
@@ -43,7 +43,7 @@ void StrandRibbons::draw(const GlProgram& program, const View& view) {
   glBindTexture(GL_TEXTURE_BUFFER, joint_texture_.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, joint_buffer_.name());
 
-  // Near blades first: what is behind them need not be painted.
+  // Near blades first: the depth test then saves painting what they hide.
   sorter_.sort(view);
   glBindVertexArray(blade_array_.name());
   for (const DetailLevel& level : sorter_.levels()) {

@@ -7,8 +7,8 @@
 
 namespace yuragi {
 
-/// Strands on the GPU, each a ribbon along its joints, as finely as it is large in the picture. Needs a current
-/// context.
+/// Strands on the GPU, each a ribbon along its joints, with more vertices the larger it is in the picture. Needs a
+/// current context.
 ///
 /// A shader finds an instance's Blade in the attributes 0 to 2, the joints in the sampler `joints` (unit 0, see
 /// shaders/common.glsl), and the uniforms `links` and `rings`.
@@ -17,7 +17,7 @@ class StrandRibbons {
   /// `strands` must outlive this.
   StrandRibbons(const StrandSkeleton& strands, BladeStyle style);
 
-  /// Moves the joints to where they are in this pose.
+  /// Computes and uploads the joints of this pose.
   void move_to(const StrandPose& pose);
   /// Draws what is in view, near ones first, with `program`.
   void draw(const GlProgram& program, const View& view);

@@ -8,7 +8,7 @@
 namespace yuragi {
 namespace {
 
-/// Around a branch of a level: the trunk is near and thick, twigs are thin.
+/// Sides of a branch's tube, by level: the trunk is thick, twigs are thin.
 GLsizei sides_of(std::size_t level) {
   return level == 0 ? 14 : (level == 1 ? 8 : 5);
 }
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> tube_triangles(std::size_t rings, GLsizei sides) {
 }
 
 void describe_part(const GlVertexArray& array, const GlBuffer& buffer, const std::vector<TreePart>& parts) {
-  // An offset in a buffer travels as a pointer: so OpenGL's interface is.
+  // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
   glBindVertexArray(array.name());
@@ -46,7 +46,7 @@ void describe_part(const GlVertexArray& array, const GlBuffer& buffer, const std
   }
 }
 
-/// Tells a program where the crown is: the box around the leaves, or around all where there are none.
+/// Sets a program's uniforms of the crown: the box around the leaves, or around all where there are none.
 void set_crown(const GlProgram& program, const TreeSkeleton& tree, const Bounds& all) {
   Bounds crown = all;
   for (std::size_t level = 0; level < tree.levels.size(); ++level) {
@@ -89,7 +89,7 @@ TreeLook::TreeLook(const TreeSkeleton& tree, std::string_view name)
     set_sampler(*program, "joints", 0);
     set_crown(*program, tree, bounds_);
   }
-  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // it is there, even if no pose is ever taken
+  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // creates the buffer, even if no pose is ever taken
 }
 
 void TreeLook::move_to(const Pose& pose) {
@@ -97,7 +97,7 @@ void TreeLook::move_to(const Pose& pose) {
   const TreeKinematicsJob job{.skeleton = tree_, .pose = bends, .row = {}, .joints = &joints_};
   if (job.run() != TreeKinematicsJob::Problem::kNone) return;
 
-  // Level behind level, in a buffer that is new each time: the old one may still be in use by the GPU.
+  // Level behind level, in a new buffer each time, since the GPU may still read the old one.
   glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());
   const std::size_t count = first_joint_at(*tree_, levels_.size());
   glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(count * sizeof(float)), nullptr, GL_STREAM_DRAW);

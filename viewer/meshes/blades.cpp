@@ -17,7 +17,7 @@ constexpr float kMinWidthPerLength = 0.012F;
 constexpr float kMaxWidthPerLength = 0.055F;
 constexpr float kCullMargin = 1.3F;  // of a blade's length, around its root
 
-/// A few broad waves over the ground, from -1 to 1: where the meadow is lusher.
+/// A few broad waves over the ground, from -1 to 1: the meadow's patches.
 float patch(float x_m, float z_m) {
   return 0.5F * std::sin(0.9F * x_m + 0.6F * z_m) + 0.3F * std::sin(1.7F * z_m - 0.7F * x_m + 2.0F) +
          0.2F * std::sin(3.1F * x_m + 1.1F);
@@ -87,7 +87,8 @@ BladeSorter::BladeSorter(const StrandSkeleton& skeleton, BladeStyle style) : bla
 void BladeSorter::sort(const View& view) {
   for (DetailLevel& level : levels_) level.blades.clear();
 
-  // The planes of the picture's sides, from the rows of the projection: what is outside one of them is not seen.
+  // The planes of the view frustum's sides, from the rows of the projection (Gribb and Hartmann 2001, "Fast extraction
+  // of viewing frustum planes from the world-view-projection matrix").
   const auto row = [&](int i) {
     return glm::vec4(view.to_clip[0][i], view.to_clip[1][i], view.to_clip[2][i], view.to_clip[3][i]);
   };

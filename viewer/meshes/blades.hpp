@@ -13,7 +13,7 @@
 
 namespace yuragi {
 
-/// What is drawn for a strand, in the layout that the grass shader reads (one instance).
+/// An instance for a strand, in the layout that the grass shader reads.
 struct Blade {
   std::array<float, 3> root_m{};
   float width_m = 0.0F;
@@ -22,14 +22,14 @@ struct Blade {
   std::uint32_t strand = 0;
 };
 
-/// What grows on the strands.
+/// What the strands are drawn as.
 enum class BladeStyle : std::uint8_t { kGrass, kFur };
 
-/// A blade (or hair) for each strand: as wide as the strands' spacing asks for so that the ground is covered, tinted by
-/// patches and by chance. The same skeleton always makes the same blades.
+/// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted by patches and
+/// at random. The same skeleton always gives the same blades.
 std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
 
-/// Blades that are drawn equally finely.
+/// Blades of one level of detail.
 struct DetailLevel {
   std::size_t rings = 1;      ///< of vertices above the root; at most the links
   std::vector<Blade> blades;  ///< in view

@@ -67,7 +67,7 @@ Bounds bounds_of(const GridSkeleton& cloth) {
     if (row > 0) length_m += glm::distance(joint_at_rest(cloth, 0, row), joint_at_rest(cloth, 0, row - 1));
   }
 
-  // A hoist stands upright, and its flag flies to any side; what hangs from above swings out.
+  // A cloth with an upright fixed edge (a flag) flies to any side; one that hangs from above swings out.
   const glm::vec3 edge_m = fixed.high_m - fixed.low_m;
   const bool is_hoisted = edge_m.y > std::max(edge_m.x, edge_m.z);
   const float reach_m = (is_hoisted ? kFlyPerLength : kSwingPerLength) * length_m;

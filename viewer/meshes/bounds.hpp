@@ -12,7 +12,7 @@ struct Bounds {
   glm::vec3 high_m{0.0F};
 };
 
-/// The box that what grows on a skeleton fills as it sways. No promise: in a storm a cloth may reach out of it.
+/// The box that a skeleton's poses fill. An estimate: in a storm a cloth may exceed it.
 Bounds bounds_of(const Skeleton& skeleton);
 Bounds bounds_of(const StrandSkeleton& strands);
 Bounds bounds_of(const GridSkeleton& cloth);

@@ -10,11 +10,10 @@
 
 namespace yuragi {
 
-/// What a cloth is made of and hangs from. The numbers are the cloth shader's.
+/// How a cloth is drawn and held. The numbers are those of the cloth shader.
 enum class ClothStyle : int { kCurtain = 0, kFlag = 1, kBanner = 2 };
 
-/// By the scene's kind; a kind that is not known hangs as a curtain, or flies as a flag where its fixed edge is
-/// upright.
+/// By the scene's kind; an unknown kind is a curtain, or a flag where its fixed edge is upright.
 ClothStyle cloth_style(std::string_view kind, const GridSkeleton& cloth);
 
 /// How a cloth's picture lies on its grid: the place of joint (column, row) on it, in metres from its upper left corner
@@ -27,7 +26,7 @@ struct ClothMeasure {
 };
 ClothMeasure measure(const GridSkeleton& cloth);
 
-/// What holds it: a rod on two posts, a pole, a pole with a cross-arm. They stand on the ground at height 0.
+/// The mesh of what holds it: a rod on two posts, a pole, a pole with a cross-arm, on the ground at height 0.
 SolidMesh cloth_holder(ClothStyle style, const GridSkeleton& cloth);
 
 }  // namespace yuragi

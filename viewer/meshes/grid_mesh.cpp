@@ -13,7 +13,7 @@ struct Axes {
   const float* z;
 };
 
-/// The normal of a point from two ways over the grid: from `left` to `right`, from `above` to `below`.
+/// The normal of a point: the cross product of `left` to `right` and `above` to `below`.
 void write_normal(const Axes& p, std::size_t left, std::size_t right, std::size_t above, std::size_t below, float& nx,
                   float& ny, float& nz) {
   const float ax = p.x[right] - p.x[left];

@@ -21,14 +21,14 @@ struct GridLayout {
 GridLayout layout_of(const GridSkeleton& cloth);
 GridLayout layout_of(const SurfaceSkeleton& surface);
 
-/// Two triangles for each cell, three indices of points each, all the same way round; shell after shell.
+/// Two triangles for each cell, three indices of points each, all with the same winding; shell after shell.
 std::vector<std::uint32_t> grid_triangles(const GridLayout& layout);
 
-/// A unit normal for each point, smooth over the grid: across what leads from the point's neighbour before to the one
-/// behind, along the row and along the column (at an edge from the point itself). Zero where these do not span a plane.
+/// A unit normal for each point: the cross product of the differences between its neighbours along the row and along
+/// the column (at an edge, between a neighbour and the point itself). Zero where these are parallel.
 ///
-/// `points` and `normals` hold all x, then all y, then all z, layout.size() each. What is behind `columns` in a row is
-/// not written. Pure; allocates nothing.
+/// `points` and `normals` hold all x, then all y, then all z, layout.size() each. The padding behind `columns` in a row
+/// is not written. Pure; allocates nothing.
 void grid_normals(const GridLayout& layout, std::span<const float> points, std::span<float> normals);
 
 }  // namespace yuragi

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kOrbit_deg = 180.0;  // for a drag over the picture's height
 constexpr double kZoomStep = 0.88;    // of the distance, a notch
-constexpr double kGlide_s = 0.08;     // the time constant with which it follows the hand
+constexpr double kGlide_s = 0.08;     // the time constant with which it follows a drag
 constexpr double kTurning_deg_s = 2.0;
 constexpr double kMaxTarget_m = 500.0;  // from the origin
 constexpr double kAcrossPitch_deg = 6.0;
@@ -56,7 +56,7 @@ void OrbitCamera::orbit(double right, double down) {
 }
 
 void OrbitCamera::pan(double right, double down) {
-  // The ground under the pointer keeps to it: a picture's height is so many metres at the target.
+  // The point of the target's plane under the pointer stays there: the picture's height in metres at the target.
   const double height_m = 2.0 * wanted_.distance_m * std::tan(glm::radians(kFieldOfView_deg) / 2.0);
   const double heading = glm::radians(wanted_.heading_deg);
   const glm::dvec3 to_right(std::cos(heading), 0.0, std::sin(heading));
@@ -104,7 +104,7 @@ CameraPlace place_across(const Bounds& bounds) {
   place.heading_deg = 180.0 + glm::degrees(std::atan2(width_m, depth_m));
   place.pitch_deg = kAcrossPitch_deg;
   if (diagonal_m < kFieldHeights * height_m) {
-    // Hardly wider than it is high: the whole of it, from outside.
+    // Hardly wider than high: all of it, from outside.
     place.target_m = {(low.x + high.x) / 2, low.y + 0.5 * height_m, (low.z + high.z) / 2};
     place.distance_m = 0.6 * diagonal_m + 2.0 * height_m;
     return limited(place);
@@ -130,7 +130,7 @@ CameraPlace place_around(const Bounds& bounds, double aspect) {
   place.pitch_deg = is_flat ? kFlatPitch_deg : kAroundPitch_deg;
   place.target_m = (low + high) / 2.0;
 
-  // As far away as the corner that needs it most.
+  // So far away that every corner is in the picture.
   const glm::dvec3 forward = direction(place);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
   const glm::dvec3 up = glm::cross(right, forward);

@@ -7,16 +7,16 @@
 
 namespace yuragi {
 
-/// Where a camera looks from: it turns around a target and never rolls.
+/// The position of a camera that orbits a target and never rolls.
 struct CameraPlace {
   glm::dvec3 target_m{0.0};
-  double heading_deg = 0.0;  ///< where it looks to: 0 north, 90 east
-  double pitch_deg = 10.0;   ///< how far it looks down
+  double heading_deg = 0.0;  ///< direction of view: 0 north, 90 east
+  double pitch_deg = 10.0;   ///< of the view below level
   double distance_m = 5.0;   ///< from the target
 };
 
-/// A camera that a hand turns, shifts and moves nearer and farther; it glides to where the hand wants it.
-/// Pure: time is a parameter. Thread-safe: no. Whatever is asked of it stays finite and within limits.
+/// A camera that the user turns, shifts and moves nearer and farther; it follows these movements smoothly. Pure: time
+/// is a parameter. Thread-safe: no. Its place is always finite and within the limits below.
 class OrbitCamera {
  public:
   static constexpr double kFieldOfView_deg = 40.0;  ///< from the bottom of the picture to its top
@@ -25,21 +25,21 @@ class OrbitCamera {
   static constexpr double kMinDistance_m = 0.2;
   static constexpr double kMaxDistance_m = 200.0;
 
-  /// Takes the place at once; reset() comes back to it.
+  /// Takes the place at once, and as the one that reset() returns to.
   void frame(const CameraPlace& place);
   void reset() { wanted_ = home_; }
 
-  /// The hand's movements, as shares of the picture's height; `right` and `down` are the screen's.
+  /// The user's drags, as shares of the picture's height; `right` and `down` are the screen's.
   void orbit(double right, double down);
   void pan(double right, double down);
   /// Turns of the wheel; above 0 is nearer.
   void zoom(double notches);
 
-  /// Turns by itself, slowly.
+  /// Lets it orbit by itself, slowly.
   void set_turning(bool is_turning) { is_turning_ = is_turning; }
   bool is_turning() const { return is_turning_; }
 
-  /// Goes on by dt_s.
+  /// Advances by dt_s.
   void advance(double dt_s);
 
   const CameraPlace& place() const { return place_; }
@@ -56,8 +56,8 @@ class OrbitCamera {
   bool is_turning_ = false;
 };
 
-/// A low, inviting place from which to look at what stands in `bounds`, toward the evening sun's side: across a field
-/// from just inside its edge, and at something small from outside.
+/// A low place to look at the content of `bounds` from, toward the evening sun's side: across a field from just inside
+/// its edge, and at something small from outside.
 CameraPlace place_across(const Bounds& bounds);
 
 /// A place outside of `bounds` from where all of it is in a picture of width / height `aspect`: at its broad side, a

@@ -8,14 +8,14 @@
 
 namespace yuragi {
 
-/// A corner of something that does not move, in the layout that the shader reads.
+/// A vertex of a rigid mesh, in the layout that the shader reads.
 struct SolidVertex {
   glm::vec3 place_m{0.0F};
   glm::vec3 normal{0.0F};
   glm::vec3 tint{0.0F};  ///< linear light
 };
 
-/// Poles, rods, knobs and rims: triangles of what does not move, put together piece by piece. Pure.
+/// A rigid mesh of poles, rods, knobs and rims, built piece by piece. Pure.
 class SolidMesh {
  public:
   /// From `from` to `to`, round, tapering, open at its ends.

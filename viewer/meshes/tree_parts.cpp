@@ -15,8 +15,8 @@ namespace {
 const glm::vec3 kBark(0.085F, 0.062F, 0.045F);
 const glm::vec3 kTwig(0.095F, 0.066F, 0.040F);
 
-constexpr double kLeafTilt_rad = 0.75;  // how far, at most about, a leaf's upper side is turned from the sky
-constexpr float kOutward = 0.8F;        // and how much out of the crown, where the light is, against that
+constexpr double kLeafTilt_rad = 0.75;  // about the largest angle between a leaf's upper side and the sky
+constexpr float kOutward = 0.8F;        // how much it is turned out of the crown, toward the light, against that
 
 struct LeafTints {
   glm::vec3 deep;
@@ -35,7 +35,7 @@ LeafTints tints_of(Foliage foliage) {
   return {{0.050F, 0.118F, 0.020F}, {0.150F, 0.225F, 0.038F}};
 }
 
-/// Where a strand leads to at rest, from foot to tip.
+/// The vector from a strand's foot to its tip at rest.
 glm::vec3 rest_direction(const StrandSkeleton& strands, std::size_t i) {
   const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
   const glm::vec3 curl(strands.curl_x[i], strands.curl_y[i], strands.curl_z[i]);
@@ -48,7 +48,7 @@ glm::vec3 rest_direction(const StrandSkeleton& strands, std::size_t i) {
   return length > 1e-3F ? sum / length : rest;
 }
 
-/// The middle of where the strands stand.
+/// The middle of the strands' roots.
 glm::vec3 middle_of(const StrandSkeleton& strands) {
   glm::vec3 sum(0.0F);
   for (std::size_t i = 0; i < strands.strand_count; ++i) {
@@ -95,7 +95,7 @@ std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Fo
     part.base_radius_m = from.base_radius_m[i];
     part.tip_radius_m = from.is_leaves ? 0.0F : from.tip_radius_m[i];
     if (level > 0) {
-      // As JointPositions lies: blocks of strands, links, axes, lanes.
+      // The layout of JointPositions: blocks of strands, links, axes, lanes.
       const std::size_t links = tree.levels[from.parent_level].strands.links_per_strand;
       const std::size_t block = from.parent[i] / kStrandsPerBlock;
       part.root_at = static_cast<std::int32_t>(first_joint_at(tree, from.parent_level) +
@@ -114,7 +114,7 @@ std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Fo
       part.rest = array_of(rest_direction(strands, i));
       part.tint = array_of(light * glm::mix(tints.deep, tints.fresh, static_cast<float>(first)));
     } else {
-      // The seam's side: any that the branch does not lead to.
+      // The direction of the tube's seam: any that is not along the branch.
       const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
       part.facing = array_of(std::abs(rest.y) > 0.7F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F));
       part.tint = array_of(light * (level == 0 ? kBark : kTwig));

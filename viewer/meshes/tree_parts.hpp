@@ -12,22 +12,21 @@
 
 namespace yuragi {
 
-/// What is drawn for a strand of a tree, a branch or a leaf, in the layout that the tree's shaders read (one instance).
+/// An instance for a strand of a tree (a branch or a leaf), in the layout that the tree's shaders read.
 ///
-/// A tree's joints lie in one array, level behind level, each as JointPositions has it.
+/// A tree's joints lie in one array, level behind level, each in the layout of JointPositions.
 struct TreePart {
-  std::array<float, 3> root_m{};  ///< where it stands at rest
+  std::array<float, 3> root_m{};  ///< position at rest
   float base_radius_m = 0.0F;     ///< of a leaf: half its width
   std::array<float, 3> tint{};    ///< linear light
   float tip_radius_m = 0.0F;
-  std::array<float, 3> facing{};  ///< of a leaf: what its upper side is turned to; of a branch: aside of it
-  std::array<float, 3> rest{};    ///< of a leaf: where it leads to at rest, from foot to tip; a unit vector
+  std::array<float, 3> facing{};  ///< of a leaf: the normal of its upper side; of a branch: a direction across it
+  std::array<float, 3> rest{};    ///< of a leaf: unit vector from foot to tip at rest
   std::uint32_t strand = 0;
-  std::int32_t root_at =
-      -1;  ///< where in the array the x of the joint is that it grows from; below 0: it stands on the ground
+  std::int32_t root_at = -1;  ///< index of the x of the joint that it grows from; below 0: it stands on the ground
 };
 
-/// Where in the array the joints of a level begin.
+/// The index in that array at which the joints of a level begin.
 std::size_t first_joint_at(const TreeSkeleton& tree, std::size_t level);
 
 /// Colours by the tree's name: green, but for what is in blossom ("sakura", "blossom") or turns ("autumn", "momiji").
@@ -37,8 +36,8 @@ Foliage foliage_of(std::string_view name);
 /// The parts of a level, one a strand. The same tree always makes the same parts.
 std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Foliage foliage);
 
-/// How many rings of vertices a level's branches are worth in this view: the more, the longer they are in the picture;
-/// at least kMinTreeRings and at most one a link.
+/// How many rings of vertices a level's branches get in this view: more, the longer they are in the picture; at least
+/// kMinTreeRings and at most one a link.
 std::size_t tree_rings(const TreeLevel& level, const Bounds& bounds, const View& view);
 inline constexpr std::size_t kMinTreeRings = 4;
 inline constexpr float kTreeRingPx = 5.0F;

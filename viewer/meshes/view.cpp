@@ -37,7 +37,7 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bound
 }
 
 View laid_flat(const View& view) {
-  // Each place goes down along the ray until its height is 0.
+  // Each point moves along the ray until its height is 0.
   glm::mat4 flatten(1.0F);
   flatten[1] = {-view.to_sun.x / view.to_sun.y, 0.0F, -view.to_sun.z / view.to_sun.y, 0.0F};
   View flat = view;

@@ -7,22 +7,22 @@
 
 namespace yuragi {
 
-/// What all looks know of the picture being drawn; the uniform block View of shaders/common.glsl, in its layout
-/// (std140).
+/// What all renderers know of the picture being drawn: the uniform block View of viewer/gl/shaders/common.glsl, in its
+/// layout (std140).
 struct View {
   glm::mat4 to_clip{1.0F};
   glm::vec4 eye_m{0.0F};  ///< w: the size of a pixel at a distance of one metre, metres
-  glm::vec4 right{0.0F};  ///< unit vectors of the camera; w: tangent of half the field of view, across
-  glm::vec4 up{0.0F};     ///< w: the same, upright
+  glm::vec4 right{0.0F};  ///< unit vectors of the camera; w: tangent of half the field of view, horizontally
+  glm::vec4 up{0.0F};     ///< w: the same, vertically
   glm::vec4 forward{0.0F};
   glm::vec4 to_sun{0.0F};  ///< unit vector
-  glm::vec4 field{0.0F};   ///< x and z of the low and of the high corner of what stands on the ground
+  glm::vec4 field{0.0F};   ///< x and z of the low and of the high corner of the field that covers the ground
 };
 
-/// For a picture of so many pixels. The sun stands in the evening's south-west.
+/// For a picture of so many pixels. The sun is low in the south-west.
 View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field);
 
-/// The same view of everything laid along the sun's rays onto the ground: of shadows.
+/// The same view of everything projected onto the ground along the sun's rays: of its shadows.
 View laid_flat(const View& view);
 
 }  // namespace yuragi

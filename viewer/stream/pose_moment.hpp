@@ -7,15 +7,15 @@
 
 namespace yuragi {
 
-/// What there is to see at one moment: the wind, and the pose of each scene.
+/// What is shown at one moment: the wind, and the pose of each scene.
 struct PoseMoment {
   double time_s = 0.0;  ///< on the sender's time line
   WindState wind;       ///< its `time` is not used
   std::vector<Pose> poses;
-  std::vector<float> opacities;  ///< one a scene, 0 (not there) to 1
+  std::vector<float> opacities;  ///< one a scene, 0 (hidden) to 1
 };
 
-/// The rest pose of each skeleton, in still air; all are there.
+/// The rest pose of each skeleton, in still air, at opacity 1.
 PoseMoment rest_moment(std::span<const wire::SceneModel> scenes);
 
 /// Have both the same scenes, of the same kinds and sizes?

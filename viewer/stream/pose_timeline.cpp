@@ -21,8 +21,8 @@ bool PoseTimeline::accept(wire::Frame& frame, double local_s) {
   if (!has_same_layout(frame.poses, shown_.poses)) return false;
   if (!std::isfinite(frame.info.time_s)) return false;
 
-  // A stream that comes back, or starts anew, gets a track of its own, and the picture passes over to it. While it is
-  // still passing over from an earlier one, this waits.
+  // A stream that resumes or starts again gets a track of its own, to which the picture cross-fades. While an earlier
+  // cross-fade runs, this one waits.
   if (current().is_replaying() || !current().continues(frame.info.time_s, local_s)) {
     if (is_fading()) return true;
     current_ = 1 - current_;

@@ -7,38 +7,38 @@
 
 namespace yuragi {
 
-/// What the picture is made of at the moment.
+/// What is shown at the moment.
 enum class Playback : std::uint8_t {
   kNothing,    ///< no frame has come yet: the rest pose
-  kLive,       ///< frames as they come, interpolated
-  kReplaying,  ///< the stream has stopped: its last seconds, back and forth
-  kReturning,  ///< it is back: passing over from the replay to it
+  kLive,       ///< the frames that arrive, interpolated
+  kReplaying,  ///< the stream has stopped: its last seconds are played back and forth
+  kReturning,  ///< it has resumed: a cross-fade from the replay to it
 };
 
-/// Makes a picture that never jumps out of frames that come unevenly, stop, and come again.
+/// Makes of frames that arrive unevenly, stop and resume a motion that never jumps.
 ///
 /// Pure: time is a parameter, in seconds of any steady clock, and may not go back. Between two calls of advance() that
-/// are dt apart the shown moment moves by at most PoseTrack::kMaxPlayRate dt along a run of the stream; passing over
-/// from one run to another takes kFade_s. Thread-safe: no. After it has filled once nothing is allocated,
-/// but for what a frame leaves out.
+/// are dt apart the shown moment moves by at most PoseTrack::kMaxPlayRate dt along a run of the stream; the cross-fade
+/// from one run to another takes kFade_s. Thread-safe: no. Once its history is full nothing is allocated, but for poses
+/// that a frame leaves out.
 class PoseTimeline {
  public:
   static constexpr double kFade_s = 1.0;
-  static constexpr double kMaxFadeStep_s = 0.1;  ///< a picture that was long in coming does not skip the fade
+  static constexpr double kMaxFadeStep_s = 0.1;  ///< a picture that took long does not skip the fade
 
-  /// The scenes that the frames to come belong to. Where their layout is what it was (the daemon has been restarted),
-  /// the picture goes on; otherwise it starts anew from the rest pose.
+  /// The scenes of the frames that follow. Where their layout is the same as before (the daemon has been restarted),
+  /// the motion continues; otherwise it starts from the rest pose.
   void set_scenes(std::span<const wire::SceneModel> scenes);
 
-  /// Takes a frame that arrived at local_s; changes its buffers for old ones. False where it is not of these scenes. A
-  /// scene of opacity 0 may come without its pose: the one last shown stands in for it.
+  /// Takes a frame that arrived at local_s; swaps its buffers with old ones. False where it is not of these scenes. A
+  /// scene of opacity 0 may come without its pose: the last one shown is used.
   bool accept(wire::Frame& frame, double local_s);
 
-  /// Goes on to local_s. The moment to show is valid until the next call.
+  /// Advances to local_s. Returns the moment to show, valid until the next call.
   const PoseMoment& advance(double local_s);
 
   Playback playback() const;
-  /// How far the picture is behind the quickest arrival.
+  /// How far the picture is behind the frame with the shortest delay.
   double delay_s() const { return current().delay_s(); }
 
  private:

@@ -6,17 +6,17 @@
 namespace yuragi {
 namespace {
 
-constexpr double kTurnEasing_s = 1.0;    // to slow down to rest before a turn, and to gather speed after it
-constexpr double kFollowGain_1_s = 3.0;  // how hard the moment shown is drawn to the clock's target
-constexpr double kAtRest_s = 1e-4;       // so near to the newest is there
-constexpr double kNewRun_s = 1.0;        // the sender's time went on by so much more than ours: another run
+constexpr double kTurnEasing_s = 1.0;    // to slow down before a turn, and to speed up after it
+constexpr double kFollowGain_1_s = 3.0;  // of the loop by which the moment shown follows the clock's target
+constexpr double kAtRest_s = 1e-4;       // nearer to the newest than this counts as there
+constexpr double kNewRun_s = 1.0;        // the sender's time advanced by so much more than ours: another run
 
 }  // namespace
 
 double back_and_forth_s(double elapsed_s, double span_s) {
   if (span_s <= 0.0) return 0.0;
 
-  // One way: speed up over easing_s, run at 1, slow down over easing_s. Short spans have no run.
+  // In one direction: speed up over easing_s, move at 1, slow down over easing_s. Short spans never reach 1.
   const double easing_s = std::min(kTurnEasing_s, span_s);
   const double way_s = span_s + easing_s;
   double t = std::fmod(std::max(0.0, elapsed_s), 2.0 * way_s);
@@ -56,7 +56,7 @@ void PoseTrack::push(PoseMoment& moment, double local_s) {
 }
 
 double PoseTrack::follow_s(double passed_s, double local_s) {
-  // Drawn to the target by playing a little faster or slower; braking so as to be at rest at the newest.
+  // Follows the target by playing a little faster or slower, and brakes so as to be at rest at the newest.
   const double left_s = std::max(0.0, history_.newest().time_s - shown_s_);
   const double behind_s = clock_.target_s(local_s) - (shown_s_ + passed_s);
   const double wanted = std::clamp(1.0 + kFollowGain_1_s * behind_s, kMinPlayRate, kMaxPlayRate);
@@ -68,7 +68,7 @@ void PoseTrack::advance(double local_s, PoseMoment& out) {
   const double passed_s = std::max(0.0, local_s - last_local_s_);
   last_local_s_ += passed_s;
 
-  // Follow the stream; once it is silent and the picture has come to rest at the newest, turn round.
+  // Follow the stream; once it is silent and the picture rests at the newest moment, play backward.
   const double newest_s = history_.newest().time_s;
   if (is_replaying_) {
     replay_elapsed_s_ += passed_s;

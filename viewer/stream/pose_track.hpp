@@ -5,15 +5,15 @@
 
 namespace yuragi {
 
-/// Where a picture stands that is played back and forth over span_s seconds, elapsed_s after it set out: the distance
-/// from where it set out, from 0 to span_s. It sets out from rest, runs at 1 at most, and slows to rest at each turn.
+/// The position in a replay back and forth over span_s seconds, elapsed_s after its start: the distance from the start,
+/// from 0 to span_s. It starts at rest, moves at a rate of 1 at most, and slows down to rest at each turn.
 double back_and_forth_s(double elapsed_s, double span_s);
 
-/// One run of a stream on the sender's time line: what has come, and the moment of it that is shown.
+/// One run of a stream on the sender's time line: the frames that have arrived, and the moment that is shown.
 ///
-/// While frames come, the moment shown follows them at the clock's distance; it never goes back, and never passes the
-/// newest. When they stop, it comes to rest at the newest and then goes back and forth over the last kReplaySpan_s.
-/// Thread-safe: no. Does not allocate after reset() and one filling.
+/// While frames arrive, the moment shown follows them at the delay of StreamClock; it never goes back, and never passes
+/// the newest. When they stop, it comes to rest at the newest and then goes back and forth over the last kReplaySpan_s.
+/// Thread-safe: no. Does not allocate once its history is full.
 class PoseTrack {
  public:
   static constexpr double kReplaySpan_s = 4.0;
@@ -28,14 +28,14 @@ class PoseTrack {
   bool is_replaying() const { return is_replaying_; }
   double delay_s() const { return clock_.delay_s(); }
 
-  /// Can a frame of the moment sender_s, arriving now, be the next of this run? Not where time went back, nor where it
-  /// went on by much more than it did here: then the sender has started anew.
+  /// Can a frame of the moment sender_s, arriving at local_s, be the next of this run? Not where the sender's time went
+  /// back, or advanced by much more than ours: then the sender has started again.
   bool continues(double sender_s, double local_s) const;
 
   /// Takes a frame that continues(); swaps its poses.
   void push(PoseMoment& moment, double local_s);
 
-  /// Goes on to local_s and writes what to show. Not while is_empty().
+  /// Advances to local_s and writes the moment to show. Not while is_empty().
   void advance(double local_s, PoseMoment& out);
 
  private:

@@ -6,8 +6,8 @@
 namespace yuragi {
 namespace {
 
-constexpr double kClockDrift = 0.001;       // two machines' clocks run apart by less than this
-constexpr double kJitterMemory_s = 3.0;     // one late frame is forgotten after some of these
+constexpr double kClockDrift = 0.001;       // two machines' clocks drift apart by less than this, s/s
+constexpr double kJitterMemory_s = 3.0;     // the time constant with which a late frame is forgotten
 constexpr double kIntervalSmoothing = 0.1;  // share of a new interval in the average
 constexpr double kMinInterval_s = 0.001;
 constexpr double kMaxInterval_s = 0.25;

@@ -2,11 +2,11 @@
 
 namespace yuragi {
 
-/// Which moment of the sender's time line to show now, learnt from when frames arrive.
+/// Which moment of the sender's time line to show now, estimated from the frames' arrivals.
 ///
-/// The quickest arrivals tell how far the two clocks stand apart; how much later the others come tells how far behind
-/// them to stay, besides 1.5 frame intervals, so that there is mostly a frame on either side of the moment shown.
-/// Thread-safe: no. Never fails: times are finite.
+/// The arrivals with the shortest delay give the difference of the two clocks; how much later the others come gives the
+/// jitter. The moment shown stays behind by that and 1.5 frame intervals, so that there is mostly a frame on either
+/// side of it. Thread-safe: no. Never fails: times are finite.
 class StreamClock {
  public:
   static constexpr double kMaxDelay_s = 0.5;
@@ -17,10 +17,10 @@ class StreamClock {
   /// The moment to show at local_s. Not before the first observe().
   double target_s(double local_s) const { return local_s - offset_s_ - delay_s(); }
 
-  /// Between one frame and the next, on the sender's time line.
+  /// The time between two frames, on the sender's time line.
   double interval_s() const { return interval_s_; }
 
-  /// How far behind the quickest arrival target_s() stays.
+  /// How far target_s() stays behind the arrival with the shortest delay.
   double delay_s() const;
 
   double last_arrival_s() const { return last_local_s_; }

@@ -21,8 +21,8 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// One attempt follows another on one thread; a handler of an attempt that has been given up finds `attempt_` changed
-/// and does nothing.
+/// Attempts to connect follow one another on one thread; a handler of an abandoned attempt finds `attempt_` changed and
+/// does nothing.
 class StreamConnection::Session {
  public:
   explicit Session(StreamOptions options) : options_(std::move(options)), backoff_(options_.min_backoff) {
@@ -114,7 +114,7 @@ class StreamConnection::Session {
     });
   }
 
-  /// Hands over each whole message. False where the connection was given up.
+  /// Passes on each whole message. False where the connection was abandoned.
   bool digest() {
     while (auto message = reader_.next()) {
       if (!*message) {
@@ -142,7 +142,7 @@ class StreamConnection::Session {
       inbox_.frames.push_back({std::move(*frame), arrival});
     } else if (auto* scenes = std::get_if<wire::Scenes>(&message)) {
       inbox_.scenes = std::move(*scenes);
-      inbox_.frames.clear();  // of the scenes before
+      inbox_.frames.clear();  // of the previous scenes
     } else if (auto* sensors = std::get_if<wire::Sensors>(&message)) {
       inbox_.sensors = std::move(*sensors);
     } else if (const auto* hello = std::get_if<wire::Hello>(&message)) {
@@ -178,7 +178,7 @@ class StreamConnection::Session {
   const StreamOptions options_;
   wire::Bytes subscription_;
 
-  // The thread's own.
+  // Of the connection's thread alone.
   asio::io_context context_{1};
   tcp::resolver resolver_{context_};
   tcp::socket socket_{context_};

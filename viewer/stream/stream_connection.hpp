@@ -16,7 +16,7 @@ struct TimedFrame {
   MonoTime arrival;
 };
 
-/// What has come since the last look, in the order of use: scenes, then frames of these scenes.
+/// What has arrived since the last take(): scenes, then the frames of these scenes.
 struct Inbox {
   std::optional<wire::Scenes> scenes;  ///< the newest
   std::vector<TimedFrame> frames;      ///< oldest first
@@ -35,14 +35,14 @@ struct StreamOptions {
   std::uint16_t port = wire::kDefaultPort;
   Nanoseconds min_backoff = std::chrono::milliseconds(200);  ///< before the first new attempt; doubles
   Nanoseconds max_backoff = std::chrono::seconds(3);
-  Nanoseconds silence_limit = std::chrono::seconds(6);  ///< no byte for so long, or no answer: connect again
+  Nanoseconds silence_limit = std::chrono::seconds(6);  ///< after so long without a byte, or a reply: connect again
 };
 
-/// A subscription to a daemon's stream, on a thread of its own, that is renewed for ever: whatever the other side does
-/// (is not there, dies, sends garbage), it drops the connection, waits a little, and tries again.
+/// A subscription to a daemon's stream, on a thread of its own, that is renewed without limit: where the daemon does
+/// not answer, ends or sends invalid bytes, it closes the connection, waits, and connects again.
 ///
-/// Memory is bounded: a reader who does not take() loses the oldest frames, never scenes.
-/// Thread-safe: yes; meant for one reader. The destructor stops at once.
+/// Memory is bounded: without take() the oldest frames are dropped, never scenes. Thread-safe: yes; meant for one
+/// reader. The destructor stops at once.
 class StreamConnection {
  public:
   static constexpr std::size_t kMaxWaitingFrames = 64;
@@ -52,12 +52,12 @@ class StreamConnection {
   StreamConnection(const StreamConnection&) = delete;
   StreamConnection& operator=(const StreamConnection&) = delete;
 
-  /// What has come since the last call. Never waits for the network.
+  /// What has arrived since the last call. Never waits for the network.
   Inbox take();
 
   StreamStatus status() const;
 
-  /// Waits until there is something to take(), or the status changes, or limit has passed.
+  /// Waits until there is something to take(), the status changes, or `limit` has passed.
   void wait_for_news(Nanoseconds limit);
 
  private:

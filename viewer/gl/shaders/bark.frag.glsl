@@ -1,4 +1,4 @@
-// Bark, furrowed along the branch; in the shade of the crown it is darker.
+// Bark, furrowed along the branch; darker inside the crown.
 uniform vec3 crown_middle_m;
 uniform vec3 crown_radius_m;
 

@@ -1,5 +1,5 @@
 // A branch: a tapering tube along a strand's joints.
-uniform int first;  // where the level's joints begin
+uniform int first;  // index of the level's first joint
 uniform int rings;
 uniform int sides;
 
@@ -12,7 +12,7 @@ layout(location = 4) in int root_at;     // of the parent's joint; below 0: it s
 out vec3 place_m;
 out vec3 normal;
 out vec3 tint;
-out vec2 bark_m;  // around and along
+out vec2 bark_m;  // position around the branch and along it
 
 void main() {
   int ring = gl_VertexID / (sides + 1);
@@ -27,7 +27,7 @@ void main() {
   vec3 across = normalize(cross(along, aside));
   normal = cos(turn) * across + sin(turn) * cross(along, across);
 
-  // Where it stands on the ground, it spreads to its roots.
+  // A trunk widens at the ground.
   float t = float(link) / float(links);
   float radius = mix(root_base.w, tint_tip.w, t);
   if (root_at < 0) radius *= 1.0 + 0.55 * exp(-22.0 * t) * (1.0 + 0.25 * sin(5.0 * turn));

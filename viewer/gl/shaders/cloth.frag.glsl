@@ -15,13 +15,13 @@ const vec3 kLinen = vec3(0.66, 0.57, 0.43);
 
 float chance(float n) { return fract(sin(n * 12.9898) * 43758.5453); }
 
-// 1 where `inside` is above 0, with an edge as soft as a pixel.
+// 1 where `inside` is above 0, with an edge one pixel wide.
 float cover(float inside) {
   float pixel = max(fwidth(inside), 1e-5);
   return smoothstep(-0.7 * pixel, 0.7 * pixel, inside);
 }
 
-// Threads of uneven thickness across each other, about 1; where they are finer than a pixel, their mean.
+// The brightness of woven threads of uneven thickness, about 1; where they are finer than a pixel, their mean.
 float weave(vec2 at_m, float thread_m) {
   vec2 thread = at_m / thread_m;
   vec2 blur = fwidth(thread);
@@ -32,7 +32,7 @@ float weave(vec2 at_m, float thread_m) {
   return 1.0 + plain.x + plain.y;
 }
 
-// A golden sun behind three gusts on a dark blue sky. Heights of the flag are the unit.
+// A golden sun behind three gusts on a dark blue sky. Unit: the flag's height.
 vec3 flag(vec2 p, float aspect) {
   vec3 paint = mix(kInk * 1.25, kInk * 0.75, p.y);
   paint = mix(paint, kGold, cover(0.235 - length(p - vec2(0.40 * aspect, 0.45))));
@@ -48,7 +48,7 @@ vec3 flag(vec2 p, float aspect) {
   return paint;
 }
 
-// White, with a red head, a crest of three gusts, and a dark blue foot of waves. Widths of the banner are the unit.
+// White, with a red head, a crest of three gusts, and a dark blue foot of waves. Unit: the banner's width.
 vec3 banner(vec2 p, float tall) {
   vec3 paint = kSnow;
   paint = mix(paint, kVermilion, cover(0.36 - p.y));
@@ -78,7 +78,7 @@ void main() {
   vec3 facing = normalize(normal);
   facing *= dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
 
-  // How near the nearest free edge is: hems are two layers, and let less light through.
+  // Distance to the nearest free edge: hems are two layers and let less light through.
   vec2 inside_m = min(cloth_m, size_m - cloth_m);
   float edge_m = min(inside_m.x, inside_m.y);
   vec3 paint;
@@ -103,7 +103,7 @@ void main() {
   float threads = weave(cloth_m, thread_m);
   paint *= threads;
 
-  // Sun from this side; sun through the threads from the other, most of all toward it; the sky.
+  // The sun on this side; the sun through the threads from the other, strongest when one looks toward it; the sky.
   float sun = dot(facing, to_sun.xyz);
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
   float on = max(sun, 0.0);
@@ -113,7 +113,7 @@ void main() {
               (0.42 + 0.40 * against * against);
   vec3 light = lit + glow + paint * (soft_light(facing) * 0.85 + kSunLight * 0.035);
 
-  // Threads catch light at a grazing angle.
+  // Threads reflect more at a grazing angle.
   float rim = 1.0 - abs(dot(facing, from_eye));
   light += paint * (kSkyLight + 0.25 * kSunLight * max(sun, 0.0)) * 0.35 * rim * rim * rim;
   color = vec4(seen(light, place_m), 1.0);

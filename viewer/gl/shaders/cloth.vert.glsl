@@ -1,4 +1,5 @@
-// A cloth's joint, its normal, and where it is on the cloth's picture: metres from the upper left corner to the right and down.
+// A cloth's joint, its normal, and its place on the cloth's picture, metres to the right of and below the upper left
+// corner.
 uniform int stride;
 uniform vec2 origin_m;
 uniform vec2 per_column_m;

@@ -1,5 +1,5 @@
-// A share of the pixels, evenly spread: interleaved gradient noise (J. Jimenez 2014, "Next generation post processing in Call of
-// Duty: Advanced Warfare"), shifted for each number.
+// Selects a share of the pixels, evenly spread: interleaved gradient noise (J. Jimenez 2014, "Next generation post
+// processing in Call of Duty: Advanced Warfare"), shifted for each number.
 uniform float opacity;
 uniform float number;
 out vec4 color;

@@ -1,5 +1,5 @@
-// A flame's own light, through the ramp; it hides little of what is behind it.
-uniform sampler2D ramp;  // 256 colours, as a screen shows them, straight alpha
+// A flame emits light, by the color ramp, and hides little of what is behind it.
+uniform sampler2D ramp;  // 256 colours, sRGB, straight alpha
 uniform int is_closed;
 
 in vec3 place_m;
@@ -10,8 +10,8 @@ in float inward;  // 0: the outermost shell, 1: the innermost
 out vec4 color;
 
 void main() {
-  // A body of flame is thin where one looks along its skin, and redder there. So it is where one looks through its
-  // outermost shell alone: white is what burns within.
+  // A body of flame is thinner and redder toward its outline, and where only its outermost shell is in view; the inner
+  // shells are white.
   float facing = abs(dot(normalize(normal), normalize(place_m - eye_m.xyz)));
   float thick = is_closed == 1 ? smoothstep(0.0, 0.8, facing) : 1.0;
   float seen_heat = clamp(heat, 0.0, 1.0) * mix(0.55, 1.0, thick) * mix(0.62, 1.0, inward);

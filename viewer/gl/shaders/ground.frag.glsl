@@ -1,4 +1,4 @@
-// Short turf to the horizon; under the meadow, earth and stems in its shade.
+// Short turf to the horizon; under a meadow, shaded earth and stems.
 uniform sampler2D noise_tile;
 uniform float sunlight;  // 1, and less in a shadow
 in vec3 place_m;
@@ -10,7 +10,7 @@ void main() {
   float broad = texture(noise_tile, place_m.xz * 0.023).r;
   float fine = texture(noise_tile, mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz * 0.13 + 0.73).r;
 
-  // How far inside the field, with a ragged edge.
+  // The distance inside the field, with a ragged edge.
   vec2 inside = min(place_m.xz - field.xy, field.zw - place_m.xz);
   float in_field = smoothstep(-0.5, 0.3, min(inside.x, inside.y) + 0.8 * (fine - 0.5));
 
@@ -21,7 +21,7 @@ void main() {
   turf *= 0.66 + 0.42 * tufts + 0.26 * blades;
   vec3 under = mix(vec3(0.020, 0.030, 0.009), vec3(0.060, 0.070, 0.020), fine);
 
-  // Low sun over turf: its blades are lit through when one looks toward it.
+  // Toward the low sun the light shines through the turf's blades.
   vec3 direction = from_eye / distance_m;
   float against = max(dot(direction, to_sun.xyz), 0.0);
   vec3 sun = kSunLight * sunlight;

@@ -1,4 +1,4 @@
-// A sheet to the horizon, around the camera.
+// A flat sheet around the camera, to the horizon.
 out vec3 place_m;
 
 void main() {

@@ -29,7 +29,7 @@ void main() {
   place += normalize(cross(along, to_eye)) * (side * half_width);
   gl_Position = to_clip * vec4(place, 1.0);
 
-  // The body under it turns its light; deep in the coat it is dark, and tips are pale.
+  // The body's normal shades the hair; it is dark deep in the coat and pale at the tip.
   vec3 out_of_body = normalize((root_width.xyz - body_middle_m) / (body_radius_m * body_radius_m));
   float lit = smoothstep(-0.35, 0.75, dot(out_of_body, to_sun.xyz));
   vec3 albedo = mix(tint_facing.rgb * 0.30, tint_facing.rgb, smoothstep(0.0, 0.8, t));

@@ -1,26 +1,27 @@
-// A leaf: a stalk and a blade along a strand's joints, with its light: sun on it, sun through it, the sky, less of each inside the
-// crown. Its faces turn with it, and the lower one is paler: where the wind turns leaves over, the crown flashes.
+// A leaf: a stalk and a blade along a strand's joints, with its light: sun on it, sun through it, the sky, less of each
+// inside the crown. Its two faces turn with it, and the lower one is paler, so that the crown brightens where the wind
+// turns leaves over.
 uniform int first;
 uniform vec3 crown_middle_m;
 uniform vec3 crown_radius_m;
 
 layout(location = 0) in vec4 root_half;  // metres; w: half the width
 layout(location = 1) in vec4 tint;
-layout(location = 2) in vec3 facing;     // what its upper side is turned to at rest
+layout(location = 2) in vec3 facing;     // normal of its upper side at rest
 layout(location = 3) in uint strand;
 layout(location = 4) in int root_at;
-layout(location = 5) in vec3 rest;       // where it leads to at rest, from foot to tip
+layout(location = 5) in vec3 rest;       // unit vector from foot to tip at rest
 
 out vec3 shade;
 
-// The vector turned as `from` is turned into `to` (unit vectors), the shortest way.
+// The vector, turned by the shortest rotation from `from` to `to` (unit vectors).
 vec3 turned(vec3 vector, vec3 from, vec3 to) {
   vec3 axis = cross(from, to);
   float cosine = dot(from, to);
   return cosine * vector + cross(axis, vector) + axis * (dot(axis, vector) / max(1.0 + cosine, 0.05));
 }
 
-// What the lower face throws back, against the upper one: up to twice as much, and greyer, for it has hairs and wax.
+// The lower face's color: up to twice as bright as the upper one's, and greyer, because of hairs and wax.
 vec3 lower_face(vec3 upper_face) {
   vec3 greyer = mix(vec3(dot(upper_face, vec3(0.21, 0.72, 0.07))), upper_face, 0.55);
   return greyer * (2.0 - greyer);

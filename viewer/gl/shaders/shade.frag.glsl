@@ -1,4 +1,4 @@
-// For what is so small, or changes so slowly, that its vertices have the light.
+// For things so small, or that change so slowly, that the light is computed for each vertex.
 in vec3 shade;
 out vec4 color;
 

@@ -7,7 +7,7 @@ in vec3 clouded;
 out vec4 color;
 
 void main() {
-  // Streaks on a ceiling that sinks to the horizon, where they fade.
+  // Streaks of cloud on a level plane high above, fading at the horizon.
   float height = max(ray.y / ray_length, 0.0);
   vec2 ceiling = ray.xz / (ray_length * (height + 0.12));
   float broad = texture(noise_tile, ceiling * vec2(0.050, 0.085)).r;

@@ -1,10 +1,11 @@
-// A coarse net over the whole picture, behind everything: the air's light changes slowly, so its corners are enough.
+// A coarse grid over the whole picture, behind everything: the air's light changes slowly, so that it is computed at
+// the grid's points.
 const int kColumns = 40;
 const int kRows = 24;  // one instance each
 
 out vec3 ray;
 out float ray_length;
-out vec3 clear;   // the air, and a cloud in it, as the screen shows them
+out vec3 clear;   // the screen's value of the clear air, and of a cloud
 out vec3 clouded;
 
 void main() {

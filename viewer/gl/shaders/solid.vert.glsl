@@ -2,7 +2,7 @@ layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 facing;
 layout(location = 2) in vec3 paint;
 
-// About the vertical through `axis_m` (x, z): the turn's sine, and its cosine less 1, so that 0 is none.
+// A turn about the vertical through `axis_m` (x, z): its sine, and its cosine less 1, so that (0, 0) is no turn.
 uniform vec2 axis_m;
 uniform vec2 turn;
 

@@ -1,4 +1,4 @@
-// The skin and wool under the hairs: a disc at each root, facing the eye, so dark that no gap shows between the hairs.
+// The undercoat: a dark disc at each root, facing the eye, so that no gap shows between the hairs.
 uniform vec3 body_middle_m;
 uniform vec3 body_radius_m;
 uniform float disc_m;

@@ -1,4 +1,5 @@
-// Water: the sky and the far hills in it, the more the flatter one looks (Schlick 1994); its own green where one looks in.
+// Water: the sky and the far hills in it, reflected more at flat angles (Schlick 1994, "An inexpensive BRDF model for
+// physically-based rendering"); the water's own green at steep ones.
 in vec3 place_m;
 in vec3 normal;
 out vec4 color;
@@ -20,7 +21,7 @@ void main() {
   float glint = max(dot(up_ray, to_sun.xyz), 0.0);
   glint = pow(glint, 200.0);
 
-  // Light from within: more where a wave's slope lets the sun in.
+  // Light scattered in the water: more where a wave's slope faces the sun.
   float sun = max(dot(up_facing, to_sun.xyz), 0.0);
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
   vec3 within = vec3(0.010, 0.040, 0.042) + vec3(0.012, 0.050, 0.034) * (sun + 0.7 * against * missing);
