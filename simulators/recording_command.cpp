@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -38,10 +40,15 @@ struct RecordedSensor {
 
 /// "NAME" or "NAME:GAIN".
 RecordedSensor parse_sensor(const std::string& text) {
-  const std::size_t colon = text.find(':');
+  const std::size_t colon = std::min(text.find(':'), text.size());
   RecordedSensor sensor{.name = text.substr(0, colon)};
-  const bool is_read = colon == std::string::npos || CLI::detail::lexical_cast(text.substr(colon + 1), sensor.gain);
-  if (!is_read || sensor.name.empty() || !(sensor.gain >= 0.0 && sensor.gain <= 10.0)) {
+  bool is_number = true;
+  if (colon < text.size()) {
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, sensor.gain);
+    is_number = error == std::errc() && rest == end;
+  }
+  if (!is_number || sensor.name.empty() || !(sensor.gain >= 0.0 && sensor.gain <= 10.0)) {
     throw CLI::ValidationError("--sensor", "is \"" + text + "\"; allowed: NAME or NAME:GAIN with a gain of 0 to 10");
   }
   return sensor;
