@@ -9,6 +9,7 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/operators/bend_share.hpp"
 #include "engine/operators/branch_force_job.hpp"
 #include "engine/operators/flutter_job.hpp"
 #include "engine/operators/leaf_response_job.hpp"
@@ -594,7 +595,7 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
 
   // The noise of the leaves goes the fastest in the strongest wind.
   const double noise_step = change(leaf_noise_, leaf_carry(kStrongestSceneWind_m_s), kLargestFine);
-  const double lean_step = std::min(LeafResponseJob::kSteepestLean * step_m_s / half_lean_speed_m_s_, 2.0);
+  const double lean_step = std::min(kSteepestBendShare * step_m_s / half_lean_speed_m_s_, 2.0);
   const double flutter_step =
       std::min(LeafResponseJob::kSteepestFlutter * step_m_s / species_.flutter_speed_m_s * kLargestFine + noise_step,
                2.0 * kLargestFine);

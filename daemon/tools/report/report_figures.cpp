@@ -15,6 +15,7 @@
 #include "daemon/tools/report/report_text.hpp"
 #include "daemon/tools/report/wind_rose.hpp"
 #include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/von_karman.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi {
@@ -298,11 +299,9 @@ std::string Figures::spectrum() {
     constexpr int kPoints = 200;
     for (int i = 0; i <= kPoints; ++i) {
       const double f = from_hz * std::pow(to_hz / from_hz, static_cast<double>(i) / kPoints);
-      // von Karman 1948, as in turbulence_fit.hpp: its integral is sigma^2.
-      const double x = f * fit.time_scale_s;
       curve.x.push_back(f);
-      curve.y.push_back(fit.sigma_m_s() * fit.sigma_m_s() * 4.0 * fit.time_scale_s /
-                        std::pow(1.0 + 70.8 * x * x, 5.0 / 6.0));
+      curve.y.push_back(fit.sigma_m_s() * fit.sigma_m_s() * fit.time_scale_s *
+                        von_karman_density(f * fit.time_scale_s));
     }
     panel.curves.push_back(std::move(curve));
   }
