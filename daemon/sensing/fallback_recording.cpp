@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "daemon/sensing/sensor_status.hpp"
 #include "daemon/settings/wind_settings.hpp"
 #include "drivers/windlog/windlog_cursor.hpp"
 
@@ -107,23 +108,9 @@ void FallbackRecording::log_changes() {
 
 std::optional<wire::SensorStatus> FallbackRecording::status(const SourceReport& report) const {
   if (!runner_) return std::nullopt;
-  const LinkReport link = runner_->link();
-  wire::SensorStatus status;
-  status.name = sensor_->name;
-  status.driver = sensor_->driver->name;
-  status.link = static_cast<std::uint8_t>(link.state);
-  status.health = static_cast<std::uint8_t>(report.health);
-  status.detail = "all sensors are silent: " + link.detail;
-  if (report.last) {
-    status.speed_m_s = report.last->speed_m_s;
-    status.direction_deg = report.last->direction_deg;
-    status.gust_m_s = report.last->gust_m_s;
-    status.simulated = report.last->quality == ReadingQuality::kSimulated;
-  }
-  status.age_s = report.age_s;
-  status.interval_s = report.interval_s;
+  wire::SensorStatus status = status_of(*sensor_, runner_->link(), report);
+  status.detail = "all sensors are silent: " + status.detail;
   status.readings = readings_;
-  status.replayed = true;
   status.state = report.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
   status.state_reason = status.detail;
   return status;

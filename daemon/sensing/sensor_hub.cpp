@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/sensing/refusal_text.hpp"
+#include "daemon/sensing/sensor_status.hpp"
 #include "daemon/settings/wind_settings.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
@@ -69,13 +70,13 @@ BlendSettings blend_settings_of(const Config& config) {
   return settings;
 }
 
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
-                                              double reach_m, std::shared_ptr<SiteSpectrum> site) {
+BlendedEstimator make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise, double reach_m,
+                                std::shared_ptr<SiteSpectrum> site) {
   BlendSettings settings = blend_settings_of(config);
   settings.reach_m = reach_m;
   if (site) settings.site = std::move(site);
   const std::size_t source_count = settings.sources.size();
-  return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
+  return {source_count, settings, std::move(noise)};
 }
 
 SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
@@ -121,8 +122,8 @@ const WindState& SensorHub::advance() {
   const MonoTime now = clock_.now().mono;
   compare(now);
   fallback_.advance(is_any_live(),
-                    [this](const WindReading& reading) { estimator_->accept(channels_.size(), reading); });
-  wind_ = estimator_->advance(now);
+                    [this](const WindReading& reading) { estimator_.accept(channels_.size(), reading); });
+  wind_ = estimator_.advance(now);
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     log_link(channels_[index], now);
     log_state(index, now);
@@ -143,7 +144,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
   if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
   if (reading.is_held) {
     channel.said.hold(reading.time);
-    estimator_->accept(index, reading);
+    estimator_.accept(index, reading);
     return;
   }
   channel.said.take(reading);
@@ -153,7 +154,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
   if (makes_sense) vote_.hear(index, reading.time.mono, reading.speed_m_s);
   if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
-    estimator_->accept(index, reading);
+    estimator_.accept(index, reading);
   } else {
     ++channel.not_believed;
   }
@@ -229,49 +230,25 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     SensorEvidence evidence = evidence_of(index, clock_.now().mono);
     evidence.link = link.state;
     evidence.link_detail = link.detail;
-    const SourceReport& report = evidence.said;
 
-    wire::SensorStatus status;
-    status.name = channel.config.name;
-    status.driver = channel.config.driver->name;
-    status.link = static_cast<std::uint8_t>(link.state);
-    status.health = static_cast<std::uint8_t>(report.health);
-    status.detail = link.detail;
-    if (report.last) {
-      status.speed_m_s = report.last->speed_m_s;
-      status.direction_deg = report.last->direction_deg;
-      status.gust_m_s = report.last->gust_m_s;
-      status.simulated = report.last->quality == ReadingQuality::kSimulated;
-    }
+    wire::SensorStatus status = status_of(channel.config, link, evidence.said);
     if (channel.last_raw) {
       status.raw_speed_m_s = channel.last_raw->speed_m_s;
       status.raw_direction_deg = channel.last_raw->direction_deg;
     }
-    status.age_s = report.age_s;
-    status.interval_s = report.interval_s;
     status.readings = channel.readings;
-    for (std::size_t why = 0; why < kRefusalCount; ++why) {
-      const auto refusal = static_cast<Refusal>(why);
-      if (const std::uint64_t count = channel.runner->refused_count(refusal)) {
-        status.refused.emplace_back(name_of(refusal), count);
-      }
-    }
-    if (channel.not_believed > 0) status.refused.emplace_back("not believed", channel.not_believed);
-    if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
-    status.frames = channel.runner->frame_count();
-    status.reconnects = channel.runner->reconnect_count();
-    status.replayed = channel.config.driver->plays_recordings;
+    add_counts(status, *channel.runner, channel.not_believed);
     status.state = state_of(evidence);
     status.state_reason = reason_of(status.state, evidence);
     all.push_back(std::move(status));
   }
-  if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
+  if (auto status = fallback_.status(estimator_.report(channels_.size()))) all.push_back(std::move(*status));
   return all;
 }
 
 bool SensorHub::is_any_live() const {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
-    if (estimator_->report(index).health == SourceHealth::kLive) return true;
+    if (estimator_.report(index).health == SourceHealth::kLive) return true;
   }
   return false;
 }

@@ -6,18 +6,10 @@
 
 #include "drivers/decode/refusal.hpp"
 #include "drivers/sensor/clock.hpp"
+#include "engine/wind/link_state.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi {
-
-/// Does the device answer?
-enum class LinkState : std::uint8_t {
-  kConnecting,  ///< looking for it; also between attempts
-  kConnected,   ///< open, and the last exchange was answered
-  kFinished,    ///< a recording that came to its end; nothing more will come
-};
-
-std::string_view name_of(LinkState state);
 
 /// Which way a message went.
 enum class RawDirection : std::uint8_t { kReceived, kSent };

@@ -254,8 +254,8 @@ TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
 
 TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
   const std::vector<std::function<void(Sensors&)>> changes{
-      [](auto& s) { s.sensors[0].link = 3; },
-      [](auto& s) { s.sensors[0].health = 3; },
+      [](auto& s) { s.sensors[0].link = static_cast<LinkState>(3); },
+      [](auto& s) { s.sensors[0].health = static_cast<SourceHealth>(3); },
       [](auto& s) { s.sensors[0].state = static_cast<SensorState>(kSensorStateNames.size()); },
       [](auto& s) { s.sensors[0].speed_m_s = std::nan(""); },
       [](auto& s) { s.sensors[0].age_s = -1.0; },

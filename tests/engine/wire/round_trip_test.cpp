@@ -235,8 +235,8 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   const SensorStatus& gauge = sensors.sensors[0];
   EXPECT_EQ(gauge.name, "roof");
   EXPECT_EQ(gauge.driver, "modbus");
-  EXPECT_EQ(gauge.link, 1);
-  EXPECT_EQ(gauge.health, 2);
+  EXPECT_EQ(gauge.link, LinkState::kConnected);
+  EXPECT_EQ(gauge.health, SourceHealth::kStale);
   EXPECT_EQ(gauge.detail, "answers again");
   EXPECT_EQ(gauge.speed_m_s, 0.0);
   EXPECT_EQ(gauge.direction_deg, 359.5);

@@ -269,8 +269,8 @@ inline wire::Sensors sensors() {
   wire::SensorStatus gauge;
   gauge.name = "roof";
   gauge.driver = "modbus";
-  gauge.link = 1;
-  gauge.health = 2;
+  gauge.link = LinkState::kConnected;
+  gauge.health = SourceHealth::kStale;
   gauge.detail = "answers again";
   gauge.speed_m_s = 0.0;
   gauge.direction_deg = 359.5;
