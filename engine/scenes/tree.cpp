@@ -61,6 +61,7 @@ const std::array kTreeParameters = {
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
     Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
+    Parameter{"foliage", "", "green"s, {}, {}, "the colour of its leaves", kFoliageColorNames},
     Parameter{"flexibility", "", 1.0, 0, 10,
               "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
     Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
@@ -168,6 +169,8 @@ TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& setup)
                                  .leaf_links = count("leaf_links"),
                                  .size = values.number("size"),
                                  .seed = setup.seed});
+  const auto* const color = std::ranges::find(kFoliageColorNames, values.text("foliage"));
+  tree.foliage = static_cast<FoliageColor>(color - kFoliageColorNames.begin());
   place(setup.placement, tree);
   return tree;
 }

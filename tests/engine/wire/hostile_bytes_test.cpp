@@ -155,6 +155,12 @@ TEST(HostileBytes, ClothsOutOfBoundsAreRefused) {
     EXPECT_EQ(kinds_with<GridSkeleton>(1, changes[i]).error(), WireError::kInconsistent) << i;
 }
 
+TEST(HostileBytes, AFoliageThatIsNotKnownIsGreen) {
+  const auto result = kinds_with<TreeSkeleton>(2, [](auto& s) { s.foliage = static_cast<FoliageColor>(3); });
+  ASSERT_TRUE(result.has_value()) << "a newer server may have more colours";
+  EXPECT_EQ(std::get<TreeSkeleton>(std::get<Scenes>(*result).scenes[2].skeleton).foliage, FoliageColor::kGreen);
+}
+
 TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
   ASSERT_TRUE(kinds_with<TreeSkeleton>(2, [](auto&) {}).has_value());
   const std::vector<std::function<void(TreeSkeleton&)>> changes{

@@ -107,6 +107,7 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
 
   const auto& tree = std::get<TreeSkeleton>(got.scenes[2].skeleton);
   const TreeSkeleton sent_tree = samples::tree();
+  EXPECT_EQ(tree.foliage, FoliageColor::kAutumn);
   ASSERT_EQ(tree.levels.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const TreeLevel& a = sent_tree.levels[i];

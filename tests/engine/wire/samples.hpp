@@ -113,6 +113,7 @@ inline TreeSkeleton tree() {
     here.is_leaves = here.is_turned_by_block = level == 2;
     tree.levels.push_back(std::move(here));
   }
+  tree.foliage = FoliageColor::kAutumn;
   return tree;
 }
 
