@@ -15,9 +15,7 @@ class WindlogReader;
 using LogMoment = std::variant<Nanoseconds, UtcTime>;
 
 /// Reads what a person writes for one: seconds from the recording's first reading ("90", "12.5"), or a moment in ISO
-/// 8601
-/// ("2018-07-20T14:05:00Z"; UTC where it names no zone; to the millisecond). Empty is the beginning. The failure says
-/// what is allowed.
+/// 8601 ("2018-07-20T14:05:00Z"; parse_iso_time). Empty is the beginning. The failure says what is allowed.
 Result<LogMoment, Failure> parse_log_moment(std::string_view text);
 
 /// Its log time in one recording: for UTC that of the first reading at or after it, or nothing if there is none.
