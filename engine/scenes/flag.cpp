@@ -107,8 +107,8 @@ ClothEdge flag_edge(const ParameterValues& values, const SceneSetup& setup) {
     edge.y_m[column] =
         static_cast<float>(setup.placement.y_m + values.number("pole_height") - pitch_m * static_cast<double>(column));
     edge.z_m[column] = static_cast<float>(setup.placement.z_m);
-    const Turned lean =
-        turned(setup.placement, fold * lean_of_deg(values.number("fold_angle")), -lean_of_deg(values.number("droop")));
+    const EastSouth lean = turned_by_heading(setup.placement, fold * lean_of_deg(values.number("fold_angle")),
+                                             -lean_of_deg(values.number("droop")));
     edge.lean_east[column] = static_cast<float>(lean.east);
     edge.lean_south[column] = static_cast<float>(lean.south);
   }
