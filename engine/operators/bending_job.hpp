@@ -11,12 +11,14 @@ namespace yuragi {
 /// The projection operator "bending": from the wind at each strand to its bend, in StrandPose's meaning. The noise of
 /// one moment bends all links of a chain (Chiba, section 2-2 (3)).
 ///
-/// The bend points to where the wind blows. Its angle is max_bend times bend_share() of s = wind * strength *
-/// flexibility / half_bend_speed. Calm gives exactly (0, 0), and a stronger wind never bends less. The paper's
-/// Wind-speed and theta (section 3.1) multiply here: the tip formula is a direction, theta is scaled by the wind before
-/// (method, decision 1). m/s, radians. All spans have the same size; the outputs overlap nothing else. Owns nothing.
-/// Thread-safe: jobs with different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost:
-/// about 0.3 ns a strand (x86-64-v3).
+/// The bend points to where the wind blows. Its angle is max_bend s^2 / (1 + s^2), s = wind * strength * flexibility /
+/// half_bend_speed: like the drag of the air, it grows with the square of a weak wind; at s = 1 it is half of max_bend,
+/// which no wind exceeds. Calm gives exactly (0, 0), and a stronger wind never bends less. The paper's Wind-speed and
+/// theta (section 3.1) multiply here: the tip formula is a direction, theta is scaled by the wind before (method,
+/// decision 1).
+/// m/s, radians. All spans have the same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with
+/// different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.3 ns a strand
+/// (x86-64-v3).
 struct BendingJob {
   double wind_east_m_s = 0.0;
   double wind_south_m_s = 0.0;

@@ -89,10 +89,11 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
 
 TEST_F(TreePartsTest, LeavesHaveTheColorsOfTheirFoliage) {
   for (const TreePart& leaf : tree_parts(tree_, 3)) EXPECT_GT(leaf.tint[1], leaf.tint[0]) << "green";
-  tree_.foliage = FoliageColor::kAutumn;
-  for (const TreePart& leaf : tree_parts(tree_, 3)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
-  tree_.foliage = FoliageColor::kBlossom;
-  for (const TreePart& leaf : tree_parts(tree_, 3)) EXPECT_GT(leaf.tint[2], 0.2F) << "pale pink";
+  TreeSkeleton tree = tree_;
+  tree.foliage = FoliageColor::kAutumn;
+  for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
+  tree.foliage = FoliageColor::kBlossom;
+  for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[2], 0.2F) << "pale pink";
 }
 
 TEST_F(TreePartsTest, HaveMoreRingsTheNearerTheyAre) {
