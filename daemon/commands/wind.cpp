@@ -22,6 +22,7 @@
 #include "daemon/settings/output_file.hpp"
 #include "daemon/settings/shaping_config.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
+#include "drivers/windlog/format.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
@@ -264,7 +265,7 @@ void run_wind(WindOptions options) {
   options.offline.judge = judge_settings_of(config.sensors[0]);
 
   if (options.output == "-") return write_wind(options, config, stdout);
-  OutputFile output(options.output, options.force);
+  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
                                                              &std::fclose);
   if (!file) {
