@@ -10,7 +10,7 @@ set -euo pipefail
 build_packages=(
   build-essential cmake ninja-build ccache pkg-config python3
   libboost1.81-dev          # Asio; Debian's default 1.74 does not fit C++20, and the two exclude each other
-  libfftw3-dev libsqlite3-dev libfccp-dev libhowardhinnant-date-dev
+  libfftw3-dev libsqlite3-dev libhowardhinnant-date-dev
   libmodbus-dev libhidapi-dev libusb-1.0-0-dev portaudio19-dev libmosquitto-dev liblo-dev # the sensors
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
   libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
 #include "viewer/wind_place_text.hpp"
 
@@ -52,11 +53,6 @@ void write(const ImVec4& color, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   write(text);
   ImGui::PopStyleColor();
-}
-
-const char* point_of_compass(double direction_deg) {
-  constexpr std::array kPoints = {"N", "NE", "E", "SE", "S", "SW", "W", "NW"};
-  return kPoints[static_cast<std::size_t>(std::lround(direction_deg / 45.0)) % kPoints.size()];
 }
 
 /// A rose that turns with the camera, and an arrow the way the wind blows.
@@ -118,7 +114,7 @@ void write_wind(const OverlayFacts& facts, float scale) {
   ImGui::SetWindowFontScale(1.5F);
   write(fmt::format("{:.1f} m/s", speed_of(facts.wind.wind)));
   ImGui::SetWindowFontScale(1.0F);
-  write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, point_of_compass(direction_deg)));
+  write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, nearest_compass_point(direction_deg)));
   if (const std::string place = wind_place_text(facts.wind); !place.empty()) write(kQuiet, place);
   switch (facts.wind.source) {
     case WindSource::kLive:

@@ -20,7 +20,6 @@ pkg_check_modules(UMOCKDEV IMPORTED_TARGET umockdev-1.0) # yuragi-sim's --umockd
 find_package(nlohmann_json REQUIRED)
 find_program(FLATC_PROGRAM flatc REQUIRED)
 find_program(PYTHON3_PROGRAM NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED) # that of Debian
-find_path(FCCP_INCLUDE_DIR libfccp/csv.h REQUIRED)
 
 # Asio compiled once, as its documentation's "separate compilation" has it, and not in each file that includes it.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/asio.cpp CONTENT "#include <boost/asio/impl/src.hpp>\n")

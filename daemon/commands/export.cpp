@@ -12,6 +12,7 @@
 #include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_export.hpp"
+#include "drivers/windlog/format.hpp"
 #include "drivers/windlog/log_moment.hpp"
 
 namespace yuragi {
@@ -75,7 +76,7 @@ void run_export(const ExportOptions& options) {
   }
   if (options.output == "-") return export_as_csv(*reader, options, stdout);
 
-  OutputFile output(options.output, options.force);
+  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
   if (std::filesystem::path(options.output).extension() == ".windlog") {
     if (!options.from.empty() || !options.to.empty()) {
       throw ExitError(kExitUsage, "--from and --to go with a CSV; a copy is of the whole recording");

@@ -22,6 +22,7 @@
 #include "daemon/tools/plot/plot.hpp"
 #include "daemon/tools/plot/plot_map.hpp"
 #include "daemon/tools/plot/plot_script.hpp"
+#include "drivers/windlog/format.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
 namespace yuragi {
@@ -225,7 +226,7 @@ PlotMap map_of(std::span<const float> frame, const FieldGrid& grid, const std::s
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text, bool force) {
-  OutputFile output(file, force);
+  OutputFile output(file, force, windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(output.working_path().c_str(), "we"),
                                                             &std::fclose);
   if (!out || std::fputs(text.c_str(), out.get()) < 0 || std::fflush(out.get()) != 0) {
@@ -260,7 +261,7 @@ void run_field(FieldOptions options) {
   }
 
   nlohmann::ordered_json description = description_of(options, grid, shape);
-  OutputFile output(options.output, options.force);
+  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
   if (!options.force && std::filesystem::exists(beside)) {
     throw ExitError(kExitCannotCreate, beside.string() + ": is there already; --force overwrites it");
   }

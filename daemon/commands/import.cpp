@@ -14,6 +14,7 @@
 #include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
+#include "drivers/windlog/format.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/version.hpp"
 
@@ -133,7 +134,7 @@ void run_import(const ImportOptions& options) {
     if (!file) throw ExitError(kExitNoInput, options.input + ": cannot be read; is it there?");
   }
 
-  OutputFile output(options.output, options.force);
+  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
   Target target(output.working_path(), fmt::format("# imported from {}\n", options.input));
   const auto report =
       import_csv(is_standard_input ? std::cin : file, options.input, csv,

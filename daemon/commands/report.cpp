@@ -20,6 +20,7 @@
 #include "daemon/tools/report/report_json.hpp"
 #include "daemon/tools/report/report_page.hpp"
 #include "daemon/tools/report/report_text.hpp"
+#include "drivers/windlog/format.hpp"
 #include "drivers/windlog/log_moment.hpp"
 #include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
@@ -125,9 +126,9 @@ void run_report(const ReportOptions& options) {
     throw ExitError(kExitUsage, "--json: is the page's own name; name another file");
   }
   // Before hours of work.
-  OutputFile page_file(options.output, options.force);
+  OutputFile page_file(options.output, options.force, windlog::kSideSuffixes);
   std::optional<OutputFile> json_file;
-  if (!options.json.empty()) json_file.emplace(options.json, options.force);
+  if (!options.json.empty()) json_file.emplace(options.json, options.force, windlog::kSideSuffixes);
 
   const Config config = options.config_file ? load_config(*options.config_file) : default_config();
   ReportSettings settings;
@@ -148,7 +149,7 @@ void run_report(const ReportOptions& options) {
   std::vector<SensorFigures> figures;
   for (const SensorNumbers& sensor : numbers->sensors) {
     told.tell(fmt::format("figures {} of {}", figures.size() + 1, numbers->sensors.size()));
-    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path(), figures.size()));
+    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path()));
   }
   write_text(page_file, options.output, report_page(*numbers, figures, source));
   if (json_file) {

@@ -21,6 +21,7 @@
 #include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
+#include "drivers/windlog/format.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
@@ -263,7 +264,7 @@ void run_wind(WindOptions options) {
   options.offline.judge = config.sensors[0].judge;
 
   if (options.output == "-") return write_wind(options, config, stdout);
-  OutputFile output(options.output, options.force);
+  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
                                                              &std::fclose);
   if (!file) {

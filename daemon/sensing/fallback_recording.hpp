@@ -7,8 +7,8 @@
 
 #include "daemon/sensing/sensor_runner.hpp"
 #include "daemon/settings/config.hpp"
-#include "engine/wind/blend/wind_estimator.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
+#include "engine/wind/source_report.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi {

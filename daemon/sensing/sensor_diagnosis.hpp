@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include "drivers/sensor/sensor.hpp"
-#include "engine/wind/blend/wind_estimator.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
 #include "engine/wind/judging/sensor_vote.hpp"
+#include "engine/wind/source_report.hpp"
 
 namespace yuragi {
 

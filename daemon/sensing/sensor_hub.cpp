@@ -71,13 +71,13 @@ BlendSettings blend_settings_of(const Config& config) {
   return settings;
 }
 
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
-                                              double reach_m, std::shared_ptr<SiteSpectrum> site) {
+BlendedEstimator make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise, double reach_m,
+                                std::shared_ptr<SiteSpectrum> site) {
   BlendSettings settings = blend_settings_of(config);
   settings.reach_m = reach_m;
   if (site) settings.site = std::move(site);
   const std::size_t source_count = settings.sources.size();
-  return std::make_unique<BlendedEstimator>(source_count, settings, std::move(noise));
+  return {source_count, settings, std::move(noise)};
 }
 
 SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
@@ -120,8 +120,8 @@ const WindState& SensorHub::advance() {
   const MonoTime now = clock_.now().mono;
   compare(now);
   fallback_.advance(is_any_live(),
-                    [this](const WindReading& reading) { estimator_->accept(channels_.size(), reading); });
-  wind_ = estimator_->advance(now);
+                    [this](const WindReading& reading) { estimator_.accept(channels_.size(), reading); });
+  wind_ = estimator_.advance(now);
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     log_link(channels_[index], now);
     log_state(index, now);
@@ -142,7 +142,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
   if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
   if (reading.is_held) {
     channel.said.hold(reading.time);
-    estimator_->accept(index, reading);
+    estimator_.accept(index, reading);
     return;
   }
   channel.said.take(reading);
@@ -152,7 +152,7 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
   if (makes_sense) vote_.hear(index, reading.time.mono, reading.speed_m_s);
   if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
-    estimator_->accept(index, reading);
+    estimator_.accept(index, reading);
   } else {
     ++channel.not_believed;
   }
@@ -235,7 +235,7 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     facts.evidence.link_detail = link.detail;
     all.push_back(sensor_status(facts));
   }
-  if (auto status = fallback_.status(estimator_->report(channels_.size()))) all.push_back(std::move(*status));
+  if (auto status = fallback_.status(estimator_.report(channels_.size()))) all.push_back(std::move(*status));
   return all;
 }
 
@@ -254,7 +254,7 @@ SensorCounts SensorHub::counts_of(const Channel& channel) {
 
 bool SensorHub::is_any_live() const {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
-    if (estimator_->report(index).health == SourceHealth::kLive) return true;
+    if (estimator_.report(index).health == SourceHealth::kLive) return true;
   }
   return false;
 }

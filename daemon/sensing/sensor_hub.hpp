@@ -14,8 +14,8 @@
 #include "daemon/sensing/sensor_status.hpp"
 #include "daemon/settings/config.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
 #include "engine/wind/blend/source_record.hpp"
-#include "engine/wind/blend/wind_estimator.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 #include "engine/wind/judging/sensor_vote.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
@@ -47,8 +47,8 @@ class SensorHub {
 
   /// The wind as of the last advance().
   const WindState& wind() const noexcept { return wind_; }
-  const GroundWind& ground() const noexcept { return estimator_->ground(); }
-  const WindStroke& stroke() const noexcept { return estimator_->stroke(); }
+  const GroundWind& ground() const noexcept { return estimator_.ground(); }
+  const WindStroke& stroke() const noexcept { return estimator_.stroke(); }
 
   /// What is known of the site's gusts; learns on while a quick sensor of the site speaks. Of this thread.
   const std::shared_ptr<SiteSpectrum>& site() const noexcept { return site_; }
@@ -101,7 +101,7 @@ class SensorHub {
   const Clock& clock_;
   Listener listener_;
   std::shared_ptr<SiteSpectrum> site_;
-  std::unique_ptr<WindEstimator> estimator_;
+  BlendedEstimator estimator_;
   double stale_intervals_;
   SensorVote vote_;
   std::vector<Channel> channels_;
@@ -118,7 +118,7 @@ BlendSettings blend_settings_of(const Config& config);
 /// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
 /// `reach_m`: from the middle of the scenes to the farthest place of any of them. `site`: what is known of the site's
 /// gusts, and learns more of them; none: what the configuration says of them.
-std::unique_ptr<WindEstimator> make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise,
-                                              double reach_m, std::shared_ptr<SiteSpectrum> site = {});
+BlendedEstimator make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise, double reach_m,
+                                std::shared_ptr<SiteSpectrum> site = {});
 
 }  // namespace yuragi

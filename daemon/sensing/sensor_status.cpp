@@ -11,8 +11,8 @@ wire::SensorStatus status_of_source(std::string_view name, std::string_view driv
   wire::SensorStatus status;
   status.name = name;
   status.driver = driver;
-  status.link = static_cast<std::uint8_t>(link);
-  status.health = static_cast<std::uint8_t>(said.health);
+  status.link = link;
+  status.health = said.health;
   if (said.last) {
     status.speed_m_s = said.last->speed_m_s;
     status.direction_deg = said.last->direction_deg;

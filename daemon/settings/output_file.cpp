@@ -11,18 +11,28 @@
 
 namespace yuragi {
 
-OutputFile::OutputFile(std::filesystem::path file, bool force)
-    : file_(std::move(file)), working_path_(file_.string() + ".part-" + std::to_string(getpid())) {
+OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const std::string_view> side_suffixes)
+    : file_(std::move(file)), side_suffixes_(side_suffixes) {
   std::error_code error;
   const std::string name = file_.string();
-  if (std::filesystem::is_directory(file_, error)) throw ExitError(kExitCannotCreate, name + ": is a folder");
+  // A rename onto a device or a link would replace it.
+  if (const auto status = std::filesystem::status(file_, error); std::filesystem::exists(status)) {
+    if (std::filesystem::is_directory(status)) throw ExitError(kExitCannotCreate, name + ": is a folder");
+    if (!std::filesystem::is_regular_file(status)) {
+      throw ExitError(kExitCannotCreate, name + ": is no regular file");
+    }
+    if (force) file_ = std::filesystem::canonical(file_);
+  }
+  working_path_ = file_.string() + ".part-" + std::to_string(getpid());
   if (!force && std::filesystem::exists(file_, error)) {
     throw ExitError(kExitCannotCreate, name + ": is there already; --force overwrites it");
   }
-  // SQLite would take a left -wal for the new file's.
-  if (std::filesystem::exists(name + "-wal", error)) {
-    throw ExitError(kExitCannotCreate, name + ": is being recorded, or the recorder was killed (" + name +
-                                           "-wal is there); name another file");
+  // They would be taken for the new file's.
+  for (const std::string_view suffix : side_suffixes_) {
+    const std::string beside = file_.string() + std::string(suffix);
+    if (!std::filesystem::exists(beside, error)) continue;
+    throw ExitError(kExitCannotCreate, name + ": is being recorded, or the recorder was killed (" + beside +
+                                           " is there); name another file");
   }
   const auto folder = file_.parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
@@ -32,8 +42,9 @@ OutputFile::OutputFile(std::filesystem::path file, bool force)
 
 OutputFile::~OutputFile() {
   std::error_code ignored;
-  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
-    std::filesystem::remove(working_path_.string() + suffix, ignored);
+  std::filesystem::remove(working_path_, ignored);
+  for (const std::string_view suffix : side_suffixes_) {
+    std::filesystem::remove(working_path_.string() + std::string(suffix), ignored);
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string_view>
 
 namespace yuragi {
 
@@ -8,9 +10,11 @@ namespace yuragi {
 /// name with commit(). Without that it is removed.
 class OutputFile {
  public:
-  /// Throws ExitError where the file is there already and `force` is false, where it is a recording that somebody is
-  /// writing (or was, when it was killed), or where its folder is not there.
-  OutputFile(std::filesystem::path file, bool force);
+  /// A link is followed. `side_suffixes`: how the names end of what a library keeps beside such a file while it is
+  /// being recorded (windlog::kSideSuffixes); they must live as long as this, and are removed with an unfinished file.
+  /// Throws ExitError where the file is there already and `force` is false, where it is no regular file, where one of
+  /// those stands beside it (somebody is recording it, or was, when it was killed), or where its folder is not there.
+  OutputFile(std::filesystem::path file, bool force, std::span<const std::string_view> side_suffixes = {});
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -24,6 +28,7 @@ class OutputFile {
  private:
   std::filesystem::path file_;
   std::filesystem::path working_path_;
+  std::span<const std::string_view> side_suffixes_;
 };
 
 }  // namespace yuragi

@@ -116,7 +116,7 @@ class LibusbDevice final : public UsbDevice {
     return all;
   }
 
-  bool has_arrived() override {
+  bool take_arrival() override {
     if (!start()) return false;
     timeval no_time{};
     libusb_handle_events_timeout_completed(context_, &no_time, nullptr);

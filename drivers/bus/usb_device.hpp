@@ -66,7 +66,7 @@ class UsbDevice {
   virtual Result<std::vector<PluggedUsbDevice>, Failure> plugged() = 0;
 
   /// Has one of its kinds been plugged in since this was last asked? Waits for nothing.
-  virtual bool has_arrived() = 0;
+  virtual bool take_arrival() = 0;
 
   /// Opens one of those and claims its first interface. The failure's text: why, and what to do.
   virtual Result<void, Failure> open(const PluggedUsbDevice& device) = 0;

@@ -34,8 +34,8 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
   const Result<StationStep, Failure> step = station_->step(talk);
   if (is_interrupted_) return talk.now();  // the step's result does not count: it was cut short
   if (!step) return Failure{name_ + " " + (step.error().message.empty() ? why_useless(talk) : step.error().message)};
-  if (step->health == StationHealth::kWell) is_well(sink, name_);
-  if (step->health == StationHealth::kUnwell) is_unwell(sink, name_ + " " + step->trouble);
+  if (step->health == StationHealth::kWell) report_connected(sink, name_);
+  if (step->health == StationHealth::kUnwell) report_unusable(sink, name_ + " " + step->trouble);
   next_step_ = step->next;
   return std::min(next_step_, talk.now() + kLookAfterEvery);
 }

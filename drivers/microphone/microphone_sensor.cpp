@@ -91,18 +91,18 @@ void MicrophoneSensor::take(const MicHello& hello) {
 }
 
 void MicrophoneSensor::take(const MicBlock& block, const Instant& now, SensorSink& sink) {
-  if (!estimator_) return is_unwell(sink, trouble_);
+  if (!estimator_) return report_unusable(sink, trouble_);
   const auto estimate = estimator_->add(block);
   if (estimate) {
     if (*estimate) publish(**estimate, block, now, sink);
     return;
   }
   sink.refused(estimate.error());
-  is_unwell(sink, fmt::format("{}: {}", hello_->device,
-                              estimate.error() == Refusal::kImplausible
-                                  ? "noise at full scale that no wind makes: check cable, plug and sample format"
-                              : block.invalid_samples > 0 ? "samples that are no sound: check the sample format"
-                                                          : "digital silence: is it muted, or its plug loose?"));
+  report_unusable(sink, fmt::format("{}: {}", hello_->device,
+                                    estimate.error() == Refusal::kImplausible
+                                        ? "noise at full scale that no wind makes: check cable, plug and sample format"
+                                    : block.invalid_samples > 0 ? "samples that are no sound: check the sample format"
+                                                                : "digital silence: is it muted, or its plug loose?"));
 }
 
 void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now,
@@ -115,7 +115,7 @@ void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& bloc
 
   const bool is_uncertain = !settings_.is_calibrated || estimate.suspects_automatic_gain || estimate.is_clipping ||
                             estimate.silent_channels != 0;
-  is_well(sink, detail(estimate));
+  report_connected(sink, detail(estimate));
   sink.reading({.time = {.mono = now.mono - age, .utc = now.utc - age},
                 .speed_m_s = estimate.speed_m_s,
                 .direction_deg = estimate.direction_deg,

@@ -88,7 +88,7 @@ Result<MonoTime, Failure> ModbusSensor::ask_first(const Clock& clock, SensorSink
   if (!answer) {
     if (answer.error().kind == ModbusTrouble::Kind::kInterrupted) return now.mono;
     if (answer.error().kind == ModbusTrouble::Kind::kLost) return Failure{explain(read, answer.error())};
-    is_unwell(sink, explain(read, answer.error()));
+    report_unusable(sink, explain(read, answer.error()));
     return has_cost_time(answer.error()) ? now.mono + read.backoff.next() : next_round(now.mono);
   }
   read.backoff.reset();
@@ -96,8 +96,9 @@ Result<MonoTime, Failure> ModbusSensor::ask_first(const Clock& clock, SensorSink
   const auto speed_m_s = decode_speed_m_s(profile_.speed, registers_of(profile_.speed, read.what.request, *answer));
   if (!speed_m_s) {
     sink.refused(speed_m_s.error());
-    is_well(sink, fmt::format("slave {} at {} answers, but its speed is {}: check that the profile fits the device",
-                              read.what.request.unit, bus_->where(), name_of(speed_m_s.error())));
+    report_connected(sink,
+                     fmt::format("slave {} at {} answers, but its speed is {}: check that the profile fits the device",
+                                 read.what.request.unit, bus_->where(), name_of(speed_m_s.error())));
     return next_round(now.mono);
   }
   reading_ = {
@@ -139,14 +140,14 @@ MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {
 
   // All that the round brought goes out together.
   if (reading_.time.mono < opened_at_ + profile_.warm_up) {
-    is_well(sink, profile_.name + " at " + bus_->where() + " is warming up");
+    report_connected(sink, profile_.name + " at " + bus_->where() + " is warming up");
     return next_round(now);
   }
   std::string detail = profile_.name + " at " + bus_->where();
   for (const Read& read : reads_) {
     if (!read.trouble.empty()) detail += "; " + read.trouble;
   }
-  is_well(sink, detail);
+  report_connected(sink, detail);
   sink.reading(reading_);
   return next_round(now);
 }

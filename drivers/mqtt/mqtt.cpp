@@ -161,7 +161,7 @@ class MqttSensor final : public ReopeningSensor {
   }
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
-    if (!has_heard_) is_unwell(sink, "waits for wind on " + where_ + ": a retained message is none");
+    if (!has_heard_) report_unusable(sink, "waits for wind on " + where_ + ": a retained message is none");
     MqttMessage message;
     const MqttStatus status = client_->receive(message, kMqttWait);
     const Instant now = clock.now();
@@ -170,8 +170,8 @@ class MqttSensor final : public ReopeningSensor {
     if (status == MqttStatus::kMessage) take(message, now, sink);
     if (now.mono - heard_at_ >= settings_.silence) {
       has_heard_ = true;  // the status now reports more than waiting
-      is_unwell(sink, fmt::format("no wind has come on {} for {:g} s: check that whoever publishes it runs", where_,
-                                  seconds(settings_.silence)));
+      report_unusable(sink, fmt::format("no wind has come on {} for {:g} s: check that whoever publishes it runs",
+                                        where_, seconds(settings_.silence)));
     }
     return now.mono;
   }
@@ -211,7 +211,7 @@ class MqttSensor final : public ReopeningSensor {
 
     has_heard_ = true;
     heard_at_ = now.mono;
-    is_well(sink, where_);
+    report_connected(sink, where_);
     sink.reading({.time = now,
                   .speed_m_s = *plausible->speed_m_s,
                   .direction_deg = plausible->direction_deg,

@@ -123,7 +123,7 @@ class OscSensor final : public ReopeningSensor {
   }
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
-    if (!has_heard_) is_unwell(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
+    if (!has_heard_) report_unusable(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
     const ByteArrival arrival = port_->read(buffer_, kOscWait);
     const Instant now = clock.now();
     if (arrival.status == ByteStatus::kInterrupted) return Failure{"interrupted"};
@@ -132,10 +132,11 @@ class OscSensor final : public ReopeningSensor {
     if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
     if (now.mono - heard_at_ >= settings_.silence) {
       has_heard_ = true;  // the status now reports more than waiting
-      is_unwell(sink, fmt::format(
-                          "no wind has come to {} for {:g} s: check that the sender runs, that it sends {} there, and "
-                          "that no firewall stops it",
-                          where_, seconds(settings_.silence), settings_.address));
+      report_unusable(
+          sink,
+          fmt::format("no wind has come to {} for {:g} s: check that the sender runs, that it sends {} there, and "
+                      "that no firewall stops it",
+                      where_, seconds(settings_.silence), settings_.address));
     }
     return now.mono;
   }
@@ -156,7 +157,7 @@ class OscSensor final : public ReopeningSensor {
     if (!wind) return sink.refused(wind.error());
     has_heard_ = true;
     heard_at_ = now.mono;
-    is_well(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
+    report_connected(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
     sink.reading({.time = now,
                   .speed_m_s = *wind->speed_m_s,
                   .direction_deg = wind->direction_deg,

@@ -14,7 +14,7 @@ ReopeningSensor::ReopeningSensor(std::uint32_t seed) : backoff_(kFirstWait, kLon
 
 MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
   if (clock.now().mono < next_poll_) {
-    if (is_open_ || !has_returned()) return next_poll_;
+    if (is_open_ || !poll_for_return()) return next_poll_;
     backoff_.reset();
   }
 
@@ -31,16 +31,16 @@ MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
   return next_poll_;
 }
 
-void ReopeningSensor::is_well(SensorSink& sink, const std::string& detail) {
+void ReopeningSensor::report_connected(SensorSink& sink, const std::string& detail) {
   backoff_.reset();
   tell(sink, LinkState::kConnected, detail);
 }
 
-void ReopeningSensor::is_unwell(SensorSink& sink, const std::string& detail) {
+void ReopeningSensor::report_unusable(SensorSink& sink, const std::string& detail) {
   tell(sink, LinkState::kConnecting, detail);
 }
 
-void ReopeningSensor::is_at_its_end(SensorSink& sink, const std::string& detail) {
+void ReopeningSensor::report_finished(SensorSink& sink, const std::string& detail) {
   tell(sink, LinkState::kFinished, detail);
 }
 

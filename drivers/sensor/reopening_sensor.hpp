@@ -35,14 +35,14 @@ class ReopeningSensor : public Sensor {
 
   /// Has the device come back, as far as can be seen without waiting? Asked at each poll() that comes too early for the
   /// next attempt to open it, which is then made at once.
-  virtual bool has_returned() { return false; }
+  virtual bool poll_for_return() { return false; }
 
   /// For work(): the device sends valid messages. `detail` is for people: what it is, and where.
-  void is_well(SensorSink& sink, const std::string& detail);
+  void report_connected(SensorSink& sink, const std::string& detail);
   /// For work(): the device is open, but sends no valid messages; why, and what to do.
-  void is_unwell(SensorSink& sink, const std::string& detail);
+  void report_unusable(SensorSink& sink, const std::string& detail);
   /// For work(): what there was to read has been read to its end.
-  void is_at_its_end(SensorSink& sink, const std::string& detail);
+  void report_finished(SensorSink& sink, const std::string& detail);
 
  private:
   void tell(SensorSink& sink, LinkState state, const std::string& detail);

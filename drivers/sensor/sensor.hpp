@@ -6,18 +6,10 @@
 
 #include "drivers/decode/refusal.hpp"
 #include "drivers/sensor/clock.hpp"
+#include "engine/wind/link_state.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi {
-
-/// The state of the link to the device.
-enum class LinkState : std::uint8_t {
-  kConnecting,  ///< searching for the device, or waiting for the next attempt
-  kConnected,   ///< open, and the last exchange was answered
-  kFinished,    ///< the end of a recording: no more readings follow
-};
-
-std::string_view name_of(LinkState state);
 
 /// Which way a message went.
 enum class RawDirection : std::uint8_t { kReceived, kSent };

@@ -130,7 +130,7 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
       if (const auto line = assembler_.finish()) take_line(**line, now, sink);
       if (const auto held = take_held()) publish(*held, sink);
       is_finished_ = true;
-      is_at_its_end(sink, where_ + " has been read to its end");
+      report_finished(sink, where_ + " has been read to its end");
       return now.mono + kForAges;
     case ByteStatus::kForeign:
       ++foreign_datagrams_;
@@ -256,7 +256,7 @@ void TextSensor::publish(const WindReading& reading, SensorSink& sink) {
   vain_openings_ = 0;
   bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
   refused_ = {};
-  is_well(sink, name() + " at " + where_);
+  report_connected(sink, name() + " at " + where_);
   sink.reading(reading);
 }
 
@@ -279,16 +279,16 @@ Nanoseconds TextSensor::silence_limit() const {
 void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
-  if (now - last_bytes_ >= kPatience) return is_unwell(sink, silence_trouble());
+  if (now - last_bytes_ >= kPatience) return report_unusable(sink, silence_trouble());
   const Refusal why = main_refusal();
   const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;
   if (late_lines_ > 0 || !has_lines) {
-    is_unwell(sink, trouble_without_lines());
+    report_unusable(sink, trouble_without_lines());
   } else if (why == Refusal::kInvalid || why == Refusal::kImplausible) {
     // It is there and sends: whether that is valid is checked elsewhere.
-    is_well(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
+    report_connected(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
   } else {
-    is_unwell(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
+    report_unusable(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
   }
 }
 

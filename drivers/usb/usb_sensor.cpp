@@ -107,10 +107,10 @@ void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, Se
     sink.refused(speed_m_s->error());
     direction_.clear();
     is_jumpy_ = true;
-    return is_unwell(sink,
-                     name_ +
-                         " counts as no wind does: it was reset, or the cup's contact bounces, or metres_per_pulse "
-                         "is too large");
+    return report_unusable(
+        sink, name_ +
+                  " counts as no wind does: it was reset, or the cup's contact bounces, or metres_per_pulse "
+                  "is too large");
   }
   if (sample.wiper_v) {
     const double reference_v = sample.reference_v.value_or(settings_.reference_v);
@@ -119,7 +119,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, Se
     }
   }
   if (speed_m_s) is_jumpy_ = false;
-  if (!is_jumpy_) is_well(sink, name_);
+  if (!is_jumpy_) report_connected(sink, name_);
   if (!speed_m_s) return;
   sink.reading({.time = now,
                 .speed_m_s = **speed_m_s,
@@ -133,7 +133,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, Se
 Result<MonoTime, Failure> UsbSensor::suffer(const DaqTrouble& trouble, MonoTime again, SensorSink& sink) {
   const std::string detail = name_ + " " + trouble.message;
   if (trouble.is_lost || ++failures_ >= kRoundsBeforeReopen) return Failure{detail};
-  is_unwell(sink, detail);
+  report_unusable(sink, detail);
   return again;
 }
 

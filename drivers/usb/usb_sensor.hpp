@@ -51,7 +51,7 @@ class UsbSensor final : public ReopeningSensor {
   Result<MonoTime, Failure> open(const Clock& clock) override;
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
   void close() noexcept override { device_->close(); }
-  bool has_returned() override { return device_->has_arrived(); }
+  bool poll_for_return() override { return device_->take_arrival(); }
 
  private:
   bool is_wanted(const PluggedUsbDevice& device) const;

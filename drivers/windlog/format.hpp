@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 
 namespace yuragi::windlog {
 
@@ -11,6 +13,11 @@ namespace yuragi::windlog {
 //
 // It is in WAL mode while it is written (FILE.windlog-wal and -shm beside it) and one file when it is closed. Each
 // start of the daemon adds a session. Version 1; a reader refuses a newer one.
+
+/// What SQLite keeps beside a recording while it is open, by the end of its name; where one of them is left, the
+/// recorder was killed, and it holds the newest readings.
+inline constexpr std::string_view kWalSuffix = "-wal";
+inline constexpr std::array<std::string_view, 3> kSideSuffixes = {kWalSuffix, "-shm", "-journal"};
 
 inline constexpr std::int64_t kApplicationId = 0x59724c67;  ///< "YrLg"; `file` and `PRAGMA application_id` show it
 inline constexpr std::int64_t kFormatVersion = 1;           ///< `PRAGMA user_version`

@@ -15,7 +15,7 @@ class WindlogReader;
 using LogMoment = std::variant<Nanoseconds, UtcTime>;
 
 /// Parses one: seconds from the recording's first reading ("90", "12.5"), or a moment in ISO 8601
-/// ("2018-07-20T14:05:00Z"; UTC where it names no zone; to the millisecond). Empty is the beginning. The failure's
+/// ("2018-07-20T14:05:00Z"; parse_iso_time). Empty is the beginning. The failure's
 /// text: what is allowed.
 Result<LogMoment, Failure> parse_log_moment(std::string_view text);
 

@@ -95,9 +95,6 @@ Result<Database, Failure> Database::open(const std::filesystem::path& file, Acce
     case Access::kReadWrite:
       flags |= SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
       break;
-    case Access::kCalculator:
-      flags |= SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY;
-      break;
   }
 
   // Absolute, so that no name is taken for a URI or for SQLite's ":memory:".

@@ -17,7 +17,6 @@ enum class Access : std::uint8_t {
   kReadOnly,
   kReadFrozen,  ///< reads a file without a writer, with no lock: for folders in which nothing can be created
   kReadWrite,   ///< creates the file if it is not there
-  kCalculator,  ///< no file at all
 };
 
 /// How long a statement waits for another writer of the same file: a second recorder, or a checkpoint.

@@ -27,7 +27,7 @@ UtcTime utc_time(std::int64_t ns) {
 }
 
 std::filesystem::path wal_of(const std::filesystem::path& file) {
-  return file.string() + "-wal";
+  return file.string() + std::string(windlog::kWalSuffix);
 }
 
 bool is_absent_or_empty(const std::filesystem::path& file) {

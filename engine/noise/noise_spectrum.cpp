@@ -5,13 +5,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/noise/von_karman_corner.hpp"
+
 namespace yuragi {
 namespace {
 
 using Mode = std::complex<double>;
 
 /// 1 / (2 pi 1.339), in cycles: with it the integral scale of a line cut is that of the spec (engine/METHOD.md M2).
-constexpr double kCornerPerScale = 1.0 / (2.0 * std::numbers::pi * 1.339);
+constexpr double kCornerPerScale = 1.0 / (2.0 * std::numbers::pi * kVonKarmanCorner);
 
 /// A mode's own place in the random stream: its signed wave numbers side by side, 24, 24 and 16 bits.
 std::uint64_t address_of(std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) noexcept {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "engine/base/kernel.hpp"
+#include "engine/operators/bend_share.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
 namespace yuragi {
@@ -20,8 +21,7 @@ void bend(const BendingKernelArguments& in) noexcept {
     const float wind = arguments.wind_in_half_bends * strength[i] * flexibility[i];
     const float blowing = wind > 0.0F ? wind : 0.0F;
     const float s = blowing < kLargest ? blowing : kLargest;
-    // s^2 / (1 + s^2), written so that each rounding keeps the order: a stronger wind never bends less, not by a bit.
-    const float share = 1.0F - 1.0F / (1.0F + s * s);
+    const float share = bend_share(s * s);
     east[i] = arguments.bend_east_rad * share;
     south[i] = arguments.bend_south_rad * share;
   }
@@ -39,8 +39,7 @@ void bend_locally(const LocalBendingKernelArguments& in) noexcept {
     const float per_m_s = arguments.half_bends_per_m_s * strength[i] * flexibility[i];
     const float blowing = per_m_s * std::sqrt(wind_east[i] * wind_east[i] + wind_south[i] * wind_south[i]);
     const float s = blowing < kLargest ? blowing : kLargest;
-    // s^2 / (1 + s^2) over the speed: no division by a speed that may be 0.
-    const float bend_per_m_s = arguments.max_bend_rad * per_m_s * (s / (1.0F + s * s));
+    const float bend_per_m_s = arguments.max_bend_rad * per_m_s * bend_share_over_s(s, s * s);
     east[i] = bend_per_m_s * wind_east[i];
     south[i] = bend_per_m_s * wind_south[i];
   }
@@ -72,7 +71,7 @@ void bend_coat(const CoatBendingKernelArguments& in) noexcept {
     const float square = left > 0.0F ? left : 0.0F;
     const float per_m_s = half_bends_per_m_s * flexibility[i];
     const float s_square = per_m_s * per_m_s * square;
-    const float share = 1.0F - 1.0F / (1.0F + s_square);
+    const float share = bend_share(s_square);
 
     const float lee = outward * per_speed_s_m;
     const float exposure = 1.0F - sheltered * (lee > 0.0F ? lee : 0.0F);

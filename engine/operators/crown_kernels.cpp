@@ -1,6 +1,7 @@
 #include "engine/operators/crown_kernels.hpp"
 
 #include "engine/base/kernel.hpp"
+#include "engine/operators/bend_share.hpp"
 #include "engine/operators/streamlined_drag.hpp"
 
 namespace yuragi {
@@ -76,7 +77,7 @@ void answer(const LeafKernelArguments& arguments) noexcept {
     const float south = in.wind_south_m_s[i];
     const float square = east * east + south * south;
     const float s_square = square * (in.per_half_lean_speed * in.per_half_lean_speed);
-    const float lean = in.lean_rad * in.per_half_lean_speed * (__builtin_sqrtf(s_square) / (1.0F + s_square));
+    const float lean = in.lean_rad * in.per_half_lean_speed * bend_share_over_s(__builtin_sqrtf(s_square), s_square);
     lean_east[i] = lean * east;
     lean_south[i] = lean * south;
     const float base = 1.0F + in.eighth_per_flutter_square * square;

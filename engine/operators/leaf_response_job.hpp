@@ -10,10 +10,10 @@ namespace yuragi {
 
 /// How leaves answer the wind in each place of a crown: how far they lean with it, and how much they flutter.
 ///
-/// The lean is lean_rad W, W = s^2 / (1 + s^2) with s = wind / half_lean_speed, toward where the wind blows to. The
-/// deviation of the flutter is flutter_rad (1 - (1 + q/8)^-8), q = (wind / flutter_speed)^2, which is 1 - exp(-q) to
-/// within 0.033 without an exponential: it grows with the square of a weak wind, and leaves in a strong one flutter no
-/// farther, but faster (Tadrist and others 2018, "Foliage motion under wind, from leaf flutter to branch buffeting").
+/// The lean is lean_rad times bend_share() of s = wind / half_lean_speed, toward where the wind blows to. The deviation
+/// of the flutter is flutter_rad (1 - (1 + q/8)^-8), q = (wind / flutter_speed)^2, which is 1 - exp(-q) to within 0.033
+/// without an exponential: it grows with the square of a weak wind, and leaves in a strong one flutter no farther, but
+/// faster (Tadrist and others 2018, "Foliage motion under wind, from leaf flutter to branch buffeting").
 /// Calm gives nothing, exactly. m/s, radians. All spans have the same size; the outputs overlap nothing else. Owns
 /// nothing. Thread-safe: jobs with different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits.
 /// Cost: about 1 ns a place (x86-64-v3).
@@ -42,8 +42,6 @@ struct LeafResponseJob {
   /// Runs the job unless validate() finds a problem; returns the result of validate().
   Problem run() const noexcept;
 
-  /// The steepest that W gets, over s: where s is 1 / sqrt(3).
-  static constexpr double kSteepestLean = 0.6495190528383290;  // 3 sqrt(3) / 8
   /// The steepest that the flutter gets, over wind / flutter_speed, for a flutter_rad of 1: where q is 8/17.
   static constexpr double kSteepestFlutter = 0.8202;
 };

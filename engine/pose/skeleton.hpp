@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -80,9 +82,18 @@ struct TreeLevel {
   std::vector<float> tip_radius_m;   ///< wood: at the tip. padded_count() elements
 };
 
+/// What colour a tree's leaves have. The stream (pose.fbs) has the same in the same order.
+enum class FoliageColor : std::uint8_t {
+  kGreen,
+  kBlossom,  ///< the pale pink of a cherry in flower
+  kAutumn,   ///< yellow to red
+};
+inline constexpr std::array<std::string_view, 3> kFoliageColorNames = {"green", "blossom", "autumn"};
+
 /// Strands that grow on strands: level 0 stands on the ground. At most kMaxTreeLevels levels.
 struct TreeSkeleton {
   std::vector<TreeLevel> levels;
+  FoliageColor foliage = FoliageColor::kGreen;
 };
 inline constexpr std::size_t kMaxTreeLevels = 8;
 

@@ -130,7 +130,7 @@ ClothEdge banner_edge(const BannerSettings& settings, const SceneSetup& setup) {
   ClothEdge edge(settings.columns);
   const double pitch_m = settings.width_m / static_cast<double>(edge.columns - 1);
   for (std::size_t column = 0; column < edge.stride(); ++column) {
-    const Turned place = turned(setup.placement, pitch_m * static_cast<double>(column), 0.0);
+    const EastSouth place = turned_by_heading(setup.placement, pitch_m * static_cast<double>(column), 0.0);
     edge.x_m[column] = static_cast<float>(setup.placement.x_m + place.east);
     edge.y_m[column] = static_cast<float>(setup.placement.y_m + settings.height_m + settings.clearance_m);
     edge.z_m[column] = static_cast<float>(setup.placement.z_m + place.south);
@@ -211,7 +211,7 @@ class Banner final : public Scene {
         flutter_rad_(settings.max_flutter_deg / ClothNoise::kLargest * kRadPerDeg),
         half_flutter_speed_m_s_(settings.half_flutter_speed_m_s),
         wave_speed_(settings.wave_speed),
-        arm_(turned(setup.placement, 1.0, 0.0)),
+        arm_(turned_by_heading(setup.placement, 1.0, 0.0)),
         wind_(setup.placement, setup.gusts),
         cloth_(banner_spec(settings), edge, setup.row),
         knot_link_m_(settings.height_m / static_cast<double>(cloth_.knots().links)),
@@ -294,7 +294,7 @@ class Banner final : public Scene {
   double flutter_rad_;  ///< of the free corner's turns to the sides, where a wave of height 1 passes
   double half_flutter_speed_m_s_;
   double wave_speed_;  ///< over the wind's
-  Turned arm_;         ///< where the cross-arm points to at rest
+  EastSouth arm_;      ///< where the cross-arm points to at rest
 
   SceneWind wind_;
   ClothStrength strength_;

@@ -118,11 +118,11 @@ class Cloth {
 };
 
 /// A place or direction of a scene's own, in metres east and south of its origin, turned by its heading.
-struct Turned {
+struct EastSouth {
   double east;
   double south;
 };
-Turned turned(const ScenePlacement& placement, double east, double south) noexcept;
+EastSouth turned_by_heading(const ScenePlacement& placement, double east, double south) noexcept;
 
 /// The lean of a link that is turned by so much from straight down.
 double lean_of_deg(double angle_deg) noexcept;

@@ -155,14 +155,15 @@ ClothEdge curtain_edge(const CurtainSettings& settings, const SceneSetup& setup)
     const double stray = std::sin(2.0 * kPi * 1.7 * along + first_phase_rad);
     const double fold = std::sin(2.0 * kPi * settings.folds * along + 0.9 * stray + second_phase_rad) *
                         (1.0 + 0.25 * std::sin(2.0 * kPi * 2.9 * along + second_phase_rad));
-    const Turned place =
-        turned(setup.placement, pitch_m * static_cast<double>(column) - 0.5 * settings.width_m, depth_m * fold);
+    const EastSouth place = turned_by_heading(
+        setup.placement, pitch_m * static_cast<double>(column) - 0.5 * settings.width_m, depth_m * fold);
     edge.x_m[column] = static_cast<float>(setup.placement.x_m + place.east);
     edge.y_m[column] = static_cast<float>(setup.placement.y_m + height_m + settings.clearance_m);
     edge.z_m[column] = static_cast<float>(setup.placement.z_m + place.south);
 
     // The hem's folds are half as deep again.
-    const Turned lean = turned(setup.placement, 0.0, std::tan(0.5 * std::atan(0.5 * depth_m * fold / height_m)));
+    const EastSouth lean =
+        turned_by_heading(setup.placement, 0.0, std::tan(0.5 * std::atan(0.5 * depth_m * fold / height_m)));
     edge.lean_east[column] = static_cast<float>(lean.east);
     edge.lean_south[column] = static_cast<float>(lean.south);
   }
@@ -278,7 +279,7 @@ class Curtain final : public Scene {
         damping_(settings.damping),
         first_hz_(kChainFirstMode * std::sqrt(kCurtainGravity_m_s2 / settings.height_m) / (2.0 * kPi)),
         calm_delay_s_(2.0 * std::sqrt(settings.height_m / kCurtainGravity_m_s2)),
-        along_(turned(setup.placement, 1.0, 0.0)),
+        along_(turned_by_heading(setup.placement, 1.0, 0.0)),
         wind_(setup.placement, setup.gusts),
         gust_noise_(settings.wave_length_m / kCurtainBand, settings.wave_length_m,
                     setup.seed ^ stream_id("curtain gusts"), setup.row),
@@ -296,7 +297,7 @@ class Curtain final : public Scene {
     std::vector<float> x_m;
     std::vector<float> z_m;
     for (std::size_t i = 0; i < gust_.size(); ++i) {
-      const Turned place = turned(setup.placement, (cloth_.across(i) - 0.5) * settings.width_m, 0.0);
+      const EastSouth place = turned_by_heading(setup.placement, (cloth_.across(i) - 0.5) * settings.width_m, 0.0);
       x_m.push_back(static_cast<float>(setup.placement.x_m + place.east));
       z_m.push_back(static_cast<float>(setup.placement.z_m + place.south));
       side_.push_back(kSideForce + (1.0 - kSideForce) * std::sin(kPi * std::clamp(cloth_.across(i), 0.0, 1.0)));
@@ -333,7 +334,7 @@ class Curtain final : public Scene {
   double damping_;
   double first_hz_;      ///< in calm air
   double calm_delay_s_;  ///< from the top to the hem
-  Turned along_;         ///< the curtain's own direction, from the first column to the last
+  EastSouth along_;      ///< the curtain's own direction, from the first column to the last
 
   SceneWind wind_;
   ClothStrength strength_;

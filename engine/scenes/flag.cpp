@@ -147,8 +147,8 @@ ClothEdge flag_edge(const FlagSettings& settings, const SceneSetup& setup) {
     edge.y_m[column] =
         static_cast<float>(setup.placement.y_m + settings.pole_height_m - pitch_m * static_cast<double>(column));
     edge.z_m[column] = static_cast<float>(setup.placement.z_m);
-    const Turned lean =
-        turned(setup.placement, fold * lean_of_deg(settings.fold_angle_deg), -lean_of_deg(settings.droop_deg));
+    const EastSouth lean = turned_by_heading(setup.placement, fold * lean_of_deg(settings.fold_angle_deg),
+                                             -lean_of_deg(settings.droop_deg));
     edge.lean_east[column] = static_cast<float>(lean.east);
     edge.lean_south[column] = static_cast<float>(lean.south);
   }

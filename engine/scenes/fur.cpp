@@ -2,12 +2,12 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/operators/bend_share.hpp"
 #include "engine/operators/coat_bending_job.hpp"
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
@@ -165,7 +165,7 @@ class Fur final : public Scene {
     const double largest_stroke = std::hypot(1.0, kStrokeAcross) * kLargestStroke;
     const double largest_bend_rad = max_bend_rad_ + stroke_rad_ * largest_stroke;
     const double s = largest_flexibility_ / half_bend_speed_m_s_ * SceneWind::largest_step_m_s(dt_s);
-    const double slope = 3.0 * std::numbers::sqrt3 / 8.0 * largest_bend_rad + 0.5 * kSheltered * max_bend_rad_;
+    const double slope = kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * max_bend_rad_;
     const double stroke_step =
         std::hypot(1.0, kStrokeAcross) * strokes_.largest_change(fastest_stroke_m_s_, fastest_stroke_m_s_, dt_s);
     const double bend_rad =

@@ -8,6 +8,7 @@
 
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/noise/von_karman_corner.hpp"
 #include "engine/operators/displacement_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/scenes/carried_noise.hpp"
@@ -170,7 +171,7 @@ double square_of(double value) {
 std::array<NoiseLayerSpec, 2> wave_layers(const RippleSettings& settings, std::uint64_t seed) {
   const double beta = settings.beta;
   const double period_m = kWavesPerTile * settings.wave_length_m;
-  const double scale = 1.0 / (kWavesPerTile * 2.0 * std::numbers::pi * std::sqrt(beta) * 1.339);
+  const double scale = 1.0 / (kWavesPerTile * 2.0 * std::numbers::pi * std::sqrt(beta) * kVonKarmanCorner);
   const auto waves = [&](std::uint64_t which) {
     return NoiseSpec{.size = kWaveSamples,
                      .beta = beta,

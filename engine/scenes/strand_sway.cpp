@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/operators/bend_share.hpp"
 #include "engine/operators/bending_job.hpp"
 #include "engine/operators/local_bending_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
@@ -190,9 +190,8 @@ double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
 }
 
 double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
-  const double steepest = 3.0 * std::numbers::sqrt3 / 8.0;
   const double s = largest_flexibility_ / spec_.half_bend_speed_m_s * largest_bend_input_step(dt_s);
-  const double bend_rad = std::min(spec_.max_bend_rad * steepest * s, 2.0 * spec_.max_bend_rad);
+  const double bend_rad = std::min(spec_.max_bend_rad * kSteepestBendShare * s, 2.0 * spec_.max_bend_rad);
   const double swaying_rad =
       std::min(OscillatorStep::largest_gain(spec_.damping_ratio) * bend_rad,
                OscillatorStep::largest_rate_per_s((1.0 + kPaceSpread) * spec_.natural_hz, spec_.damping_ratio) * dt_s *

@@ -9,6 +9,7 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/operators/bend_share.hpp"
 #include "engine/operators/branch_force_job.hpp"
 #include "engine/operators/flutter_job.hpp"
 #include "engine/operators/leaf_response_job.hpp"
@@ -60,6 +61,7 @@ const std::array kTreeParameters = {
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
     Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
+    Parameter{"foliage", "", "green"s, {}, {}, "the colour of its leaves", kFoliageColorNames},
     Parameter{"flexibility", "", 1.0, 0, 10,
               "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
     Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
@@ -167,6 +169,8 @@ TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& setup)
                                  .leaf_links = count("leaf_links"),
                                  .size = values.number("size"),
                                  .seed = setup.seed});
+  const auto* const color = std::ranges::find(kFoliageColorNames, values.text("foliage"));
+  tree.foliage = static_cast<FoliageColor>(color - kFoliageColorNames.begin());
   place(setup.placement, tree);
   return tree;
 }
@@ -594,7 +598,7 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
 
   // The noise of the leaves goes the fastest in the strongest wind.
   const double noise_step = change(leaf_noise_, leaf_carry(kStrongestSceneWind_m_s), kLargestFine);
-  const double lean_step = std::min(LeafResponseJob::kSteepestLean * step_m_s / half_lean_speed_m_s_, 2.0);
+  const double lean_step = std::min(kSteepestBendShare * step_m_s / half_lean_speed_m_s_, 2.0);
   const double flutter_step =
       std::min(LeafResponseJob::kSteepestFlutter * step_m_s / species_.flutter_speed_m_s * kLargestFine + noise_step,
                2.0 * kLargestFine);

@@ -105,8 +105,8 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   if (from.link() > fb::LinkState_MAX || from.health() > fb::SensorHealth_MAX || from.state() > fb::SensorState_MAX) {
     return false;
   }
-  to.link = static_cast<std::uint8_t>(from.link());
-  to.health = static_cast<std::uint8_t>(from.health());
+  to.link = static_cast<LinkState>(from.link());
+  to.health = static_cast<SourceHealth>(from.health());
   to.simulated = from.simulated();
   to.age_s = from.age_s();
   to.interval_s = from.interval_s();

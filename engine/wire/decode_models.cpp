@@ -147,6 +147,8 @@ bool read(const fb::TreeLevel& from, std::span<const TreeLevel> before, TreeLeve
 bool read(const fb::TreeSkeleton& from, TreeSkeleton& to) {
   const std::size_t count = size_of(from.levels());
   if (count < 1 || count > kMaxTreeLevels) return false;
+  // A newer server may know more colours.
+  if (from.foliage() <= fb::FoliageColor_MAX) to.foliage = static_cast<FoliageColor>(from.foliage());
   to.levels.reserve(count);
   std::size_t room = 0;  // the levels may share arrays: few bytes must not ask for much memory
   for (std::size_t i = 0; i < count; ++i) {

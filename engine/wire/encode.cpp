@@ -75,7 +75,7 @@ flatbuffers::Offset<fb::TreeSkeleton> add_skeleton(Builder& builder, const TreeS
                                          parent_link, level.is_turned_by_block, level.is_leaves, base_radius,
                                          tip_radius));
   }
-  return fb::CreateTreeSkeleton(builder, builder.CreateVector(levels));
+  return fb::CreateTreeSkeleton(builder, builder.CreateVector(levels), static_cast<fb::FoliageColor>(skeleton.foliage));
 }
 
 flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const SurfaceSkeleton& skeleton) {
@@ -103,6 +103,9 @@ fb::Skeleton kind_of(const Skeleton& skeleton) {
 }
 static_assert(fb::Skeleton_MAX == std::variant_size_v<Skeleton>);
 static_assert(fb::SensorState_MAX + 1 == kSensorStateNames.size(), "the states of sensor_state.hpp, in the same order");
+static_assert(fb::FoliageColor_MAX + 1 == kFoliageColorNames.size(), "those of skeleton.hpp");
+static_assert(fb::LinkState_MAX + 1 == kLinkStateNames.size(), "those of link_state.hpp");
+static_assert(fb::SensorHealth_MAX + 1 == kSourceHealthCount, "those of source_report.hpp");
 
 flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus& sensor) {
   std::vector<flatbuffers::Offset<fb::Counter>> refused;

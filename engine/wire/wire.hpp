@@ -16,6 +16,8 @@
 #include "engine/base/time.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
+#include "engine/wind/link_state.hpp"
+#include "engine/wind/source_report.hpp"
 #include "engine/wind/wind_state.hpp"
 
 // The stream's messages as plain values, and their FlatBuffers form (pose.fbs, which is the public description).
@@ -91,8 +93,8 @@ struct Frame {
 struct SensorStatus {
   std::string name;
   std::string driver;
-  std::uint8_t link = 0;    ///< as drivers/sensor/sensor.hpp, LinkState
-  std::uint8_t health = 0;  ///< as wind/wind_estimator.hpp, SourceHealth
+  LinkState link = LinkState::kConnecting;
+  SourceHealth health = SourceHealth::kSilent;
   std::string detail;
   std::optional<double> speed_m_s;
   std::optional<double> direction_deg;

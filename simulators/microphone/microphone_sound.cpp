@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "engine/noise/spectral_noise.hpp"
+#include "engine/noise/von_karman_corner.hpp"
 
 namespace yuragi::sim {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kReference_m_s = 10.0;
 constexpr double kPressureSlope = 7.0 / 3.0;
 constexpr double kCorner_hz = 5.0;
 constexpr double kTile_s = 16.0;  // after which the noise repeats; nobody hears it, the wind on top does not repeat
-constexpr double kKarman = 1.339;
 /// How much louder the face in the wind hears it than the mean of all, and the one in the lee less, as a part of the
 /// speed.
 constexpr double kFaceEffect = 0.35;
@@ -31,7 +31,7 @@ NoiseTile1 make_wind_noise(double rate_hz, std::uint64_t seed) {
   spec.beta = kPressureSlope;
   spec.seed = seed;
   const double corner_cycles = kCorner_hz * static_cast<double>(spec.size) / rate_hz;
-  spec.integral_scale = 1.0 / (kTurn * kKarman * corner_cycles);
+  spec.integral_scale = 1.0 / (kTurn * kVonKarmanCorner * corner_cycles);
   return *make_noise_1d(spec);
 }
 

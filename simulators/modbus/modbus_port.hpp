@@ -14,7 +14,7 @@ namespace yuragi::sim {
 class ModbusPort {
  public:
   /// A question, and whom to answer.
-  struct Heard {
+  struct ClientQuestion {
     int client;
     ModbusQuestion question;
   };
@@ -27,7 +27,7 @@ class ModbusPort {
 
   virtual std::vector<int> descriptors() const = 0;
   /// The questions that have come over those descriptors that can be read. Never waits.
-  virtual std::vector<Heard> hear(std::span<const int> ready) = 0;
+  virtual std::vector<ClientQuestion> receive(std::span<const int> ready) = 0;
   /// Says bytes to a client; to one that is gone, nothing.
   virtual void say(int client, std::span<const std::uint8_t> bytes) = 0;
 

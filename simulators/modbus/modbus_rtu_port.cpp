@@ -17,13 +17,13 @@ class RtuPort final : public ModbusPort {
     return pty_.is_plugged_in() ? std::vector<int>{pty_.descriptor()} : std::vector<int>{};
   }
 
-  std::vector<Heard> hear(std::span<const int> ready) override {
-    std::vector<Heard> heard;
-    if (std::ranges::count(ready, pty_.descriptor()) == 0) return heard;
+  std::vector<ClientQuestion> receive(std::span<const int> ready) override {
+    std::vector<ClientQuestion> received;
+    if (std::ranges::count(ready, pty_.descriptor()) == 0) return received;
     const auto bytes = pty_.read();
     incoming_.insert(incoming_.end(), bytes.begin(), bytes.end());
-    while (const auto question = take_rtu_question(incoming_)) heard.push_back({0, *question});
-    return heard;
+    while (const auto question = take_rtu_question(incoming_)) received.push_back({0, *question});
+    return received;
   }
 
   void say(int /*client*/, std::span<const std::uint8_t> bytes) override { pty_.write(bytes); }

@@ -91,7 +91,7 @@ class ModbusSimulator::State {
     }
     port_->come_back();
 
-    for (const ModbusPort::Heard& heard : port_->hear(ready)) answer(heard);
+    for (const ModbusPort::ClientQuestion& asked : port_->receive(ready)) answer(asked);
     say_what_is_due();
   }
 
@@ -123,44 +123,44 @@ class ModbusSimulator::State {
     return registers_answer(question.function, values);
   }
 
-  void answer(const ModbusPort::Heard& heard) {
+  void answer(const ModbusPort::ClientQuestion& asked) {
     // Where nobody has that id, a gateway says so, and a serial line stays silent.
-    const ModbusQuestion& question = heard.question;
+    const ModbusQuestion& question = asked.question;
     SimulatedSlave* const slave = slave_of(question.unit);
     if (slave == nullptr) {
-      if (!port_->is_rtu()) say(heard, exception_answer(question.function, kGatewayTargetSilent), 0.0);
+      if (!port_->is_rtu()) say(asked, exception_answer(question.function, kGatewayTargetSilent), 0.0);
       return;
     }
     const bool is_well = !fault_ || (options_.id && *options_.id != question.unit);
     ++answered_;
-    if (is_well) return say(heard, right_answer(*slave, question), 0.0);
-    answer_wrongly(heard, right_answer(*slave, question));
+    if (is_well) return say(asked, right_answer(*slave, question), 0.0);
+    answer_wrongly(asked, right_answer(*slave, question));
   }
 
-  void answer_wrongly(ModbusPort::Heard heard, const ModbusBytes& right) {
+  void answer_wrongly(ModbusPort::ClientQuestion asked, const ModbusBytes& right) {
     switch (*fault_) {
       case FaultKind::kSilence:
         return;
       case FaultKind::kLate:
-        return say(heard, right, options_.late_s);
+        return say(asked, right, options_.late_s);
       case FaultKind::kException:
-        return say(heard, exception_answer(heard.question.function, kDeviceFailure), 0.0);
+        return say(asked, exception_answer(asked.question.function, kDeviceFailure), 0.0);
       case FaultKind::kWrongTransaction:
-        --heard.question.transaction;
-        return say(heard, right, 0.0);
+        --asked.question.transaction;
+        return say(asked, right, 0.0);
       case FaultKind::kWrongId:
-        ++heard.question.unit;
-        return say(heard, right, 0.0);
+        ++asked.question.unit;
+        return say(asked, right, 0.0);
       case FaultKind::kGarbage:
       case FaultKind::kSplit:
       case FaultKind::kPartial:
       case FaultKind::kBadChecksum:
-        return say_damaged(heard.client, message(heard.question, right));
+        return say_damaged(asked.client, message(asked.question, right));
       case FaultKind::kFreeze:
       case FaultKind::kSpike:
       case FaultKind::kDisconnect:
       case FaultKind::kUnplug:
-        return say(heard, right, 0.0);
+        return say(asked, right, 0.0);
     }
   }
 
@@ -190,8 +190,8 @@ class ModbusSimulator::State {
                            : tcp_message(question.transaction, question.unit, answer);
   }
 
-  void say(const ModbusPort::Heard& heard, const ModbusBytes& answer, double delay_s) {
-    queue(heard.client, message(heard.question, answer), delay_s);
+  void say(const ModbusPort::ClientQuestion& asked, const ModbusBytes& answer, double delay_s) {
+    queue(asked.client, message(asked.question, answer), delay_s);
   }
 
   void queue(int client, ModbusBytes bytes, double delay_s) {

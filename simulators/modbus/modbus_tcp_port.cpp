@@ -47,8 +47,8 @@ class TcpPort final : public ModbusPort {
     return all;
   }
 
-  std::vector<Heard> hear(std::span<const int> ready) override {
-    std::vector<Heard> heard;
+  std::vector<ClientQuestion> receive(std::span<const int> ready) override {
+    std::vector<ClientQuestion> received;
     for (const int descriptor : ready) {
       if (descriptor == listener_) {
         accept_client();
@@ -58,10 +58,10 @@ class TcpPort final : public ModbusPort {
           clients_.erase(client);
           continue;
         }
-        while (const auto question = take_tcp_question(client->second)) heard.push_back({descriptor, *question});
+        while (const auto question = take_tcp_question(client->second)) received.push_back({descriptor, *question});
       }
     }
-    return heard;
+    return received;
   }
 
   void say(int client, std::span<const std::uint8_t> bytes) override {

@@ -43,11 +43,11 @@ LaunchedProgram::LaunchedProgram(const std::vector<std::string>& command, Simula
 }
 
 LaunchedProgram::~LaunchedProgram() {
-  if (!has_ended()) {
+  if (!reap()) {
     kill(process_, SIGTERM);
     pollfd wait{descriptor_, POLLIN, 0};
     poll(&wait, 1, kPatience_ms);
-    if (!has_ended()) {
+    if (!reap()) {
       kill(process_, SIGKILL);
       waitpid(process_, nullptr, 0);
     }
@@ -55,7 +55,7 @@ LaunchedProgram::~LaunchedProgram() {
   close(descriptor_);
 }
 
-bool LaunchedProgram::has_ended() {
+bool LaunchedProgram::reap() {
   int status = 0;
   if (!exit_code_ && waitpid(process_, &status, WNOHANG) == process_) {
     exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : kBySignal + WTERMSIG(status);
@@ -70,7 +70,7 @@ std::vector<int> LaunchedProgram::descriptors() const {
 }
 
 void LaunchedProgram::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
-  if (has_ended()) return;
+  if (reap()) return;
   simulator_.serve(ready, time_s, fault);
 }
 

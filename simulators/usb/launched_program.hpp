@@ -32,7 +32,7 @@ class LaunchedProgram final : public Simulator {
   bool is_over() const override { return exit_code_.has_value(); }
 
  private:
-  bool has_ended();
+  bool reap();
 
   Simulator& simulator_;
   pid_t process_ = -1;

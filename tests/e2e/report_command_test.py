@@ -3,6 +3,7 @@
 
 usage: report_command_test.py YURAGI
 """
+import base64
 import csv
 import datetime
 import html.parser
@@ -25,6 +26,7 @@ from programs import shared_data
 YURAGI = os.path.abspath(sys.argv.pop(1))
 EVIL = "<script>alert('x')</script>&\""
 START_S = 1532095200  # 2018-07-20T14:00:00Z
+SVG_DATA = "data:image/svg+xml;base64,"
 VOID = set("meta br link img hr input".split())
 
 
@@ -41,7 +43,7 @@ class Page(html.parser.HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.open, self.tags, self.faults, self.words, self.styles = [], [], [], [], []
+        self.open, self.tags, self.faults, self.words, self.styles, self.pictures = [], [], [], [], [], []
         self.feed(text)
         self.close()
         if self.open:
@@ -51,7 +53,10 @@ class Page(html.parser.HTMLParser):
         self.tags.append(tag)
         for name, value in attributes:
             if name in ("href", "src", "xlink:href", "srcset", "data", "action") and not (value or "").startswith("#"):
-                self.faults.append(f"{tag} {name}={value}")
+                if tag == "image" and value.startswith(SVG_DATA):
+                    self.pictures.append(base64.b64decode(value[len(SVG_DATA) :], validate=True).decode())
+                else:
+                    self.faults.append(f"{tag} {name}={value}")
             if name.startswith("on"):
                 self.faults.append(f"{tag} {name}")
         if tag not in VOID:
@@ -117,6 +122,11 @@ class ReportCommand(unittest.TestCase):
         figures = re.findall(r"<svg .*?</svg>", text, re.S)
         for figure in figures:
             xml.etree.ElementTree.fromstring(figure)
+        for picture in page.pictures:
+            for element in xml.etree.ElementTree.fromstring(picture).iter():
+                self.assertNotIn("script", element.tag)
+                for name, value in element.attrib.items():
+                    self.assertFalse(name.endswith("href") and not value.startswith("#"), value)
         ids = re.findall(r"\bid=['\"]([^'\"]+)", text)
         self.assertEqual(len(ids), len(set(ids)), "ids are not unique")
         return page, figures

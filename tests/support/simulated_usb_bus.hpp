@@ -66,7 +66,7 @@ class SimulatedUsbDevice final : public UsbDevice {
     return all;
   }
 
-  bool has_arrived() override { return std::exchange(bus_.has_arrived, false); }
+  bool take_arrival() override { return std::exchange(bus_.has_arrived, false); }
 
   Result<void, Failure> open(const PluggedUsbDevice& device) override {
     if (!bus_.is_permitted) return Failure{"this user may not open it"};

@@ -28,7 +28,7 @@ wire::Bytes sensor_status() {
   sensors.sensors.resize(1);
   sensors.sensors[0].name = "mast";
   sensors.sensors[0].driver = "modbus";
-  sensors.sensors[0].health = 1;
+  sensors.sensors[0].health = SourceHealth::kLive;
   sensors.sensors[0].speed_m_s = 6.1;
   sensors.sensors[0].direction_deg = 281.0;
   return wire::encode(sensors);

@@ -16,8 +16,8 @@ std::unique_ptr<Look> look_of(const StrandSkeleton& strands, const wire::SceneMo
 std::unique_ptr<Look> look_of(const GridSkeleton& cloth, const wire::SceneModel& scene) {
   return std::make_unique<ClothLook>(cloth, scene.kind);
 }
-std::unique_ptr<Look> look_of(const TreeSkeleton& tree, const wire::SceneModel& scene) {
-  return std::make_unique<TreeLook>(tree, scene.name);
+std::unique_ptr<Look> look_of(const TreeSkeleton& tree, const wire::SceneModel&) {
+  return std::make_unique<TreeLook>(tree);
 }
 std::unique_ptr<Look> look_of(const SurfaceSkeleton& surface, const wire::SceneModel&) {
   if (surface.ramp_rgba.empty()) return std::make_unique<WaterLook>(surface);

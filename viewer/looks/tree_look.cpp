@@ -68,7 +68,7 @@ void set_int(const GlProgram& program, const char* name, std::size_t value) {
 
 }  // namespace
 
-TreeLook::TreeLook(const TreeSkeleton& tree, std::string_view name)
+TreeLook::TreeLook(const TreeSkeleton& tree)
     : tree_(&tree),
       bounds_(bounds_of(tree)),
       joints_(tree),
@@ -77,7 +77,7 @@ TreeLook::TreeLook(const TreeSkeleton& tree, std::string_view name)
       leaf_(link_program("leaf", shaders::kLeafVert, shaders::kShadeFrag)) {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     Level& level = levels_[i];
-    describe_part(level.array, level.part_buffer, tree_parts(tree, i, foliage_of(name)));
+    describe_part(level.array, level.part_buffer, tree_parts(tree, i));
     if (tree.levels[i].is_leaves) continue;
     level.sides = sides_of(i);
     const std::vector<std::uint32_t> triangles = tube_triangles(tree.levels[i].strands.links_per_strand, level.sides);

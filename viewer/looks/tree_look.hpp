@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "engine/pose/tree_kinematics.hpp"
@@ -13,8 +12,8 @@ namespace yuragi {
 /// Draws a tree: tapering branches with bark, and leaves that the low sun shines through.
 class TreeLook : public Look {
  public:
-  /// `tree` must outlive this; `name` chooses the leaves' colours.
-  TreeLook(const TreeSkeleton& tree, std::string_view name);
+  /// `tree` must outlive this.
+  explicit TreeLook(const TreeSkeleton& tree);
 
   void move_to(const Pose& pose) override;
   void draw(const View& view) override;

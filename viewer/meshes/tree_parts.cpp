@@ -23,13 +23,13 @@ struct LeafTints {
   glm::vec3 fresh;
 };
 
-LeafTints tints_of(Foliage foliage) {
+LeafTints tints_of(FoliageColor foliage) {
   switch (foliage) {
-    case Foliage::kBlossom:
+    case FoliageColor::kBlossom:
       return {{0.52F, 0.27F, 0.31F}, {0.80F, 0.60F, 0.60F}};
-    case Foliage::kAutumn:
+    case FoliageColor::kAutumn:
       return {{0.36F, 0.045F, 0.012F}, {0.62F, 0.26F, 0.030F}};
-    case Foliage::kGreen:
+    case FoliageColor::kGreen:
       break;
   }
   return {{0.050F, 0.118F, 0.020F}, {0.150F, 0.225F, 0.038F}};
@@ -72,16 +72,9 @@ std::size_t first_joint_at(const TreeSkeleton& tree, std::size_t level) {
   return first;
 }
 
-Foliage foliage_of(std::string_view name) {
-  const auto has = [&](std::string_view word) { return name.find(word) != std::string_view::npos; };
-  if (has("sakura") || has("blossom")) return Foliage::kBlossom;
-  if (has("autumn") || has("momiji")) return Foliage::kAutumn;
-  return Foliage::kGreen;
-}
-
-std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Foliage foliage) {
+std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level) {
   const TreeLevel& from = tree.levels[level];
-  const LeafTints tints = tints_of(foliage);
+  const LeafTints tints = tints_of(tree.foliage);
   const RandomStream chance(level, stream_id("viewer tree"));
   const StrandSkeleton& strands = from.strands;
   std::vector<TreePart> parts(strands.strand_count);

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -29,12 +28,9 @@ struct TreePart {
 /// The index in that array at which the joints of a level begin.
 std::size_t first_joint_at(const TreeSkeleton& tree, std::size_t level);
 
-/// Colours by the tree's name: green, but for what is in blossom ("sakura", "blossom") or turns ("autumn", "momiji").
-enum class Foliage : std::uint8_t { kGreen, kBlossom, kAutumn };
-Foliage foliage_of(std::string_view name);
-
-/// The parts of a level, one a strand. The same tree always makes the same parts.
-std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level, Foliage foliage);
+/// The parts of a level, one a strand, leaves in the colours of the tree's foliage. The same tree always makes the same
+/// parts.
+std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level);
 
 /// How many rings of vertices a level's branches get in this view: more, the longer they are in the picture; at least
 /// kMinTreeRings and at most one a link.

@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "engine/base/units.hpp"
 
 namespace yuragi {
@@ -128,9 +130,11 @@ NameParts parts_of(std::string_view name) {
   return parts;
 }
 
-CsvColumn column_of(const std::string& name) {
+CsvColumn column_at(const std::vector<std::string>& header, std::size_t index) {
+  const std::string& name = header[index];
   const NameParts parts = parts_of(name);
   return {.name = name,
+          .index = index,
           .unit = find_speed_unit(parts.unit),
           .is_in_radians = parts.unit.starts_with("rad"),
           .is_in_ms = parts.unit == "ms"};
@@ -177,15 +181,15 @@ Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& heade
     if (found == header.end()) {
       return Failure{"there is no column \"" + given[role] + "\"; the columns are " + listed(header)};
     }
-    columns[role] = column_of(*found);
+    columns[role] = column_at(header, static_cast<std::size_t>(found - header.begin()));
   }
 
   // What the names say. Components are looked for only where there is no speed, and the other way round.
   const auto guess = [&](CsvRole role) {
     if (at(role)) return;
     for (const std::string_view usual : usual_names(role)) {
-      for (const std::string& name : header) {
-        if (!at(role) && parts_of(name).stem == usual) at(role) = column_of(name);
+      for (std::size_t i = 0; i < header.size(); ++i) {
+        if (!at(role) && parts_of(header[i]).stem == usual) at(role) = column_at(header, i);
       }
     }
   };
@@ -201,10 +205,13 @@ Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& heade
   }
 
   // Our own export tells more.
-  if (header == split_csv_line(kExportedHeader, ',')) {
-    if (!is_given(CsvRole::kTime)) at(CsvRole::kElapsed) = column_of("time_s");
-    at(CsvRole::kSensor) = column_of("sensor");
-    at(CsvRole::kQuality) = column_of("quality");
+  if (fmt::format("{}", fmt::join(header, ",")) == kExportedHeader) {
+    const auto named = [&header](std::string_view name) {
+      return column_at(header, static_cast<std::size_t>(std::ranges::find(header, name) - header.begin()));
+    };
+    if (!is_given(CsvRole::kTime)) at(CsvRole::kElapsed) = named("time_s");
+    at(CsvRole::kSensor) = named("sensor");
+    at(CsvRole::kQuality) = named("quality");
   }
 
   if (!at(CsvRole::kTime)) {
@@ -214,30 +221,12 @@ Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& heade
     return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header) +
                    "; name it with --speed COLUMN, or --u COLUMN --v COLUMN"};
   }
-  return columns;
-}
-
-std::vector<std::string> split_csv_line(std::string_view line, char delimiter) {
-  std::vector<std::string> fields;
-  std::string field;
-  bool in_quotes = false;
-  const auto finish = [&] {
-    const auto begin = field.find_first_not_of(" \t");
-    const auto end = field.find_last_not_of(" \t");
-    fields.push_back(begin == std::string::npos ? "" : field.substr(begin, end - begin + 1));
-    field.clear();
-  };
-  for (const char c : line) {
-    if (c == '"') {
-      in_quotes = !in_quotes;
-    } else if (c == delimiter && !in_quotes) {
-      finish();
-    } else {
-      field += c;
+  for (const auto& column : columns) {
+    if (column && std::ranges::count(header, column->name) > 1) {
+      return Failure{"the column \"" + column->name + "\" is duplicated in the header"};
     }
   }
-  finish();
-  return fields;
+  return columns;
 }
 
 }  // namespace yuragi

@@ -31,6 +31,7 @@ std::optional<SpeedUnit> find_speed_unit(std::string_view name);
 /// A column that was found.
 struct CsvColumn {
   std::string name;               ///< as the header has it
+  std::size_t index = 0;          ///< in the header, from 0
   std::optional<SpeedUnit> unit;  ///< of a speed; empty: its name does not tell
   bool is_in_radians = false;     ///< by its name
   bool is_in_ms = false;          ///< by its name: a time in milliseconds
@@ -43,10 +44,8 @@ using CsvColumns = std::array<std::optional<CsvColumn>, kCsvRoleCount>;
 using CsvColumnNames = std::array<std::string, kCsvRoleCount>;
 
 /// Finds out which column is what: by the given names, in large or small letters, and otherwise by what loggers
-/// commonly call them. Time and either a speed or both u and v there must be; the failure lists what there is.
+/// commonly call them. Time and either a speed or both u and v there must be, and no two columns of
+/// the same name; the failure lists what there is.
 Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given);
-
-/// The fields of a line, without spaces around them and without quotes.
-std::vector<std::string> split_csv_line(std::string_view line, char delimiter);
 
 }  // namespace yuragi

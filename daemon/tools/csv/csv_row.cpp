@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "drivers/windlog/windlog_writer.hpp"
+#include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
 #include "engine/wind/wind_vector.hpp"
 
@@ -12,9 +13,6 @@ namespace yuragi {
 namespace {
 
 constexpr int kElapsedDecimals = 9;
-constexpr double kDegPerPoint16 = 22.5;
-constexpr std::array<std::string_view, 16> kPoints16 = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
-                                                        "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
 
 char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -24,6 +22,10 @@ std::string upper(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(), [](char c) { return upper(c); });
   return result;
+}
+
+std::optional<std::string_view> field(const CsvFields& fields, CsvRole role) {
+  return fields[static_cast<std::size_t>(role)];
 }
 
 /// The ways in which loggers write that they have no value.
@@ -69,13 +71,12 @@ Result<WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
 
   const auto gust_m_s = read_speed(fields, CsvRole::kGust);
   if (!gust_m_s) return gust_m_s.error();
-  if (*gust_m_s && **gust_m_s < 0.0)
-    return refusal("a gust below zero:", fields[static_cast<std::size_t>(CsvRole::kGust)]);
+  if (*gust_m_s && **gust_m_s < 0.0) return refusal("a gust below zero:", *field(fields, CsvRole::kGust));
   reading.gust_m_s = *gust_m_s;
 
-  if (const char* quality = fields[static_cast<std::size_t>(CsvRole::kQuality)]; quality != nullptr) {
-    const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), std::string_view(quality));
-    if (word == kQualityWords.end()) return refusal("no such quality:", quality);
+  if (const auto quality = field(fields, CsvRole::kQuality)) {
+    const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), *quality);
+    if (word == kQualityWords.end()) return refusal("no such quality:", *quality);
     reading.quality = static_cast<ReadingQuality>(word - kQualityWords.begin());
   }
   if (!is_plausible(reading)) {
@@ -91,7 +92,7 @@ Result<WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
 }
 
 Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
-  const std::string_view text = fields[static_cast<std::size_t>(CsvRole::kTime)];
+  const std::string_view text = *field(fields, CsvRole::kTime);
   CsvTimeFormat format = time_format_;
   if (format == CsvTimeFormat::kAuto) {
     format = guess_time_format(text);
@@ -103,9 +104,9 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
 
   // Monotonic time: what our own export says, or else UTC since the first row.
   Instant time{MonoTime(*utc - first_utc_.value_or(*utc)), *utc};
-  if (const char* elapsed = fields[static_cast<std::size_t>(CsvRole::kElapsed)]; elapsed != nullptr) {
-    const auto ns = parse_decimal(elapsed, kElapsedDecimals);
-    if (!ns) return refusal("no seconds:", elapsed);
+  if (const auto elapsed = field(fields, CsvRole::kElapsed)) {
+    const auto ns = parse_decimal(*elapsed, kElapsedDecimals);
+    if (!ns) return refusal("no seconds:", *elapsed);
     time.mono = MonoTime(Nanoseconds(*ns));
   }
   WindReading recordable;
@@ -121,10 +122,10 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
 }
 
 Result<std::optional<double>, Failure> CsvRowReader::read_speed(const CsvFields& fields, CsvRole role) const {
-  const char* text = fields[static_cast<std::size_t>(role)];
-  if (text == nullptr || is_missing(text)) return std::optional<double>{};
-  const auto number = parse_number(text);
-  if (!number) return refusal("no number in " + std::string(name_of(role)) + ":", text);
+  const auto text = field(fields, role);
+  if (!text || is_missing(*text)) return std::optional<double>{};
+  const auto number = parse_number(*text);
+  if (!number) return refusal("no number in " + std::string(name_of(role)) + ":", *text);
   return std::optional<double>(*number * unit_of(role));
 }
 
@@ -134,12 +135,12 @@ Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, WindReadi
     const auto speed_m_s = read_speed(fields, CsvRole::kSpeed);
     if (!speed_m_s) return speed_m_s.error();
     if (!*speed_m_s) return Failure{"no speed"};
-    if (**speed_m_s < 0.0) return refusal("a speed below zero:", fields[static_cast<std::size_t>(CsvRole::kSpeed)]);
+    if (**speed_m_s < 0.0) return refusal("a speed below zero:", *field(fields, CsvRole::kSpeed));
     reading.speed_m_s = **speed_m_s;
 
-    const char* direction = fields[static_cast<std::size_t>(CsvRole::kDirection)];
-    if (direction == nullptr) return {};
-    const auto direction_deg = read_direction(direction);
+    const auto direction = field(fields, CsvRole::kDirection);
+    if (!direction) return {};
+    const auto direction_deg = read_direction(*direction);
     if (!direction_deg) return direction_deg.error();
     reading.direction_deg = *direction_deg;
     return {};
@@ -161,9 +162,8 @@ Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_
 
   // A point of the compass by its name, or a number in whatever it is.
   double direction_deg = 0.0;
-  const auto* point = std::find(kPoints16.begin(), kPoints16.end(), upper(text));
-  if (point != kPoints16.end()) {
-    direction_deg = kDegPerPoint16 * static_cast<double>(point - kPoints16.begin());
+  if (const auto point_deg = compass_point_deg(text)) {
+    direction_deg = *point_deg;
   } else {
     const auto number = parse_number(text);
     if (!number) return refusal("no direction:", text);
@@ -174,7 +174,7 @@ Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_
     }
     direction_deg = *number;
     if (unit == CsvDirectionUnit::kRadians) direction_deg = *number / kRadPerDeg;
-    if (unit == CsvDirectionUnit::kPoint16) direction_deg = *number * kDegPerPoint16;
+    if (unit == CsvDirectionUnit::kPoint16) direction_deg = *number * kDegPerCompassPoint;
   }
 
   // Both ways to count a circle are understood, -180 to 180 and 0 to 360; a little more is rounding.

@@ -12,8 +12,8 @@
 
 namespace yuragi {
 
-/// The fields of a row, by role; null where there is no such column.
-using CsvFields = std::array<const char*, kCsvRoleCount>;
+/// The fields of a row, by role; none where there is no such column.
+using CsvFields = std::array<std::optional<std::string_view>, kCsvRoleCount>;
 
 /// Makes readings of the rows of one CSV file. Thread-safe: no.
 class CsvRowReader {

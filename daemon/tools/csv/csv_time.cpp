@@ -1,11 +1,10 @@
 #include "daemon/tools/csv/csv_time.hpp"
 
 #include <array>
-#include <chrono>
 #include <limits>
-#include <string>
 
 #include "drivers/windlog/format.hpp"
+#include "drivers/windlog/iso_time.hpp"
 
 namespace yuragi {
 namespace {
@@ -20,98 +19,6 @@ bool is_digit(char c) {
 std::optional<UtcTime> utc_if_recordable(std::optional<std::int64_t> ns) {
   if (!ns || *ns < -windlog::kMaxTime_ns || *ns > windlog::kMaxTime_ns) return std::nullopt;
   return UtcTime(Nanoseconds(*ns));
-}
-
-/// Takes a number of `width` digits off the front of a text.
-std::optional<int> take_digits(std::string_view& text, std::size_t width) {
-  if (text.size() < width) return std::nullopt;
-  int value = 0;
-  for (const char c : text.substr(0, width)) {
-    if (!is_digit(c)) return std::nullopt;
-    value = 10 * value + (c - '0');
-  }
-  text.remove_prefix(width);
-  return value;
-}
-
-/// Takes one of some signs off the front of a text.
-bool take_sign(std::string_view& text, std::string_view signs) {
-  if (text.empty() || signs.find(text.front()) == std::string_view::npos) return false;
-  text.remove_prefix(1);
-  return true;
-}
-
-void skip_spaces(std::string_view& text) {
-  while (take_sign(text, " ")) {
-  }
-}
-
-/// 2018-07-20, or with slashes.
-std::optional<std::chrono::sys_days> take_day(std::string_view& text) {
-  const auto year = take_digits(text, 4);
-  if (!year || !take_sign(text, "-/")) return std::nullopt;
-  const auto month = take_digits(text, 2);
-  if (!month || !take_sign(text, "-/")) return std::nullopt;
-  const auto day = take_digits(text, 2);
-  if (!day) return std::nullopt;
-  const auto date = std::chrono::year(*year) / *month / *day;
-  if (!date.ok()) return std::nullopt;
-  return std::chrono::sys_days(date);
-}
-
-/// 14:00, 14:00:00 or 14:00:00.123456789.
-std::optional<Nanoseconds> take_clock(std::string_view& text) {
-  const auto hour = take_digits(text, 2);
-  if (!hour || *hour > 23 || !take_sign(text, ":")) return std::nullopt;
-  const auto minute = take_digits(text, 2);
-  if (!minute || *minute > 59) return std::nullopt;
-  const Nanoseconds whole_minutes = std::chrono::hours(*hour) + std::chrono::minutes(*minute);
-  if (!take_sign(text, ":")) return whole_minutes;
-
-  // A leap second is the first of the next minute.
-  const auto second = take_digits(text, 2);
-  if (!second || *second > 60) return std::nullopt;
-  if (!take_sign(text, ".,")) return whole_minutes + std::chrono::seconds(*second);
-  const std::string_view digits = text.substr(0, text.find_first_not_of("0123456789"));
-  const auto fraction_ns = parse_decimal("0." + std::string(digits), kNanoDecimals);
-  if (digits.empty() || !fraction_ns) return std::nullopt;
-  text.remove_prefix(digits.size());
-  return whole_minutes + std::chrono::seconds(*second) + Nanoseconds(*fraction_ns);
-}
-
-/// Z, +02:00, +0200 or +02; nothing is UTC.
-std::optional<Nanoseconds> take_zone(std::string_view& text) {
-  if (text.empty() || take_sign(text, "Zz")) return Nanoseconds{0};
-  const int sign = text.front() == '-' ? -1 : 1;
-  if (!take_sign(text, "+-")) return std::nullopt;
-  const auto hours = take_digits(text, 2);
-  if (!hours || *hours > 14) return std::nullopt;
-  if (text.empty()) return sign * std::chrono::hours(*hours);
-  take_sign(text, ":");
-  const auto minutes = take_digits(text, 2);
-  if (!minutes || *minutes > 59) return std::nullopt;
-  return sign * (std::chrono::hours(*hours) + std::chrono::minutes(*minutes));
-}
-
-std::optional<UtcTime> parse_iso(std::string_view text) {
-  const auto day = take_day(text);
-  if (!day) return std::nullopt;
-  Nanoseconds clock{0};
-  if (take_sign(text, "Tt ")) {
-    skip_spaces(text);
-    const auto taken = take_clock(text);
-    if (!taken) return std::nullopt;
-    clock = *taken;
-  }
-  skip_spaces(text);
-  const auto zone = take_zone(text);
-  if (!zone || !text.empty()) return std::nullopt;
-
-  // A date of four digits can be too far for nanoseconds.
-  constexpr std::int64_t kMaxDays = windlog::kMaxTime_ns / (24LL * 3600 * 1'000'000'000) - 2;
-  const auto days = day->time_since_epoch().count();
-  if (days < -kMaxDays || days > kMaxDays) return std::nullopt;
-  return UtcTime(*day) + clock - *zone;
 }
 
 }  // namespace
@@ -170,7 +77,7 @@ std::optional<UtcTime> parse_time(std::string_view text, CsvTimeFormat format) {
     case CsvTimeFormat::kUnixMs:
       return utc_if_recordable(parse_decimal(text, kNanoDecimalsOfMs));
     case CsvTimeFormat::kIso:
-      return parse_iso(text);
+      return parse_iso_time(text);
     case CsvTimeFormat::kAuto:
       break;
   }

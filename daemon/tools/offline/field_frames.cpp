@@ -32,7 +32,7 @@ void make_recorded_frames(const std::filesystem::path& recording, const Playback
                           const Config& config, const FieldGrid& grid, const FieldFrames& frames, const UseField& use) {
   WindlogPlayback playback(recording, playback_options);
   const std::shared_ptr<const GustNoise> noise = make_gust_noise(config);
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(config, noise, grid.reach_m());
+  BlendedEstimator estimator = make_estimator(config, noise, grid.reach_m());
   WindTapes tapes;
   GroundWind ground;
   const GroundWindField field(ground, *noise);
@@ -46,8 +46,8 @@ void make_recorded_frames(const std::filesystem::path& recording, const Playback
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
   std::size_t next = 0;
   const OfflineWindResult result =
-      run_offline(playback, *estimator, offline, [&](double time_s, const WindState& state) {
-        ground = written_to(tapes, {state, estimator->ground(), estimator->stroke()});
+      run_offline(playback, estimator, offline, [&](double time_s, const WindState& state) {
+        ground = written_to(tapes, {state, estimator.ground(), estimator.stroke()});
         if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
         sample_field(field, grid, values);
         use(values);

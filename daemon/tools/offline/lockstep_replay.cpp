@@ -25,7 +25,7 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
   Config one_source = config;
   one_source.sensors.resize(1);
   one_source.wind.fallback.reset();
-  const std::unique_ptr<WindEstimator> estimator = make_estimator(one_source, gusts, animation.reach_m());
+  BlendedEstimator estimator = make_estimator(one_source, gusts, animation.reach_m());
   WindShaping shaping(config.shaping.settings, gusts);
 
   const double rate_hz = config.animation.rate_hz;
@@ -44,14 +44,14 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
     player.play(now, [&](const WindReading& reading) {
       // As the daemon would: what is not believed moves nothing.
       if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) return;
-      if (!estimator->accept(0, reading)) return;
+      if (!estimator.accept(0, reading)) return;
       ++result.readings;
       result.reading_mean_m_s += reading.speed_m_s;
       result.reading_max_m_s = std::max(result.reading_max_m_s, reading.speed_m_s);
     });
 
     // A recording is always open: log time is not the time of a wall.
-    DrivingWind wind{estimator->advance(MonoTime(from_seconds(now_s))), estimator->ground(), estimator->stroke()};
+    DrivingWind wind{estimator.advance(MonoTime(from_seconds(now_s))), estimator.ground(), estimator.stroke()};
     shaping.shape(wind, true);
     const WindState& state = wind.state;
     animation.step(wind, 1.0 / rate_hz);

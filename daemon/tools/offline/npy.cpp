@@ -1,67 +1,20 @@
 #include "daemon/tools/offline/npy.hpp"
 
 #include <bit>
-#include <cerrno>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
+#include <fstream>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "daemon/settings/exit.hpp"
+#include "daemon/settings/output_file.hpp"
 
 namespace yuragi {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they stand in memory");
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-  throw ExitError(kExitCannotCreate, fmt::format("cannot write {}: {}", file.string(), reason));
-}
-
-/// A file beside the wanted one, which is removed unless it has taken the wanted one's name.
-class PartialFile {
- public:
-  explicit PartialFile(const std::filesystem::path& target)
-      : target_(target), path_(target.string() + fmt::format(".part-{}", ::getpid())) {
-    stream_.reset(std::fopen(path_.c_str(), "wbx"));
-    if (!stream_) fail(target_, std::generic_category().message(errno));
-  }
-  PartialFile(const PartialFile&) = delete;
-  PartialFile& operator=(const PartialFile&) = delete;
-  ~PartialFile() {
-    stream_.reset();
-    std::error_code ignored;
-    if (!committed_) std::filesystem::remove(path_, ignored);
-  }
-
-  void write(const void* bytes, std::size_t count) {
-    if (std::fwrite(bytes, 1, count, stream_.get()) != count) fail(target_, std::generic_category().message(errno));
-  }
-
-  void commit() {
-    // Closing writes what is still buffered: only now is it known whether all of it found room.
-    if (std::fclose(stream_.release()) != 0) fail(target_, std::generic_category().message(errno));
-    std::error_code error;
-    std::filesystem::rename(path_, target_, error);
-    if (error) fail(target_, error.message());
-    committed_ = true;
-  }
-
- private:
-  struct Close {
-    void operator()(std::FILE* stream) const noexcept { static_cast<void>(std::fclose(stream)); }
-  };
-
-  std::filesystem::path target_;
-  std::filesystem::path path_;
-  std::unique_ptr<std::FILE, Close> stream_;
-  bool committed_ = false;
-};
 
 }  // namespace
 
@@ -89,19 +42,18 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   for (const std::size_t length : shape) count *= length;
   if (count != values.size()) throw std::logic_error("the shape does not hold the values");
 
-  // Renaming onto a device or a link would replace it: follow links, and leave everything but files alone.
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    fail(file, "it exists and is no regular file");
-  }
-  const auto target = std::filesystem::exists(status) ? std::filesystem::canonical(file) : file;
-
-  PartialFile partial(target);
+  OutputFile output(file, true);
+  std::ofstream out(output.working_path(), std::ios::binary);
   const std::string header = npy_header(shape);
-  partial.write(header.data(), header.size());
-  partial.write(values.data(), values.size_bytes());
-  partial.commit();
+  out.write(header.data(), static_cast<std::streamsize>(header.size()));
+  out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+  // Closing writes what is still buffered: only then is it known whether all of it found room.
+  out.close();
+  if (!out) {
+    throw ExitError(kExitCannotCreate,
+                    "cannot write " + file.string() + "; is there room, and may this user write there?");
+  }
+  output.commit();
 }
 
 }  // namespace yuragi

@@ -79,9 +79,9 @@ class OfflineSource {
   bool has_more() const { return next_.has_value(); }
 
   /// Tells the estimator what was said up to `now`, as source `number`.
-  void tell(WindEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
+  void tell(BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
     for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
-      if (!is_believed(*next_)) {
+      if (!judge(*next_)) {
         ++result.withheld;
       } else if (estimator.accept(number, *next_)) {
         ++result.readings;
@@ -90,7 +90,8 @@ class OfflineSource {
   }
 
  private:
-  bool is_believed(const WindReading& reading) {
+  /// Is it believed?
+  bool judge(const WindReading& reading) {
     return !is_judged_ || reading.quality == ReadingQuality::kSimulated || judge_.judge(reading);
   }
 
@@ -102,7 +103,7 @@ class OfflineSource {
 
 }  // namespace
 
-OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, WindEstimator& estimator,
+OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
                               const OfflineWindOptions& options,
                               const std::function<void(double time_s, const WindState&)>& use) {
   OfflineWindResult result;

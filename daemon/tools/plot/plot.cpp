@@ -105,12 +105,13 @@ void add_axes(std::string& script, const PlotPanel& panel, int width_px) {
   }
 }
 
-std::string script_of(const std::string& file, bool is_svg, std::span<const PlotPanel> panels, int width_px) {
+std::string script_of(const std::string& file, bool is_svg, std::span<const PlotPanel> panels, int width_px,
+                      PlotBackground background) {
   std::string script;
   const auto out = std::back_inserter(script);
   int height_px = 0;
   for (const PlotPanel& panel : panels) height_px += panel.height_px;
-  script += plot_output(file, is_svg, width_px, height_px);
+  script += plot_output(file, is_svg, width_px, height_px, background == PlotBackground::kWhite);
   fmt::format_to(out, "set multiplot\n");
   fmt::format_to(out,
                  "set grid xtics ytics back linetype 1 linewidth 0.5 linecolor rgb '#cccccc'\nset key top right "
@@ -150,9 +151,9 @@ std::string script_of(const std::string& file, bool is_svg, std::span<const Plot
 
 }  // namespace
 
-void draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px) {
+void draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px, PlotBackground background) {
   draw_script(file, [&](const std::string& unfinished, bool is_svg) {
-    return script_of(unfinished, is_svg, panels, width_px);
+    return script_of(unfinished, is_svg, panels, width_px, background);
   });
 }
 

@@ -2,9 +2,7 @@
 
 #include <array>
 #include <cerrno>
-#include <filesystem>
 #include <fstream>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -12,6 +10,7 @@
 #include <unistd.h>
 
 #include "daemon/settings/exit.hpp"
+#include "daemon/settings/output_file.hpp"
 
 namespace yuragi {
 namespace {
@@ -41,10 +40,10 @@ std::string plot_text(std::string_view text) {
   return result + "'";
 }
 
-std::string plot_output(const std::string& file, bool is_svg, int width_px, int height_px) {
-  return fmt::format("set encoding utf8\nset terminal {} size {},{} {}\nset output {}\n", is_svg ? "svg" : "pngcairo",
-                     width_px, height_px, is_svg ? "dynamic background 'white'" : "background 'white'",
-                     plot_text(file));
+std::string plot_output(const std::string& file, bool is_svg, int width_px, int height_px, bool has_background) {
+  return fmt::format("set encoding utf8\nset terminal {} size {},{} {}\nset output {}\n",
+                     is_svg ? "svg dynamic font 'sans-serif,12'" : "pngcairo", width_px, height_px,
+                     has_background ? "background 'white'" : "", plot_text(file));
 }
 
 void check_plot_name(const std::string& file) {
@@ -57,18 +56,11 @@ void draw_script(const std::string& file,
                  const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of) {
   check_plot_name(file);
 
-  // The picture takes its name when it is whole.
-  const std::string unfinished = file + ".part";
-  const std::string script_file = file + ".gnuplot";
-  std::ofstream(script_file, std::ios::binary) << script_of(unfinished, file.ends_with(".svg"));
-  const bool was_drawn = run_gnuplot(script_file);
-  std::error_code error;
-  std::filesystem::remove(script_file, error);
-  if (was_drawn) {
-    std::filesystem::rename(unfinished, file, error);
-    if (!error) return;
-  }
-  std::filesystem::remove(unfinished, error);
+  // The script goes beside the picture, and is never finished: so it is removed with the rest.
+  OutputFile picture(file, true);
+  const OutputFile script(file + ".gnuplot", true);
+  std::ofstream(script.working_path(), std::ios::binary) << script_of(picture.working_path(), file.ends_with(".svg"));
+  if (run_gnuplot(script.working_path())) return picture.commit();
   throw ExitError(kExitCannotCreate,
                   file +
                       ": the plot could not be drawn: is its folder there, may you write to it, is there room, and is "

@@ -15,8 +15,9 @@ void check_plot_name(const std::string& file);
 /// become spaces.
 std::string plot_text(std::string_view text);
 
-/// The lines of a script that say where the picture goes, and how large it is.
-std::string plot_output(const std::string& file, bool is_svg, int width_px, int height_px);
+/// The lines of a script that say where the picture goes, how large it is, and whether it is white where nothing
+/// is drawn or has nothing there.
+std::string plot_output(const std::string& file, bool is_svg, int width_px, int height_px, bool has_background = true);
 
 /// Draws into `file` by the script that `script_of` makes for a picture of that name; the picture takes the name of
 /// `file` when it is whole. Throws ExitError as draw_plot().

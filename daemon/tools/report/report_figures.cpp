@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -10,11 +11,11 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/exit.hpp"
 #include "daemon/tools/plot/plot.hpp"
 #include "daemon/tools/report/report_text.hpp"
 #include "daemon/tools/report/wind_rose.hpp"
 #include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/von_karman.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi {
@@ -38,9 +39,8 @@ std::string text_of_file(const std::filesystem::path& file) {
 
 class Figures {
  public:
-  Figures(const RecordingNumbers& recording, const SensorNumbers& sensor, std::filesystem::path scratch,
-          std::size_t index)
-      : recording_(recording), sensor_(sensor), scratch_(std::move(scratch)), index_(index) {
+  Figures(const RecordingNumbers& recording, const SensorNumbers& sensor, std::filesystem::path scratch)
+      : recording_(recording), sensor_(sensor), scratch_(std::move(scratch)) {
     scratch_ += ".svg";
   }
 
@@ -49,11 +49,7 @@ class Figures {
     std::vector<PlotPanel> panels = {speed_panel()};
     if (sensor_.directed > 0) panels.push_back(direction_panel());
     panels.push_back(state_panel());
-    std::string svg = draw(panels, "series", "Speed, direction and state over time");
-    int height_px = 0;
-    for (const PlotPanel& panel : panels) height_px += panel.height_px;
-    svg.insert(svg.rfind("</svg>"), event_titles(height_px));
-    return svg;
+    return draw(panels, "Speed, direction and state over time", kWidth_px, event_titles(height_of(panels)));
   }
 
   std::string distribution();
@@ -61,13 +57,19 @@ class Figures {
   std::string diurnal();
 
  private:
-  std::string draw(std::span<const PlotPanel> panels, const std::string& name, std::string_view label,
-                   int width_px = kWidth_px) {
-    draw_plot(scratch_, panels, width_px);
+  static int height_of(std::span<const PlotPanel> panels) {
+    int height_px = 0;
+    for (const PlotPanel& panel : panels) height_px += panel.height_px;
+    return height_px;
+  }
+
+  std::string draw(std::span<const PlotPanel> panels, std::string_view label, int width_px = kWidth_px,
+                   std::string_view over = {}) {
+    draw_plot(scratch_, panels, width_px, PlotBackground::kNone);
     const std::string text = text_of_file(scratch_);
     std::error_code ignored;
     std::filesystem::remove(scratch_, ignored);
-    return embedded_svg(text, fmt::format("{}{}", name, index_), label);
+    return embedded_plot(text, width_px, height_of(panels), label, over);
   }
 
   double axis_s(double time_s) const { return seconds(recording_.utc_at(time_s).time_since_epoch()); }
@@ -108,7 +110,6 @@ class Figures {
   const RecordingNumbers& recording_;
   const SensorNumbers& sensor_;
   std::filesystem::path scratch_;
-  std::size_t index_;
 };
 
 /// What the mouse is told over each event: nothing is seen of it.
@@ -250,7 +251,7 @@ std::string Figures::distribution() {
   panel.x_range = {{0.0, end_m_s}};
   panel.y_range = {{0.0, 130.0 * *std::ranges::max_element(numbers.share)}};
   panel.height_px = 470;
-  return draw(std::span(&panel, 1), "distribution", "Distribution of the speed", 500);
+  return draw(std::span(&panel, 1), "Distribution of the speed", 500);
 }
 
 std::string Figures::spectrum() {
@@ -298,11 +299,9 @@ std::string Figures::spectrum() {
     constexpr int kPoints = 200;
     for (int i = 0; i <= kPoints; ++i) {
       const double f = from_hz * std::pow(to_hz / from_hz, static_cast<double>(i) / kPoints);
-      // von Karman 1948, as in turbulence_fit.hpp: its integral is sigma^2.
-      const double x = f * fit.time_scale_s;
       curve.x.push_back(f);
-      curve.y.push_back(fit.sigma_m_s() * fit.sigma_m_s() * 4.0 * fit.time_scale_s /
-                        std::pow(1.0 + 70.8 * x * x, 5.0 / 6.0));
+      curve.y.push_back(fit.sigma_m_s() * fit.sigma_m_s() * fit.time_scale_s *
+                        von_karman_density(f * fit.time_scale_s));
     }
     panel.curves.push_back(std::move(curve));
   }
@@ -323,7 +322,7 @@ std::string Figures::spectrum() {
   panel.x_range = {{from_hz, to_hz}};
   panel.y_range = {{std::max(0.5 * lowest, 1e-7 * highest), 8.0 * highest}};
   panel.height_px = 560;
-  return draw(std::span(&panel, 1), "spectrum", "Spectrum");
+  return draw(std::span(&panel, 1), "Spectrum");
 }
 
 std::string Figures::diurnal() {
@@ -348,45 +347,36 @@ std::string Figures::diurnal() {
   panel.x_step = 3.0;
   panel.y_range = {{0.0, 1.25 * highest_m_s}};
   panel.height_px = 360;
-  return draw(std::span(&panel, 1), "diurnal", "Speed by the hour of the day");
+  return draw(std::span(&panel, 1), "Speed by the hour of the day");
 }
 
-void replace_all(std::string& text, std::string_view what, std::string_view with) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size())) {
-    text.replace(at, what.size(), with);
+/// RFC 4648, section 4.
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kSigns = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      three = (three << 8U) | (k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U);
+    }
+    for (unsigned k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kSigns[(three >> (18U - 6U * k)) & 63U] : '=';
   }
+  return text;
 }
 
 }  // namespace
 
-std::string embedded_svg(const std::string& file, const std::string& prefix, std::string_view label) {
-  // From <svg viewBox=...> on: a page needs neither prolog nor name spaces, and names nothing outside itself.
-  const std::size_t view = file.find("viewBox=");
-  const std::size_t view_end = view == std::string::npos ? view : file.find('\n', view);
-  const std::size_t begin = view_end == std::string::npos ? view_end : file.find("<g id=\"gnuplot_canvas\">", view_end);
-  if (begin == std::string::npos) throw ExitError(kExitSoftware, "gnuplot drew an SVG that is not understood");
-  std::string body = file.substr(begin);
-  if (const std::size_t rect = body.find("<rect x=\"0\" y=\"0\""); rect != std::string::npos) {
-    body.erase(rect, body.find("/>", rect) + 2 - rect);
-  }
-  replace_all(body, "xlink:href", "href");
-  for (const std::string_view id : {"gpPt", "gpDot", "gnuplot_canvas"}) replace_all(body, id, prefix + std::string(id));
-  // Curves without a name would say gnuplot's when the mouse is on them.
-  for (std::size_t at = body.find("<title>gnuplot_plot"); at != std::string::npos;
-       at = body.find("<title>gnuplot_plot", at)) {
-    body.erase(at, body.find("</title>", at) + 8 - at);
-  }
-  replace_all(body, "gnuplot_plot", prefix + "plot");
-  for (const std::string_view id : {"textbox", "greybox"}) {
-    replace_all(body, fmt::format("id='{}'", id), fmt::format("id='{}{}'", prefix, id));
-  }
-  return fmt::format("<svg {} role=\"img\" aria-label=\"{}\" class=\"plot\">\n{}", file.substr(view, view_end - view),
-                     label, body);
+std::string embedded_plot(std::string_view svg, int width_px, int height_px, std::string_view label,
+                          std::string_view over) {
+  return fmt::format(
+      "<svg viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2}\" class=\"plot\">\n<image width=\"{0}\" "
+      "height=\"{1}\" href=\"data:image/svg+xml;base64,{3}\"/>\n{4}</svg>\n",
+      width_px, height_px, label, base64(svg), over);
 }
 
 SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
-                           const std::filesystem::path& scratch, std::size_t index) {
-  Figures figures(recording, sensor, scratch, index);
+                           const std::filesystem::path& scratch) {
+  Figures figures(recording, sensor, scratch);
   SensorFigures drawn;
   drawn.series = figures.series();
   if (sensor.rose.count > 0) drawn.rose = draw_wind_rose(sensor.rose);

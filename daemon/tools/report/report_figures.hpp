@@ -23,12 +23,13 @@ struct SensorFigures {
 };
 
 /// Draws them, by gnuplot but for the rose. `scratch`: a file name that is free, in a folder that can be written to.
-/// `index`: the sensor's number on the page; it makes the ids of its SVG elements different from the others'.
 /// Throws ExitError where gnuplot is not there or cannot draw. Realtime-safe: no.
 SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
-                           const std::filesystem::path& scratch, std::size_t index);
+                           const std::filesystem::path& scratch);
 
-/// gnuplot's SVG file as an element of a page: with no prolog and no background, under ids that begin with `prefix`.
-std::string embedded_svg(const std::string& file, const std::string& prefix, std::string_view label);
+/// A page's SVG element that shows a whole SVG file as it is, as an image of its own: neither its ids nor its styles
+/// are the page's. `over`: SVG elements that lie over it.
+std::string embedded_plot(std::string_view svg, int width_px, int height_px, std::string_view label,
+                          std::string_view over = {});
 
 }  // namespace yuragi

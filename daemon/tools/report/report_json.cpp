@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/tools/report/report_text.hpp"
+#include "engine/base/compass.hpp"
 #include "engine/base/version.hpp"
 #include "engine/wind/wind_vector.hpp"
 
@@ -121,7 +122,7 @@ ordered_json json_of_distribution(const SpeedDistribution& distribution) {
 
 ordered_json json_of_rose(const WindRose& rose) {
   ordered_json sectors = ordered_json::object();
-  for (std::size_t i = 0; i < kRoseSectors; ++i) sectors[std::string(compass_short(i))] = rose.share[i];
+  for (std::size_t i = 0; i < kRoseSectors; ++i) sectors[std::string(kCompassPoints.at(i))] = rose.share[i];
   return {{"readings", rose.count},
           {"calm_share", rose.calm_share},
           {"class_from_m_s", kRoseClasses_m_s},

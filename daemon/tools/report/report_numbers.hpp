@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/compass.hpp"
 #include "engine/base/time.hpp"
 
 // All that a report says of a recording, as numbers: plain values, without drawing or text. Times `..._s` are log time
@@ -70,7 +71,7 @@ struct DirectionPoint {
   double direction_deg = 0.0;
 };
 
-inline constexpr std::size_t kRoseSectors = 16;
+inline constexpr std::size_t kRoseSectors = kCompassPoints.size();
 /// Lower edges of the rose's speed classes; below the first is a calm (engine/wind/README.md W37).
 inline constexpr std::array<double, 6> kRoseClasses_m_s = {0.5, 2.0, 4.0, 6.0, 8.0, 11.0};
 

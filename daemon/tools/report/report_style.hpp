@@ -36,10 +36,7 @@ figure { margin: .6rem 0 1.2rem; break-inside: avoid; }
 figcaption { color: var(--quiet); font-size: .88rem; }
 svg { width: 100%; height: auto; display: block; }
 svg text, svg tspan { font-family: inherit; fill: currentColor; }
-svg.plot g[color="black"], svg.plot g[color="white"] { color: inherit; }
-svg.plot [fill="black"] { fill: currentColor; } svg.plot [stroke="black"] { stroke: currentColor; }
-svg.plot .gridline { stroke: currentColor; opacity: .16; }
-svg.plot [fill="rgb(221, 221, 221)"], svg.plot [fill=" rgb(221, 221, 221)"] { fill: currentColor; fill-opacity: .13; }
+@media (prefers-color-scheme: dark) { svg.plot image { filter: invert(1) hue-rotate(180deg); } }
 svg.rose { max-width: 27rem; margin: 0 auto; } .ring { fill: none; stroke: currentColor; opacity: .25; }
 .calm { fill: var(--paper); stroke: currentColor; stroke-opacity: .25; }
 .halo { paint-order: stroke; stroke: var(--paper); stroke-width: 4px; }
@@ -54,7 +51,7 @@ footer { margin-top: 3rem; color: var(--quiet); font-size: .85rem; border-top: 1
   body { max-width: none; padding: 0; font-size: 1rem; line-height: 1.4; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   h2.next { break-before: page; } h3 { break-after: avoid; } table, .tiles { break-inside: avoid; }
   h1 { font-size: 1.45rem; } .lead { font-size: 1.05rem; } h2 { margin-top: 1.2rem; } h3 { margin-top: 1rem; }
-  .tiles { grid-template-columns: repeat(5, 1fr); } .tile b { font-size: 1.1rem; } svg.plot { max-height: 112mm; }
+  .tiles { grid-template-columns: repeat(5, 1fr); } .tile b { font-size: 1.1rem; } svg.plot { max-height: 112mm; } svg.plot image { filter: none; }
   svg.rose { max-height: 80mm; } table.long { break-inside: auto; } .pair { grid-template-columns: 1fr 1fr; }
 }
 )css";

@@ -2,11 +2,12 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <ctime>
 
 #include <fmt/format.h>
+
+#include "engine/base/compass.hpp"
 
 namespace yuragi {
 namespace {
@@ -92,18 +93,13 @@ Nanoseconds local_offset(UtcTime moment) {
   return std::chrono::seconds(calendar(moment, true).tm_gmtoff);
 }
 
-std::string_view compass_text(double direction_deg) {
-  static constexpr std::array<std::string_view, 16> kNames = {
-      "north",      "north-north-east", "north-east", "east-north-east",  "east",       "east-south-east",
-      "south-east", "south-south-east", "south",      "south-south-west", "south-west", "west-south-west",
-      "west",       "west-north-west",  "north-west", "north-north-west"};
-  return kNames.at(static_cast<std::size_t>(std::floor(direction_deg / 22.5 + 0.5)) % kNames.size());
-}
-
-std::string_view compass_short(std::size_t sector) {
-  static constexpr std::array<std::string_view, 16> kNames = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
-                                                              "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
-  return kNames.at(sector);
+std::string compass_text(double direction_deg) {
+  std::string text;
+  for (const char letter : nearest_compass_point(direction_deg)) {
+    if (!text.empty()) text += '-';
+    text += letter == 'N' ? "north" : letter == 'E' ? "east" : letter == 'S' ? "south" : "west";
+  }
+  return text;
 }
 
 }  // namespace yuragi

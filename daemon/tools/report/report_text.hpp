@@ -21,10 +21,7 @@ std::string local_text(UtcTime moment);
 /// Local time minus UTC, in the zone of this machine. Reads no clock. Thread-safe: yes, unless TZ is changed.
 Nanoseconds local_offset(UtcTime moment);
 
-/// "north-north-east" and so on, sixteen of them.
-std::string_view compass_text(double direction_deg);
-
-/// "NNE" and so on, clockwise from north; `sector` below 16.
-std::string_view compass_short(std::size_t sector);
+/// The nearest point of the compass in words: "north-north-east".
+std::string compass_text(double direction_deg);
 
 }  // namespace yuragi

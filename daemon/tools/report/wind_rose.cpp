@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/tools/report/report_text.hpp"
+#include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
 
 namespace yuragi {
@@ -78,7 +78,7 @@ std::string draw_wind_rose(const WindRose& rose) {
   for (std::size_t sector = 0; sector < kRoseSectors; sector += 2) {
     const RosePoint place = rose_point(kRadius_px + 20.0, 360.0 / kRoseSectors * static_cast<double>(sector));
     fmt::format_to(out, "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\"{}>{}</text>\n", place.x, place.y + 5.0,
-                   sector % 4 == 0 ? " font-weight=\"bold\"" : "", compass_short(sector));
+                   sector % 4 == 0 ? " font-weight=\"bold\"" : "", kCompassPoints.at(sector));
   }
 
   for (std::size_t sector = 0; sector < kRoseSectors; ++sector) {
@@ -88,7 +88,7 @@ std::string draw_wind_rose(const WindRose& rose) {
       if (part <= 0.0) continue;
       add_piece(svg, kCalmRadius_px + share * px_per_share, kCalmRadius_px + (share + part) * px_per_share,
                 360.0 / kRoseSectors * static_cast<double>(sector), kRoseColors.at(speed),
-                fmt::format("from {}, {}: {:.1f} %", compass_short(sector), rose_class_text(speed), 100.0 * part));
+                fmt::format("from {}, {}: {:.1f} %", kCompassPoints.at(sector), rose_class_text(speed), 100.0 * part));
       share += part;
     }
   }

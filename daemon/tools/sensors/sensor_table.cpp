@@ -1,14 +1,13 @@
 #include "daemon/tools/sensors/sensor_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
 
 #include "daemon/sensing/refusal_text.hpp"
-#include "drivers/sensor/sensor.hpp"
+#include "engine/base/compass.hpp"
 
 namespace yuragi {
 namespace {
@@ -42,7 +41,7 @@ std::string state_text(SensorState state) {
 }
 
 std::string direction_text(double direction_deg) {
-  return fmt::format("{:3.0f} {}", direction_deg, compass_point(direction_deg));
+  return fmt::format("{:3.0f} {}", direction_deg, nearest_compass_point(direction_deg));
 }
 
 std::string optional_text(const std::optional<double>& value, const char* format) {
@@ -87,13 +86,6 @@ std::string wrapped(std::string_view text) {
 
 }  // namespace
 
-std::string compass_point(double direction_deg) {
-  static constexpr std::array<const char*, 16> kPoints = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
-                                                          "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
-  const double turns = direction_deg / 360.0 - std::floor(direction_deg / 360.0);
-  return kPoints[static_cast<std::size_t>(std::lround(turns * 16.0)) % 16];
-}
-
 std::string sensor_table(const wire::Sensors& sensors) {
   const WindVector wind = sensors.wind.wind;
   std::string table =
@@ -117,7 +109,7 @@ std::string sensor_table(const wire::Sensors& sensors) {
       table += wrapped(fmt::format("{}: {}", name_of(sensor.state), sensor.state_reason));
     }
     if (!sensor.detail.empty() && sensor.detail != sensor.state_reason) {
-      table += wrapped(fmt::format("{}: {}", name_of(static_cast<LinkState>(sensor.link)), sensor.detail));
+      table += wrapped(fmt::format("{}: {}", name_of(sensor.link), sensor.detail));
     }
     if (!sensor.refused.empty()) table += wrapped("refused: " + refusal_text(sensor));
   }

@@ -11,7 +11,4 @@ namespace yuragi {
 /// than 100 columns, but for a word that is. Lines end in '\n'; nothing but text, no cursor movement.
 std::string sensor_table(const wire::Sensors& sensors);
 
-/// The name of the nearest of 16 compass points: "WSW".
-std::string compass_point(double direction_deg);
-
 }  // namespace yuragi

@@ -159,7 +159,7 @@ void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
   const bool tells_across = has_vane() && !is_coarse();
   measured_.take(wind_, ahead, speed_m_s, tells_across);
   if (!site_ || !settings_.teaches_site || record_.last()->quality == ReadingQuality::kSimulated) return;
-  teacher_.hear(
+  teacher_.observe(
       {.wind = wind_, .ahead = ahead, .speed_m_s = speed_m_s, .interval_s = mean_of_s, .tells_across = tells_across},
       measured_, *site_);
 }

@@ -215,33 +215,33 @@ void BlendedEstimator::learn_scales(double dt_s) noexcept {
   }
 }
 
-BlendedEstimator::Heard BlendedEstimator::hear() noexcept {
-  Heard heard;
+BlendedEstimator::MeasuredMean BlendedEstimator::measure_mean() noexcept {
+  MeasuredMean measured;
   WindSlope& slope = ground_.slope;
   slope.per_m_east = slope.per_m_south = {};
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Share& share = shares_[i];
     const bool is_relative = settings_.sources[i].is_relative;
     const WindVector mean = said(i, 0);
-    heard.weight += share.middle;
-    heard.mean = heard.mean + share.middle * mean;
-    heard.speed_m_s += share.middle * sources_[i].speed_m_s() * (is_relative ? sources_[i].scale.mean_gain() : 1.0);
+    measured.weight += share.middle;
+    measured.mean = measured.mean + share.middle * mean;
+    measured.speed_m_s += share.middle * sources_[i].speed_m_s() * (is_relative ? sources_[i].scale.mean_gain() : 1.0);
     slope.per_m_east = slope.per_m_east + share.per_m_east * mean;
     slope.per_m_south = slope.per_m_south + share.per_m_south * mean;
   }
-  heard.weight = std::clamp(heard.weight, 0.0, 1.0);
-  heard.mean = heard.mean + (1.0 - heard.weight) * climate_;
-  heard.speed_m_s = std::max(heard.speed_m_s, 0.0) + (1.0 - heard.weight) * settings_.climate.mean_speed_m_s;
-  heard.trust = trust() * heard.weight;
+  measured.weight = std::clamp(measured.weight, 0.0, 1.0);
+  measured.mean = measured.mean + (1.0 - measured.weight) * climate_;
+  measured.speed_m_s = std::max(measured.speed_m_s, 0.0) + (1.0 - measured.weight) * settings_.climate.mean_speed_m_s;
+  measured.trust = trust() * measured.weight;
 
   // Winds of this mean speed differ from end to end by twice as much at most.
   const double difference_m_s = speed_of(slope.per_m_east) * (slope.east_m - slope.west_m) +
                                 speed_of(slope.per_m_south) * (slope.south_m - slope.north_m);
-  if (const double most_m_s = 2.0 * heard.speed_m_s; difference_m_s > most_m_s) {
+  if (const double most_m_s = 2.0 * measured.speed_m_s; difference_m_s > most_m_s) {
     slope.per_m_east = (most_m_s / difference_m_s) * slope.per_m_east;
     slope.per_m_south = (most_m_s / difference_m_s) * slope.per_m_south;
   }
-  return heard;
+  return measured;
 }
 
 /// The part of the bands that the selected sources can resolve: 1 while their readings are on time.
@@ -270,19 +270,19 @@ BlendedEstimator::Power BlendedEstimator::power_heard(const OctaveFollower::Resp
 }
 
 /// The mean wind carries the gusts, and sets the downwind direction; their eddies turn over as the turbulence does.
-void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
+void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) noexcept {
   WindVector& ahead = ground_.gusts.ahead;
-  const double speed_m_s = speed_of(heard.mean);
+  const double speed_m_s = speed_of(measured.mean);
   if (speed_m_s > 0.0) {
     const double calm = std::clamp(speed_m_s / kCalm_m_s, 0.0, 1.0);
     const double part = -std::expm1(-2.0 * std::numbers::pi * kTurnRate_hz * calm * calm * dt_s);
-    ahead = turned_toward(ahead, (1.0 / speed_m_s) * heard.mean, part);
+    ahead = turned_toward(ahead, (1.0 / speed_m_s) * measured.mean, part);
   }
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
   const Turbulence now = turbulence();
-  const double length_m = now.time_scale_s * std::max(heard.speed_m_s, kLeastSpeed_m_s);
+  const double length_m = now.time_scale_s * std::max(measured.speed_m_s, kLeastSpeed_m_s);
   noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
-                kTurnoverRate * eddy_turnover_m23_s(now.intensity * heard.speed_m_s, length_m));
+                kTurnoverRate * eddy_turnover_m23_s(now.intensity * measured.speed_m_s, length_m));
 
   // The tapes go the same way.
   const double way_m = advection_m_s_ * dt_s;
@@ -293,15 +293,15 @@ void BlendedEstimator::carry_gusts(const Heard& heard, double dt_s) noexcept {
   GustCoherence& coherence = stroke_.coherence;
   const double part = is_first_ ? 1.0 : -std::expm1(-dt_s / kCoherenceMemory_s);
   coherence.speed_m_s = advection_m_s_;
-  coherence.length_m = gust_length_m(heard);
+  coherence.length_m = gust_length_m(measured);
   coherence.decay_along += part * (GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
   reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
 }
 
 /// The integral length scale for the coherence law, as it is configured: a fit to fast readings determines it poorly.
-double BlendedEstimator::gust_length_m(const Heard& heard) const noexcept {
-  double length_m = (1.0 - heard.weight) * settings_.length_m;
-  double all = 1.0 - heard.weight;
+double BlendedEstimator::gust_length_m(const MeasuredMean& measured) const noexcept {
+  double length_m = (1.0 - measured.weight) * settings_.length_m;
+  double all = 1.0 - measured.weight;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const double own_m = settings_.sources[i].length_m;
     const double share = std::max(shares_[i].middle, 0.0);
@@ -363,7 +363,8 @@ void BlendedEstimator::write_gusts() noexcept {
 
 /// The weight of a source's turbulence at a frequency, over the square of the mean speed: its share in the mean; above
 /// the frequencies that absolute sources resolve, that of the relative ones.
-double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, const Heard& heard) const noexcept {
+double BlendedEstimator::variance_share(std::size_t index, double frequency_hz,
+                                        const MeasuredMean& measured) const noexcept {
   double gusts = 0.0;
   double unknown = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -372,35 +373,35 @@ double BlendedEstimator::variance_share(std::size_t index, double frequency_hz, 
   }
   const double own = shares_[index].middle;
   if (gusts < kLeastShare) return own;
-  const double given = heard.weight > 0.0 ? std::clamp(unknown / heard.weight, 0.0, 1.0) : 0.0;
+  const double given = measured.weight > 0.0 ? std::clamp(unknown / measured.weight, 0.0, 1.0) : 0.0;
   const double kept = own * (1.0 - std::min(gusts, 1.0) * given);
   if (!settings_.sources[index].is_relative) return kept;
   const double strength =
-      sources_[index].scale.gust_gain() * sources_[index].speed_m_s() / std::max(heard.speed_m_s, kLeastSpeed_m_s);
-  return kept + heard.weight * choice_.gusts(index) * given * std::min(strength * strength, 4.0);
+      sources_[index].scale.gust_gain() * sources_[index].speed_m_s() / std::max(measured.speed_m_s, kLeastSpeed_m_s);
+  return kept + measured.weight * choice_.gusts(index) * given * std::min(strength * strength, 4.0);
 }
 
 /// The strength of each octave of the noise, and the part of it that the sensors measure (engine/wind/README.md W20).
 /// The octaves of the way are reduced by that part here; those of the tiles at each place.
-void BlendedEstimator::weigh_gusts(const Heard& heard, double dt_s) noexcept {
+void BlendedEstimator::weigh_gusts(const MeasuredMean& measured, double dt_s) noexcept {
   // A new fit, or another interval of a sensor, is a step, which must not show.
   const auto part = static_cast<float>(is_first_ ? 1.0 : -std::expm1(-dt_s / kStrengthMemory_s));
-  for (std::size_t i = 0; i < kOctaves; ++i) weigh_octave(i, heard, part);
+  for (std::size_t i = 0; i < kOctaves; ++i) weigh_octave(i, measured, part);
 }
 
-void BlendedEstimator::weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept {
+void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept {
   const double frequency_hz = centre_hz(noise_->octaves()[octave], advection_m_s_);
   // What would jitter from frame to frame is faded out over the octave before.
   const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / frequency_hz), 0.0, 1.0);
-  double variance_along = (1.0 - heard.weight) * climate_along_[octave];
-  double variance_across = (1.0 - heard.weight) * climate_across_[octave];
+  double variance_along = (1.0 - measured.weight) * climate_along_[octave];
+  double variance_across = (1.0 - measured.weight) * climate_across_[octave];
   for (std::size_t index = 0; index < sources_.size(); ++index) {
     if (!sources_[index].record().has_spoken()) continue;
-    const double share = variance_share(index, frequency_hz, heard);
+    const double share = variance_share(index, frequency_hz, measured);
     variance_along += share * sources_[index].along()[octave];
     variance_across += share * sources_[index].across()[octave];
   }
-  const double scale = shown * heard.speed_m_s * heard.speed_m_s;
+  const double scale = shown * measured.speed_m_s * measured.speed_m_s;
   const auto approach = [part](float& value, double wanted) { value += part * (static_cast<float>(wanted) - value); };
   const auto deviation = [scale](double variance) { return std::sqrt(std::max(scale * variance, 0.0)); };
   float& along_m_s = ground_.gusts.along_m_s[octave];
@@ -444,15 +445,15 @@ GustNoise::Moment BlendedEstimator::gusts_at(std::size_t pen) const noexcept {
 }
 
 /// The wind that is shown, and the samples that go onto the tapes.
-void BlendedEstimator::show(const Heard& heard) noexcept {
+void BlendedEstimator::show(const MeasuredMean& measured) noexcept {
   const WindVector way = noise_->everywhere(ground_.gusts);
-  ground_.everywhere = heard.mean + way;
+  ground_.everywhere = measured.mean + way;
   state_.upwind_m = 0.0;
   double told = 0.0;
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     WindPen& pen = stroke_.pens[p];
     if (!places_.place(p).is_edge) told += pen.part;
-    pen.now.mean = heard.mean;
+    pen.now.mean = measured.mean;
     pen.now.way = way;
     const OctaveLanes known_along = pen.written.known_along;
     const OctaveLanes known_across = pen.written.known_across;
@@ -500,18 +501,18 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   learn_scales(dt_s);
 
   // The wind: what is measured, and the gusts for the rest.
-  const Heard heard = hear();
-  carry_gusts(heard, dt_s);
+  const MeasuredMean measured = measure_mean();
+  carry_gusts(measured, dt_s);
   place_pens();
   write_gusts();
-  weigh_gusts(heard, dt_s);
-  show(heard);
+  weigh_gusts(measured, dt_s);
+  show(measured);
 
-  state_.live_weight = heard.trust;
+  state_.live_weight = measured.trust;
   state_.reading_age_s = newest_age_s();
-  state_.source = heard.trust > 0.99   ? WindSource::kLive
-                  : heard.trust < 0.01 ? WindSource::kDefault
-                                       : WindSource::kHandover;
+  state_.source = measured.trust > 0.99   ? WindSource::kLive
+                  : measured.trust < 0.01 ? WindSource::kDefault
+                                          : WindSource::kHandover;
   return state_;
 }
 

@@ -10,9 +10,12 @@
 #include "engine/wind/blend/pen_places.hpp"
 #include "engine/wind/blend/source_choice.hpp"
 #include "engine/wind/blend/wall_plane.hpp"
-#include "engine/wind/blend/wind_estimator.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
+#include "engine/wind/ground/wind_stroke.hpp"
+#include "engine/wind/source_report.hpp"
 #include "engine/wind/turbulence/gust_noise.hpp"
 #include "engine/wind/turbulence/gust_variances.hpp"
+#include "engine/wind/wind_state.hpp"
 
 namespace yuragi {
 
@@ -46,18 +49,29 @@ namespace yuragi {
 ///     frequency times T   to 0.02   0.05   0.1    0.2    0.25 (the crossover)
 ///     delay over T        1.36      1.35   1.31   1.25   1.22
 ///
-/// Source: Taylor 1938, The spectrum of turbulence (frozen turbulence).
-class BlendedEstimator final : public WindEstimator {
+/// The state is finite whatever comes in, and continuous: no reading, loss or return makes it jump. Time is a parameter
+/// and may not go back (a call with an earlier time changes nothing). Thread-safe: no; one thread owns it.
+/// Realtime-safe after construction: yes. Source: Taylor 1938, The spectrum of turbulence (frozen turbulence).
+class BlendedEstimator {
  public:
   /// `noise`: shared with whoever reads the wind at other places. The climate's seed selects where on it the gusts
   /// begin. Allocates.
   BlendedEstimator(std::size_t source_count, const BlendSettings& settings, std::shared_ptr<const GustNoise> noise);
 
-  bool accept(std::size_t source, const WindReading& reading) noexcept override;
-  WindState advance(MonoTime now) noexcept override;
-  const GroundWind& ground() const noexcept override { return ground_; }
-  const WindStroke& stroke() const noexcept override { return stroke_; }
-  SourceReport report(std::size_t source) const noexcept override;
+  /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored and
+  /// answered with false.
+  bool accept(std::size_t source, const WindReading& reading) noexcept;
+
+  /// Goes on to `now` and says what the wind is where it is measured.
+  WindState advance(MonoTime now) noexcept;
+
+  /// The same wind over the ground, as of the last advance(); without tapes.
+  const GroundWind& ground() const noexcept { return ground_; }
+  /// What the last advance() adds to the tapes.
+  const WindStroke& stroke() const noexcept { return stroke_; }
+
+  /// How `source` does, as of the last advance(). One that is not there is silent.
+  SourceReport report(std::size_t source) const noexcept;
 
   /// The turbulence that is fitted at the moment, along the wind.
   Turbulence turbulence() const noexcept;
@@ -85,7 +99,7 @@ class BlendedEstimator final : public WindEstimator {
   };
 
   /// The mean by all sources together, and its weight.
-  struct Heard {
+  struct MeasuredMean {
     WindVector mean;
     double weight = 0.0;     ///< of the means that are measured; the climate's has the rest
     double speed_m_s = 0.0;  ///< slow mean
@@ -103,19 +117,19 @@ class BlendedEstimator final : public WindEstimator {
   double share_level(std::size_t level, std::span<const double> words, std::span<double> shares) const noexcept;
   void share_at(std::size_t pen) noexcept;
   void learn_scales(double dt_s) noexcept;
-  Heard hear() noexcept;
+  MeasuredMean measure_mean() noexcept;
   double trust() const noexcept;
   double newest_age_s() const noexcept;
   WindVector said(std::size_t source, std::size_t level) const noexcept;
-  void carry_gusts(const Heard& heard, double dt_s) noexcept;
-  double gust_length_m(const Heard& heard) const noexcept;
+  void carry_gusts(const MeasuredMean& measured, double dt_s) noexcept;
+  double gust_length_m(const MeasuredMean& measured) const noexcept;
   void place_pens() noexcept;
   void write_gusts() noexcept;
-  void weigh_gusts(const Heard& heard, double dt_s) noexcept;
-  void weigh_octave(std::size_t octave, const Heard& heard, float part) noexcept;
+  void weigh_gusts(const MeasuredMean& measured, double dt_s) noexcept;
+  void weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept;
   Power power_heard(const OctaveFollower::Response& bands, std::span<const BandWeights> shares) const noexcept;
-  void show(const Heard& heard) noexcept;
-  double variance_share(std::size_t source, double frequency_hz, const Heard& heard) const noexcept;
+  void show(const MeasuredMean& measured) noexcept;
+  double variance_share(std::size_t source, double frequency_hz, const MeasuredMean& measured) const noexcept;
 
   BlendSettings settings_;
   WindVector climate_;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/base/units.hpp"
+#include "engine/wind/turbulence/von_karman.hpp"
 
 namespace yuragi {
 namespace {
@@ -68,9 +69,9 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
   const double step_rad = step_deg() * kRadPerDeg;
   const double steps = std::numbers::pi * swing_rad / step_rad;
   const double correlated_s = interval_s + time_scale_s * std::exp(-2.0 * steps * steps);
-  // S(f) = sigma^2 T 4 / 70.8^(5/6) (f T)^(-5/3) = step^2 / 12 * 2 dt, for f.
+  // Von Karman's inertial range is as strong as the stairs at S(f) = sigma^2 T a (f T)^(-5/3) = step^2 / 12 * 2 dt.
   const double stairs = step_rad * step_rad / 12.0 * 2.0 * correlated_s;
-  const double swing = 4.0 / std::pow(70.8, 5.0 / 6.0) * swing_rad * swing_rad * time_scale_s;
+  const double swing = von_karman_inertial_factor() * swing_rad * swing_rad * time_scale_s;
   const double corner_hz = std::pow(swing / stairs, 0.6) / time_scale_s;
   memory_s_ = std::min(1.0 / (2.0 * std::numbers::pi * corner_hz), kLongestMemory_s);
 }

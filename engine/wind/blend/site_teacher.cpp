@@ -26,34 +26,39 @@ void SiteTeacher::break_off() noexcept {
   count_ = 0;
 }
 
-void SiteTeacher::hear(const Heard& heard, const WindTurbulence& quick, SiteSpectrum& site) noexcept {
-  if (heard.interval_s > SiteSpectrum::kQuick_s || !(heard.interval_s > 0.0) || !(heard.speed_m_s > 0.0)) return;
-  sum_ = sum_ + heard.wind;
+void SiteTeacher::observe(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) noexcept {
+  if (observation.interval_s > SiteSpectrum::kQuick_s || !(observation.interval_s > 0.0) ||
+      !(observation.speed_m_s > 0.0))
+    return;
+  sum_ = sum_ + observation.wind;
   ++count_;
-  const double played_s = static_cast<double>(count_) * heard.interval_s;
-  if (played_s < kPlayedInterval_s - 0.5 * heard.interval_s) return;
+  const double played_s = static_cast<double>(count_) * observation.interval_s;
+  if (played_s < kPlayedInterval_s - 0.5 * observation.interval_s) return;
   slow_.forget(played_s);
-  slow_.take((1.0 / static_cast<double>(count_)) * sum_, heard.ahead, heard.speed_m_s, heard.tells_across);
-  slow_.fit(kPlayedInterval_s, heard.speed_m_s);
+  slow_.take((1.0 / static_cast<double>(count_)) * sum_, observation.ahead, observation.speed_m_s,
+             observation.tells_across);
+  slow_.fit(kPlayedInterval_s, observation.speed_m_s);
   sum_ = {};
   count_ = 0;
-  if (heard.speed_m_s >= kLeastTaught_m_s && slow_.along().observations(0) >= kEnough) teach(heard, quick, site);
+  if (observation.speed_m_s >= kLeastTaught_m_s && slow_.along().observations(0) >= kEnough)
+    teach(observation, quick, site);
 }
 
-void SiteTeacher::teach(const Heard& heard, const WindTurbulence& quick, SiteSpectrum& site) const noexcept {
-  const auto of_both = [&heard](const WindTurbulence& turbulence, const auto& power_of) {
-    return power_of(turbulence.along()) + (heard.tells_across ? power_of(turbulence.across()) : 0.0);
+void SiteTeacher::teach(const Observation& observation, const WindTurbulence& quick,
+                        SiteSpectrum& site) const noexcept {
+  const auto of_both = [&observation](const WindTurbulence& turbulence, const auto& power_of) {
+    return power_of(turbulence.along()) + (observation.tells_across ? power_of(turbulence.across()) : 0.0);
   };
   for (std::size_t octave = 0; octave < SiteSpectrum::kOctaves; ++octave) {
     // Where among the quick source's scales, means over interval * 2^scale, it is.
     const double tau_s = kSeenTimesTau / SiteSpectrum::centre_hz(octave);
-    const double place = std::log2(tau_s / heard.interval_s);
+    const double place = std::log2(tau_s / observation.interval_s);
     if (place < -kBeyond_octaves || place > static_cast<double>(TurbulenceFit::kScales - 2)) continue;
     const double inside = std::max(place, 0.0);
     const auto below = static_cast<std::size_t>(inside);
     const double t = inside - static_cast<double>(below);
     const auto measured = [&](std::size_t scale) {
-      const double seen_tau_s = std::ldexp(heard.interval_s, static_cast<int>(scale));
+      const double seen_tau_s = std::ldexp(observation.interval_s, static_cast<int>(scale));
       return std::log10(of_both(quick, [&](const TurbulenceFit& fit) { return fit.measured(scale); }) /
                         of_both(slow_, [&](const TurbulenceFit& fit) { return fit.expected(seen_tau_s); }));
     };

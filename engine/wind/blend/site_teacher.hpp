@@ -16,7 +16,7 @@ class SiteTeacher {
   /// `prior` and `fit_memory_s`: of the slow source that is to be corrected.
   SiteTeacher(const TurbulencePrior& prior, double fit_memory_s);
 
-  struct Heard {
+  struct Observation {
     WindVector wind;         ///< a reading: the mean over `interval_s`, which began `interval_s` ago
     WindVector ahead;        ///< unit vector downwind
     double speed_m_s = 0.0;  ///< slow mean
@@ -25,12 +25,12 @@ class SiteTeacher {
   };
   /// Takes a reading of the source, and the turbulence of its own readings (`quick`, which has taken the reading).
   /// Sources slower than SiteSpectrum::kQuick_s and winds below 1 m/s change nothing.
-  void hear(const Heard& heard, const WindTurbulence& quick, SiteSpectrum& site) noexcept;
+  void observe(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) noexcept;
   /// After a gap.
   void break_off() noexcept;
 
  private:
-  void teach(const Heard& heard, const WindTurbulence& quick, SiteSpectrum& site) const noexcept;
+  void teach(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) const noexcept;
 
   WindTurbulence slow_;
   WindVector sum_{};

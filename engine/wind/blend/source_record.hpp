@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "engine/wind/blend/wind_estimator.hpp"
+#include "engine/wind/source_report.hpp"
 
 namespace yuragi {
 

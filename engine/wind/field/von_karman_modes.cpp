@@ -3,20 +3,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/noise/von_karman_corner.hpp"
+
 namespace yuragi {
-namespace {
-
-/// With this the integral scale of a line cut is the one that was asked for: 70.8 = (2 pi 1.339)^2
-/// (engine/wind/README.md W5).
-constexpr double kCornerTimesLength = 1.339;
-
-}  // namespace
 
 VonKarmanModes::VonKarmanModes(WindComponent component, double sigma_m_s, double length_m) noexcept
     : component_(component) {
   // The scale of v and w along the wind is half of that of u in the same turbulence.
   const double length_of_u_m = component == WindComponent::kAlong ? length_m : 2.0 * length_m;
-  const double kappa = 1.0 / (kCornerTimesLength * length_of_u_m);
+  const double kappa = 1.0 / (kVonKarmanCorner * length_of_u_m);
   kappa_squared_ = kappa * kappa;
   // E integrates to 3/2 sigma^2; the integral of k^4 / (kappa^2 + k^2)^(17/6) is kappa^(-2/3) B(5/2, 1/3) / 2.
   const double energy = 3.0 * sigma_m_s * sigma_m_s * std::cbrt(kappa_squared_) / std::beta(5.0 / 2.0, 1.0 / 3.0);
@@ -41,7 +36,7 @@ double VonKarmanModes::space_density(double along_rad_m, double across_rad_m, do
 }
 
 double von_karman_coherence(double along_rad_m, double distance_m, double length_m) noexcept {
-  const double kappa = 1.0 / (kCornerTimesLength * length_m);
+  const double kappa = 1.0 / (kVonKarmanCorner * length_m);
   const double x = std::abs(distance_m) * std::hypot(along_rad_m, kappa);
   if (x < 1e-9) return 1.0;
   if (x > 500.0) return 0.0;

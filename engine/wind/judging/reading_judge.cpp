@@ -79,8 +79,8 @@ void ReadingJudge::count_impossible(std::uint64_t readings) noexcept {
 ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
                                     std::optional<double> others_m_s) noexcept {
   const bool is_out_of_range = reading.speed_m_s > settings_.max_speed_m_s;
-  const bool is_repeated = is_frozen(reading, time_s);
-  const bool is_dead = is_seized(reading.speed_m_s, time_s, others_m_s);
+  const bool is_repeated = check_frozen(reading, time_s);
+  const bool is_dead = check_seized(reading.speed_m_s, time_s, others_m_s);
   if (is_out_of_range || is_repeated || is_dead) {
     dismiss_suspicion();
     believed_ = 0;  // old readings are no measure for new ones
@@ -91,7 +91,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
   }
 
   const WindVector wind = vector_of(reading);
-  const bool is_held_back = is_spike(wind, time_s);
+  const bool is_held_back = check_spike(wind, time_s);
   if (!is_held_back) {
     believe(wind);
     count(false);
@@ -101,7 +101,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
 }
 
 /// A spike, or the beginning of a step? The next readings decide.
-bool ReadingJudge::is_spike(WindVector wind, double time_s) noexcept {
+bool ReadingJudge::check_spike(WindVector wind, double time_s) noexcept {
   if (!is_suspect(wind)) {
     dismiss_suspicion();
     return false;
@@ -164,7 +164,7 @@ void ReadingJudge::count(bool is_bad) noexcept {
   is_implausible_ = bad_share_ > (is_implausible_ ? kTrustShare : kGiveUpShare);
 }
 
-bool ReadingJudge::is_frozen(const WindReading& reading, double time_s) noexcept {
+bool ReadingJudge::check_frozen(const WindReading& reading, double time_s) noexcept {
   if (!same_ || !says_the_same(reading, *same_)) {
     if (same_) {
       const double step_m_s = std::abs(reading.speed_m_s - same_->speed_m_s);
@@ -195,7 +195,7 @@ double ReadingJudge::frozen_patience() const noexcept {
   return is_coarse ? kCoarsePatience : 1.0;
 }
 
-bool ReadingJudge::is_seized(double speed_m_s, double time_s, std::optional<double> others_m_s) noexcept {
+bool ReadingJudge::check_seized(double speed_m_s, double time_s, std::optional<double> others_m_s) noexcept {
   const double passed_s = time_s - last_s_;
   if (speed_m_s > kStill_m_s) {
     const double part = usual_m_s_ > 0.0 ? -std::expm1(-passed_s / kDay_s) : 1.0;

@@ -81,16 +81,17 @@ class ReadingJudge {
   static constexpr std::size_t kWindow = 7;
 
   ReadingFault fault_of(const WindReading& reading, double time_s, std::optional<double> others_m_s) noexcept;
-  bool is_spike(WindVector wind, double time_s) noexcept;
+  // Each takes the reading in, and answers whether that is its fault.
+  bool check_spike(WindVector wind, double time_s) noexcept;
   bool is_suspect(WindVector wind) const noexcept;
   bool is_confirmed(double time_s) const noexcept;
   void dismiss_suspicion() noexcept;
   WindVector middle() const noexcept;
   void believe(WindVector wind) noexcept;
   void count(bool is_bad) noexcept;
-  bool is_frozen(const WindReading& reading, double time_s) noexcept;
+  bool check_frozen(const WindReading& reading, double time_s) noexcept;
   double frozen_patience() const noexcept;
-  bool is_seized(double speed_m_s, double time_s, std::optional<double> others_m_s) noexcept;
+  bool check_seized(double speed_m_s, double time_s, std::optional<double> others_m_s) noexcept;
 
   JudgeSettings settings_;
   std::array<WindVector, kWindow> window_{};

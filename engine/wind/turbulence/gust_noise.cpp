@@ -163,11 +163,11 @@ void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, doubl
   if (!evolves_ || turnover_m23_s == 0.0) return;
   constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
-    TorusTravel& turn = carried.turned.turns[i];
+    TorusTravel& turn = carried.eddies.turns[i];
     turn.add(turnover_m23_s * turn_rates_m_23_[i] * dt_s, kFullTurn_rad);
     const double angle_rad = kFullTurn_rad * 0x1p-32 * static_cast<double>(turn.phase());
-    carried.turned.cosine[i] = static_cast<float>(std::cos(angle_rad));
-    carried.turned.sine[i] = static_cast<float>(std::sin(angle_rad));
+    carried.eddies.cosine[i] = static_cast<float>(std::cos(angle_rad));
+    carried.eddies.sine[i] = static_cast<float>(std::sin(angle_rad));
   }
 }
 
@@ -202,8 +202,8 @@ std::size_t GustNoise::layers(const Moment& moment, Component component,
     const float weight_m_s = weights_m_s[2 * kWayOctaves + i];
     if (weight_m_s < kNothing_m_s) continue;
     const TorusPhase offset = carried.tiles[torus_of(i)].phase();
-    out[count++] = {&octaves.tiles[i], i, offset, carried.turned.cosine[i] * weight_m_s};
-    if (evolves_) out[count++] = {&octaves.quarters[i], i, offset, carried.turned.sine[i] * weight_m_s};
+    out[count++] = {&octaves.tiles[i], i, offset, carried.eddies.cosine[i] * weight_m_s};
+    if (evolves_) out[count++] = {&octaves.quarters[i], i, offset, carried.eddies.sine[i] * weight_m_s};
   }
   return count;
 }
@@ -243,7 +243,7 @@ std::array<float, GustNoise::kOctaves> GustNoise::read(const Octaves& component,
     float& value = values[2 * kWayOctaves + i];
     value = read_noise(component.tiles[i], place);
     if (!evolves_) continue;
-    value = carried.turned.cosine[i] * value + carried.turned.sine[i] * read_noise(component.quarters[i], place);
+    value = carried.eddies.cosine[i] * value + carried.eddies.sine[i] * read_noise(component.quarters[i], place);
   }
   return values;
 }

@@ -72,10 +72,10 @@ class GustNoise {
   }
 
   /// How far the eddies of each octave of the tiles, the first chain's and the second's, have turned.
-  struct Turned {
+  struct EddyPhases {
     std::array<TorusTravel, 2 * kTileOctaves> turns;
     std::array<float, 2 * kTileOctaves> cosine, sine;
-    Turned() noexcept {
+    EddyPhases() noexcept {
       cosine.fill(1.0F);
       sine.fill(0.0F);
     }
@@ -94,7 +94,7 @@ class GustNoise {
   struct Carried {
     std::array<TorusOffset, kTori> tiles;
     TorusTravel way_first, way_second;
-    Turned turned;
+    EddyPhases eddies;
   };
   /// A place to begin at; far from that of another seed.
   Carried begin(std::uint64_t seed) const noexcept;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/noise/von_karman_corner.hpp"
 #include "engine/wind/turbulence/turbulence_fit.hpp"
 
 namespace yuragi {
@@ -14,7 +15,7 @@ double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept
 GustVariances gust_variances(const GustNoise& noise, double intensity, double length_m) noexcept {
   // On the ground, in two dimensions: what is left of von Karman's variance above |k|.
   const auto above = [length_m](double rad_m) {
-    const double reduced = 1.339 * length_m * rad_m;
+    const double reduced = kVonKarmanCorner * length_m * rad_m;
     return std::pow(1.0 + reduced * reduced, -1.0 / 3.0);
   };
   // Along the way, in one: at a wind of 1 m/s a wavenumber k is a frequency k / 2 pi.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/wind/turbulence/von_karman.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -24,11 +26,6 @@ constexpr double kStrongestAt = 0.37;
 
 double square(double x) noexcept {
   return x * x;
-}
-
-/// von Karman's u over variance and time scale, at x = f T: its integral over x from 0 on is 1.
-double von_karman_density(double x) noexcept {
-  return 4.0 / std::pow(1.0 + 70.8 * x * x, 5.0 / 6.0);
 }
 
 /// The power that Haar's difference passes, at f tau.
@@ -87,8 +84,8 @@ double von_karman_haar_variance(double tau_over_time_scale) noexcept {
 }
 
 double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexcept {
-  // Of the far tail the integral is known: 4 x / (70.8 x^2)^(5/6) falls as x^(-2/3).
-  const auto above = [](double x) { return 4.0 / std::pow(70.8, 5.0 / 6.0) * 1.5 * std::pow(x, -2.0 / 3.0); };
+  // Of the inertial range the integral is known: it falls as x^(-2/3).
+  const auto above = [](double x) { return von_karman_inertial_factor() * 1.5 * std::pow(x, -2.0 / 3.0); };
   constexpr double kFar = 30.0;
   const double from = from_hz * time_scale_s;
   const double to = to_hz * time_scale_s;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/wind/turbulence/von_karman.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
 namespace yuragi {
@@ -50,9 +51,6 @@ double kaimal_w(double n) noexcept {
 double davenport_u(double x) noexcept {
   return 4.0 * x / std::pow(1.0 + x * x, 4.0 / 3.0);
 }
-double von_karman_u(double x) noexcept {
-  return 4.0 / std::pow(1.0 + 70.8 * x * x, 5.0 / 6.0);
-}
 double von_karman_vw(double x) noexcept {
   return 4.0 * (1.0 + 755.2 * x * x) / std::pow(1.0 + 283.2 * x * x, 11.0 / 6.0);
 }
@@ -68,7 +66,7 @@ struct Form {
 
 /// The integral over x from 0 on of 4 / (1 + c x^2)^(5/6): with t = x sqrt(c), a beta function.
 double von_karman_integral_u() noexcept {
-  return 4.0 / std::sqrt(70.8) * 0.5 * std::beta(0.5, 1.0 / 3.0);
+  return 4.0 / std::sqrt(kVonKarmanBend) * 0.5 * std::beta(0.5, 1.0 / 3.0);
 }
 /// The same of 4 (1 + d x^2) / (1 + c x^2)^(11/6).
 double von_karman_integral_vw() noexcept {
@@ -90,7 +88,7 @@ Form form_of(SpectrumModel model, WindComponent component) noexcept {
     case SpectrumModel::kDavenport:
       return is_u ? Form{davenport_u, 6.0} : Form{};
     case SpectrumModel::kVonKarman:
-      return is_u ? Form{von_karman_u, von_karman_integral_u()} : Form{von_karman_vw, von_karman_integral_vw()};
+      return is_u ? Form{von_karman_density, von_karman_integral_u()} : Form{von_karman_vw, von_karman_integral_vw()};
     case SpectrumModel::kIecKaimal:
       return {iec_kaimal, blunt_integral(4.0, 6.0)};
   }

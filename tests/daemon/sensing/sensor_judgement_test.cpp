@@ -160,7 +160,7 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
   go_on(60, [&] { say(0, 6.5); });
   EXPECT_EQ(state(), SensorState::kFrozen);
   EXPECT_THAT(reason(), HasSubstr("the same 6.50 m/s 60 times"));
-  EXPECT_EQ(hub_->status()[0].health, static_cast<std::uint8_t>(SourceHealth::kLive)) << "it speaks";
+  EXPECT_EQ(hub_->status()[0].health, SourceHealth::kLive) << "it speaks";
   EXPECT_EQ(hub_->status()[0].speed_m_s, 6.5) << "what it says is shown";
   go_on(60, [&] { say(0, 6.5); });
   EXPECT_NE(hub_->wind().source, WindSource::kLive);

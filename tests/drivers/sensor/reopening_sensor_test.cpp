@@ -34,14 +34,14 @@ class FickleSensor final : public ReopeningSensor {
     if (!is_there) return Failure{"it went away"};
     ++worked;
     if (makes_sense) {
-      is_well(sink, "fickle");
+      report_connected(sink, "fickle");
     } else {
-      is_unwell(sink, "it babbles");
+      report_unusable(sink, "it babbles");
     }
     return clock.now().mono + std::chrono::seconds(1);
   }
   void close() noexcept override { ++closed; }
-  bool has_returned() override { return std::exchange(is_back, false); }
+  bool poll_for_return() override { return std::exchange(is_back, false); }
 };
 
 class ReopeningSensorTest : public testing::Test {

@@ -80,7 +80,7 @@ TEST(LibusbDevice, ThatIsNotOpenHasNoTransfers) {
   EXPECT_EQ(device->control({0xC0, 0x20, 0, 0}, bytes, timeout).status, UsbStatus::kGone);
   EXPECT_EQ(device->read(1, bytes, timeout).status, UsbStatus::kGone);
   EXPECT_EQ(device->write(1, bytes, timeout).status, UsbStatus::kGone);
-  EXPECT_FALSE(device->has_arrived());
+  EXPECT_FALSE(device->take_arrival());
   EXPECT_FALSE(device->open({.id = {0x1209, 0x0001}, .port = "1-1", .serial = "", .node = ""}));
 }
 
@@ -88,7 +88,7 @@ TEST(LibusbDevice, CanBeInterruptedFromAnotherThreadAtAnyTime) {
   const auto device = make_usb_device({{0x1209, 0x0001}});
   std::jthread other([&device] { device->interrupt(); });
   static_cast<void>(device->plugged());
-  static_cast<void>(device->has_arrived());
+  static_cast<void>(device->take_arrival());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/philox.hpp"
+#include "engine/operators/bend_share.hpp"
 #include "engine/operators/branch_force_job.hpp"
 #include "engine/operators/flutter_job.hpp"
 #include "engine/operators/leaf_response_job.hpp"
@@ -534,7 +535,7 @@ TEST(LeafResponseJobTest, IsNowhereSteeperThanItSays) {
     lean = std::max(lean, static_cast<double>(places.lean_east[i] - places.lean_east[i - 1]) / 0.4 / (0.005 / 4.0));
     flutter = std::max(flutter, static_cast<double>(places.flutter[i] - places.flutter[i - 1]) / 0.3 / (0.005 / 5.0));
   }
-  EXPECT_NEAR(lean, LeafResponseJob::kSteepestLean, 2e-3);
+  EXPECT_NEAR(lean, kSteepestBendShare, 2e-3);
   EXPECT_NEAR(flutter, LeafResponseJob::kSteepestFlutter, 2e-3);
 }
 

@@ -96,6 +96,14 @@ TEST(TreeTest, IsInTheSceneTable) {
   EXPECT_EQ(std::count(table.begin(), table.end(), &kTreeScene), 1);
 }
 
+TEST(TreeTest, ItsFoliageIsGreenUnlessAskedFor) {
+  EXPECT_EQ(tree_of(*tree_scene(little())).foliage, FoliageColor::kGreen);
+  for (std::size_t i = 0; i < kFoliageColorNames.size(); ++i) {
+    const auto scene = tree_scene(little("cherry", {{"foliage", std::string(kFoliageColorNames[i])}}));
+    EXPECT_EQ(tree_of(*scene).foliage, static_cast<FoliageColor>(i));
+  }
+}
+
 TEST(TreeTest, HasThePapers105536NodesByDefaultWhateverItsSpecies) {
   for (const std::string_view species : kTreeSpeciesNames) {
     EXPECT_EQ(node_count(tree_scene({{"species", std::string(species)}})->skeleton()), 105'536U);

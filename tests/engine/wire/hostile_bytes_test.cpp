@@ -155,6 +155,12 @@ TEST(HostileBytes, ClothsOutOfBoundsAreRefused) {
     EXPECT_EQ(kinds_with<GridSkeleton>(1, changes[i]).error(), WireError::kInconsistent) << i;
 }
 
+TEST(HostileBytes, AFoliageThatIsNotKnownIsGreen) {
+  const auto result = kinds_with<TreeSkeleton>(2, [](auto& s) { s.foliage = static_cast<FoliageColor>(3); });
+  ASSERT_TRUE(result.has_value()) << "a newer server may have more colours";
+  EXPECT_EQ(std::get<TreeSkeleton>(std::get<Scenes>(*result).scenes[2].skeleton).foliage, FoliageColor::kGreen);
+}
+
 TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
   ASSERT_TRUE(kinds_with<TreeSkeleton>(2, [](auto&) {}).has_value());
   const std::vector<std::function<void(TreeSkeleton&)>> changes{
@@ -254,8 +260,8 @@ TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
 
 TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
   const std::vector<std::function<void(Sensors&)>> changes{
-      [](auto& s) { s.sensors[0].link = 3; },
-      [](auto& s) { s.sensors[0].health = 3; },
+      [](auto& s) { s.sensors[0].link = static_cast<LinkState>(3); },
+      [](auto& s) { s.sensors[0].health = static_cast<SourceHealth>(3); },
       [](auto& s) { s.sensors[0].state = static_cast<SensorState>(kSensorStateNames.size()); },
       [](auto& s) { s.sensors[0].speed_m_s = std::nan(""); },
       [](auto& s) { s.sensors[0].age_s = -1.0; },

@@ -107,6 +107,7 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
 
   const auto& tree = std::get<TreeSkeleton>(got.scenes[2].skeleton);
   const TreeSkeleton sent_tree = samples::tree();
+  EXPECT_EQ(tree.foliage, FoliageColor::kAutumn);
   ASSERT_EQ(tree.levels.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const TreeLevel& a = sent_tree.levels[i];
@@ -235,8 +236,8 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   const SensorStatus& gauge = sensors.sensors[0];
   EXPECT_EQ(gauge.name, "roof");
   EXPECT_EQ(gauge.driver, "modbus");
-  EXPECT_EQ(gauge.link, 1);
-  EXPECT_EQ(gauge.health, 2);
+  EXPECT_EQ(gauge.link, LinkState::kConnected);
+  EXPECT_EQ(gauge.health, SourceHealth::kStale);
   EXPECT_EQ(gauge.detail, "answers again");
   EXPECT_EQ(gauge.speed_m_s, 0.0);
   EXPECT_EQ(gauge.direction_deg, 359.5);

@@ -113,6 +113,7 @@ inline TreeSkeleton tree() {
     here.is_leaves = here.is_turned_by_block = level == 2;
     tree.levels.push_back(std::move(here));
   }
+  tree.foliage = FoliageColor::kAutumn;
   return tree;
 }
 
@@ -269,8 +270,8 @@ inline wire::Sensors sensors() {
   wire::SensorStatus gauge;
   gauge.name = "roof";
   gauge.driver = "modbus";
-  gauge.link = 1;
-  gauge.health = 2;
+  gauge.link = LinkState::kConnected;
+  gauge.health = SourceHealth::kStale;
   gauge.detail = "answers again";
   gauge.speed_m_s = 0.0;
   gauge.direction_deg = 359.5;

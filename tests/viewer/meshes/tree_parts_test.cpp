@@ -38,7 +38,7 @@ TEST_F(TreePartsTest, FindTheJointThatTheyGrowFrom) {
   EXPECT_EQ(first_joint_at(tree_, tree_.levels.size()), all.size());
 
   for (std::size_t level = 0; level < tree_.levels.size(); ++level) {
-    for (const TreePart& part : tree_parts(tree_, level, Foliage::kGreen)) {
+    for (const TreePart& part : tree_parts(tree_, level)) {
       EXPECT_EQ(part.root_at < 0, level == 0);
       for (std::size_t axis = 0; axis < 3 && part.root_at >= 0; ++axis) {
         const auto at = static_cast<std::size_t>(part.root_at) + axis * kStrandsPerBlock;
@@ -50,7 +50,7 @@ TEST_F(TreePartsTest, FindTheJointThatTheyGrowFrom) {
 
 TEST_F(TreePartsTest, AreOneAStrandWithTheLevelsRadii) {
   for (std::size_t level = 0; level < tree_.levels.size(); ++level) {
-    const auto parts = tree_parts(tree_, level, Foliage::kGreen);
+    const auto parts = tree_parts(tree_, level);
     ASSERT_EQ(parts.size(), tree_.levels[level].strands.strand_count);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       EXPECT_EQ(parts[i].strand, i);
@@ -66,7 +66,7 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
   const TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
   ASSERT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
   const std::size_t links = tree_.levels[kLeafLevel].strands.links_per_strand;
-  const auto leaves = tree_parts(tree_, kLeafLevel, Foliage::kGreen);
+  const auto leaves = tree_parts(tree_, kLeafLevel);
   std::array<float, 3> middle_m{};
   for (const TreePart& leaf : leaves) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -87,12 +87,13 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
   EXPECT_GT(outward / static_cast<float>(leaves.size()), 0.1F);  // metres out of the middle, on average
 }
 
-TEST_F(TreePartsTest, AreGreenUnlessTheirNameSaysOtherwise) {
-  EXPECT_EQ(foliage_of("tree"), Foliage::kGreen);
-  EXPECT_EQ(foliage_of("the old sakura"), Foliage::kBlossom);
-  EXPECT_EQ(foliage_of("autumn-zelkova"), Foliage::kAutumn);
-  for (const TreePart& leaf : tree_parts(tree_, 3, Foliage::kGreen)) EXPECT_GT(leaf.tint[1], leaf.tint[0]);
-  for (const TreePart& leaf : tree_parts(tree_, 3, Foliage::kAutumn)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
+TEST_F(TreePartsTest, LeavesHaveTheColorsOfTheirFoliage) {
+  for (const TreePart& leaf : tree_parts(tree_, 3)) EXPECT_GT(leaf.tint[1], leaf.tint[0]) << "green";
+  TreeSkeleton tree = tree_;
+  tree.foliage = FoliageColor::kAutumn;
+  for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
+  tree.foliage = FoliageColor::kBlossom;
+  for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[2], 0.2F) << "pale pink";
 }
 
 TEST_F(TreePartsTest, HaveMoreRingsTheNearerTheyAre) {

@@ -30,6 +30,7 @@ std::vector<double> series_with(std::size_t size, Density&& density) {
   return {fft.samples().begin(), fft.samples().end()};
 }
 
+/// As published, and not by engine/wind/turbulence/von_karman.hpp, which is under test here.
 double von_karman(double f, double sigma_m_s, double time_scale_s) {
   const double x = f * time_scale_s;
   return 4.0 * sigma_m_s * sigma_m_s * time_scale_s / std::pow(1.0 + 70.8 * x * x, 5.0 / 6.0);

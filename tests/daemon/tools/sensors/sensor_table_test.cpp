@@ -12,20 +12,12 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(SensorTable, NamesTheCompassPoints) {
-  EXPECT_EQ(compass_point(0.0), "N");
-  EXPECT_EQ(compass_point(359.0), "N");
-  EXPECT_EQ(compass_point(90.0), "E");
-  EXPECT_EQ(compass_point(247.5), "WSW");
-  EXPECT_EQ(compass_point(-22.5), "NNW");
-}
-
 TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   wire::SensorStatus live;
   live.name = "roof";
   live.driver = "modbus";
-  live.link = 1;
-  live.health = 1;
+  live.link = LinkState::kConnected;
+  live.health = SourceHealth::kLive;
   live.state = SensorState::kLive;
   live.state_reason = "a reading every 0.5 s";
   live.detail = "answers at 10.0.0.5:502";
@@ -59,8 +51,8 @@ TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   wire::SensorStatus log;
   log.name = "storm";
   log.driver = "windlog";
-  log.link = 1;
-  log.health = 1;
+  log.link = LinkState::kConnected;
+  log.health = SourceHealth::kLive;
   log.replayed = true;
   log.state = SensorState::kReplayed;
   log.readings = 3;
@@ -113,7 +105,7 @@ TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
   wire::SensorStatus sensor;
   sensor.name = "a sensor with a name that is long";
   sensor.driver = "a driver with a long name";
-  sensor.health = 1;
+  sensor.health = SourceHealth::kLive;
   sensor.state = SensorState::kDisconnected;
   sensor.state_reason =
       "a reason of many words, which goes on and on and on, until it is longer than any line may be here";
@@ -147,7 +139,7 @@ TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
 TEST(SensorTable, AStaleSensorCannotBeTakenForALiveOne) {
   wire::SensorStatus stale;
   stale.name = "roof";
-  stale.health = 2;
+  stale.health = SourceHealth::kStale;
   stale.state = SensorState::kStale;
   stale.speed_m_s = 3.0;
   EXPECT_THAT(sensor_table({{stale}, {}, 0, 0}), HasSubstr("STALE"));

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi {
+
+/// How a source of readings does, seen from the estimator. The stream (pose.fbs, SensorHealth) has the same in the same
+/// order.
+enum class SourceHealth : std::uint8_t {
+  kSilent,  ///< has not spoken yet
+  kLive,
+  kStale,  ///< silent for longer than its own measured interval explains
+};
+inline constexpr std::size_t kSourceHealthCount = 3;
+
+struct SourceReport {
+  SourceHealth health = SourceHealth::kSilent;
+  double interval_s = 0.0;  ///< measured: the median of the last intervals; 0 before the second reading
+  double age_s = 0.0;       ///< of its last reading
+  std::optional<WindReading> last;
+};
+
+}  // namespace yuragi
