@@ -41,15 +41,15 @@ if(YURAGI_FUZZ)
 endif()
 
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
-# A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room. The rooms that run once an order, the
-# commands and tools, are optimised less: they compile sooner, and nobody waits for them.
+# A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room. Commands and tools, which run
+# once an order, and simulators, which wait for others, are optimised less: they compile sooner.
 function(yuragi_room folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   string(REPLACE "/" "_" name "yuragi_${folder}")
   if(ARG_SOURCES)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC yuragi_flags ${ARG_LINK})
-    if(folder MATCHES "^daemon/(commands|tools)")
+    if(folder MATCHES "^daemon/(commands|tools)|^simulators(/modbus|/text|/usb)?$")
       target_compile_options(${name} PRIVATE -O1)
     endif()
   else()
