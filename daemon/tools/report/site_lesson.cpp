@@ -42,11 +42,11 @@ void SiteLesson::add(double time_s, double speed_m_s, const std::optional<WindVe
   quick_.forget(interval_s_);
   quick_.take(heard, ahead, divisor_m_s, wind.has_value());
   teacher_.observe({.wind = heard,
-                 .ahead = ahead,
-                 .speed_m_s = divisor_m_s,
-                 .interval_s = interval_s_,
-                 .tells_across = wind.has_value()},
-                quick_, site_);
+                    .ahead = ahead,
+                    .speed_m_s = divisor_m_s,
+                    .interval_s = interval_s_,
+                    .tells_across = wind.has_value()},
+                   quick_, site_);
 }
 
 std::optional<SiteNumbers> SiteLesson::numbers() const {
