@@ -20,8 +20,9 @@ config/setup.sh
 log=$project/build/demo.log
 mkdir -p build
 
-# Shows ninja's lines "@ DONE ALL SECONDS ..." as one line that says how long it will go on; without a terminal, as a line now and
-# then. In a build from nothing later steps are the larger ones: with a part f of them, 0.2 f + 0.8 f^2 of the work is done (measured).
+# Shows ninja's lines "@ DONE ALL SECONDS ..." as one line that says how long it will go on; without a terminal, as a line
+# now and then. In a build from nothing the later steps are the larger ones: with a part f of them, 0.2 f + 0.8 f^2 of the
+# work is done (measured).
 show_progress() {
   local mark done all elapsed_s line left shown_s=-30
   while read -r mark done all elapsed_s line; do
@@ -30,7 +31,8 @@ show_progress() {
     left=$(awk -v done="$done" -v all="$all" -v s="$elapsed_s" 'BEGIN {
       f = done / all
       left_s = s / (0.2 * f + 0.8 * f * f) - s
-      if (s >= 10 && all > 50) printf left_s < 90 ? ", about %d s left" : ", about %.0f minutes left", left_s < 90 ? left_s : left_s / 60 }')
+      if (s < 10 || all < 50) exit
+      printf left_s < 90 ? ", about %d s left" : ", about %.0f minutes left", left_s < 90 ? left_s : left_s / 60 }')
     line="demo: building, step $done of $all$left"
     if [ -t 1 ]; then
       printf '\r\033[K%s' "$line"
@@ -44,7 +46,8 @@ show_progress() {
 
 build() {
   cmake --preset release >"$log" 2>&1 &&
-    NINJA_STATUS='@ %f %t %e ' cmake --build --preset release --target yuragi yuragi-sim yuragi-viewer 2>&1 | tee -a "$log" | show_progress
+    NINJA_STATUS='@ %f %t %e ' cmake --build --preset release --target yuragi yuragi-sim yuragi-viewer 2>&1 |
+    tee -a "$log" | show_progress
 }
 echo "demo: building; what it says goes to $log"
 began=$SECONDS

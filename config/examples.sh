@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes build/examples: the recordings, the table, the log and the configurations that README.md names. The winds are made up by the
-# wind model, an hour each, the same ones every time. What is already there stays as it is.
+# Makes build/examples: the recordings, the table, the log and the configurations that README.md names. The winds are made up
+# by the wind model, an hour each, the same ones every time. What is already there stays as it is.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 bin=$PWD/build/release/bin

@@ -3,10 +3,11 @@
 
     readme_test.py PROJECT BIN
 
-PROJECT is the clone, BIN the folder of its programs. The lines are typed in a copy of the clone's outside: config, build/release/bin
-and what config/examples.sh makes. `source` and `cd` begin each terminal. A line that ends by itself must end with 0. One that runs
-on must say something that RUNS_ON knows; it is ended by Ctrl-C, `yuragi run` and `yuragi replay` when the next of them begins,
-so that the lines between find a daemon. Lines that NOT_RUN knows are counted only. TOML is given to `yuragi check-config`.
+PROJECT is the clone, BIN the folder of its programs. The lines are typed in a temporary folder that holds what a clone does after
+the demo: config, build/release/bin and what config/examples.sh makes. `source` and `cd` begin each terminal. A line that ends by
+itself must end with 0. One that runs on must say something that RUNS_ON knows; it is ended by Ctrl-C, `yuragi run` and `yuragi
+replay` only when the next of them begins, so that the lines between find a daemon. Lines that NOT_RUN knows are counted and not
+run. TOML is given to `yuragi check-config`.
 """
 import collections
 import fcntl
