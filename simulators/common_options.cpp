@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "engine/base/duration.hpp"
+
 namespace yuragi::sim {
 
 void CommonOptions::add_to(CLI::App& command) {
@@ -26,7 +28,10 @@ void CommonOptions::add_to(CLI::App& command) {
   command.add_option("--random-fault-duration", random_fault_s, "how long each of them lasts, s")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
-  command.add_option("--duration", run.duration_s, "end after so many seconds")->check(CLI::NonNegativeNumber);
+  command.add_option("--duration", run.duration_s, "end after this time: 90 (seconds), 5min, 2h")
+      ->type_name("TIME")
+      ->transform(CLI::Validator(duration_to_seconds, ""))
+      ->check(CLI::NonNegativeNumber);
   command.add_flag("--verbose", run.verbose, "a status line a second even where nobody watches");
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/base/version.hpp"
+#include "engine/base/word_suggestion.hpp"
 #include "simulators/commands.hpp"
 
 namespace {
@@ -28,6 +29,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();  // of a program that was launched
   } catch (const CLI::ParseError& error) {
+    if (const std::string text = yuragi::unexpected_arguments_of(app); error.get_exit_code() != 0 && !text.empty()) {
+      std::fprintf(stderr, "yuragi-sim: %s\nRun with --help for more information.\n", text.c_str());
+      return kExitUsage;
+    }
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
 }

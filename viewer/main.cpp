@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "engine/base/version.hpp"
+#include "engine/base/word_suggestion.hpp"
 #include "viewer/viewer.hpp"
 #include "viewer/viewer_exit.hpp"
 
@@ -20,6 +21,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const std::string text = unexpected_arguments_of(app); error.get_exit_code() != 0 && !text.empty()) {
+      std::fprintf(stderr, "yuragi-viewer: %s\nRun with --help for more information.\n", text.c_str());
+      return EX_USAGE;
+    }
     return app.exit(error) == 0 ? 0 : EX_USAGE;
   }
 

@@ -2,6 +2,9 @@
 
 #include <charconv>
 
+#include "engine/base/duration.hpp"
+#include "viewer/picture_file.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -19,6 +22,12 @@ std::string read_size(const std::string& text, ViewerOptions& options) {
     }
   }
   return "'" + text + "' is not a size: give WIDTHxHEIGHT in pixels, such as 1920x1080";
+}
+
+/// What is wrong with the name of a picture file, or an empty text.
+std::string check_picture_name(const std::string& name) {
+  if (picture_format(name)) return {};
+  return "'" + name + "' is not the name of a picture that can be written: it has to end in .png, .jpg or .jpeg";
 }
 
 }  // namespace
@@ -47,20 +56,25 @@ void add_options(CLI::App& app, ViewerOptions& options) {
 
   const std::string picture = "Write a picture instead of opening a window";
   auto* const screenshot =
-      app.add_option("--screenshot", options.screenshot, "Write what there is to see to FILE.png, and end")
+      app.add_option("--screenshot", options.screenshot, "Write a picture to FILE.png or FILE.jpg, and end")
+          ->check(check_picture_name)
           ->group(picture);
   app.add_option("--frames", options.frames, "Take the picture after this many were drawn with a pose from the stream")
       ->needs(screenshot)
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000))
       ->group(picture);
-  app.add_option("--at", options.at_s, "Take it this many seconds after the first pose came")
+  app.add_option("--at", options.at_s, "Take it this long after the first pose came: 90 (seconds), 5min")
       ->needs(screenshot)
+      ->type_name("TIME")
+      ->transform(CLI::Validator(duration_to_seconds, ""))
       ->check(CLI::Range(0.0, 1e6))
       ->group(picture);
-  app.add_option("--wait", options.wait_s, "Give up when no pose has come after so many seconds")
+  app.add_option("--wait", options.wait_s, "Give up when no pose has come after this time: 90 (seconds), 5min")
       ->needs(screenshot)
       ->capture_default_str()
+      ->type_name("TIME")
+      ->transform(CLI::Validator(duration_to_seconds, ""))
       ->check(CLI::Range(0.0, 1e6))
       ->group(picture);
 

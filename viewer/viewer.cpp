@@ -94,7 +94,7 @@ class Viewer::Show {
       draw(size);
       ++drawn;
       if (drawn >= (options_.at_s ? kOverlayPictures : options_.frames)) {
-        write_png(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
+        write_picture(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
         return;
       }
     }

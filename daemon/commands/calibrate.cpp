@@ -2,6 +2,7 @@
 #include "daemon/commands/calibrate.hpp"
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/run_options.hpp"
 
 namespace yuragi {
 
@@ -46,8 +47,11 @@ void add_calibration_request(CLI::App& command, CalibrationRequest& request, con
       ->type_name("FILE");
   command.add_option("--sensor", request.sensor, "which one; may be left out where there is only one")
       ->type_name("NAME");
-  command.add_option("--for", request.duration_s, "how long to listen (default " + default_duration + ")")
-      ->type_name("SECONDS")
+  command
+      .add_option("--for", request.duration_s,
+                  "how long to listen: 90 (seconds), 20min (default " + default_duration + ")")
+      ->type_name("TIME")
+      ->transform(duration_in_seconds())
       ->check(CLI::Range(1.0, 86400.0));
   command.add_option("--recording", request.recording, "learn from this recording, not from live readings")
       ->type_name("FILE.windlog");
@@ -55,8 +59,7 @@ void add_calibration_request(CLI::App& command, CalibrationRequest& request, con
       ->type_name("FROM,TO")
       ->expected(1)
       ->take_all();
-  command.add_option("--listen", request.listen, "where the daemon listens, instead of the configured address")
-      ->type_name("HOST:PORT");
+  add_connect(command, request.connect);
   command.add_flag("--yes,-y", request.takes_yes, "write without asking, and wait for nobody");
   command.add_flag("--dry-run", request.is_dry_run, "show what would be written, and write nothing");
 }

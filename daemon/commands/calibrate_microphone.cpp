@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "drivers/microphone/microphone_calibration.hpp"
 
 namespace yuragi {

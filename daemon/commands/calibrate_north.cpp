@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 
 namespace yuragi {
 namespace {

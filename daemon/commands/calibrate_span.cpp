@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 
 namespace yuragi {

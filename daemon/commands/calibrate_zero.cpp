@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 
 namespace yuragi {
 namespace {

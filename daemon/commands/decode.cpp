@@ -13,7 +13,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/decode_options.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/tools/decode/decode_formats.hpp"
 #include "daemon/tools/decode/unit_reader.hpp"

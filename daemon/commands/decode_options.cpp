@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "drivers/text/line_sensor.hpp"
 
 namespace yuragi {

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_export.hpp"
 #include "drivers/windlog/log_moment.hpp"
@@ -83,7 +83,7 @@ void run_export(const ExportOptions& options) {
     if (const auto copied = reader->copy_to(output.working_path()); !copied) {
       throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
     }
-    output.commit();
+    output.commit().value();
     fmt::print(stderr, "{}: a copy of {}\n", options.output, options.input);
     return;
   }
@@ -93,7 +93,7 @@ void run_export(const ExportOptions& options) {
   if (!file)
     throw ExitError(kExitCannotCreate, options.output + ": cannot be created; may this user write to its folder?");
   export_as_csv(*reader, options, file.get());
-  output.commit();
+  output.commit().value();
 }
 
 void add_export(CLI::App& app) {

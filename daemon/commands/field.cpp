@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/field_frames.hpp"
 #include "daemon/tools/offline/npy.hpp"
@@ -235,7 +235,7 @@ void write_text(const std::filesystem::path& file, const std::string& text, bool
 }
 
 void run_field(FieldOptions options) {
-  if (!options.plot.empty()) check_plot_name(options.plot);
+  if (!options.plot.empty()) check_plot_name(options.plot).value();
   options.wind.evolves = !options.is_frozen;
   if (options.stress && options.wind.dims != 3) {
     throw ExitError(kExitUsage,
@@ -287,7 +287,7 @@ void run_field(FieldOptions options) {
                            {"seed", config.seed}};
     title = fmt::format("Wind over the ground, {:g} s after the start of {}", options.frames.first_s,
                         options.recording->filename().string());
-    make_recorded_frames(*options.recording, options.playback, config, grid, options.frames, use);
+    make_recorded_frames(*options.recording, options.playback, config, grid, options.frames, use).value();
   } else {
     options.wind.samples = tile_of(options, grid);
     options.wind.seed = options.seed.value_or(options.wind.seed);
@@ -321,7 +321,7 @@ void run_field(FieldOptions options) {
   fmt::print("{}: float32 [frame {}, component {}, z {}, y {}, x {}], m/s; {} says the rest\n", options.output.string(),
              shape[0], shape[1], shape[2], shape[3], shape[4], beside.string());
   if (options.plot.empty()) return;
-  draw_map(options.plot, map_of(first, grid, title));
+  draw_map(options.plot, map_of(first, grid, title)).value();
   fmt::print("{}: speed and wind of the first frame, seen from above\n", options.plot);
 }
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
@@ -146,7 +146,7 @@ void run_import(const ImportOptions& options) {
     tell(options, *report);
     throw ExitError(kExitDataError, options.input + ": not one row is a reading; nothing was written");
   }
-  output.commit();
+  output.commit().value();
   tell(options, *report);
 }
 

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/sensing/system_clock.hpp"
-#include "daemon/settings/exit.hpp"
 #include "drivers/microphone/microphone_worker.hpp"
 
 namespace yuragi {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/tools/offline/npy.hpp"
 #include "engine/noise/spectral_noise.hpp"
 

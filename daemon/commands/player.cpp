@@ -11,7 +11,7 @@
 
 #include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 
 namespace yuragi {
 namespace {

@@ -6,10 +6,11 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/service/service.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
+#include "drivers/windlog/windlog_playback.hpp"
 
 namespace yuragi {
 namespace {
@@ -56,7 +57,7 @@ SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
 
 void replay_at_full_speed(const ReplayOptions& options) {
   if (options.playback.loop && !options.run.duration_s) {
-    throw ExitError(kExitUsage, "--rate max with --loop would never end; add --duration SECONDS (of log time)");
+    throw ExitError(kExitUsage, "--rate max with --loop would never end; add --duration TIME (of the recording)");
   }
   if (options.at_time_of_day || options.is_paused) {
     throw ExitError(kExitUsage, "--rate max has no clock: it takes neither --same-time-of-day nor --paused");
@@ -67,7 +68,8 @@ void replay_at_full_speed(const ReplayOptions& options) {
   };
   const LockstepResult result =
       replay_in_lockstep(options.run.config(), options.file, {.playback = options.playback, .seam_s = options.seam_s},
-                         options.run.duration_s.value_or(0.0), progress);
+                         options.run.duration_s.value_or(0.0), progress)
+          .value();
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(
       "readings   {} in {:.1f} s of log time\n"
@@ -81,9 +83,7 @@ void replay_at_full_speed(const ReplayOptions& options) {
 
 void replay(const ReplayOptions& options) {
   options.run.set_up_log();
-  if (!std::filesystem::exists(options.file)) {
-    throw ExitError(kExitNoInput, options.file.string() + ": there is no such recording");
-  }
+  WindlogPlayback::open(options.file, options.playback).value();  // else the daemon would wait for it
   if (options.rate == "max") return replay_at_full_speed(options);
 
   Config config = options.run.config();
@@ -116,7 +116,8 @@ void add_replay(CLI::App& app) {
       ->add_option(
           "--seam", options->seam_s,
           "how long the end of a loop, or a place left by a seek, fades into the new place (default 5; 0: not at all)")
-      ->type_name("SECONDS")
+      ->type_name("TIME")
+      ->transform(duration_in_seconds())
       ->check(CLI::Range(0.0, 600.0));
   command->add_flag("--same-time-of-day", options->at_time_of_day,
                     "begin where the recording's local time of day is that of now");

@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/settings/site_octaves.hpp"
 #include "daemon/settings/wind_settings.hpp"
@@ -149,14 +149,14 @@ void run_report(const ReportOptions& options) {
   std::vector<SensorFigures> figures;
   for (const SensorNumbers& sensor : numbers->sensors) {
     told.tell(fmt::format("figures {} of {}", figures.size() + 1, numbers->sensors.size()));
-    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path(), figures.size()));
+    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path(), figures.size()).value());
   }
   write_text(page_file, options.output, report_page(*numbers, figures, source));
   if (json_file) {
     write_text(*json_file, options.json, report_json(*numbers, source));
-    json_file->commit();
+    json_file->commit().value();
   }
-  page_file.commit();
+  page_file.commit().value();
   fmt::print(stderr, "{}: {} readings of {} {}\n", options.output, numbers->readings, numbers->sensors.size(),
              numbers->sensors.size() == 1 ? "sensor" : "sensors");
   for (const SensorNumbers& sensor : numbers->sensors) tell_of_site(sensor);

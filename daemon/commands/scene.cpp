@@ -6,7 +6,8 @@
 
 #include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
+#include "daemon/commands/run_options.hpp"
 
 namespace yuragi {
 namespace {
@@ -53,8 +54,9 @@ void add_scene(CLI::App& app) {
     command->add_option("scene", options->control.scene, "as the configuration calls it")
         ->required()
         ->type_name("NAME");
-    command->add_option("--fade", options->control.over_s, "how long it takes, 0 to 3600 (default 2)")
-        ->type_name("SECONDS")
+    command->add_option("--fade", options->control.over_s, "how long it takes: 5 (seconds), 2min; 0 to 1h (default 2)")
+        ->type_name("TIME")
+        ->transform(duration_in_seconds())
         ->check(CLI::Range(0.0, wire::kMaxFade_s));
     command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
     command->callback([options] { change_scene(*options); });

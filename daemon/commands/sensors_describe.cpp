@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/sensors.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 
 namespace yuragi {

@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/sensors.hpp"
-#include "daemon/settings/exit.hpp"
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_probe.hpp"
 

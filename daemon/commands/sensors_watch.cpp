@@ -8,11 +8,11 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/sensors.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/system_clock.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/stream_client.hpp"
@@ -120,13 +120,8 @@ void watch_daemon(StreamClient client, const std::string& address, const Deadlin
   client.subscribe(screen.wish());
   while (!deadline.is_over()) {
     const auto message = client.receive(kSilenceTimeout);
-    if (!message) {
-      throw ExitError(kExitUnavailable,
-                      fmt::format("the daemon at {} has gone ({})", address, name_of(message.error())));
-    }
-    if (const auto* hello = std::get_if<wire::Hello>(&*message); hello != nullptr && hello->refused) {
-      throw ExitError(kExitUnavailable, fmt::format("the daemon at {} lets nobody in: {}", address, *hello->refused));
-    }
+    if (!message) throw FailureError(connection_lost(address, message.error()));
+    if (const auto refusal = refusal_in(*message, address)) throw FailureError(*refusal);
     const auto* sensors = std::get_if<wire::Sensors>(&*message);
     if (sensors != nullptr && !screen.show_sensors(*sensors, source)) return;
     const auto* trace = std::get_if<wire::RawTrace>(&*message);
@@ -211,7 +206,7 @@ void add_sensors_watch(CLI::App& sensors) {
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();
-  options->run.add_to(*command);
+  options->run.add_to_client(*command);
   command->add_flag("--once", options->once, "print one table, or one message, and end");
   command->add_flag("--raw", options->raw, "the messages to and from the devices, as they come");
   command->add_option("sensor", options->sensor, "with --raw: of this one only")->option_text("[SENSOR]");

@@ -16,9 +16,9 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/settings/shaping_config.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
@@ -223,12 +223,12 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
     stand_at(settings.sources[0], parse_place("--sensor-place", *options.sensor_place), options.lead_m);
   }
   std::vector<WindlogPlayback> playbacks;
-  playbacks.emplace_back(options.file, options.playback);
-  if (!options.also.empty()) settings.sources[0].priority = 1;  // They share the word.
+  playbacks.push_back(WindlogPlayback::open(options.file, options.playback).value());
+  if (!options.also.empty()) settings.sources[0].priority = 1;  // They make the wind together.
   for (const std::string& text : options.also) {
     const PlacedRecording other = parse_also(text);
     stand_at(settings.sources.emplace_back(settings.sources[0]), other.place, options.lead_m);
-    playbacks.emplace_back(existing(other.file), options.playback);
+    playbacks.push_back(WindlogPlayback::open(other.file, options.playback).value());
   }
   std::vector<GroundPlace> places;
   for (const std::string& text : options.places) places.push_back(parse_place("--place", text));
@@ -241,13 +241,13 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto told_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
-  const OfflineWindResult result =
-      run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
-        DrivingWind wind{state, estimator.ground(), estimator.stroke()};
-        if (options.shaped) shaping.shape(wind, true);
-        table.add(time_s, wind.state, at_places.read(wind));
-        if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
-      });
+  const auto run = run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
+    DrivingWind wind{state, estimator.ground(), estimator.stroke()};
+    if (options.shaped) shaping.shape(wind, true);
+    table.add(time_s, wind.state, at_places.read(wind));
+    if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
+  });
+  const OfflineWindResult& result = run.value();
   table.end(options.output);
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(stderr, "{}: {} states of {:.1f} s, from {} readings{}\n",
@@ -271,7 +271,7 @@ void run_wind(WindOptions options) {
     throw ExitError(kExitCannotCreate, options.output + ": cannot be created; may this user write to its folder?");
   }
   write_wind(options, config, file.get());
-  output.commit();
+  output.commit().value();
 }
 
 void add_wind(CLI::App& app) {

@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "daemon/settings/exit.hpp"
-
 namespace yuragi {
 namespace {
 
@@ -20,7 +18,7 @@ Recorder::Recorder(const std::filesystem::path& file, RecordingInfo info, Report
     : file_(file), info_(std::move(info)), report_(std::move(report)), ring_(kRingCapacity) {
   auto opened = open_session(info_.started);
   if (opened) opened = writer_->commit();
-  if (!opened) throw ExitError(kExitCannotCreate, "cannot record: " + opened.error().message);
+  if (!opened) throw FailureError({"cannot record: " + opened.error().message, FailureKind::kCannotCreate});
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 

@@ -27,13 +27,15 @@ SensorConfig fallback_sensor(const Config& config) {
 }  // namespace
 
 std::string check_fallback(const Config& config) {
-  try {
-    WindlogCursor cursor(config.wind.text("fallback_recording"), "");
-    return cursor.sensor_of(cursor.next().value()).name;
-  } catch (const std::exception& error) {
+  const auto refuse = [&config](const Failure& failure) {
     const std::string place = config.fallback_origin.empty() ? "" : config.fallback_origin + ": ";
-    throw ConfigError(place + "wind.fallback_recording: " + error.what());
-  }
+    throw ConfigError(place + "wind.fallback_recording: " + failure.message);
+  };
+  auto cursor = WindlogCursor::open(config.wind.text("fallback_recording"), "");
+  if (!cursor) refuse(cursor.error());
+  const auto first = cursor->next();
+  if (!first) refuse(first.error());
+  return cursor->sensor_of(first->value()).name;
 }
 
 FallbackRecording::FallbackRecording(const Config& config, const Clock& clock) : clock_(clock) {

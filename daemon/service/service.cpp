@@ -56,6 +56,7 @@ class Service::Io {
 
   void run() {
     spdlog::info("listening on {}", stream_.local_endpoint());
+    if (recorder_) spdlog::info("recording to {}", options_.record->string());
     if (animation_) spdlog::info("{} nodes at {} Hz", animation_->node_count(), rate_hz_);
 
     signals_.async_wait([this](const boost::system::error_code& error, int signal) {
@@ -206,7 +207,6 @@ std::unique_ptr<Recorder> Service::Io::make_recorder(const Config& config, const
   for (const SensorConfig& sensor : config.sensors) {
     info.sensors.push_back({sensor.name, std::string(sensor.driver->name), to_toml(sensor.values)});
   }
-  spdlog::info("recording into {}", file.string());
   return std::make_unique<Recorder>(file, std::move(info),
                                     [](std::string_view news) { spdlog::warn("recording: {}", news); });
 }

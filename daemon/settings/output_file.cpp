@@ -7,26 +7,32 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
-
 namespace yuragi {
+
+namespace {
+
+FailureError cannot_create(const std::string& message) {
+  return FailureError({message, FailureKind::kCannotCreate});
+}
+
+}  // namespace
 
 OutputFile::OutputFile(std::filesystem::path file, bool force)
     : file_(std::move(file)), working_path_(file_.string() + ".part-" + std::to_string(getpid())) {
   std::error_code error;
   const std::string name = file_.string();
-  if (std::filesystem::is_directory(file_, error)) throw ExitError(kExitCannotCreate, name + ": is a folder");
+  if (std::filesystem::is_directory(file_, error)) throw cannot_create(name + ": is a folder");
   if (!force && std::filesystem::exists(file_, error)) {
-    throw ExitError(kExitCannotCreate, name + ": is there already; --force overwrites it");
+    throw cannot_create(name + ": exists already; --force overwrites it");
   }
   // SQLite would take a left -wal for the new file's.
   if (std::filesystem::exists(name + "-wal", error)) {
-    throw ExitError(kExitCannotCreate, name + ": is being recorded, or the recorder was killed (" + name +
-                                           "-wal is there); name another file");
+    throw cannot_create(name + ": is being recorded, or the recorder was killed (" + name +
+                        "-wal exists); name another file");
   }
   const auto folder = file_.parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
-    throw ExitError(kExitCannotCreate, folder.string() + ": there is no such folder");
+    throw cannot_create(folder.string() + ": there is no such folder");
   }
 }
 
@@ -37,7 +43,7 @@ OutputFile::~OutputFile() {
   }
 }
 
-void OutputFile::commit() {
+Result<void, Failure> OutputFile::commit() {
   // Its content reaches the disk before its name does.
   if (const int descriptor = open(working_path_.c_str(), O_RDONLY | O_CLOEXEC); descriptor >= 0) {
     fsync(descriptor);
@@ -45,7 +51,8 @@ void OutputFile::commit() {
   }
   std::error_code error;
   std::filesystem::rename(working_path_, file_, error);
-  if (error) throw ExitError(kExitCannotCreate, file_.string() + ": " + error.message());
+  if (error) return Failure{file_.string() + ": " + error.message(), FailureKind::kCannotCreate};
+  return {};
 }
 
 }  // namespace yuragi

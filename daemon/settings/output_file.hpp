@@ -2,14 +2,16 @@
 
 #include <filesystem>
 
+#include "engine/base/result.hpp"
+
 namespace yuragi {
 
 /// A file that is there as a whole or not at all: it is written under another name beside its own, and takes its own
 /// name with commit(). Without that it is removed.
 class OutputFile {
  public:
-  /// Throws ExitError where the file is there already and `force` is false, where it is a recording that somebody is
-  /// writing (or was, when it was killed), or where its folder is not there.
+  /// Throws FailureError (kCannotCreate) where the file exists already and `force` is false, where it is a recording
+  /// that is being written (or was, when its recorder was killed), or where its folder does not exist.
   OutputFile(std::filesystem::path file, bool force);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -18,8 +20,8 @@ class OutputFile {
   /// Where to write.
   const std::filesystem::path& working_path() const { return working_path_; }
 
-  /// Gives the file its name. Throws ExitError.
-  void commit();
+  /// Gives the file its name, or says why that failed.
+  Result<void, Failure> commit();
 
  private:
   std::filesystem::path file_;

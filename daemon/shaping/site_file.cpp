@@ -29,8 +29,8 @@ Failure write_site_file(const std::filesystem::path& file, const SiteMemory& mem
         << '\n';
     out.close();
     if (!out) return {file.string() + ": could not be written; is there room, and may this user write there?"};
-    output.commit();
-    return {};
+    const auto committed = output.commit();
+    return committed ? Failure{} : committed.error();
   } catch (const std::exception& error) {
     return {error.what()};
   }

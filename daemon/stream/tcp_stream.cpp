@@ -12,8 +12,8 @@
 #include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
-#include "daemon/settings/exit.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi {
 namespace {
@@ -43,7 +43,7 @@ bool is_of_this_machine(const asio::ip::address& address) {
 /// Opens the listening socket, or says what to do instead.
 tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
   const auto address = parse_address(listen);
-  if (!address) throw ExitError(kExitUnavailable, "cannot listen: " + address.error().message);
+  if (!address) throw FailureError({"cannot listen: " + address.error().message, FailureKind::kUnavailable});
   try {
     // SO_REUSEADDR, which this constructor sets, lets a restarted daemon have its port back at once.
     tcp::resolver resolver(io);
@@ -51,11 +51,11 @@ tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
     return {io, found.begin()->endpoint()};
   } catch (const boost::system::system_error& error) {
     const bool in_use = error.code() == asio::error::address_in_use;
-    throw ExitError(
-        kExitUnavailable,
-        "cannot listen on " + std::string(listen) + ": " + error.code().message() +
-            (in_use ? ". Another program listens there, perhaps another Yuragi: end it, or choose another port."
-                    : ". Choose an address of this machine, and a port above 1023."));
+    throw FailureError(
+        {"cannot listen on " + std::string(listen) + ": " + error.code().message() +
+             (in_use ? ". Another program listens there, perhaps another Yuragi: end it, or choose another port."
+                     : ". Choose an address of this machine, and a port above 1023."),
+         FailureKind::kUnavailable});
   }
 }
 

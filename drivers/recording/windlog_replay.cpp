@@ -70,22 +70,19 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
 
   MonoTime poll(const Clock& clock, SensorSink& sink) override {
     const Instant now = clock.now();
-    MonoTime next = now.mono;
-    try {
-      if (!player_) player_.emplace(file_, options_, now);
-      carry_out_orders(now);
-      next = player_->play(now, [&sink](const WindReading& reading) { sink.reading(reading); });
+    auto next = play(now, sink);
+    if (next) {
       back_off_ = Nanoseconds{0};
       tell(sink);
-    } catch (const std::exception& error) {
+    } else {
       // The player, if there is one, keeps its place.
-      sink.link(LinkState::kConnecting, error.what());
+      sink.link(LinkState::kConnecting, next.error().message);
       told_.reset();
       back_off_ = back_off_ == Nanoseconds{0} ? kFirstBackOff : std::min(2 * back_off_, kMaxBackOff);
       next = now.mono + back_off_;
     }
     publish_report(now.mono);
-    return next;
+    return *next;
   }
 
   RecordingPlayer* player() noexcept override { return this; }
@@ -106,6 +103,17 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   /// What the link tells about.
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
+  /// Plays what is due; answers when the next reading is.
+  Result<MonoTime, Failure> play(const Instant& now, SensorSink& sink) {
+    if (!player_) {
+      auto opened = WindlogPlayer::open(file_, options_, now);
+      if (!opened) return opened.error();
+      player_.emplace(std::move(*opened));
+    }
+    carry_out_orders(now);
+    return player_->play(now, [&sink](const WindReading& reading) { sink.reading(reading); });
+  }
+
   void carry_out_orders(const Instant& now) {
     std::vector<PlayerOrder> orders;
     {
@@ -113,31 +121,30 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
       orders.swap(waiting_);
     }
     for (const PlayerOrder& order : orders) {
-      std::string refusal;
-      try {
-        carry_out(order, now);
-      } catch (const std::exception& error) {
-        refusal = error.what();
-      }
+      const auto done = carry_out(order, now);
       const std::lock_guard lock(mutex_);
-      report_.refusal = std::move(refusal);
+      report_.refusal = done ? std::string{} : done.error().message;
       ++report_.orders_done;
     }
   }
 
-  void carry_out(const PlayerOrder& order, const Instant& now) {
+  Result<void, Failure> carry_out(const PlayerOrder& order, const Instant& now) {
     switch (order.kind) {
       case PlayerOrder::Kind::kPause:
-        return player_->pause(now);
+        player_->pause(now);
+        break;
       case PlayerOrder::Kind::kResume:
-        return player_->resume(now);
+        player_->resume(now);
+        break;
       case PlayerOrder::Kind::kStep:
         return player_->step(now, order.count);
       case PlayerOrder::Kind::kSeek:
         return player_->seek(now, order.place);
       case PlayerOrder::Kind::kRate:
-        return player_->set_rate(now, order.rate);
+        player_->set_rate(now, order.rate);
+        break;
     }
+    return {};
   }
 
   /// Tells the link when what it does has changed.

@@ -16,7 +16,7 @@ constexpr std::string_view kHelp =
 
 /// A moment in ISO 8601 by SQLite's own date functions, to the millisecond.
 Result<UtcTime, Failure> parse_moment(std::string_view text) {
-  const Failure refusal{"\"" + std::string(text) + "\" is no time" + std::string(kHelp)};
+  const Failure refusal{"\"" + std::string(text) + "\" is not a time" + std::string(kHelp), FailureKind::kUsage};
   // SQLite would take "now" and day numbers too; a date has its first dash here.
   if (text.size() < 10 || text[4] != '-') return refusal;
   auto calendar = sqlite::Database::open(":memory:", sqlite::Access::kCalculator);
@@ -40,7 +40,7 @@ Result<LogMoment, Failure> parse_log_moment(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), from_s);
   if (error == std::errc{} && end == text.data() + text.size()) {
     if (!(from_s >= 0.0) || from_s > seconds(Nanoseconds(windlog::kMaxTime_ns))) {
-      return Failure{"\"" + std::string(text) + "\" is not in a recording" + std::string(kHelp)};
+      return Failure{"\"" + std::string(text) + "\" is not in a recording" + std::string(kHelp), FailureKind::kUsage};
     }
     return LogMoment(from_seconds(from_s));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -36,6 +37,27 @@ bool is_absent_or_empty(const std::filesystem::path& file) {
   return error || size == 0;
 }
 
+/// What a file is that was given in place of a recording; empty where it begins as a database does, or is empty.
+std::string foreign_kind(const std::filesystem::path& file) {
+  constexpr std::string_view kMagic = "SQLite format 3";
+  std::array<char, 512> block{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(block.data(), block.size());
+  const std::string_view begin(block.data(), static_cast<std::size_t>(in.gcount()));
+  if (begin.empty() || begin.starts_with(kMagic)) return "";
+  const auto is_control = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == 0x7f || (byte < 0x20 && c != '\t' && c != '\r' && c != '\n');
+  };
+  if (std::ranges::any_of(begin, is_control)) return "is not a Yuragi recording";
+  const std::string_view first_line = begin.substr(0, begin.find('\n'));
+  if (file.extension() != ".csv" && first_line.find_first_of(",;\t") == std::string_view::npos) {
+    return "is a text file, not a Yuragi recording";
+  }
+  const std::string made = std::filesystem::path(file).replace_extension(".windlog").string();
+  return "is a CSV file, not a recording: import it with `yuragi import " + file.string() + " -o " + made + "`";
+}
+
 /// The time of a session's first or last reading.
 Result<std::optional<Instant>, Failure> edge_of(sqlite::Database& database, std::int64_t session,
                                                 std::string_view order) {
@@ -62,8 +84,10 @@ Result<std::optional<Instant>, Failure> edge_of(sqlite::Database& database, std:
 Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return Failure{file.string() + ": there is no such recording"};
-  if (!std::filesystem::is_regular_file(status)) return Failure{file.string() + ": is not a file"};
+  if (!std::filesystem::exists(status))
+    return Failure{file.string() + ": there is no such recording", FailureKind::kNoInput};
+  if (!std::filesystem::is_regular_file(status))
+    return Failure{file.string() + ": is not a file", FailureKind::kBadData};
 
   auto reader = open_as(file, sqlite::Access::kReadOnly);
   if (reader) return reader;
@@ -72,7 +96,10 @@ Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& 
   if (is_absent_or_empty(wal_of(file))) {
     if (auto frozen = open_as(file, sqlite::Access::kReadFrozen)) return frozen;
   }
-  return reader.error();
+  if (const std::string kind = foreign_kind(file); !kind.empty()) {
+    return Failure{file.string() + ": " + kind, FailureKind::kBadData};
+  }
+  return Failure{reader.error().message, FailureKind::kBadData};
 }
 
 Result<WindlogReader, Failure> WindlogReader::open_as(const std::filesystem::path& file, sqlite::Access access) {
@@ -103,7 +130,7 @@ Result<void, Failure> WindlogReader::check_format() {
     }
     return application.error();
   }
-  if (*application != windlog::kApplicationId) return Failure{name + ": is no Yuragi recording"};
+  if (*application != windlog::kApplicationId) return Failure{name + ": is not a Yuragi recording"};
 
   const auto version = database_.integer("PRAGMA user_version");
   if (!version) return version.error();

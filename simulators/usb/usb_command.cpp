@@ -84,6 +84,15 @@ CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::str
                  "with it, and with its exit code")
       ->excludes("--usbip");
   command->add_option("program", options->program, "behind --: that program, and its arguments")->type_name("PROGRAM");
+#else
+  command
+      ->add_flag_callback("--umockdev",
+                          [] {
+                            throw CLI::ValidationError(
+                                "--umockdev",
+                                "is not built in: install libumockdev-dev (config/setup.sh --test) and build again");
+                          })
+      ->group("");  // not shown in the help
 #endif
   options->common.add_to(*command);
   command->callback([options, make] {

@@ -122,11 +122,15 @@ class StreamConnection::Session {
         give_up(fmt::format("{} does not speak as Yuragi does: {}", address(), wire::name_of(message->error())));
         return false;
       }
-      if (const auto* hello = std::get_if<wire::Hello>(&**message);
-          hello != nullptr && hello->protocol != wire::kProtocol) {
-        give_up(fmt::format("{} ({}) speaks protocol {}, this viewer {}", address(), hello->software, hello->protocol,
-                            wire::kProtocol));
-        return false;
+      if (const auto* hello = std::get_if<wire::Hello>(&**message)) {
+        if (hello->refused) {
+          give_up(fmt::format("the daemon at {} refuses the connection: {}", address(), *hello->refused));
+          return false;
+        }
+        if (const auto mismatch = wire::protocol_mismatch(*hello)) {
+          give_up(fmt::format("the daemon at {} ({}) {}", address(), hello->software, *mismatch));
+          return false;
+        }
       }
       deliver(std::move(**message));
     }

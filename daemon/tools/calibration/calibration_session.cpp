@@ -8,10 +8,13 @@
 #include <fmt/format.h>
 
 #include "daemon/settings/config_file.hpp"
-#include "daemon/settings/exit.hpp"
 
 namespace yuragi {
 namespace {
+
+FailureError usage(const std::string& message) {
+  return FailureError({message, FailureKind::kUsage});
+}
 
 /// "FROM,TO" in seconds.
 Stretch parse_part(const std::string& text) {
@@ -21,7 +24,7 @@ Stretch parse_part(const std::string& text) {
   const int found = std::sscanf(text.c_str(), "%lf,%lf%n", &from_s, &to_s, &used);
   if (found != 2 || static_cast<std::size_t>(used) != text.size() || !(from_s >= 0.0) || !(to_s > from_s) ||
       !(to_s < 1e9)) {
-    throw ExitError(kExitUsage, "--part: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
+    throw usage("--part: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
   }
   return {.from_s = from_s, .to_s = to_s};
 }
@@ -61,34 +64,34 @@ std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
 CalibrationSession::CalibrationSession(const CalibrationRequest& request, double default_duration_s)
     : request_(request), dialog_(request.takes_yes), duration_s_(request.duration_s.value_or(default_duration_s)) {
   for (const std::string& part : request_.parts) parse_part(part);
-  if (is_live() && !request_.parts.empty()) throw ExitError(kExitUsage, "--part is of a recording: add --recording");
-  if (!is_live() && request_.duration_s)
-    throw ExitError(kExitUsage, "--for is for live sensors; a recording has --part");
+  if (is_live() && !request_.parts.empty()) throw usage("--part is of a recording: add --recording");
+  if (!is_live() && request_.duration_s) throw usage("--for is for live sensors; a recording has --part");
   if (!dialog_.has_person() && !request_.takes_yes && !request_.is_dry_run) {
-    throw ExitError(kExitUsage, "there is no terminal to ask at: add --yes to write, or --dry-run to look only");
+    throw usage("there is no terminal to ask at: add --yes to write, or --dry-run to look only");
   }
 
   text_ = read_config_text(request_.config_file);
   config_ = parse_config(text_, request_.config_file.string());
   if (config_.sensors.front().origin.empty()) {
-    throw ExitError(kExitConfig, request_.config_file.string() + ": has no [[sensor]] to calibrate");
+    throw ConfigError(request_.config_file.string() + ": has no [[sensor]] to calibrate");
   }
   if (request_.sensor.empty() && config_.sensors.size() > 1) {
-    throw ExitError(kExitUsage, "which sensor? Add --sensor NAME");
+    throw usage("which sensor? Add --sensor NAME");
   }
   sensor_ = request_.sensor.empty() ? 0 : find(request_.sensor);
   if (!request_.reference.empty()) {
     reference_ = find(request_.reference);
-    if (*reference_ == sensor_) throw ExitError(kExitUsage, "a sensor cannot be its own reference");
+    if (*reference_ == sensor_) throw usage("a sensor cannot be its own reference");
   }
 }
 
 void CalibrationSession::open_source() {
   std::vector<const SensorConfig*> sensors = {&sensor()};
   if (reference_) sensors.push_back(reference());
-  const std::string address = request_.listen.value_or(config_.stream.text("listen"));
-  source_ = is_live() ? make_live_source(std::move(sensors), address, clock_)
-                      : make_recorded_source(std::move(sensors), request_.recording);
+  const std::string address = request_.connect.value_or(config_.stream.text("listen"));
+  source_ = (is_live() ? make_live_source(std::move(sensors), address, clock_)
+                       : make_recorded_source(std::move(sensors), request_.recording))
+                .value();
   dialog_.say(fmt::format("Calibrating the sensor \"{}\" ({}) of {}, from {}.", sensor().name, sensor().driver->name,
                           request_.config_file.string(), source_->description()));
 }
@@ -99,8 +102,7 @@ std::size_t CalibrationSession::find(const std::string& name) const {
   if (found != sensors.end()) return static_cast<std::size_t>(found - sensors.begin());
   std::string known;
   for (const SensorConfig& sensor : sensors) known += (known.empty() ? "" : ", ") + sensor.name;
-  throw ExitError(kExitUsage,
-                  fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
+  throw usage(fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
 }
 
 Heard CalibrationSession::hear(const std::string& hands) {
@@ -113,11 +115,16 @@ Heard CalibrationSession::hear(const std::string& hands) {
   }
   ++stretches_;
   bool is_told = false;
-  Heard heard = source_->hear(stretch, [this, &is_told](double elapsed_s, const Heard& so_far) {
-    if (is_live()) return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
-    dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
-    is_told = true;
-  });
+  Heard heard =
+      source_
+          ->hear(stretch,
+                 [this, &is_told](double elapsed_s, const Heard& so_far) {
+                   if (is_live())
+                     return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
+                   dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
+                   is_told = true;
+                 })
+          .value();
   if (is_told) dialog_.show(0.0, "the recording is read", true);
   beware(heard);
   return heard;
@@ -184,13 +191,13 @@ void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vec
   dialog_.say(text);
 
   const auto edited = edit_sensor(text_, sensor().name, wanted);
-  if (!edited) throw ExitError(kExitConfig, request_.config_file.string() + ": " + edited.error().message);
+  if (!edited) throw ConfigError(request_.config_file.string() + ": " + edited.error().message);
   if (request_.is_dry_run) {
     dialog_.say("A dry run: nothing was written.");
   } else if (!dialog_.confirm(fmt::format("Write this to {}?", request_.config_file.string()))) {
     dialog_.say("Nothing was written.");
   } else {
-    const auto kept = replace_config(request_.config_file, text_, *edited);
+    const auto kept = replace_config(request_.config_file, text_, *edited).value();
     dialog_.say(
         fmt::format("{} is written; what it said before is in {}. A running daemon takes it on when it is "
                     "started again.",
@@ -231,7 +238,7 @@ ReferencePairs pair_with_reference(const CalibrationSession& session, const Hear
 }
 
 void refuse(const Failure& failure) {
-  throw ExitError(kExitDataError, failure.message + ". Nothing was written");
+  throw FailureError({failure.message + ". Nothing was written", FailureKind::kBadData});
 }
 
 double rounded(double value, double step) noexcept {

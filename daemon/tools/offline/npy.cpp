@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "values are written as they stand in memory");
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-  throw ExitError(kExitCannotCreate, fmt::format("cannot write {}: {}", file.string(), reason));
+  throw FailureError({fmt::format("cannot write {}: {}", file.string(), reason), FailureKind::kCannotCreate});
 }
 
 /// A file beside the wanted one, which is removed unless it has taken the wanted one's name.

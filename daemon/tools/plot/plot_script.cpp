@@ -11,8 +11,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
-
 namespace yuragi {
 namespace {
 
@@ -47,15 +45,16 @@ std::string plot_output(const std::string& file, bool is_svg, int width_px, int 
                      plot_text(file));
 }
 
-void check_plot_name(const std::string& file) {
+Result<void, Failure> check_plot_name(const std::string& file) {
   if (!file.ends_with(".png") && !file.ends_with(".svg")) {
-    throw ExitError(kExitUsage, file + ": a plot is a .png or a .svg; name it so");
+    return Failure{file + ": a plot is written as .png or .svg; choose such a file name", FailureKind::kUsage};
   }
+  return {};
 }
 
-void draw_script(const std::string& file,
-                 const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of) {
-  check_plot_name(file);
+Result<void, Failure> draw_script(
+    const std::string& file, const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of) {
+  if (auto named = check_plot_name(file); !named) return named;
 
   // The picture takes its name when it is whole.
   const std::string unfinished = file + ".part";
@@ -66,13 +65,13 @@ void draw_script(const std::string& file,
   std::filesystem::remove(script_file, error);
   if (was_drawn) {
     std::filesystem::rename(unfinished, file, error);
-    if (!error) return;
+    if (!error) return {};
   }
   std::filesystem::remove(unfinished, error);
-  throw ExitError(kExitCannotCreate,
-                  file +
-                      ": the plot could not be drawn: is its folder there, may you write to it, is there room, and is "
-                      "gnuplot installed (apt-get install gnuplot-nox)?");
+  return Failure{file +
+                     ": the plot could not be drawn: does its folder exist, may you write to it, is there room, and "
+                     "is gnuplot installed (apt-get install gnuplot-nox)?",
+                 FailureKind::kCannotCreate};
 }
 
 }  // namespace yuragi

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/exit.hpp"
 #include "daemon/tools/plot/plot.hpp"
 #include "daemon/tools/report/report_text.hpp"
 #include "daemon/tools/report/wind_rose.hpp"
@@ -44,26 +43,27 @@ class Figures {
     scratch_ += ".svg";
   }
 
-  std::string series() {
+  Result<std::string, Failure> series() {
     if (sensor_.believed == 0) return {};
     std::vector<PlotPanel> panels = {speed_panel()};
     if (sensor_.directed > 0) panels.push_back(direction_panel());
     panels.push_back(state_panel());
-    std::string svg = draw(panels, "series", "Speed, direction and state over time");
+    auto svg = draw(panels, "series", "Speed, direction and state over time");
+    if (!svg) return svg;
     int height_px = 0;
     for (const PlotPanel& panel : panels) height_px += panel.height_px;
-    svg.insert(svg.rfind("</svg>"), event_titles(height_px));
+    svg->insert(svg->rfind("</svg>"), event_titles(height_px));
     return svg;
   }
 
-  std::string distribution();
-  std::string spectrum();
-  std::string diurnal();
+  Result<std::string, Failure> distribution();
+  Result<std::string, Failure> spectrum();
+  Result<std::string, Failure> diurnal();
 
  private:
-  std::string draw(std::span<const PlotPanel> panels, const std::string& name, std::string_view label,
-                   int width_px = kWidth_px) {
-    draw_plot(scratch_, panels, width_px);
+  Result<std::string, Failure> draw(std::span<const PlotPanel> panels, const std::string& name, std::string_view label,
+                                    int width_px = kWidth_px) {
+    if (const auto drawn = draw_plot(scratch_, panels, width_px); !drawn) return drawn.error();
     const std::string text = text_of_file(scratch_);
     std::error_code ignored;
     std::filesystem::remove(scratch_, ignored);
@@ -220,7 +220,7 @@ PlotPanel Figures::state_panel() const {
   return panel;
 }
 
-std::string Figures::distribution() {
+Result<std::string, Failure> Figures::distribution() {
   const SpeedDistribution& numbers = sensor_.distribution;
   if (numbers.share.empty()) return {};
   PlotCurve measured{.title = "readings", .style = PlotStyle::kBars, .x = {}, .y = {}, .color = kWindColor};
@@ -253,7 +253,7 @@ std::string Figures::distribution() {
   return draw(std::span(&panel, 1), "distribution", "Distribution of the speed", 500);
 }
 
-std::string Figures::spectrum() {
+Result<std::string, Failure> Figures::spectrum() {
   if (!sensor_.spectrum) return {};
   const SpectrumNumbers& numbers = *sensor_.spectrum;
 
@@ -326,7 +326,7 @@ std::string Figures::spectrum() {
   return draw(std::span(&panel, 1), "spectrum", "Spectrum");
 }
 
-std::string Figures::diurnal() {
+Result<std::string, Failure> Figures::diurnal() {
   if (!sensor_.diurnal) return {};
   PlotCurve band{.title = "8 of 10 readings", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
   PlotCurve mean{.title = "mean", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
@@ -359,12 +359,12 @@ void replace_all(std::string& text, std::string_view what, std::string_view with
 
 }  // namespace
 
-std::string embedded_svg(const std::string& file, const std::string& prefix, std::string_view label) {
+Result<std::string, Failure> embedded_svg(const std::string& file, const std::string& prefix, std::string_view label) {
   // From <svg viewBox=...> on: a page needs neither prolog nor name spaces, and names nothing outside itself.
   const std::size_t view = file.find("viewBox=");
   const std::size_t view_end = view == std::string::npos ? view : file.find('\n', view);
   const std::size_t begin = view_end == std::string::npos ? view_end : file.find("<g id=\"gnuplot_canvas\">", view_end);
-  if (begin == std::string::npos) throw ExitError(kExitSoftware, "gnuplot drew an SVG that is not understood");
+  if (begin == std::string::npos) return Failure{"the SVG that gnuplot wrote is not understood"};
   std::string body = file.substr(begin);
   if (const std::size_t rect = body.find("<rect x=\"0\" y=\"0\""); rect != std::string::npos) {
     body.erase(rect, body.find("/>", rect) + 2 - rect);
@@ -380,19 +380,22 @@ std::string embedded_svg(const std::string& file, const std::string& prefix, std
   for (const std::string_view id : {"textbox", "greybox"}) {
     replace_all(body, fmt::format("id='{}'", id), fmt::format("id='{}{}'", prefix, id));
   }
-  return fmt::format("<svg {} role=\"img\" aria-label=\"{}\" class=\"plot\">\n{}", file.substr(view, view_end - view),
-                     label, body);
+  return {boost::system::in_place_value, fmt::format("<svg {} role=\"img\" aria-label=\"{}\" class=\"plot\">\n{}",
+                                                     file.substr(view, view_end - view), label, body)};
 }
 
-SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
-                           const std::filesystem::path& scratch, std::size_t index) {
+Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
+                                            const std::filesystem::path& scratch, std::size_t index) {
   Figures figures(recording, sensor, scratch, index);
   SensorFigures drawn;
-  drawn.series = figures.series();
   if (sensor.rose.count > 0) drawn.rose = draw_wind_rose(sensor.rose);
-  drawn.distribution = figures.distribution();
-  drawn.spectrum = figures.spectrum();
-  drawn.diurnal = figures.diurnal();
+  for (const auto& [svg, draw] :
+       {std::pair(&drawn.series, &Figures::series), std::pair(&drawn.distribution, &Figures::distribution),
+        std::pair(&drawn.spectrum, &Figures::spectrum), std::pair(&drawn.diurnal, &Figures::diurnal)}) {
+    auto figure = (figures.*draw)();
+    if (!figure) return figure.error();
+    *svg = std::move(*figure);
+  }
   return drawn;
 }
 

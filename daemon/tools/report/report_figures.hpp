@@ -24,11 +24,12 @@ struct SensorFigures {
 
 /// Draws them, by gnuplot but for the rose. `scratch`: a file name that is free, in a folder that can be written to.
 /// `index`: the sensor's number on the page; it makes the ids of its SVG elements different from the others'.
-/// Throws ExitError where gnuplot is not there or cannot draw. Realtime-safe: no.
-SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
-                           const std::filesystem::path& scratch, std::size_t index);
+/// Fails where gnuplot is not installed or cannot draw. Realtime-safe: no.
+Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
+                                            const std::filesystem::path& scratch, std::size_t index);
 
 /// gnuplot's SVG file as an element of a page: with no prolog and no background, under ids that begin with `prefix`.
-std::string embedded_svg(const std::string& file, const std::string& prefix, std::string_view label);
+/// Fails where it looks like no SVG of gnuplot's.
+Result<std::string, Failure> embedded_svg(const std::string& file, const std::string& prefix, std::string_view label);
 
 }  // namespace yuragi

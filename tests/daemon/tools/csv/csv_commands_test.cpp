@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -41,6 +41,8 @@ Outcome yuragi(std::vector<std::string> arguments) {
     outcome = {kExitUsage, error.what(), ""};
   } catch (const ExitError& error) {
     outcome = {error.code(), error.what(), ""};
+  } catch (const FailureError& error) {
+    outcome = {exit_code_of(error.kind()), error.what(), ""};
   }
   outcome.error += testing::internal::GetCapturedStderr();
   outcome.output = testing::internal::GetCapturedStdout();
