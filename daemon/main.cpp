@@ -13,8 +13,8 @@ int main(int argc, char** argv) {
   using namespace yuragi;
   try {
     CLI::App app{
-        "Yuragi: real wind moves grass, cloth, trees and flames on a wall.\n"
-        "Start with `yuragi run`: it needs no sensor and no configuration; watch it with `yuragi-viewer`.",
+        "Yuragi: real wind moves grass, cloth, trees and flames.\nStart with `yuragi run`, which needs neither sensor "
+        "nor configuration, and show the scenes with `yuragi-viewer`.",
         "yuragi"};
     app.set_version_flag("--version", std::string("yuragi ") + kVersion);
     app.require_subcommand(1);

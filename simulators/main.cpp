@@ -14,7 +14,7 @@ constexpr int kExitUsage = 64;
 constexpr int kExitUnavailable = 69;
 
 int run(int argc, char** argv) {
-  CLI::App app{"Simulated wind sensors, which speak the protocols of real ones and can be made to fail.", "yuragi-sim"};
+  CLI::App app{"Simulated wind sensors, with the protocols of real ones and with faults on demand.", "yuragi-sim"};
   app.set_version_flag("--version", std::string("yuragi-sim ") + yuragi::kVersion);
   app.require_subcommand(1);
   yuragi::sim::add_microphone_command(app);

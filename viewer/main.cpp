@@ -14,7 +14,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 int run(int argc, char** argv) {
   using namespace yuragi;
-  CLI::App app{"Shows what a Yuragi daemon streams: grass (and whatever else there is) in the wind.", "yuragi-viewer"};
+  CLI::App app{"Shows the scenes that a Yuragi daemon streams.", "yuragi-viewer"};
   app.set_version_flag("--version", std::string("yuragi-viewer ") + yuragi::kVersion);
   ViewerOptions options;
   add_options(app, options);

@@ -57,7 +57,8 @@ SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
 
 void replay_at_full_speed(const ReplayOptions& options) {
   if (options.playback.loop && !options.run.duration_s) {
-    throw ExitError(kExitUsage, "--rate max with --loop would never end; add --duration TIME (of the recording)");
+    throw ExitError(kExitUsage,
+                    "--rate max with --loop would never end; add --duration TIME (in time of the recording)");
   }
   if (options.at_time_of_day || options.is_paused) {
     throw ExitError(kExitUsage, "--rate max has no clock: it takes neither --same-time-of-day nor --paused");
@@ -93,7 +94,7 @@ void replay(const ReplayOptions& options) {
 }
 
 void add_replay(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("replay", "the daemon with a recording in place of the sensors");
+  CLI::App* command = app.add_subcommand("replay", "run the daemon with a recording in place of the sensors");
   command->footer(
       "Ends with the recording, unless it loops. At --rate max nothing is streamed: the recording runs through wind "
       "and\n"
@@ -107,15 +108,14 @@ void add_replay(CLI::App& app) {
   command->add_option("file", options->file, "the recording")->required()->type_name("FILE.windlog");
   command->add_option("--rate", options->rate, "how many times faster than it was recorded, or max (default 1)")
       ->type_name("X|max");
-  command->add_flag("--loop", options->playback.loop, "begin again at its end");
+  command->add_flag("--loop", options->playback.loop, "start again at the end");
   command
       ->add_option("--start", options->playback.start,
                    "where to begin: seconds from its beginning, or a UTC time (ISO 8601)")
       ->type_name("T");
   command
-      ->add_option(
-          "--seam", options->seam_s,
-          "how long the end of a loop, or a place left by a seek, fades into the new place (default 5; 0: not at all)")
+      ->add_option("--seam", options->seam_s,
+                   "duration of the cross-fade at the end of a loop and at a seek (default 5; 0: none)")
       ->type_name("TIME")
       ->transform(duration_in_seconds())
       ->check(CLI::Range(0.0, 600.0));
@@ -126,8 +126,8 @@ void add_replay(CLI::App& app) {
           "--utc-offset", options->utc_offset,
           "for that: how far the clocks where it was recorded were ahead of UTC; without it: this machine's zone")
       ->type_name("HOURS");
-  command->add_flag("--paused", options->is_paused, "stand still at the first reading (see `yuragi player`)");
-  command->add_option("--sensor", options->playback.sensor, "which sensor's readings; without it: the first that spoke")
+  command->add_flag("--paused", options->is_paused, "start paused, at the first reading (see `yuragi player`)");
+  command->add_option("--sensor", options->playback.sensor, "which sensor; default: the one with the first reading")
       ->type_name("NAME");
   options->run.add_to(*command);
   command->callback([options] { replay(*options); });

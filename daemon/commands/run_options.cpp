@@ -20,13 +20,13 @@ void RunOptions::add_to_client(CLI::App& command) {
 }
 
 void RunOptions::add_common(CLI::App& command) {
-  command.add_option("--config,-c", config_file, "the installation, as TOML; without it: synthetic wind, one meadow")
+  command.add_option("--config,-c", config_file, "the configuration (TOML); default: synthetic wind, one meadow")
       ->type_name("FILE");
   command.add_option("--duration", duration_s, "end after this time: 90 (seconds), 5min, 2h; without it: on Ctrl-C")
       ->type_name("TIME")
       ->transform(duration_in_seconds())
       ->check(CLI::PositiveNumber);
-  command.add_flag("--verbose,-v", verbose, "log every attempt to reach a sensor, not only changes");
+  command.add_flag("--verbose,-v", verbose, "log every attempt to connect to a sensor, not only changes");
 }
 
 void add_connect(CLI::App& command, std::optional<std::string>& address) {

@@ -119,7 +119,7 @@ void add_spectrum(CLI::App& app) {
   auto* const plot = command->add_option("--plot", options->plot, "Draw it into FILE.png or FILE.svg");
   command->callback([options, frequency, plot] {
     if (frequency->empty() && plot->empty()) {
-      throw CLI::ValidationError("--frequency", "say at which frequencies, or --plot FILE.svg to draw all");
+      throw CLI::ValidationError("--frequency", "give frequencies, or --plot FILE.svg to draw the whole spectrum");
     }
     run_spectrum(*options);
   });

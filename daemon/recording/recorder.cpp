@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/base/count_text.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -63,7 +65,7 @@ void Recorder::run(const std::stop_token& stop) {
   given_up += ring_.drain([](const Entry&) {});
   lost_.fetch_add(given_up, std::memory_order_relaxed);
   if (given_up > 0 && report_) {
-    report_("recording ended with " + std::to_string(given_up) + " readings that could not be written");
+    report_("ended with " + count_text(given_up, "reading") + " that could not be written");
   }
 }
 
@@ -88,7 +90,7 @@ void Recorder::flush() {
 
 Result<void, Failure> Recorder::write_pending() {
   // What is written to a file without a name is gone when it is closed, and SQLite would not say so.
-  if (writer_ && !std::filesystem::exists(file_)) return Failure{file_.string() + ": was removed or moved away"};
+  if (writer_ && !std::filesystem::exists(file_)) return Failure{file_.string() + ": was removed or moved"};
   if (!writer_) {
     if (auto opened = open_session(pending_.front().reading.time); !opened) return opened;
   }
@@ -122,9 +124,9 @@ void Recorder::set_error(const std::string& error) {
   }
   if (!changed || !report_) return;
   if (!error.empty()) {
-    report_("recording stands still, trying again: " + error);
+    report_("interrupted, trying again: " + error);
   } else {
-    report_("recording goes on; " + std::to_string(lost_.load(std::memory_order_relaxed)) + " readings were lost");
+    report_("resumed; " + count_text(lost_.load(std::memory_order_relaxed), "reading") + " lost");
   }
 }
 

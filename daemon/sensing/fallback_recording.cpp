@@ -7,6 +7,7 @@
 
 #include "daemon/settings/wind_settings.hpp"
 #include "drivers/windlog/windlog_cursor.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -79,7 +80,7 @@ void FallbackRecording::start(MonoTime now) {
   } catch (const std::exception& error) {
     retry_at_ = now + kRetryInterval;
     if (!std::exchange(has_failed_, true)) {
-      spdlog::warn("all sensors are silent, and the fall-back cannot be played: {}; the default wind blows",
+      spdlog::warn("all sensors are silent, and the fallback recording cannot be played: {}; using the default wind",
                    error.what());
     }
   }
@@ -88,7 +89,8 @@ void FallbackRecording::start(MonoTime now) {
 void FallbackRecording::stop() {
   if (!runner_) return;
   runner_.reset();
-  spdlog::info("a sensor is live again: the fall-back {} ends after {} readings", file_, readings_);
+  spdlog::info("a sensor is live again: stopped the fallback recording {} after {}", file_,
+               count_text(readings_, "reading"));
 }
 
 /// Whether it can be read is told once each time that it changes.
@@ -101,9 +103,10 @@ void FallbackRecording::log_changes() {
   if (!is_first && has_failed == has_failed_) return;
   const bool had_failed = std::exchange(has_failed_, has_failed);
   if (!has_failed) {
-    spdlog::warn("all sensors are silent: plays {}", file_);
+    spdlog::warn("all sensors are silent: playing {}", file_);
   } else if (!had_failed) {
-    spdlog::warn("all sensors are silent, and the fall-back cannot be played: {}; the default wind blows", link.detail);
+    spdlog::warn("all sensors are silent, and the fallback recording cannot be played: {}; using the default wind",
+                 link.detail);
   }
 }
 

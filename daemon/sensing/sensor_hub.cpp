@@ -9,6 +9,7 @@
 
 #include "daemon/sensing/refusal_text.hpp"
 #include "daemon/settings/wind_settings.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
@@ -34,7 +35,7 @@ bool is_trouble(SensorState state) {
 
 std::string passed_over_text(const ChangeGate& gate) {
   if (gate.passed_over() == 0) return {};
-  return fmt::format("; {} changes in between did not last", gate.passed_over());
+  return fmt::format("; {} short changes in between", gate.passed_over());
 }
 
 }  // namespace
@@ -216,9 +217,10 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
   if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
   const bool is_warning = is_trouble(state) || is_disputed(state, evidence.vote);
   const auto level = is_warning ? spdlog::level::warn : spdlog::level::info;
-  spdlog::log(level, "sensor {}: {}: {} (was {}{}; {} readings, {} frames, {} reconnects)", channel.config.name,
-              name_of(state), reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
-              channel.readings, channel.runner->frame_count(), channel.runner->reconnect_count());
+  spdlog::log(level, "sensor {}: {}: {} (was {}{}; {}, {}, {})", channel.config.name, name_of(state),
+              reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
+              count_text(channel.readings, "reading"), count_text(channel.runner->frame_count(), "frame"),
+              count_text(channel.runner->reconnect_count(), "reconnect"));
 }
 
 std::vector<wire::SensorStatus> SensorHub::status() const {
@@ -256,7 +258,7 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
         status.refused.emplace_back(name_of(refusal), count);
       }
     }
-    if (channel.not_believed > 0) status.refused.emplace_back("not believed", channel.not_believed);
+    if (channel.not_believed > 0) status.refused.emplace_back("rejected", channel.not_believed);
     if (const std::uint64_t lost = channel.runner->lost_count()) status.refused.emplace_back("lost", lost);
     status.frames = channel.runner->frame_count();
     status.reconnects = channel.runner->reconnect_count();
@@ -308,8 +310,8 @@ void SensorHub::drain_traces(const std::function<void(const wire::RawTrace&)>& u
 
 void SensorHub::log_summary() const {
   for (const wire::SensorStatus& sensor : status()) {
-    spdlog::info("sensor {}: {} readings from {} frames, {} reconnects; refused: {}", sensor.name, sensor.readings,
-                 sensor.frames, sensor.reconnects, refusal_text(sensor));
+    spdlog::info("sensor {}: {} from {}, {}; refused: {}", sensor.name, count_text(sensor.readings, "reading"),
+                 count_text(sensor.frames, "frame"), count_text(sensor.reconnects, "reconnect"), refusal_text(sensor));
   }
 }
 

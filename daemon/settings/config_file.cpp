@@ -29,7 +29,7 @@ Result<void, Failure> write_like(const std::filesystem::path& model, const std::
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
   if (!out) {
-    return not_written(file.string() + ": cannot be written; may this user write to its folder, and is there room?");
+    return not_written(file.string() + ": cannot be written; is its folder writable, and the disk not full?");
   }
   return {};
 }

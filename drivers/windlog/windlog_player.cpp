@@ -172,7 +172,7 @@ Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
   const auto first = leaving_.cursor.next();
   if (!first) return first.error();
   leaving_.upcoming = *first;
-  if (!leaving_.upcoming) return Failure{"there is no reading from there on", FailureKind::kUsage};
+  if (!leaving_.upcoming) return Failure{"there is no reading after that time", FailureKind::kUsage};
 
   std::swap(playing_, leaving_);
   playing_.go_to(at, target);
@@ -286,14 +286,14 @@ void WindlogPlayer::set_rate(const Instant& now, double rate) {
 }
 
 Result<void, Failure> WindlogPlayer::step(const Instant& now, std::uint64_t count) {
-  if (is_finished_) return Failure{"is at its end; seek to a place first", FailureKind::kUsage};
+  if (is_finished_) return Failure{"is at its end; seek to another place first", FailureKind::kUsage};
   pause(now);
   for (std::uint64_t moved = 0; moved < count; ++moved) {
     if (auto fetched = fetch(); !fetched) return fetched;
     if (!playing_.upcoming && options_.playback.loop) {
       if (auto begun = begin_again(now, now.mono); !begun) return begun;
     }
-    if (!playing_.upcoming && moved == 0) return Failure{"stands at its last reading", FailureKind::kUsage};
+    if (!playing_.upcoming && moved == 0) return Failure{"is at its last reading", FailureKind::kUsage};
     if (!playing_.upcoming) return {};
     take_while_paused();
   }

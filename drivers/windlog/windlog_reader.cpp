@@ -136,7 +136,7 @@ Result<void, Failure> WindlogReader::check_format() {
   if (!version) return version.error();
   if (*version > windlog::kFormatVersion || *version < 1) {
     return Failure{name + ": is a recording of format " + std::to_string(*version) + "; this Yuragi reads format " +
-                   std::to_string(windlog::kFormatVersion) + "; update it"};
+                   std::to_string(windlog::kFormatVersion) + "; update Yuragi"};
   }
   return {};
 }
@@ -165,12 +165,13 @@ Result<void, Failure> WindlogReader::load_sessions() {
     const std::int64_t span_ns = (session.last.mono - session.first.mono).count();
     if (span_ns < 0 || session.log_begin.count() > windlog::kMaxTime_ns - span_ns) {
       return Failure{database_.file().string() + ": session " + std::to_string(session.id) +
-                     " has times that cannot be; the file is damaged"};
+                     " has impossible times; the file is damaged"};
     }
     sessions_.push_back(std::move(session));
   }
   if (step == Statement::Step::kFailed) return database_.failure();
-  if (step == Statement::Step::kRow) return Failure{database_.file().string() + ": has too many sessions to be true"};
+  if (step == Statement::Step::kRow)
+    return Failure{database_.file().string() + ": has an impossible number of sessions; the file is damaged"};
   return {};
 }
 
@@ -184,7 +185,8 @@ Result<void, Failure> WindlogReader::load_sensors() {
     sensors_.push_back({rows->integer(0), rows->integer(1), rows->text(2), rows->text(3), rows->text(4)});
   }
   if (step == Statement::Step::kFailed) return database_.failure();
-  if (step == Statement::Step::kRow) return Failure{database_.file().string() + ": has too many sensors to be true"};
+  if (step == Statement::Step::kRow)
+    return Failure{database_.file().string() + ": has an impossible number of sensors; the file is damaged"};
 
   // reading_of_row() looks them up by id, whatever order a damaged file gave them in.
   std::stable_sort(sensors_.begin(), sensors_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
@@ -241,7 +243,7 @@ Result<std::int64_t, Failure> WindlogReader::read_block() {
     // An order that is not one means a damaged index, which could lead in circles.
     const std::pair key(select_block_.integer(3), select_block_.integer(0));
     if (key <= std::pair(mono_ns, row)) {
-      failure = Failure{database_.file().string() + ": its index is damaged; `sqlite3 FILE REINDEX` may mend it"};
+      failure = Failure{database_.file().string() + ": its index is damaged; `sqlite3 FILE REINDEX` may repair it"};
       break;
     }
     std::tie(mono_ns, row) = key;

@@ -1,10 +1,8 @@
-#!/ usr / bin / python3
-""
-    "A small client of Yuragi's stream, in Python: an example to copy from, and an independent check of the stream.
+#!/usr/bin/python3
+"""A small client of Yuragi's stream, in Python: an example to copy from, and an independent check of the stream.
 
-    pose_client.py watch 127.0.0.1 : 7410,
-    a line a second pose_client.py-- frames 300 --check-- json take 300 frames, verify them, print a summary;
-exit 0 or 1
+    pose_client.py                              watch 127.0.0.1:7410, a line a second
+    pose_client.py --frames 300 --check --json  take 300 frames, verify them, print a summary; exit 0 or 1
 
 It knows nothing but the schema, engine/wire/pose.fbs: flatc makes Python modules of it, python3-flatbuffers reads them, and
 the comments in the schema say what the numbers mean. Debian packages: python3-flatbuffers python3-numpy flatbuffers-compiler.
@@ -36,7 +34,9 @@ def load_schema(folder=None):
         folder = temporary.name
         subprocess.run(["flatc", "--python", "-o", folder, str(SCHEMA)], check=True)
     sys.path.insert(0, str(folder))
-#-- -- The transport : a u32 little - endian byte count, then that many bytes of a FlatBuffer -- --
+
+
+# ---- The transport: a u32 little-endian byte count, then that many bytes of a FlatBuffer ----
 
 
 class SocketBytes:
@@ -83,7 +83,7 @@ def messages(source):
 
     while True:
         (size,) = struct.unpack("<I", source.read(4))
-#Refuse what is absurd before making room for it.
+        # Refuse what is absurd before making room for it.
         if not 8 <= size <= MAX_MESSAGE_BYTES:
             raise ValueError(f"a message of {size} bytes")
         body = source.read(size)
@@ -139,9 +139,12 @@ def body_of(message):
     from yuragi.stream.Body import Body
 
     kinds = {
-  Body.Hello : ("Hello", Hello.Hello), Body.Scenes : ("Scenes", Scenes.Scenes), Body.Frame : ("Frame", Frame.Frame),
-      Body.Sensors : ("Sensors", Sensors.Sensors), Body.ControlReply : ("ControlReply", ControlReply.ControlReply),
-      Body.RawTrace : ("RawTrace", RawTrace.RawTrace),
+        Body.Hello: ("Hello", Hello.Hello),
+        Body.Scenes: ("Scenes", Scenes.Scenes),
+        Body.Frame: ("Frame", Frame.Frame),
+        Body.Sensors: ("Sensors", Sensors.Sensors),
+        Body.ControlReply: ("ControlReply", ControlReply.ControlReply),
+        Body.RawTrace: ("RawTrace", RawTrace.RawTrace),
     }
     if message.BodyType() not in kinds:
         return None, None
@@ -149,7 +152,9 @@ def body_of(message):
     table = table_class()
     table.Init(message.Body().Bytes, message.Body().Pos)
     return name, table
-#-- -- What the numbers mean -- --
+
+
+# ---- What the numbers mean ----
 
 
 def numbers(array):
@@ -236,7 +241,7 @@ class Strands:
         at_m = (self.root_m if root_m is None else root_m).copy()
         joints_m = np.empty((self.links, self.count, 3))
         for i in range(self.links):
-#Link i at rest, turned with its root, then turned by its share of the bend.
+            # Link i at rest, turned with its root, then turned by its share of the bend.
             curl_rad = (i * self.rest_curl_rad)[:, None]
             link = self.rest * np.cos(curl_rad) + self.curl * np.sin(curl_rad)
             for turn_axis, turn_rad in root_turns:
@@ -351,7 +356,7 @@ class Tree:
                 turns.append([])
                 joints_m.append(level.strands.joints_m(bends))
                 continue
-#The turn of the link that each strand grows from; of the first strand of 16, where they share it.
+            # The turn of the link that each strand grows from; of the first strand of 16, where they share it.
             parents, parent_bends = self.levels[level.parent_level].strands, sways.levels[level.parent_level]
             strand = np.arange(level.strands.count)
             of = strand // 16 * 16 if level.is_turned_by_block else strand
@@ -456,9 +461,10 @@ def read_pose(scene_pose):
     from yuragi.stream import GridPose, Pose, StrandPose, SurfacePose, TreePose
 
     kinds = {
-      Pose.Pose.StrandPose : (StrandPose.StrandPose, Bends), Pose.Pose.GridPose : (GridPose.GridPose, Ways),
-          Pose.Pose.TreePose : (TreePose.TreePose, Sways),
-          Pose.Pose.SurfacePose : (SurfacePose.SurfacePose, Displacements),
+        Pose.Pose.StrandPose: (StrandPose.StrandPose, Bends),
+        Pose.Pose.GridPose: (GridPose.GridPose, Ways),
+        Pose.Pose.TreePose: (TreePose.TreePose, Sways),
+        Pose.Pose.SurfacePose: (SurfacePose.SurfacePose, Displacements),
     }
     return read_union(kinds, scene_pose.PoseType(), scene_pose.Pose())
 
@@ -471,7 +477,9 @@ def read_union(kinds, kind, table):
     body = table_class()
     body.Init(table.Bytes, table.Pos)
     return meaning(body)
-#-- -- What this program does with it -- --
+
+
+# ---- What this program does with it ----
 
 
 class Watcher:
@@ -529,12 +537,12 @@ class Watcher:
         self.bytes += size
         self.wind = (frame.Wind().UMS(), frame.Wind().VMS())
         self.expect(np.all(np.isfinite(self.wind)), "the wind is not finite")
-#Absent where the server is older than this field : the wind is then in the middle.
+        # Absent where the server is older than this field: the wind is then in the middle.
         place = frame.WindPlace()
         self.wind_place = (place.UpwindM(), place.ToMiddleS()) if place is not None else (0.0, 0.0)
         self.expect(np.all(np.isfinite(self.wind_place)) and self.wind_place[1] >= 0.0, "the wind's place is none")
 
-#Dequantise every scene's pose. They pair with the skeletons of the Scenes message.
+        # Dequantise every scene's pose. They pair with the skeletons of the Scenes message.
         self.expect(self.scenes is not None, "a Frame came before Scenes")
         scenes = self.scenes or []
         self.expect(frame.ScenesLength() == len(scenes), f"{frame.ScenesLength()} poses for {len(scenes)} scenes")
@@ -557,8 +565,9 @@ class Watcher:
     def points_m(self):
         """The tips or points of every scene that is known and seen in the last frame: {name: array of (x, y, z)}."""
         return {
-      name : model.points_m(pose) for (name, _, model), pose in zip(self.scenes, self.poses) if model is not None
-                                                            and pose is not None
+            name: model.points_m(pose)
+            for (name, _, model), pose in zip(self.scenes, self.poses)
+            if model is not None and pose is not None
         }
 
     def summary(self, subscribed_s):
@@ -588,28 +597,29 @@ class Watcher:
             "problems": self.problems,
         }
 
-        def parse_arguments()
-            : parser =
-                  argparse.ArgumentParser(description = __doc__.split("\n")[0]) parser
-                      .add_argument("--connect", default = "127.0.0.1:7410", metavar = "HOST:PORT") parser
-                      .add_argument("--file", help = "read a captured stream from here instead") parser
-                      .add_argument("--schema",
-                                    help = "folder of the modules that flatc --python made; without it, flatc is run")
-                          parser.add_argument("--frames", type = int, help = "end after this many frames") parser
-                      .add_argument("--timeout", type = float, default = 10.0,
-                                    help = "seconds without any message that end it (10)") parser
-                      .add_argument("--check", action = "store_true",
-                                    help = "verify everything that the schema promises") parser
-                      .add_argument("--tips", action = "store_true",
-                                    help = "print the first tips or points of the last frame") parser
-                      .add_argument("--json", action = "store_true",
-                                    help = "print a summary in JSON and nothing else") return parser.parse_args()
 
-                          def main()
-            : options = parse_arguments() load_schema(options.schema) say =
-                      (lambda * _, **__
-                       : None) if options.json else print watcher = Watcher(options.check) ended_early =
-                          None subscribed_s = time.monotonic() try : source = FileBytes(options.file) if options.file else SocketBytes(options.connect, options.timeout)
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--connect", default="127.0.0.1:7410", metavar="HOST:PORT")
+    parser.add_argument("--file", help="read a captured stream from here instead")
+    parser.add_argument("--schema", help="folder of the modules that flatc --python made; without it, flatc is run")
+    parser.add_argument("--frames", type=int, help="end after this many frames")
+    parser.add_argument("--timeout", type=float, default=10.0, help="seconds without any message that end it (10)")
+    parser.add_argument("--check", action="store_true", help="verify everything that the schema promises")
+    parser.add_argument("--tips", action="store_true", help="print the first tips or points of the last frame")
+    parser.add_argument("--json", action="store_true", help="print a summary in JSON and nothing else")
+    return parser.parse_args()
+
+
+def main():
+    options = parse_arguments()
+    load_schema(options.schema)
+    say = (lambda *_, **__: None) if options.json else print
+    watcher = Watcher(options.check)
+    ended_early = None
+    subscribed_s = time.monotonic()
+    try:
+        source = FileBytes(options.file) if options.file else SocketBytes(options.connect, options.timeout)
         source.send(subscribe_message())
         subscribed_s = line_s = time.monotonic()
         line_frames = line_bytes = line_missed = 0
@@ -626,7 +636,7 @@ class Watcher:
                     say(f"scene {name} ({scene_kind}): {what}")
             elif kind == "Frame":
                 watcher.frame(table, size, now_s)
-#Anything else was not asked for, or is of a newer server.
+            # Anything else was not asked for, or is of a newer server.
 
             if now_s - line_s >= 1.0:
                 rate = 8e-6 * (watcher.bytes - line_bytes) / (now_s - line_s)
@@ -644,7 +654,7 @@ class Watcher:
     except (OSError, EOFError, ValueError, struct.error) as error:
         ended_early = str(error) or type(error).__name__
 
-#A file ends by its nature; a server is asked for a number of frames, or watched until it goes.
+    # A file ends by its nature; a server is asked for a number of frames, or watched until it goes.
     if ended_early is not None and not (options.file and options.frames is None):
         watcher.problems.append(ended_early)
     summary = watcher.summary(subscribed_s)

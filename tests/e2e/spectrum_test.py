@@ -59,8 +59,8 @@ class Spectrum(unittest.TestCase):
             (["--model", "kaimal", "--length", "9", "--frequency", "1"], "only von-karman and iec-kaimal"),
             (["--sigma", "1", "--ustar", "1", "--frequency", "1"], "excludes"),
             ([], "--frequency"),
-            (["--plot", "a.pdf"], ".png or a .svg"),
-            (["--plot", "/no/such/folder/a.png"], "is its folder there"),
+            (["--plot", "a.pdf"], ".png or .svg"),
+            (["--plot", "/no/such/folder/a.png"], "does its folder exist"),
         ):
             run = subprocess.run([YURAGI, "spectrum", *arguments], capture_output=True, text=True)
             self.assertIn(run.returncode, (64, 73), arguments)

@@ -40,7 +40,7 @@ void CalibrationDialog::say(const std::string& text) const {
 void CalibrationDialog::wait_for_hands(const std::string& what) const {
   say(what);
   if (!has_person_) return;
-  write_at_once("Enter when it is so, Ctrl-C to end: ");
+  write_at_once("Press Enter when ready, Ctrl-C to quit: ");
   read_line();
 }
 

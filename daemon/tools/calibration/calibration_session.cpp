@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/settings/config_file.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -40,7 +41,7 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Hea
   std::set<std::string> keys;
   for (const std::string& text : heard.settings) {
     const auto values = parse_values(text, sensor.driver->parameters);
-    if (!values) return {"which this version does not understand: " + values.error().message};
+    if (!values) return {"some that this version does not understand: " + values.error().message};
     for (const auto& [key, value] : values->all()) {
       const bool is_undone = is_microphone && (key == "gain" || key == "exponent" || key == "curve");
       if (!is_undone && value != sensor.values.all().at(key)) keys.insert(key);
@@ -51,12 +52,12 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Hea
 
 /// What a sensor says of itself while it is listened to.
 std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
-  if (heard.readings.empty()) return fmt::format("{}: waiting for it", sensor.name);
+  if (heard.readings.empty()) return fmt::format("{}: waiting", sensor.name);
   const WindReading& last = heard.readings.back().reading;
   const double speed_m_s = last.speed_m_s * calibration_of(sensor).unit_m_s;
-  return fmt::format("{}: {:.2f} m/s{}, {} readings", sensor.name, speed_m_s,
+  return fmt::format("{}: {:.2f} m/s{}, {}", sensor.name, speed_m_s,
                      last.direction_deg ? fmt::format(" from {:.0f} deg", *last.direction_deg) : "",
-                     heard.readings.size());
+                     count_text(heard.readings.size(), "reading"));
 }
 
 }  // namespace
@@ -64,10 +65,10 @@ std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
 CalibrationSession::CalibrationSession(const CalibrationRequest& request, double default_duration_s)
     : request_(request), dialog_(request.takes_yes), duration_s_(request.duration_s.value_or(default_duration_s)) {
   for (const std::string& part : request_.parts) parse_part(part);
-  if (is_live() && !request_.parts.empty()) throw usage("--part is of a recording: add --recording");
-  if (!is_live() && request_.duration_s) throw usage("--for is for live sensors; a recording has --part");
+  if (is_live() && !request_.parts.empty()) throw usage("--part needs --recording");
+  if (!is_live() && request_.duration_s) throw usage("--for is for live sensors; use --part for a recording");
   if (!dialog_.has_person() && !request_.takes_yes && !request_.is_dry_run) {
-    throw usage("there is no terminal to ask at: add --yes to write, or --dry-run to look only");
+    throw usage("there is no terminal for questions: add --yes to write, or --dry-run to see the result only");
   }
 
   text_ = read_config_text(request_.config_file);
@@ -76,7 +77,7 @@ CalibrationSession::CalibrationSession(const CalibrationRequest& request, double
     throw ConfigError(request_.config_file.string() + ": has no [[sensor]] to calibrate");
   }
   if (request_.sensor.empty() && config_.sensors.size() > 1) {
-    throw usage("which sensor? Add --sensor NAME");
+    throw usage("there are several sensors: add --sensor NAME");
   }
   sensor_ = request_.sensor.empty() ? 0 : find(request_.sensor);
   if (!request_.reference.empty()) {
@@ -125,7 +126,7 @@ Heard CalibrationSession::hear(const std::string& hands) {
                    is_told = true;
                  })
           .value();
-  if (is_told) dialog_.show(0.0, "the recording is read", true);
+  if (is_told) dialog_.show(0.0, "the recording was read", true);
   beware(heard);
   return heard;
 }
@@ -134,14 +135,14 @@ void CalibrationSession::beware(const Heard& heard) const {
   for (std::size_t index = 0; index < heard.size(); ++index) {
     const SensorConfig& one = index == 0 ? sensor() : *reference();
     if (const auto keys = settings_that_differ(one, heard[index]); !keys.empty()) {
-      dialog_.say(fmt::format("Beware: when this was recorded, the driver of \"{}\" had other settings than now: {}.",
+      dialog_.say(fmt::format("Warning: when this was recorded, the driver of \"{}\" had different settings: {}.",
                               one.name, fmt::join(keys, ", ")));
     }
   }
   const auto is_simulated = [](const TimedReading& one) { return one.reading.quality == ReadingQuality::kSimulated; };
   for (const HeardSensor& one : heard) {
     if (std::ranges::any_of(one.readings, is_simulated)) {
-      dialog_.say("Beware: these readings are made up by a simulation.");
+      dialog_.say("Warning: these readings are simulated.");
       break;
     }
   }
@@ -167,7 +168,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const Config
   Calibration now = calibration();
   Calibration then = calibration_of(changed);
   now.height_factor = then.height_factor = 1.0;
-  std::vector<std::string> lines = {"where it says   is taken now for   then for"};
+  std::vector<std::string> lines = {"   reading          speed now        speed then"};
   for (const double said : said_m_s) {
     WindReading reading;
     reading.speed_m_s = said / now.unit_m_s;
@@ -180,7 +181,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const Config
 void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vector<std::string>& effect) {
   std::erase_if(wanted, [this](const ConfigChange& change) { return change.value == value_now(change); });
   if (wanted.empty()) {
-    dialog_.say("\nThe configuration says so already: nothing to write.");
+    dialog_.say("\nThe configuration has these values already: nothing to write.");
     return;
   }
   std::string text = "\n";
@@ -198,10 +199,8 @@ void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vec
     dialog_.say("Nothing was written.");
   } else {
     const auto kept = replace_config(request_.config_file, text_, *edited).value();
-    dialog_.say(
-        fmt::format("{} is written; what it said before is in {}. A running daemon takes it on when it is "
-                    "started again.",
-                    request_.config_file.string(), kept.string()));
+    dialog_.say(fmt::format("{} was written; the previous version is in {}. Restart a running daemon to apply it.",
+                            request_.config_file.string(), kept.string()));
   }
 }
 

@@ -152,9 +152,9 @@ class DaemonSource final : public CalibrationSource {
   Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) override {
     // A connection of its own: an old one would hand out what was said while hands were busy.
     auto client = connect_to_daemon(address_);
-    if (!client) return unavailable("the daemon at " + address_ + " does not answer any more");
+    if (!client) return unavailable("the daemon at " + address_ + " no longer answers");
     std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
-    std::vector<std::string> links(sensors_.size(), "it is not there");
+    std::vector<std::string> links(sensors_.size(), "unknown to the daemon");
 
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
     for (;;) {
@@ -262,17 +262,17 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfi
     const wire::SensorStatus* status = find_status(all, *sensor);
     std::string obstacle;
     if (status == nullptr) {
-      obstacle = fmt::format("has not the sensor \"{}\"", sensor->name);
+      obstacle = fmt::format("does not have the sensor \"{}\"", sensor->name);
     } else if (status->replayed) {
-      obstacle = "plays a recording; give that with --recording";
+      obstacle = "plays a recording; use --recording with it";
     } else if (status->readings > 0 && !status->raw_speed_m_s) {
-      obstacle = "is of an older version, which tells calibrated readings only";
+      obstacle = "is an older version, which sends calibrated readings only";
     } else if (sensor->driver->name == std::string_view("microphone")) {
       // Its readings have gone through gain and exponent, or the curve, as they were when the daemon began.
-      obstacle = "has the microphone, and may have begun with another calibration of it than the file has now";
+      obstacle = "uses the microphone, perhaps with another calibration than the file has now";
     }
     if (!obstacle.empty()) {
-      return unavailable(fmt::format("the daemon at {} {}: end it for the calibration", address, obstacle));
+      return unavailable(fmt::format("the daemon at {} {}: stop it for the calibration", address, obstacle));
     }
   }
   return std::make_unique<DaemonSource>(std::move(sensors), address, clock);

@@ -83,7 +83,7 @@ Result<Head, Failure> read_head(std::istream& in, const std::string& name) {
       head.header = std::move(line);
       return head;
     }
-    if (is_end) return Failure{name + ": has no line that could be a header"};
+    if (is_end) return Failure{name + ": has no header line"};
   }
   return Failure{name + ": has no header in its first megabyte; is it a CSV file?"};
 }
@@ -114,8 +114,7 @@ class Import {
                          title(4), title(5), title(6), title(7), title(8));
       for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
         if (columns_[role] && !reader.has_column(title(role))) {
-          return Failure{name_ + ": the name of the column \"" + title(role) +
-                         "\" is written in a way that is not understood"};
+          return Failure{name_ + ": the name of the column \"" + title(role) + "\" cannot be parsed"};
         }
       }
       while (const auto more = next_row(reader)) {
@@ -199,7 +198,7 @@ Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string&
     case '\t':
       return import.run<'\t'>(std::move(head->bytes), in);
     default:
-      return Failure{name + ": fields can be told apart by a comma, a semicolon or a tab"};
+      return Failure{name + ": fields can be separated by a comma, a semicolon or a tab"};
   }
 }
 

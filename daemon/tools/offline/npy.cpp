@@ -93,7 +93,7 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    fail(file, "it exists and is no regular file");
+    fail(file, "it exists and is not a regular file");
   }
   const auto target = std::filesystem::exists(status) ? std::filesystem::canonical(file) : file;
 

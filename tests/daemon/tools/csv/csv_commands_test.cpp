@@ -193,7 +193,7 @@ TEST_F(CsvCommands, ImportTellsTheColumnsAndWhatItLeftOut) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east)"));
   EXPECT_THAT(outcome.output, HasSubstr("2 readings of 3 rows, 1 left out"));
-  EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: no number in u: \"x\""));
+  EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: not a number in u: \"x\""));
   EXPECT_EQ(WindlogReader::open(path("a.windlog"))->sensors()[0].name, "sonic");
 }
 
