@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/places.hpp"
@@ -83,8 +82,8 @@ TEST(Recorder, RefusesToStartWhereItCannotWrite) {
   try {
     const Recorder recorder("/nonexistent/a.windlog", info_of({}));
     FAIL() << "it started";
-  } catch (const ExitError& error) {
-    EXPECT_EQ(error.code(), kExitCannotCreate);
+  } catch (const FailureError& error) {
+    EXPECT_EQ(error.kind(), FailureKind::kCannotCreate);
     EXPECT_NE(std::string(error.what()).find("/nonexistent/a.windlog"), std::string::npos);
   }
 }

@@ -98,7 +98,7 @@ TEST_F(PlayerDirectorTest, SaysWhatThereIsWhereNothingFits) {
   EXPECT_THAT(unknown.message, HasSubstr("roof, yard"));
   const auto none = PlayerDirector(ControlPermission::kLoopback, {}).answer({}, true);
   EXPECT_FALSE(none.done);
-  EXPECT_THAT(none.message, HasSubstr("no sensor here"));
+  EXPECT_THAT(none.message, HasSubstr("no sensor of this daemon"));
   roof_.is_full = true;
   const auto full = director(ControlPermission::kLoopback).answer({.action = wire::PlayerAction::kPause}, true);
   EXPECT_FALSE(full.done);

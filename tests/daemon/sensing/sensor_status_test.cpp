@@ -30,8 +30,8 @@ TEST(SensorStatus, TellsTheLastReadingAsItIsAndAsItWasSaid) {
   const wire::SensorStatus status = sensor_status(roof_that_speaks());
   EXPECT_EQ(status.name, "roof");
   EXPECT_EQ(status.driver, "modbus");
-  EXPECT_EQ(status.link, static_cast<std::uint8_t>(LinkState::kConnected));
-  EXPECT_EQ(status.health, static_cast<std::uint8_t>(SourceHealth::kLive));
+  EXPECT_EQ(status.link, LinkState::kConnected);
+  EXPECT_EQ(status.health, SourceHealth::kLive);
   EXPECT_EQ(status.detail, "answers at 10.0.0.5:502");
   EXPECT_EQ(status.speed_m_s, 4.5);
   EXPECT_EQ(status.direction_deg, 192.0);
@@ -54,9 +54,9 @@ TEST(SensorStatus, OfASensorThatHasSaidNothingThereIsNoReading) {
   const wire::SensorStatus status = sensor_status({.name = "roof", .driver = "nmea", .evidence = {}});
   EXPECT_FALSE(status.speed_m_s || status.direction_deg || status.gust_m_s);
   EXPECT_FALSE(status.raw_speed_m_s || status.raw_direction_deg);
-  EXPECT_EQ(status.health, static_cast<std::uint8_t>(SourceHealth::kSilent));
+  EXPECT_EQ(status.health, SourceHealth::kSilent);
   EXPECT_EQ(status.state, SensorState::kConnecting);
-  EXPECT_EQ(status.state_reason, "looking for its device");
+  EXPECT_EQ(status.state_reason, "looking for the device");
 }
 
 TEST(SensorStatus, TellsWhatWasRefusedByItsReasonAndNothingOfTheRest) {
@@ -64,8 +64,8 @@ TEST(SensorStatus, TellsWhatWasRefusedByItsReasonAndNothingOfTheRest) {
   facts.counts.refused[static_cast<std::size_t>(Refusal::kImplausible)] = 3;
   facts.counts.not_believed = 4;
   facts.counts.lost = 5;
-  EXPECT_THAT(sensor_status(facts).refused, ElementsAre(Pair(std::string(name_of(Refusal::kImplausible)), 3),
-                                                        Pair("not believed", 4), Pair("lost", 5)));
+  EXPECT_THAT(sensor_status(facts).refused,
+              ElementsAre(Pair(std::string(name_of(Refusal::kImplausible)), 3), Pair("rejected", 4), Pair("lost", 5)));
 }
 
 TEST(SensorStatus, WhatIsMadeUpOrPlayedIsMarked) {

@@ -189,7 +189,7 @@ void make_strip(const StripOptions& options) {
     if (lean) lean->add(std::get<StrandPose>(moment.poses[0]));
     ++taken;
   };
-  replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take);
+  replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take).value();
   if (taken < options.moments) {
     throw std::runtime_error(fmt::format("{} ends after {} of {} pictures", options.recording, taken, options.moments));
   }
