@@ -491,7 +491,7 @@ port = {port}
         self.assertIn("there are: told", self.player(address, "pause", "--sensor", "roof", code=64))
         self.player(address, "rate", "0", code=64)
         self.player(address, "step", "0", code=64)
-        self.assertIn("told is told to pause", daemon.text())
+        self.assertIn("told was asked to pause", daemon.text())
 
     def test_a_seek_and_the_seam_of_a_loop_move_the_wind_without_a_jump(self):
         # Half a calm, half a storm: 14 m/s apart.
