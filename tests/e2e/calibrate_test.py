@@ -379,7 +379,7 @@ driver = "modbus"
             self.assertIn("of 4 s", shown)
             self.assertIn("from 350 deg", shown)
             type_line(answer)
-            wait_for("is written" if written else "Nothing was written.")
+            wait_for("was written" if written else "Nothing was written.")
             self.assertEqual(led.wait(10.0), 0)
             self.assertEqual(os.path.exists(config + ".bak"), written)
         self.assertAlmostEqual(self.value("north_offset"), 20.0, delta=1.0)

@@ -347,7 +347,7 @@ port = {port}
             self.assertIn(b"reading", live.StateReason())
             frozen = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_FROZEN, 30.0)
             self.assertEqual(frozen.Health(), LIVE, "it speaks")
-            self.assertRegex(frozen.StateReason().decode(), r"the same \d+\.\d\d m/s \d+ times in ")
+            self.assertRegex(frozen.StateReason().decode(), r"the same reading, \d+\.\d\d m/s, \d+ times in ")
             shown = run("sensors", "watch", "--once", "--connect", daemon.address())
             self.assertRegex(shown.stdout, r"roof +modbus +FROZEN")
             self.assertIn("frozen: the same", shown.stdout)
