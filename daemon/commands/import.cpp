@@ -28,9 +28,8 @@ namespace {
 constexpr const char* kImportFooter =
     "The columns are found by their names: time or timestamp, wind_speed, direction, gust, or u and v; a unit in a "
     "name\n"
-    "(u_ms, speed_kmh, \"Gust (mph)\") is understood. The choice is printed. Rows that are not readings, or go back in "
-    "time, are left out and\n"
-    "counted.\n"
+    "(u_ms, speed_kmh, \"Gust (mph)\") is understood. The choice is printed. Rows that are not readings, or go\n"
+    "back in time, are left out and counted.\n"
     "\n"
     "Examples:\n"
     "  yuragi import mast.csv -o mast.windlog\n"

@@ -223,7 +223,7 @@ gain = 1.0          # from the institute
         log = self.recording([(float(i), "attic", 1.0, None) for i in range(20)])
         base = ("--config", config, "--sensor", "roof")
         for arguments, code, text in (
-            (("zero", "--config", config, "--yes"), 64, "which sensor"),
+            (("zero", "--config", config, "--yes"), 64, "there are several sensors"),
             (("zero", "--config", config, "--sensor", "cellar", "--yes"), 64, "there are: roof, mast"),
             (("zero", *base), 64, "there is no terminal for questions"),
             (("zero", *base, "--yes", "--recording", log), 65, "there are: attic"),
@@ -379,7 +379,7 @@ driver = "modbus"
             self.assertIn("of 4 s", shown)
             self.assertIn("from 350 deg", shown)
             type_line(answer)
-            wait_for("is written" if written else "Nothing was written.")
+            wait_for("was written" if written else "Nothing was written.")
             self.assertEqual(led.wait(10.0), 0)
             self.assertEqual(os.path.exists(config + ".bak"), written)
         self.assertAlmostEqual(self.value("north_offset"), 20.0, delta=1.0)

@@ -347,7 +347,7 @@ port = {port}
             self.assertIn(b"reading", live.StateReason())
             frozen = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_FROZEN)
             self.assertEqual(frozen.Health(), LIVE, "it speaks")
-            self.assertRegex(frozen.StateReason().decode(), r"the same \d+\.\d\d m/s \d+ times in ")
+            self.assertRegex(frozen.StateReason().decode(), r"the same reading, \d+\.\d\d m/s, \d+ times in ")
             shown = run("sensors", "watch", "--once", "--connect", daemon.address())
             self.assertRegex(shown.stdout, r"roof +modbus +FROZEN")
             self.assertIn("frozen: the same", shown.stdout)
@@ -489,7 +489,7 @@ port = {port}
         self.assertIn("there are: told", self.player(address, "pause", "--sensor", "roof", code=64))
         self.player(address, "rate", "0", code=64)
         self.player(address, "step", "0", code=64)
-        self.assertIn("told is told to pause", daemon.text())
+        self.assertIn("told was asked to pause", daemon.text())
 
     def test_a_seek_and_the_seam_of_a_loop_move_the_wind_without_a_jump(self):
         # Half a calm, half a storm: 14 m/s apart.

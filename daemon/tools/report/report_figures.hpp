@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "daemon/tools/report/report_numbers.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi {
 

@@ -159,7 +159,7 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
 
   go_on(60, [&] { say(0, 6.5); });
   EXPECT_EQ(state(), SensorState::kFrozen);
-  EXPECT_THAT(reason(), HasSubstr("the same 6.50 m/s 60 times"));
+  EXPECT_THAT(reason(), HasSubstr("the same reading, 6.50 m/s, 60 times"));
   EXPECT_EQ(hub_->status()[0].health, SourceHealth::kLive) << "it speaks";
   EXPECT_EQ(hub_->status()[0].speed_m_s, 6.5) << "what it says is shown";
   go_on(60, [&] { say(0, 6.5); });
@@ -171,7 +171,7 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
   EXPECT_LT(largest_step_m_s_, 2.0 * normal_step_m_s) << "neither loss nor return is a jump";
   EXPECT_EQ(recorded_, 270) << "a recording keeps everything";
 
-  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: frozen: the same 6.50 m/s"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: frozen: the same reading, 6.50 m/s"), 1) << log_.str();
   EXPECT_EQ(lines_of_log_with("(was frozen"), 1) << log_.str();
   EXPECT_EQ(lines_of_log_with("sensor spoken0"), 4) << "connected, live, frozen, live\n" << log_.str();
 }

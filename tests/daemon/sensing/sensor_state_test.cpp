@@ -64,7 +64,7 @@ TEST(SensorState, WhatItSaysIsJudgedInTheOrderOfHowSureThatIs) {
   evidence.mean_m_s = 22.1;
   evidence.others_m_s = 5.2;
   EXPECT_EQ(state_of(evidence), SensorState::kImplausible);
-  EXPECT_THAT(reason(evidence), StartsWith("22.1 m/s, that of the other sensors 5.2"));
+  EXPECT_THAT(reason(evidence), StartsWith("its mean of 5 min is 22.1 m/s, that of the other sensors 5.2"));
   evidence.fault = ReadingFault::kImplausible;
   evidence.bad_share = 0.65;
   EXPECT_EQ(state_of(evidence), SensorState::kImplausible);
@@ -77,7 +77,7 @@ TEST(SensorState, WhatItSaysIsJudgedInTheOrderOfHowSureThatIs) {
   evidence.same_count = 61;
   evidence.same_for_s = 60.0;
   EXPECT_EQ(state_of(evidence), SensorState::kFrozen);
-  EXPECT_THAT(reason(evidence), StartsWith("the same 3.42 m/s 61 times in 1 min"));
+  EXPECT_THAT(reason(evidence), StartsWith("the same reading, 3.42 m/s, 61 times in 1 min"));
 }
 
 TEST(SensorState, ASingleSpikeChangesNothing) {

@@ -184,7 +184,7 @@ TEST_F(SiteFileTest, TheSiteIsRememberedOverARestart) {
   wall.shaper.keep_site_file();
   EXPECT_NEAR(wall.after(2.0), 4.0, 0.1);
   EXPECT_THAT(wall.text(), HasSubstr("site gain 2.0"));
-  EXPECT_EQ(log.count("remembers 3 h"), 1);
+  EXPECT_EQ(log.count("holds 3 h"), 1);
 }
 
 TEST_F(SiteFileTest, TheSitesGustsAreRememberedOverARestart) {
