@@ -4,16 +4,17 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/exit.hpp"
 #include "engine/base/version.hpp"
+#include "engine/base/word_suggestion.hpp"
 
 int main(int argc, char** argv) {
   using namespace yuragi;
   try {
     CLI::App app{
-        "Yuragi: real wind moves grass, cloth, trees and flames on a wall.\n"
-        "Start with `yuragi run`: it needs no sensor and no configuration; watch it with `yuragi-viewer`.",
+        "Yuragi: real wind moves grass, cloth, trees and flames.\nStart with `yuragi run`, which needs neither sensor "
+        "nor configuration, and show the scenes with `yuragi-viewer`.",
         "yuragi"};
     app.set_version_flag("--version", std::string("yuragi ") + kVersion);
     app.require_subcommand(1);
@@ -22,6 +23,10 @@ int main(int argc, char** argv) {
       app.parse(argc, argv);
       return 0;
     } catch (const CLI::ParseError& error) {
+      if (const std::string text = unexpected_arguments_of(app); error.get_exit_code() != 0 && !text.empty()) {
+        std::fprintf(stderr, "yuragi: %s\nRun with --help for more information.\n", text.c_str());
+        return kExitUsage;
+      }
       return app.exit(error) == 0 ? 0 : kExitUsage;
     }
   } catch (const ConfigError& error) {
@@ -30,6 +35,9 @@ int main(int argc, char** argv) {
   } catch (const ExitError& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());
     return error.code();
+  } catch (const FailureError& error) {
+    std::fprintf(stderr, "yuragi: %s\n", error.what());
+    return exit_code_of(error.kind());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());
     return kExitSoftware;

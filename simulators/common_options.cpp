@@ -2,11 +2,12 @@
 
 #include <utility>
 
+#include "engine/base/duration.hpp"
+
 namespace yuragi::sim {
 
 void CommonOptions::add_to(CLI::App& command) {
-  command.add_option("--wind", wind, "synthetic, or a recording FILE.windlog, played again and again")
-      ->capture_default_str();
+  command.add_option("--wind", wind, "synthetic, or a recording FILE.windlog, played in a loop")->capture_default_str();
   command.add_option("--speed", synthetic.mean_speed_m_s, "mean of the synthetic wind, m/s")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
@@ -19,15 +20,18 @@ void CommonOptions::add_to(CLI::App& command) {
   command.add_option("--seed", synthetic.seed, "the same seed gives the same wind and the same random faults")
       ->capture_default_str();
   command.add_option("--fault", faults,
-                     "KIND@START+DURATION in seconds, such as silence@10+5; can be given again. The same by standard "
-                     "input, live: KIND [SECONDS], clear, help");
-  command.add_option("--random-faults", random_faults_every_s, "one fault of any kind in each so many seconds")
+                     "KIND@START+DURATION in seconds, such as silence@10+5; can be repeated. While running, standard "
+                     "input takes: KIND [SECONDS], clear, help");
+  command.add_option("--random-faults", random_faults_every_s, "one random fault in each period of this many seconds")
       ->check(CLI::Range(1.0, 1e6));
-  command.add_option("--random-fault-duration", random_fault_s, "how long each of them lasts, s")
+  command.add_option("--random-fault-duration", random_fault_s, "duration of each random fault, s")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
-  command.add_option("--duration", run.duration_s, "end after so many seconds")->check(CLI::NonNegativeNumber);
-  command.add_flag("--verbose", run.verbose, "a status line a second even where nobody watches");
+  command.add_option("--duration", run.duration_s, "end after this time: 90 (seconds), 5min, 2h")
+      ->type_name("TIME")
+      ->transform(CLI::Validator(duration_to_seconds, ""))
+      ->check(CLI::NonNegativeNumber);
+  command.add_flag("--verbose", run.verbose, "print a status line every second even without a terminal");
 }
 
 MeasuredWind CommonOptions::make_wind() const {

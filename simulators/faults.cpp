@@ -66,7 +66,7 @@ Result<Fault, Failure> Faults::parse(std::string_view text) const {
     if (kind && start_s && duration_s) return Fault{*kind, *start_s, *duration_s};
   }
   return Failure{fmt::format(
-      "\"{}\" is no fault; allowed: KIND@START+DURATION in seconds, such as silence@10+5, with KIND one of {}", text,
+      "\"{}\" is not a fault; allowed: KIND@START+DURATION in seconds, such as silence@10+5, with KIND one of {}", text,
       kinds())};
 }
 
@@ -82,7 +82,7 @@ std::string Faults::obey(std::string_view line, double time_s) {
   }
   const auto kind = kind_named(word);
   const auto duration_s = duration.empty() ? std::optional(kDefaultDuration_s) : time_in(duration);
-  if (!kind || !duration_s) return fmt::format("say KIND [SECONDS], with KIND one of {}; or clear", kinds());
+  if (!kind || !duration_s) return fmt::format("allowed: KIND [SECONDS], with KIND one of {}; or clear", kinds());
   add(Fault{*kind, time_s, *duration_s});
   return fmt::format("{} for {:g} s", word, *duration_s);
 }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/base/version.hpp"
+#include "engine/base/word_suggestion.hpp"
 #include "simulators/commands.hpp"
 
 namespace {
@@ -13,7 +14,7 @@ constexpr int kExitUsage = 64;
 constexpr int kExitUnavailable = 69;
 
 int run(int argc, char** argv) {
-  CLI::App app{"Simulated wind sensors, which speak the protocols of real ones and can be made to fail.", "yuragi-sim"};
+  CLI::App app{"Simulated wind sensors, with the protocols of real ones and with faults on demand.", "yuragi-sim"};
   app.set_version_flag("--version", std::string("yuragi-sim ") + yuragi::kVersion);
   app.require_subcommand(1);
   yuragi::sim::add_microphone_command(app);
@@ -29,6 +30,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();  // of the program that was launched (launched_program.hpp)
   } catch (const CLI::ParseError& error) {
+    if (const std::string text = yuragi::unexpected_arguments_of(app); error.get_exit_code() != 0 && !text.empty()) {
+      std::fprintf(stderr, "yuragi-sim: %s\nRun with --help for more information.\n", text.c_str());
+      return kExitUsage;
+    }
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
 }

@@ -24,15 +24,14 @@ class SyntheticPlayedWind final : public PlayedWind {
 
 class RecordedPlayedWind final : public PlayedWind {
  public:
-  explicit RecordedPlayedWind(const std::string& file) : playback_(file, {.start = "", .loop = true, .sensor = ""}) {
-    next_ = playback_.next();
-  }
+  explicit RecordedPlayedWind(WindlogPlayback playback)
+      : playback_(std::move(playback)), next_(playback_.next().value()) {}
 
   PlayedMoment at(double time_s) override {
     while (next_ && next_->log_time_s <= time_s) {
       const WindReading& reading = next_->reading;
       moment_ = {reading.speed_m_s, reading.direction_deg.value_or(moment_.direction_deg)};
-      next_ = playback_.next();
+      next_ = playback_.next().value();
     }
     return moment_;
   }
@@ -50,7 +49,8 @@ std::unique_ptr<PlayedWind> play_synthetic_wind(const SyntheticWindSettings& set
 }
 
 std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file) {
-  return std::make_unique<RecordedPlayedWind>(file);
+  return std::make_unique<RecordedPlayedWind>(
+      WindlogPlayback::open(file, {.start = "", .loop = true, .sensor = ""}).value());
 }
 
 PlayedMoment MeasuredWind::at(double time_s, std::optional<FaultKind> fault) {

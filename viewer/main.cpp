@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "engine/base/version.hpp"
+#include "engine/base/word_suggestion.hpp"
 #include "viewer/viewer.hpp"
 #include "viewer/viewer_exit.hpp"
 
@@ -13,13 +14,17 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 int run(int argc, char** argv) {
   using namespace yuragi;
-  CLI::App app{"Shows what a Yuragi daemon streams: grass (and whatever else there is) in the wind.", "yuragi-viewer"};
+  CLI::App app{"Shows the scenes that a Yuragi daemon streams.", "yuragi-viewer"};
   app.set_version_flag("--version", std::string("yuragi-viewer ") + yuragi::kVersion);
   ViewerOptions options;
   add_options(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const std::string text = unexpected_arguments_of(app); error.get_exit_code() != 0 && !text.empty()) {
+      std::fprintf(stderr, "yuragi-viewer: %s\nRun with --help for more information.\n", text.c_str());
+      return EX_USAGE;
+    }
     return app.exit(error) == 0 ? 0 : EX_USAGE;
   }
 

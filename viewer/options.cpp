@@ -2,6 +2,9 @@
 
 #include <charconv>
 
+#include "engine/base/duration.hpp"
+#include "viewer/picture_file.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -21,6 +24,12 @@ std::string read_size(const std::string& text, ViewerOptions& options) {
   return "'" + text + "' is not a size: give WIDTHxHEIGHT in pixels, such as 1920x1080";
 }
 
+/// What is wrong with the name of a picture file, or an empty text.
+std::string check_picture_name(const std::string& name) {
+  if (picture_format(name)) return {};
+  return "'" + name + "' is not the name of a picture that can be written: it has to end in .png, .jpg or .jpeg";
+}
+
 }  // namespace
 
 void add_options(CLI::App& app, ViewerOptions& options) {
@@ -28,56 +37,61 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_option("--size", options.size, "Size of the window or picture, WIDTHxHEIGHT in pixels")
       ->capture_default_str()
       ->check([&options](const std::string& text) { return read_size(text, options); });
-  app.add_option(
-         "--samples", options.samples,
-         "Samples a pixel against jagged edges: 4 where it is left out, or 1 in a window without graphics hardware")
+  app.add_option("--samples", options.samples,
+                 "Samples per pixel (antialiasing); default 4, or 1 in a window without graphics hardware")
       ->check(CLI::Range(1, 16));
   app.add_flag("--overlay,!--no-overlay", options.overlay,
-               "Wind, sensors and stream over the picture (in windows: yes)");
+               "Show wind, sensors and stream over the picture (default in windows)");
   app.add_flag("--fullscreen", options.is_fullscreen, "Fill the screen");
-  app.add_option("--monitor", options.monitor, "Which screen to fill, counted from 0")->check(CLI::NonNegativeNumber);
-  app.add_flag("--turn", options.is_turning, "Let the camera go round slowly");
+  app.add_option("--monitor", options.monitor, "Which screen to use, counted from 0")->check(CLI::NonNegativeNumber);
+  app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");
-  app.add_option(
-         "--camera", options.camera,
-         "HEADING,PITCH,DISTANCE: where the camera looks to (degrees, 0 north, 90 east), how far down (degrees), "
-         "and from how far (metres); chosen to suit the scene where it is left out")
+  app.add_option("--camera", options.camera,
+                 "HEADING,PITCH,DISTANCE: direction of view (degrees, 0 north, 90 east), angle downward (degrees) and "
+                 "distance (metres); default: chosen to suit the scene")
       ->delimiter(',')
       ->expected(3);
 
   const std::string picture = "Write a picture instead of opening a window";
   auto* const screenshot =
-      app.add_option("--screenshot", options.screenshot, "Write what there is to see to FILE.png, and end")
+      app.add_option("--screenshot", options.screenshot, "Write a picture to FILE.png or FILE.jpg, and end")
+          ->check(check_picture_name)
           ->group(picture);
-  app.add_option("--frames", options.frames, "Take the picture after this many were drawn with a pose from the stream")
+  app.add_option("--frames", options.frames, "Take the picture after this many frames with a pose from the stream")
       ->needs(screenshot)
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000))
       ->group(picture);
-  app.add_option("--at", options.at_s, "Take it this many seconds after the first pose came")
+  app.add_option("--at", options.at_s, "Take it this long after the first pose came: 90 (seconds), 5min")
       ->needs(screenshot)
+      ->type_name("TIME")
+      ->transform(CLI::Validator(duration_to_seconds, ""))
       ->check(CLI::Range(0.0, 1e6))
       ->group(picture);
-  app.add_option("--wait", options.wait_s, "Give up when no pose has come after so many seconds")
+  app.add_option("--wait", options.wait_s, "Give up when no pose has come after this time: 90 (seconds), 5min")
       ->needs(screenshot)
       ->capture_default_str()
+      ->type_name("TIME")
+      ->transform(CLI::Validator(duration_to_seconds, ""))
       ->check(CLI::Range(0.0, 1e6))
       ->group(picture);
 
   app.footer(
-      "In the window: drag to turn (left button) or move (right), scroll to go nearer; R first view, N next scene\n"
-      "alone (after the last, all), T turn slowly, H overlay, F11 full screen, Esc or Q quit. The stream may stop and\n"
-      "come back: the picture goes on.\n"
+      "In the window: drag to turn (left button) or move (right), scroll to zoom; R first view, N next scene alone "
+      "(after\n"
+      "the last, all), T turn slowly, H overlay, F11 full screen, Esc or Q quit. If the stream is interrupted, its "
+      "last\n"
+      "seconds are replayed until it returns.\n"
       "\n"
       "Examples:\n"
-      "  yuragi run &                                    the daemon, with its own wind\n"
-      "  yuragi-viewer                                   watch it\n"
+      "  yuragi run &                                    the daemon, with a synthetic wind\n"
+      "  yuragi-viewer                                   show it\n"
       "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
       "  xvfb-run -a yuragi-viewer --screenshot now.png  a picture, on a machine without a screen\n"
       "\n"
-      "Ends with 0; 64 for a wrong command line; 69 where no daemon answers or there is no display; 73 where the "
-      "picture\n"
-      "cannot be written.");
+      "Exit code 0: done; 64: wrong command line; 69: no daemon answers, or there is no display; 73: the picture "
+      "cannot be\n"
+      "written.");
 }
 
 }  // namespace yuragi

@@ -28,7 +28,7 @@ double now_s() {
 StreamOptions address_of(const ViewerOptions& options) {
   const auto address = parse_address(options.connect, wire::kDefaultPort);
   if (!address) throw ViewerExit(EX_USAGE, "--connect: " + address.error().message);
-  if (address->port == 0) throw ViewerExit(EX_USAGE, "--connect: nobody can be reached at port 0");
+  if (address->port == 0) throw ViewerExit(EX_USAGE, "--connect: port 0 cannot be connected to");
   return {.host = address->host, .port = address->port};
 }
 
@@ -94,7 +94,7 @@ class Viewer::Show {
       draw(size);
       ++drawn;
       if (drawn >= (options_.at_s ? kOverlayPictures : options_.frames)) {
-        write_png(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
+        write_picture(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
         return;
       }
     }
@@ -102,7 +102,8 @@ class Viewer::Show {
 
  private:
   [[noreturn]] void throw_no_daemon() const {
-    throw ViewerExit(EX_UNAVAILABLE, "no pose has come from " + options_.connect + " (" + connection_.status().text +
+    throw ViewerExit(EX_UNAVAILABLE, "no pose was received from " + options_.connect + " (" +
+                                         connection_.status().text +
                                          ").\nStart a daemon with `yuragi run`, or give its address with --connect "
                                          "HOST:PORT, or wait longer with --wait SECONDS.");
   }

@@ -15,7 +15,7 @@ SceneDirector::SceneDirector(const Config& config, Hand hand)
 }
 
 wire::ControlReply SceneDirector::answer(const wire::Control& wish, bool is_local) {
-  if (wish.scene.empty()) return {.done = true, .message = "nothing is changed", .scenes = scenes_};
+  if (wish.scene.empty()) return {.done = true, .message = "nothing was changed", .scenes = scenes_};
   const auto found =
       std::find_if(scenes_.begin(), scenes_.end(), [&](const auto& scene) { return scene.name == wish.scene; });
   if (found == scenes_.end()) {
@@ -23,7 +23,7 @@ wire::ControlReply SceneDirector::answer(const wire::Control& wish, bool is_loca
     for (const wire::SceneState& scene : scenes_) known.append(known.empty() ? "" : ", ").append(scene.name);
     return refuse(fmt::format("there is no scene \"{}\"; there are: {}", wish.scene, known));
   }
-  if (const auto refusal = control_refusal(allowed_, is_local, "scenes are switched")) return refuse(*refusal);
+  if (const auto refusal = control_refusal(allowed_, is_local, "scenes cannot be switched")) return refuse(*refusal);
 
   const auto index = static_cast<std::size_t>(found - scenes_.begin());
   if (!hand_({index, wish.shown, wish.hide_others, wish.over_s})) return refuse("too many changes at once; try again");

@@ -2,6 +2,7 @@
 #include "daemon/commands/calibrate.hpp"
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/run_options.hpp"
 
 namespace yuragi {
 
@@ -10,23 +11,25 @@ extern const Command kCalibrateCommand;
 namespace {
 
 constexpr const char* kCalibrateFooter =
-    "A new sensor, in this order: zero (still air), span (a known wind, or a sensor that is right), north (where its\n"
-    "vane points); a microphone: microphone, then nothing else. What was measured, what changes and its effect are\n"
-    "shown before anything is written; comments and layout of the file stay, and what it said before is kept beside\n"
-    "it as FILE.bak. Where it learned something that cannot be right, it refuses and says why.\n"
+    "The steps for a new sensor, in this order: zero (still air), span (a known wind, or a reference sensor), north "
+    "(the\n"
+    "direction of its vane). A microphone needs the step microphone only. Measurements, changes and their effect are\n"
+    "shown before anything is written. Comments and layout of the file are kept, and the previous file is kept as\n"
+    "FILE.bak. A result that cannot be right is refused, with the reason.\n"
     "\n"
-    "Live readings come from the running daemon where there is one, else from the device. --recording takes them from\n"
-    "a recording instead, which holds what the sensor itself said: a calibration can be done again at any time.\n"
+    "Live readings come from the running daemon if there is one, otherwise from the device. --recording reads them "
+    "from\n"
+    "a recording instead. Recordings hold uncalibrated readings, so that a calibration can be repeated at any time.\n"
     "\n"
     "  yuragi calibrate zero --config wall.toml --sensor roof\n"
     "  yuragi calibrate north --config wall.toml --sensor roof --bearing 214\n"
     "  yuragi calibrate span --config wall.toml --sensor roof --reference handheld --for 1200\n"
     "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --recording may.windlog\n"
     "\n"
-    "Exit code 0: done (or not wanted after all); 64: the command line; 65: what was measured is refused; 66: there "
-    "is\n"
-    "no such recording; 69: a sensor is silent, or the daemon must be ended first; 73: the file cannot be written;\n"
-    "78: it is wrong.";
+    "Exit code 0: done (or declined); 64: wrong command line; 65: the measurement is refused; 66: no such recording;\n"
+    "69: a sensor is silent, or the daemon has to be stopped first; 73: the file cannot be written; 78: the file has "
+    "an\n"
+    "error.";
 
 void add_calibrate(CLI::App& app) {
   CLI::App* calibrate = app.add_subcommand("calibrate", "Calibrate a sensor, and write the configuration");
@@ -41,24 +44,25 @@ void add_calibrate(CLI::App& app) {
 }  // namespace
 
 void add_calibration_request(CLI::App& command, CalibrationRequest& request, const std::string& default_duration) {
-  command.add_option("--config,-c", request.config_file, "the installation, which is read and written")
+  command.add_option("--config,-c", request.config_file, "the configuration file, which is read and written")
       ->required()
       ->type_name("FILE");
-  command.add_option("--sensor", request.sensor, "which one; may be left out where there is only one")
-      ->type_name("NAME");
-  command.add_option("--for", request.duration_s, "how long to listen (default " + default_duration + ")")
-      ->type_name("SECONDS")
+  command.add_option("--sensor", request.sensor, "which sensor; optional if there is only one")->type_name("NAME");
+  command
+      .add_option("--for", request.duration_s,
+                  "how long to listen: 90 (seconds), 20min (default " + default_duration + ")")
+      ->type_name("TIME")
+      ->transform(duration_in_seconds())
       ->check(CLI::Range(1.0, 86400.0));
-  command.add_option("--recording", request.recording, "learn from this recording, not from live readings")
+  command.add_option("--recording", request.recording, "use this recording instead of live readings")
       ->type_name("FILE.windlog");
-  command.add_option("--part", request.parts, "of the recording: from this second to that one; can be given again")
+  command.add_option("--part", request.parts, "part of the recording, in seconds; can be repeated")
       ->type_name("FROM,TO")
       ->expected(1)
       ->take_all();
-  command.add_option("--listen", request.listen, "where the daemon listens, instead of the configured address")
-      ->type_name("HOST:PORT");
-  command.add_flag("--yes,-y", request.takes_yes, "write without asking, and wait for nobody");
-  command.add_flag("--dry-run", request.is_dry_run, "show what would be written, and write nothing");
+  add_connect(command, request.connect);
+  command.add_flag("--yes,-y", request.takes_yes, "write without asking and without waiting");
+  command.add_flag("--dry-run", request.is_dry_run, "show what would be written, but write nothing");
 }
 
 const Command kCalibrateCommand{add_calibrate};

@@ -9,8 +9,9 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "drivers/microphone/microphone_calibration.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -47,8 +48,8 @@ HeardThrough heard_through(const MicLevelSettings& settings) {
 void refuse_another_band(std::string_view key, double then_hz, double now_hz) {
   if (then_hz == now_hz) return;
   refuse(
-      {fmt::format("the recording was made with {} = {:g} Hz, and the configuration has {:g}: levels of "
-                   "another band are of no use",
+      {fmt::format("the recording was made with {} = {:g} Hz, but the configuration has {:g}: levels of "
+                   "different bands cannot be compared",
                    key, then_hz, now_hz)});
 }
 
@@ -59,8 +60,8 @@ HeardThrough heard_through(const CalibrationSession& session, const HeardSensor&
   for (const std::string& text : heard.settings) {
     const auto values = parse_values(text, session.sensor().driver->parameters);
     if (!values) {
-      refuse(
-          {"the recording says of this microphone what this version does not understand: " + values.error().message});
+      refuse({"this version does not understand the settings of this microphone in the recording: " +
+              values.error().message});
     }
     const MicLevelSettings then = mic_level_settings_of(*values);
     refuse_another_band("band_low", then.band_low_hz, now.band_low_hz);
@@ -69,7 +70,9 @@ HeardThrough heard_through(const CalibrationSession& session, const HeardSensor&
   }
   if (all.empty()) return heard_through(now);
   if (std::ranges::any_of(all, [&all](const HeardThrough& one) { return !(one == all.front()); })) {
-    refuse({"the microphone was calibrated anew while this was recorded: choose a time before or after with --part"});
+    refuse(
+        {"the calibration of the microphone was changed during this recording: choose a time before or after with "
+         "--part"});
   }
   return all.front();
 }
@@ -86,8 +89,8 @@ std::vector<TimedSpeed> levels_of(const HeardSensor& heard, const HeardThrough& 
 /// Pairs of mean level and mean true speed, block by block.
 std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, HeardThrough& through) {
   const Heard heard = session.hear(
-      "The microphone and the reference must be in the same wind, as close together as can be. Calm and wind are both\n"
-      "needed: the more the wind changes meanwhile, the better.");
+      "The microphone and the reference must be in the same wind, as close together as possible. Both calm and wind "
+      "are\nneeded: the more the wind varies meanwhile, the better.");
   through = heard_through(session, heard[0]);
   const ReferencePairs beside = pair_with_reference(session, heard, kMicBlock_s);
   std::map<double, std::size_t> all_in_block;
@@ -112,23 +115,23 @@ std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, HeardThr
         static_cast<double>(levels_db.size()) >= kLeastHeardPart * static_cast<double>(all_in_block[block]);
     if (truth != truth_in_block.end() && is_heard) pairs.push_back({mean_of(levels_db), mean_of(truth->second)});
   }
-  session.dialog().say(fmt::format("\nBeside \"{}\": {} pairs of level and speed, means over {:.0f} s.",
+  session.dialog().say(fmt::format("\nCompared with \"{}\": {} pairs of level and speed, means over {:.0f} s.",
                                    session.reference()->name, pairs.size(), beside.block_s));
   return pairs;
 }
 
 /// The mean level in a wind of this speed.
 MicLevelAndSpeed hear_level(CalibrationSession& session, double speed_m_s, HeardThrough& through) {
-  const Heard heard = session.hear(
-      fmt::format("Bring the wind at the microphone to a steady {:g} m/s, and let nothing else be heard.", speed_m_s));
+  const Heard heard =
+      session.hear(fmt::format("Set the wind at the microphone to a steady {:g} m/s, with no other sound.", speed_m_s));
   through = heard_through(session, heard[0]);
   double sum_db = 0.0;
   const std::vector<TimedSpeed> levels_db = levels_of(heard[0], through);
   for (const TimedSpeed& one : levels_db) sum_db += one.speed_m_s;
-  if (levels_db.empty()) refuse({"the microphone hears no wind: is it in it, and is it switched on?"});
+  if (levels_db.empty()) refuse({"the microphone receives no wind noise: is it in the wind, and is it switched on?"});
   const double level_db = sum_db / static_cast<double>(levels_db.size());
-  session.dialog().say(
-      fmt::format("At {:g} m/s it hears {:.1f} dB, over {} readings.", speed_m_s, level_db, levels_db.size()));
+  session.dialog().say(fmt::format("At {:g} m/s the level is {:.1f} dB, over {}.", speed_m_s, level_db,
+                                   count_text(levels_db.size(), "reading")));
   return {level_db, speed_m_s};
 }
 
@@ -136,11 +139,13 @@ MicCalibration calibration_by_two_winds(CalibrationSession& session, std::vector
                                         HeardThrough& through, std::vector<MicLevelAndSpeed>& pairs) {
   for (const double speed_m_s : speeds_m_s) pairs.push_back(hear_level(session, speed_m_s, through));
   if (through.kind == MicFitKind::kCurve) {
-    refuse({"two winds make no curve, and this microphone has one: set its curve to \"\", or its noise_floor"});
+    refuse(
+        {"a curve cannot be fitted to two winds, and this microphone uses a curve: set its curve to \"\", or set its "
+         "noise_floor"});
   }
   std::ranges::sort(pairs, {}, &MicLevelAndSpeed::speed_m_s);
   const MicPowerLaw law = value_or_refuse(mic_power_law_through(pairs[0], pairs[1], through.noise_power));
-  session.dialog().say("A power law through both winds.");
+  session.dialog().say("Fitted a power law through both winds.");
   return law;
 }
 
@@ -148,11 +153,11 @@ MicCalibration calibration_beside(CalibrationSession& session, HeardThrough& thr
                                   std::vector<MicLevelAndSpeed>& pairs) {
   pairs = pairs_beside(session, through);
   const MicFit fit = value_or_refuse(fit_mic_calibration(pairs, through.noise_power, through.kind));
-  session.dialog().say(fmt::format("A {}: mean error {:.2f} m/s on pairs that it was not fitted to.",
+  session.dialog().say(fmt::format("Fitted a {}: mean error {:.2f} m/s on pairs that were not used for the fit.",
                                    std::holds_alternative<MicCurve>(fit.calibration) ? "curve" : "power law",
                                    fit.mean_error_m_s));
   if (through.kind == MicFitKind::kPowerLaw) {
-    session.dialog().say("(Only a power law was tried: for a curve the noise of a calm must be known, noise_floor.)");
+    session.dialog().say("(Only a power law was tried: a curve needs a known noise_floor.)");
   }
   return fit.calibration;
 }
@@ -164,7 +169,7 @@ std::vector<std::string> level_effect(const CalibrationSession& session, const M
   Calibration after = session.calibration();
   after.height_factor = 1.0;
   const auto [softest, loudest] = std::ranges::minmax(pairs, {}, &MicLevelAndSpeed::level_db);
-  std::vector<std::string> lines = {"where it hears  is taken now for   then for"};
+  std::vector<std::string> lines = {"    level        speed now        speed then"};
   for (int step = 0; step <= 3; ++step) {
     const double level_db = softest.level_db + (loudest.level_db - softest.level_db) * step / 3.0;
     const double power = std::pow(10.0, 0.1 * level_db);
@@ -180,16 +185,16 @@ void calibrate_microphone(const MicrophoneOptions& options) {
   const std::size_t speeds = options.speeds_m_s.size();
   const bool has_reference = !options.request.reference.empty();
   if (has_reference == (speeds > 0) || (speeds > 0 && speeds != 2)) {
-    throw ExitError(kExitUsage, "what is the known wind? Give --reference, or --speed twice");
+    throw ExitError(kExitUsage, "the known wind is missing: give --reference, or --speed twice");
   }
   const std::size_t parts = options.request.parts.size();
   if (!options.request.recording.empty() && (has_reference ? parts > 1 : parts != 2)) {
-    throw ExitError(kExitUsage, "--part: one with --reference; one for each --speed, in the same order");
+    throw ExitError(kExitUsage, "--part: give one with --reference, or one for each --speed, in the same order");
   }
   CalibrationSession session(options.request, has_reference ? 900.0 : 60.0);
   if (session.sensor().driver->name != std::string_view("microphone")) {
-    throw ExitError(kExitUsage, fmt::format("\"{}\" is no microphone; its gain is found by `yuragi calibrate span`",
-                                            session.sensor().name));
+    throw ExitError(kExitUsage,
+                    fmt::format("\"{}\" is not a microphone; use `yuragi calibrate span`", session.sensor().name));
   }
 
   HeardThrough through;
@@ -210,23 +215,24 @@ void calibrate_microphone(const MicrophoneOptions& options) {
 }  // namespace
 
 void add_calibrate_microphone(CLI::App& calibrate) {
-  CLI::App* command = calibrate.add_subcommand("microphone", "a bare microphone, beside any other anemometer");
+  CLI::App* command = calibrate.add_subcommand("microphone", "a bare microphone, next to another anemometer");
   command->footer(
-      "Finds gain and exponent, or a curve, of the microphone's own entry, from pairs of level and speed (means over\n"
-      "5 s and more): the one that is better on pairs that it was not fitted to. Wants at least 8 pairs over 1 m/s "
-      "and\n"
-      "3 dB; learned in a calm half hour it is worse in a storm, so let the wind change. With --speed twice: a power "
-      "law\n"
-      "through two winds that are known. [sensor.calibration] of the microphone becomes neutral, but for its height\n"
+      "Finds gain and exponent, or a curve, of the microphone's entry, from pairs of level and speed (means over 5 s "
+      "or\n"
+      "more): whichever is better on pairs that were not used for the fit. Needs at least 8 pairs that span 1 m/s and\n"
+      "3 dB. A fit to half an hour of light wind is poor in a storm, so record varied wind. With --speed twice: a "
+      "power law\n"
+      "through two known winds. [sensor.calibration] of the microphone becomes neutral, but for its height\n"
       "and north.\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --for 3600\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --recording may.windlog\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --speed 3 --speed 9");
   auto options = std::make_shared<MicrophoneOptions>();
   add_calibration_request(*command, options->request, "60; with --reference 900");
-  command->add_option("--reference", options->request.reference, "another sensor of the configuration, which is right")
+  command
+      ->add_option("--reference", options->request.reference, "another sensor of the configuration, taken as correct")
       ->type_name("NAME");
-  command->add_option("--speed", options->speeds_m_s, "a wind that is known; twice")
+  command->add_option("--speed", options->speeds_m_s, "a known wind speed; give it twice")
       ->type_name("M_S")
       ->check(CLI::Range(0.1, 100.0))
       ->expected(1)

@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -20,18 +21,18 @@ struct NorthOptions {
 
 /// The turn from what the vane says to what is true, by a landmark that it is pointed to.
 double turn_by_landmark(CalibrationSession& session, double bearing_deg) {
-  const Heard heard = session.hear(fmt::format(
-      "Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind came from there, and hold\n"
-      "it still.",
-      bearing_deg));
+  const Heard heard =
+      session.hear(fmt::format("Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind "
+                               "came from there, and hold it\nstill.",
+                               bearing_deg));
   std::vector<double> said_deg;
   for (const TimedReading& one : heard[0].readings) {
     if (one.reading.direction_deg) said_deg.push_back(*one.reading.direction_deg);
   }
   const DirectionMean mean = value_or_refuse(measure_held_vane(said_deg));
   session.dialog().say(
-      fmt::format("\nThe vane says {:.1f} deg, scattered by {:.1f} deg, over {} readings; true is {:g}.", mean.mean_deg,
-                  mean.spread_deg, mean.count, bearing_deg));
+      fmt::format("\nThe vane reads {:.1f} deg, standard deviation {:.1f} deg, over {}; the true bearing is {:g}.",
+                  mean.mean_deg, mean.spread_deg, count_text(mean.count, "reading"), bearing_deg));
   return bearing_deg - mean.mean_deg;
 }
 
@@ -55,22 +56,22 @@ double turn_by_reference(CalibrationSession& session) {
       directions_of(heard[0], without_north), directions_of(heard[1], session.reference()->calibration), kTurnBlock_s);
   const DirectionMean turn = value_or_refuse(measure_turn(turns_deg));
   session.dialog().say(
-      fmt::format("\nIt has to be turned by {:+.1f} deg, scattered by {:.1f} deg, over {} means of "
-                  "{:g} s.",
+      fmt::format("\nThe difference is {:+.1f} deg, standard deviation {:.1f} deg, over {} means of {:g} s.",
                   signed_degrees(turn.mean_deg), turn.spread_deg, turn.count, kTurnBlock_s));
   return turn.mean_deg;
 }
 
 void calibrate_north(NorthOptions options) {
   const bool has_reference = !options.request.reference.empty();
-  if (has_reference && options.bearing_deg) throw ExitError(kExitUsage, "--bearing or --reference, not both");
+  if (has_reference && options.bearing_deg) throw ExitError(kExitUsage, "give --bearing or --reference, not both");
   CalibrationSession session(options.request, has_reference ? 900.0 : 20.0);
-  if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: one is enough");
+  if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
   if (!has_reference && !options.bearing_deg) {
-    if (!session.dialog().has_person()) throw ExitError(kExitUsage, "add --bearing DEG, or --reference NAME");
+    if (!session.dialog().has_person()) throw ExitError(kExitUsage, "give --bearing DEG or --reference NAME");
     session.dialog().say(
-        "\nChoose a landmark far away: a tower, a summit. Take its bearing from the sensor off a map (true north; a\n"
-        "compass is off by the declination, and more beside steel).");
+        "\n"
+        "Choose a distant landmark: a tower, a summit. Take its bearing from the sensor from a map (true north: a\n"
+        "compass deviates by the declination, and by more near steel).");
     options.bearing_deg = session.dialog().ask_number("Its bearing, degrees clockwise from north", 0.0, 360.0);
   }
 
@@ -79,7 +80,7 @@ void calibrate_north(NorthOptions options) {
   Calibration now = session.calibration();
   Calibration then = now;
   then.north_offset_deg = north_offset_deg;
-  std::vector<std::string> effect = {"where it says   is taken now for   then for"};
+  std::vector<std::string> effect = {"   reading     direction now   direction then"};
   for (const double said_deg : {0.0, 90.0, 180.0, 270.0}) {
     WindReading reading;
     reading.direction_deg = said_deg;
@@ -94,10 +95,10 @@ void calibrate_north(NorthOptions options) {
 void add_calibrate_north(CLI::App& calibrate) {
   CLI::App* command = calibrate.add_subcommand("north", "point the vane to a landmark of known bearing (north_offset)");
   command->footer(
-      "Averages directions as vectors, so that 350 and 10 degrees make 0; refuses a vane that moves. --reference\n"
-      "compares with another vane in the same wind instead. Where nothing turns (a sonic), sight along its north "
-      "mark:\n"
-      "the bearing of the mark is north_offset itself.\n"
+      "Directions are averaged as vectors, so that the mean of 350 and 10 degrees is 0. A vane that moves is refused.\n"
+      "--reference compares with another vane in the same wind instead. If nothing turns (a sonic anemometer), sight "
+      "along\n"
+      "its north mark: the bearing of the mark is north_offset itself.\n"
       "  yuragi calibrate north --config wall.toml --sensor roof --bearing 214\n"
       "  yuragi calibrate north --config wall.toml --sensor roof --reference mast --recording may.windlog");
   auto options = std::make_shared<NorthOptions>();
@@ -105,7 +106,8 @@ void add_calibrate_north(CLI::App& calibrate) {
   command->add_option("--bearing", options->bearing_deg, "of the landmark, clockwise from true north")
       ->type_name("DEG")
       ->check(CLI::Range(0.0, 360.0));
-  command->add_option("--reference", options->request.reference, "another sensor of the configuration, which is right")
+  command
+      ->add_option("--reference", options->request.reference, "another sensor of the configuration, taken as correct")
       ->type_name("NAME");
   command->callback([options] { calibrate_north(*options); });
 }

@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "drivers/sensor/speed_unit.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -27,19 +28,19 @@ struct SpanOptions {
 /// What the sensor says in a wind of this speed.
 CalibrationPoint hear_known_speed(CalibrationSession& session, double speed_m_s) {
   const Heard heard = session.hear(fmt::format(
-      "Bring the wind at the sensor to a steady {:g} m/s: a fan or a tunnel, and a meter that is right beside it.",
+      "Set the wind at the sensor to a steady {:g} m/s: with a fan or a wind tunnel, and an accurate meter next to it.",
       speed_m_s));
   const std::vector<double> said_m_s = said_speeds_m_s(heard[0], session.calibration());
-  if (said_m_s.empty()) refuse({"no reading came in that part of the recording: check --part"});
+  if (said_m_s.empty()) refuse({"that part of the recording has no readings: check --part"});
   const auto count = static_cast<double>(said_m_s.size());
   double mean_m_s = 0.0;
   for (const double said : said_m_s) mean_m_s += said / count;
   double variance = 0.0;
   for (const double said : said_m_s) variance += (said - mean_m_s) * (said - mean_m_s) / count;
-  session.dialog().say(fmt::format("At {:g} m/s it says {:.3f} m/s, scattered by {:.3f} m/s, over {} readings.",
-                                   speed_m_s, mean_m_s, std::sqrt(variance), said_m_s.size()));
+  session.dialog().say(fmt::format("At {:g} m/s the sensor reads {:.3f} m/s, standard deviation {:.3f} m/s, over {}.",
+                                   speed_m_s, mean_m_s, std::sqrt(variance), count_text(said_m_s.size(), "reading")));
   if (std::sqrt(variance) > kMostUnsteadiness * mean_m_s && mean_m_s > 0.0) {
-    refuse({fmt::format("that wind is not steady: it scatters by {:.0f} %, and {:.0f} % is the most",
+    refuse({fmt::format("that wind is not steady: its standard deviation is {:.0f} %, allowed: up to {:.0f} %",
                         100.0 * std::sqrt(variance) / mean_m_s, 100.0 * kMostUnsteadiness)});
   }
   return {mean_m_s, speed_m_s};
@@ -54,11 +55,11 @@ std::vector<CalibrationPoint> known_pairs(CalibrationSession& session, const Spa
     return pairs;
   }
   const Heard heard = session.hear(
-      "Both sensors must be in the same wind, as close together as can be without shelter; the more the wind changes\n"
-      "meanwhile, the better.");
+      "Both sensors must be in the same wind, as close together as possible without sheltering each other; the more "
+      "the\nwind varies meanwhile, the better.");
   const ReferencePairs beside = pair_with_reference(session, heard, kSpanBlock_s);
-  session.dialog().say(fmt::format("\nBeside \"{}\": {} pairs of means over {:.0f} s.", session.reference()->name,
-                                   beside.pairs.size(), beside.block_s));
+  session.dialog().say(fmt::format("\nCompared with \"{}\": {} pairs of means over {:.0f} s.",
+                                   session.reference()->name, beside.pairs.size(), beside.block_s));
   return beside.pairs;
 }
 
@@ -68,8 +69,8 @@ void hint_at_unit(const CalibrationSession& session, CalibrationDialog& dialog, 
   for (const SpeedUnit& unit : kSpeedUnitTable) {
     if (unit.metres_per_second == 1.0 || std::abs(gain / unit.metres_per_second - 1.0) > 0.05) continue;
     dialog.say(
-        fmt::format("A gain of {:.3f} is what numbers in {} need: if these are, rather set unit = \"{}\" (the "
-                    "driver's own, or that in [sensor.calibration]) and begin again.",
+        fmt::format("A gain of {:.3f} is typical of numbers in {}: if the sensor reports that unit, set unit = \"{}\" "
+                    "(of the driver, or in [sensor.calibration]) and start again.",
                     gain, unit.name, unit.name));
     return;
   }
@@ -87,13 +88,13 @@ void check_options(const SpanOptions& options) {
   const int ways = (options.request.reference.empty() ? 0 : 1) + (options.speeds_m_s.empty() ? 0 : 1) +
                    (options.points.empty() ? 0 : 1);
   if (ways != 1) {
-    throw ExitError(kExitUsage, "what is the known wind? Give one of --speed, --reference and --points");
+    throw ExitError(kExitUsage, "the known wind is missing: give --speed, --reference or --points");
   }
   const bool is_recorded = !options.request.recording.empty();
   const std::size_t stretches = std::max<std::size_t>(1, options.speeds_m_s.size());
   if (is_recorded &&
       (options.request.parts.size() > stretches || (stretches > 1 && options.request.parts.size() != stretches))) {
-    throw ExitError(kExitUsage, "give as many --part as there are speeds, in the same order");
+    throw ExitError(kExitUsage, "give as many --part as --speed, in the same order");
   }
   if (options.wants_curve && !options.speeds_m_s.empty()) {
     throw ExitError(kExitUsage, "--curve needs --reference or --points");
@@ -111,7 +112,7 @@ void calibrate_span(const SpanOptions& options) {
   check_options(options);
   CalibrationSession session(options.request, options.request.reference.empty() ? 60.0 : 900.0);
   if (session.sensor().driver->name == std::string_view("microphone")) {
-    throw ExitError(kExitUsage, "a microphone is calibrated by `yuragi calibrate microphone`");
+    throw ExitError(kExitUsage, "a microphone is calibrated with `yuragi calibrate microphone`");
   }
   const std::vector<CalibrationPoint> pairs = known_pairs(session, options);
 
@@ -120,8 +121,8 @@ void calibrate_span(const SpanOptions& options) {
     std::vector<CalibrationPoint> curve = pairs;
     if (options.points.empty()) {
       CurveFit fit = value_or_refuse(fit_curve(pairs));
-      session.dialog().say(fmt::format("A curve of {} points: R^2 = {:.4f}, residual {:.3f} m/s.", fit.curve.size(),
-                                       fit.r_squared, fit.residual_m_s));
+      session.dialog().say(fmt::format("Fitted a curve of {} points: R^2 = {:.4f}, residual {:.3f} m/s.",
+                                       fit.curve.size(), fit.r_squared, fit.residual_m_s));
       curve = std::move(fit.curve);
     }
     wanted = {
@@ -130,10 +131,10 @@ void calibrate_span(const SpanOptions& options) {
     const bool is_single = pairs.size() == 1 && options.speeds_m_s.size() == 1;
     const LineFit fit = value_or_refuse(is_single ? fit_line_from_zero(zero_point_m_s(session.calibration()), pairs[0])
                                                   : fit_line(pairs));
-    session.dialog().say(fit.count <= 2
-                             ? fmt::format("A line through {}.", is_single ? "its zero and this wind" : "both winds")
-                             : fmt::format("A line through {} pairs with wind: R^2 = {:.4f}, residual {:.3f} m/s.",
-                                           fit.count, fit.r_squared, fit.residual_m_s));
+    session.dialog().say(
+        fit.count <= 2 ? fmt::format("Fitted a line through {}.", is_single ? "its zero and this wind" : "both winds")
+                       : fmt::format("Fitted a line through {} pairs with wind: R^2 = {:.4f}, residual {:.3f} m/s.",
+                                     fit.count, fit.r_squared, fit.residual_m_s));
     hint_at_unit(session, session.dialog(), fit.gain);
     wanted = {{"calibration", "gain", rounded(fit.gain, 0.0001)},
               {"calibration", "offset", rounded(fit.offset_m_s, 0.001)},
@@ -147,12 +148,14 @@ void calibrate_span(const SpanOptions& options) {
 void add_calibrate_span(CLI::App& calibrate) {
   CLI::App* command = calibrate.add_subcommand("span", "known winds: gain and offset, or a curve");
   command->footer(
-      "Against a sensor that is right (--reference, another one of the configuration): means over 10 s and more are\n"
-      "paired, and a line is fitted by least squares. Against known winds (--speed): one turns the line about its "
-      "zero,\n"
-      "two and more make a new line. From a certificate (--points): what it said and what was true. --curve makes a\n"
-      "curve of bins of 1 m/s, or of the points, where a sensor is not straight.\n"
-      "Refuses less than 2 m/s between the slowest and the fastest, R^2 below 0.8, and gains outside 0.2 to 5.\n"
+      "With a reference sensor (--reference, another one of the configuration): means over 10 s or more are paired, "
+      "and a\n"
+      "line is fitted by least squares. With known winds (--speed): one changes the gain, two or more give gain and "
+      "offset.\n"
+      "From a certificate (--points): pairs of reading and true speed. --curve makes a curve of bins of 1 m/s, or of "
+      "the\n"
+      "points, for a sensor that is not linear.\n"
+      "Refused: less than 2 m/s between the slowest and the fastest, R^2 below 0.8, and gains outside 0.2 to 5.\n"
       "  yuragi calibrate span --config wall.toml --sensor roof --speed 3 --speed 12\n"
       "  yuragi calibrate span --config wall.toml --sensor roof --reference handheld --for 1200\n"
       "  yuragi calibrate span --config wall.toml --sensor roof --points \"4.1:4.0 9.8:10.1 15.2:16.0\"\n"
@@ -160,16 +163,17 @@ void add_calibrate_span(CLI::App& calibrate) {
       "      --part 10,70 --part 90,150");
   auto options = std::make_shared<SpanOptions>();
   add_calibration_request(*command, options->request, "60; with --reference 900");
-  command->add_option("--speed", options->speeds_m_s, "a wind that is known; can be given again")
+  command->add_option("--speed", options->speeds_m_s, "a known wind speed; can be repeated")
       ->type_name("M_S")
       ->check(CLI::Range(0.1, 100.0))
       ->expected(1)
       ->take_all();
-  command->add_option("--reference", options->request.reference, "another sensor of the configuration, which is right")
+  command
+      ->add_option("--reference", options->request.reference, "another sensor of the configuration, taken as correct")
       ->type_name("NAME");
-  command->add_option("--points", options->points, "said:true in m/s, rising, from a certificate")
+  command->add_option("--points", options->points, "reading:true in m/s, rising, from a certificate")
       ->type_name("\"SAID:TRUE ...\"");
-  command->add_flag("--curve", options->wants_curve, "a curve, not a line");
+  command->add_flag("--curve", options->wants_curve, "fit a curve instead of a line");
   command->callback([options] { calibrate_span(*options); });
 }
 

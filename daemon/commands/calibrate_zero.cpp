@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/calibrate.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -13,18 +14,19 @@ void calibrate_zero(const CalibrationRequest& request) {
   CalibrationSession session(request, 30.0);
   if (session.sensor().driver->name == std::string_view("microphone")) {
     throw ExitError(kExitUsage,
-                    "a microphone has no zero: the noise of a calm is found while it runs, or set as its noise_floor");
+                    "a microphone has no zero: its noise in a calm is found while it runs, or set as its noise_floor");
   }
-  if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: one calm is enough");
+  if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
   const Heard heard = session.hear(
-      "Make the air in the sensor stand still: put a box or a bag over it, close windows, switch fans off, and take\n"
-      "your hands away. Cups must be free to turn.");
+      "The air at the sensor must not move: put a box or a bag over it, close windows, switch off fans, and keep "
+      "your\nhands away. Cups must be free to turn.");
   const Calibration calibration = session.calibration();
   const StillAir air = value_or_refuse(measure_still_air(said_speeds_m_s(heard[0], calibration)));
-  session.dialog().say(fmt::format("\nIn still air it says {:.3f} m/s, scattered by {:.3f} m/s, over {} readings.",
-                                   air.mean_m_s, air.noise_m_s, air.count));
+  session.dialog().say(
+      fmt::format("\nIn still air the sensor reads {:.3f} m/s, standard deviation {:.3f} m/s, over {}.", air.mean_m_s,
+                  air.noise_m_s, count_text(air.count, "reading")));
   if (air.mean_m_s == 0.0) {
-    session.dialog().say("That is a calm already (and 0 stays 0, whatever the offset): nothing to write.");
+    session.dialog().say("The sensor reads 0 in still air already: nothing to write.");
     return;
   }
   const double offset_m_s = rounded(offset_for_zero_m_s(calibration, air.mean_m_s), 0.001);
@@ -35,10 +37,11 @@ void calibrate_zero(const CalibrationRequest& request) {
 }  // namespace
 
 void add_calibrate_zero(CLI::App& calibrate) {
-  CLI::App* command = calibrate.add_subcommand("zero", "still air: what the sensor says then becomes 0 (offset)");
+  CLI::App* command = calibrate.add_subcommand("zero", "still air: the reading in still air becomes 0 (offset)");
   command->footer(
-      "Refuses where the air moves. A cup that stands still says 0 by itself and needs none; a sonic, a hot wire or a\n"
-      "4-20 mA input may say some tenths.\n"
+      "Refused if the air moves. A cup anemometer reads 0 when it stands still and needs no zero; a sonic, a hot wire "
+      "or a\n"
+      "4-20 mA input may read some tenths.\n"
       "  yuragi calibrate zero --config wall.toml --sensor roof --for 60\n"
       "  yuragi calibrate zero --config wall.toml --sensor roof --recording night.windlog --part 120,300 --dry-run");
   auto request = std::make_shared<CalibrationRequest>();

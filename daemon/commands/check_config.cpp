@@ -16,20 +16,20 @@ namespace {
 std::string length_reason(const WindConfig& wind, const SensorConfig& sensor) {
   if (wind.default_length_m) return " (default_length)";
   const auto [height_m, scene_height_m] = sensor.heights;
-  if (!height_m) return " (its calibration tells no height)";
-  const std::string brought = scene_height_m != *height_m ? fmt::format(", brought to {:g} m", scene_height_m) : "";
-  return fmt::format(" (it stands {:g} m high{})", *height_m, brought);
+  if (!height_m) return " (no height in its calibration)";
+  const std::string brought = scene_height_m != *height_m ? fmt::format(", converted to {:g} m", scene_height_m) : "";
+  return fmt::format(" (height {:g} m{})", *height_m, brought);
 }
 
 void add_check_config(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("check-config", "tell whether a configuration is right, and what it comes to");
+  CLI::App* command = app.add_subcommand("check-config", "check a configuration, and show what it amounts to");
   command->footer(
-      "Exit code 0: it is; 78: it is not, and each mistake is told as file:line:column: key: what is wrong.\n"
-      "No device is touched. With --full the whole configuration is printed, every default written out.");
+      "Exit code 0: no error; 78: errors, each reported as file:line:column: key: what is wrong.\nNo device is opened. "
+      "--full prints the whole configuration with every default.");
   auto file = std::make_shared<std::filesystem::path>();
   auto full = std::make_shared<bool>(false);
   command->add_option("file", *file, "the configuration")->required()->type_name("FILE.toml");
-  command->add_flag("--full", *full, "print every value, defaults included, as TOML");
+  command->add_flag("--full", *full, "print every value, including defaults, as TOML");
   command->callback([file, full] {
     const Config config = load_config(*file);
     for (const SensorConfig& sensor : config.sensors) open_sensor(sensor);
@@ -38,7 +38,7 @@ void add_check_config(CLI::App& app) {
       fmt::print("{}", to_toml(config));
       return;
     }
-    fmt::print("{}: all right\n", file->string());
+    fmt::print("{}: no errors\n", file->string());
     for (const SensorConfig& sensor : config.sensors) {
       fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
                  place_text(sensor.blend), gust_length_m(config.wind, sensor), length_reason(config.wind, sensor));
@@ -62,14 +62,21 @@ void describe_everything() {
     print_parameters(driver->parameters);
   }
   fmt::print(
-      "\n[sensor.calibration]  # below a [[sensor]] of any kind: from what it says to the wind; recordings keep what "
-      "it says\n");
+      "\n"
+      "[sensor.calibration]  # below a [[sensor]] of any kind: from its readings to the wind; recordings hold "
+      "uncalibrated readings\n");
   print_parameters(calibration_parameters());
-  fmt::print("\n[sensor.blend]  # below a [[sensor]] of any kind: its part among several\n");
+  fmt::print(
+      "\n"
+      "[sensor.blend]  # below a [[sensor]] of any kind: how it is combined with other sensors\n");
   print_parameters(sensor_blend_parameters());
-  fmt::print("\n[sensor.judge]  # below a [[sensor]] of any kind: which of its readings are believed\n");
+  fmt::print(
+      "\n"
+      "[sensor.judge]  # below a [[sensor]] of any kind: which of its readings are accepted\n");
   print_parameters(judge_parameters());
-  fmt::print("\n[[scene]]  # of any kind: where it stands, and how it is seen\n");
+  fmt::print(
+      "\n"
+      "[[scene]]  # of any kind: its place and visibility\n");
   print_parameters(common_scene_parameters());
   for (const SceneDescription* scene : scene_table()) {
     fmt::print("\n[[scene]]  # kind = \"{}\": {}\n", scene->name, scene->summary);
@@ -78,8 +85,7 @@ void describe_everything() {
 }
 
 void add_describe(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("describe", "every key that a configuration may hold: unit, range, default, help");
+  CLI::App* command = app.add_subcommand("describe", "list every key of a configuration: unit, range, default, help");
   command->callback(describe_everything);
 }
 

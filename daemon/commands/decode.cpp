@@ -13,10 +13,11 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/decode_options.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/tools/decode/decode_formats.hpp"
 #include "daemon/tools/decode/unit_reader.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -50,8 +51,7 @@ class Input {
     const std::string why = std::generic_category().message(errno);
     throw ExitError(
         kExitNoInput,
-        fmt::format("cannot read {}: {}. Give the name of a file that you may read, or - for standard input", name_,
-                    why));
+        fmt::format("cannot read {}: {}. Give the name of a readable file, or - for standard input", name_, why));
   }
 
   std::string name_;
@@ -115,8 +115,8 @@ class Output {
     std::string reasons;
     for (const auto& [why, count] : refused_)
       reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", why, count);
-    fmt::print(stderr, "decode: {} readings; refused: {}{}\n", readings_, reasons,
-               shows_refused_ ? "" : ". --refused shows each");
+    fmt::print(stderr, "decode: {}; refused: {}{}\n", count_text(readings_, "reading"), reasons,
+               shows_refused_ ? "" : "; --refused shows each");
   }
 
  private:
@@ -134,13 +134,12 @@ const UnitFormat& format_of(DecodeCommandOptions& options) {
   if (format == nullptr) {
     std::string known;
     for (const UnitFormat& each : unit_formats()) known += fmt::format("{}{}", known.empty() ? "" : ", ", each.name);
-    throw ExitError(kExitUsage, fmt::format("'{}' is no format: choose one of {}", options.format, known));
+    throw ExitError(kExitUsage, fmt::format("'{}' is not a format; allowed: {}", options.format, known));
   }
   if (!format->is_text && !options.is_hex) {
-    throw ExitError(kExitUsage,
-                    fmt::format("{} is made of bytes: write them as hexadecimal digits, {} a line, and give --hex "
-                                "(xxd -p makes them of a file)",
-                                options.format, format->unit));
+    throw ExitError(kExitUsage, fmt::format("{} is a binary format: write the bytes as hexadecimal digits, {} per "
+                                            "line, and give --hex (xxd -p converts a file)",
+                                            options.format, format->unit));
   }
   if (const auto colon = options.format.find(':'); colon != std::string::npos) {
     options.decoder.profile = options.format.substr(colon + 1);
@@ -188,24 +187,30 @@ void decode_input(DecodeCommandOptions& options) {
 
 std::string footer() {
   std::string text =
-      "Each reading is one JSON object a line: speed_m_s, direction_deg and gust_m_s (null where the message does not\n"
-      "have it), reference (of the direction: relative, true, north or magnetic, where the message says it), status\n"
-      "(good, uncertain). Of counters also count and volts. A refused message gives, with --refused, an object with\n"
-      "refused (why), detail and input.\n\nFormats, and an example of each:\n";
+      "Each reading is one JSON object per line: speed_m_s, direction_deg and gust_m_s (null if the message has "
+      "none),\n"
+      "reference (of the direction: relative, true, north or magnetic, if the message has it), status (good, "
+      "uncertain).\n"
+      "Counters also give count and volts. With --refused, a refused message gives an object with refused (the "
+      "reason),\n"
+      "detail and input.\n"
+      "\n"
+      "Formats, and an example of each:\n";
   for (const UnitFormat& format : unit_formats()) {
     text += fmt::format("  {:<15} {}\n{:18}{}: {}\n{:18}yuragi decode {}\n", format.name, format.devices, "",
                         format.is_text ? "text" : "bytes", format.unit, "", format.example);
   }
   text +=
-      "Text may come as hexadecimal digits too (--hex). Standard input may be endless:\n"
+      "Text can be given as hexadecimal digits, too (--hex). Standard input can be endless:\n"
       "  tail -f voyage.log | yuragi decode nmea | jq .speed_m_s\n"
-      "Exit code 0: the input was read to its end, whatever was refused; 64: a mistake in the command line; 66: the\n"
-      "input cannot be read; 78: the Modbus profile is not there, or wrong.";
+      "Exit code 0: the input was read to its end, whatever was refused; 64: wrong command line; 66: the input cannot "
+      "be\n"
+      "read; 78: the Modbus profile is missing or wrong.";
   return text;
 }
 
 void add_decode(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("decode", "read a sensor's messages from a file or pipe, as the drivers do");
+  CLI::App* command = app.add_subcommand("decode", "decode a sensor's messages from a file or pipe, as the drivers do");
   command->footer(footer());
   auto options = std::make_shared<DecodeCommandOptions>();
   options->add_to(*command);

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "drivers/text/line_sensor.hpp"
 
 namespace yuragi {
@@ -33,13 +33,12 @@ std::string option_of(std::string name) {
 }  // namespace
 
 void DecodeCommandOptions::add_to(CLI::App& command) {
-  command.add_option("format", format, "how the messages are written; see below")->required()->option_text("FORMAT");
-  command.add_option("file", file, "where they are; - or nothing: standard input")->option_text("[FILE|-]");
-  command.add_flag(
-      "--hex", is_hex,
-      "a message a line, as hexadecimal digits (blanks, commas and 0x may stand between bytes; a line that "
-      "begins with # is a comment)");
-  command.add_flag("--refused", shows_refused, "tell of what is refused too, and why");
+  command.add_option("format", format, "the format of the messages; see below")->required()->option_text("FORMAT");
+  command.add_option("file", file, "the file; - or nothing: standard input")->option_text("[FILE|-]");
+  command.add_flag("--hex", is_hex,
+                   "one message per line, as hexadecimal digits (blanks, commas and 0x are allowed between bytes; a "
+                   "line that begins with # is a comment)");
+  command.add_flag("--refused", shows_refused, "also print what is refused, and why");
   add_policies(command);
   add_line_options(command);
   add_station_options(command);
@@ -55,7 +54,7 @@ void DecodeCommandOptions::check() {
     const bool is_read = std::any_of(words.values.data(), end, [&](auto word) { return trimmed(word) == name; });
     if (option->count() > 0 && !is_read) {
       throw ExitError(kExitUsage,
-                      fmt::format("{} means nothing to {}: it is for {}", option->get_name(), name, formats));
+                      fmt::format("{} does not apply to {}; it is for {}", option->get_name(), name, formats));
     }
   }
   set_line();
@@ -89,15 +88,16 @@ void DecodeCommandOptions::add_policies(CLI::App& command) {
     limit(add_choice(command, name, value, missing, help)->option_text("refuse|accept"), "nmea, gill, umb, ft");
   };
   add_missing("--checksum", decoder.checksum,
-              "what to do where the checksum is missing (default refuse); a wrong one is always refused");
+              "if the checksum is missing (default refuse); a wrong one is always refused");
   add_missing("--status", decoder.status,
-              "the same of the status (default refuse); accepted, the reading is uncertain");
+              "if the status is missing (default refuse); an accepted reading is uncertain");
   limit(command.add_option("--xdr-id", decoder.xdr_first_id, "the address of the WXT whose XDR is read (default 0)")
             ->check(CLI::Range(0, 255))
             ->option_text("N"),
         "nmea");
-  limit(command.add_option("--node", decoder.node, "take only this one's messages")->option_text("A..Z"), "gill");
-  limit(command.add_option("--device", decoder.umb_device, "take only this one's answers (28673 is WS no. 1)")
+  limit(command.add_option("--node", decoder.node, "accept only the messages of this one")->option_text("A..Z"),
+        "gill");
+  limit(command.add_option("--device", decoder.umb_device, "accept only the replies of this one (28673 is WS no. 1)")
             ->option_text("N"),
         "umb");
   limit(command
@@ -125,7 +125,7 @@ void DecodeCommandOptions::add_line_options(CLI::App& command) {
 
 void DecodeCommandOptions::add_station_options(CLI::App& command) {
   limit(command.add_flag("--reports", decoder.are_reports,
-                         "each line is an input report of 8 bytes as it came over USB (sensors watch --raw --hex)"),
+                         "each line is an input report of 8 bytes as received over USB (sensors watch --raw --hex)"),
         "wmr100, te923, fineoffset");
 }
 
@@ -133,24 +133,25 @@ void DecodeCommandOptions::add_modbus_options(CLI::App& command) {
   const auto add = [&](const char* name, int& value, const char* help) {
     limit(command.add_option(name, value, help)->check(CLI::Range(1, 247))->option_text("ID"), "modbus");
   };
-  add("--speed-slave", decoder.speed_slave, "the slave that measures speed, instead of the profile's");
-  add("--direction-slave", decoder.direction_slave, "the same of the direction");
+  add("--speed-slave", decoder.speed_slave, "the slave that measures the speed, instead of the profile's");
+  add("--direction-slave", decoder.direction_slave, "the slave that measures the direction, instead of the profile's");
 }
 
 void DecodeCommandOptions::add_counter_options(CLI::App& command) {
   const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
     return limit(command.add_option(name, value, help)->option_text(type), "mcc1208, labjack");
   };
-  CLI::Option* slope = add("--slope", decoder.cup.metres_per_pulse,
-                           "wind that passes between two pulses: m/s for each pulse a second", "METRES");
+  CLI::Option* slope =
+      add("--slope", decoder.cup.metres_per_pulse, "speed per pulse rate: m/s for each pulse per second", "METRES");
   CLI::Option* interval =
-      add("--interval", decoder.interval_s, "from one reply to the next: with it, counts are a speed", "SECONDS");
+      add("--interval", decoder.interval_s, "time between replies; with it, counts give a speed", "SECONDS");
   slope->check(CLI::PositiveNumber)->needs(interval);
   interval->check(CLI::PositiveNumber)->needs(slope);
-  add("--offset", decoder.cup.offset_m_s, "the wind below which the cup stands (default 0)", "M/S")
+  add("--offset", decoder.cup.offset_m_s, "the wind speed below which the cup does not turn (default 0)", "M/S")
       ->check(CLI::Range(0.0, 10.0))
       ->needs(slope);
-  add("--vane-reference", decoder.vane_reference_v, "over the vane's track: with it, volts are a direction", "VOLTS")
+  add("--vane-reference", decoder.vane_reference_v,
+      "voltage over the vane's potentiometer; with it, volts give a direction", "VOLTS")
       ->check(CLI::PositiveNumber);
 
   const std::map<std::string, LabjackInput> inputs = {{"low-voltage", LabjackInput::kLowVoltage},

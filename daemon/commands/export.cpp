@@ -9,11 +9,12 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_export.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/log_moment.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 
@@ -24,8 +25,8 @@ namespace {
 constexpr const char* kExportFooter =
     "The CSV has the columns utc, time_s (seconds since the first reading), sensor, speed_m_s, direction_deg (where "
     "the\n"
-    "wind comes from), gust_m_s and quality; `yuragi import` makes the same readings of it again.\n"
-    "A .windlog as output is a consistent copy, also of a recording that is being written at this moment.\n"
+    "wind comes from), gust_m_s and quality; `yuragi import` turns it into the same readings again.\n"
+    "A .windlog as output is a consistent copy, even of a recording that is being written.\n"
     "\n"
     "Examples:\n"
     "  yuragi export mast.windlog -o mast.csv\n"
@@ -64,8 +65,10 @@ void export_as_csv(WindlogReader& reader, const ExportOptions& options, std::FIL
   });
   if (has_told) fmt::print(stderr, "\n");
   if (!report) throw ExitError(kExitDataError, report.error().message);
-  if (report->skipped > 0) fmt::print(stderr, "left out: {} rows that cannot be readings\n", report->skipped);
-  fmt::print(stderr, "{}: {} readings\n", options.output == "-" ? "standard output" : options.output, report->written);
+  if (report->skipped > 0)
+    fmt::print(stderr, "left out: {} that cannot be readings\n", count_text(report->skipped, "row"));
+  fmt::print(stderr, "{}: {}\n", options.output == "-" ? "standard output" : options.output,
+             count_text(report->written, "reading"));
 }
 
 void run_export(const ExportOptions& options) {
@@ -79,33 +82,32 @@ void run_export(const ExportOptions& options) {
   OutputFile output(options.output, options.force, windlog::kSideSuffixes);
   if (std::filesystem::path(options.output).extension() == ".windlog") {
     if (!options.from.empty() || !options.to.empty()) {
-      throw ExitError(kExitUsage, "--from and --to go with a CSV; a copy is of the whole recording");
+      throw ExitError(kExitUsage, "--from and --to are for CSV output; a copy is always of the whole recording");
     }
     if (const auto copied = reader->copy_to(output.working_path()); !copied) {
       throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
     }
-    output.commit();
+    output.commit().value();
     fmt::print(stderr, "{}: a copy of {}\n", options.output, options.input);
     return;
   }
 
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
                                                              &std::fclose);
-  if (!file)
-    throw ExitError(kExitCannotCreate, options.output + ": cannot be created; may this user write to its folder?");
+  if (!file) throw ExitError(kExitCannotCreate, options.output + ": cannot be created; is its folder writable?");
   export_as_csv(*reader, options, file.get());
-  output.commit();
+  output.commit().value();
 }
 
 void add_export(CLI::App& app) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Make a CSV file, or a copy, of a recording");
+  CLI::App* command = app.add_subcommand("export", "Convert a recording to CSV, or copy it");
   command->footer(kExportFooter);
   command->add_option("file", options->input, "the recording (.windlog)")->required();
   command->add_option("-o,--output", options->output, "FILE.csv, COPY.windlog, or - for CSV on standard output")
       ->required();
-  command->add_option("--from", options->from, "begin here: seconds, or a moment such as 2018-07-20T14:05:00Z");
-  command->add_option("--to", options->to, "end before this, written likewise");
+  command->add_option("--from", options->from, "where to begin: seconds, or a time such as 2018-07-20T14:05:00Z");
+  command->add_option("--to", options->to, "where to end, in the same form");
   command->add_flag("--force", options->force, "overwrite the output");
   command->callback([options] { run_export(*options); });
 }

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/field_frames.hpp"
 #include "daemon/tools/offline/npy.hpp"
@@ -32,14 +32,14 @@ extern const Command kFieldCommand;
 namespace {
 
 constexpr const char* kFieldFooter =
-    "Writes the wind at every place of a grid, at one moment or many, as float32 in m/s with the axes\n"
+    "Writes the wind at every point of a grid, at one time or many, as float32 in m/s with the axes\n"
     "\n"
     "  [frame, component, z, y, x]   component: u toward east, v toward north, w up (w in 3-D only)\n"
     "                                x toward east, y up, z toward south; in 2-D y is one sample\n"
     "\n"
-    "and beside it FILE.json, which says in words where the samples stand, when, and what wind it is.\n"
+    "and FILE.json, which describes the places and times of the samples, and the wind.\n"
     "\n"
-    "The wind is one of given statistics: mean speed and direction, turbulence intensity TI (standard deviation along\n"
+    "The wind has given statistics: mean speed and direction, turbulence intensity TI (standard deviation along\n"
     "the wind over the mean speed) and length L (how far gusts reach). A point sees von Karman's spectrum; across the\n"
     "wind the standard deviation is 0.8 of that along it and the length a third, upward 0.5 and a twelfth (IEC\n"
     "61400-1). The mean wind carries the gusts along; meanwhile their eddies turn over, unless --frozen.\n"
@@ -105,8 +105,8 @@ FieldGrid grid_of(const FieldOptions& options) {
   if (edges.empty()) edges.assign(1, is_space ? 64 : 256);
   if (edges.size() == 1) edges.assign(all, edges[0]);
   if (edges.size() != all) {
-    throw ExitError(kExitUsage, is_space ? "--size: of a field of 3 dimensions is N or X,Y,Z (east, up, south)"
-                                         : "--size: of a field of 2 dimensions is N or X,Z (east, south)");
+    throw ExitError(kExitUsage, is_space ? "--size: a field of 3 dimensions takes N or X,Y,Z (east, up, south)"
+                                         : "--size: a field of 2 dimensions takes N or X,Z (east, south)");
   }
   grid.count_x = edges.front();
   grid.count_z = edges.back();
@@ -127,10 +127,9 @@ std::size_t tile_of(const FieldOptions& options, const FieldGrid& grid) {
     return *options.tile;
   }
   if (edge > largest) {
-    throw ExitError(kExitUsage,
-                    fmt::format("--size: {} samples are longer than the largest tile, {} with --dims {}; choose fewer, "
-                                "or --tile {} for a wind that repeats",
-                                edge, largest, options.wind.dims, largest));
+    throw ExitError(kExitUsage, fmt::format("--size: {} samples exceed the largest tile, {} with --dims {}; choose "
+                                            "fewer, or --tile {} for a wind that repeats",
+                                            edge, largest, options.wind.dims, largest));
   }
   return std::min(largest, std::bit_ceil(std::max<std::size_t>(2 * edge, is_space ? 64 : 256)));
 }
@@ -140,7 +139,7 @@ class FieldFile {
  public:
   FieldFile(std::string name, const std::filesystem::path& path, const std::vector<std::size_t>& shape)
       : name_(std::move(name)), file_(std::fopen(path.c_str(), "wbe")) {
-    if (!file_) throw ExitError(kExitCannotCreate, name_ + ": cannot be created; may this user write to its folder?");
+    if (!file_) throw ExitError(kExitCannotCreate, name_ + ": cannot be created; is its folder writable?");
     const std::string header = npy_header(shape);
     check(std::fwrite(header.data(), 1, header.size(), file_.get()) == header.size());
   }
@@ -154,7 +153,7 @@ class FieldFile {
     void operator()(std::FILE* file) const noexcept { static_cast<void>(std::fclose(file)); }
   };
   void check(bool is_written) const {
-    if (!is_written) throw ExitError(kExitCannotCreate, name_ + ": could not be written to the end; is there room?");
+    if (!is_written) throw ExitError(kExitCannotCreate, name_ + ": could not be written completely; is the disk full?");
   }
 
   std::string name_;
@@ -230,18 +229,17 @@ void write_text(const std::filesystem::path& file, const std::string& text, bool
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(output.working_path().c_str(), "we"),
                                                             &std::fclose);
   if (!out || std::fputs(text.c_str(), out.get()) < 0 || std::fflush(out.get()) != 0) {
-    throw ExitError(kExitCannotCreate, file.string() + ": could not be written; is there room?");
+    throw ExitError(kExitCannotCreate, file.string() + ": could not be written; is the disk full?");
   }
-  output.commit();
+  output.commit().value();
 }
 
 void run_field(FieldOptions options) {
-  if (!options.plot.empty()) check_plot_name(options.plot);
+  if (!options.plot.empty()) check_plot_name(options.plot).value();
   options.wind.evolves = !options.is_frozen;
   if (options.stress && options.wind.dims != 3) {
     throw ExitError(kExitUsage,
-                    "--stress: is of the wind along and upward, and there is none upward in 2 dimensions; "
-                    "take --dims 3 as well");
+                    "--stress: needs the vertical wind, which a field of 2 dimensions does not have; add --dims 3");
   }
   if (options.wind.dims == 3) options.wind.stress = options.stress.value_or(kStressNearTheGround);
   const FieldGrid grid = grid_of(options);
@@ -257,13 +255,14 @@ void run_field(FieldOptions options) {
   }
   const std::filesystem::path beside = std::filesystem::path(options.output).replace_extension(".json");
   if (beside == options.output) {
-    throw ExitError(kExitUsage, "-o: " + options.output.string() + ": that name is for the description; take .npy");
+    throw ExitError(kExitUsage, "-o: " + options.output.string() +
+                                    ": this name is taken by the description; choose a name in .npy");
   }
 
   nlohmann::ordered_json description = description_of(options, grid, shape);
   OutputFile output(options.output, options.force, windlog::kSideSuffixes);
   if (!options.force && std::filesystem::exists(beside)) {
-    throw ExitError(kExitCannotCreate, beside.string() + ": is there already; --force overwrites it");
+    throw ExitError(kExitCannotCreate, beside.string() + ": exists already; --force overwrites it");
   }
   FieldFile file(options.output.string(), output.working_path(), shape);
 
@@ -288,11 +287,11 @@ void run_field(FieldOptions options) {
                            {"seed", config.seed}};
     title = fmt::format("Wind over the ground, {:g} s after the start of {}", options.frames.first_s,
                         options.recording->filename().string());
-    make_recorded_frames(*options.recording, options.playback, config, grid, options.frames, use);
+    make_recorded_frames(*options.recording, options.playback, config, grid, options.frames, use).value();
   } else {
     options.wind.samples = tile_of(options, grid);
     options.wind.seed = options.seed.value_or(options.wind.seed);
-    if (is_watched) fmt::print(stderr, "making a tile of {} samples an edge", options.wind.samples);
+    if (is_watched) fmt::print(stderr, "making a tile of {} samples per edge", options.wind.samples);
     SpectralWindField field(options.wind);
     const WindFieldSettings& wind = options.wind;
     description["wind"] = {{"speed_m_s", wind.speed_m_s},
@@ -317,13 +316,13 @@ void run_field(FieldOptions options) {
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
 
   file.end();
-  output.commit();
+  output.commit().value();
   write_text(beside, description.dump(2) + "\n", true);
-  fmt::print("{}: float32 [frame {}, component {}, z {}, y {}, x {}], m/s; {} says the rest\n", options.output.string(),
+  fmt::print("{}: float32 [frame {}, component {}, z {}, y {}, x {}], m/s; described in {}\n", options.output.string(),
              shape[0], shape[1], shape[2], shape[3], shape[4], beside.string());
   if (options.plot.empty()) return;
-  draw_map(options.plot, map_of(first, grid, title));
-  fmt::print("{}: speed and wind of the first frame, seen from above\n", options.plot);
+  draw_map(options.plot, map_of(first, grid, title)).value();
+  fmt::print("{}: speed and wind time of the first frame, seen from above\n", options.plot);
 }
 
 void add_field(CLI::App& app) {
@@ -336,7 +335,7 @@ void add_field(CLI::App& app) {
                               ->check(CLI::Range(0.0, 100.0))
                               ->capture_default_str());
   of_statistics.push_back(
-      command->add_option("--direction", wind.direction_deg, "where it comes from, degrees from north")
+      command->add_option("--direction", wind.direction_deg, "direction that it comes from, degrees from north")
           ->check(CLI::Range(0.0, 360.0))
           ->capture_default_str());
   of_statistics.push_back(
@@ -347,7 +346,7 @@ void add_field(CLI::App& app) {
                               ->check(CLI::Range(0.1, 10000.0))
                               ->capture_default_str());
   of_statistics.push_back(
-      command->add_option("--dims", wind.dims, "2: over the ground; 3: in space, and upward as well")
+      command->add_option("--dims", wind.dims, "2: over the ground; 3: in space, with the vertical component")
           ->check(CLI::IsMember({2, 3}))
           ->capture_default_str());
   of_statistics.push_back(command
@@ -355,40 +354,40 @@ void add_field(CLI::App& app) {
                                            "with --dims 3: cov(u, w) / (sigma_u sigma_w), u along the wind; 0 is none "
                                            "[-0.3, as near the ground]")
                               ->check(CLI::Range(-kLargestStress, kLargestStress)));
-  of_statistics.push_back(command->add_option("--tile", options->tile, "samples an edge of the tile: a power of two"));
+  of_statistics.push_back(command->add_option("--tile", options->tile, "samples per edge of the tile: a power of two"));
   command
       ->add_option("--size", options->size, "N or X,Z (2-D), N or X,Y,Z (3-D): samples, or metres such as 50m; 256, 64")
       ->delimiter(',')
       ->type_name("N");
-  command->add_option("--spacing", wind.spacing_m, "between samples, m")
+  command->add_option("--spacing", wind.spacing_m, "distance between samples, m")
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
-  command->add_option("--time", options->frames.first_s, "of the first frame, s")
+  command->add_option("--time", options->frames.first_s, "time of the first frame, s")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
-  command->add_option("--frames", options->frames.count, "how many moments")
+  command->add_option("--frames", options->frames.count, "number of frames")
       ->check(CLI::Range(std::size_t{1}, std::size_t{10'000'000}))
       ->capture_default_str();
-  command->add_option("--rate", options->frames.rate_hz, "frames a second")
+  command->add_option("--rate", options->frames.rate_hz, "frames per second")
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
   auto* const frozen = command->add_flag("--frozen", options->is_frozen, "gusts are carried along unchanged");
-  command
-      ->add_flag("--evolving", options->is_evolving,
-                 "gusts change while they are carried along (as they do without this)")
+  command->add_flag("--evolving", options->is_evolving, "gusts change while they are carried along (the default)")
       ->excludes(frozen);
-  command->add_option("--seed", options->seed, "of everything random; 1, or that of the configuration");
+  command->add_option("--seed", options->seed, "seed of the random numbers; default 1, or that of the configuration");
   auto* const recording =
       command->add_option("--windlog", options->recording, "the live wind over the ground of this recording")
           ->type_name("FILE.windlog");
   for (CLI::Option* option : of_statistics) recording->excludes(option);
-  command->add_option("--sensor", options->playback.sensor, "of the recording; without it: the first that spoke")
+  command
+      ->add_option("--sensor", options->playback.sensor,
+                   "sensor of the recording; default: the one with the first reading")
       ->type_name("NAME")
       ->needs(recording);
-  command->add_option("--start", options->playback.start, "where in it time begins: seconds, or a UTC time (ISO 8601)")
+  command->add_option("--start", options->playback.start, "where to begin: seconds, or a UTC time (ISO 8601)")
       ->type_name("T")
       ->needs(recording);
-  command->add_option("--config", options->config_file, "the [wind] of this configuration, with --windlog")
+  command->add_option("--config", options->config_file, "with --windlog: use [wind] of this configuration")
       ->type_name("FILE.toml")
       ->needs(recording);
   command->add_option("-o,--output", options->output, "FILE.npy")->required();

@@ -11,11 +11,12 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/base/version.hpp"
 
 namespace yuragi {
@@ -27,8 +28,7 @@ namespace {
 constexpr const char* kImportFooter =
     "The columns are found by their names: time or timestamp, wind_speed, direction, gust, or u and v; a unit in a "
     "name\n"
-    "(u_ms, speed_kmh, \"Gust (mph)\") is understood. What was taken as what is printed. Rows that are no readings, or "
-    "go\n"
+    "(u_ms, speed_kmh, \"Gust (mph)\") is understood. The choice is printed. Rows that are not readings, or go\n"
     "back in time, are left out and counted.\n"
     "\n"
     "Examples:\n"
@@ -58,7 +58,7 @@ char delimiter_named(const std::string& text) {
 CsvImportOptions csv_options(const ImportOptions& options) {
   CsvImportOptions csv = options.csv;
   csv.delimiter = delimiter_named(options.delimiter);
-  if (options.comment.size() > 1) throw ExitError(kExitUsage, "--comment: give one sign, or \"\" for none");
+  if (options.comment.size() > 1) throw ExitError(kExitUsage, "--comment: give one character, or \"\" for none");
   csv.comment = options.comment.empty() ? '\0' : options.comment[0];
   if (!options.unit.empty()) csv.unit = find_speed_unit(options.unit);
   return csv;
@@ -121,7 +121,8 @@ void tell(const ImportOptions& options, const CsvImportReport& report) {
   if (report.refused() > report.first_refusals.size()) {
     fmt::print(stderr, "left out: {} more\n", report.refused() - report.first_refusals.size());
   }
-  fmt::print("{}: {} readings of {} rows, {} left out\n", options.output, report.taken, report.rows, report.refused());
+  fmt::print("{}: {} of {}, {} left out\n", options.output, count_text(report.taken, "reading"),
+             count_text(report.rows, "row"), report.refused());
 }
 
 void run_import(const ImportOptions& options) {
@@ -131,7 +132,7 @@ void run_import(const ImportOptions& options) {
   if (!is_standard_input) {
     if (std::filesystem::is_directory(options.input)) throw ExitError(kExitNoInput, options.input + ": is a folder");
     file.open(options.input, std::ios::binary);
-    if (!file) throw ExitError(kExitNoInput, options.input + ": cannot be read; is it there?");
+    if (!file) throw ExitError(kExitNoInput, options.input + ": cannot be read; does it exist?");
   }
 
   OutputFile output(options.output, options.force, windlog::kSideSuffixes);
@@ -140,20 +141,19 @@ void run_import(const ImportOptions& options) {
       import_csv(is_standard_input ? std::cin : file, options.input, csv,
                  [&target](std::string_view sensor, const WindReading& reading) { target.take(sensor, reading); });
   if (!report) throw ExitError(kExitDataError, report.error().message);
-  if (!is_standard_input && file.bad())
-    throw ExitError(kExitNoInput, options.input + ": the disk does not give it all");
+  if (!is_standard_input && file.bad()) throw ExitError(kExitNoInput, options.input + ": could not be read completely");
   target.close();
   if (report->taken == 0) {
     tell(options, *report);
-    throw ExitError(kExitDataError, options.input + ": not one row is a reading; nothing was written");
+    throw ExitError(kExitDataError, options.input + ": no row is a reading; nothing was written");
   }
-  output.commit();
+  output.commit().value();
   tell(options, *report);
 }
 
 void add_import(CLI::App& app) {
   const auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand("import", "Make a recording of a CSV file");
+  CLI::App* command = app.add_subcommand("import", "Convert a CSV file to a recording");
   command->footer(kImportFooter);
   command->add_option("file", options->input, "the CSV file; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the recording to write (.windlog)")->required();
@@ -168,22 +168,24 @@ void add_import(CLI::App& app) {
   add_column("--gust", CsvRole::kGust, "the column of gusts");
   add_column("--u", CsvRole::kU, "the column of the eastward component");
   add_column("--v", CsvRole::kV, "the column of the northward component");
-  command->add_flag("--uv-from", options->csv.components_are_from, "u and v point to where the wind comes from");
+  command->add_flag("--uv-from", options->csv.components_are_from, "u and v point toward where the wind comes from");
 
   static const std::map<std::string, CsvTimeFormat> kTimeFormats = {{"auto", CsvTimeFormat::kAuto},
                                                                     {"iso", CsvTimeFormat::kIso},
                                                                     {"unix", CsvTimeFormat::kUnix},
                                                                     {"unix-ms", CsvTimeFormat::kUnixMs},
                                                                     {"seconds", CsvTimeFormat::kSeconds}};
-  command->add_option("--time-format", options->csv.time_format, "how times are written; auto: as the first row looks")
+  command->add_option("--time-format", options->csv.time_format, "format of the times; auto: by the first row")
       ->transform(CLI::CheckedTransformer(kTimeFormats))
       ->option_text("auto|iso|unix|unix-ms|seconds");
-  command->add_option("--unit", options->unit, "of speed, gust, u and v; otherwise as the column's name says, or m/s")
+  command
+      ->add_option("--unit", options->unit, "unit of speed, gust, u and v; default: as the column's name says, or m/s")
       ->check(CLI::IsMember({"m/s", "km/h", "kn", "mph"}))
       ->option_text("m/s|km/h|kn|mph");
   static const std::map<std::string, bool> kConventions = {{"from", false}, {"toward", true}};
   command
-      ->add_option("--direction-convention", options->csv.direction_is_toward, "where the wind comes from, or blows to")
+      ->add_option("--direction-convention", options->csv.direction_is_toward,
+                   "whether directions are where the wind comes from, or blows to")
       ->transform(CLI::CheckedTransformer(kConventions))
       ->option_text("from|toward");
   static const std::map<std::string, CsvDirectionUnit> kDirectionUnits = {{"deg", CsvDirectionUnit::kDegrees},
@@ -192,10 +194,10 @@ void add_import(CLI::App& app) {
   command->add_option("--direction-unit", options->csv.direction_unit, "point16: 0 to 15, clockwise from north")
       ->transform(CLI::CheckedTransformer(kDirectionUnits))
       ->option_text("deg|rad|point16");
-  command->add_option("--delimiter", options->delimiter, ", or ; or tab; otherwise what the header has most of");
-  command->add_option("--comment", options->comment, "lines that begin with this sign are passed over (default #)");
-  command->add_option("--sensor", options->csv.sensor, "what to call the sensor")->capture_default_str();
-  command->add_flag("--strict", options->csv.strict, "stop at the first row that is no reading");
+  command->add_option("--delimiter", options->delimiter, ", or ; or tab; default: the most frequent one in the header");
+  command->add_option("--comment", options->comment, "lines that begin with this character are ignored (default #)");
+  command->add_option("--sensor", options->csv.sensor, "name of the sensor")->capture_default_str();
+  command->add_flag("--strict", options->csv.strict, "stop at the first row that is not a reading");
   command->callback([options] { run_import(*options); });
 }
 

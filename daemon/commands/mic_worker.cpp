@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/sensing/system_clock.hpp"
-#include "daemon/settings/exit.hpp"
 #include "drivers/microphone/microphone_worker.hpp"
 
 namespace yuragi {
@@ -51,7 +51,8 @@ void list_devices(AudioInput& input, int output) {
 
 void work(const WorkerOptions& options) {
   if (!options.list && isatty(STDOUT_FILENO) != 0) {
-    throw ExitError(kExitUsage, "mic-worker speaks to the daemon, not to people; --list shows the inputs");
+    throw ExitError(kExitUsage,
+                    "mic-worker is started by the daemon, and its output is binary; --list shows the inputs");
   }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, end_worker);
@@ -72,7 +73,7 @@ void work(const WorkerOptions& options) {
 }
 
 void add_mic_worker(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("mic-worker", "the microphone driver's own process; --list shows the inputs");
+  CLI::App* command = app.add_subcommand("mic-worker", "the process of the microphone driver; --list shows the inputs");
   command->group("");  // not in the main help
   auto options = std::make_shared<WorkerOptions>();
   MicWorkerOptions& worker = options->worker;
@@ -84,10 +85,10 @@ void add_mic_worker(CLI::App& app) {
       ->check(CLI::Range(1, static_cast<int>(kAudioMaxChannels)));
   command->add_option("--rate", worker.choice.rate_hz, "sample rate, Hz; 0: what the device prefers")
       ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--band-low", worker.low_hz, "where the band of the wind begins, Hz")
-      ->check(CLI::Range(2.0, 1000.0));
-  command->add_option("--band-high", worker.high_hz, "where it ends, Hz")->check(CLI::Range(10.0, 2000.0));
-  command->add_flag("--verbose", options->verbose, "let the sound system complain on standard error");
+  command->add_option("--band-low", worker.low_hz, "lower edge of the wind band, Hz")->check(CLI::Range(2.0, 1000.0));
+  command->add_option("--band-high", worker.high_hz, "upper edge of the wind band, Hz")
+      ->check(CLI::Range(10.0, 2000.0));
+  command->add_flag("--verbose", options->verbose, "show the messages of the sound system on standard error");
   command->callback([options] { work(*options); });
 }
 

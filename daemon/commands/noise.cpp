@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/tools/offline/npy.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
@@ -40,7 +40,8 @@ constexpr const char* kNoiseFooter =
     "            1/f^0.7 for beta 5/3 in two dimensions.\n"
     "In one dimension the two are the same.\n"
     "\n"
-    "--integral-scale says how far gusts reach, as a part of the edge: 0.1 on a tile of 256 m is 25.6 m. Longer waves\n"
+    "--integral-scale is the length scale of the gusts, as a part of the edge: 0.1 on a tile of 256 m is 25.6 m. "
+    "Longer waves\n"
     "have no more power than those (von Karman's spectrum). 0 is no such limit: the waves as long as the tile are the\n"
     "strongest.\n"
     "\n"
@@ -128,7 +129,7 @@ void add_noise(CLI::App& app) {
   command
       ->add_option(
           "--size", options->spec.size,
-          "Samples an edge: a power of two, 8 to 4194304 for a line, 8 to 4096 for a square, 8 to 256 for a cube")
+          "Samples per edge: a power of two, 8 to 4194304 for a line, 8 to 4096 for a square, 8 to 256 for a cube")
       ->check(check_whole_number)
       ->capture_default_str();
   command
@@ -140,12 +141,12 @@ void add_noise(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--integral-scale", options->spec.integral_scale,
-                   "How far gusts reach, as a part of the edge; 0 is no limit (see below)")
+                   "Length scale of the gusts, as a part of the edge; 0 is no limit (see below)")
       ->capture_default_str();
   command->add_option("--seed", options->spec.seed, "Any whole number from 0")
       ->check(check_whole_number)
       ->capture_default_str();
-  command->add_option("--out", options->out, "The .npy file to write; one of that name is replaced")->required();
+  command->add_option("--out", options->out, "The .npy file to write; an existing one is replaced")->required();
   command->callback([options] { run_noise(*options); });
 }
 

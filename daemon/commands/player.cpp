@@ -11,7 +11,7 @@
 
 #include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 
 namespace yuragi {
 namespace {
@@ -62,7 +62,7 @@ std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& optio
     if (is_done) return reply.players;
     if (std::chrono::steady_clock::now() > deadline) {
       print_states(reply.players);
-      throw ExitError(kExitUnavailable, "the order waits: the recording cannot be read at present");
+      throw ExitError(kExitUnavailable, "the request is pending: the recording cannot be read at present");
     }
     std::this_thread::sleep_for(kOrderPause);
   }
@@ -77,7 +77,7 @@ void tell_status(const PlayerCommandOptions& options) {
 void give_order(const PlayerCommandOptions& options) {
   const wire::ControlReply reply = ask_players(options, options.wish);
   if (!reply.done) {
-    const std::string message = reply.message.empty() ? "this daemon has no players" : reply.message;
+    const std::string message = reply.message.empty() ? "this daemon plays no recordings" : reply.message;
     throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, message);
   }
   const std::vector<wire::PlayerState> players = wait_for_orders(options, reply.players);
@@ -96,28 +96,27 @@ using PlayerOptionsPointer = std::shared_ptr<PlayerCommandOptions>;
 CLI::App* add_action(CLI::App& player, const char* name, const char* help, const PlayerOptionsPointer& options) {
   CLI::App* command = player.add_subcommand(name, help);
   command
-      ->add_option("--sensor", options->wish.sensor, "this one only; without it: every sensor that plays a recording")
+      ->add_option("--sensor", options->wish.sensor, "this sensor only; default: every sensor that plays a recording")
       ->type_name("NAME");
   command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
   return command;
 }
 
 void add_player(CLI::App& app) {
-  CLI::App* player = app.add_subcommand("player", "pause, step and move the recordings that a running daemon plays");
+  CLI::App* player = app.add_subcommand("player", "control the recordings that a running daemon plays");
   player->require_subcommand(1);
   player->footer(
       "For sensors of the driver windlog, and for `yuragi replay`:\n"
-      "  yuragi player status                     where each one is\n"
-      "  yuragi player pause                      the wall holds its wind\n"
-      "  yuragi player step 10                    ten readings on, and stand still again\n"
+      "  yuragi player status                     position of each recording\n"
+      "  yuragi player pause                      pause; the scenes keep the present wind\n"
+      "  yuragi player step 10                    advance by ten readings, and pause\n"
       "  yuragi player seek 90                    to 90 s after the first reading\n"
-      "  yuragi player seek +30                   30 s further; -30: back\n"
-      "  yuragi player seek 2018-07-20T14:05:00Z  to a moment (UTC where it names no zone)\n"
+      "  yuragi player seek +30                   30 s forward; -30: backward\n"
+      "  yuragi player seek 2018-07-20T14:05:00Z  to a time (UTC if it has no zone)\n"
       "  yuragi player rate 4\n"
       "A seek fades from the old place to the new one ([[sensor]] seam), so that nothing jumps.\n"
-      "Exit code 0: done; 64: there is no such sensor or place; 69: no daemon answers; 77: the daemon does not take "
-      "it\n"
-      "from here (see `yuragi describe`, [stream] control).");
+      "Exit code 0: done; 64: there is no such sensor or place; 69: no daemon answers; 77: the daemon does not\n"
+      "allow it from here (see `yuragi describe`, [stream] control).");
 
   const auto add = [player](const char* name, const char* help, wire::PlayerAction action) {
     auto options = std::make_shared<PlayerCommandOptions>();
@@ -127,18 +126,21 @@ void add_player(CLI::App& app) {
     return std::pair(command, options);
   };
   auto options = std::make_shared<PlayerCommandOptions>();
-  add_action(*player, "status", "where each recording is", options)->callback([options] { tell_status(*options); });
-  add("pause", "stand still: the wind of this moment holds", wire::PlayerAction::kPause);
+  add_action(*player, "status", "show the position of each recording", options)->callback([options] {
+    tell_status(*options);
+  });
+  add("pause", "pause; the scenes keep the present wind", wire::PlayerAction::kPause);
   add("resume", "go on", wire::PlayerAction::kResume);
-  const auto [step, step_options] = add("step", "stand still, so many readings further on", wire::PlayerAction::kStep);
+  const auto [step, step_options] =
+      add("step", "advance by a number of readings, and pause", wire::PlayerAction::kStep);
   step->add_option("count", step_options->wish.count, "how many readings (default 1)")
       ->check(CLI::Range(std::uint32_t{1}, wire::kMaxSteps));
-  const auto [seek, seek_options] = add("seek", "go on from another place", wire::PlayerAction::kSeek);
+  const auto [seek, seek_options] = add("seek", "continue from another place", wire::PlayerAction::kSeek);
   seek->add_option("place", seek_options->wish.place,
-                   "seconds from the beginning (90), further or back (+30, -30), or a moment (ISO 8601)")
+                   "seconds from the beginning (90), forward or backward (+30, -30), or a time (ISO 8601)")
       ->required();
   const auto [rate, rate_options] = add("rate", "play faster or slower", wire::PlayerAction::kRate);
-  rate->add_option("rate", rate_options->wish.rate, "seconds of the recording in one second, 0.01 to 1000")
+  rate->add_option("rate", rate_options->wish.rate, "seconds of the recording per second, 0.01 to 1000")
       ->required()
       ->check(CLI::Range(wire::kMinPlayRate, wire::kMaxPlayRate));
 }

@@ -6,10 +6,11 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/service/service.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
+#include "drivers/windlog/windlog_playback.hpp"
 
 namespace yuragi {
 namespace {
@@ -56,7 +57,8 @@ SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
 
 void replay_at_full_speed(const ReplayOptions& options) {
   if (options.playback.loop && !options.run.duration_s) {
-    throw ExitError(kExitUsage, "--rate max with --loop would never end; add --duration SECONDS (of log time)");
+    throw ExitError(kExitUsage,
+                    "--rate max with --loop would never end; add --duration TIME (in time of the recording)");
   }
   if (options.at_time_of_day || options.is_paused) {
     throw ExitError(kExitUsage, "--rate max has no clock: it takes neither --same-time-of-day nor --paused");
@@ -67,7 +69,8 @@ void replay_at_full_speed(const ReplayOptions& options) {
   };
   const LockstepResult result =
       replay_in_lockstep(options.run.config(), options.file, {.playback = options.playback, .seam_s = options.seam_s},
-                         options.run.duration_s.value_or(0.0), progress);
+                         options.run.duration_s.value_or(0.0), progress)
+          .value();
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(
       "readings   {} in {:.1f} s of log time\n"
@@ -81,9 +84,7 @@ void replay_at_full_speed(const ReplayOptions& options) {
 
 void replay(const ReplayOptions& options) {
   options.run.set_up_log();
-  if (!std::filesystem::exists(options.file)) {
-    throw ExitError(kExitNoInput, options.file.string() + ": there is no such recording");
-  }
+  WindlogPlayback::open(options.file, options.playback).value();  // else the daemon would wait for it
   if (options.rate == "max") return replay_at_full_speed(options);
 
   Config config = options.run.config();
@@ -93,7 +94,7 @@ void replay(const ReplayOptions& options) {
 }
 
 void add_replay(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("replay", "the daemon with a recording in place of the sensors");
+  CLI::App* command = app.add_subcommand("replay", "run the daemon with a recording in place of the sensors");
   command->footer(
       "Ends with the recording, unless it loops. At --rate max nothing is streamed: the recording runs through wind "
       "and\n"
@@ -107,16 +108,16 @@ void add_replay(CLI::App& app) {
   command->add_option("file", options->file, "the recording")->required()->type_name("FILE.windlog");
   command->add_option("--rate", options->rate, "how many times faster than it was recorded, or max (default 1)")
       ->type_name("X|max");
-  command->add_flag("--loop", options->playback.loop, "begin again at its end");
+  command->add_flag("--loop", options->playback.loop, "start again at the end");
   command
       ->add_option("--start", options->playback.start,
                    "where to begin: seconds from its beginning, or a UTC time (ISO 8601)")
       ->type_name("T");
   command
-      ->add_option(
-          "--seam", options->seam_s,
-          "how long the end of a loop, or a place left by a seek, fades into the new place (default 5; 0: not at all)")
-      ->type_name("SECONDS")
+      ->add_option("--seam", options->seam_s,
+                   "duration of the cross-fade at the end of a loop and at a seek (default 5; 0: none)")
+      ->type_name("TIME")
+      ->transform(duration_in_seconds())
       ->check(CLI::Range(0.0, 600.0));
   command->add_flag("--same-time-of-day", options->at_time_of_day,
                     "begin where the recording's local time of day is that of now");
@@ -125,8 +126,8 @@ void add_replay(CLI::App& app) {
           "--utc-offset", options->utc_offset,
           "for that: how far the clocks where it was recorded were ahead of UTC; without it: this machine's zone")
       ->type_name("HOURS");
-  command->add_flag("--paused", options->is_paused, "stand still at the first reading (see `yuragi player`)");
-  command->add_option("--sensor", options->playback.sensor, "which sensor's readings; without it: the first that spoke")
+  command->add_flag("--paused", options->is_paused, "start paused, at the first reading (see `yuragi player`)");
+  command->add_option("--sensor", options->playback.sensor, "which sensor; default: the one with the first reading")
       ->type_name("NAME");
   options->run.add_to(*command);
   command->callback([options] { replay(*options); });

@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/settings/site_octaves.hpp"
 #include "daemon/tools/report/measure_recording.hpp"
@@ -22,6 +22,7 @@
 #include "daemon/tools/report/report_text.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/log_moment.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
@@ -32,14 +33,14 @@ extern const Command kReportCommand;
 namespace {
 
 constexpr const char* kReportFooter =
-    "Writes one HTML file that needs nothing else: what the recording is, speed, gust and direction over time, wind\n"
-    "rose, distribution, spectrum with its slope and the fitted von Karman's (U, TI, L), gaps, and how each sensor "
-    "did.\n"
-    "What may go into a configuration as its default wind stands there ready to be copied.\n"
-    "Of a sensor of 1 s or quicker it says what a slow one at its place would miss of the gusts (site_octaves of "
-    "[wind]):\n"
-    "on the page, and on standard output. --height, of the sensor above the ground, makes that fit a sensor whose\n"
-    "calibration tells the same height.\n"
+    "Writes one self-contained HTML file: a summary, speed, gust and direction over time, wind rose, distribution,\n"
+    "spectrum with its slope and the fitted von Karman spectrum (U, TI, L), gaps, and the states of each sensor. It "
+    "has the\n"
+    "lines for a default wind in a configuration, ready to be copied.\n"
+    "For a sensor with an interval of 1 s or less it gives the correction that a slow sensor at its place needs for "
+    "gusts\n"
+    "(site_octaves of [wind]): on the page, and on standard output. --height is the height of the sensor above the\n"
+    "ground, for sensors without a height in their calibration.\n"
     "Hours of the day are local time, in the zone of this machine (TZ).\n"
     "\n"
     "Examples:\n"
@@ -73,7 +74,7 @@ void write_text(const OutputFile& output, const std::string& name, const std::st
   file << text;
   file.close();
   if (!file)
-    throw ExitError(kExitCannotCreate, name + ": cannot be written; is there room, and may this user write there?");
+    throw ExitError(kExitCannotCreate, name + ": cannot be written; is the disk full, or the folder not writable?");
 }
 
 /// A word about how far it is, where somebody watches and it takes long.
@@ -112,8 +113,11 @@ TurbulencePrior prior_of(const Config& config, double height_m, const std::strin
 /// Says on the terminal, too, what may be pasted.
 void tell_of_site(const SensorNumbers& sensor) {
   if (!sensor.site) return;
-  fmt::print("# {}: what its gusts tell of the site, for gusts of {:.0f} m\n[wind]\nsite_octaves = \"{}\"\n",
-             page_text(sensor.name), sensor.site->length_m, site_octaves_text(sensor.site->octaves_db));
+  fmt::print(
+      "# {}: correction of gusts at this site, for gusts of {:.0f} m\n"
+      "[wind]\n"
+      "site_octaves = \"{}\"\n",
+      page_text(sensor.name), sensor.site->length_m, site_octaves_text(sensor.site->octaves_db));
 }
 
 void run_report(const ReportOptions& options) {
@@ -123,7 +127,7 @@ void run_report(const ReportOptions& options) {
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
   }
   if (!options.json.empty() && options.json == options.output) {
-    throw ExitError(kExitUsage, "--json: is the page's own name; name another file");
+    throw ExitError(kExitUsage, "--json: is the name of the page; choose another file");
   }
   // Before hours of work.
   OutputFile page_file(options.output, options.force, windlog::kSideSuffixes);
@@ -149,36 +153,38 @@ void run_report(const ReportOptions& options) {
   std::vector<SensorFigures> figures;
   for (const SensorNumbers& sensor : numbers->sensors) {
     told.tell(fmt::format("figures {} of {}", figures.size() + 1, numbers->sensors.size()));
-    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path()));
+    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path()).value());
   }
   write_text(page_file, options.output, report_page(*numbers, figures, source));
   if (json_file) {
     write_text(*json_file, options.json, report_json(*numbers, source));
-    json_file->commit();
+    json_file->commit().value();
   }
-  page_file.commit();
-  fmt::print(stderr, "{}: {} readings of {} {}\n", options.output, numbers->readings, numbers->sensors.size(),
-             numbers->sensors.size() == 1 ? "sensor" : "sensors");
+  page_file.commit().value();
+  fmt::print(stderr, "{}: {} of {}\n", options.output, count_text(numbers->readings, "reading"),
+             count_text(numbers->sensors.size(), "sensor"));
   for (const SensorNumbers& sensor : numbers->sensors) tell_of_site(sensor);
 }
 
 void add_report(CLI::App& app) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = app.add_subcommand("report", "Make a page (HTML) about a recording");
+  CLI::App* command = app.add_subcommand("report", "Write an HTML report about a recording");
   command->footer(kReportFooter);
   command->add_option("file", options->input, "the recording")->required()->type_name("FILE.windlog");
   command->add_option("-o,--output", options->output, "the page to write")->required()->type_name("FILE.html");
-  command->add_option("--height", options->height_m, "of the sensors above the ground, m; without it as --config says")
+  command
+      ->add_option("--height", options->height_m, "height of the sensors above the ground, m; default: as in --config")
       ->check(CLI::Range(0.1, 1000.0))
       ->type_name("M");
-  command->add_option("--sensor", options->sensors, "only this sensor; can be given again")
+  command->add_option("--sensor", options->sensors, "only this sensor; can be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_option("--from", options->from, "begin here: seconds, or a moment such as 2018-07-20T14:05:00Z")
+  command->add_option("--from", options->from, "where to begin: seconds, or a time such as 2018-07-20T14:05:00Z")
       ->type_name("T");
-  command->add_option("--to", options->to, "end before this, written likewise")->type_name("T");
-  command->add_option("--json", options->json, "write the same numbers for machines, too")->type_name("FILE.json");
-  command->add_option("--config", options->config_file, "its [wind], and how high its sensors stand")
+  command->add_option("--to", options->to, "where to end, in the same form")->type_name("T");
+  command->add_option("--json", options->json, "also write the numbers as JSON")->type_name("FILE.json");
+  command
+      ->add_option("--config", options->config_file, "use [wind] and the heights of the sensors of this configuration")
       ->type_name("FILE.toml");
   command->add_flag("--force", options->force, "overwrite the output");
   command->callback([options] { run_report(*options); });

@@ -10,17 +10,16 @@ namespace {
 
 void add_run(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("run", "the daemon: reads the wind, moves the scenes, streams them to viewers");
+      app.add_subcommand("run", "run the daemon: read the wind, move the scenes, stream them to viewers");
   command->footer(
-      "Needs nothing: without --config it makes up a wind and moves a meadow. Then, in another terminal:\n"
-      "  yuragi-viewer                see it\n"
-      "  yuragi sensors watch         see what the sensors say\n"
-      "  yuragi describe              every key that a configuration may hold");
+      "Without --config it uses a synthetic wind and shows a meadow. Then, in another terminal:\n"
+      "  yuragi-viewer                show the scenes\n"
+      "  yuragi sensors watch         show the sensors\n"
+      "  yuragi describe              list every key of a configuration");
   auto options = std::make_shared<RunOptions>();
   auto record = std::make_shared<std::optional<std::filesystem::path>>();
   options->add_to(*command);
-  command->add_option("--record", *record, "write every reading into this recording as well")
-      ->type_name("FILE.windlog");
+  command->add_option("--record", *record, "also write every reading to this recording")->type_name("FILE.windlog");
   command->callback([options, record] {
     options->set_up_log();
     Service(options->config(), {.record = *record, .duration_s = options->duration_s}).run();
@@ -28,7 +27,7 @@ void add_run(CLI::App& app) {
 }
 
 void add_record(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("record", "write what the sensors say into a recording; no scenes");
+  CLI::App* command = app.add_subcommand("record", "record the sensors, without scenes");
   command->footer(
       "A recording that exists is continued. Stop it with Ctrl-C; a crash loses at most the last second.\n"
       "  yuragi record storm.windlog --config roof.toml\n"

@@ -1,24 +1,55 @@
 #include "daemon/commands/run_options.hpp"
 
+#include <fmt/core.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+
+#include "engine/base/duration.hpp"
 
 namespace yuragi {
 
 void RunOptions::add_to(CLI::App& command) {
-  command.add_option("--config,-c", config_file, "the installation, as TOML; without it: synthetic wind, one meadow")
-      ->type_name("FILE");
-  command.add_option("--listen", listen, "where the daemon listens, instead of the configured address")
+  command.add_option("--listen", address, "where the daemon listens, instead of the configured address")
       ->type_name("HOST:PORT");
-  command.add_option("--duration", duration_s, "end after this many seconds; without it: run until Ctrl-C")
-      ->type_name("SECONDS")
+  add_common(command);
+}
+
+void RunOptions::add_to_client(CLI::App& command) {
+  add_connect(command, address);
+  add_common(command);
+}
+
+void RunOptions::add_common(CLI::App& command) {
+  command.add_option("--config,-c", config_file, "the configuration (TOML); default: synthetic wind, one meadow")
+      ->type_name("FILE");
+  command.add_option("--duration", duration_s, "end after this time: 90 (seconds), 5min, 2h; without it: on Ctrl-C")
+      ->type_name("TIME")
+      ->transform(duration_in_seconds())
       ->check(CLI::PositiveNumber);
-  command.add_flag("--verbose,-v", verbose, "log every attempt to reach a sensor, not only changes");
+  command.add_flag("--verbose,-v", verbose, "log every attempt to connect to a sensor, not only changes");
+}
+
+void add_connect(CLI::App& command, std::optional<std::string>& address) {
+  auto* const connect =
+      command.add_option("--connect", address, "where the daemon listens, instead of the configured address")
+          ->type_name("HOST:PORT");
+  command
+      .add_option_function<std::string>("--listen",
+                                        [&address](const std::string& text) {
+                                          fmt::print(stderr, "note: --listen is deprecated here: use --connect\n");
+                                          address = text;
+                                        })
+      ->excludes(connect)
+      ->group("");  // not shown in the help
+}
+
+CLI::Validator duration_in_seconds() {
+  return CLI::Validator(duration_to_seconds, "");
 }
 
 Config RunOptions::config() const {
   Config config = config_file ? load_config(*config_file) : default_config();
-  return listen ? listening_at(std::move(config), *listen) : config;
+  return address ? listening_at(std::move(config), *address) : config;
 }
 
 void RunOptions::set_up_log() const {

@@ -6,7 +6,8 @@
 
 #include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
+#include "daemon/commands/run_options.hpp"
 
 namespace yuragi {
 namespace {
@@ -40,26 +41,27 @@ void add_scene(CLI::App& app) {
   CLI::App* scene = app.add_subcommand("scene", "show, hide and switch the scenes of a running daemon");
   scene->require_subcommand(1);
   scene->footer(
-      "  yuragi scene list                        what there is, and what is shown\n"
+      "  yuragi scene list                        all scenes, and which are shown\n"
       "  yuragi scene switch elm --fade 5         show this one and hide all others: a cross-fade\n"
-      "Exit code 0: done; 64: there is no such scene; 69: no daemon answers; 77: the daemon does not take it from\n"
-      "here (see `yuragi describe`, [stream] control).");
+      "Exit code 0: done; 64: there is no such scene; 69: no daemon answers; 77: the daemon does not allow it\n"
+      "from here (see `yuragi describe`, [stream] control).");
 
   const auto add = [scene](const char* name, const char* help, bool shown, bool hide_others) {
     CLI::App* command = scene->add_subcommand(name, help);
     auto options = std::make_shared<SceneOptions>();
     options->control.shown = shown;
     options->control.hide_others = hide_others;
-    command->add_option("scene", options->control.scene, "as the configuration calls it")
+    command->add_option("scene", options->control.scene, "name of the scene in the configuration")
         ->required()
         ->type_name("NAME");
-    command->add_option("--fade", options->control.over_s, "how long it takes, 0 to 3600 (default 2)")
-        ->type_name("SECONDS")
+    command->add_option("--fade", options->control.over_s, "how long it takes: 5 (seconds), 2min; 0 to 1h (default 2)")
+        ->type_name("TIME")
+        ->transform(duration_in_seconds())
         ->check(CLI::Range(0.0, wire::kMaxFade_s));
     command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
     command->callback([options] { change_scene(*options); });
   };
-  CLI::App* list = scene->add_subcommand("list", "what there is, and what is shown");
+  CLI::App* list = scene->add_subcommand("list", "list all scenes, and which are shown");
   auto options = std::make_shared<SceneOptions>();
   list->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
   list->callback([options] { list_scenes(*options); });

@@ -7,7 +7,7 @@ namespace yuragi {
 namespace {
 
 void add_sensors(CLI::App& app) {
-  CLI::App* sensors = app.add_subcommand("sensors", "find sensors, learn how to set them up, see what they say");
+  CLI::App* sensors = app.add_subcommand("sensors", "find, set up and watch sensors");
   sensors->require_subcommand(1);
   add_sensors_list(*sensors);
   add_sensors_probe(*sensors);

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/sensors.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 
 namespace yuragi {
@@ -21,7 +21,10 @@ void describe(const DescribeOptions& options) {
   if (options.all) {
     fmt::print("{}", driver_reference(drivers));
   } else if (options.driver.empty()) {
-    fmt::print("{}\n`yuragi sensors describe DRIVER` says what each can be told.\n", driver_names(drivers));
+    fmt::print(
+        "{}\n"
+        "`yuragi sensors describe DRIVER` lists the keys of each.\n",
+        driver_names(drivers));
   } else {
     const auto found =
         std::ranges::find_if(drivers, [&](const DriverDescription* driver) { return driver->name == options.driver; });
@@ -37,9 +40,9 @@ void describe(const DescribeOptions& options) {
 
 void add_sensors_describe(CLI::App& sensors) {
   CLI::App* command =
-      sensors.add_subcommand("describe", "the drivers, and what one can be told: unit, range, default, help");
+      sensors.add_subcommand("describe", "list the drivers, or the keys of one: unit, range, default, help");
   auto options = std::make_shared<DescribeOptions>();
-  CLI::Option* driver = command->add_option("driver", options->driver, "which one; without it: a list of all");
+  CLI::Option* driver = command->add_option("driver", options->driver, "which driver; default: a list of all");
   driver->option_text("[DRIVER]");
   command->add_flag("--all", options->all, "every driver, as a page of Markdown")->excludes(driver);
   command->callback([options] { describe(*options); });

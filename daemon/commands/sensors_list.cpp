@@ -7,14 +7,14 @@
 namespace yuragi {
 
 void add_sensors_list(CLI::App& sensors) {
-  CLI::App* command = sensors.add_subcommand("list", "what is plugged in, and what to write into the configuration");
+  CLI::App* command =
+      sensors.add_subcommand("list", "list the devices that are plugged in, and their lines for the configuration");
   command->footer(
-      "Each driver looks for its devices; none is opened for longer than it takes to look at it, so that a running\n"
-      "daemon is not disturbed. Where a permission is missing, the udev rule or the group that gives it is told.");
+      "Each driver looks for its devices, and opens none for longer than necessary, so that a running daemon is "
+      "not\ndisturbed. If a permission is missing, the udev rule or group that grants it is shown.");
   command->callback([] {
-    fmt::print(
-        "{}What answers on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n",
-        device_list(find_devices(driver_table()), driver_table()));
+    fmt::print("{}Devices on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n",
+               device_list(find_devices(driver_table()), driver_table()));
   });
 }
 

@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/sensors.hpp"
-#include "daemon/settings/exit.hpp"
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_probe.hpp"
 
@@ -55,7 +55,8 @@ class WakeOnInterrupt {
 };
 
 [[noreturn]] void refuse_ids(const std::string& text) {
-  throw ExitError(kExitUsage, "--id: \"" + text + "\" is none; allowed: ids from 1 to 247, such as 3, 1-10 or 1,2,17");
+  throw ExitError(kExitUsage,
+                  "--id: \"" + text + "\" is not an id; allowed: ids from 1 to 247, such as 3, 1-10 or 1,2,17");
 }
 
 /// "1-10,17" as numbers.
@@ -150,16 +151,16 @@ void show_fit(const ModbusHit& hit, const ModbusFit& fit) {
   fmt::print("  fits {} ({}): {:.1f} m/s", fit.profile, fit.device, *fit.speed_m_s);
   if (fit.direction_deg) fmt::print(" from {:.0f} degrees", *fit.direction_deg);
   if (fit.gust_m_s) fmt::print(", gust {:.1f} m/s", *fit.gust_m_s);
-  fmt::print("{}\n", fit.is_at_home ? "" : " (its settings are not the maker's)");
+  fmt::print("{}\n", fit.is_at_home ? "" : " (its settings are not the factory settings)");
 }
 
 void show_hit(const ModbusHit& hit, const ModbusProbePlan& plan) {
   end_progress();
   fmt::print("slave {} at {}{}\n", hit.id, describe(hit.line), settings_of(hit.line));
-  if (hit.fits.empty()) fmt::print("  no profile fits: drivers/modbus/profiles/README.md says how to write one\n");
+  if (hit.fits.empty()) fmt::print("  no profile fits; drivers/modbus/profiles/README.md describes how to write one\n");
   for (const ModbusFit& fit : hit.fits) show_fit(hit, fit);
   if (hit.fits.size() > 1) {
-    fmt::print("  Several devices have these registers: take the one whose name stands on yours.\n");
+    fmt::print("  Several devices have these registers: choose the one with the name of your device.\n");
   }
   const auto best = std::ranges::find_if(hit.fits, [](const ModbusFit& fit) { return fit.speed_m_s.has_value(); });
   if (best != hit.fits.end()) {
@@ -181,21 +182,22 @@ void probe(const ProbeOptions& options) {
   if (!hits) throw ExitError(kExitUnavailable, hits.error().message);
   if (*hits > 0) return;
   throw ExitError(kExitUnavailable,
-                  fmt::format("nobody answers at {}: check power, wiring (swap A and B) and termination, or try more: "
-                              "--id 1-247, --timeout 1, --parity even, --baud 1200",
+                  fmt::format("no device answers at {}: check power, wiring (swap A and B) and termination, or try "
+                              "more: --id 1-247, --timeout 1, --parity even, --baud 1200",
                               options.where));
 }
 
 }  // namespace
 
 void add_sensors_probe(CLI::App& sensors) {
-  CLI::App* probe_command = sensors.add_subcommand("probe", "find out what is on a line");
+  CLI::App* probe_command = sensors.add_subcommand("probe", "find the devices on a line");
   probe_command->require_subcommand(1);
   CLI::App* command = probe_command->add_subcommand("modbus", "which Modbus devices answer, and which profile fits");
   command->footer(
       "Tries line settings and slave ids, likely ones first, and prints each device that answers with the lines to\n"
-      "paste into the configuration. It only reads, and no register whose reading changes anything. A running daemon\n"
-      "has the serial port for itself: end it first.\n"
+      "paste into the configuration. It only reads, and only registers that reading does not change. A running daemon "
+      "uses\n"
+      "the serial port exclusively: stop it first.\n"
       "  yuragi sensors probe modbus /dev/ttyUSB0\n"
       "  yuragi sensors probe modbus 192.168.1.20:502 --id 1-10");
   auto options = std::make_shared<ProbeOptions>();
@@ -212,7 +214,7 @@ void add_sensors_probe(CLI::App& sensors) {
   command->add_option("--timeout", options->timeout_s, "how long a device may take to answer, s")
       ->check(CLI::Range(0.02, 10.0))
       ->capture_default_str();
-  command->add_flag("--all", options->tries_all, "serial: try further settings even after somebody has answered");
+  command->add_flag("--all", options->tries_all, "serial: try further settings even after a device has answered");
   command->add_option("--profile-dir", options->profile_dir, "a directory to look for profiles in first")
       ->type_name("FOLDER");
   command->callback([options] { probe(*options); });

@@ -8,11 +8,11 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/sensors.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/system_clock.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/stream_client.hpp"
@@ -69,7 +69,9 @@ class TableScreen final : public Screen {
     constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
     const bool in_place = isatty(STDOUT_FILENO) != 0 && !once_;
     write_at_once(fmt::format("{}{}\n{}{}", in_place ? kHomeAndClear : "", source, sensor_table(sensors),
-                              in_place ? "\nCtrl-C ends this; the daemon goes on.\n" : "\n"));
+                              in_place ? "\n"
+                                         "Ctrl-C ends this display; the daemon keeps running.\n"
+                                       : "\n"));
     return !once_;
   }
 
@@ -120,13 +122,8 @@ void watch_daemon(StreamClient client, const std::string& address, const Deadlin
   client.subscribe(screen.wish());
   while (!deadline.is_over()) {
     const auto message = client.receive(kSilenceTimeout);
-    if (!message) {
-      throw ExitError(kExitUnavailable,
-                      fmt::format("the daemon at {} has gone ({})", address, name_of(message.error())));
-    }
-    if (const auto* hello = std::get_if<wire::Hello>(&*message); hello != nullptr && hello->refused) {
-      throw ExitError(kExitUnavailable, fmt::format("the daemon at {} lets nobody in: {}", address, *hello->refused));
-    }
+    if (!message) throw FailureError(connection_lost(address, message.error()));
+    if (const auto refusal = refusal_in(*message, address)) throw FailureError(*refusal);
     const auto* sensors = std::get_if<wire::Sensors>(&*message);
     if (sensors != nullptr && !screen.show_sensors(*sensors, source)) return;
     const auto* trace = std::get_if<wire::RawTrace>(&*message);
@@ -142,7 +139,7 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
   const wire::Subscribe wish = screen.wish();
   hub.trace(
       [&](std::string_view sensor) { return wish.raw && (wish.raw_sensor.empty() || wish.raw_sensor == sensor); });
-  const std::string source = "no daemon (" + why + "): the devices themselves";
+  const std::string source = "no daemon is running (" + why + "): reading the devices directly";
 
   // A table comes late enough to show something, a raw message at once.
   MonoTime next_status = clock.now().mono + (wish.raw ? Nanoseconds::zero() : kTableInterval);
@@ -190,33 +187,30 @@ void watch(const WatchOptions& options) {
 }  // namespace
 
 void add_sensors_watch(CLI::App& sensors) {
-  CLI::App* command = sensors.add_subcommand("watch", "a live table of what the sensors say, or their raw messages");
+  CLI::App* command = sensors.add_subcommand("watch", "show a live table of the sensors, or their raw messages");
   command->footer(
-      "Asks the running daemon over its stream, so that nothing is opened twice; where no daemon runs, it opens the\n"
-      "configured sensors itself. Away from a terminal it prints table after table.\n"
-      "The table: m/s, gust and from (degrees) as the sensor says them; age of the last reading; the interval "
-      "measured\n"
-      "between two; frames (messages from the device), readings among them, and how often the device came again.\n"
-      "The state: what is live, simulated or a REPLAY makes the wind. What is connecting, STALE (silent), "
-      "DISCONNECTED,\n"
-      "FROZEN (says the same again and again), SEIZED (stands still where a wind blows) or IMPLAUSIBLE does not; "
-      "below\n"
-      "it stands why, and what to do about it.\n"
-      "The wind is the one where the sensors stand: at the windward edge of the scenes, unless [sensor.blend] says "
-      "where;\n"
-      "below it stands how far that is from the middle, and how long a gust takes to it.\n"
-      "Below that stands what the scenes feel instead, where [shaping] is at work: floor, site gain, gusts, "
-      "opening\n"
-      "hours, ceiling.\n"
+      "Asks the running daemon over its stream, so that no device is opened twice. If no daemon is running, it opens "
+      "the\n"
+      "configured sensors itself. If the output is not a terminal, tables are printed one after another.\n"
+      "Columns: m/s, gust and from (degrees) as measured; age of the last reading; interval between readings; frames\n"
+      "(messages from the device), readings among them, and how often the device was reconnected.\n"
+      "States: live, simulated and REPLAY sensors contribute to the wind. Those that are connecting, STALE (silent),\n"
+      "DISCONNECTED, FROZEN (constant readings), SEIZED (no wind measured while wind blows) or IMPLAUSIBLE do not; "
+      "the\n"
+      "reason and what to do are shown below the table.\n"
+      "The wind is that at the sensors: at the windward edge of the scenes, unless [sensor.blend] gives a place. Its\n"
+      "distance from the middle of the scenes, and the time that a gust takes to it, are shown next to it.\n"
+      "If [shaping] changes the wind of the scenes (floor, site gain, gusts, opening hours, ceiling), that is shown, "
+      "too.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();
-  options->run.add_to(*command);
+  options->run.add_to_client(*command);
   command->add_flag("--once", options->once, "print one table, or one message, and end");
-  command->add_flag("--raw", options->raw, "the messages to and from the devices, as they come");
-  command->add_option("sensor", options->sensor, "with --raw: of this one only")->option_text("[SENSOR]");
+  command->add_flag("--raw", options->raw, "show the messages to and from the devices");
+  command->add_option("sensor", options->sensor, "with --raw: of this sensor only")->option_text("[SENSOR]");
   command->add_flag("--hex", options->hex,
-                    "with --raw: hexadecimal digits alone, a message a line, for `yuragi decode --hex`");
+                    "with --raw: hexadecimal digits only, one message per line, for `yuragi decode --hex`");
   command->callback([options] { watch(*options); });
 }
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/tools/plot/plot.hpp"
 #include "daemon/tools/plot/plot_script.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
@@ -80,11 +80,11 @@ void draw_spectrum(const SpectrumOptions& options, const WindSpectrum& spectrum)
                         .is_x_log = true,
                         .is_y_log = true,
                         .curves = asked.x.empty() ? std::vector{curve} : std::vector{curve, asked}};
-  draw_plot(options.plot, std::span(&panel, 1));
+  draw_plot(options.plot, std::span(&panel, 1)).value();
 }
 
 void run_spectrum(SpectrumOptions options) {
-  if (!options.plot.empty()) check_plot_name(options.plot);
+  if (!options.plot.empty()) check_plot_name(options.plot).value();
   options.settings.model = named<SpectrumModel>(kSpectrumModelNames, options.model);
   options.settings.component = named<WindComponent>(kWindComponentNames, options.component);
   const auto spectrum = WindSpectrum::make(options.settings);
@@ -119,7 +119,7 @@ void add_spectrum(CLI::App& app) {
   auto* const plot = command->add_option("--plot", options->plot, "Draw it into FILE.png or FILE.svg");
   command->callback([options, frequency, plot] {
     if (frequency->empty() && plot->empty()) {
-      throw CLI::ValidationError("--frequency", "say at which frequencies, or --plot FILE.svg to draw all");
+      throw CLI::ValidationError("--frequency", "give frequencies, or --plot FILE.svg to draw the whole spectrum");
     }
     run_spectrum(*options);
   });

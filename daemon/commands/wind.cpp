@@ -16,12 +16,13 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 #include "drivers/windlog/format.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
@@ -31,26 +32,25 @@ extern const Command kWindCommand;
 namespace {
 
 constexpr const char* kWindFooter =
-    "Hears the recording as the daemon hears its sensor, reading by reading, and writes the wind that it makes of "
-    "them:\n"
+    "Processes the recording as the daemon processes its sensor, reading by reading, and writes the resulting wind:\n"
     "time_s (since the start), u_m_s and v_m_s (east and north, toward which it blows), speed_m_s,\n"
-    "direction_deg (where it comes from), trust (0: all default wind, 1: all sensor), state (default, handover, "
+    "direction_deg (where it comes from), trust (0: default wind only, 1: sensor only), state (default, handover, "
     "live).\n"
     "\n"
-    "Readings that the daemon would not believe (spikes, a value that is frozen) are left out here, too; a --config\n"
-    "with [sensor.judge] enabled = false takes them all.\n"
+    "Readings that the daemon would reject (spikes, a frozen value) are left out here, too; a --config with\n"
+    "[sensor.judge] enabled = false accepts all.\n"
     "\n"
-    "--sensor-interval plays a slower sensor: vector means over so many seconds, heard at their end. --gap leaves out\n"
-    "what was said from one second on and before another; it can be given again. The same recording, options and seed\n"
+    "--sensor-interval simulates a slower sensor: vector means over that many seconds, given at their end. --gap "
+    "leaves\n"
+    "out the readings between two times; it can be repeated. The same recording, options and seed\n"
     "give the same table. The wind is the real one; --shaped writes the one that moves the scenes (opening hours are\n"
     "left out, and the site gain begins at 1).\n"
     "\n"
     "u_m_s and v_m_s are the wind where the sensor stands. Without --sensor-place that is the windward edge of the\n"
     "scenes: the circle about their middle that just holds a square of --scene-size, wherever the wind comes from.\n"
-    "--place adds the wind at a place of the ground; it can be given again. The columns u1_m_s, v1_m_s are those of "
-    "the\n"
-    "first, u2_m_s, v2_m_s of the second, and a comment on top of the table says where each place is.\n"
-    "--also adds an anemometer at a place of its own, from a recording that began at the same moment.\n"
+    "--place adds the wind at a place on the ground; it can be repeated. The columns u1_m_s, v1_m_s are those of the\n"
+    "first, u2_m_s, v2_m_s of the second, and a comment on top of the table lists the places.\n"
+    "--also adds an anemometer at another place, from a recording that began at the same time.\n"
     "\n"
     "  yuragi wind mast.windlog --rate 60 --sensor-interval 14 --gap 600,700 -o blended.csv\n"
     "  yuragi wind mast.windlog --scene-size 7 --place -3,0 --place 3,0 -o meadow.csv";
@@ -160,7 +160,7 @@ class Table {
   void end(const std::string& name) {
     flush();
     if (!is_complete_ || std::fflush(out_) != 0) {
-      throw ExitError(kExitCannotCreate, name + ": could not be written to the end; is there room?");
+      throw ExitError(kExitCannotCreate, name + ": could not be written completely; is the disk full?");
     }
   }
 
@@ -223,12 +223,12 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
     stand_at(settings.sources[0], parse_place("--sensor-place", *options.sensor_place), options.lead_m);
   }
   std::vector<WindlogPlayback> playbacks;
-  playbacks.emplace_back(options.file, options.playback);
-  if (!options.also.empty()) settings.sources[0].priority = 1;  // They share the word.
+  playbacks.push_back(WindlogPlayback::open(options.file, options.playback).value());
+  if (!options.also.empty()) settings.sources[0].priority = 1;  // They make the wind together.
   for (const std::string& text : options.also) {
     const PlacedRecording other = parse_also(text);
     stand_at(settings.sources.emplace_back(settings.sources[0]), other.place, options.lead_m);
-    playbacks.emplace_back(existing(other.file), options.playback);
+    playbacks.push_back(WindlogPlayback::open(other.file, options.playback).value());
   }
   std::vector<GroundPlace> places;
   for (const std::string& text : options.places) places.push_back(parse_place("--place", text));
@@ -241,18 +241,19 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto told_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
-  const OfflineWindResult result =
-      run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
-        DrivingWind wind{state, estimator.ground(), estimator.stroke()};
-        if (options.shaped) shaping.shape(wind, true);
-        table.add(time_s, wind.state, at_places.read(wind));
-        if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
-      });
+  const auto run = run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
+    DrivingWind wind{state, estimator.ground(), estimator.stroke()};
+    if (options.shaped) shaping.shape(wind, true);
+    table.add(time_s, wind.state, at_places.read(wind));
+    if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
+  });
+  const OfflineWindResult& result = run.value();
   table.end(options.output);
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
-  fmt::print(stderr, "{}: {} states of {:.1f} s, from {} readings{}\n",
+  fmt::print(stderr, "{}: {} states of {:.1f} s, from {}{}\n",
              options.output == "-" ? "standard output" : options.output, result.states, result.duration_s,
-             result.readings, result.withheld > 0 ? fmt::format("; {} were not believed", result.withheld) : "");
+             count_text(result.readings, "reading"),
+             result.withheld > 0 ? fmt::format("; {} rejected", result.withheld) : "");
 }
 
 void run_wind(WindOptions options) {
@@ -268,30 +269,31 @@ void run_wind(WindOptions options) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
                                                              &std::fclose);
   if (!file) {
-    throw ExitError(kExitCannotCreate, options.output + ": cannot be created; may this user write to its folder?");
+    throw ExitError(kExitCannotCreate, options.output + ": cannot be created; is its folder writable?");
   }
   write_wind(options, config, file.get());
-  output.commit();
+  output.commit().value();
 }
 
 void add_wind(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("wind", "Run the wind of the daemon over a recording, into a CSV file");
+  CLI::App* command = app.add_subcommand("wind", "Compute the daemon's wind from a recording, as a CSV file");
   command->footer(kWindFooter);
   auto options = std::make_shared<WindOptions>();
   command->add_option("file", options->file, "the recording")->required()->type_name("FILE.windlog");
   command->add_option("-o,--output", options->output, "FILE.csv, or - for standard output")->required();
-  command->add_option("--rate", options->offline.rate_hz, "states a second")
+  command->add_option("--rate", options->offline.rate_hz, "states per second")
       ->check(CLI::Range(0.01, 1000.0))
       ->type_name("HZ")
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "of the noise; without it that of the configuration");
-  command->add_option("--sensor-interval", options->offline.sensor_interval_s, "as if the sensor spoke so rarely, s")
+  command->add_option("--seed", options->seed, "seed of the noise; default: that of the configuration");
+  command
+      ->add_option("--sensor-interval", options->offline.sensor_interval_s, "simulate a sensor with this interval, s")
       ->check(CLI::Range(0.01, 3600.0))
       ->type_name("T");
-  command->add_option("--gap", options->gaps, "leave out what was said from one second on to another")
+  command->add_option("--gap", options->gaps, "leave out the readings between two times, s")
       ->allow_extra_args(false)
       ->type_name("FROM,TO");
-  command->add_option("--place", options->places, "the wind there as well: metres east and south of the middle")
+  command->add_option("--place", options->places, "add the wind at this place: metres east and south of the middle")
       ->allow_extra_args(false)
       ->type_name("X,Z");
   command->add_option("--scene-size", options->scene_size_m, "edge of the square that the scenes fill, m")
@@ -299,26 +301,26 @@ void add_wind(CLI::App& app) {
       ->type_name("S")
       ->capture_default_str();
   auto* const sensor_place =
-      command->add_option("--sensor-place", options->sensor_place, "where the sensor stands; without it: the edge")
+      command->add_option("--sensor-place", options->sensor_place, "place of the sensor; default: the windward edge")
           ->allow_extra_args(false)
           ->type_name("X,Z");
-  command->add_option("--also", options->also, "a second anemometer, and where it stands; needs --sensor-place")
+  command->add_option("--also", options->also, "another anemometer and its place; needs --sensor-place")
       ->allow_extra_args(false)
       ->needs(sensor_place)
       ->type_name("FILE.windlog@X,Z");
-  command->add_option("--lead", options->lead_m, "take the sensors to stand so far upwind of their places, m")
+  command->add_option("--lead", options->lead_m, "shift the sensors upwind of their places by this distance, m")
       ->needs(sensor_place)
       ->check(CLI::Range(0.0, 1000.0))
       ->type_name("M")
       ->capture_default_str();
-  command->add_option("--sensor", options->playback.sensor, "whose readings; without it: of the first that spoke")
+  command->add_option("--sensor", options->playback.sensor, "which sensor; default: the one with the first reading")
       ->type_name("NAME");
   command->add_option("--start", options->playback.start, "where to begin: seconds, or a UTC time (ISO 8601)")
       ->type_name("T");
-  command->add_option("--config", options->config_file, "the [wind] and [shaping] of this configuration")
+  command->add_option("--config", options->config_file, "use [wind] and [shaping] of this configuration")
       ->type_name("FILE.toml");
   command->add_flag("--shaped", options->shaped,
-                    "what [shaping] makes of it for the scenes: floor, site gain, ceiling");
+                    "write the wind of the scenes, after [shaping]: floor, site gain, ceiling");
   command->add_flag("--force", options->force, "overwrite the output");
   command->callback([options] { run_wind(*options); });
 }

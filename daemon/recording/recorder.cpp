@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "daemon/settings/exit.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -20,7 +20,7 @@ Recorder::Recorder(const std::filesystem::path& file, RecordingInfo info, Report
     : file_(file), info_(std::move(info)), report_(std::move(report)), ring_(kRingCapacity) {
   auto opened = open_session(info_.started);
   if (opened) opened = writer_->commit();
-  if (!opened) throw ExitError(kExitCannotCreate, "cannot record: " + opened.error().message);
+  if (!opened) throw FailureError({"cannot record: " + opened.error().message, FailureKind::kCannotCreate});
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -74,7 +74,7 @@ void Recorder::run(const std::stop_token& stop) {
   given_up += ring_.drain([](const Entry&) {});
   lost_.fetch_add(given_up, std::memory_order_relaxed);
   if (given_up > 0 && report_) {
-    report_("recording ended with " + std::to_string(given_up) + " readings that could not be written");
+    report_("ended with " + count_text(given_up, "reading") + " that could not be written");
   }
 }
 
@@ -99,7 +99,7 @@ void Recorder::flush() {
 
 Result<void, Failure> Recorder::write_pending() {
   // What is written to a file without a name is gone when it is closed, and SQLite would not say so.
-  if (writer_ && !std::filesystem::exists(file_)) return Failure{file_.string() + ": was removed or moved away"};
+  if (writer_ && !std::filesystem::exists(file_)) return Failure{file_.string() + ": was removed or moved"};
   if (!writer_) {
     if (auto opened = open_session(pending_.front().reading.time); !opened) return opened;
   }
@@ -134,9 +134,9 @@ void Recorder::set_status(const std::string& error) {
   status_changed_.notify_all();
   if (!changed || !report_) return;
   if (!error.empty()) {
-    report_("recording stands still, trying again: " + error);
+    report_("interrupted, trying again: " + error);
   } else {
-    report_("recording goes on; " + std::to_string(lost_.load(std::memory_order_relaxed)) + " readings were lost");
+    report_("resumed; " + count_text(lost_.load(std::memory_order_relaxed), "reading") + " lost");
   }
 }
 

@@ -55,7 +55,7 @@ class Recorder {
   /// What it holds while it cannot write; an hour and more of one sensor at 10 Hz.
   static constexpr std::size_t kMaxPending = 65'536;
 
-  /// Opens or creates the recording and begins its session. Throws ExitError where it cannot.
+  /// Opens or creates the recording and begins its session. Throws FailureError (kCannotCreate) where it cannot.
   Recorder(const std::filesystem::path& file, RecordingInfo info, Report report = {});
   ~Recorder();  ///< closes
   Recorder(const Recorder&) = delete;

@@ -7,6 +7,7 @@
 
 #include "daemon/sensing/sensor_status.hpp"
 #include "drivers/windlog/windlog_cursor.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -26,13 +27,15 @@ SensorConfig fallback_sensor(const FallbackConfig& fallback) {
 }  // namespace
 
 std::string check_fallback(const FallbackConfig& fallback) {
-  try {
-    WindlogCursor cursor(fallback.recording, "");
-    return cursor.sensor_of(cursor.next().value()).name;
-  } catch (const std::exception& error) {
+  const auto refuse = [&fallback](const Failure& failure) {
     const std::string place = fallback.origin.empty() ? "" : fallback.origin + ": ";
-    throw ConfigError(place + "wind.fallback_recording: " + error.what());
-  }
+    throw ConfigError(place + "wind.fallback_recording: " + failure.message);
+  };
+  auto cursor = WindlogCursor::open(fallback.recording, "");
+  if (!cursor) refuse(cursor.error());
+  const auto first = cursor->next();
+  if (!first) refuse(first.error());
+  return cursor->sensor_of(first->value()).name;
 }
 
 FallbackRecording::FallbackRecording(const Config& config, const Clock& clock) : clock_(clock) {
@@ -77,7 +80,7 @@ void FallbackRecording::start(MonoTime now) {
   } catch (const std::exception& error) {
     retry_at_ = now + kRetryInterval;
     if (!std::exchange(has_failed_, true)) {
-      spdlog::warn("all sensors are silent, and the fall-back cannot be played: {}; the default wind blows",
+      spdlog::warn("all sensors are silent, and the fallback recording cannot be played: {}; using the default wind",
                    error.what());
     }
   }
@@ -86,7 +89,8 @@ void FallbackRecording::start(MonoTime now) {
 void FallbackRecording::stop() {
   if (!runner_) return;
   runner_.reset();
-  spdlog::info("a sensor is live again: the fall-back {} ends after {} readings", file_, readings_);
+  spdlog::info("a sensor is live again: stopped the fallback recording {} after {}", file_,
+               count_text(readings_, "reading"));
 }
 
 /// Whether it can be read is told once each time that it changes.
@@ -99,9 +103,10 @@ void FallbackRecording::log_changes() {
   if (!is_first && has_failed == has_failed_) return;
   const bool had_failed = std::exchange(has_failed_, has_failed);
   if (!has_failed) {
-    spdlog::warn("all sensors are silent: plays {}", file_);
+    spdlog::warn("all sensors are silent: playing {}", file_);
   } else if (!had_failed) {
-    spdlog::warn("all sensors are silent, and the fall-back cannot be played: {}; the default wind blows", link.detail);
+    spdlog::warn("all sensors are silent, and the fallback recording cannot be played: {}; using the default wind",
+                 link.detail);
   }
 }
 

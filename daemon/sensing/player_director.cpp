@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "daemon/settings/control_permission.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
@@ -35,13 +36,13 @@ std::string text_of(const wire::PlayerWish& wish) {
     case wire::PlayerAction::kPause:
       return "to pause";
     case wire::PlayerAction::kResume:
-      return "to go on";
+      return "to resume";
     case wire::PlayerAction::kStep:
-      return fmt::format("to step {} on", wish.count);
+      return fmt::format("to advance by {}", count_text(wish.count, "reading"));
     case wire::PlayerAction::kSeek:
-      return "to go to " + wish.place;
+      return "to seek to " + wish.place;
     case wire::PlayerAction::kRate:
-      return fmt::format("to play at {:g}", wish.rate);
+      return fmt::format("to play at rate {:g}", wish.rate);
   }
   return "nothing";
 }
@@ -63,16 +64,16 @@ wire::ControlReply PlayerDirector::answer(const wire::PlayerWish& wish, bool is_
   }
   if (meant.empty()) {
     reply.message = players_.empty()
-                        ? "no sensor here plays a recording"
+                        ? "no sensor of this daemon plays a recording"
                         : fmt::format("no sensor \"{}\" plays a recording; there are: {}", wish.sensor, known);
     return reply;
   }
   if (wish.action == wire::PlayerAction::kTell) {
     reply.done = true;
-    reply.message = "nothing is changed";
+    reply.message = "nothing was changed";
     return reply;
   }
-  if (const auto refusal = control_refusal(allowed_, is_local, "recordings are controlled")) {
+  if (const auto refusal = control_refusal(allowed_, is_local, "recordings cannot be controlled")) {
     reply.message = *refusal;
     return reply;
   }
@@ -85,7 +86,7 @@ wire::ControlReply PlayerDirector::answer(const wire::PlayerWish& wish, bool is_
     reply.players[i].order = number.value_or(0);
     reply.message.append(i == 0 ? "" : ", ").append(meant[i]->sensor);
   }
-  reply.message += reply.done ? " is told " + text_of(wish) : ": too many orders wait; try again";
+  reply.message += reply.done ? " was asked " + text_of(wish) : ": too many requests are pending; try again";
   return reply;
 }
 

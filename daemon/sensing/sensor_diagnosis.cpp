@@ -9,19 +9,19 @@ namespace {
 
 std::string connecting_text(const SensorEvidence& evidence) {
   if (evidence.link == LinkState::kConnected) {
-    return "its device is there, but has not said a reading yet: " + std::string(evidence.link_detail);
+    return "the device is connected, but has sent no reading yet: " + std::string(evidence.link_detail);
   }
-  return evidence.link_detail.empty() ? "looking for its device" : std::string(evidence.link_detail);
+  return evidence.link_detail.empty() ? "looking for the device" : std::string(evidence.link_detail);
 }
 
 std::string live_text(const SensorEvidence& evidence) {
   std::string text = evidence.said.interval_s > 0.0
                          ? fmt::format("a reading every {}", duration_text(evidence.said.interval_s))
-                         : std::string("its first reading has come");
+                         : std::string("first reading received");
   if (evidence.vote == Vote::kDisputed && evidence.others_m_s) {
     text += fmt::format(
-        "; but it says {:.1f} m/s where the others say {:.1f} (means of 5 min), and nobody can tell who is right: look "
-        "at each, and set [sensor.calibration] of the one that is wrong",
+        "; but its mean of 5 min is {:.1f} m/s, that of the other sensors {:.1f} m/s. Check each sensor, and correct "
+        "[sensor.calibration] of the wrong one",
         evidence.mean_m_s, *evidence.others_m_s);
   }
   return text;
@@ -30,35 +30,37 @@ std::string live_text(const SensorEvidence& evidence) {
 std::string stale_text(const SensorEvidence& evidence) {
   const std::string silence = "no reading for " + duration_text(evidence.said.age_s);
   if (evidence.said.interval_s <= 0.0) return silence;
-  return fmt::format("{}; it used to speak every {}. Is the station on, and in reach of its sensor?", silence,
-                     duration_text(evidence.said.interval_s));
+  return fmt::format("{}; its usual interval is {}. Is the station switched on, and within range of its sensor?",
+                     silence, duration_text(evidence.said.interval_s));
 }
 
 std::string frozen_text(const SensorEvidence& evidence) {
   return fmt::format(
-      "the same {:.2f} m/s {} times in {}. Its electronics hang, or ice holds it: look at it, and switch it off and on",
+      "the same reading, {:.2f} m/s, {} times in {}. Its electronics may hang, or it may be iced: inspect it, and "
+      "switch it off and on",
       evidence.said.last ? evidence.said.last->speed_m_s : 0.0, evidence.same_count,
       duration_text(evidence.same_for_s));
 }
 
 std::string seized_text(const SensorEvidence& evidence) {
-  const std::string others =
-      evidence.others_m_s ? fmt::format("while the others say {:.1f} m/s", *evidence.others_m_s) : "after a windy day";
-  return fmt::format("no wind for {}, {}. See whether it turns freely: ice, dirt or a worn bearing holds it",
+  const std::string others = evidence.others_m_s
+                                 ? fmt::format("while the other sensors measure {:.1f} m/s", *evidence.others_m_s)
+                                 : "after a windy day";
+  return fmt::format("no wind for {}, {}. Check that it turns freely: ice, dirt or a worn bearing may block it",
                      duration_text(evidence.still_for_s), others);
 }
 
 std::string implausible_text(const SensorEvidence& evidence) {
   if (evidence.fault == ReadingFault::kImplausible) {
     return fmt::format(
-        "{:.0f} % of its last readings jumped about or were out of range. Check its cable, its supply, its unit, and "
-        "what disturbs it",
+        "{:.0f} % of its last readings were spikes or out of range. Check its cable, its power supply, its unit, and "
+        "sources of interference",
         100.0 * evidence.bad_share);
   }
-  if (!evidence.others_m_s) return "the other sensors denied what it says, and none of them speaks now";
+  if (!evidence.others_m_s) return "it was outvoted by the other sensors, which are all silent now";
   return fmt::format(
-      "{:.1f} m/s where the others say {:.1f} (means of 5 min). Check its unit, its calibration and what stands around "
-      "it; `compare = false` in [sensor.judge] lets it be",
+      "its mean of 5 min is {:.1f} m/s, that of the other sensors {:.1f} m/s. Check its unit, its calibration and its "
+      "surroundings; `compare = false` in [sensor.judge] disables this comparison",
       evidence.mean_m_s, *evidence.others_m_s);
 }
 
@@ -100,11 +102,11 @@ std::string reason_of(SensorState state, const SensorEvidence& evidence) {
     case SensorState::kImplausible:
       return implausible_text(evidence);
     case SensorState::kDisconnected:
-      return evidence.link_detail.empty() ? "its device has gone" : std::string(evidence.link_detail);
+      return evidence.link_detail.empty() ? "the device was disconnected" : std::string(evidence.link_detail);
     case SensorState::kSimulated:
-      return "a simulation: made up, not measured";
+      return "synthetic values, not measured";
     case SensorState::kReplayed:
-      return "a recording: not the wind of now";
+      return "a recording, not the present wind";
   }
   return {};
 }

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/sensing/refusal_text.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi {
@@ -33,7 +34,7 @@ bool is_trouble(SensorState state) {
 
 std::string passed_over_text(const ChangeGate& gate) {
   if (gate.passed_over() == 0) return {};
-  return fmt::format("; {} changes in between did not last", gate.passed_over());
+  return fmt::format("; {} short changes in between", gate.passed_over());
 }
 
 /// What a configuration expects of its site, with nothing learnt.
@@ -215,9 +216,10 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
   if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
   const bool is_warning = is_trouble(state) || is_disputed(state, evidence.vote);
   const auto level = is_warning ? spdlog::level::warn : spdlog::level::info;
-  spdlog::log(level, "sensor {}: {}: {} (was {}{}; {} readings, {} frames, {} reconnects)", channel.config.name,
-              name_of(state), reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
-              channel.readings, channel.runner->frame_count(), channel.runner->reconnect_count());
+  spdlog::log(level, "sensor {}: {}: {} (was {}{}; {}, {}, {})", channel.config.name, name_of(state),
+              reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
+              count_text(channel.readings, "reading"), count_text(channel.runner->frame_count(), "frame"),
+              count_text(channel.runner->reconnect_count(), "reconnect"));
 }
 
 std::vector<wire::SensorStatus> SensorHub::status() const {
@@ -291,8 +293,8 @@ void SensorHub::drain_traces(const std::function<void(const wire::RawTrace&)>& u
 
 void SensorHub::log_summary() const {
   for (const wire::SensorStatus& sensor : status()) {
-    spdlog::info("sensor {}: {} readings from {} frames, {} reconnects; refused: {}", sensor.name, sensor.readings,
-                 sensor.frames, sensor.reconnects, refusal_text(sensor));
+    spdlog::info("sensor {}: {} from {}, {}; refused: {}", sensor.name, count_text(sensor.readings, "reading"),
+                 count_text(sensor.frames, "frame"), count_text(sensor.reconnects, "reconnect"), refusal_text(sensor));
   }
 }
 

@@ -42,7 +42,7 @@ wire::SensorStatus sensor_status(const SensorFacts& facts) {
   for (std::size_t why = 0; why < kRefusalCount; ++why) {
     add_refused(name_of(static_cast<Refusal>(why)), counts.refused[why]);
   }
-  add_refused("not believed", counts.not_believed);
+  add_refused("rejected", counts.not_believed);
   add_refused("lost", counts.lost);
   status.frames = counts.frames;
   status.reconnects = counts.reconnects;

@@ -19,6 +19,7 @@
 #include "daemon/sensing/system_clock.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/tcp_stream.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/base/latest.hpp"
 #include "engine/base/version.hpp"
 
@@ -56,6 +57,7 @@ class Service::Io {
 
   void run() {
     spdlog::info("listening on {}", stream_.local_endpoint());
+    if (recorder_) spdlog::info("recording to {}", options_.record->string());
     if (animation_) spdlog::info("{} nodes at {} Hz", animation_->node_count(), rate_hz_);
 
     signals_.async_wait([this](const boost::system::error_code& error, int signal) {
@@ -64,7 +66,7 @@ class Service::Io {
     if (options_.duration_s) {
       end_timer_.expires_after(from_seconds(*options_.duration_s));
       end_timer_.async_wait([this](const boost::system::error_code& error) {
-        if (!error) end("the set duration is over");
+        if (!error) end("the duration has elapsed");
       });
     }
     next_wind_ = asio::steady_timer::clock_type::now();
@@ -89,7 +91,7 @@ class Service::Io {
     const wire::Bytes message = wire::encode(scenes);
     if (wire::decode(std::span(message).subspan(wire::kSizePrefixBytes))) return;
     throw ConfigError(
-        fmt::format("[[scene]]: the scenes are more than a client takes; allowed in all: {} scenes, {} strands, "
+        fmt::format("[[scene]]: the scenes are larger than the stream allows; allowed in total: {} scenes, {} strands, "
                     "joints of cloth and points of surfaces",
                     wire::kMaxScenes, wire::kMaxStrands));
   }
@@ -110,7 +112,7 @@ class Service::Io {
   wire::ControlReply answer(const wire::Control& wish, bool is_local) {
     if (wish.player) return players_.answer(*wish.player, is_local);
     if (animation_) return director_.answer(wish, is_local);
-    return {.done = false, .message = "there are no scenes here", .scenes = {}};
+    return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
   }
 
   std::unique_ptr<Recorder> make_recorder(const Config& config, const std::filesystem::path& file) const;
@@ -127,7 +129,7 @@ class Service::Io {
     wind_.publish(wind);
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
-    if (options_.end_with_recordings && hub_.is_finished()) return end("the recording is over");
+    if (options_.end_with_recordings && hub_.is_finished()) return end("the recording has ended");
 
     // Steps keep to their own grid; those that a halted machine missed are left out.
     const auto period = from_seconds(1.0 / rate_hz_);
@@ -206,7 +208,6 @@ std::unique_ptr<Recorder> Service::Io::make_recorder(const Config& config, const
   for (const SensorConfig& sensor : config.sensors) {
     info.sensors.push_back({sensor.name, std::string(sensor.driver->name), to_toml(sensor.values)});
   }
-  spdlog::info("recording into {}", file.string());
   return std::make_unique<Recorder>(file, std::move(info),
                                     [](std::string_view news) { spdlog::warn("recording: {}", news); });
 }
@@ -215,7 +216,7 @@ void Service::Io::log_summary() const {
   hub_.log_summary();
   if (recorder_) {
     const RecorderStatus status = recorder_->status();
-    spdlog::info("recorded {} readings, lost {}", status.written, status.lost);
+    spdlog::info("recorded {}, lost {}", count_text(status.written, "reading"), status.lost);
   }
   if (!loop_) return;
   const LoopCounters& counters = loop_->counters();

@@ -25,7 +25,7 @@ struct ServiceOptions {
 /// caller of run().
 class Service {
  public:
-  /// Opens what can be opened: sensors, the listening socket, the recording. Throws ConfigError or ExitError.
+  /// Opens what can be opened: sensors, the listening socket, the recording. Throws ConfigError or FailureError.
   Service(const Config& config, const ServiceOptions& options);
   ~Service();
 

@@ -228,7 +228,7 @@ class ConfigReader {
       std::string name = read_name(*entry, prefix, std::string(description->name));
       if (!names.insert(name).second) {
         mistake(entry->source(), prefix + "name",
-                "\"" + name + "\" is there twice; give each " + std::string(list) + " a name");
+                "\"" + name + "\" is used twice; give each " + std::string(list) + " a name");
       }
       std::set<std::string_view> aside = {kNameKey, kind_key};
       if (list == "sensor") aside.insert(kCalibrationKey);

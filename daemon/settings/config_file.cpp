@@ -7,14 +7,18 @@
 #include <unistd.h>
 
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 
 namespace yuragi {
 namespace {
 
+Failure not_written(const std::string& message) {
+  return {message, FailureKind::kCannotCreate};
+}
+
 /// Writes a file beside another, for the same people to read.
-void write_like(const std::filesystem::path& model, const std::filesystem::path& file, std::string_view text) {
+Result<void, Failure> write_like(const std::filesystem::path& model, const std::filesystem::path& file,
+                                 std::string_view text) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   struct stat status {};
   if (stat(model.c_str(), &status) == 0) {
@@ -25,9 +29,9 @@ void write_like(const std::filesystem::path& model, const std::filesystem::path&
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
   if (!out) {
-    throw ExitError(kExitCannotCreate,
-                    file.string() + ": cannot be written; may this user write to its folder, and is there room?");
+    return not_written(file.string() + ": cannot be written; is its folder writable, and the disk not full?");
   }
+  return {};
 }
 
 /// Can a sensor be made of its values? It need not be so with each (this may be another machine than the wall's).
@@ -39,41 +43,42 @@ bool can_be_opened(const SensorConfig& sensor) {
   }
 }
 
-/// Throws ExitError where the daemon would not take the file, or one of its sensors, which it took before.
-void prove(const std::filesystem::path& file, const Config& before) {
+/// Fails where the daemon would not take the file, or one of its sensors, which it took before.
+Result<void, Failure> prove(const std::filesystem::path& file, const Config& before) {
   try {
     const Config config = load_config(file);
     for (std::size_t index = 0; index < config.sensors.size(); ++index) {
       if (can_be_opened(before.sensors.at(index))) open_sensor(config.sensors[index]);
     }
+    return {};
   } catch (const ConfigError& error) {
-    throw ExitError(kExitSoftware,
-                    std::string("the new configuration would be wrong, and was not written: ") + error.what());
+    return Failure{std::string("the new configuration would be wrong, and was not written: ") + error.what()};
   }
 }
 
 }  // namespace
 
-std::filesystem::path replace_config(const std::filesystem::path& file, std::string_view old_text,
-                                     std::string_view new_text) {
+Result<std::filesystem::path, Failure> replace_config(const std::filesystem::path& file, std::string_view old_text,
+                                                      std::string_view new_text) {
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(file, error);
-  if (error) throw ExitError(kExitCannotCreate, file.string() + ": " + error.message());
+  if (error) return not_written(file.string() + ": " + error.message());
 
   OutputFile output(real, true);
-  write_like(real, output.working_path(), new_text);
-  prove(output.working_path(), parse_config(old_text, file.string()));
+  if (const auto done = write_like(real, output.working_path(), new_text); !done) return done.error();
+  const Config before = parse_config(old_text, file.string());
+  if (const auto done = prove(output.working_path(), before); !done) return done.error();
 
   // The old text is safe before the new one takes its place.
   if (read_config_text(real) != old_text) {
-    throw ExitError(kExitCannotCreate, file.string() + ": has been changed meanwhile, and was left alone; begin again");
+    return not_written(file.string() + ": has been changed meanwhile, and was left as it is; begin again");
   }
   const std::filesystem::path kept = real.string() + ".bak";
   OutputFile backup(kept, true);
-  write_like(real, backup.working_path(), old_text);
-  backup.commit();
-  output.commit();
-  return kept;
+  if (const auto done = write_like(real, backup.working_path(), old_text); !done) return done.error();
+  if (const auto done = backup.commit(); !done) return done.error();
+  if (const auto done = output.commit(); !done) return done.error();
+  return {boost::system::in_place_value, kept};
 }
 
 }  // namespace yuragi

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "engine/base/result.hpp"
+
 namespace yuragi {
 
 /// Gives a configuration file a new text: as a whole or not at all. The new text is proven first (it is read as the
@@ -11,8 +13,8 @@ namespace yuragi {
 /// FILE.bak. Permissions stay, and a link goes on pointing at its file.
 ///
 /// `old_text` is what the new one was made from: where the file says something else by now, somebody has changed it
-/// meanwhile, and it is left alone. Throws ExitError; then the file is as it was. Answers where the old text is.
-std::filesystem::path replace_config(const std::filesystem::path& file, std::string_view old_text,
-                                     std::string_view new_text);
+/// meanwhile, and it is left alone. Answers where the old text is; after a Failure the file is as it was.
+Result<std::filesystem::path, Failure> replace_config(const std::filesystem::path& file, std::string_view old_text,
+                                                      std::string_view new_text);
 
 }  // namespace yuragi

@@ -21,12 +21,12 @@ constexpr ControlPermission control_permission_named(std::string_view name) noex
   return ControlPermission::kNobody;
 }
 
-/// Why a client may not do `what` ("scenes are switched"), by `allowed`. Nothing where it may. `is_local`: it asks from
-/// this machine.
+/// Why a client may not do `what` ("scenes cannot be switched"), by `allowed`. Nothing where it may. `is_local`: it
+/// asks from this machine.
 inline std::optional<std::string> control_refusal(ControlPermission allowed, bool is_local, const std::string& what) {
-  if (allowed == ControlPermission::kNobody) return what + " by nobody here: [stream] control = \"nobody\"";
+  if (allowed == ControlPermission::kNobody) return what + ": the configuration has [stream] control = \"nobody\"";
   if (allowed == ControlPermission::kLoopback && !is_local) {
-    return what + " from the daemon's own machine only: [stream] control = \"loopback\"";
+    return what + " from another machine: the configuration has [stream] control = \"loopback\"";
   }
   return std::nullopt;
 }

@@ -7,9 +7,15 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
-
 namespace yuragi {
+
+namespace {
+
+FailureError cannot_create(const std::string& message) {
+  return FailureError({message, FailureKind::kCannotCreate});
+}
+
+}  // namespace
 
 OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const std::string_view> side_suffixes)
     : file_(std::move(file)), side_suffixes_(side_suffixes) {
@@ -17,26 +23,24 @@ OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const s
   const std::string name = file_.string();
   // A rename onto a device or a link would replace it.
   if (const auto status = std::filesystem::status(file_, error); std::filesystem::exists(status)) {
-    if (std::filesystem::is_directory(status)) throw ExitError(kExitCannotCreate, name + ": is a folder");
-    if (!std::filesystem::is_regular_file(status)) {
-      throw ExitError(kExitCannotCreate, name + ": is no regular file");
-    }
+    if (std::filesystem::is_directory(status)) throw cannot_create(name + ": is a folder");
+    if (!std::filesystem::is_regular_file(status)) throw cannot_create(name + ": is not a regular file");
     if (force) file_ = std::filesystem::canonical(file_);
   }
   working_path_ = file_.string() + ".part-" + std::to_string(getpid());
   if (!force && std::filesystem::exists(file_, error)) {
-    throw ExitError(kExitCannotCreate, name + ": is there already; --force overwrites it");
+    throw cannot_create(name + ": exists already; --force overwrites it");
   }
   // They would be taken for the new file's.
   for (const std::string_view suffix : side_suffixes_) {
     const std::string beside = file_.string() + std::string(suffix);
     if (!std::filesystem::exists(beside, error)) continue;
-    throw ExitError(kExitCannotCreate, name + ": is being recorded, or the recorder was killed (" + beside +
-                                           " is there); name another file");
+    throw cannot_create(name + ": is being recorded, or the recorder was killed (" + beside +
+                        " exists); name another file");
   }
   const auto folder = file_.parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
-    throw ExitError(kExitCannotCreate, folder.string() + ": there is no such folder");
+    throw cannot_create(folder.string() + ": there is no such folder");
   }
 }
 
@@ -48,7 +52,7 @@ OutputFile::~OutputFile() {
   }
 }
 
-void OutputFile::commit() {
+Result<void, Failure> OutputFile::commit() {
   // Its content reaches the disk before its name does.
   if (const int descriptor = open(working_path_.c_str(), O_RDONLY | O_CLOEXEC); descriptor >= 0) {
     fsync(descriptor);
@@ -56,7 +60,8 @@ void OutputFile::commit() {
   }
   std::error_code error;
   std::filesystem::rename(working_path_, file_, error);
-  if (error) throw ExitError(kExitCannotCreate, file_.string() + ": " + error.message());
+  if (error) return Failure{file_.string() + ": " + error.message(), FailureKind::kCannotCreate};
+  return {};
 }
 
 }  // namespace yuragi

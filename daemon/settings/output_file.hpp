@@ -4,6 +4,8 @@
 #include <span>
 #include <string_view>
 
+#include "engine/base/result.hpp"
+
 namespace yuragi {
 
 /// A file that is there as a whole or not at all: it is written under another name beside its own, and takes its own
@@ -12,8 +14,9 @@ class OutputFile {
  public:
   /// A link is followed. `side_suffixes`: how the names end of what a library keeps beside such a file while it is
   /// being recorded (windlog::kSideSuffixes); they must live as long as this, and are removed with an unfinished file.
-  /// Throws ExitError where the file is there already and `force` is false, where it is no regular file, where one of
-  /// those stands beside it (somebody is recording it, or was, when it was killed), or where its folder is not there.
+  /// Throws FailureError (kCannotCreate) where the file exists already and `force` is false, where it is not a regular
+  /// file, where one of those exists beside it (it is being recorded, or was, when its recorder was killed), or where
+  /// its folder does not exist.
   OutputFile(std::filesystem::path file, bool force, std::span<const std::string_view> side_suffixes = {});
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -22,8 +25,8 @@ class OutputFile {
   /// Where to write.
   const std::filesystem::path& working_path() const { return working_path_; }
 
-  /// Gives the file its name. Throws ExitError.
-  void commit();
+  /// Gives the file its name, or says why that failed.
+  Result<void, Failure> commit();
 
  private:
   std::filesystem::path file_;

@@ -6,15 +6,15 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/exit.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi {
 
 void write_at_once(std::string_view text) {
   const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (is_written) return;
-  throw ExitError(kExitCannotCreate,
-                  fmt::format("cannot write to standard output: {}", std::generic_category().message(errno)));
+  throw FailureError({fmt::format("cannot write to standard output: {}", std::generic_category().message(errno)),
+                      FailureKind::kCannotCreate});
 }
 
 }  // namespace yuragi

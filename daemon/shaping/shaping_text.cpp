@@ -39,8 +39,7 @@ std::string shaping_text(const WindShapingReport& report, const WindShapingSetti
     add(hours);
   }
   if (report.ceiling_gain < 0.995) {
-    add(fmt::format("ceiling: {:.1f} held back to {:.1f} m/s", report.speed_m_s,
-                    report.ceiling_gain * report.speed_m_s));
+    add(fmt::format("ceiling: {:.1f} limited to {:.1f} m/s", report.speed_m_s, report.ceiling_gain * report.speed_m_s));
   }
   return text;
 }

@@ -28,9 +28,9 @@ Failure write_site_file(const std::filesystem::path& file, const SiteMemory& mem
                .dump()
         << '\n';
     out.close();
-    if (!out) return {file.string() + ": could not be written; is there room, and may this user write there?"};
-    output.commit();
-    return {};
+    if (!out) return {file.string() + ": could not be written; is the disk full, or the folder not writable?"};
+    const auto committed = output.commit();
+    return committed ? Failure{} : committed.error();
   } catch (const std::exception& error) {
     return {error.what()};
   }
@@ -57,7 +57,7 @@ Result<SiteMemory, Failure> SiteFile::read() const {
   in.read(text.data(), kLongestSiteFile);
   text.resize(static_cast<std::size_t>(in.gcount()));
 
-  const Failure none{file_.string() + ": is no memory of a site's wind"};
+  const Failure none{file_.string() + ": is not a memory of a site's wind"};
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains(kTimesKey)) return none;
   SiteMemory memory;

@@ -45,28 +45,27 @@ void WindShaper::keep_site_file(std::shared_ptr<SiteSpectrum> gusts) {
   const bool has_gain = shaping_.settings().site.median_m_s > 0.0;
   if (site_path_.empty()) {
     if (!has_gain) return;
-    spdlog::info("shaping: site gain begins at 1; without site_file (or with a recording) nothing is remembered");
+    spdlog::info("shaping: site gain begins at 1; it is not saved without site_file (or with a recording)");
     return;
   }
   const std::string_view gain_begins = has_gain ? "site gain begins at 1; " : "";
   site_file_.emplace(site_path_);
   if (std::error_code error; !std::filesystem::exists(site_path_, error)) {
-    spdlog::info("shaping: {}{} will remember the site's wind", gain_begins, site_path_.string());
+    spdlog::info("shaping: {}{} will store the site's wind", gain_begins, site_path_.string());
     return;
   }
   const auto memory = site_file_->read();
   if (!memory || !shaping_.restore(memory->times_s)) {
-    spdlog::warn("shaping: {}the file anew: {}",
-                 has_gain ? "site gain begins at 1, and " : "nothing is known yet, and ",
-                 memory ? site_path_.string() + ": is of another kind" : memory.error().message);
+    spdlog::warn("shaping: {}starting a new file: {}", has_gain ? "site gain begins at 1; " : "",
+                 memory ? site_path_.string() + ": has another format" : memory.error().message);
     return;
   }
   const double known_s = shaping_.memory().known_s();
   if (has_gain || known_s > 0.0) {
-    spdlog::info("shaping: {} remembers {} of the site's wind", site_path_.string(), duration_text(known_s));
+    spdlog::info("shaping: {} holds {} of the site's wind", site_path_.string(), duration_text(known_s));
   }
   if (gusts_ && gusts_->restore(memory->octaves_known_s, memory->octaves_db)) {
-    spdlog::info("shaping: {} remembers {} of the site's gusts", site_path_.string(),
+    spdlog::info("shaping: {} holds {} of the site's gusts", site_path_.string(),
                  duration_text(std::ranges::max(gusts_->known_s())));
   }
 }
@@ -107,7 +106,7 @@ void WindShaper::log_changes() {
       spdlog::info("shaping: the wind is weak ({:.1f} m/s) and is raised toward the floor of {:.1f} m/s",
                    report.site_gain * report.mean_m_s, settings.floor_m_s);
     } else {
-      spdlog::info("shaping: the wind needs no raising any more ({:.1f} m/s)", report.site_gain * report.mean_m_s);
+      spdlog::info("shaping: the wind is above the floor again ({:.1f} m/s)", report.site_gain * report.mean_m_s);
     }
   }
   if (std::abs(std::log(report.site_gain / logged_site_gain_)) > std::log(kSiteGainNews)) {
@@ -123,7 +122,7 @@ void WindShaper::log_ceiling(const WindShapingReport& report, MonoTime now) {
     held_back_ = now;
     strongest_m_s_ = std::max(strongest_m_s_, report.speed_m_s);
     if (!std::exchange(logged_ceiling_, true)) {
-      spdlog::info("shaping: a storm: {:.1f} m/s is held back to {:.1f}", report.speed_m_s,
+      spdlog::info("shaping: storm: {:.1f} m/s is limited to {:.1f}", report.speed_m_s,
                    report.ceiling_gain * report.speed_m_s);
     }
   } else if (logged_ceiling_ && now - held_back_ > kCeilingEndsAfter) {
@@ -146,7 +145,7 @@ void WindShaper::save_site() {
 /// What came of the last time that it was written.
 void WindShaper::tell_of_site_file() {
   if (const Failure failure = site_file_->wait(); !failure.message.empty()) {
-    spdlog::warn("shaping: the site's wind is not remembered: {}", failure.message);
+    spdlog::warn("shaping: the site's wind could not be saved: {}", failure.message);
   }
 }
 

@@ -7,9 +7,9 @@ namespace yuragi {
 std::string_view name_of(Overdue why) {
   switch (why) {
     case Overdue::kNeverSubscribed:
-      return "never subscribed";
+      return "it did not subscribe";
     case Overdue::kStuck:
-      return "stopped reading";
+      return "it stopped reading";
   }
   return "?";
 }

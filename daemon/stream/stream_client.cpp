@@ -23,13 +23,29 @@ using boost::system::error_code;
 std::string_view name_of(StreamEnd end) {
   switch (end) {
     case StreamEnd::kTimeout:
-      return "nothing came in time";
+      return "nothing was received in time";
     case StreamEnd::kClosed:
-      return "the connection was closed";
+      return "it closed the connection";
     case StreamEnd::kInvalid:
-      return "the server sent what is no message";
+      return "it sent something that is not a message";
   }
   return "?";
+}
+
+std::optional<Failure> refusal_in(const wire::Message& message, std::string_view address) {
+  const auto* hello = std::get_if<wire::Hello>(&message);
+  if (hello == nullptr) return std::nullopt;
+  const std::string daemon = "the daemon at " + std::string(address) + " ";
+  if (hello->refused) return Failure{daemon + "refuses the connection: " + *hello->refused, FailureKind::kUnavailable};
+  if (const auto mismatch = wire::protocol_mismatch(*hello)) {
+    return Failure{daemon + *mismatch, FailureKind::kUnavailable};
+  }
+  return std::nullopt;
+}
+
+Failure connection_lost(std::string_view address, StreamEnd end) {
+  return {"the connection to the daemon at " + std::string(address) + " was lost: " + std::string(name_of(end)),
+          FailureKind::kUnavailable};
 }
 
 class StreamClient::Connection {
@@ -118,12 +134,12 @@ StreamClient::StreamClient(StreamClient&&) noexcept = default;
 StreamClient& StreamClient::operator=(StreamClient&&) noexcept = default;
 StreamClient::~StreamClient() = default;
 
-bool StreamClient::subscribe(const wire::Subscribe& wish) {
-  return connection_->write(wire::encode(wish));
+bool StreamClient::subscribe(const wire::Subscribe& request) {
+  return connection_->write(wire::encode(request));
 }
 
-bool StreamClient::send(const wire::Control& wish) {
-  return connection_->write(wire::encode(wish));
+bool StreamClient::send(const wire::Control& request) {
+  return connection_->write(wire::encode(request));
 }
 
 Result<wire::Message, StreamEnd> StreamClient::receive(Nanoseconds timeout) {

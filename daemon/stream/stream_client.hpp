@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -18,6 +19,13 @@ enum class StreamEnd : std::uint8_t {
   kInvalid,  ///< the server sent what is no message; the connection is closed
 };
 std::string_view name_of(StreamEnd end);
+
+/// Why the daemon at `address` does not serve this client, where `message` is a greeting that says so: it refuses the
+/// connection, or speaks another protocol. Nothing for any other message.
+std::optional<Failure> refusal_in(const wire::Message& message, std::string_view address);
+
+/// What a person is told of the end of a connection to the daemon at `address`.
+Failure connection_lost(std::string_view address, StreamEnd end);
 
 [[noreturn]] inline void throw_exception_from_error(StreamEnd end, const boost::source_location&) {
   throw std::runtime_error("stream: " + std::string(name_of(end)));
@@ -39,11 +47,11 @@ class StreamClient {
   StreamClient& operator=(StreamClient&&) noexcept;
   ~StreamClient();
 
-  /// Says what is wanted, once. False where the connection is gone.
-  bool subscribe(const wire::Subscribe& wish);
+  /// Says what is wanted, once. False where the connection is closed.
+  bool subscribe(const wire::Subscribe& request);
 
-  /// Asks to show or hide a scene, after subscribe(). False where the connection is gone.
-  bool send(const wire::Control& wish);
+  /// Asks to show or hide a scene, after subscribe(). False where the connection is closed.
+  bool send(const wire::Control& request);
 
   /// The next message, which is waited for no longer than `timeout`. Messages of kinds unknown here are passed over.
   Result<wire::Message, StreamEnd> receive(Nanoseconds timeout);

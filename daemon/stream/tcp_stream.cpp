@@ -12,8 +12,8 @@
 #include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
-#include "daemon/settings/exit.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi {
 namespace {
@@ -43,7 +43,7 @@ bool is_of_this_machine(const asio::ip::address& address) {
 /// Opens the listening socket, or says what to do instead.
 tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
   const auto address = parse_address(listen);
-  if (!address) throw ExitError(kExitUnavailable, "cannot listen: " + address.error().message);
+  if (!address) throw FailureError({"cannot listen: " + address.error().message, FailureKind::kUnavailable});
   try {
     // SO_REUSEADDR, which this constructor sets, lets a restarted daemon have its port back at once.
     tcp::resolver resolver(io);
@@ -51,11 +51,11 @@ tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
     return {io, found.begin()->endpoint()};
   } catch (const boost::system::system_error& error) {
     const bool in_use = error.code() == asio::error::address_in_use;
-    throw ExitError(
-        kExitUnavailable,
-        "cannot listen on " + std::string(listen) + ": " + error.code().message() +
-            (in_use ? ". Another program listens there, perhaps another Yuragi: end it, or choose another port."
-                    : ". Choose an address of this machine, and a port above 1023."));
+    throw FailureError(
+        {"cannot listen on " + std::string(listen) + ": " + error.code().message() +
+             (in_use ? ". Another program uses this address, perhaps another yuragi: stop it, or choose another port."
+                     : ". Choose an address of this machine, and a port above 1023."),
+         FailureKind::kUnavailable});
   }
 }
 
@@ -139,8 +139,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void end(std::string_view why) {
     if (!is_open()) return;
-    spdlog::info("client {} {} is gone: {}; {} frames sent, {} skipped", peer_, client_name_, why, queue_.frames_sent(),
-                 queue_.frames_skipped());
+    spdlog::info("client {} {} disconnected: {}; {} frames sent, {} skipped", peer_, client_name_, why,
+                 queue_.frames_sent(), queue_.frames_skipped());
     error_code ignored;
     socket_.close(ignored);
   }
@@ -181,11 +181,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// A client may send its subscription, once, and after that its wishes to show or hide scenes.
   void take_message() {
     const auto message = wire::decode(body_);
-    if (!message) return end("its message is refused: " + std::string(name_of(message.error())));
+    if (!message) return end("its message was refused: " + std::string(name_of(message.error())));
     const auto* control = std::get_if<wire::Control>(&*message);
     if (control != nullptr && queue_.is_subscribed()) return take_control(*control);
     const auto* wish = std::get_if<wire::Subscribe>(&*message);
-    if (wish == nullptr || queue_.is_subscribed()) return end("it sent what a client may not send");
+    if (wish == nullptr || queue_.is_subscribed()) return end("it sent a message that clients must not send");
     if (wish->protocol != wire::kProtocol) return end("it speaks protocol " + std::to_string(wish->protocol));
 
     client_name_ = "(" + wish->client + ")";
@@ -203,10 +203,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const auto& answer = feed_->settings.on_control;
     const wire::ControlReply reply =
         answer ? answer(wish, is_local_)
-               : wire::ControlReply{.done = false, .message = "there are no scenes here", .scenes = {}};
+               : wire::ControlReply{.done = false, .message = "this daemon has no scenes", .scenes = {}};
     const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kTell;
     if (!wish.scene.empty() || changes_players) spdlog::info("client {} {}: {}", peer_, client_name_, reply.message);
-    if (!queue_.offer_reply(share(wire::encode(reply)))) return end("it asks faster than it reads");
+    if (!queue_.offer_reply(share(wire::encode(reply)))) return end("it sends requests faster than it reads replies");
     write();
     read_prefix();
   }
@@ -284,7 +284,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     acceptor_.close(ignored);
     check_timer_.cancel();
     accept_timer_.cancel();
-    for (const auto& connection : connections_) connection->end("the stream ends");
+    for (const auto& connection : connections_) connection->end("the daemon is stopping");
     connections_.clear();
   }
 
@@ -301,7 +301,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
 
   /// Out of file descriptors or memory, usually: those who are here stay, and newcomers wait until there is room.
   void accept_later(const error_code& error) {
-    if (std::exchange(accept_error_, error) != error) spdlog::warn("cannot take a client: {}", error.message());
+    if (std::exchange(accept_error_, error) != error) spdlog::warn("cannot accept a client: {}", error.message());
     accept_timer_.expires_after(kAcceptBackOff);
     accept_timer_.async_wait([self = shared_from_this()](const error_code&) {
       if (!self->closed_) self->accept();
@@ -319,9 +319,9 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   void refuse(tcp::socket socket) const {
     error_code ignored;
     const auto peer = socket.remote_endpoint(ignored);
-    spdlog::warn("client {} is turned away: {} are connected", text_of(peer), connections_.size());
+    spdlog::warn("client {} refused: {} clients are connected already", text_of(peer), connections_.size());
     wire::Hello hello = feed_->settings.hello;
-    hello.refused = "as many clients as it takes are connected: " + std::to_string(connections_.size());
+    hello.refused = "the maximum number of clients is connected: " + std::to_string(connections_.size());
     socket.non_blocking(true, ignored);
     socket.write_some(asio::buffer(wire::encode(hello)), ignored);
     socket.shutdown(tcp::socket::shutdown_send, ignored);

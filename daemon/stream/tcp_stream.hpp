@@ -35,7 +35,8 @@ struct TcpStreamSettings {
 /// Everything happens in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class TcpStream final : public Transport {
  public:
-  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws ExitError where that is not possible.
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) where
+  /// that is not possible.
   TcpStream(boost::asio::io_context& io, std::string_view listen, TcpStreamSettings settings);
   ~TcpStream() override;
 

@@ -153,7 +153,7 @@ class MosquittoClient final : public MqttClient {
   static void on_connect(mosquitto* client, void* self, int answer) {
     MosquittoClient& me = self_of(self);
     if (answer != 0) {
-      me.refusal_ = fmt::format("{} refuses us ({}): check `user` and `password`", describe(me.wanted_),
+      me.refusal_ = fmt::format("{} refuses the connection ({}): check `user` and `password`", describe(me.wanted_),
                                 mosquitto_connack_string(answer));
       return;
     }
@@ -168,7 +168,7 @@ class MosquittoClient final : public MqttClient {
     for (int i = 0; i < count; ++i) {
       if (granted[i] >= kRefused) {
         me.refusal_ =
-            fmt::format("{} does not let us read the topic: give this user the right to it, in the broker's list",
+            fmt::format("{} does not allow reading the topic: grant it to this user in the access list of the broker",
                         describe(me.wanted_));
       }
     }

@@ -39,13 +39,15 @@ const std::array kHidParameters = {
               .unit = "",
               .default_value = std::string(""),
               .help = "its serial number, where it has one; to tell several apart"},
-    Parameter{.name = "poll_interval",
-              .unit = "s",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 3600.0,
-              .help = "from one question to the next, of fineoffset, acurite and te923; 0 takes the station's own: 48, "
-                      "18 and 33 s. Asking more often brings nothing new; a fineoffset may lock up of it, and is not"},
+    Parameter{
+        .name = "poll_interval",
+        .unit = "s",
+        .default_value = 0.0,
+        .min = 0.0,
+        .max = 3600.0,
+        .help =
+            "from one question to the next, of fineoffset, acurite and te923; 0 takes the station's own: 48, 18 and 33 "
+            "s. Asking more often gives nothing new, and may lock up a fineoffset, which is not asked more often"},
     Parameter{.name = "pace",
               .unit = "",
               .default_value = 1.0,

@@ -58,16 +58,13 @@ const std::array kMqttParameters = {
               .min = 0,
               .max = 65535,
               .help = "the broker's port; 0 takes 1883, and 8883 with TLS"},
-    Parameter{.name = "user",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "who we are; empty: the broker does not ask"},
+    Parameter{.name = "user", .unit = "", .default_value = std::string(""), .help = "the user name; empty: none"},
     Parameter{.name = "password", .unit = "", .default_value = std::string(""), .help = "the user's password"},
-    Parameter{.name = "tls", .unit = "", .default_value = false, .help = "speak TLS, and check who the broker is"},
+    Parameter{.name = "tls", .unit = "", .default_value = false, .help = "use TLS, and verify the broker"},
     Parameter{.name = "ca_file",
               .unit = "",
               .default_value = std::string(""),
-              .help = "the certificate (PEM) of who vouches for the broker; empty: those that this system trusts"},
+              .help = "the CA certificate (PEM) of the broker; empty: those that this system trusts"},
     Parameter{.name = "preset",
               .unit = "",
               .default_value = std::string("number"),
@@ -114,7 +111,7 @@ const std::array kMqttParameters = {
               .default_value = std::int64_t{15},
               .min = 5,
               .max = 3600,
-              .help = "a broker that says nothing for so long is asked whether it is still there"},
+              .help = "a broker that sends nothing for this long is pinged"},
 };
 
 /// Where one quantity comes from: a topic of its own, or the speed's.

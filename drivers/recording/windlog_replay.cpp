@@ -31,19 +31,18 @@ const std::array<Parameter, 9> kWindlogParameters = {
               .default_value = 1.0,
               .min = 0.01,
               .max = 1000.0,
-              .help = "how many seconds of the recording are played in one second"},
-    Parameter{.name = "loop", .unit = "", .default_value = false, .help = "begin again at the end"},
-    Parameter{
-        .name = "seam",
-        .unit = "s",
-        .default_value = 5.0,
-        .min = 0.0,
-        .max = 600.0,
-        .help = "how long the end of a loop, or the place left by a seek, fades into the new place; 0: not at all"},
+              .help = "seconds of the recording that are played per second"},
+    Parameter{.name = "loop", .unit = "", .default_value = false, .help = "start again at the end"},
+    Parameter{.name = "seam",
+              .unit = "s",
+              .default_value = 5.0,
+              .min = 0.0,
+              .max = 600.0,
+              .help = "duration of the cross-fade at the end of a loop and at a seek; 0: none"},
     Parameter{.name = "start",
               .unit = "",
               .default_value = std::string{},
-              .help = "where to begin: seconds from the first reading, or a moment such as 2018-07-20T14:05:00Z"},
+              .help = "where to begin: seconds from the first reading, or a time such as 2018-07-20T14:05:00Z"},
     Parameter{.name = "same_time_of_day",
               .unit = "",
               .default_value = false,
@@ -54,11 +53,11 @@ const std::array<Parameter, 9> kWindlogParameters = {
               .default_value = std::string{},
               .help = "of the clocks where it was recorded, for same_time_of_day: hours ahead of UTC (1, -3.5); empty: "
                       "this machine's time zone"},
-    Parameter{.name = "paused", .unit = "", .default_value = false, .help = "stand still at the first reading"},
+    Parameter{.name = "paused", .unit = "", .default_value = false, .help = "start paused, at the first reading"},
     Parameter{.name = "sensor",
               .unit = "",
               .default_value = std::string{},
-              .help = "which recorded sensor, by its name; empty: the one that spoke first; *: all of them as one"},
+              .help = "name of the recorded sensor; empty: the one with the first reading; *: all, as one"},
 };
 
 class WindlogReplay final : public Sensor, public RecordingPlayer {
@@ -70,22 +69,19 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
 
   MonoTime poll(const Clock& clock, SensorSink& sink) override {
     const Instant now = clock.now();
-    MonoTime next = now.mono;
-    try {
-      if (!player_) player_.emplace(file_, options_, now);
-      carry_out_orders(now);
-      next = player_->play(now, [&sink](const WindReading& reading) { sink.reading(reading); });
+    auto next = play(now, sink);
+    if (next) {
       back_off_ = Nanoseconds{0};
       tell(sink);
-    } catch (const std::exception& error) {
+    } else {
       // The player, if there is one, keeps its place.
-      sink.link(LinkState::kConnecting, error.what());
+      sink.link(LinkState::kConnecting, next.error().message);
       told_.reset();
       back_off_ = back_off_ == Nanoseconds{0} ? kFirstBackOff : std::min(2 * back_off_, kMaxBackOff);
       next = now.mono + back_off_;
     }
     publish_report(now.mono);
-    return next;
+    return *next;
   }
 
   RecordingPlayer* player() noexcept override { return this; }
@@ -106,6 +102,17 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   /// What the link state is reported about.
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
+  /// Plays what is due; answers when the next reading is.
+  Result<MonoTime, Failure> play(const Instant& now, SensorSink& sink) {
+    if (!player_) {
+      auto opened = WindlogPlayer::open(file_, options_, now);
+      if (!opened) return opened.error();
+      player_.emplace(std::move(*opened));
+    }
+    carry_out_orders(now);
+    return player_->play(now, [&sink](const WindReading& reading) { sink.reading(reading); });
+  }
+
   void carry_out_orders(const Instant& now) {
     std::vector<PlayerOrder> orders;
     {
@@ -113,31 +120,30 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
       orders.swap(waiting_);
     }
     for (const PlayerOrder& order : orders) {
-      std::string refusal;
-      try {
-        carry_out(order, now);
-      } catch (const std::exception& error) {
-        refusal = error.what();
-      }
+      const auto done = carry_out(order, now);
       const std::lock_guard lock(mutex_);
-      report_.refusal = std::move(refusal);
+      report_.refusal = done ? std::string{} : done.error().message;
       ++report_.orders_done;
     }
   }
 
-  void carry_out(const PlayerOrder& order, const Instant& now) {
+  Result<void, Failure> carry_out(const PlayerOrder& order, const Instant& now) {
     switch (order.kind) {
       case PlayerOrder::Kind::kPause:
-        return player_->pause(now);
+        player_->pause(now);
+        break;
       case PlayerOrder::Kind::kResume:
-        return player_->resume(now);
+        player_->resume(now);
+        break;
       case PlayerOrder::Kind::kStep:
         return player_->step(now, order.count);
       case PlayerOrder::Kind::kSeek:
         return player_->seek(now, order.place);
       case PlayerOrder::Kind::kRate:
-        return player_->set_rate(now, order.rate);
+        player_->set_rate(now, order.rate);
+        break;
     }
+    return {};
   }
 
   /// Reports the link state when it has changed.
@@ -151,9 +157,9 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
       case Doing::kPlaying:
         return sink.link(LinkState::kConnected, "playing " + file_.string());
       case Doing::kPaused:
-        return sink.link(LinkState::kConnected, "paused: " + file_.string() + " stands still, and its wind holds");
+        return sink.link(LinkState::kConnected, "paused: " + file_.string() + " is paused, and its wind is held");
       case Doing::kFinished:
-        return sink.link(LinkState::kFinished, file_.string() + " is played; `loop = true` would begin it again");
+        return sink.link(LinkState::kFinished, file_.string() + " has ended; `loop = true` would repeat it");
     }
   }
 
@@ -206,7 +212,7 @@ std::unique_ptr<Sensor> open_windlog(const ParameterValues& values) {
 
 extern const DriverDescription kWindlogDriver;
 const DriverDescription kWindlogDriver{.name = "windlog",
-                                       .summary = "a recorded wind, played again",
+                                       .summary = "plays a recording",
                                        .parameters = kWindlogParameters,
                                        .open = open_windlog,
                                        .plays_recordings = true};

@@ -21,12 +21,12 @@ Result<LogMoment, Failure> parse_log_moment(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), from_s);
   if (error == std::errc{} && end == text.data() + text.size()) {
     if (!(from_s >= 0.0) || from_s > seconds(Nanoseconds(windlog::kMaxTime_ns))) {
-      return Failure{"\"" + std::string(text) + "\" is not in a recording" + std::string(kHelp)};
+      return Failure{"\"" + std::string(text) + "\" is not in a recording" + std::string(kHelp), FailureKind::kUsage};
     }
     return LogMoment(from_seconds(from_s));
   }
   const auto moment = parse_iso_time(text);
-  if (!moment) return Failure{"\"" + std::string(text) + "\" is no time" + std::string(kHelp)};
+  if (!moment) return Failure{"\"" + std::string(text) + "\" is not a time" + std::string(kHelp), FailureKind::kUsage};
   return LogMoment(*moment);
 }
 

@@ -31,23 +31,23 @@ std::string uri_of(const std::filesystem::path& file) {
 std::string_view advice_for(int code) {
   switch (code) {
     case SQLITE_FULL:
-      return "the disk is full; free some space";
+      return "free some space on it";
     case SQLITE_IOERR:
-      return "the disk does not answer; is it still there?";
+      return "check the disk";
     case SQLITE_PERM:
     case SQLITE_AUTH:
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
-      return "check that the file and its folder are there and that this user may open them";
+      return "check that the file and its folder exist and that this user may open them";
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return "another program holds it; end that one, or wait for it";
+      return "another program uses it; stop that one, or wait for it";
     case SQLITE_NOTADB:
-      return "this is no Yuragi recording";
+      return "this is not a Yuragi recording";
     case SQLITE_CORRUPT:
       return "the file is damaged; `sqlite3 FILE .recover` may save what is left";
     default:
-      return "no reading of it can be trusted";
+      return "its readings cannot be trusted";
   }
 }
 
@@ -141,7 +141,7 @@ Result<std::int64_t, Failure> Database::integer(std::string_view sql) {
     case Statement::Step::kRow:
       return statement->integer(0);
     case Statement::Step::kDone:
-      return Failure{file_.string() + ": the recording lacks what every recording has"};
+      return Failure{file_.string() + ": the recording is incomplete"};
     case Statement::Step::kFailed:
       break;
   }

@@ -1,7 +1,6 @@
 #include "drivers/windlog/windlog_cursor.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 namespace yuragi {
@@ -12,48 +11,61 @@ constexpr Nanoseconds kLeastInterval = std::chrono::milliseconds(1);
 // As many intervals as settle a median.
 constexpr std::size_t kIntervalsMeasured = 64;
 
-/// What is wrong with the recording as a whole, as an exception.
-template <class T>
-T read_or_throw(Result<T, Failure> result) {
-  if (!result) throw std::runtime_error(result.error().message);
-  return std::move(*result);
+/// A failure to read a recording is one of its data, whatever SQLite calls it.
+Failure of_data(const Failure& failure) {
+  return {failure.message, failure.kind == FailureKind::kOther ? FailureKind::kBadData : failure.kind};
 }
 
 }  // namespace
 
-WindlogCursor::WindlogCursor(const std::filesystem::path& file, std::string_view sensor)
-    : reader_(read_or_throw(WindlogReader::open(file))) {
+Result<WindlogCursor, Failure> WindlogCursor::open(const std::filesystem::path& file, std::string_view sensor) {
+  auto reader = WindlogReader::open(file);
+  if (!reader) return reader.error();
+  WindlogCursor cursor(std::move(*reader));
+  if (const auto chosen = cursor.choose(sensor); !chosen) return chosen.error();
+  const auto interval = cursor.measure_interval();
+  if (!interval) return interval.error();
+  cursor.interval_ = *interval;
+  return cursor;
+}
+
+Result<void, Failure> WindlogCursor::choose(std::string_view sensor) {
+  const std::string file = reader_.file().string();
   std::string wanted(sensor);
   if (wanted.empty()) {
-    const auto first = read_or_throw(reader_.next());
-    if (!first) throw std::runtime_error(file.string() + ": there is no reading in this recording");
-    wanted = sensor_of(*first).name;
+    const auto first = reader_.next();
+    if (!first) return of_data(first.error());
+    if (!*first) return Failure{file + ": there is no reading in this recording", FailureKind::kBadData};
+    wanted = sensor_of(**first).name;
   }
   std::string known;
   for (const LoggedSensor& candidate : reader_.sensors()) {
     is_chosen_.push_back(wanted == "*" || candidate.name == wanted);
     const std::string quoted = "\"" + candidate.name + "\"";
-    if (known.find(quoted) == std::string::npos) known += " " + quoted;
+    if (known.find(quoted) == std::string::npos) known += (known.empty() ? " " : ", ") + quoted;
   }
   if (std::ranges::find(is_chosen_, true) == is_chosen_.end()) {
-    throw std::runtime_error(file.string() + ": has no sensor \"" + wanted + "\"; it has" + known);
+    return Failure{file + ": has no sensor \"" + wanted + "\"; it has" + known, FailureKind::kBadData};
   }
-
-  const auto last = read_or_throw(reader_.last_log_time(is_chosen_));
-  if (!last) throw std::runtime_error(file.string() + ": there is no reading of \"" + wanted + "\" in this recording");
-  last_ = *last;
-  interval_ = measure_interval();
+  const auto last = reader_.last_log_time(is_chosen_);
+  if (!last) return of_data(last.error());
+  if (!*last) {
+    return Failure{file + ": there is no reading of \"" + wanted + "\" in this recording", FailureKind::kBadData};
+  }
+  last_ = **last;
+  return {};
 }
 
-Nanoseconds WindlogCursor::measure_interval() {
+Result<Nanoseconds, Failure> WindlogCursor::measure_interval() {
   seek(Nanoseconds{0});
   std::vector<Nanoseconds> intervals;
   std::optional<Nanoseconds> before;
   while (intervals.size() < kIntervalsMeasured) {
     const auto logged = next();
-    if (!logged) break;
-    if (before) intervals.push_back(logged->log_time - *before);
-    before = logged->log_time;
+    if (!logged) return logged.error();
+    if (!*logged) break;
+    if (before) intervals.push_back((*logged)->log_time - *before);
+    before = (*logged)->log_time;
   }
   seek(Nanoseconds{0});
   if (intervals.empty()) return kUnknownInterval;
@@ -62,10 +74,11 @@ Nanoseconds WindlogCursor::measure_interval() {
   return std::max(*middle, kLeastInterval);
 }
 
-std::optional<LoggedReading> WindlogCursor::next() {
+Result<std::optional<LoggedReading>, Failure> WindlogCursor::next() {
   for (;;) {
-    const auto logged = read_or_throw(reader_.next());
-    if (!logged || is_chosen_[logged->sensor]) return logged;
+    const auto logged = reader_.next();
+    if (!logged) return of_data(logged.error());
+    if (!*logged || is_chosen_[(*logged)->sensor]) return *logged;
   }
 }
 
@@ -73,8 +86,10 @@ void WindlogCursor::seek(Nanoseconds log_time) {
   reader_.seek(log_time);
 }
 
-std::optional<Nanoseconds> WindlogCursor::find(const LogMoment& moment) {
-  return read_or_throw(log_time_of(reader_, moment));
+Result<std::optional<Nanoseconds>, Failure> WindlogCursor::find(const LogMoment& moment) {
+  const auto found = log_time_of(reader_, moment);
+  if (!found) return of_data(found.error());
+  return *found;
 }
 
 }  // namespace yuragi

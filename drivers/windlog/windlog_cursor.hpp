@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "drivers/windlog/log_moment.hpp"
@@ -14,23 +15,23 @@ namespace yuragi {
 /// The readings of the chosen sensors of a recording, from any place of it on, in the order of log time. Log time is
 /// the recording's own: zero is its first reading, whichever sensor's that is.
 ///
-/// Owns the open file. Every function throws std::runtime_error where the file cannot be read, naming it; the next call
-/// tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
+/// Owns the open file. A Failure names the file that cannot be read; the next call tries the same place again.
+/// Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogCursor {
  public:
-  /// `sensor`: its name; empty: the one with the first reading; "*": all of them. Throws also where there is no such
+  /// `sensor`: its name; empty: the one with the first reading; "*": all of them. Fails also where there is no such
   /// sensor, or no reading at all.
-  WindlogCursor(const std::filesystem::path& file, std::string_view sensor);
+  static Result<WindlogCursor, Failure> open(const std::filesystem::path& file, std::string_view sensor);
 
   /// The next reading; nothing at the end, until more has been recorded.
-  std::optional<LoggedReading> next();
+  Result<std::optional<LoggedReading>, Failure> next();
 
   /// Makes next() return the first reading at or after a log time.
   void seek(Nanoseconds log_time);
 
   /// The log time of a place as a person writes it; for UTC that of the first reading at or after it. Nothing if all
   /// are before it.
-  std::optional<Nanoseconds> find(const LogMoment& moment);
+  Result<std::optional<Nanoseconds>, Failure> find(const LogMoment& moment);
 
   /// The log time of the last reading, as of the opening.
   Nanoseconds last() const noexcept { return last_; }
@@ -42,7 +43,9 @@ class WindlogCursor {
   const LoggedSensor& sensor_of(const LoggedReading& logged) const { return reader_.sensors()[logged.sensor]; }
 
  private:
-  Nanoseconds measure_interval();
+  explicit WindlogCursor(WindlogReader reader) : reader_(std::move(reader)) {}
+  Result<void, Failure> choose(std::string_view sensor);
+  Result<Nanoseconds, Failure> measure_interval();
 
   WindlogReader reader_;
   std::vector<bool> is_chosen_;  ///< by index of a sensor

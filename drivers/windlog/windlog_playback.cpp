@@ -1,7 +1,7 @@
 #include "drivers/windlog/windlog_playback.hpp"
 
 #include <algorithm>
-#include <stdexcept>
+#include <utility>
 
 #include "drivers/windlog/windlog_cursor.hpp"
 
@@ -14,29 +14,31 @@ constexpr Nanoseconds kMinSeam = std::chrono::milliseconds(1);
 
 }  // namespace
 
-Nanoseconds begin_of_playback(WindlogCursor& cursor, std::string_view start) {
+Result<Nanoseconds, Failure> begin_of_playback(WindlogCursor& cursor, std::string_view start) {
   const auto moment = parse_log_moment(start);
-  if (!moment) throw std::runtime_error(moment.error().message);
+  if (!moment) return moment.error();
   const std::string file = cursor.reader().file().string();
-  const auto begin = cursor.find(*moment);
-  if (!begin) throw std::runtime_error(file + ": ends before " + std::string(start));
+  const auto found = cursor.find(*moment);
+  if (!found) return found.error();
+  if (!*found) return Failure{file + ": ends before " + std::string(start), FailureKind::kBadData};
+  const Nanoseconds begin = **found;
 
   // There must be something to play, or a loop would search without end.
-  cursor.seek(*begin);
-  if (!cursor.next()) {
-    throw std::runtime_error(file + ": has no reading from " + (start.empty() ? "its beginning" : std::string(start)) +
-                             " on; its last one is at " + std::to_string(seconds(cursor.last())) + " s");
+  cursor.seek(begin);
+  const auto first = cursor.next();
+  if (!first) return first.error();
+  if (!*first) {
+    return Failure{file + ": has no reading from " + (start.empty() ? "its beginning" : std::string(start)) +
+                       " on; its last one is at " + std::to_string(seconds(cursor.last())) + " s",
+                   FailureKind::kBadData};
   }
-  cursor.seek(*begin);
-  return *begin;
+  cursor.seek(begin);
+  return begin;
 }
 
 struct WindlogPlayback::State {
-  State(const std::filesystem::path& file, const PlaybackOptions& options)
-      : cursor(file, options.sensor),
-        loop(options.loop),
-        begin(begin_of_playback(cursor, options.start)),
-        shift(-begin) {}
+  State(WindlogCursor opened, bool loops, Nanoseconds from)
+      : cursor(std::move(opened)), loop(loops), begin(from), shift(-from) {}
 
   WindlogCursor cursor;
   bool loop = false;
@@ -73,32 +75,42 @@ Nanoseconds WindlogPlayback::State::seam() const {
   return interval_count == 0 ? kUnknownMeanInterval : std::max(interval_sum / interval_count, kMinSeam);
 }
 
-WindlogPlayback::WindlogPlayback(const std::filesystem::path& file, const PlaybackOptions& options)
-    : state_(std::make_unique<State>(file, options)) {}
+Result<WindlogPlayback, Failure> WindlogPlayback::open(const std::filesystem::path& file,
+                                                       const PlaybackOptions& options) {
+  auto cursor = WindlogCursor::open(file, options.sensor);
+  if (!cursor) return cursor.error();
+  const auto begin = begin_of_playback(*cursor, options.start);
+  if (!begin) return begin.error();
+  return WindlogPlayback(std::make_unique<State>(std::move(*cursor), options.loop, *begin));
+}
+
+WindlogPlayback::WindlogPlayback(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 WindlogPlayback::~WindlogPlayback() = default;
 WindlogPlayback::WindlogPlayback(WindlogPlayback&&) noexcept = default;
 WindlogPlayback& WindlogPlayback::operator=(WindlogPlayback&&) noexcept = default;
 
-std::optional<PlayedReading> WindlogPlayback::next() {
+Result<std::optional<PlayedReading>, Failure> WindlogPlayback::next() {
   State& state = *state_;
-  auto logged = state.cursor.next();
-  if (!logged) {
-    if (!state.loop) return std::nullopt;
+  auto read = state.cursor.next();
+  if (read && !*read) {
+    if (!state.loop) return std::optional<PlayedReading>{};
 
     // The first reading of the next round comes one mean interval after the last one of this.
     state.measured = true;
     state.has_played = false;
     state.cursor.seek(state.begin);
-    logged = state.cursor.next();
-    if (!logged) return std::nullopt;
-    state.shift = state.last + state.seam() - logged->log_time;
+    read = state.cursor.next();
+    if (read && *read) state.shift = state.last + state.seam() - (*read)->log_time;
   }
+  if (!read) return read.error();
+  const std::optional<LoggedReading>& logged = *read;
+  if (!logged) return std::optional<PlayedReading>{};
   if (!state.measured) state.measure(*logged);
   state.has_played = true;
 
   state.last = std::max(state.last, logged->log_time + state.shift);
-  return PlayedReading{seconds(state.last), logged->reading, state.cursor.sensor_of(*logged).name};
+  return std::optional(PlayedReading{seconds(state.last), logged->reading, state.cursor.sensor_of(*logged).name});
 }
 
 std::size_t WindlogPlayback::skipped() const {

@@ -40,29 +40,30 @@ struct PlayedReading {
 /// Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayback {
  public:
-  /// Throws std::runtime_error, naming the file and what to do, where it cannot be read, has no such sensor or no
-  /// reading, or where `start` cannot be understood or lies after the end.
-  explicit WindlogPlayback(const std::filesystem::path& file, const PlaybackOptions& options = {});
+  /// Fails, naming the file and what to do, where it cannot be read, has no such sensor or no reading, or where
+  /// `start` cannot be understood or lies after the end.
+  static Result<WindlogPlayback, Failure> open(const std::filesystem::path& file, const PlaybackOptions& options = {});
   ~WindlogPlayback();
   WindlogPlayback(WindlogPlayback&&) noexcept;
   WindlogPlayback& operator=(WindlogPlayback&&) noexcept;
 
-  /// The next reading, in the order of log time; nothing at the end (never, if it loops). Throws std::runtime_error
-  /// where the file breaks off in the middle; the next call tries the same place again.
-  std::optional<PlayedReading> next();
+  /// The next reading, in the order of log time; nothing at the end (never, if it loops). Fails where the file cannot
+  /// be read on; the next call tries the same place again.
+  Result<std::optional<PlayedReading>, Failure> next();
 
   /// Rows that were passed over because no reading can look like that; in this round, if it loops.
   std::size_t skipped() const;
 
  private:
   struct State;
+  explicit WindlogPlayback(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 
 class WindlogCursor;
 
-/// Moves a cursor to `start`, and returns that log time. Throws as WindlogPlayback does.
-Nanoseconds begin_of_playback(WindlogCursor& cursor, std::string_view start);
+/// Moves a cursor to `start`, and returns that log time. Fails as WindlogPlayback::open() does.
+Result<Nanoseconds, Failure> begin_of_playback(WindlogCursor& cursor, std::string_view start);
 
 /// Is this a `start` that PlaybackOptions takes? The failure's text: what it takes.
 Result<void, Failure> check_playback_start(std::string_view start);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "engine/wind/wind_vector.hpp"
@@ -82,23 +81,37 @@ void WindlogPlayer::Voice::take() {
 
 // ---- playing ----
 
-WindlogPlayer::WindlogPlayer(const std::filesystem::path& file, PlayerOptions options, const Instant& now)
-    : options_(std::move(options)),
-      playing_{.cursor = WindlogCursor(file, options_.playback.sensor)},
-      leaving_{.cursor = WindlogCursor(file, options_.playback.sensor)},
-      rate_(options_.rate),
-      is_paused_(options_.is_paused),
-      begin_(begin_of_playback(playing_.cursor, options_.playback.start)) {
-  const Nanoseconds from = options_.at_time_of_day ? place_of_day(now) : begin_;
-  playing_.cursor.seek(from);
-  playing_.go_to(now.mono, from);
+Result<WindlogPlayer, Failure> WindlogPlayer::open(const std::filesystem::path& file, PlayerOptions options,
+                                                   const Instant& now) {
+  auto playing = WindlogCursor::open(file, options.playback.sensor);
+  if (!playing) return playing.error();
+  auto leaving = WindlogCursor::open(file, options.playback.sensor);
+  if (!leaving) return leaving.error();
+  const auto begin = begin_of_playback(*playing, options.playback.start);
+  if (!begin) return begin.error();
+  WindlogPlayer player(std::move(options), Voice{.cursor = std::move(*playing)}, Voice{.cursor = std::move(*leaving)},
+                       *begin);
+  const Nanoseconds from = player.options_.at_time_of_day ? player.place_of_day(now) : *begin;
+  player.playing_.cursor.seek(from);
+  player.playing_.go_to(now.mono, from);
+  return player;
 }
 
-MonoTime WindlogPlayer::play(const Instant& now, const Use& use) {
+WindlogPlayer::WindlogPlayer(PlayerOptions options, Voice playing, Voice leaving, Nanoseconds begin)
+    : options_(std::move(options)),
+      playing_(std::move(playing)),
+      leaving_(std::move(leaving)),
+      rate_(options_.rate),
+      is_paused_(options_.is_paused),
+      begin_(begin) {}
+
+Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use) {
   if (is_finished_) return now.mono + kAfterTheEnd;
   if (is_paused_) return hold(now, use);
   for (int count = 0;; ++count) {
-    if (!look_ahead(now)) return now.mono + kAfterTheEnd;
+    const auto has_more = look_ahead(now);
+    if (!has_more) return has_more.error();
+    if (!*has_more) return now.mono + kAfterTheEnd;
     const MonoTime due = playing_.due(rate_);
     if (due > now.mono || count == kMaxReadingsPerPlay) return due;
     if (const Nanoseconds late = now.mono - due; late > kMaxLateness) {
@@ -106,7 +119,7 @@ MonoTime WindlogPlayer::play(const Instant& now, const Use& use) {
       leaving_.anchor += late;
       fade_begin_ += late;
     } else if (is_at_seam()) {
-      begin_again(now, due);
+      if (const auto begun = begin_again(now, due); !begun) return begun.error();
     } else {
       playing_.take();
       say(due, now, use);
@@ -114,11 +127,23 @@ MonoTime WindlogPlayer::play(const Instant& now, const Use& use) {
   }
 }
 
+/// Reads the upcoming reading, unless it is there already; nothing at the end.
+Result<void, Failure> WindlogPlayer::fetch() {
+  if (playing_.upcoming) return {};
+  const auto read = playing_.cursor.next();
+  if (!read) return read.error();
+  playing_.upcoming = *read;
+  return {};
+}
+
 /// Is there an upcoming reading? At the end it begins again, or is finished.
-bool WindlogPlayer::look_ahead(const Instant& now) {
-  if (!playing_.upcoming) playing_.upcoming = playing_.cursor.next();
+Result<bool, Failure> WindlogPlayer::look_ahead(const Instant& now) {
+  if (const auto fetched = fetch(); !fetched) return fetched.error();
   if (playing_.upcoming) return true;
-  if (options_.playback.loop) begin_again(now, last_out_ ? last_out_->time.mono + usual_interval() : now.mono);
+  if (options_.playback.loop) {
+    const auto begun = begin_again(now, last_out_ ? last_out_->time.mono + usual_interval() : now.mono);
+    if (!begun) return begun.error();
+  }
   is_finished_ = !playing_.upcoming;
   return !is_finished_;
 }
@@ -130,21 +155,24 @@ bool WindlogPlayer::is_at_seam() const {
   return overlap > Nanoseconds{0} && playing_.upcoming->log_time > playing_.cursor.last() - overlap;
 }
 
-void WindlogPlayer::begin_again(const Instant& now, MonoTime at) {
-  jump(at, options_.at_time_of_day ? place_of_day(now) : begin_);
+Result<void, Failure> WindlogPlayer::begin_again(const Instant& now, MonoTime at) {
+  if (auto jumped = jump(at, options_.at_time_of_day ? place_of_day(now) : begin_); !jumped) return jumped;
   // Its first reading comes at once, so that the seam is no longer than any interval.
   playing_.anchor_log = playing_.upcoming->log_time;
   ++rounds_;
+  return {};
 }
 
 /// Goes on from `target` at a moment, and fades what was playing out.
-void WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
+Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
   // In the middle of a fade the blended wind of that moment replaces both voices, and the older one is free.
   const bool was_fading = is_fading(at);
   leaving_.is_frozen = true;
   leaving_.cursor.seek(target);
-  leaving_.upcoming = leaving_.cursor.next();
-  if (!leaving_.upcoming) throw std::runtime_error("there is no reading from there on");
+  const auto first = leaving_.cursor.next();
+  if (!first) return first.error();
+  leaving_.upcoming = *first;
+  if (!leaving_.upcoming) return Failure{"there is no reading after that time", FailureKind::kUsage};
 
   std::swap(playing_, leaving_);
   playing_.go_to(at, target);
@@ -155,6 +183,7 @@ void WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
   }
   fade_begin_ = at;
   fade_ = leaving_.said ? fade_duration() : Nanoseconds{0};
+  return {};
 }
 
 Nanoseconds WindlogPlayer::fade_duration() const {
@@ -186,21 +215,24 @@ WindReading WindlogPlayer::blended(MonoTime time) {
 /// Advances the voice that is fading out to a time; where it cannot be read it repeats its last reading.
 void WindlogPlayer::follow_leaving(MonoTime time) {
   if (leaving_.is_frozen || is_paused_) return;
-  try {
-    for (;;) {
-      if (!leaving_.upcoming) leaving_.upcoming = leaving_.cursor.next();
-      if (!leaving_.upcoming || leaving_.due(rate_) > time) return;
-      leaving_.take();
+  for (;;) {
+    if (!leaving_.upcoming) {
+      const auto read = leaving_.cursor.next();
+      leaving_.is_frozen = read.has_error();
+      if (!read) return;
+      leaving_.upcoming = *read;
     }
-  } catch (const std::runtime_error&) {
-    leaving_.is_frozen = true;
+    if (!leaving_.upcoming || leaving_.due(rate_) > time) return;
+    leaving_.take();
   }
 }
 
 /// While it is paused: repeats the reading, so that the sensor does not become stale.
-MonoTime WindlogPlayer::hold(const Instant& now, const Use& use) {
+Result<MonoTime, Failure> WindlogPlayer::hold(const Instant& now, const Use& use) {
   if (!playing_.said) {
-    if (!look_ahead(now)) return now.mono + kAfterTheEnd;
+    const auto has_more = look_ahead(now);
+    if (!has_more) return has_more.error();
+    if (!*has_more) return now.mono + kAfterTheEnd;
     take_while_paused();
   }
   const Nanoseconds interval = std::max(usual_interval(), kLeastHoldInterval);
@@ -253,36 +285,42 @@ void WindlogPlayer::set_rate(const Instant& now, double rate) {
   rate_ = rate;
 }
 
-void WindlogPlayer::step(const Instant& now, std::uint64_t count) {
-  if (is_finished_) throw std::runtime_error("is at its end; seek to a place first");
+Result<void, Failure> WindlogPlayer::step(const Instant& now, std::uint64_t count) {
+  if (is_finished_) return Failure{"is at its end; seek to another place first", FailureKind::kUsage};
   pause(now);
   for (std::uint64_t moved = 0; moved < count; ++moved) {
-    if (!playing_.upcoming) playing_.upcoming = playing_.cursor.next();
-    if (!playing_.upcoming && options_.playback.loop) begin_again(now, now.mono);
-    if (!playing_.upcoming && moved == 0) throw std::runtime_error("stands at its last reading");
-    if (!playing_.upcoming) return;
+    if (auto fetched = fetch(); !fetched) return fetched;
+    if (!playing_.upcoming && options_.playback.loop) {
+      if (auto begun = begin_again(now, now.mono); !begun) return begun;
+    }
+    if (!playing_.upcoming && moved == 0) return Failure{"is at its last reading", FailureKind::kUsage};
+    if (!playing_.upcoming) return {};
     take_while_paused();
   }
+  return {};
 }
 
-void WindlogPlayer::seek(const Instant& now, std::string_view place) {
+Result<void, Failure> WindlogPlayer::seek(const Instant& now, std::string_view place) {
   Nanoseconds target{0};
   if (const auto by_s = parse_relative(place)) {
     target = std::max(Nanoseconds{0}, position(now.mono).log_time + wait_of(*by_s));
   } else {
     const auto moment = parse_log_moment(place);
-    if (!moment) throw std::runtime_error(moment.error().message);
+    if (!moment) return moment.error();
     const auto found = playing_.cursor.find(*moment);
-    target = found.value_or(Nanoseconds::max());
+    if (!found) return found.error();
+    target = found->value_or(Nanoseconds::max());
   }
   if (target > playing_.cursor.last()) {
-    throw std::runtime_error(std::string(place) + " is behind its last reading, which is at " +
-                             std::to_string(seconds(playing_.cursor.last())) + " s");
+    return Failure{std::string(place) + " is after its last reading, which is at " +
+                       std::to_string(seconds(playing_.cursor.last())) + " s",
+                   FailureKind::kUsage};
   }
   settle(now.mono);
-  jump(now.mono, target);
+  if (auto jumped = jump(now.mono, target); !jumped) return jumped;
   is_finished_ = false;
   if (is_paused_) take_while_paused();
+  return {};
 }
 
 PlayerPosition WindlogPlayer::position(MonoTime now) const {

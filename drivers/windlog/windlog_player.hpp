@@ -44,8 +44,8 @@ struct PlayerPosition {
 /// its end. While it is paused it repeats its reading, marked as held, at its usual interval: the wind holds, and the
 /// sensor does not become stale. Where the recording has a gap, so has the replay.
 ///
-/// Every function but position() throws std::runtime_error where the file cannot be read, or does not hold what is
-/// asked for, with the reason; a failed order changes nothing, and play() tries the same place again.
+/// A Failure says why the file cannot be read, or that it does not hold what is asked for; an order that fails changes
+/// nothing, and play() tries the same place again.
 /// Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayer {
  public:
@@ -55,20 +55,21 @@ class WindlogPlayer {
   static constexpr int kMaxReadingsPerPlay = 4096;
 
   /// Opens the recording; `now` is when its first moment is due.
-  WindlogPlayer(const std::filesystem::path& file, PlayerOptions options, const Instant& now);
+  static Result<WindlogPlayer, Failure> open(const std::filesystem::path& file, PlayerOptions options,
+                                             const Instant& now);
 
   /// Passes on the readings that are due by now, oldest first; returns when the next one is due. `now` must not go
   /// back. After a halt of more than a second it continues from where it was, and does not play what it missed.
-  MonoTime play(const Instant& now, const Use& use);
+  Result<MonoTime, Failure> play(const Instant& now, const Use& use);
 
   void pause(const Instant& now);
   void resume(const Instant& now);
   /// Pauses, and moves `count` readings on, of which the last is handed on by the next play(). At the end of a
   /// recording that does not loop it stays at the last reading.
-  void step(const Instant& now, std::uint64_t count);
+  Result<void, Failure> step(const Instant& now, std::uint64_t count);
   /// Goes on from a place: seconds from the beginning ("90"), so much further or back ("+30", "-30"), or a moment
   /// (ISO 8601).
-  void seek(const Instant& now, std::string_view place);
+  Result<void, Failure> seek(const Instant& now, std::string_view place);
   void set_rate(const Instant& now, double rate);
 
   PlayerPosition position(MonoTime now) const;
@@ -91,12 +92,14 @@ class WindlogPlayer {
     void take();
   };
 
-  bool look_ahead(const Instant& now);
+  WindlogPlayer(PlayerOptions options, Voice playing, Voice leaving, Nanoseconds begin);
+  Result<void, Failure> fetch();
+  Result<bool, Failure> look_ahead(const Instant& now);
   bool is_at_seam() const;
-  void begin_again(const Instant& now, MonoTime at);
-  void jump(MonoTime at, Nanoseconds target);
+  Result<void, Failure> begin_again(const Instant& now, MonoTime at);
+  Result<void, Failure> jump(MonoTime at, Nanoseconds target);
   void settle(MonoTime now);
-  MonoTime hold(const Instant& now, const Use& use);
+  Result<MonoTime, Failure> hold(const Instant& now, const Use& use);
   void say(MonoTime time, const Instant& now, const Use& use);
   WindReading blended(MonoTime time);
   void follow_leaving(MonoTime time);

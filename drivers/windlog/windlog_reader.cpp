@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -36,6 +37,27 @@ bool is_absent_or_empty(const std::filesystem::path& file) {
   return error || size == 0;
 }
 
+/// What a file is that was given in place of a recording; empty where it begins as a database does, or is empty.
+std::string foreign_kind(const std::filesystem::path& file) {
+  constexpr std::string_view kMagic = "SQLite format 3";
+  std::array<char, 512> block{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(block.data(), block.size());
+  const std::string_view begin(block.data(), static_cast<std::size_t>(in.gcount()));
+  if (begin.empty() || begin.starts_with(kMagic)) return "";
+  const auto is_control = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == 0x7f || (byte < 0x20 && c != '\t' && c != '\r' && c != '\n');
+  };
+  if (std::ranges::any_of(begin, is_control)) return "is not a Yuragi recording";
+  const std::string_view first_line = begin.substr(0, begin.find('\n'));
+  if (file.extension() != ".csv" && first_line.find_first_of(",;\t") == std::string_view::npos) {
+    return "is a text file, not a Yuragi recording";
+  }
+  const std::string made = std::filesystem::path(file).replace_extension(".windlog").string();
+  return "is a CSV file, not a recording: import it with `yuragi import " + file.string() + " -o " + made + "`";
+}
+
 /// The time of a session's first or last reading.
 Result<std::optional<Instant>, Failure> edge_of(sqlite::Database& database, std::int64_t session,
                                                 std::string_view order) {
@@ -62,8 +84,10 @@ Result<std::optional<Instant>, Failure> edge_of(sqlite::Database& database, std:
 Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return Failure{file.string() + ": there is no such recording"};
-  if (!std::filesystem::is_regular_file(status)) return Failure{file.string() + ": is not a file"};
+  if (!std::filesystem::exists(status))
+    return Failure{file.string() + ": there is no such recording", FailureKind::kNoInput};
+  if (!std::filesystem::is_regular_file(status))
+    return Failure{file.string() + ": is not a file", FailureKind::kBadData};
 
   auto reader = open_as(file, sqlite::Access::kReadOnly);
   if (reader) return reader;
@@ -72,7 +96,10 @@ Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& 
   if (is_absent_or_empty(wal_of(file))) {
     if (auto frozen = open_as(file, sqlite::Access::kReadFrozen)) return frozen;
   }
-  return reader.error();
+  if (const std::string kind = foreign_kind(file); !kind.empty()) {
+    return Failure{file.string() + ": " + kind, FailureKind::kBadData};
+  }
+  return Failure{reader.error().message, FailureKind::kBadData};
 }
 
 Result<WindlogReader, Failure> WindlogReader::open_as(const std::filesystem::path& file, sqlite::Access access) {
@@ -103,13 +130,13 @@ Result<void, Failure> WindlogReader::check_format() {
     }
     return application.error();
   }
-  if (*application != windlog::kApplicationId) return Failure{name + ": is no Yuragi recording"};
+  if (*application != windlog::kApplicationId) return Failure{name + ": is not a Yuragi recording"};
 
   const auto version = database_.integer("PRAGMA user_version");
   if (!version) return version.error();
   if (*version > windlog::kFormatVersion || *version < 1) {
     return Failure{name + ": is a recording of format " + std::to_string(*version) + "; this Yuragi reads format " +
-                   std::to_string(windlog::kFormatVersion) + "; update it"};
+                   std::to_string(windlog::kFormatVersion) + "; update Yuragi"};
   }
   return {};
 }
@@ -138,12 +165,13 @@ Result<void, Failure> WindlogReader::load_sessions() {
     const std::int64_t span_ns = (session.last.mono - session.first.mono).count();
     if (span_ns < 0 || session.log_begin.count() > windlog::kMaxTime_ns - span_ns) {
       return Failure{database_.file().string() + ": session " + std::to_string(session.id) +
-                     " has times that cannot be; the file is damaged"};
+                     " has impossible times; the file is damaged"};
     }
     sessions_.push_back(std::move(session));
   }
   if (step == Statement::Step::kFailed) return database_.failure();
-  if (step == Statement::Step::kRow) return Failure{database_.file().string() + ": has too many sessions to be true"};
+  if (step == Statement::Step::kRow)
+    return Failure{database_.file().string() + ": has an impossible number of sessions; the file is damaged"};
   return {};
 }
 
@@ -157,7 +185,8 @@ Result<void, Failure> WindlogReader::load_sensors() {
     sensors_.push_back({rows->integer(0), rows->integer(1), rows->text(2), rows->text(3), rows->text(4)});
   }
   if (step == Statement::Step::kFailed) return database_.failure();
-  if (step == Statement::Step::kRow) return Failure{database_.file().string() + ": has too many sensors to be true"};
+  if (step == Statement::Step::kRow)
+    return Failure{database_.file().string() + ": has an impossible number of sensors; the file is damaged"};
 
   // reading_of_row() looks them up by id, whatever order a damaged file gave them in.
   std::stable_sort(sensors_.begin(), sensors_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
@@ -214,7 +243,7 @@ Result<std::int64_t, Failure> WindlogReader::read_block() {
     // An order that is not one means a damaged index, which could lead in circles.
     const std::pair key(select_block_.integer(3), select_block_.integer(0));
     if (key <= std::pair(mono_ns, row)) {
-      failure = Failure{database_.file().string() + ": its index is damaged; `sqlite3 FILE REINDEX` may mend it"};
+      failure = Failure{database_.file().string() + ": its index is damaged; `sqlite3 FILE REINDEX` may repair it"};
       break;
     }
     std::tie(mono_ns, row) = key;

@@ -30,11 +30,11 @@ Result<bool, Failure> is_new(sqlite::Database& database) {
 
   if (*application == 0 && *objects == 0) return true;
   if (*application != windlog::kApplicationId) {
-    return Failure{name + ": is a database, but no Yuragi recording; nothing was changed in it; name another file"};
+    return Failure{name + ": is a database, but not a Yuragi recording; it was left unchanged; choose another file"};
   }
   if (*version > windlog::kFormatVersion) {
     return Failure{name + ": was written by a newer Yuragi (format " + std::to_string(*version) + ", this one writes " +
-                   std::to_string(windlog::kFormatVersion) + "); update this one, or name another file"};
+                   std::to_string(windlog::kFormatVersion) + "); update Yuragi, or choose another file"};
   }
   return false;
 }

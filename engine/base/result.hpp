@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -12,13 +13,34 @@ namespace yuragi {
 template <class T, class E>
 using Result = boost::system::result<T, E>;
 
+/// What a failure is about, as far as programs differ by it: a command ends with another exit code for each.
+enum class FailureKind : std::uint8_t {
+  kOther,         ///< anything else
+  kUsage,         ///< what was asked for cannot be done
+  kBadData,       ///< an input that holds what it should not
+  kNoInput,       ///< an input file that is not there
+  kUnavailable,   ///< a device, a daemon or an address that is not to be had
+  kCannotCreate,  ///< an output that cannot be written
+};
+
 /// A failure for a person to read: what is wrong, where, and what to do about it.
 struct Failure {
   std::string message;
+  FailureKind kind = FailureKind::kOther;
+};
+
+/// A Failure as an exception: from set-up, where a constructor has no other way, and from Result::value().
+class FailureError : public std::runtime_error {
+ public:
+  explicit FailureError(const Failure& failure) : std::runtime_error(failure.message), kind_(failure.kind) {}
+  FailureKind kind() const noexcept { return kind_; }
+
+ private:
+  FailureKind kind_;
 };
 
 [[noreturn]] inline void throw_exception_from_error(const Failure& failure, const boost::source_location&) {
-  throw std::runtime_error(failure.message);
+  throw FailureError(failure);
 }
 
 }  // namespace yuragi

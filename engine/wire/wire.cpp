@@ -18,6 +18,13 @@ std::string_view name_of(WireError error) {
   return "?";
 }
 
+std::optional<std::string> protocol_mismatch(const Hello& hello) {
+  if (hello.protocol == kProtocol) return std::nullopt;
+  const std::string speaks =
+      "speaks protocol " + std::to_string(hello.protocol) + ", this program protocol " + std::to_string(kProtocol);
+  return speaks + (hello.protocol > kProtocol ? ": update this program" : ": update the daemon");
+}
+
 Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix,
                                                 std::size_t limit) {
   std::size_t length = 0;

@@ -56,6 +56,10 @@ struct Hello {
   std::optional<std::string> refused = std::nullopt;  ///< why the server closes the connection behind this message
 };
 
+/// Why a client of this build cannot use the server, for a person, with the server as subject: "speaks protocol 3, this
+/// program protocol 1: update this program". Nothing where both speak the same.
+std::optional<std::string> protocol_mismatch(const Hello& hello);
+
 struct Subscribe {
   std::uint32_t protocol = kProtocol;
   bool poses = true;

@@ -15,6 +15,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "engine/base/count_text.hpp"
+
 namespace yuragi::sim {
 namespace {
 
@@ -175,8 +177,8 @@ void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::
 
 std::string MicrophoneSimulator::status() const {
   const State& state = *state_;
-  return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {} listeners{}{}", state.moment.speed_m_s,
-                     state.moment.direction_deg, state.clients.size() + (state.pipe.descriptor >= 0 ? 1U : 0U),
+  return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}{}{}", state.moment.speed_m_s, state.moment.direction_deg,
+                     count_text(state.clients.size() + (state.pipe.descriptor >= 0 ? 1U : 0U), "listener"),
                      state.fault ? ", fault: " : "", state.fault ? name_of(*state.fault) : "");
 }
 

@@ -65,16 +65,16 @@ void add_modbus_command(CLI::App& app) {
       app.add_subcommand("modbus", "Modbus line, over TCP or serial (RTU), with the registers of real wind sensors");
   CLI::Option* tcp = command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one");
   tcp->capture_default_str();
-  CLI::Option* rtu = command->add_flag("--rtu", options->is_rtu, "be a serial port (a pseudo terminal) instead");
+  CLI::Option* rtu = command->add_flag("--rtu", options->is_rtu, "simulate a serial port (a pseudo terminal) instead");
   rtu->excludes(tcp);
-  command->add_option("--link", options->link, "with --rtu: make this link to the port, a name that stays")->needs(rtu);
+  command->add_option("--link", options->link, "with --rtu: create this link to the port")->needs(rtu);
   command->add_option("--device,--profile", options->devices,
-                      fmt::format("NAME or NAME@ID, with the id of its first slave; can be given again, for a line of "
-                                  "several. NAME is one of {} (default renke-rs-fsjt-rs-fxjt-n01)",
+                      fmt::format("NAME or NAME@ID, with the id of its first slave; can be repeated, for several "
+                                  "devices on one line. NAME is one of {} (default renke-rs-fsjt-rs-fxjt-n01)",
                                   fmt::join(modbus_device_names(), ", ")));
-  command->add_option("--fault-id", options->fault_id, "the only slave that suffers the faults; all do without it")
+  command->add_option("--fault-id", options->fault_id, "apply the faults to this slave only; default: to all")
       ->check(CLI::Range(1, 247));
-  command->add_option("--late-by", options->late_s, "how late an answer is under the fault late, s")
+  command->add_option("--late-by", options->late_s, "delay of a reply under the fault late, s")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   options->common.add_to(*command);

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/count_text.hpp"
+
 namespace yuragi::sim {
 namespace {
 
@@ -67,7 +69,8 @@ class ModbusSimulator::State {
 
   void add(const ModbusSlave& slave) {
     if (slave_of(slave.id) != nullptr) {
-      throw std::runtime_error(fmt::format("two devices with id {}: give one another, as NAME@ID", slave.id));
+      throw std::runtime_error(
+          fmt::format("two devices have the id {}: give one of them another, as NAME@ID", slave.id));
     }
     slaves_.push_back({slave, {}, {}});
   }
@@ -96,8 +99,8 @@ class ModbusSimulator::State {
   }
 
   std::string status() const {
-    return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {} answers{}{}", moment_.speed_m_s, moment_.direction_deg,
-                       answered_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
+    return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}{}{}", moment_.speed_m_s, moment_.direction_deg,
+                       count_text(answered_, "response"), fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
   }
 
  private:

@@ -16,8 +16,8 @@ struct LineOptions {
 
 void add_line_command(CLI::App& app) {
   auto options = std::make_shared<LineOptions>();
-  CLI::App* command = app.add_subcommand("line", "microcontroller that prints numbers, one reading a line");
-  command->add_option("--format", options->format, "what its lines look like")
+  CLI::App* command = app.add_subcommand("line", "microcontroller that prints numbers, one reading per line");
+  command->add_option("--format", options->format, "format of the lines")
       ->check(CLI::IsMember(line_format_names()))
       ->capture_default_str();
   options->text.add_to(*command);

@@ -15,7 +15,8 @@ struct NmeaOptions {
 
 void simulate_nmea(NmeaOptions options) {
   const bool is_mute = std::ranges::any_of(options.formats, [](const auto& format) { return only_answers(format); });
-  if (is_mute && options.formats.size() > 1) throw CLI::ValidationError("--format", "umb goes with no other");
+  if (is_mute && options.formats.size() > 1)
+    throw CLI::ValidationError("--format", "umb cannot be combined with another format");
   if (is_mute) options.text.rate_hz = 0.0;
   options.text.run(make_nmea_device(options.formats));
 }
@@ -24,8 +25,9 @@ void simulate_nmea(NmeaOptions options) {
 
 void add_nmea_command(CLI::App& app) {
   auto options = std::make_shared<NmeaOptions>();
-  CLI::App* command = app.add_subcommand("nmea", "anemometer that says NMEA 0183, or the text of Gill, FT or Lufft");
-  command->add_option("--format", options->formats, "what it says; several, separated by commas, come in one burst")
+  CLI::App* command =
+      app.add_subcommand("nmea", "anemometer that sends NMEA 0183, or the text formats of Gill, FT or Lufft");
+  command->add_option("--format", options->formats, "formats; several, separated by commas, are sent in one burst")
       ->delimiter(',')
       ->check(CLI::IsMember(nmea_format_names()))
       ->capture_default_str();

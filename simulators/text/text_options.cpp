@@ -5,14 +5,15 @@
 namespace yuragi::sim {
 
 void TextOptions::add_to(CLI::App& command) {
-  CLI::Option_group* wire = command.add_option_group("wire", "what carries it");
-  CLI::Option* pty_flag = wire->add_flag("--pty", pty, "a serial port, made for it");
+  CLI::Option_group* wire = command.add_option_group("wire", "how it is connected");
+  CLI::Option* pty_flag = wire->add_flag("--pty", pty, "a serial port (a pseudo terminal)");
   wire->add_option("--tcp", tcp, "a server at HOST:PORT; port 0 takes a free one");
   wire->add_option("--udp", udp, "datagrams to HOST:PORT");
   wire->require_option(1);
-  command.add_option("--link", link, "with --pty: a name for the port that stays when it is unplugged and plugged in")
+  command
+      .add_option("--link", link, "with --pty: create this link to the port, which stays when the device is unplugged")
       ->needs(pty_flag);
-  command.add_option("--rate", rate_hz, "messages a second; 0: only when asked")
+  command.add_option("--rate", rate_hz, "messages per second; 0: on request only")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   common.add_to(command);
@@ -26,7 +27,8 @@ std::unique_ptr<TextWire> TextOptions::make_wire() const {
 }
 
 void TextOptions::run(std::unique_ptr<TextDevice> device) const {
-  if (rate_hz <= 0.0 && !udp.empty()) throw CLI::ValidationError("--udp", "nobody can ask there; it needs a --rate");
+  if (rate_hz <= 0.0 && !udp.empty())
+    throw CLI::ValidationError("--udp", "requests cannot be received there; give a --rate");
   TextSimulator simulator(std::move(device), make_wire(), rate_hz, common.make_wind(), common.synthetic.seed);
   std::printf("%s\n", simulator.wire().place().c_str());
   std::fflush(stdout);

@@ -22,7 +22,8 @@ using boost::asio::ip::udp;
 boost::asio::ip::address address_named(const std::string& host) {
   boost::system::error_code error;
   auto address = boost::asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
-  if (error) throw std::runtime_error(fmt::format("\"{}\" is no address; allowed: one as in 127.0.0.1", host));
+  if (error)
+    throw std::runtime_error(fmt::format("\"{}\" is not an address; allowed: a numeric one such as 127.0.0.1", host));
   return address;
 }
 
@@ -151,7 +152,7 @@ class TcpWire final : public TextWire {
 class UdpWire final : public TextWire {
  public:
   UdpWire(const std::string& host, std::uint16_t port) : endpoint_(address_named(host), port) {
-    if (port == 0) throw std::runtime_error("port 0 is none to send to");
+    if (port == 0) throw std::runtime_error("cannot send to port 0");
     bring_back();
   }
 

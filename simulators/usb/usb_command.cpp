@@ -67,7 +67,7 @@ CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::str
                           MakeUsbDevice make) {
   CLI::App* command = app.add_subcommand(name, summary);
   options->devices = {devices.front()};
-  command->add_option("--device", options->devices, "what is simulated; can be given again")
+  command->add_option("--device", options->devices, "the device to simulate; can be repeated")
       ->check(CLI::IsMember(devices))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -80,10 +80,19 @@ CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::str
 #if YURAGI_UMOCKDEV
   command
       ->add_flag("--umockdev", options->in_umockdev,
-                 "instead: run a program that finds the devices in /sys and /dev, without any kernel's help; ends "
-                 "with it, and with its exit code")
+                 "instead: run a program that finds the devices in a simulated /sys and /dev, without kernel support; "
+                 "ends with the program, and with its exit code")
       ->excludes("--usbip");
-  command->add_option("program", options->program, "behind --: that program, and its arguments")->type_name("PROGRAM");
+  command->add_option("program", options->program, "after --: that program, and its arguments")->type_name("PROGRAM");
+#else
+  command
+      ->add_flag_callback("--umockdev",
+                          [] {
+                            throw CLI::ValidationError(
+                                "--umockdev",
+                                "is not built in: install libumockdev-dev (config/setup.sh --test) and build again");
+                          })
+      ->group("");  // not shown in the help
 #endif
   options->common.add_to(*command);
   command->callback([options, make] {
@@ -105,7 +114,7 @@ void add_hid_command(CLI::App& app) {
                                       [](const std::string& name, const UsbOptions& asked) {
                                         return make_hid_station(name, asked.pace, asked.common.synthetic.seed);
                                       });
-  command->add_option("--pace", options->pace, "how many times as fast as the real station it measures")
+  command->add_option("--pace", options->pace, "how many times faster than the real station it measures")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
 }

@@ -98,7 +98,7 @@ UsbBytes answer_head(std::uint16_t code, std::uint32_t status) {
 Result<UsbipTaken, Failure> take_question(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kQuestionSize) return UsbipTaken{};
   if (const std::uint16_t version = usbip_word_at(bytes, 0); version != kVersion) {
-    return Failure{fmt::format("USB/IP of version {:#06x}; only {:#06x} is spoken here", version, kVersion)};
+    return Failure{fmt::format("USB/IP version {:#06x}; only {:#06x} is supported", version, kVersion)};
   }
   switch (const std::uint16_t code = usbip_word_at(bytes, 2)) {
     case kAskList:
@@ -109,7 +109,7 @@ Result<UsbipTaken, Failure> take_question(std::span<const std::uint8_t> bytes) {
       return UsbipTaken{UsbipImportRequest{{field.begin(), std::ranges::find(field, 0)}}, kQuestionSize + kBusIdSize};
     }
     default:
-      return Failure{fmt::format("no question of USB/IP has the code {:#06x}", code)};
+      return Failure{fmt::format("unknown USB/IP request code {:#06x}", code)};
   }
 }
 
@@ -118,21 +118,20 @@ Result<UsbipTaken, Failure> take_transfer(std::span<const std::uint8_t> bytes) {
   const std::uint32_t command = long_at(bytes, 0);
   const std::uint32_t number = long_at(bytes, 4);
   if (command == kUnlink) return UsbipTaken{UsbipUnlink{number, long_at(bytes, 20)}, kTransferHeadSize};
-  if (command != kSubmit) return Failure{fmt::format("no message of USB/IP has the number {}", command)};
+  if (command != kSubmit) return Failure{fmt::format("unknown USB/IP command {}", command)};
 
   // A host that sends isochronous packets would go on with their list.
   const std::uint32_t packets = long_at(bytes, 32);
-  if (packets != 0 && packets != kNotIsochronous)
-    return Failure{"isochronous transfers, which no simulated device has"};
+  if (packets != 0 && packets != kNotIsochronous) return Failure{"isochronous transfers are not supported"};
   const std::uint32_t endpoint = long_at(bytes, 16);
-  if (endpoint > 15) return Failure{fmt::format("end point {}; there are 16", endpoint)};
+  if (endpoint > 15) return Failure{fmt::format("endpoint {}; there are 16", endpoint)};
   UsbipSubmit submit;
   submit.number = number;
   submit.endpoint = static_cast<std::uint8_t>(endpoint);
   submit.is_to_host = long_at(bytes, 12) == kDirectionIn;
   submit.length = long_at(bytes, 24);
   if (submit.length > kUsbipLongestTransfer) {
-    return Failure{fmt::format("a transfer of {} bytes; at most {} are taken", submit.length, kUsbipLongestTransfer)};
+    return Failure{fmt::format("a transfer of {} bytes; allowed: up to {}", submit.length, kUsbipLongestTransfer)};
   }
   submit.setup = usb_setup_of(bytes.subspan<40, 8>());
 

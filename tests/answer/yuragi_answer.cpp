@@ -132,7 +132,7 @@ void draw(const Asked& asked, const std::string& folder) {
       panels[i].curves.push_back(std::move(curve));
     }
   }
-  draw_plot(fmt::format("{}/{}.png", folder, asked.table->name), panels, 1600);
+  draw_plot(fmt::format("{}/{}.png", folder, asked.table->name), panels, 1600).value();
 }
 
 void load(std::vector<Asked>& all, const std::string& file) {

@@ -15,6 +15,7 @@ import threading
 import time
 import unittest
 
+import flatbuffers
 import numpy
 
 import pose_client
@@ -106,6 +107,49 @@ def run(*arguments, timeout_s=60):
     return subprocess.run([YURAGI, *map(str, arguments)], capture_output=True, text=True, timeout=timeout_s, check=False)
 
 
+class NewerDaemon(threading.Thread):
+    """Greets each client as a daemon of a newer protocol would, and closes the connection."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        from yuragi.stream import Body, Hello, Message  # made by flatc
+
+        builder = flatbuffers.Builder(256)
+        software = builder.CreateString("yuragi 9")
+        Hello.Start(builder)
+        Hello.AddProtocol(builder, pose_client.PROTOCOL + 1)
+        Hello.AddSoftware(builder, software)
+        Hello.AddTickRateHz(builder, 60.0)
+        hello = Hello.End(builder)
+        Message.Start(builder)
+        Message.AddBodyType(builder, Body.Body.Hello)
+        Message.AddBody(builder, hello)
+        builder.FinishSizePrefixed(Message.End(builder), b"YURA")
+        self.greeting = bytes(builder.Output())
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.address = "127.0.0.1:%d" % self.listener.getsockname()[1]
+        self.start()
+
+    def run(self):
+        while True:
+            try:
+                client, _ = self.listener.accept()
+            except OSError:
+                return  # closed
+            with client:
+                client.sendall(self.greeting)
+                client.shutdown(socket.SHUT_WR)
+                while client.recv(4096):
+                    pass
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.listener.shutdown(socket.SHUT_RDWR)
+        self.listener.close()
+
+
 class DaemonTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -152,6 +196,51 @@ class DaemonTest(unittest.TestCase):
         done = run("run", "--listen", "127.0.0.1:0", "--duration", "0.5")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("ticks", done.stderr)
+
+    def test_a_duration_has_a_unit_or_is_refused_in_one_line(self):
+        done = run("run", "--listen", "127.0.0.1:0", "--duration", "0.01min")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for arguments in (("run", "--duration", "5 moons"), ("scene", "show", "meadow", "--fade", "soon"),
+                          ("calibrate", "zero", "--config", "x.toml", "--for", "1 year")):
+            refused = run(*arguments)
+            self.assertEqual(refused.returncode, 64, refused.stderr)
+            self.assertIn("is not a duration; allowed: seconds (90)", refused.stderr)
+            self.assertEqual(refused.stderr.count("\n"), 2, "one line, and where the help is: " + refused.stderr)
+        done = subprocess.run([SIMULATOR, "nmea", "--pty", "--duration", "200ms"], capture_output=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_mistyped_command_or_option_is_told_with_what_was_perhaps_meant(self):
+        for arguments, told in ((("runn",), 'unexpected argument: "runn"; did you mean "run"?'),
+                                (("sensors", "wach"), 'unexpected argument: "wach"; did you mean "watch"?'),
+                                (("run", "--durtion=5"), 'did you mean "--duration"?'),
+                                (("export", "a", "b", "c", "d"), 'unexpected arguments: "b", "c", "d"\n')):
+            done = run(*arguments)
+            self.assertEqual(done.returncode, 64, done.stderr)
+            self.assertIn(told, done.stderr)
+        done = subprocess.run([SIMULATOR, "modbas"], capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 64)
+        self.assertIn('did you mean "modbus"?', done.stderr)
+
+    def test_every_client_names_a_newer_protocol(self):
+        newer = f"speaks protocol {pose_client.PROTOCOL + 1}, this "
+        with NewerDaemon() as daemon:
+            for arguments in (("scene", "list"), ("player", "status"), ("sensors", "watch", "--once")):
+                done = run(*arguments, "--connect", daemon.address)
+                self.assertEqual(done.returncode, 69, done.stderr)
+                self.assertIn(f"the daemon at {daemon.address} {newer}", done.stderr)
+                self.assertIn("update this program", done.stderr)
+            done = subprocess.run([sys.executable, pose_client.__file__, "--connect", daemon.address, "--schema", SCHEMA_MODULES,
+                                   "--frames", "1", "--check"], capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("the daemon " + newer, done.stdout + done.stderr)
+
+    def test_it_says_that_it_records_only_when_it_does(self):
+        refused = run("record", self.file("none", None) + "/a.windlog", "--listen", "127.0.0.1:0", "--duration", "1")
+        self.assertEqual(refused.returncode, 73)
+        self.assertNotIn("recording to", refused.stderr)
+        log = self.file("a.windlog")
+        done = run("record", log, "--listen", "127.0.0.1:0", "--duration", "1")
+        self.assertIn("recording to " + log, done.stderr)
 
     def test_an_address_that_is_taken_is_told_and_ends_it_with_69(self):
         daemon = self.start_daemon()
@@ -258,8 +347,8 @@ port = {port}
             self.assertIn(b"reading", live.StateReason())
             frozen = status.wait_for_sensor(lambda sensor: sensor.State() == STATE_FROZEN)
             self.assertEqual(frozen.Health(), LIVE, "it speaks")
-            self.assertRegex(frozen.StateReason().decode(), r"the same \d+\.\d\d m/s \d+ times in ")
-            shown = run("sensors", "watch", "--once", "--listen", daemon.address())
+            self.assertRegex(frozen.StateReason().decode(), r"the same reading, \d+\.\d\d m/s, \d+ times in ")
+            shown = run("sensors", "watch", "--once", "--connect", daemon.address())
             self.assertRegex(shown.stdout, r"roof +modbus +FROZEN")
             self.assertIn("frozen: the same", shown.stdout)
             status.wait_for_sensor(lambda sensor: sensor.State() == STATE_LIVE)
@@ -279,7 +368,7 @@ port = {port}
 
         nobody = run("sensors", "probe", "modbus", simulator.address(), "--id", "4")
         self.assertEqual(nobody.returncode, 69)
-        self.assertIn("nobody answers", nobody.stderr)
+        self.assertIn("no device answers", nobody.stderr)
         self.assertEqual(run("sensors", "probe", "modbus", simulator.address(), "--id", "0-3").returncode, 64)
 
     def test_a_probe_of_a_serial_line_can_be_interrupted(self):
@@ -342,7 +431,7 @@ port = {port}
         self.assertEqual(done.returncode, 0, done.stderr)
         ticks = int(re.search(r"(\d+) ticks", done.stderr).group(1))
         self.assertLess(ticks, 2 * 60, "three seconds at four times their pace, 60 ticks a second")
-        self.assertIn("the recording is over", done.stderr)
+        self.assertIn("the recording has ended", done.stderr)
 
     # ---- playing a recording ----
 
@@ -400,7 +489,7 @@ port = {port}
         self.assertIn("there are: told", self.player(address, "pause", "--sensor", "roof", code=64))
         self.player(address, "rate", "0", code=64)
         self.player(address, "step", "0", code=64)
-        self.assertIn("told is told to pause", daemon.text())
+        self.assertIn("told was asked to pause", daemon.text())
 
     def test_a_seek_and_the_seam_of_a_loop_move_the_wind_without_a_jump(self):
         # Half a calm, half a storm: 14 m/s apart.
@@ -436,7 +525,7 @@ port = {port}
         _, address = self.start_replay(log, "--loop", "--config", nobody)
         self.assertIn("control", self.player(address, "pause", code=77))
         self.assertIn("playing", self.player(address, "status"))
-        self.assertIn("no sensor here plays a recording", self.player(self.start_daemon().address(), "status", code=64))
+        self.assertIn("no sensor of this daemon plays a recording", self.player(self.start_daemon().address(), "status", code=64))
         self.player(self.free_address(), "status", code=69)
 
     def test_a_replay_begins_paused_or_at_the_time_of_day_where_it_is_told_to(self):
@@ -501,13 +590,13 @@ port = {port}
             self.assertTrue(fallback.Replayed())
             self.assertIn(b"all sensors are silent", fallback.Detail())
             self.assertAlmostEqual(fallback.SpeedMS(), 3.0, 6)
-            table = run("sensors", "watch", "--listen", address, "--once").stdout
+            table = run("sensors", "watch", "--connect", address, "--once").stdout
             self.assertIn("REPLAY", table)
 
             self.start_simulator(sensor_address)
             wait_for(lambda sensors: sensors.SensorsLength() == 1 and sensors.Sensors(0).Health() == LIVE)
             watcher.end()
-        self.assertIn("all sensors are silent: plays " + log, daemon.text())
+        self.assertIn("all sensors are silent: playing " + log, daemon.text())
         self.assertIn("a sensor is live again", daemon.text())
         self.assertLess(watcher.largest_wind_step_m_s, 1.2)
         self.assertTrue(watcher.all_finite)
@@ -526,16 +615,35 @@ port = {port}
     def test_a_recording_that_is_not_there_ends_with_66(self):
         self.assertEqual(run("replay", self.file("none.windlog")).returncode, 66)
 
+    def test_what_is_no_recording_ends_a_replay_with_65_and_is_told_what_it_is(self):
+        csv = self.file("mast.csv", "time,speed\n2024-01-01T00:00:00Z,3\n")
+        text = self.file("notes.txt", "remember the mast\n")
+        for arguments in ((), ("--rate", "max")):
+            done = run("replay", csv, *arguments)
+            self.assertEqual(done.returncode, 65, done.stderr)
+            self.assertIn(f"{csv}: is a CSV file, not a recording: import it with `yuragi import {csv} -o ", done.stderr)
+            self.assertEqual(run("replay", text, *arguments).returncode, 65)
+        self.assertIn("is a text file, not a Yuragi recording", run("replay", text).stderr)
+        self.assertEqual(run("wind", csv, "-o", "-").returncode, 65)
+
     # ---- sensors watch ----
 
     def test_watch_asks_the_running_daemon(self):
         daemon = self.start_daemon()
         with Stream(daemon.address(), poses=False) as stream:
             stream.wait_for_sensor(lambda sensor: sensor.Health() == LIVE)
-        done = run("sensors", "watch", "--listen", daemon.address(), "--once")
+        done = run("sensors", "watch", "--connect", daemon.address(), "--once")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("daemon at " + daemon.address(), done.stdout)
         self.assertIn("simulated", done.stdout)
+
+    def test_watch_connects_by_its_old_option_too_and_says_that_it_is_old(self):
+        daemon = self.start_daemon()
+        done = run("sensors", "watch", "--listen", daemon.address(), "--once")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("daemon at " + daemon.address(), done.stdout)
+        self.assertIn("note: --listen is deprecated here: use --connect", done.stderr)
+        self.assertEqual(run("sensors", "watch", "--listen", "127.0.0.1:1", "--connect", "127.0.0.1:1").returncode, 64)
 
     def test_watch_says_how_the_wind_is_shaped_for_the_scenes(self):
         config = self.file("wall.toml", """
@@ -563,7 +671,7 @@ turbulence = 0
             self.assertLess(numpy.hypot(wind.UMS(), wind.VMS()), 1.5, "the sensors' wind stays the real one")
             wind = stream.next("Frame").Wind()
             self.assertGreater(numpy.hypot(wind.UMS(), wind.VMS()), 2.0, "the scenes' is raised")
-        table = run("sensors", "watch", "--listen", daemon.address(), "--once").stdout
+        table = run("sensors", "watch", "--connect", daemon.address(), "--once").stdout
         self.assertRegex(table, r"shaped: floor: raised (0\.9|1\.[01]) to 4\.0 m/s")
         self.assertRegex(daemon.end(signal.SIGINT) == 0 and daemon.text(), "raised toward the floor of 4.0 m/s")
 
@@ -571,10 +679,10 @@ turbulence = 0
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             address = "127.0.0.1:%d" % free.getsockname()[1]
-        done = run("sensors", "watch", "--listen", address, "--once")
+        done = run("sensors", "watch", "--connect", address, "--once")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("no daemon", done.stdout)
-        self.assertIn("simulated: a simulation: made up, not measured", done.stdout)
+        self.assertIn("simulated: synthetic values, not measured", done.stdout)
 
     def free_address(self):
         with socket.socket() as free:
@@ -591,7 +699,7 @@ turbulence = 0
     def test_raw_messages_are_shown_as_they_come(self):
         config = self.modbus_config(self.start_simulator().address())
         daemon = self.start_daemon("--config", config)
-        watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--listen", daemon.address())
+        watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--connect", daemon.address())
         lines = self.raw_lines(watch, r"\d\d:\d\d:\d\d\.\d{3} roof .*", 8)
         self.assertIn("daemon at " + daemon.address(), watch.text())
         # Transaction, protocol 0, length 6, slave 1, function 3, register 0, one of them; and its answer.
@@ -599,7 +707,7 @@ turbulence = 0
         answered = [line for line in lines if re.match(r"\d\d:\d\d:\d\d\.\d{3} roof +<- .. .. 00 00 00 05 01 03 02 ", line)]
         self.assertTrue(asked and answered, lines)
 
-        unknown = run("sensors", "watch", "--raw", "mast", "--listen", daemon.address(), "--duration", "5")
+        unknown = run("sensors", "watch", "--raw", "mast", "--connect", daemon.address(), "--duration", "5")
         self.assertEqual(unknown.returncode, 64)
         self.assertIn("there are: roof", unknown.stderr)
 
@@ -620,7 +728,7 @@ turbulence = 0
     def test_raw_messages_are_what_decode_reads(self):
         config = self.modbus_config(self.start_simulator().address())
         for listen in (self.start_daemon("--config", config).address(), self.free_address()):
-            watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--hex", "--listen", listen, "--config", config)
+            watch = self.start(YURAGI, "sensors", "watch", "--raw", "roof", "--hex", "--connect", listen, "--config", config)
             lines = self.raw_lines(watch, "[0-9a-f |]+", 24)
             path = self.file("roof.hex", "\n".join(lines) + "\n")
             decoded = run("decode", "modbus:" + RENKE, path, "--hex", "--refused")
@@ -665,7 +773,7 @@ turbulence = 0
                                + ("pace = 20\n" if pace else ""))
             watch = self.start(SIMULATOR, driver, "--device", device, *pace, "--speed", "6", "--umockdev", "--", YURAGI,
                                "sensors", "watch", "--raw", "roof", "--hex", "--duration", "6", "--config", config,
-                               "--listen", self.free_address())
+                               "--connect", self.free_address())
             watched.append((device, kind, options, watch))
         for device, kind, options, watch in watched:
             with self.subTest(device=device):
@@ -698,8 +806,8 @@ turbulence = 0
     def test_list_looks_and_tells(self):
         done = run("sensors", "list")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"Nothing is plugged in|\[\[sensor\]\]")
-        self.assertIn("Not looked for: ", done.stdout)
+        self.assertRegex(done.stdout, r"No device found|\[\[sensor\]\]")
+        self.assertIn("Not searched for: ", done.stdout)
 
     def test_describe_lists_the_drivers_and_tells_the_keys_of_one(self):
         names = [line.split()[0] for line in run("sensors", "describe").stdout.splitlines() if line and line[0].isalpha()]

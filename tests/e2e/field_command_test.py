@@ -206,7 +206,7 @@ class FieldCommand(unittest.TestCase):
         self.assertIn("GB", self.refused(64, "--size", 4000, "--frames", 100000))
         self.assertIn("no such recording", self.refused(66, "--windlog", "nowhere.windlog"))
         self.assertIn("--windlog", self.refused(64, "--windlog", "some.windlog", "--speed", 4))
-        self.assertIn(".png or a .svg", self.refused(64, "--plot", "field.gif"))
+        self.assertIn(".png or .svg", self.refused(64, "--plot", "field.gif"))
 
     def test_the_help_teaches_the_axes(self):
         done = subprocess.run([YURAGI, "field", "--help"], capture_output=True, text=True)

@@ -53,7 +53,7 @@ class SocketBytes:
         while view:
             received = self.socket.recv_into(view)
             if received == 0:
-                raise EOFError("the server closed the connection")
+                raise EOFError("the daemon closed the connection")
             view = view[received:]
         return data
 
@@ -507,8 +507,11 @@ class Watcher:
 
     def hello(self, hello):
         if hello.Refused() is not None:
-            raise EOFError("the server refuses: " + hello.Refused().decode())
-        self.expect(hello.Protocol() == PROTOCOL, f"protocol {hello.Protocol()}")
+            raise EOFError("the daemon refuses the connection: " + hello.Refused().decode())
+        if hello.Protocol() != PROTOCOL:
+            older = "this client" if hello.Protocol() > PROTOCOL else "the daemon"
+            raise EOFError(f"the daemon speaks protocol {hello.Protocol()}, this client protocol {PROTOCOL}: "
+                           f"update {older}")
         self.expect(hello.TickRateHz() > 0.0, f"tick rate {hello.TickRateHz()} Hz")
         self.tick_rate_hz = hello.TickRateHz()
 

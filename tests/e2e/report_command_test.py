@@ -316,7 +316,7 @@ class ReportCommand(unittest.TestCase):
         log = self.record([(0, "mast", 3.25, 350, None, "good")])
         text, numbers = self.report(log)
         page, _ = self.check_page(text)
-        self.assertIn("spoke once, and said 3.2 m/s", page.text)
+        self.assertIn("sent one reading: 3.2 m/s", page.text)
         self.assertEqual(numbers["sensors"][0]["mean_m_s"], 3.25)
         self.assertIsNone(numbers["sensors"][0]["spectrum"])
         with sqlite3.connect(log) as file:

@@ -59,7 +59,7 @@ class Spectrum(unittest.TestCase):
             (["--model", "kaimal", "--length", "9", "--frequency", "1"], "only von-karman and iec-kaimal"),
             (["--sigma", "1", "--ustar", "1", "--frequency", "1"], "excludes"),
             ([], "--frequency"),
-            (["--plot", "a.pdf"], ".png or a .svg"),
+            (["--plot", "a.pdf"], ".png or .svg"),
             (["--plot", "/no/such/folder/a.png"], "there is no such folder"),
         ):
             run = subprocess.run([YURAGI, "spectrum", *arguments], capture_output=True, text=True)

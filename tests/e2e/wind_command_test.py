@@ -65,7 +65,7 @@ class WindCommand(unittest.TestCase):
         everything.write_text('[[sensor]]\ndriver = "synthetic"\n[sensor.judge]\nenabled = false\n', encoding="ascii")
 
         judged = yuragi("wind", bad, "-o", "-", "--rate", 20)
-        self.assertIn("; 94 were not believed", judged.stderr)
+        self.assertIn("; 94 rejected", judged.stderr)
         rows = list(csv.DictReader(io.StringIO(judged.stdout)))
         self.assertLess(max(float(row["speed_m_s"]) for row in rows), 15.0)
         self.assertIn("default", {row["state"] for row in rows if 300 < float(row["time_s"]) < 320})

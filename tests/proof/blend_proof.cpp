@@ -218,7 +218,7 @@ struct Options {
 };
 
 int prove(const Options& options) {
-  if (!options.plot.empty()) check_plot_name(options.plot);
+  if (!options.plot.empty()) check_plot_name(options.plot).value();
   const std::shared_ptr<const GustNoise> noise = make_gust_noise(default_config());
   Verdict verdict;
   std::vector<PlotPanel> panels;
@@ -236,7 +236,7 @@ int prove(const Options& options) {
       std::fflush(stdout);
     }
   }
-  if (!options.plot.empty()) draw_plot(options.plot, panels);
+  if (!options.plot.empty()) draw_plot(options.plot, panels).value();
   fmt::print("\n{}\n",
              verdict.failures() == 0 ? "everything holds" : fmt::format("{} do not hold", verdict.failures()));
   return verdict.failures() == 0 ? 0 : 1;

@@ -23,9 +23,9 @@ class RecordingCommand : public testing::Test {
   }
 
   static std::vector<PlayedReading> readings_of(const std::filesystem::path& file, const std::string& sensor = "*") {
-    WindlogPlayback playback(file, {.sensor = sensor});
+    WindlogPlayback playback = WindlogPlayback::open(file, {.sensor = sensor}).value();
     std::vector<PlayedReading> readings;
-    while (const auto reading = playback.next()) readings.push_back(*reading);
+    while (const auto reading = playback.next().value()) readings.push_back(*reading);
     return readings;
   }
 

@@ -253,6 +253,12 @@ TEST_F(PictureTest, EndsWith69AndSaysWhatToDoWhereThereIsNoDisplay) {
   EXPECT_THAT(ended.said, testing::HasSubstr("xvfb-run -a yuragi-viewer"));
 }
 
+TEST_F(PictureTest, EndsWith64ForAPictureThatItCannotWriteAndNamesThoseThatItCan) {
+  const Ended ended = run_without_screen({"--screenshot", (folder_ / "x.gif").string()});
+  EXPECT_EQ(ended.code, 64);
+  EXPECT_THAT(ended.said, testing::HasSubstr(".png, .jpg or .jpeg"));
+}
+
 TEST_F(PictureTest, EndsWith64ForAWrongCommandLine) {
   EXPECT_EQ(run_without_screen({"--size", "12"}).code, 64);
   EXPECT_EQ(run_without_screen({"--connect", "here:there"}).code, 64);

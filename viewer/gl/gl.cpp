@@ -31,7 +31,7 @@ void compile(const GlShader& shader, const std::string& name, std::string_view s
   if (is_compiled == GL_TRUE) return;
   std::array<GLchar, 4096> log{};
   glGetShaderInfoLog(shader.name, log.size(), nullptr, log.data());
-  throw std::runtime_error("the graphics driver does not take the shader " + name + ":\n" + log.data());
+  throw std::runtime_error("the graphics driver cannot compile the shader " + name + ":\n" + log.data());
 }
 
 std::atomic<int> error_count{0};
@@ -111,7 +111,7 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   if (is_linked != GL_TRUE) {
     std::array<GLchar, 4096> log{};
     glGetProgramInfoLog(program.name(), log.size(), nullptr, log.data());
-    throw std::runtime_error("the graphics driver does not link the program " + name + ":\n" + log.data());
+    throw std::runtime_error("the graphics driver cannot link the program " + name + ":\n" + log.data());
   }
   glDetachShader(program.name(), vertex_shader.name);
   glDetachShader(program.name(), fragment_shader.name);

@@ -21,7 +21,7 @@ void attach(GLenum attachment, const GlRenderbuffer& buffer, GLenum format, int 
 void require_complete() {
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw std::runtime_error(
-        "the graphics driver cannot make a picture of this size; try a smaller --size or --samples 1");
+        "the graphics driver cannot render a picture of this size; try a smaller --size or --samples 1");
   }
 }
 

@@ -89,7 +89,7 @@ class StreamConnection::Session {
   void open(std::uint64_t attempt, const tcp::resolver::results_type& found) {
     asio::async_connect(socket_, found, [this, attempt](error_code error, const tcp::endpoint&) {
       if (attempt != attempt_) return;
-      if (error) return give_up(fmt::format("nobody answers at {}: {}", address(), error.message()));
+      if (error) return give_up(fmt::format("no daemon answers at {}: {}", address(), error.message()));
       subscribe(attempt);
     });
   }
@@ -98,7 +98,7 @@ class StreamConnection::Session {
     error_code ignored;
     socket_.set_option(tcp::no_delay(true), ignored);
     asio::async_write(socket_, asio::buffer(subscription_), [this, attempt](error_code error, std::size_t) {
-      if (attempt == attempt_ && error) give_up("the connection to " + address() + " broke: " + error.message());
+      if (attempt == attempt_ && error) give_up("the connection to " + address() + " was lost: " + error.message());
     });
     set_status(StreamState::kConnected, "connected to " + address());
     read(attempt);
@@ -119,14 +119,18 @@ class StreamConnection::Session {
     while (auto message = reader_.next()) {
       if (!*message) {
         if (message->error() == wire::WireError::kUnknown) continue;  // of a newer server
-        give_up(fmt::format("{} does not speak as Yuragi does: {}", address(), wire::name_of(message->error())));
+        give_up(fmt::format("{} is not a Yuragi daemon: {}", address(), wire::name_of(message->error())));
         return false;
       }
-      if (const auto* hello = std::get_if<wire::Hello>(&**message);
-          hello != nullptr && hello->protocol != wire::kProtocol) {
-        give_up(fmt::format("{} ({}) speaks protocol {}, this viewer {}", address(), hello->software, hello->protocol,
-                            wire::kProtocol));
-        return false;
+      if (const auto* hello = std::get_if<wire::Hello>(&**message)) {
+        if (hello->refused) {
+          give_up(fmt::format("the daemon at {} refuses the connection: {}", address(), *hello->refused));
+          return false;
+        }
+        if (const auto mismatch = wire::protocol_mismatch(*hello)) {
+          give_up(fmt::format("the daemon at {} ({}) {}", address(), hello->software, *mismatch));
+          return false;
+        }
       }
       deliver(std::move(**message));
     }
@@ -157,7 +161,7 @@ class StreamConnection::Session {
     silence_.expires_after(options_.silence_limit);
     silence_.async_wait([this, attempt](error_code error) {
       if (error || attempt != attempt_) return;
-      give_up(address() + " has been silent for too long");
+      give_up(address() + " has sent nothing for too long");
     });
   }
 

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/standard_output.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi {
 namespace {
@@ -20,7 +20,7 @@ constexpr double kLineInterval_s = 5.0;
 std::string read_line() {
   std::string line;
   if (!std::getline(std::cin, line)) {
-    throw ExitError(kExitUsage, "ended before an answer; nothing was written");
+    throw FailureError({"the input ended before an answer; nothing was written", FailureKind::kUsage});
   }
   const std::size_t begin = line.find_first_not_of(" \t\r");
   return begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
@@ -40,7 +40,7 @@ void CalibrationDialog::say(const std::string& text) const {
 void CalibrationDialog::wait_for_hands(const std::string& what) const {
   say(what);
   if (!has_person_) return;
-  write_at_once("Enter when it is so, Ctrl-C to end: ");
+  write_at_once("Press Enter when ready, Ctrl-C to quit: ");
   read_line();
 }
 

@@ -8,10 +8,14 @@
 #include <fmt/format.h>
 
 #include "daemon/settings/config_file.hpp"
-#include "daemon/settings/exit.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi {
 namespace {
+
+FailureError usage(const std::string& message) {
+  return FailureError({message, FailureKind::kUsage});
+}
 
 /// "FROM,TO" in seconds.
 Stretch parse_part(const std::string& text) {
@@ -21,7 +25,7 @@ Stretch parse_part(const std::string& text) {
   const int found = std::sscanf(text.c_str(), "%lf,%lf%n", &from_s, &to_s, &used);
   if (found != 2 || static_cast<std::size_t>(used) != text.size() || !(from_s >= 0.0) || !(to_s > from_s) ||
       !(to_s < 1e9)) {
-    throw ExitError(kExitUsage, "--part: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
+    throw usage("--part: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
   }
   return {.from_s = from_s, .to_s = to_s};
 }
@@ -37,7 +41,7 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Hea
   std::set<std::string> keys;
   for (const std::string& text : heard.settings) {
     const auto values = parse_values(text, sensor.driver->parameters);
-    if (!values) return {"which this version does not understand: " + values.error().message};
+    if (!values) return {"some that this version does not understand: " + values.error().message};
     for (const auto& [key, value] : values->all()) {
       const bool is_undone = is_microphone && (key == "gain" || key == "exponent" || key == "curve");
       if (!is_undone && value != sensor.values.all().at(key)) keys.insert(key);
@@ -48,12 +52,12 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Hea
 
 /// What a sensor says of itself while it is listened to.
 std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
-  if (heard.readings.empty()) return fmt::format("{}: waiting for it", sensor.name);
+  if (heard.readings.empty()) return fmt::format("{}: waiting", sensor.name);
   const WindReading& last = heard.readings.back().reading;
   const double speed_m_s = last.speed_m_s * sensor.calibration.unit_m_s;
-  return fmt::format("{}: {:.2f} m/s{}, {} readings", sensor.name, speed_m_s,
+  return fmt::format("{}: {:.2f} m/s{}, {}", sensor.name, speed_m_s,
                      last.direction_deg ? fmt::format(" from {:.0f} deg", *last.direction_deg) : "",
-                     heard.readings.size());
+                     count_text(heard.readings.size(), "reading"));
 }
 
 }  // namespace
@@ -61,34 +65,34 @@ std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
 CalibrationSession::CalibrationSession(const CalibrationRequest& request, double default_duration_s)
     : request_(request), dialog_(request.takes_yes), duration_s_(request.duration_s.value_or(default_duration_s)) {
   for (const std::string& part : request_.parts) parse_part(part);
-  if (is_live() && !request_.parts.empty()) throw ExitError(kExitUsage, "--part is of a recording: add --recording");
-  if (!is_live() && request_.duration_s)
-    throw ExitError(kExitUsage, "--for is for live sensors; a recording has --part");
+  if (is_live() && !request_.parts.empty()) throw usage("--part needs --recording");
+  if (!is_live() && request_.duration_s) throw usage("--for is for live sensors; use --part for a recording");
   if (!dialog_.has_person() && !request_.takes_yes && !request_.is_dry_run) {
-    throw ExitError(kExitUsage, "there is no terminal to ask at: add --yes to write, or --dry-run to look only");
+    throw usage("there is no terminal for questions: add --yes to write, or --dry-run to see the result only");
   }
 
   text_ = read_config_text(request_.config_file);
   config_ = parse_config(text_, request_.config_file.string());
   if (config_.sensors.front().origin.empty()) {
-    throw ExitError(kExitConfig, request_.config_file.string() + ": has no [[sensor]] to calibrate");
+    throw ConfigError(request_.config_file.string() + ": has no [[sensor]] to calibrate");
   }
   if (request_.sensor.empty() && config_.sensors.size() > 1) {
-    throw ExitError(kExitUsage, "which sensor? Add --sensor NAME");
+    throw usage("there are several sensors: add --sensor NAME");
   }
   sensor_ = request_.sensor.empty() ? 0 : find(request_.sensor);
   if (!request_.reference.empty()) {
     reference_ = find(request_.reference);
-    if (*reference_ == sensor_) throw ExitError(kExitUsage, "a sensor cannot be its own reference");
+    if (*reference_ == sensor_) throw usage("a sensor cannot be its own reference");
   }
 }
 
 void CalibrationSession::open_source() {
   std::vector<const SensorConfig*> sensors = {&sensor()};
   if (reference_) sensors.push_back(reference());
-  const std::string address = request_.listen.value_or(config_.stream.listen);
-  source_ = is_live() ? make_live_source(std::move(sensors), address, clock_)
-                      : make_recorded_source(std::move(sensors), request_.recording);
+  const std::string address = request_.connect.value_or(config_.stream.listen);
+  source_ = (is_live() ? make_live_source(std::move(sensors), address, clock_)
+                       : make_recorded_source(std::move(sensors), request_.recording))
+                .value();
   dialog_.say(fmt::format("Calibrating the sensor \"{}\" ({}) of {}, from {}.", sensor().name, sensor().driver->name,
                           request_.config_file.string(), source_->description()));
 }
@@ -99,8 +103,7 @@ std::size_t CalibrationSession::find(const std::string& name) const {
   if (found != sensors.end()) return static_cast<std::size_t>(found - sensors.begin());
   std::string known;
   for (const SensorConfig& sensor : sensors) known += (known.empty() ? "" : ", ") + sensor.name;
-  throw ExitError(kExitUsage,
-                  fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
+  throw usage(fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
 }
 
 Heard CalibrationSession::hear(const std::string& hands) {
@@ -113,12 +116,17 @@ Heard CalibrationSession::hear(const std::string& hands) {
   }
   ++stretches_;
   bool is_told = false;
-  Heard heard = source_->hear(stretch, [this, &is_told](double elapsed_s, const Heard& so_far) {
-    if (is_live()) return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
-    dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
-    is_told = true;
-  });
-  if (is_told) dialog_.show(0.0, "the recording is read", true);
+  Heard heard =
+      source_
+          ->hear(stretch,
+                 [this, &is_told](double elapsed_s, const Heard& so_far) {
+                   if (is_live())
+                     return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
+                   dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
+                   is_told = true;
+                 })
+          .value();
+  if (is_told) dialog_.show(0.0, "the recording was read", true);
   beware(heard);
   return heard;
 }
@@ -127,14 +135,14 @@ void CalibrationSession::beware(const Heard& heard) const {
   for (std::size_t index = 0; index < heard.size(); ++index) {
     const SensorConfig& one = index == 0 ? sensor() : *reference();
     if (const auto keys = settings_that_differ(one, heard[index]); !keys.empty()) {
-      dialog_.say(fmt::format("Beware: when this was recorded, the driver of \"{}\" had other settings than now: {}.",
+      dialog_.say(fmt::format("Warning: when this was recorded, the driver of \"{}\" had different settings: {}.",
                               one.name, fmt::join(keys, ", ")));
     }
   }
   const auto is_simulated = [](const TimedReading& one) { return one.reading.quality == ReadingQuality::kSimulated; };
   for (const HeardSensor& one : heard) {
     if (std::ranges::any_of(one.readings, is_simulated)) {
-      dialog_.say("Beware: these readings are made up by a simulation.");
+      dialog_.say("Warning: these readings are simulated.");
       break;
     }
   }
@@ -160,7 +168,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const Config
   Calibration now = calibration();
   Calibration then = calibration_of(changed).value();
   now.height_factor = then.height_factor = 1.0;
-  std::vector<std::string> lines = {"where it says   is taken now for   then for"};
+  std::vector<std::string> lines = {"   reading          speed now        speed then"};
   for (const double said : said_m_s) {
     WindReading reading;
     reading.speed_m_s = said / now.unit_m_s;
@@ -173,7 +181,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const Config
 void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vector<std::string>& effect) {
   std::erase_if(wanted, [this](const ConfigChange& change) { return change.value == value_now(change); });
   if (wanted.empty()) {
-    dialog_.say("\nThe configuration says so already: nothing to write.");
+    dialog_.say("\nThe configuration has these values already: nothing to write.");
     return;
   }
   std::string text = "\n";
@@ -184,17 +192,15 @@ void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vec
   dialog_.say(text);
 
   const auto edited = edit_sensor(text_, sensor().name, wanted);
-  if (!edited) throw ExitError(kExitConfig, request_.config_file.string() + ": " + edited.error().message);
+  if (!edited) throw ConfigError(request_.config_file.string() + ": " + edited.error().message);
   if (request_.is_dry_run) {
     dialog_.say("A dry run: nothing was written.");
   } else if (!dialog_.confirm(fmt::format("Write this to {}?", request_.config_file.string()))) {
     dialog_.say("Nothing was written.");
   } else {
-    const auto kept = replace_config(request_.config_file, text_, *edited);
-    dialog_.say(
-        fmt::format("{} is written; what it said before is in {}. A running daemon takes it on when it is "
-                    "started again.",
-                    request_.config_file.string(), kept.string()));
+    const auto kept = replace_config(request_.config_file, text_, *edited).value();
+    dialog_.say(fmt::format("{} was written; the previous version is in {}. Restart a running daemon to apply it.",
+                            request_.config_file.string(), kept.string()));
   }
 }
 
@@ -231,7 +237,7 @@ ReferencePairs pair_with_reference(const CalibrationSession& session, const Hear
 }
 
 void refuse(const Failure& failure) {
-  throw ExitError(kExitDataError, failure.message + ". Nothing was written");
+  throw FailureError({failure.message + ". Nothing was written", FailureKind::kBadData});
 }
 
 double rounded(double value, double step) noexcept {

@@ -22,15 +22,15 @@ struct CalibrationRequest {
   std::string sensor;     ///< empty: the only one that the file has
   std::string reference;  ///< a sensor that is right; empty: none
   std::optional<double> duration_s;
-  std::filesystem::path recording;  ///< empty: live
-  std::vector<std::string> parts;   ///< "FROM,TO" of it, one for each stretch; none: all of it
-  std::optional<std::string> listen;
+  std::filesystem::path recording;     ///< empty: live
+  std::vector<std::string> parts;      ///< "FROM,TO" of it, one for each stretch; none: all of it
+  std::optional<std::string> connect;  ///< where the daemon listens; empty: as configured
   bool takes_yes = false;
   bool is_dry_run = false;
 };
 
 /// One calibration of one sensor: opens what is needed, listens stretch by stretch, and writes what came of it. Throws
-/// ConfigError or ExitError from every function; then nothing has been written.
+/// ConfigError or FailureError from every function; then nothing has been written.
 class CalibrationSession {
  public:
   /// Reads the configuration and finds the sensors. `default_duration_s`: of a live stretch.
@@ -86,7 +86,7 @@ struct ReferencePairs {
 };
 ReferencePairs pair_with_reference(const CalibrationSession& session, const Heard& heard, double least_block_s);
 
-/// Throws ExitError with what a fit says is wrong.
+/// Throws FailureError (kBadData) with what a fit says is wrong.
 [[noreturn]] void refuse(const Failure& failure);
 
 /// A result, or the end.

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "daemon/sensing/sensor_runner.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/stream/stream_client.hpp"
 #include "drivers/windlog/windlog_reader.hpp"
 
@@ -22,6 +21,10 @@ constexpr auto kDevicePause = std::chrono::milliseconds(20);
 constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station speaks every 48 s
 constexpr double kProgressInterval_s = 0.25;
 constexpr std::size_t kReadingsPerProgress = 200'000;  // a second or less
+
+Failure unavailable(const std::string& message) {
+  return {message, FailureKind::kUnavailable};
+}
 
 bool all_have_spoken(const Heard& heard) {
   return std::ranges::none_of(heard, [](const HeardSensor& sensor) { return sensor.readings.empty(); });
@@ -43,9 +46,9 @@ class LiveStretch {
     heard_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
-  /// Is it over? Throws where a sensor stays silent; `link_of` says what its link did last.
+  /// Is it over? Fails where a sensor stays silent; `link_of` says what its link did last.
   template <class LinkOf>
-  bool is_over(const LinkOf& link_of) {
+  Result<bool, Failure> is_over(const LinkOf& link_of) {
     const double now_s = seconds(clock_.now().mono - begun_);
     if (!all_spoke_at_s_ && all_have_spoken(heard_)) all_spoke_at_s_ = now_s;
     const double elapsed_s = all_spoke_at_s_ ? now_s - *all_spoke_at_s_ : 0.0;
@@ -54,7 +57,7 @@ class LiveStretch {
       progress_(elapsed_s, heard_);
       next_progress_s_ = now_s + kProgressInterval_s;
     }
-    if (!all_spoke_at_s_ && now_s >= kFirstReadingTimeout_s) throw silent(link_of);
+    if (!all_spoke_at_s_ && now_s >= kFirstReadingTimeout_s) return silent(link_of);
     return is_over;
   }
 
@@ -62,13 +65,13 @@ class LiveStretch {
 
  private:
   template <class LinkOf>
-  ExitError silent(const LinkOf& link_of) const {
+  Failure silent(const LinkOf& link_of) const {
     std::size_t sensor = 0;
     while (!heard_[sensor].readings.empty()) ++sensor;
-    return {kExitUnavailable,
-            fmt::format("the sensor \"{}\" has said nothing for {:.0f} s ({}); `yuragi sensors watch "
-                        "--raw {}` shows what it does",
-                        sensors_[sensor]->name, kFirstReadingTimeout_s, link_of(sensor), sensors_[sensor]->name)};
+    return unavailable(
+        fmt::format("the sensor \"{}\" has sent nothing for {:.0f} s ({}); `yuragi sensors watch --raw {}` shows its "
+                    "messages",
+                    sensors_[sensor]->name, kFirstReadingTimeout_s, link_of(sensor), sensors_[sensor]->name));
   }
 
   const SensorConfigs& sensors_;
@@ -93,16 +96,18 @@ class DeviceSource final : public CalibrationSource {
   std::string description() const override { return "the devices themselves"; }
   bool is_live() const override { return true; }
 
-  Heard hear(const Stretch& stretch, const Progress& progress) override {
+  Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) override {
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
     for (const auto& runner : runners_) runner->drain([](const WindReading&) {});  // what came before
-    do {
+    for (;;) {
       std::this_thread::sleep_for(kDevicePause);
       for (std::size_t index = 0; index < runners_.size(); ++index) {
         runners_[index]->drain([&](const WindReading& reading) { live.add(index, reading); });
       }
-    } while (!live.is_over([this](std::size_t sensor) { return runners_[sensor]->link().detail; }));
-    return live.take();
+      const auto is_over = live.is_over([this](std::size_t sensor) { return runners_[sensor]->link().detail; });
+      if (!is_over) return is_over.error();
+      if (*is_over) return live.take();
+    }
   }
 
  private:
@@ -125,17 +130,12 @@ std::optional<StreamClient> connect_to_daemon(const std::string& address) {
   return std::move(*client);
 }
 
-/// The next word of the daemon on its sensors. Throws where it goes.
-wire::Sensors next_sensors(StreamClient& client, const std::string& address) {
+/// The daemon's next message about its sensors. Fails where the connection ends.
+Result<wire::Sensors, Failure> next_sensors(StreamClient& client, const std::string& address) {
   for (;;) {
     auto message = client.receive(kDaemonSilence);
-    if (!message) {
-      throw ExitError(kExitUnavailable,
-                      fmt::format("the daemon at {} has gone ({})", address, name_of(message.error())));
-    }
-    if (const auto* hello = std::get_if<wire::Hello>(&*message); hello != nullptr && hello->refused) {
-      throw ExitError(kExitUnavailable, fmt::format("the daemon at {} lets nobody in: {}", address, *hello->refused));
-    }
+    if (!message) return connection_lost(address, message.error());
+    if (const auto refusal = refusal_in(*message, address)) return *refusal;
     if (auto* sensors = std::get_if<wire::Sensors>(&*message)) return std::move(*sensors);
   }
 }
@@ -149,27 +149,30 @@ class DaemonSource final : public CalibrationSource {
   std::string description() const override { return "the running daemon at " + address_; }
   bool is_live() const override { return true; }
 
-  Heard hear(const Stretch& stretch, const Progress& progress) override {
+  Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) override {
     // A connection of its own: an old one would hand out what was said while hands were busy.
     auto client = connect_to_daemon(address_);
-    if (!client) throw ExitError(kExitUnavailable, "the daemon at " + address_ + " has gone");
+    if (!client) return unavailable("the daemon at " + address_ + " no longer answers");
     std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
-    std::vector<std::string> links(sensors_.size(), "it is not there");
+    std::vector<std::string> links(sensors_.size(), "unknown to the daemon");
 
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
-    do {
-      const wire::Sensors all = next_sensors(*client, address_);
+    for (;;) {
+      const auto all = next_sensors(*client, address_);
+      if (!all) return all.error();
       for (std::size_t index = 0; index < sensors_.size(); ++index) {
-        const wire::SensorStatus* status = find_status(all, *sensors_[index]);
+        const wire::SensorStatus* status = find_status(*all, *sensors_[index]);
         if (status == nullptr) continue;
         links[index] = status->detail;
-        // The first word may be of a reading from before.
+        // The first message may be about a reading from before.
         const bool is_new = counted[index] && *counted[index] != status->readings && status->raw_speed_m_s;
         counted[index] = status->readings;
         if (is_new) live.add(index, reading_of(*status));
       }
-    } while (!live.is_over([&links](std::size_t sensor) { return links[sensor]; }));
-    return live.take();
+      const auto is_over = live.is_over([&links](std::size_t sensor) { return links[sensor]; });
+      if (!is_over) return is_over.error();
+      if (*is_over) return live.take();
+    }
   }
 
  private:
@@ -191,28 +194,36 @@ class DaemonSource final : public CalibrationSource {
 class RecordedSource final : public CalibrationSource {
  public:
   RecordedSource(SensorConfigs sensors, std::filesystem::path file)
-      : sensors_(std::move(sensors)), file_(std::move(file)) {
-    const WindlogReader reader = opened();
+      : sensors_(std::move(sensors)), file_(std::move(file)) {}
+
+  /// Can it be read, and has it all of the sensors?
+  Result<void, Failure> check() const {
+    const auto reader = opened();
+    if (!reader) return reader.error();
+    const auto& known = reader->sensors();
     for (const SensorConfig* sensor : sensors_) {
-      const auto& known = reader.sensors();
       if (std::ranges::find(known, sensor->name, &LoggedSensor::name) != known.end()) continue;
       std::set<std::string> names;
       for (const LoggedSensor& one : known) names.insert(one.name);
-      throw ExitError(kExitDataError, fmt::format("{}: has no sensor \"{}\"; there are: {}", file_.string(),
-                                                  sensor->name, fmt::join(names, ", ")));
+      return Failure{
+          fmt::format("{}: has no sensor \"{}\"; there are: {}", file_.string(), sensor->name, fmt::join(names, ", ")),
+          FailureKind::kBadData};
     }
+    return {};
   }
 
   std::string description() const override { return "the recording " + file_.string(); }
   bool is_live() const override { return false; }
 
-  Heard hear(const Stretch& stretch, const Progress& progress) override {
-    WindlogReader reader = opened();
+  Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) override {
+    auto open = opened();
+    if (!open) return open.error();
+    WindlogReader& reader = *open;
     if (stretch.from_s) reader.seek(from_seconds(*stretch.from_s));
     Heard heard(sensors_.size());
     for (std::size_t count = 1;; ++count) {
       auto logged = reader.next();
-      if (!logged) throw ExitError(kExitDataError, logged.error().message);
+      if (!logged) return Failure{logged.error().message, FailureKind::kBadData};
       if (!*logged) break;
       const double time_s = seconds((*logged)->log_time);
       if (stretch.to_s && time_s >= *stretch.to_s) break;
@@ -228,14 +239,7 @@ class RecordedSource final : public CalibrationSource {
   }
 
  private:
-  WindlogReader opened() const {
-    if (!std::filesystem::exists(file_)) {
-      throw ExitError(kExitNoInput, file_.string() + ": there is no such recording");
-    }
-    auto reader = WindlogReader::open(file_);
-    if (!reader) throw ExitError(kExitDataError, reader.error().message);
-    return std::move(*reader);
-  }
+  Result<WindlogReader, Failure> opened() const { return WindlogReader::open(file_); }
 
   SensorConfigs sensors_;
   std::filesystem::path file_;
@@ -243,12 +247,14 @@ class RecordedSource final : public CalibrationSource {
 
 }  // namespace
 
-std::unique_ptr<CalibrationSource> make_live_source(SensorConfigs sensors, const std::string& address,
-                                                    const Clock& clock) {
+Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfigs sensors, const std::string& address,
+                                                                     const Clock& clock) {
   auto client = connect_to_daemon(address);
   if (!client) return std::make_unique<DeviceSource>(std::move(sensors), clock);
 
-  const wire::Sensors all = next_sensors(*client, address);
+  const auto told = next_sensors(*client, address);
+  if (!told) return told.error();
+  const wire::Sensors& all = *told;
   const auto held = std::ranges::count_if(
       sensors, [&all](const SensorConfig* sensor) { return find_status(all, *sensor) != nullptr; });
   if (held == 0) return std::make_unique<DeviceSource>(std::move(sensors), clock);
@@ -256,25 +262,27 @@ std::unique_ptr<CalibrationSource> make_live_source(SensorConfigs sensors, const
     const wire::SensorStatus* status = find_status(all, *sensor);
     std::string obstacle;
     if (status == nullptr) {
-      obstacle = fmt::format("has not the sensor \"{}\"", sensor->name);
+      obstacle = fmt::format("does not have the sensor \"{}\"", sensor->name);
     } else if (status->replayed) {
-      obstacle = "plays a recording; give that with --recording";
+      obstacle = "plays a recording; use --recording with it";
     } else if (status->readings > 0 && !status->raw_speed_m_s) {
-      obstacle = "is of an older version, which tells calibrated readings only";
+      obstacle = "is an older version, which sends calibrated readings only";
     } else if (sensor->driver->name == std::string_view("microphone")) {
       // Its readings have gone through gain and exponent, or the curve, as they were when the daemon began.
-      obstacle = "has the microphone, and may have begun with another calibration of it than the file has now";
+      obstacle = "uses the microphone, perhaps with another calibration than the file has now";
     }
     if (!obstacle.empty()) {
-      throw ExitError(kExitUnavailable,
-                      fmt::format("the daemon at {} {}: end it for the calibration", address, obstacle));
+      return unavailable(fmt::format("the daemon at {} {}: stop it for the calibration", address, obstacle));
     }
   }
   return std::make_unique<DaemonSource>(std::move(sensors), address, clock);
 }
 
-std::unique_ptr<CalibrationSource> make_recorded_source(SensorConfigs sensors, const std::filesystem::path& file) {
-  return std::make_unique<RecordedSource>(std::move(sensors), file);
+Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(SensorConfigs sensors,
+                                                                         const std::filesystem::path& file) {
+  auto source = std::make_unique<RecordedSource>(std::move(sensors), file);
+  if (const auto checked = source->check(); !checked) return checked.error();
+  return source;
 }
 
 }  // namespace yuragi

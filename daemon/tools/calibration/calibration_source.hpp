@@ -10,6 +10,7 @@
 
 #include "daemon/settings/config.hpp"
 #include "drivers/sensor/clock.hpp"
+#include "engine/base/result.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi {
@@ -50,19 +51,19 @@ class CalibrationSource {
   virtual std::string description() const = 0;
   virtual bool is_live() const = 0;
 
-  /// Listens, from now on. Live it waits for every sensor's first reading first. Throws ExitError where a sensor stays
-  /// silent, the daemon goes, or the recording is damaged; ends in time whatever happens.
-  virtual Heard hear(const Stretch& stretch, const Progress& progress) = 0;
+  /// Listens, from now on. Live it waits for every sensor's first reading first. Fails where a sensor stays silent,
+  /// the daemon ends, or the recording is damaged; ends in time whatever happens.
+  virtual Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) = 0;
 };
 
 /// The sensors themselves: the running daemon's word where it listens at `address` and has all of them, else their
-/// devices. `sensors` and `clock` must outlive it. Throws ExitError where a daemon has them and cannot give raw
+/// devices. `sensors` and `clock` must outlive it. Fails where a daemon has them and cannot give raw
 /// readings.
-std::unique_ptr<CalibrationSource> make_live_source(std::vector<const SensorConfig*> sensors,
-                                                    const std::string& address, const Clock& clock);
+Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(std::vector<const SensorConfig*> sensors,
+                                                                     const std::string& address, const Clock& clock);
 
-/// A recording. Throws ExitError where it cannot be read or has not all of these sensors.
-std::unique_ptr<CalibrationSource> make_recorded_source(std::vector<const SensorConfig*> sensors,
-                                                        const std::filesystem::path& file);
+/// A recording. Fails where it cannot be read or has not all of these sensors.
+Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(std::vector<const SensorConfig*> sensors,
+                                                                         const std::filesystem::path& file);
 
 }  // namespace yuragi

@@ -82,7 +82,7 @@ Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string&
                                             const CsvReadingSink& sink) {
   CsvLines lines(in, options.comment);
   if (!lines.next()) {
-    return lines.is_too_long() ? too_long(name, lines) : Failure{name + ": has no line that could be a header"};
+    return lines.is_too_long() ? too_long(name, lines) : Failure{name + ": has no header line"};
   }
   const std::span<char> header = lines.line();
   const char delimiter = options.delimiter == 0 ? delimiter_of({header.data(), header.size()}) : options.delimiter;

@@ -71,16 +71,16 @@ Result<WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
 
   const auto gust_m_s = read_speed(fields, CsvRole::kGust);
   if (!gust_m_s) return gust_m_s.error();
-  if (*gust_m_s && **gust_m_s < 0.0) return refusal("a gust below zero:", *field(fields, CsvRole::kGust));
+  if (*gust_m_s && **gust_m_s < 0.0) return refusal("gust below zero:", *field(fields, CsvRole::kGust));
   reading.gust_m_s = *gust_m_s;
 
   if (const auto quality = field(fields, CsvRole::kQuality)) {
     const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), *quality);
-    if (word == kQualityWords.end()) return refusal("no such quality:", *quality);
+    if (word == kQualityWords.end()) return refusal("unknown quality:", *quality);
     reading.quality = static_cast<ReadingQuality>(word - kQualityWords.begin());
   }
   if (!is_plausible(reading)) {
-    return Failure{"no wind blows like that: " + std::to_string(reading.speed_m_s) + " m/s" +
+    return Failure{"impossible wind: " + std::to_string(reading.speed_m_s) + " m/s" +
                    (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "")};
   }
 
@@ -100,19 +100,19 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
     if (is_in_ms && format != CsvTimeFormat::kIso) format = CsvTimeFormat::kUnixMs;
   }
   const auto utc = parse_time(text, format);
-  if (!utc) return refusal("no time (" + std::string(name_of(format)) + "):", text);
+  if (!utc) return refusal("not a time (" + std::string(name_of(format)) + "):", text);
 
   // Monotonic time: what our own export says, or else UTC since the first row.
   Instant time{MonoTime(*utc - first_utc_.value_or(*utc)), *utc};
   if (const auto elapsed = field(fields, CsvRole::kElapsed)) {
     const auto ns = parse_decimal(*elapsed, kElapsedDecimals);
-    if (!ns) return refusal("no seconds:", *elapsed);
+    if (!ns) return refusal("not a number of seconds:", *elapsed);
     time.mono = MonoTime(Nanoseconds(*ns));
   }
   WindReading recordable;
   recordable.time = time;
-  if (time.mono < last_) return refusal("goes back in time:", text);
-  if (!is_recordable(recordable)) return refusal("too far in time:", text);
+  if (time.mono < last_) return refusal("time goes back:", text);
+  if (!is_recordable(recordable)) return refusal("time out of range:", text);
 
   // The first row that is taken settles what the times look like.
   time_format_ = format;
@@ -125,7 +125,7 @@ Result<std::optional<double>, Failure> CsvRowReader::read_speed(const CsvFields&
   const auto text = field(fields, role);
   if (!text || is_missing(*text)) return std::optional<double>{};
   const auto number = parse_number(*text);
-  if (!number) return refusal("no number in " + std::string(name_of(role)) + ":", *text);
+  if (!number) return refusal("not a number in " + std::string(name_of(role)) + ":", *text);
   return std::optional<double>(*number * unit_of(role));
 }
 
@@ -135,7 +135,7 @@ Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, WindReadi
     const auto speed_m_s = read_speed(fields, CsvRole::kSpeed);
     if (!speed_m_s) return speed_m_s.error();
     if (!*speed_m_s) return Failure{"no speed"};
-    if (**speed_m_s < 0.0) return refusal("a speed below zero:", *field(fields, CsvRole::kSpeed));
+    if (**speed_m_s < 0.0) return refusal("speed below zero:", *field(fields, CsvRole::kSpeed));
     reading.speed_m_s = **speed_m_s;
 
     const auto direction = field(fields, CsvRole::kDirection);
@@ -166,7 +166,7 @@ Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_
     direction_deg = *point_deg;
   } else {
     const auto number = parse_number(text);
-    if (!number) return refusal("no direction:", text);
+    if (!number) return refusal("not a direction:", text);
     CsvDirectionUnit unit = options_.direction_unit;
     if (unit == CsvDirectionUnit::kAuto) {
       const auto& column = columns_[static_cast<std::size_t>(CsvRole::kDirection)];
@@ -180,7 +180,7 @@ Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_
   // Both ways to count a circle are understood, -180 to 180 and 0 to 360; a little more is rounding.
   constexpr double kTolerance_deg = 0.01;
   if (direction_deg < -180.0 - kTolerance_deg || direction_deg > 360.0 + kTolerance_deg) {
-    return refusal("no direction on a circle:", text);
+    return refusal("direction out of range:", text);
   }
   if (options_.direction_is_toward) direction_deg += 180.0;
   if (direction_deg < 0.0) direction_deg += 360.0;
@@ -202,8 +202,8 @@ std::vector<std::string> CsvRowReader::describe() const {
     switch (role) {
       case CsvRole::kTime:
         line += " (" + std::string(name_of(time_format_)) +
-                (time_format_ == CsvTimeFormat::kSeconds ? ", counted from 1970, since no date is told)"
-                                                         : ", UTC where it names no zone)");
+                (time_format_ == CsvTimeFormat::kSeconds ? ", counted from 1970, since there is no date)"
+                                                         : ", UTC if it has no zone)");
         break;
       case CsvRole::kSpeed:
       case CsvRole::kGust:

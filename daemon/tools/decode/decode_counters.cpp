@@ -34,7 +34,7 @@ class CounterMeaning {
     }
     if (reply.count && options_.interval_s) {
       const auto speed_m_s = advance_cup(cup_, options_.cup, *reply.count, *options_.interval_s);
-      if (speed_m_s && !*speed_m_s) return UnitRefusal{speed_m_s->error(), "the counter went back, or on too far"};
+      if (speed_m_s && !*speed_m_s) return UnitRefusal{speed_m_s->error(), "the counter went back or jumped"};
       if (speed_m_s) reading.wind.speed_m_s = **speed_m_s;
     }
     return reading;

@@ -60,7 +60,7 @@ class ModbusUnitDecoder final : public UnitDecoder {
     }
     const auto asked = asked_registers_of(unit.request);
     if (!asked) {
-      return sink(UnitRefusal{Refusal::kMalformed, "the request is none to read registers, or its checksum is wrong"});
+      return sink(UnitRefusal{Refusal::kMalformed, "the request does not read registers, or its checksum is wrong"});
     }
     const auto registers = decode_modbus(asked->framing, asked->request, unit.bytes);
     if (!registers) {
@@ -101,8 +101,8 @@ class ModbusUnitDecoder final : public UnitDecoder {
     if (!holds_any) {
       sink(UnitRefusal{
           Refusal::kNotMine,
-          fmt::format("slave {}, function {}, registers {:#06x} to {:#06x}: the profile has nothing there",
-                      request.unit, request.function, request.address, request.address + request.count - 1)});
+          fmt::format("slave {}, function {}, registers {:#06x} to {:#06x}: not in the profile", request.unit,
+                      request.function, request.address, request.address + request.count - 1)});
     } else if (reading.wind != DecodedWind{}) {
       sink(reading);
     }

@@ -25,7 +25,7 @@ std::string raw_text(const wire::RawTrace& trace) {
   constexpr std::size_t kBytesALine = 16;
   std::string text;
   const auto out = std::back_inserter(text);
-  if (trace.lost > 0) fmt::format_to(out, "... {} messages of {:.40} were passed over\n", trace.lost, trace.sensor);
+  if (trace.lost > 0) fmt::format_to(out, "... {} messages of {:.40} were skipped\n", trace.lost, trace.sensor);
 
   // The first line says whose it is; the others go on under it.
   std::string margin =

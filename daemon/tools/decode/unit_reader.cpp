@@ -42,7 +42,7 @@ void UnitReader::take_line(const LineAssembler::Line& line, const Sink& sink) {
         .request = {},
         .text = {},
         .why = line.error(),
-        .detail = is_cut ? "cut off by the beginning of the next" : "a line without end"});
+        .detail = is_cut ? "cut off by the beginning of the next message" : "line too long"});
 }
 
 void UnitReader::take_hex_line(const Sink& sink) {
@@ -51,14 +51,14 @@ void UnitReader::take_hex_line(const Sink& sink) {
     sink({.bytes = {}, .request = {}, .text = text, .why = Refusal::kMalformed, .detail = detail});
   };
   if (is_overlong_) {
-    refuse("a line without end");
+    refuse("line too long");
   } else if (!text.empty() && text.front() != '#') {
     // "request | response", or one message alone.
     const auto bar = text.find('|');
     const auto request = parse_hex(bar == std::string_view::npos ? std::string_view() : text.substr(0, bar));
     const auto bytes = parse_hex(bar == std::string_view::npos ? text : text.substr(bar + 1));
     if (!request || !bytes) {
-      refuse("not hexadecimal digits, two a byte");
+      refuse("not hexadecimal digits, two per byte");
     } else if (form_ == Form::kHexFrames) {
       sink({.bytes = *bytes, .request = *request, .text = text, .why = {}});
     } else {

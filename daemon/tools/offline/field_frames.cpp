@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "daemon/sensing/sensor_hub.hpp"
-#include "daemon/settings/exit.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 
 namespace yuragi {
@@ -28,9 +27,12 @@ void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const
   }
 }
 
-void make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback_options,
-                          const Config& config, const FieldGrid& grid, const FieldFrames& frames, const UseField& use) {
-  WindlogPlayback playback(recording, playback_options);
+Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording,
+                                           const PlaybackOptions& playback_options, const Config& config,
+                                           const FieldGrid& grid, const FieldFrames& frames, const UseField& use) {
+  auto opened = WindlogPlayback::open(recording, playback_options);
+  if (!opened) return opened.error();
+  WindlogPlayback& playback = *opened;
   const std::shared_ptr<const GustNoise> noise = make_gust_noise(config);
   BlendedEstimator estimator = make_estimator(config, noise, grid.reach_m());
   WindTapes tapes;
@@ -45,21 +47,22 @@ void make_recorded_frames(const std::filesystem::path& recording, const Playback
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
   std::size_t next = 0;
-  const OfflineWindResult result =
-      run_offline(playback, estimator, offline, [&](double time_s, const WindState& state) {
-        ground = written_to(tapes, {state, estimator.ground(), estimator.stroke()});
-        if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
-        sample_field(field, grid, values);
-        use(values);
-        ++next;
-      });
+  const auto result = run_offline(playback, estimator, offline, [&](double time_s, const WindState& state) {
+    ground = written_to(tapes, {state, estimator.ground(), estimator.stroke()});
+    if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
+    sample_field(field, grid, values);
+    use(values);
+    ++next;
+  });
+  if (!result) return result.error();
   if (next < frames.count) {
-    throw ExitError(kExitDataError,
-                    fmt::format("{}: ends after {:.1f} s, and {} frames from {:g} s on need {:.1f} s; ask for fewer "
-                                "(--frames) or an earlier --time",
-                                recording.string(), result.duration_s, frames.count, frames.first_s,
-                                frames.time_s(frames.count - 1)));
+    return Failure{fmt::format("{}: ends after {:.1f} s, and {} frames from {:g} s on need {:.1f} s; ask for fewer "
+                               "(--frames) or an earlier --time",
+                               recording.string(), result->duration_s, frames.count, frames.first_s,
+                               frames.time_s(frames.count - 1)),
+                   FailureKind::kBadData};
   }
+  return {};
 }
 
 }  // namespace yuragi

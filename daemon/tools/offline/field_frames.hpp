@@ -30,9 +30,10 @@ void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const
                           const UseField& use);
 
 /// The frames of the live wind over the ground, as the daemon with this configuration would have had it while the
-/// recording was made: the estimator hears it reading by reading from its beginning on. Throws what the playback
-/// throws, and ExitError where the recording ends before the last frame.
-void make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback, const Config& config,
-                          const FieldGrid& grid, const FieldFrames& frames, const UseField& use);
+/// recording was made: the estimator hears it reading by reading from its beginning on. Fails where the recording
+/// cannot be read, or ends before the last frame.
+Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback,
+                                           const Config& config, const FieldGrid& grid, const FieldFrames& frames,
+                                           const UseField& use);
 
 }  // namespace yuragi

@@ -16,10 +16,12 @@ std::uint64_t hash_poses(std::uint64_t hash, std::span<const Pose* const> poses)
 
 }  // namespace
 
-LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
-                                  const PlayerOptions& options, double duration_s,
-                                  const std::function<void(double)>& progress, const UseTick& use) {
-  WindlogPlayer player(recording, options, Instant{});
+Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
+                                                   const PlayerOptions& options, double duration_s,
+                                                   const std::function<void(double)>& progress, const UseTick& use) {
+  auto opened = WindlogPlayer::open(recording, options, Instant{});
+  if (!opened) return opened.error();
+  WindlogPlayer& player = *opened;
   const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
   Animation animation(config, gusts);
   Config one_source = config;
@@ -41,7 +43,7 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
 
     // Readings that are due by this tick, at their own log time.
     const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
-    player.play(now, [&](const WindReading& reading) {
+    const auto played = player.play(now, [&](const WindReading& reading) {
       // As the daemon would: what is not believed moves nothing.
       if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) return;
       if (!estimator.accept(0, reading)) return;
@@ -49,6 +51,7 @@ LockstepResult replay_in_lockstep(const Config& config, const std::filesystem::p
       result.reading_mean_m_s += reading.speed_m_s;
       result.reading_max_m_s = std::max(result.reading_max_m_s, reading.speed_m_s);
     });
+    if (!played) return played.error();
 
     // A recording is always open: log time is not the time of a wall.
     DrivingWind wind{estimator.advance(MonoTime(from_seconds(now_s))), estimator.ground(), estimator.stroke()};

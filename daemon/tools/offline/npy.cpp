@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 
 namespace yuragi {
@@ -50,10 +49,10 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   // Closing writes what is still buffered: only then is it known whether all of it found room.
   out.close();
   if (!out) {
-    throw ExitError(kExitCannotCreate,
-                    "cannot write " + file.string() + "; is there room, and may this user write there?");
+    throw FailureError({"cannot write " + file.string() + "; is its folder writable, and the disk not full?",
+                        FailureKind::kCannotCreate});
   }
-  output.commit();
+  output.commit().value();
 }
 
 }  // namespace yuragi

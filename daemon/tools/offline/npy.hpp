@@ -11,7 +11,7 @@ namespace yuragi {
 /// little-endian.
 ///
 /// The file appears whole or not at all (OutputFile). The product of the shape must be the number of values
-/// (std::logic_error). Fails with ExitError(kExitCannotCreate) when it cannot be written, or when something that is no
+/// (std::logic_error). Throws FailureError (kCannotCreate) when it cannot be written, or when something that is not a
 /// regular file has its name. Source: NEP 1, "A simple file format for NumPy arrays".
 void write_npy(const std::filesystem::path& file, std::span<const std::size_t> shape, std::span<const float> values);
 

@@ -12,17 +12,24 @@ class HeardReadings {
   HeardReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
       : playback_(playback), options_(options) {}
 
+  /// Nothing at the end, and where the recording cannot be read on.
   std::optional<WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
+
+  /// Why it cannot be read on; nothing if it can.
+  const std::optional<Failure>& failure() const { return failure_; }
 
  private:
   std::optional<WindReading> next_single() {
-    while (auto played = playback_.next()) {
-      if (is_in_gap(played->log_time_s)) continue;
-      WindReading reading = played->reading;
-      reading.time.mono = MonoTime(from_seconds(played->log_time_s));
+    for (;;) {
+      const auto played = playback_.next();
+      if (!played) failure_ = played.error();
+      if (!played || !*played) return std::nullopt;
+      const double log_time_s = (*played)->log_time_s;
+      if (is_in_gap(log_time_s)) continue;
+      WindReading reading = (*played)->reading;
+      reading.time.mono = MonoTime(from_seconds(log_time_s));
       return reading;
     }
-    return std::nullopt;
   }
 
   /// The mean over one block of time; blocks in which nothing was said are passed over.
@@ -65,6 +72,7 @@ class HeardReadings {
   WindlogPlayback& playback_;
   const OfflineWindOptions& options_;
   std::optional<WindReading> held_;
+  std::optional<Failure> failure_;
 };
 
 /// One source of the estimator: what it says next, and whether that is to be believed.
@@ -77,6 +85,7 @@ class OfflineSource {
         next_(readings_.next()) {}
 
   bool has_more() const { return next_.has_value(); }
+  const std::optional<Failure>& failure() const { return readings_.failure(); }
 
   /// Tells the estimator what was said up to `now`, as source `number`.
   void tell(BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
@@ -103,9 +112,9 @@ class OfflineSource {
 
 }  // namespace
 
-OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
-                              const OfflineWindOptions& options,
-                              const std::function<void(double time_s, const WindState&)>& use) {
+Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
+                                               const OfflineWindOptions& options,
+                                               const std::function<void(double time_s, const WindState&)>& use) {
   OfflineWindResult result;
   std::vector<OfflineSource> sources;
   for (WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
@@ -115,6 +124,9 @@ OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, BlendedEstim
     const double time_s = static_cast<double>(result.states) / options.rate_hz;
     const MonoTime now(from_seconds(time_s));
     for (std::size_t i = 0; i < sources.size(); ++i) sources[i].tell(estimator, i, now, result);
+    for (const OfflineSource& source : sources) {
+      if (source.failure()) return *source.failure();
+    }
     goes_on = has_more() && time_s + 1.0 / options.rate_hz <= options.until_s;
     use(time_s, estimator.advance(now));
     result.duration_s = time_s;

@@ -38,15 +38,15 @@ struct OfflineWindResult {
 
 /// Runs an estimator over recordings, as fast as it can: source i hears each reading of `playbacks[i]` at its own log
 /// time, and `use` is told the state of each tick, from log time 0 to the last reading or `until_s`. What the options
-/// say of the sensor holds for each. Throws what the playback throws.
-OfflineWindResult run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
-                              const OfflineWindOptions& options,
-                              const std::function<void(double time_s, const WindState&)>& use);
+/// say of the sensor holds for each. Fails where a recording cannot be read on.
+Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
+                                               const OfflineWindOptions& options,
+                                               const std::function<void(double time_s, const WindState&)>& use);
 
 /// The same over one recording.
-inline OfflineWindResult run_offline(WindlogPlayback& playback, BlendedEstimator& estimator,
-                                     const OfflineWindOptions& options,
-                                     const std::function<void(double time_s, const WindState&)>& use) {
+inline Result<OfflineWindResult, Failure> run_offline(WindlogPlayback& playback, BlendedEstimator& estimator,
+                                                      const OfflineWindOptions& options,
+                                                      const std::function<void(double time_s, const WindState&)>& use) {
   return run_offline(std::span(&playback, 1), estimator, options, use);
 }
 

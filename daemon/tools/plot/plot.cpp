@@ -151,8 +151,9 @@ std::string script_of(const std::string& file, bool is_svg, std::span<const Plot
 
 }  // namespace
 
-void draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px, PlotBackground background) {
-  draw_script(file, [&](const std::string& unfinished, bool is_svg) {
+Result<void, Failure> draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px,
+                                PlotBackground background) {
+  return draw_script(file, [&](const std::string& unfinished, bool is_svg) {
     return script_of(unfinished, is_svg, panels, width_px, background);
   });
 }

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/result.hpp"
+
 namespace yuragi {
 
 /// How a curve is drawn.
@@ -61,8 +63,8 @@ inline constexpr int kTimeAxisRight_px = 24;
 enum class PlotBackground : std::uint8_t { kWhite, kNone };
 
 /// Draws the panels below one another into `file`, whose name ends in .png or .svg; one of that name is replaced. By
-/// gnuplot. Throws ExitError where the name is another one, the file cannot be written, or gnuplot is not installed.
-void draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px = 1000,
-               PlotBackground background = PlotBackground::kWhite);
+/// gnuplot. Fails where the name is another one, the file cannot be written, or gnuplot is not installed.
+Result<void, Failure> draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px = 1000,
+                                PlotBackground background = PlotBackground::kWhite);
 
 }  // namespace yuragi

@@ -61,8 +61,9 @@ std::string map_script(const std::string& file, bool is_svg, const PlotMap& map)
 
 }  // namespace
 
-void draw_map(const std::string& file, const PlotMap& map) {
-  draw_script(file, [&](const std::string& unfinished, bool is_svg) { return map_script(unfinished, is_svg, map); });
+Result<void, Failure> draw_map(const std::string& file, const PlotMap& map) {
+  return draw_script(file,
+                     [&](const std::string& unfinished, bool is_svg) { return map_script(unfinished, is_svg, map); });
 }
 
 }  // namespace yuragi

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.hpp"
+
 namespace yuragi {
 
 /// An arrow from a place on a map, in the units of its axes.
@@ -25,7 +27,7 @@ struct PlotMap {
   std::vector<PlotArrow> arrows;
 };
 
-/// Draws it into `file`, to scale, as draw_plot() draws curves. Throws ExitError as that does.
-void draw_map(const std::string& file, const PlotMap& map);
+/// Draws it into `file`, to scale, as draw_plot() draws curves. Fails as that does.
+Result<void, Failure> draw_map(const std::string& file, const PlotMap& map);
 
 }  // namespace yuragi

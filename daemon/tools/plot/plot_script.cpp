@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 
 namespace yuragi {
@@ -46,25 +45,26 @@ std::string plot_output(const std::string& file, bool is_svg, int width_px, int 
                      has_background ? "background 'white'" : "", plot_text(file));
 }
 
-void check_plot_name(const std::string& file) {
+Result<void, Failure> check_plot_name(const std::string& file) {
   if (!file.ends_with(".png") && !file.ends_with(".svg")) {
-    throw ExitError(kExitUsage, file + ": a plot is a .png or a .svg; name it so");
+    return Failure{file + ": a plot is written as .png or .svg; choose such a file name", FailureKind::kUsage};
   }
+  return {};
 }
 
-void draw_script(const std::string& file,
-                 const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of) {
-  check_plot_name(file);
+Result<void, Failure> draw_script(
+    const std::string& file, const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of) {
+  if (auto named = check_plot_name(file); !named) return named;
 
   // The script goes beside the picture, and is never finished: so it is removed with the rest.
   OutputFile picture(file, true);
   const OutputFile script(file + ".gnuplot", true);
   std::ofstream(script.working_path(), std::ios::binary) << script_of(picture.working_path(), file.ends_with(".svg"));
   if (run_gnuplot(script.working_path())) return picture.commit();
-  throw ExitError(kExitCannotCreate,
-                  file +
-                      ": the plot could not be drawn: is its folder there, may you write to it, is there room, and is "
-                      "gnuplot installed (apt-get install gnuplot-nox)?");
+  return Failure{file +
+                     ": the plot could not be drawn: does its folder exist, may you write to it, is there room, and "
+                     "is gnuplot installed (apt-get install gnuplot-nox)?",
+                 FailureKind::kCannotCreate};
 }
 
 }  // namespace yuragi

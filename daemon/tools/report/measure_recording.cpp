@@ -27,14 +27,14 @@ Result<std::vector<bool>, Failure> chosen_sensors(const RecordingSurvey& survey,
   for (const std::string& name : wanted) {
     const auto found = std::ranges::find(survey.sensors, name, &SensorSurvey::name);
     if (found == survey.sensors.end()) {
-      return Failure{fmt::format("--sensor: no readings of \"{}\" there; there are those of {}", name,
+      return Failure{fmt::format("--sensor: there are no readings of \"{}\"; there are readings of {}", name,
                                  survey.sensors.empty() ? "nobody" : names_of(survey))};
     }
     is_chosen[static_cast<std::size_t>(found - survey.sensors.begin())] = true;
   }
   if (const auto count = std::ranges::count(is_chosen, true);
       count > static_cast<std::ptrdiff_t>(kMaxReportedSensors)) {
-    return Failure{fmt::format("{} sensors are too many for one page; choose at most {} by --sensor, among {}", count,
+    return Failure{fmt::format("{} sensors are too many for one page; choose at most {} with --sensor, from {}", count,
                                kMaxReportedSensors, names_of(survey))};
   }
   return is_chosen;

@@ -44,7 +44,7 @@ class Figures {
     scratch_ += ".svg";
   }
 
-  std::string series() {
+  Result<std::string, Failure> series() {
     if (sensor_.believed == 0) return {};
     std::vector<PlotPanel> panels = {speed_panel()};
     if (sensor_.directed > 0) panels.push_back(direction_panel());
@@ -52,9 +52,9 @@ class Figures {
     return draw(panels, "Speed, direction and state over time", kWidth_px, event_titles(height_of(panels)));
   }
 
-  std::string distribution();
-  std::string spectrum();
-  std::string diurnal();
+  Result<std::string, Failure> distribution();
+  Result<std::string, Failure> spectrum();
+  Result<std::string, Failure> diurnal();
 
  private:
   static int height_of(std::span<const PlotPanel> panels) {
@@ -63,13 +63,14 @@ class Figures {
     return height_px;
   }
 
-  std::string draw(std::span<const PlotPanel> panels, std::string_view label, int width_px = kWidth_px,
-                   std::string_view over = {}) {
-    draw_plot(scratch_, panels, width_px, PlotBackground::kNone);
+  Result<std::string, Failure> draw(std::span<const PlotPanel> panels, std::string_view label, int width_px = kWidth_px,
+                                    std::string_view over = {}) {
+    const auto drawn = draw_plot(scratch_, panels, width_px, PlotBackground::kNone);
+    if (!drawn) return drawn.error();
     const std::string text = text_of_file(scratch_);
     std::error_code ignored;
     std::filesystem::remove(scratch_, ignored);
-    return embedded_plot(text, width_px, height_of(panels), label, over);
+    return {boost::system::in_place_value, embedded_plot(text, width_px, height_of(panels), label, over)};
   }
 
   double axis_s(double time_s) const { return seconds(recording_.utc_at(time_s).time_since_epoch()); }
@@ -135,7 +136,7 @@ std::string Figures::event_titles(int height_px) const {
 PlotPanel Figures::speed_panel() const {
   PlotCurve band{.title = "lowest to highest", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
   PlotCurve mean{.title = "speed", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
-  PlotCurve gust{.title = sensor_.told_gust_m_s ? "gust told by the sensor" : "3 s gust",
+  PlotCurve gust{.title = sensor_.told_gust_m_s ? "gust reported by the sensor" : "3 s gust",
                  .style = PlotStyle::kLine,
                  .x = {},
                  .y = {},
@@ -221,7 +222,7 @@ PlotPanel Figures::state_panel() const {
   return panel;
 }
 
-std::string Figures::distribution() {
+Result<std::string, Failure> Figures::distribution() {
   const SpeedDistribution& numbers = sensor_.distribution;
   if (numbers.share.empty()) return {};
   PlotCurve measured{.title = "readings", .style = PlotStyle::kBars, .x = {}, .y = {}, .color = kWindColor};
@@ -254,7 +255,7 @@ std::string Figures::distribution() {
   return draw(std::span(&panel, 1), "Distribution of the speed", 500);
 }
 
-std::string Figures::spectrum() {
+Result<std::string, Failure> Figures::spectrum() {
   if (!sensor_.spectrum) return {};
   const SpectrumNumbers& numbers = *sensor_.spectrum;
 
@@ -325,7 +326,7 @@ std::string Figures::spectrum() {
   return draw(std::span(&panel, 1), "Spectrum");
 }
 
-std::string Figures::diurnal() {
+Result<std::string, Failure> Figures::diurnal() {
   if (!sensor_.diurnal) return {};
   PlotCurve band{.title = "8 of 10 readings", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
   PlotCurve mean{.title = "mean", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
@@ -374,15 +375,18 @@ std::string embedded_plot(std::string_view svg, int width_px, int height_px, std
       width_px, height_px, label, base64(svg), over);
 }
 
-SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
-                           const std::filesystem::path& scratch) {
+Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
+                                            const std::filesystem::path& scratch) {
   Figures figures(recording, sensor, scratch);
   SensorFigures drawn;
-  drawn.series = figures.series();
   if (sensor.rose.count > 0) drawn.rose = draw_wind_rose(sensor.rose);
-  drawn.distribution = figures.distribution();
-  drawn.spectrum = figures.spectrum();
-  drawn.diurnal = figures.diurnal();
+  for (const auto& [svg, draw] :
+       {std::pair(&drawn.series, &Figures::series), std::pair(&drawn.distribution, &Figures::distribution),
+        std::pair(&drawn.spectrum, &Figures::spectrum), std::pair(&drawn.diurnal, &Figures::diurnal)}) {
+    auto figure = (figures.*draw)();
+    if (!figure) return figure.error();
+    *svg = std::move(*figure);
+  }
   return drawn;
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "daemon/tools/report/report_numbers.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi {
 
@@ -23,9 +24,9 @@ struct SensorFigures {
 };
 
 /// Draws them, by gnuplot but for the rose. `scratch`: a file name that is free, in a folder that can be written to.
-/// Throws ExitError where gnuplot is not there or cannot draw. Realtime-safe: no.
-SensorFigures draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
-                           const std::filesystem::path& scratch);
+/// Fails where gnuplot is not installed or cannot draw. Realtime-safe: no.
+Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
+                                            const std::filesystem::path& scratch);
 
 /// A page's SVG element that shows a whole SVG file as it is, as an image of its own: neither its ids nor its styles
 /// are the page's. `over`: SVG elements that lie over it.

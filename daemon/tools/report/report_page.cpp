@@ -24,17 +24,17 @@ void add_warnings(PageWriter& page, const RecordingNumbers& recording) {
   }
   if (simulated > 0) {
     page.add(
-        "<p class=\"warn\"><b>Simulated.</b> {} of the {} readings were made up by a simulation: this is not, or not "
-        "only, the real wind.</p>\n",
+        "<p class=\"warn\"><b>Simulated.</b> {} of the {} readings were simulated: this is not, or not only, real "
+        "wind.</p>\n",
         simulated, readings);
   }
   if (recording.skipped > 0) {
-    page.add("<p class=\"warn\">{} rows of the file cannot be readings and were passed over.</p>\n", recording.skipped);
+    page.add("<p class=\"warn\">{} rows of the file cannot be readings and were skipped.</p>\n", recording.skipped);
   }
   if (recording.clock_sets > 0) {
     page.add(
-        "<p class=\"warn\">The recorder's clock was set {} {} (at most by {:+.0f} s). Times on this page count on from "
-        "the first reading, as if it had not been.</p>\n",
+        "<p class=\"warn\">The recorder's clock was set {} {} (at most by {:+.0f} s). Times on this page count from "
+        "the first reading, as if the clock had not been set.</p>\n",
         recording.clock_sets, recording.clock_sets == 1 ? "time" : "times", recording.largest_clock_set_s);
   }
 }

@@ -32,7 +32,7 @@ double gust_of(const SensorNumbers& sensor) {
 void add_tiles(PageWriter& page, const SensorNumbers& sensor) {
   page.add("<div class=\"tiles\">\n");
   page.tile(speed_text(sensor.mean_m_s), "mean speed");
-  page.tile(speed_text(gust_of(sensor)), sensor.told_gust_m_s ? "highest gust, told by the sensor"
+  page.tile(speed_text(gust_of(sensor)), sensor.told_gust_m_s ? "highest gust, reported by the sensor"
                                          : sensor.gust_3s_m_s ? "highest gust (mean of 3 s)"
                                                               : "highest reading");
   if (sensor.direction_deg) {
@@ -55,12 +55,11 @@ void add_series(PageWriter& page, const SensorFigures& figures) {
                         kRecordedStateColors[i], kRecordedStateNames[i]);
   }
   page.add("<h3>Speed, direction and state</h3>\n");
-  page.figure(
-      figures.series,
-      fmt::format("<span class=\"keys\">{}</span><br>Each column of the picture shows the lowest, mean and "
-                  "highest of its readings: no extreme is lost. Pale points: single directions; dark ones: means. "
-                  "Grey behind the curves: the sensor was silent; a blank: it was not believed.",
-                  keys));
+  page.figure(figures.series,
+              fmt::format("<span class=\"keys\">{}</span><br>Each column of the picture shows the lowest, mean and "
+                          "highest of its readings: no extreme is lost. Pale points: single directions; dark ones: "
+                          "means. Grey behind the curves: the sensor was silent; a blank: its readings were rejected.",
+                          keys));
 }
 
 void add_rose_and_distribution(PageWriter& page, const SensorNumbers& sensor, const SensorFigures& figures) {
@@ -151,7 +150,7 @@ void add_turbulence(PageWriter& page, const SensorNumbers& sensor) {
           fmt::format("U = {:.2f} m/s, TI = {:.2f}, L = {} (least squares over octaves, {} to {} Hz; {:.1f} dB remain)",
                       fit->speed_m_s, fit->intensity,
                       fit->length_m ? fmt::format("{:.0f} m", *fit->length_m)
-                                    : std::string("not told: the bend of the spectrum is outside the octaves"),
+                                    : std::string("not determined: the bend of the spectrum is outside the octaves"),
                       frequency_text(fit->from_hz), frequency_text(fit->to_hz), fit->rms_db));
     }
   }
@@ -165,8 +164,10 @@ void add_default_wind(PageWriter& page, const RecordingNumbers& recording, const
   if (!has_fit || recording.duration_s() < kLeast_s) return;
   const VonKarmanFit& fit = *sensor.spectrum->von_karman;
   page.add(
-      "<p>To have such a wind while no sensor speaks, put this into the configuration (a recording of weeks says more "
-      "about a place than one of minutes):</p>\n<pre>[wind]\ndefault_speed = {:.1f}\n",
+      "<p>For such a wind while no sensor is live, put this into the configuration (a recording of weeks is more "
+      "representative than one of minutes):</p>\n"
+      "<pre>[wind]\n"
+      "default_speed = {:.1f}\n",
       std::min(sensor.mean_m_s, 40.0));
   if (sensor.direction_deg) page.add("default_direction = {:.0f}\n", *sensor.direction_deg);
   page.add("default_turbulence = {:.2f}\n", std::min(fit.intensity, 1.0));
@@ -180,10 +181,9 @@ void add_site(PageWriter& page, const SensorNumbers& sensor) {
   const SiteNumbers& site = *sensor.site;
   page.add("<h3>For a slow sensor at this place</h3>\n");
   page.add(
-      "<p>A sensor that speaks every few seconds tells nothing of quicker gusts: they are filled in by a rule, which "
-      "is "
-      "right for open land. This is by how much the gusts that “{}” measured were stronger (+) or weaker (−) than a "
-      "sensor of 14 s at its place would have let expect, learnt in {}:</p>\n",
+      "<p>A sensor with an interval of several seconds does not measure quicker gusts: they are filled in by a model "
+      "of open land. The table shows by how much the gusts that “{}” measured were stronger (+) or weaker (−) than the "
+      "model would have given for a sensor of 14 s at its place, over {}:</p>\n",
       page_text(sensor.name), duration_text(site.known_s));
   page.add("<table><thead><tr><th>octave</th><th class=\"n\">dB</th></tr></thead><tbody>\n");
   for (std::size_t octave = 0; octave < site.octaves_db.size(); ++octave) {
@@ -192,10 +192,13 @@ void add_site(PageWriter& page, const SensorNumbers& sensor) {
              site.octaves_db[octave]);
   }
   page.add(
-      "</tbody></table>\n<p>To correct the gusts of slow sensors by it, put this into the configuration; it belongs to "
-      "gusts of {:.0f} m, so let the sensor’s calibration tell the same height (a day says more than half an "
+      "</tbody></table>\n"
+      "<p>To correct the gusts of slow sensors by it, put this into the configuration. It is valid for gusts of {:.0f} "
+      "m, so the sensor’s calibration has to give the same height (a day is more representative than half an "
       "hour):</p>\n"
-      "<pre>[wind]\nsite_octaves = \"{}\"\n</pre>\n",
+      "<pre>[wind]\n"
+      "site_octaves = \"{}\"\n"
+      "</pre>\n",
       site.length_m, site_octaves_text(site.octaves_db));
 }
 
@@ -224,15 +227,15 @@ void add_spectrum(PageWriter& page, const RecordingNumbers& recording, const Sen
 std::string_view meaning_of(RecordedState state) {
   switch (state) {
     case RecordedState::kLive:
-      return "heard, and credible";
+      return "received, and plausible";
     case RecordedState::kStale:
-      return "silent, or nobody recorded: cable, power, radio?";
+      return "silent, or not recorded: cable, power, radio?";
     case RecordedState::kSpike:
-      return "a reading far from all others was held back";
+      return "a reading far from all others was rejected";
     case RecordedState::kImplausible:
-      return "far from all others again and again: a loose contact, disturbances on the line?";
+      return "repeatedly far from all others: a loose contact, interference on the line?";
     case RecordedState::kFrozen:
-      return "exactly the same value again and again: icing, a stuck logger?";
+      return "exactly the same value repeatedly: icing, a stuck logger?";
     case RecordedState::kSeized:
       return "no wind for hours on a windy day: a bearing, a bird, ice?";
   }
@@ -268,9 +271,9 @@ void add_events(PageWriter& page, const RecordingNumbers& recording, const Senso
 
 void add_states(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor) {
   page.add(
-      "<h3>How the sensor did</h3>\n<table><thead><tr><th>state</th><th class=\"n\">times</th><th class=\"n\">in "
-      "all</th>"
-      "<th class=\"n\">share</th><th class=\"n\">longest</th><th>meaning</th></tr></thead><tbody>\n");
+      "<h3>States of the sensor</h3>\n"
+      "<table><thead><tr><th>state</th><th class=\"n\">times</th><th class=\"n\">in all</th><th "
+      "class=\"n\">share</th><th class=\"n\">longest</th><th>meaning</th></tr></thead><tbody>\n");
   for (std::size_t i = 0; i < kRecordedStates; ++i) {
     const StateTotal& total = sensor.states[i];
     const bool has_any = total.count > 0;
@@ -283,36 +286,35 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
         has_any ? duration_text(total.longest_s) : "–", meaning_of(static_cast<RecordedState>(i)));
   }
   page.add(
-      "</tbody></table>\n<p class=\"quiet\">A sensor is stale when it has said nothing for {:g} of its own intervals, "
-      "and for 1 s "
-      "at least. "
-      "{} of {} readings were believed; {} turned out to be spikes. The numbers on this page are of those that were "
-      "believed, as recorded, before calibration.</p>\n",
+      "</tbody></table>\n"
+      "<p class=\"quiet\">A sensor is stale when it has sent no reading for {:g} of its own intervals, and for at "
+      "least 1 s. {} of {} readings were accepted; {} were spikes. The numbers on this page are of the accepted "
+      "readings, as recorded, before calibration.</p>\n",
       recording.stale_intervals, sensor.believed, sensor.readings, sensor.spikes);
   const auto is_gap = [](const StateEvent& event) { return event.state == RecordedState::kStale; };
-  if (sensor.events.empty()) page.add("<p>No gap, and nothing else to tell.</p>\n");
+  if (sensor.events.empty()) page.add("<p>No gap, and nothing else to report.</p>\n");
   add_events(page, recording, sensor, "Gaps", is_gap);
-  add_events(page, recording, sensor, "What else was wrong", std::not_fn(is_gap));
+  add_events(page, recording, sensor, "Other faults", std::not_fn(is_gap));
 }
 
 }  // namespace
 
 std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& sensor) {
   if (sensor.believed == 0) {
-    return fmt::format("“{}” said nothing that can be believed in {}.", page_text(sensor.name),
+    return fmt::format("“{}” sent no plausible reading in {}.", page_text(sensor.name),
                        duration_text(recording.duration_s()));
   }
   if (sensor.readings == 1) {
-    return fmt::format("“{}” spoke once, and said {}.", page_text(sensor.name), speed_text(sensor.mean_m_s));
+    return fmt::format("“{}” sent one reading: {}.", page_text(sensor.name), speed_text(sensor.mean_m_s));
   }
-  std::string text = fmt::format("In {} “{}” saw a mean wind of {}", duration_text(sensor.last_s - sensor.first_s),
+  std::string text = fmt::format("In {} “{}” measured a mean wind of {}", duration_text(sensor.last_s - sensor.first_s),
                                  page_text(sensor.name), speed_text(sensor.mean_m_s));
   if (sensor.direction_deg && sensor.steadiness.value_or(0.0) > 0.3) {
     text += fmt::format(" from the {}", compass_text(*sensor.direction_deg));
   }
   text += fmt::format(", with gusts of up to {}.", speed_text(gust_of(sensor)));
   const StateTotal& silence = sensor.states[static_cast<std::size_t>(RecordedState::kStale)];
-  if (silence.count == 0) return text + " It was heard without a gap.";
+  if (silence.count == 0) return text + " There was no gap.";
   return text + fmt::format(" It was silent {} {}, for {} in all.", silence.count,
                             silence.count == 1 ? "time" : "times", duration_text(silence.time_s));
 }

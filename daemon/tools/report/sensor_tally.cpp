@@ -62,7 +62,7 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
 
 void SensorTally::plan_spectrum(const SensorSurvey& survey) {
   if (!(survey.step_s > 0.0)) {
-    numbers_.why_no_spectrum = "There are no two readings close enough to each other.";
+    numbers_.why_no_spectrum = "No two readings are close enough to each other.";
     return;
   }
   const auto longest = std::min<std::uint64_t>(
@@ -235,7 +235,7 @@ SensorNumbers SensorTally::finish() {
   }
   if (spectrum_) {
     numbers_.spectrum = spectrum_->numbers();
-    if (!numbers_.spectrum) numbers_.why_no_spectrum = "The sensor was never well for long enough.";
+    if (!numbers_.spectrum) numbers_.why_no_spectrum = "The sensor was never live for long enough.";
   }
   if (integral_time_) numbers_.integral_time_s = integral_time_->seconds();
   numbers_.site = lesson_.numbers();

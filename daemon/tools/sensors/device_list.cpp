@@ -53,7 +53,7 @@ std::vector<DeviceFinding> find_devices(std::span<const DriverDescription* const
     } catch (const std::exception& error) {
       FoundDevice none;
       none.what = fmt::format("devices of driver {}", driver->name);
-      none.trouble = fmt::format("could not look for them: {}", error.what());
+      none.trouble = fmt::format("search failed: {}", error.what());
       findings.push_back({driver, std::move(none)});
     }
   }
@@ -65,7 +65,7 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
   const auto out = std::back_inserter(text);
   if (findings.empty()) {
     const std::string asked = names_of(drivers, true);
-    fmt::format_to(out, "Nothing is plugged in that a driver could read{}.\n",
+    fmt::format_to(out, "No device found that a driver could read{}.\n",
                    asked.empty() ? "" : fmt::format(" (looked for devices of {})", asked));
   }
 
@@ -88,14 +88,14 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
           told != nullptr && told->device.trouble == device.trouble && told->device.remedy == device.remedy;
       if (device.trouble.empty() || is_told) continue;
       told = finding;
-      fmt::format_to(out, "  It cannot be opened as things are:\n{}", indented(device.trouble, "    "));
+      fmt::format_to(out, "  It cannot be opened:\n{}", indented(device.trouble, "    "));
       if (!device.remedy.empty()) fmt::format_to(out, "  What to do:\n{}", indented(device.remedy, "    "));
     }
     text += '\n';
   }
 
   if (const std::string others = names_of(drivers, false); !others.empty()) {
-    fmt::format_to(out, "{}Not looked for: {}. `yuragi sensors describe DRIVER` says how each is set up.\n",
+    fmt::format_to(out, "{}Not searched for: {}. `yuragi sensors describe DRIVER` describes how to set up each.\n",
                    findings.empty() ? "\n" : "", others);
   }
   return text;

@@ -38,7 +38,10 @@ std::string driver_names(std::span<const DriverDescription* const> drivers) {
 
 std::string describe_driver(const DriverDescription& driver) {
   std::string text = fmt::format(
-      "{0}: {1}\n\n[[sensor]]\nname = \"{0}\"  # any text, each sensor its own\n"
+      "{0}: {1}\n"
+      "\n"
+      "[[sensor]]\n"
+      "name = \"{0}\"  # any text, different for each sensor\n"
       "driver = \"{0}\"\n",
       driver.name, driver.summary);
   if (driver.parameters.empty()) return text;

@@ -22,7 +22,7 @@ bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
 std::string_view wind_source(const wire::Sensors& sensors) {
   switch (sensors.wind.source) {
     case WindSource::kDefault:
-      return "default wind: no sensor speaks";
+      return "default wind: no sensor is live";
     case WindSource::kHandover:
       return "handing over";
     case WindSource::kLive:
@@ -63,7 +63,7 @@ std::string place_of_wind(const WindState& wind) {
     text += fmt::format("{} m {} of the middle of the scenes", short_number(std::abs(wind.upwind_m)),
                         wind.upwind_m > 0.0 ? "upwind" : "downwind");
   }
-  if (wind.to_middle_s > 0.0) text += fmt::format("; a gust is there in {} s", short_number(wind.to_middle_s));
+  if (wind.to_middle_s > 0.0) text += fmt::format("; a gust reaches it in {} s", short_number(wind.to_middle_s));
   return text;
 }
 

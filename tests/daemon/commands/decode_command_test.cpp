@@ -45,7 +45,7 @@ TEST_F(DecodeCommand, TellsOfWhatIsRefusedOnRequestOnly) {
   const auto quiet = run(input, {"nmea"});
   EXPECT_EQ(quiet.code, 0);
   EXPECT_EQ(quiet.text, "");
-  EXPECT_THAT(quiet.error, HasSubstr("0 readings; refused: bad checksum 1, not mine 2. --refused shows each"));
+  EXPECT_THAT(quiet.error, HasSubstr("0 readings; refused: bad checksum 1, not mine 2; --refused shows each"));
 
   const auto told = run(input, {"nmea", "--refused"});
   EXPECT_EQ(told.code, 0);

@@ -29,7 +29,7 @@ TEST_F(DecodeCommand, TakesHexadecimalDigitsAsPeopleWriteThem) {
   for (const char* line : {"01 c", "0 1", "hello", "01 0x", "01_02"}) {
     const auto done = run(std::string(line) + "\n", {"acurite", "--hex", "--refused"});
     ASSERT_EQ(done.objects.size(), 1U) << line;
-    EXPECT_EQ(done.objects[0]["detail"], "not hexadecimal digits, two a byte") << line;
+    EXPECT_EQ(done.objects[0]["detail"], "not hexadecimal digits, two per byte") << line;
     EXPECT_EQ(done.objects[0]["input"], line);
   }
 }

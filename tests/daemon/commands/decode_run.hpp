@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -42,6 +42,9 @@ class DecodeCommand : public ::testing::Test {
       app.parse(reversed);
     } catch (const ExitError& error) {
       done.code = error.code();
+      done.error = error.what();
+    } catch (const FailureError& error) {
+      done.code = exit_code_of(error.kind());
       done.error = error.what();
     } catch (const CLI::ParseError& error) {
       done.code = kExitUsage;

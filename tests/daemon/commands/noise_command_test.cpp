@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/tools/offline/npy.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
@@ -41,13 +41,15 @@ class NoiseCommand : public ::testing::Test {
     app.parse(reversed);
   }
 
-  /// The exit code of the ExitError that the arguments end in; 0 for none.
+  /// The exit code of the failure that the arguments end in; 0 for none.
   static int code_of(const std::vector<std::string>& arguments) {
     try {
       run(arguments);
       return 0;
     } catch (const ExitError& error) {
       return error.code();
+    } catch (const FailureError& error) {
+      return exit_code_of(error.kind());
     }
   }
 

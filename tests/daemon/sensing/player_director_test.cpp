@@ -36,7 +36,7 @@ TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
   PlayerDirector here = director(ControlPermission::kLoopback);
   const auto one = here.answer({.action = wire::PlayerAction::kSeek, .sensor = "yard", .place = "+30"}, true);
   EXPECT_TRUE(one.done);
-  EXPECT_EQ(one.message, "yard is told to go to +30");
+  EXPECT_EQ(one.message, "yard was asked to seek to +30");
   ASSERT_EQ(one.players.size(), 1U);
   EXPECT_EQ(one.players[0].order, 1U);
   EXPECT_TRUE(roof_.orders.empty());
@@ -46,7 +46,7 @@ TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
   EXPECT_EQ(woken_, 1);
 
   const auto all = here.answer({.action = wire::PlayerAction::kStep, .count = 7}, true);
-  EXPECT_EQ(all.message, "roof, yard is told to step 7 on");
+  EXPECT_EQ(all.message, "roof, yard was asked to advance by 7 readings");
   EXPECT_EQ(roof_.orders.at(0).count, 7U);
   EXPECT_EQ(yard_.orders.at(1).count, 7U);
   here.answer({.action = wire::PlayerAction::kPause}, true);
@@ -98,7 +98,7 @@ TEST_F(PlayerDirectorTest, SaysWhatThereIsWhereNothingFits) {
   EXPECT_THAT(unknown.message, HasSubstr("roof, yard"));
   const auto none = PlayerDirector(ControlPermission::kLoopback, {}).answer({}, true);
   EXPECT_FALSE(none.done);
-  EXPECT_THAT(none.message, HasSubstr("no sensor here"));
+  EXPECT_THAT(none.message, HasSubstr("no sensor of this daemon"));
   roof_.is_full = true;
   const auto full = director(ControlPermission::kLoopback).answer({.action = wire::PlayerAction::kPause}, true);
   EXPECT_FALSE(full.done);

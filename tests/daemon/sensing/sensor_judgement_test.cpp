@@ -159,7 +159,7 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
 
   go_on(60, [&] { say(0, 6.5); });
   EXPECT_EQ(state(), SensorState::kFrozen);
-  EXPECT_THAT(reason(), HasSubstr("the same 6.50 m/s 60 times"));
+  EXPECT_THAT(reason(), HasSubstr("the same reading, 6.50 m/s, 60 times"));
   EXPECT_EQ(hub_->status()[0].health, SourceHealth::kLive) << "it speaks";
   EXPECT_EQ(hub_->status()[0].speed_m_s, 6.5) << "what it says is shown";
   go_on(60, [&] { say(0, 6.5); });
@@ -171,7 +171,7 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
   EXPECT_LT(largest_step_m_s_, 2.0 * normal_step_m_s) << "neither loss nor return is a jump";
   EXPECT_EQ(recorded_, 270) << "a recording keeps everything";
 
-  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: frozen: the same 6.50 m/s"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: frozen: the same reading, 6.50 m/s"), 1) << log_.str();
   EXPECT_EQ(lines_of_log_with("(was frozen"), 1) << log_.str();
   EXPECT_EQ(lines_of_log_with("sensor spoken0"), 4) << "connected, live, frozen, live\n" << log_.str();
 }
@@ -185,8 +185,7 @@ TEST_F(SensorJudgement, SpikesDoNotReachTheWind) {
   EXPECT_EQ(state(), SensorState::kLive) << "one in twenty is no fault";
   EXPECT_LT(largest_wind_m_s_, 1.5 * normal_wind_m_s);
   EXPECT_EQ(recorded_, 360);
-  EXPECT_THAT(hub_->status()[0].refused,
-              ::testing::Contains(std::pair<std::string, std::uint64_t>("not believed", 15)));
+  EXPECT_THAT(hub_->status()[0].refused, ::testing::Contains(std::pair<std::string, std::uint64_t>("rejected", 15)));
 }
 
 TEST_F(SensorJudgement, ASensorThatSaysNonsenseAgainAndAgainIsImplausibleUntilItSpeaksSense) {
@@ -277,7 +276,7 @@ TEST_F(SensorJudgementOfThree, TheOneThatIsOutvotedLosesTheWindToTheNext) {
   go_on(60, [&] { all_say(5.5); });
   go_on(1000, [&] { all_say(33.0); });
   EXPECT_EQ(state(0), SensorState::kImplausible);
-  EXPECT_THAT(reason(0), HasSubstr("m/s where the others say 5"));
+  EXPECT_THAT(reason(0), HasSubstr("m/s, that of the other sensors 5"));
   EXPECT_EQ(state(1), SensorState::kLive);
   EXPECT_EQ(state(2), SensorState::kLive);
   go_on(60, [&] { all_say(33.0); });
@@ -306,10 +305,11 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
   });
   for (const std::size_t sensor : {0U, 1U}) {
     EXPECT_EQ(state(sensor), SensorState::kLive);
-    EXPECT_THAT(reason(sensor), HasSubstr("nobody can tell who is right"));
+    EXPECT_THAT(reason(sensor), HasSubstr("Check each sensor"));
   }
-  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1 s; but it says"), 1) << log_.str();
-  EXPECT_EQ(lines_of_log_with("nobody can tell"), 2) << log_.str();
+  EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1 s; but its mean of 5 min is"), 1)
+      << log_.str();
+  EXPECT_EQ(lines_of_log_with("Check each sensor"), 2) << log_.str();
 }
 
 TEST_F(SensorJudgementOfTwo, ACupThatStandsStillWhereTheOtherHasWindIsSeized) {
@@ -319,7 +319,7 @@ TEST_F(SensorJudgementOfTwo, ACupThatStandsStillWhereTheOtherHasWindIsSeized) {
   go_on(60, [&] { say(0, breeze()), other_says(); });
   go_on(1400, [&] { say(0, 0.0), other_says(); });
   EXPECT_EQ(state(0), SensorState::kSeized);
-  EXPECT_THAT(reason(0), HasSubstr("while the others say 7"));
+  EXPECT_THAT(reason(0), HasSubstr("while the other sensors measure 7"));
   EXPECT_GT(speed_of(hub_->wind().wind), 3.0) << "the other's wind";
   go_on(20, [&] { say(0, breeze()), other_says(); });
   EXPECT_EQ(state(0), SensorState::kLive);

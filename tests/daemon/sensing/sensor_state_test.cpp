@@ -32,12 +32,12 @@ TEST(SensorState, ASensorThatSpeaksIsLive) {
 TEST(SensorState, BeforeItsFirstReadingItIsConnecting) {
   SensorEvidence evidence;
   EXPECT_EQ(state_of(evidence), SensorState::kConnecting);
-  EXPECT_EQ(reason(evidence), "looking for its device");
+  EXPECT_EQ(reason(evidence), "looking for the device");
   evidence.link_detail = "/dev/ttyUSB0 is not there: plug it in";
   EXPECT_EQ(reason(evidence), "/dev/ttyUSB0 is not there: plug it in");
   evidence.link = LinkState::kConnected;
   EXPECT_EQ(state_of(evidence), SensorState::kConnecting);
-  EXPECT_THAT(reason(evidence), HasSubstr("has not said a reading yet"));
+  EXPECT_THAT(reason(evidence), HasSubstr("has sent no reading yet"));
 }
 
 TEST(SensorState, SilenceOfADeviceThatIsThereIsStaleAndOfOneThatHasGoneDisconnected) {
@@ -45,7 +45,7 @@ TEST(SensorState, SilenceOfADeviceThatIsThereIsStaleAndOfOneThatHasGoneDisconnec
   evidence.said.health = SourceHealth::kStale;
   evidence.said.age_s = 12.34;
   EXPECT_EQ(state_of(evidence), SensorState::kStale);
-  EXPECT_THAT(reason(evidence), StartsWith("no reading for 12.3 s; it used to speak every 1 s"));
+  EXPECT_THAT(reason(evidence), StartsWith("no reading for 12.3 s; its usual interval is 1 s"));
   evidence.link = LinkState::kConnecting;
   evidence.link_detail = "slave 1 does not answer";
   EXPECT_EQ(state_of(evidence), SensorState::kDisconnected);
@@ -64,7 +64,7 @@ TEST(SensorState, WhatItSaysIsJudgedInTheOrderOfHowSureThatIs) {
   evidence.mean_m_s = 22.1;
   evidence.others_m_s = 5.2;
   EXPECT_EQ(state_of(evidence), SensorState::kImplausible);
-  EXPECT_THAT(reason(evidence), StartsWith("22.1 m/s where the others say 5.2"));
+  EXPECT_THAT(reason(evidence), StartsWith("its mean of 5 min is 22.1 m/s, that of the other sensors 5.2"));
   evidence.fault = ReadingFault::kImplausible;
   evidence.bad_share = 0.65;
   EXPECT_EQ(state_of(evidence), SensorState::kImplausible);
@@ -72,12 +72,12 @@ TEST(SensorState, WhatItSaysIsJudgedInTheOrderOfHowSureThatIs) {
   evidence.fault = ReadingFault::kSeized;
   evidence.still_for_s = 3.0 * 3600.0;
   EXPECT_EQ(state_of(evidence), SensorState::kSeized);
-  EXPECT_THAT(reason(evidence), StartsWith("no wind for 3 h, while the others say 5.2 m/s"));
+  EXPECT_THAT(reason(evidence), StartsWith("no wind for 3 h, while the other sensors measure 5.2 m/s"));
   evidence.fault = ReadingFault::kFrozen;
   evidence.same_count = 61;
   evidence.same_for_s = 60.0;
   EXPECT_EQ(state_of(evidence), SensorState::kFrozen);
-  EXPECT_THAT(reason(evidence), StartsWith("the same 3.42 m/s 61 times in 1 min"));
+  EXPECT_THAT(reason(evidence), StartsWith("the same reading, 3.42 m/s, 61 times in 1 min"));
 }
 
 TEST(SensorState, ASingleSpikeChangesNothing) {
@@ -124,8 +124,8 @@ TEST(SensorState, ADisputeIsToldButCondemnsNobody) {
   evidence.mean_m_s = 2.0;
   evidence.others_m_s = 20.0;
   EXPECT_EQ(state_of(evidence), SensorState::kLive);
-  EXPECT_THAT(reason(evidence), HasSubstr("2.0 m/s where the others say 20.0"));
-  EXPECT_THAT(reason(evidence), HasSubstr("nobody can tell"));
+  EXPECT_THAT(reason(evidence), HasSubstr("2.0 m/s, that of the other sensors 20.0"));
+  EXPECT_THAT(reason(evidence), HasSubstr("Check each sensor"));
 }
 
 TEST(SensorState, EveryStateHasANameOfItsOwnAndAReasonForAnyEvidence) {

@@ -56,7 +56,7 @@ TEST(SensorStatus, OfASensorThatHasSaidNothingThereIsNoReading) {
   EXPECT_FALSE(status.raw_speed_m_s || status.raw_direction_deg);
   EXPECT_EQ(status.health, SourceHealth::kSilent);
   EXPECT_EQ(status.state, SensorState::kConnecting);
-  EXPECT_EQ(status.state_reason, "looking for its device");
+  EXPECT_EQ(status.state_reason, "looking for the device");
 }
 
 TEST(SensorStatus, TellsWhatWasRefusedByItsReasonAndNothingOfTheRest) {
@@ -64,8 +64,8 @@ TEST(SensorStatus, TellsWhatWasRefusedByItsReasonAndNothingOfTheRest) {
   facts.counts.refused[static_cast<std::size_t>(Refusal::kImplausible)] = 3;
   facts.counts.not_believed = 4;
   facts.counts.lost = 5;
-  EXPECT_THAT(sensor_status(facts).refused, ElementsAre(Pair(std::string(name_of(Refusal::kImplausible)), 3),
-                                                        Pair("not believed", 4), Pair("lost", 5)));
+  EXPECT_THAT(sensor_status(facts).refused,
+              ElementsAre(Pair(std::string(name_of(Refusal::kImplausible)), 3), Pair("rejected", 4), Pair("lost", 5)));
 }
 
 TEST(SensorStatus, WhatIsMadeUpOrPlayedIsMarked) {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/exit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -28,14 +27,11 @@ class ConfigFile : public testing::Test {
   /// What is said of a text that is not taken; the file and its folder must be as they were.
   std::string refusal(std::string_view old_text, std::string_view new_text) {
     const std::string before = read_config_text(wall_);
-    try {
-      replace_config(wall_, old_text, new_text);
-    } catch (const ExitError& error) {
-      EXPECT_EQ(read_config_text(wall_), before);
-      EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left beside it";
-      return error.what();
-    }
-    return "it was taken";
+    const auto replaced = replace_config(wall_, old_text, new_text);
+    if (replaced) return "it was taken";
+    EXPECT_EQ(read_config_text(wall_), before);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left beside it";
+    return replaced.error().message;
   }
 
   test::TemporaryFolder folder_;
@@ -44,7 +40,7 @@ class ConfigFile : public testing::Test {
 
 TEST_F(ConfigFile, IsReplacedAsAWholeAndItsOldTextKept) {
   fs::permissions(wall_, fs::perms::owner_read | fs::perms::owner_write);
-  EXPECT_EQ(replace_config(wall_, kOldWall, kNewWall).filename(), "wall.toml.bak");
+  EXPECT_EQ(replace_config(wall_, kOldWall, kNewWall).value().filename(), "wall.toml.bak");
   EXPECT_EQ(read_config_text(wall_), kNewWall);
   EXPECT_EQ(read_config_text(folder_ / "wall.toml.bak"), kOldWall);
   for (const char* name : {"wall.toml", "wall.toml.bak"}) {
@@ -56,7 +52,7 @@ TEST_F(ConfigFile, IsReplacedAsAWholeAndItsOldTextKept) {
 TEST_F(ConfigFile, BehindALinkIsReplacedAndTheLinkStays) {
   const fs::path link = folder_ / "current.toml";
   fs::create_symlink("wall.toml", link);
-  replace_config(link, kOldWall, kNewWall);
+  replace_config(link, kOldWall, kNewWall).value();
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(read_config_text(wall_), kNewWall);
 }
@@ -72,7 +68,7 @@ TEST_F(ConfigFile, StaysWhereTheNewTextWouldBeWrong) {
 TEST_F(ConfigFile, ASensorThatCouldNotBeOpenedBeforeStandsInNobodysWay) {
   const std::string elsewhere = "[[sensor]]\ndriver = \"modbus\"\nprofile = \"no-such-device\"\n";
   write(wall_, elsewhere);
-  replace_config(wall_, elsewhere, elsewhere + "[sensor.calibration]\ngain = 2.0\n");
+  replace_config(wall_, elsewhere, elsewhere + "[sensor.calibration]\ngain = 2.0\n").value();
   EXPECT_THAT(read_config_text(wall_), HasSubstr("gain = 2.0"));
 }
 
@@ -82,7 +78,7 @@ TEST_F(ConfigFile, StaysWhereSomebodyHasChangedItMeanwhile) {
 }
 
 TEST_F(ConfigFile, ThatIsNotThereIsTold) {
-  EXPECT_THROW(replace_config(folder_ / "none.toml", "", kNewWall), ExitError);
+  EXPECT_EQ(replace_config(folder_ / "none.toml", "", kNewWall).error().kind, FailureKind::kCannotCreate);
 }
 
 }  // namespace

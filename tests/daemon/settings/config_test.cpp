@@ -83,7 +83,7 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
   EXPECT_THAT(mistakes_of("[wind]\ndefault_speed = nan\n"),
               StartsWith("wall.toml:2:17: wind.default_speed: is nan; allowed: number from 0 to 40 m/s"));
   EXPECT_THAT(mistakes_of("[[sensor]]\ndriver=\"synthetic\"\n[[sensor]]\ndriver=\"synthetic\"\n"),
-              HasSubstr("\"synthetic\" is there twice"));
+              HasSubstr("\"synthetic\" is used twice"));
 }
 
 TEST(Config, ASensorOfAnyDriverHasACalibration) {

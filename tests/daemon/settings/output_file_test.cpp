@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/settings/exit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi {
@@ -33,7 +32,7 @@ TEST_F(OutputFileTest, HasItsNameWhenItIsWholeAndNotBefore) {
   OutputFile output(file_, true);
   write(output.working_path(), "new");
   EXPECT_EQ(read(file_), "old");
-  output.commit();
+  output.commit().value();
   EXPECT_EQ(read(file_), "new");
   EXPECT_EQ(count_files(), 1U);
 }
@@ -55,7 +54,7 @@ TEST_F(OutputFileTest, FollowsALink) {
   std::filesystem::create_symlink(file_, link);
   OutputFile output(link, true);
   write(output.working_path(), "new");
-  output.commit();
+  output.commit().value();
   EXPECT_TRUE(std::filesystem::is_symlink(link));
   EXPECT_EQ(read(file_), "new");
 }
@@ -63,12 +62,12 @@ TEST_F(OutputFileTest, FollowsALink) {
 TEST_F(OutputFileTest, RefusesWhatItMustNotReplace) {
   static constexpr std::array<std::string_view, 1> kSuffixes = {"-wal"};
   write(file_, "precious");
-  EXPECT_THROW(OutputFile(file_, false), ExitError);
-  EXPECT_THROW(OutputFile(folder_.path(), true), ExitError) << "a folder";
-  EXPECT_THROW(OutputFile("/dev/null", true), ExitError) << "a device";
-  EXPECT_THROW(OutputFile(folder_.path() / "no such folder" / "b", true), ExitError);
+  EXPECT_THROW(OutputFile(file_, false), FailureError);
+  EXPECT_THROW(OutputFile(folder_.path(), true), FailureError) << "a folder";
+  EXPECT_THROW(OutputFile("/dev/null", true), FailureError) << "a device";
+  EXPECT_THROW(OutputFile(folder_.path() / "no such folder" / "b", true), FailureError);
   write(file_.string() + "-wal", "newest readings");
-  EXPECT_THROW(OutputFile(file_, true, kSuffixes), ExitError) << "somebody is writing it";
+  EXPECT_THROW(OutputFile(file_, true, kSuffixes), FailureError) << "somebody is writing it";
   EXPECT_NO_THROW(OutputFile(file_, true));
   EXPECT_EQ(read(file_), "precious");
 }

@@ -12,7 +12,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "daemon/settings/exit.hpp"
 #include "engine/base/address.hpp"
 #include "engine/wire/message_reader.hpp"
 #include "tests/engine/wire/samples.hpp"
@@ -425,16 +424,16 @@ TEST_F(TcpStreamTest, AnAddressInUseIsNamedWithWhatToDo) {
   try {
     const TcpStream second(io_, stream_.local_endpoint(), settings());
     FAIL() << "two listen on one address";
-  } catch (const ExitError& error) {
-    EXPECT_EQ(error.code(), kExitUnavailable);
+  } catch (const FailureError& error) {
+    EXPECT_EQ(error.kind(), FailureKind::kUnavailable);
     EXPECT_NE(std::string(error.what()).find(stream_.local_endpoint()), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("choose another port"), std::string::npos);
   }
 }
 
 TEST_F(TcpStreamTest, AnAddressOfAnotherMachineOrNoneIsRefused) {
-  EXPECT_THROW(TcpStream(io_, "192.0.2.1:7410", settings()), ExitError);
-  EXPECT_THROW(TcpStream(io_, "nonsense", settings()), ExitError);
+  EXPECT_THROW(TcpStream(io_, "192.0.2.1:7410", settings()), FailureError);
+  EXPECT_THROW(TcpStream(io_, "nonsense", settings()), FailureError);
 }
 
 TEST_F(TcpStreamTest, EveryWishToShowASceneIsAnswered) {

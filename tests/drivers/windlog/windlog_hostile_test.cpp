@@ -81,7 +81,7 @@ TEST(HostileWindlog, OfRandomBytesIsRefused) {
     if (i % 2 == 0 && bytes.size() >= 16) bytes.replace(0, 16, std::string_view("SQLite format 3\0", 16));
     write_bytes(folder / "garbage.windlog", bytes);
     EXPECT_FALSE(WindlogReader::open(folder / "garbage.windlog"));
-    EXPECT_THROW(WindlogPlayback(folder / "garbage.windlog"), std::runtime_error);
+    EXPECT_FALSE(WindlogPlayback::open(folder / "garbage.windlog"));
   }
 }
 

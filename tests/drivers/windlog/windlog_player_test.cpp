@@ -44,7 +44,7 @@ class Playing {
  public:
   Playing(const std::vector<WindReading>& readings, PlayerOptions options) {
     write_session(folder_ / "a.windlog", readings);
-    player_.emplace(folder_ / "a.windlog", std::move(options), clock_.now());
+    player_.emplace(WindlogPlayer::open(folder_ / "a.windlog", std::move(options), clock_.now()).value());
   }
 
   WindlogPlayer* operator->() { return &*player_; }
@@ -56,7 +56,7 @@ class Playing {
     for (MonoTime next = look(); clock_.now().mono < end; next = look()) clock_.advance_to(std::min(next, end));
   }
   MonoTime look() {
-    return player_->play(clock_.now(), [this](const WindReading& reading) { said.push_back(reading); });
+    return player_->play(clock_.now(), [this](const WindReading& reading) { said.push_back(reading); }).value();
   }
   void halt(Nanoseconds duration) { clock_.advance(duration); }
 
@@ -72,13 +72,9 @@ class Playing {
     return std::ranges::is_sorted(said, {}, [](const WindReading& reading) { return reading.time.mono; });
   }
   double place_s() const { return seconds(player_->position(clock_.now().mono).log_time); }
-  std::string refusal(const std::function<void(WindlogPlayer&)>& order) {
-    try {
-      order(*player_);
-      return "";
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
+  std::string refusal(const std::function<Result<void, Failure>(WindlogPlayer&)>& order) {
+    const auto done = order(*player_);
+    return done ? "" : done.error().message;
   }
 
   std::vector<WindReading> said;
@@ -154,7 +150,8 @@ TEST(WindlogPlayer, StepsEndAtTheLastReadingAndInALoopBeginAgain) {
   once->step(once.now(), 500);
   once.look();
   EXPECT_DOUBLE_EQ(once.said.back().speed_m_s, 0.009);
-  EXPECT_THAT(once.refusal([&](WindlogPlayer& player) { player.step(once.now(), 1); }), HasSubstr("last reading"));
+  EXPECT_THAT(once.refusal([&](WindlogPlayer& player) { return player.step(once.now(), 1); }),
+              HasSubstr("last reading"));
   once.run(1s);
   EXPECT_FALSE(once->is_finished()) << "it stands, and does not end";
 
@@ -199,11 +196,13 @@ TEST(WindlogPlayer, ASeekToNowhereIsRefusedAndChangesNothing) {
   Playing playing(numbered_readings(1000), {});
   playing.run(2s);
   for (const char* place : {"100", "+98", "2019-01-01", "soon", "", "+", "+x", "-nan", "+1e99", "nan", "--1"}) {
-    const std::string refusal = playing.refusal([&](WindlogPlayer& player) { player.seek(playing.now(), place); });
+    const std::string refusal =
+        playing.refusal([&](WindlogPlayer& player) { return player.seek(playing.now(), place); });
     if (std::string_view(place).empty()) continue;  // the beginning
     EXPECT_FALSE(refusal.empty()) << place;
   }
-  EXPECT_THAT(playing.refusal([&](WindlogPlayer& player) { player.seek(playing.now(), "100"); }), HasSubstr("99.9"));
+  EXPECT_THAT(playing.refusal([&](WindlogPlayer& player) { return player.seek(playing.now(), "100"); }),
+              HasSubstr("99.9"));
 }
 
 TEST(WindlogPlayer, GoesOnAfterItsEndWhereItIsToldTo) {

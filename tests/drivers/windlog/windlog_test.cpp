@@ -210,7 +210,7 @@ TEST(Windlog, WriterRefusesAForeignDatabaseAndLeavesItAsItWas) {
   }
   const auto writer = WindlogWriter::open(folder / "other.db");
   ASSERT_FALSE(writer);
-  EXPECT_NE(writer.error().message.find("no Yuragi recording"), std::string::npos) << writer.error().message;
+  EXPECT_NE(writer.error().message.find("not a Yuragi recording"), std::string::npos) << writer.error().message;
   auto foreign = sqlite::Database::open(folder / "other.db", sqlite::Access::kReadOnly);
   EXPECT_EQ(foreign->integer("SELECT count(*) FROM sqlite_schema").value(), 1);
   EXPECT_EQ(foreign->integer("PRAGMA application_id").value(), 0);

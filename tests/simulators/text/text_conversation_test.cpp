@@ -234,9 +234,10 @@ TEST(TextSimulatorProgram, RefusesACommandLineThatItCannotUse) {
   EXPECT_THAT(run({"nmea"}), testing::Pair(64, HasSubstr("--pty")));
   EXPECT_THAT(run({"nmea", "--pty", "--tcp", "127.0.0.1:0"}), testing::Pair(64, HasSubstr("Exactly 1 option")));
   EXPECT_THAT(run({"nmea", "--pty", "--format", "mwx"}), testing::Pair(64, HasSubstr("mwv")));
-  EXPECT_THAT(run({"nmea", "--pty", "--format", "umb,mwv"}), testing::Pair(64, HasSubstr("goes with no other")));
-  EXPECT_THAT(run({"line", "--tcp", "nowhere"}), testing::Pair(64, HasSubstr("allowed: HOST:PORT")));
-  EXPECT_THAT(run({"line", "--udp", "127.0.0.1:9", "--rate", "0"}), testing::Pair(64, HasSubstr("nobody can ask")));
+  EXPECT_THAT(run({"nmea", "--pty", "--format", "umb,mwv"}), testing::Pair(64, HasSubstr("cannot be combined")));
+  EXPECT_THAT(run({"line", "--tcp", "nowhere"}), testing::Pair(64, HasSubstr("HOST:PORT")));
+  EXPECT_THAT(run({"line", "--udp", "127.0.0.1:9", "--rate", "0"}),
+              testing::Pair(64, HasSubstr("requests cannot be received")));
   EXPECT_THAT(run({"line", "--tcp", "192.0.2.7:0"}), testing::Pair(69, HasSubstr("cannot listen on")));
   EXPECT_THAT(run({"nmea", "--pty", "--fault", "disconnect@1+2"}), testing::Pair(64, HasSubstr("unplug")));
 }

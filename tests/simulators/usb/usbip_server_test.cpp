@@ -180,7 +180,7 @@ TEST_F(UsbipServerTest, GivesUpAHostThatTalksNonsenseAndServesTheOthers) {
   const Descriptor hostile = connect_client();
   send_bytes(hostile, UsbBytes(4096, 0x5A));
   EXPECT_TRUE(is_closed(hostile));
-  EXPECT_THAT(server_.status(), testing::HasSubstr("given up: USB/IP of version 0x5a5a"));
+  EXPECT_THAT(server_.status(), testing::HasSubstr("given up: USB/IP version 0x5a5a"));
   EXPECT_EQ(ask(host, usbip_submit_in(1, 1, 8), kReport).size(), kReport);
 }
 

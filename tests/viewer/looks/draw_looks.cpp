@@ -38,7 +38,8 @@ int main(int argc, char** argv) {
       PoseMoment moment = rest_moment(models);
       for (std::size_t i = 0; i < models.size(); ++i) moment.poses[i] = test_pose(models[i], 2.0, strength);
       stage.draw(moment, camera, target);
-      write_png(fmt::format("{}/{}-{:.0f}.png", words[0], kind, 10 * strength), width_px, height_px, target.read_rgb());
+      write_picture(fmt::format("{}/{}-{:.0f}.png", words[0], kind, 10 * strength), width_px, height_px,
+                    target.read_rgb());
     }
   }
   return gl_error_count() == 0 ? 0 : 1;

@@ -79,7 +79,7 @@ int draw_scenes(const std::vector<std::string>& words) {
       PoseMoment moment = rest_moment(models);
       moment.poses[0] = scene->pose();
       stage.draw(moment, camera, target);
-      write_png(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px, target.read_rgb());
+      write_picture(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px, target.read_rgb());
     }
   }
   return gl_error_count() == 0 ? 0 : 1;

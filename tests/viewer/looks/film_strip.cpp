@@ -145,7 +145,7 @@ class Sheet {
       std::copy_n(from, line, rgb_.begin() + 3 * (static_cast<std::ptrdiff_t>(row_px) * width_px_ + column_px));
     }
   }
-  void write(const std::string& file) const { write_png(file, width_px_, height_px_, rgb_); }
+  void write(const std::string& file) const { write_picture(file, width_px_, height_px_, rgb_); }
 
  private:
   int columns_, cell_width_px_, cell_height_px_, width_px_, height_px_;
@@ -189,7 +189,7 @@ void make_strip(const StripOptions& options) {
     if (lean) lean->add(std::get<StrandPose>(moment.poses[0]));
     ++taken;
   };
-  replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take);
+  replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take).value();
   if (taken < options.moments) {
     throw std::runtime_error(fmt::format("{} ends after {} of {} pictures", options.recording, taken, options.moments));
   }

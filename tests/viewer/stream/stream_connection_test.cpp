@@ -136,7 +136,7 @@ TEST(StreamConnection, ComesBackWhenTheServerIsRestartedOnThePort) {
   Viewer viewer(options_for(port));
   ASSERT_TRUE(viewer.wait_until([&] { return !viewer.scenes.empty(); }));
   server.reset();
-  ASSERT_TRUE(viewer.wait_for_text("nobody answers"));
+  ASSERT_TRUE(viewer.wait_for_text("no daemon answers"));
   EXPECT_EQ(viewer.connection.status().state, StreamState::kWaiting);
 
   server = std::make_unique<StreamServer>(kHello + scenes_named("second"), port);
@@ -167,7 +167,7 @@ TEST(StreamConnection, DropsAServerThatSendsGarbageAndTriesAgain) {
   StreamServer other(not_a_message);
   Viewer second(options_for(other.port()));
   EXPECT_TRUE(other.wait_for_subscriptions(3));
-  EXPECT_TRUE(second.wait_for_text("does not speak as Yuragi does"));
+  EXPECT_TRUE(second.wait_for_text("is not a Yuragi daemon"));
   EXPECT_TRUE(second.frames.empty());
 }
 
@@ -224,7 +224,7 @@ TEST(StreamConnection, StopsWhileItWaitsToTryAgain) {
   StreamOptions options = options_for(port);
   options.min_backoff = options.max_backoff = std::chrono::hours(1);
   Viewer viewer(options);
-  EXPECT_TRUE(viewer.wait_for_text("nobody answers"));
+  EXPECT_TRUE(viewer.wait_for_text("no daemon answers"));
 }
 
 }  // namespace

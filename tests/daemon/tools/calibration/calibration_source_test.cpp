@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/settings/exit.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -42,19 +41,22 @@ TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
   ManualClock clock;
   SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
   roof.calibration.gain = 2.0;
-  const auto source = make_live_source({&roof}, kNoDaemon, clock);
+  const auto source = make_live_source({&roof}, kNoDaemon, clock).value();
   EXPECT_EQ(source->description(), "the devices themselves");
   EXPECT_TRUE(source->is_live());
 
   int told = 0;
   double last_s = 0.0;
-  const Heard heard = source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard& so_far) {
-    EXPECT_EQ(so_far.size(), 1U);
-    EXPECT_GE(elapsed_s, last_s);
-    last_s = elapsed_s;
-    ++told;
-    clock.advance(std::chrono::milliseconds(500));
-  });
+  const Heard heard = source
+                          ->hear({.duration_s = 5.0},
+                                 [&](double elapsed_s, const Heard& so_far) {
+                                   EXPECT_EQ(so_far.size(), 1U);
+                                   EXPECT_GE(elapsed_s, last_s);
+                                   last_s = elapsed_s;
+                                   ++told;
+                                   clock.advance(std::chrono::milliseconds(500));
+                                 })
+                          .value();
   EXPECT_GE(last_s, 5.0);
   EXPECT_GE(told, 10);
   ASSERT_FALSE(heard[0].readings.empty());
@@ -68,17 +70,14 @@ TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
   ManualClock clock;
   const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
   const SensorConfig mast = default_sensor("mast", kAskedDriver<false>, {});
-  const auto source = make_live_source({&roof, &mast}, kNoDaemon, clock);
-  try {
-    source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard&) {
-      EXPECT_EQ(elapsed_s, 0.0) << "the time runs when both have spoken";
-      clock.advance(std::chrono::seconds(10));
-    });
-    FAIL() << "it waits for ever, or not at all";
-  } catch (const ExitError& error) {
-    EXPECT_EQ(error.code(), kExitUnavailable);
-    EXPECT_THAT(error.what(), HasSubstr("the sensor \"mast\" has said nothing for 90 s (no such port)"));
-  }
+  const auto source = make_live_source({&roof, &mast}, kNoDaemon, clock).value();
+  const auto heard = source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard&) {
+    EXPECT_EQ(elapsed_s, 0.0) << "the time runs when both have spoken";
+    clock.advance(std::chrono::seconds(10));
+  });
+  ASSERT_FALSE(heard);
+  EXPECT_EQ(heard.error().kind, FailureKind::kUnavailable);
+  EXPECT_THAT(heard.error().message, HasSubstr("the sensor \"mast\" has sent nothing for 90 s (no such port)"));
 }
 
 TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
@@ -104,9 +103,11 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
     ASSERT_TRUE(writer.close());
   }
   const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
-  const auto source = make_recorded_source({&roof}, file);
+  const auto source = make_recorded_source({&roof}, file).value();
   EXPECT_FALSE(source->is_live());
-  const auto hear = [&](const Stretch& stretch) { return source->hear(stretch, [](double, const Heard&) {})[0]; };
+  const auto hear = [&](const Stretch& stretch) {
+    return source->hear(stretch, [](double, const Heard&) {}).value()[0];
+  };
   EXPECT_EQ(hear({}).readings.size(), 100U);
   EXPECT_EQ(hear({}).settings, (std::set<std::string>{"gain = 1.0", "gain = 2.0"}));
 
@@ -116,8 +117,8 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
   EXPECT_EQ(part.settings, std::set<std::string>{"gain = 1.0"});
 
   const SensorConfig mast = default_sensor("mast", kAskedDriver<true>, {});
-  EXPECT_THROW(make_recorded_source({&mast}, file), ExitError);
-  EXPECT_THROW(make_recorded_source({&roof}, folder / "none.windlog"), ExitError);
+  EXPECT_EQ(make_recorded_source({&mast}, file).error().kind, FailureKind::kBadData);
+  EXPECT_EQ(make_recorded_source({&roof}, folder / "none.windlog").error().kind, FailureKind::kNoInput);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/settings/exit.hpp"
+#include "daemon/commands/exit.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -41,6 +41,8 @@ Outcome yuragi(std::vector<std::string> arguments) {
     outcome = {kExitUsage, error.what(), ""};
   } catch (const ExitError& error) {
     outcome = {error.code(), error.what(), ""};
+  } catch (const FailureError& error) {
+    outcome = {exit_code_of(error.kind()), error.what(), ""};
   }
   outcome.error += testing::internal::GetCapturedStderr();
   outcome.output = testing::internal::GetCapturedStdout();
@@ -191,7 +193,7 @@ TEST_F(CsvCommands, ImportTellsTheColumnsAndWhatItLeftOut) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east)"));
   EXPECT_THAT(outcome.output, HasSubstr("2 readings of 3 rows, 1 left out"));
-  EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: no number in u: \"x\""));
+  EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: not a number in u: \"x\""));
   EXPECT_EQ(WindlogReader::open(path("a.windlog"))->sensors()[0].name, "sonic");
 }
 

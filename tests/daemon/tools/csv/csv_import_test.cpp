@@ -200,21 +200,21 @@ TEST(CsvImport, LeavesOutBadRowsAndTellsTheFirstFew) {
   EXPECT_EQ(imported.report.taken, 2U);
   EXPECT_THAT(
       imported.report.first_refusals,
-      ElementsAre("a.csv:3: no number in speed: \"abc\"", "a.csv:4: a speed below zero: \"-1\"", "a.csv:5: no speed",
+      ElementsAre("a.csv:3: not a number in speed: \"abc\"", "a.csv:4: speed below zero: \"-1\"", "a.csv:5: no speed",
                   "a.csv:6: fewer fields than the header", "a.csv:7: more fields than the header"));
 }
 
 TEST(CsvImport, LeavesOutRowsThatGoBackInTime) {
   const auto imported = import_text("time,speed\n10,1\n12,2\n11,3\n12,4\n13,5\n");
   EXPECT_EQ(imported.report.refused(), 1U);
-  EXPECT_EQ(imported.report.first_refusals.at(0), "a.csv:4: goes back in time: \"11\"");
+  EXPECT_EQ(imported.report.first_refusals.at(0), "a.csv:4: time goes back: \"11\"");
   EXPECT_EQ(imported.readings.back().time.mono, MonoTime{3s});
 }
 
 TEST(CsvImport, StrictEndsAtTheFirstBadRow) {
   CsvImportOptions options;
   options.strict = true;
-  EXPECT_EQ(import_text("time,speed\n0,1\n1,x\n2,1\n", options).failure, "a.csv:3: no number in speed: \"x\"");
+  EXPECT_EQ(import_text("time,speed\n0,1\n1,x\n2,1\n", options).failure, "a.csv:3: not a number in speed: \"x\"");
   EXPECT_EQ(import_text("time,speed\n0,1\n1,1\n", options).report.taken, 2U);
 }
 

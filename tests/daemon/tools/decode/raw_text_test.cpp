@@ -29,7 +29,7 @@ TEST(RawText, GoesOnUnderALongMessageAndTellsWhatIsLeftOut) {
   trace.length = 700;
   trace.lost = 12;
   EXPECT_EQ(raw_text(trace),
-            "... 12 messages of roof were passed over\n"
+            "... 12 messages of roof were skipped\n"
             "22:13:20.123 roof         <- 30 31 32 33 34 35 36 37 38 39 61 62 63 64 65 66  0123456789abcdef\n"
             "                             30 31 32 33                                      0123\n"
             "                             ... and 680 bytes more\n");

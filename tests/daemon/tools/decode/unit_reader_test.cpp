@@ -32,7 +32,7 @@ std::vector<std::string> units_of(UnitReader::Form form, std::string_view input,
 
 TEST(UnitReader, CutsHexadecimalInputAlikeHoweverItComes) {
   const std::string input = "# a comment\n\n01 02 | 03\r\n0405\nno digits\n| 06\n07 |\n08";
-  const std::vector<std::string> expected = {"01 02|03", "|04 05", "!not hexadecimal digits, two a byte",
+  const std::vector<std::string> expected = {"01 02|03", "|04 05", "!not hexadecimal digits, two per byte",
                                              "|06",      "07|",    "|08"};
   for (const std::size_t piece : {1U, 2U, 7U, 1000U}) {
     EXPECT_EQ(units_of(UnitReader::Form::kHexFrames, input, piece), expected) << piece;
@@ -48,7 +48,7 @@ TEST(UnitReader, MakesLinesOfHexadecimalDigits) {
 TEST(UnitReader, PassesOverALineWithoutEndInBoundedMemory) {
   std::string input(1'000'000, '0');
   input += "\n01\n";
-  const std::vector<std::string> expected = {"!a line without end", "|01"};
+  const std::vector<std::string> expected = {"!line too long", "|01"};
   EXPECT_EQ(units_of(UnitReader::Form::kHexFrames, input, 4096), expected);
 }
 

@@ -75,10 +75,10 @@ TEST(SensorTable, SaysWhereTheWindIsAndWhenItsGustsComeToTheMiddle) {
   sensors.wind = {.wind = {7.2, 0.0}, .upwind_m = 5.0, .to_middle_s = 0.694};
   EXPECT_THAT(
       sensor_table(sensors),
-      HasSubstr("\n  at the windward edge, 5.0 m upwind of the middle of the scenes; a gust is there in 0.7 s\n"));
+      HasSubstr("\n  at the windward edge, 5.0 m upwind of the middle of the scenes; a gust reaches it in 0.7 s\n"));
   sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = 42.4, .to_middle_s = 14.1, .is_place_told = true};
   EXPECT_THAT(sensor_table(sensors),
-              HasSubstr("\n  at the sensors, 42 m upwind of the middle of the scenes; a gust is there in 14 s\n"));
+              HasSubstr("\n  at the sensors, 42 m upwind of the middle of the scenes; a gust reaches it in 14 s\n"));
   sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = -12.0, .to_middle_s = 0.0, .is_place_told = true};
   EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, 12 m downwind of the middle of the scenes\n"));
   sensors.wind.upwind_m = 0.0;

@@ -3,9 +3,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/base/result.hpp"
+
 namespace yuragi {
 
-// How the programs end: 0, or one of sysexits.h, so that a service manager can tell what went wrong.
+// How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong.
 inline constexpr int kExitUsage = 64;         ///< the command line
 inline constexpr int kExitDataError = 65;     ///< an input file that holds what it should not
 inline constexpr int kExitNoInput = 66;       ///< an input file that is not there
@@ -15,7 +17,27 @@ inline constexpr int kExitCannotCreate = 73;  ///< an output file
 inline constexpr int kExitNoPermission = 77;  ///< asked of somebody who does not take it from here
 inline constexpr int kExitConfig = 78;        ///< the configuration
 
-/// A failure during set-up: its text tells a person what to do, its code tells the shell. Caught once, in main.
+/// The exit code for a failure that ends a command.
+constexpr int exit_code_of(FailureKind kind) {
+  switch (kind) {
+    case FailureKind::kUsage:
+      return kExitUsage;
+    case FailureKind::kBadData:
+      return kExitDataError;
+    case FailureKind::kNoInput:
+      return kExitNoInput;
+    case FailureKind::kUnavailable:
+      return kExitUnavailable;
+    case FailureKind::kCannotCreate:
+      return kExitCannotCreate;
+    case FailureKind::kOther:
+      break;
+  }
+  return kExitSoftware;
+}
+
+/// A failure of a command: its text tells a person what to do, its code tells the shell. Thrown by commands alone, and
+/// caught once, in main. Rooms below return a Failure, or throw it as a FailureError.
 class ExitError : public std::runtime_error {
  public:
   ExitError(int code, const std::string& message) : std::runtime_error(message), code_(code) {}
