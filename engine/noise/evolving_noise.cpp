@@ -33,7 +33,8 @@ EvolvingNoise::EvolvingNoise(const NoiseSpec& spec, double turn_rad_s, SimdRow r
   for (std::size_t i = 0; i < fft_.spectrum().size(); ++i) {
     first_re_.push_back(fft_.spectrum()[i].real());
     first_im_.push_back(fft_.spectrum()[i].imag());
-    const auto wave_z = static_cast<double>(spectrum_row(i / columns, spec.size, 2).wave_z);
+    const std::size_t row_index = i / columns;
+    const auto wave_z = static_cast<double>(spectrum_row(row_index, spec.size, 2).wave_z);
     const double k = std::hypot(static_cast<double>(i % columns), wave_z);
     turns_per_s_.push_back(signs[i] * turn_rad_s * std::cbrt(k * k) / (2.0 * std::numbers::pi));
   }
