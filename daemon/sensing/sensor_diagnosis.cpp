@@ -28,7 +28,7 @@ std::string live_text(const SensorEvidence& evidence) {
 }
 
 std::string stale_text(const SensorEvidence& evidence) {
-  const std::string silence = "no reading for " + duration_text(evidence.said.age_s);
+  std::string silence = "no reading for " + duration_text(evidence.said.age_s);
   if (evidence.said.interval_s <= 0.0) return silence;
   return fmt::format("{}; its usual interval is {}. Is the station switched on, and within range of its sensor?",
                      silence, duration_text(evidence.said.interval_s));

@@ -7,6 +7,7 @@
 #include "daemon/settings/control_permission.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 #include "drivers/sensor/speed_unit.hpp"
+#include "engine/wind/wind_reading.hpp"
 
 namespace yuragi {
 namespace {

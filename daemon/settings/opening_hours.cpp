@@ -13,7 +13,7 @@
 namespace yuragi {
 namespace {
 
-constexpr std::size_t kMinutesPerDay = 24 * 60;
+constexpr std::size_t kMinutesPerDay = 1440;
 constexpr std::size_t kDays = 7;
 constexpr std::array<std::string_view, kDays> kDayNames = {"Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"};
 
@@ -134,7 +134,7 @@ std::size_t OpeningHours::minute_of_week(UtcTime now) const {
   const auto since_1970 = zone_ != nullptr ? zone_->to_local(utc).time_since_epoch() : utc.time_since_epoch();
   // The first day of 1970 was a Thursday, three days after a Monday. A time before that counts from its week, too.
   constexpr auto kWeek = static_cast<std::int64_t>(kMinutesPerWeek);
-  const std::int64_t minutes = std::chrono::floor<std::chrono::minutes>(since_1970).count() + 3 * 24 * 60;
+  const std::int64_t minutes = std::chrono::floor<std::chrono::minutes>(since_1970).count() + std::int64_t{3} * 24 * 60;
   return static_cast<std::size_t>((minutes % kWeek + kWeek) % kWeek);
 }
 

@@ -48,7 +48,7 @@ Result<ShapingConfig, std::vector<ParameterError>> shaping_config_of(const Param
                                      .fade_s = values.number("fade"),
                                      .turbulence_intensity = wind.default_turbulence_intensity,
                                      .length_m = wind.gust_length_m()},
-                        .hours = std::move(*hours),
+                        .hours = *hours,
                         .site_file = values.text("site_file")};
   if (ceiling_m_s > 0.0) shaping.settings.ceiling = {.from_m_s = ceiling_m_s, .most_m_s = ceiling_most_m_s};
   return shaping;

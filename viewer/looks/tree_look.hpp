@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/pose/tree_kinematics.hpp"
+#include "viewer/gl/gl.hpp"
 #include "viewer/looks/look.hpp"
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/tree_parts.hpp"

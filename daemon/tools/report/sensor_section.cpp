@@ -10,6 +10,7 @@
 #include "daemon/settings/site_octaves.hpp"
 #include "daemon/tools/report/report_text.hpp"
 #include "daemon/tools/report/wind_rose.hpp"
+#include "engine/wind/turbulence/site_spectrum.hpp"
 
 namespace yuragi {
 namespace {
