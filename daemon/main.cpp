@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
         "Yuragi: real wind moves grass, cloth, trees and flames.\nStart with `yuragi run`, which needs neither sensor "
         "nor configuration, and show the scenes with `yuragi-viewer`.",
         "yuragi"};
-    app.set_version_flag("--version", std::string("yuragi ") + kVersion);
+    app.set_version_flag("--version", with_version("yuragi"));
     app.require_subcommand(1);
     for (const Command* command : command_table()) command->add(app);
     try {

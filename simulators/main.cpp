@@ -15,7 +15,7 @@ constexpr int kExitUnavailable = 69;
 
 int run(int argc, char** argv) {
   CLI::App app{"Simulated wind sensors, with the protocols of real ones and with faults on demand.", "yuragi-sim"};
-  app.set_version_flag("--version", std::string("yuragi-sim ") + yuragi::kVersion);
+  app.set_version_flag("--version", yuragi::with_version("yuragi-sim"));
   app.require_subcommand(1);
   yuragi::sim::add_microphone_command(app);
   yuragi::sim::add_modbus_command(app);

@@ -60,7 +60,7 @@ void write_readings(WindlogWriter& writer, std::vector<RecordedSensor>& sensors,
   constexpr double kHour_s = 3600.0;
   const Instant start{MonoTime(std::chrono::hours(1)),
                       UtcTime(std::chrono::sys_days(std::chrono::year(2025) / 6 / 1) + std::chrono::hours(12))};
-  writer.begin_session({start, std::string("yuragi-sim ") + kVersion, ""}).value();
+  writer.begin_session({start, with_version("yuragi-sim"), ""}).value();
   for (RecordedSensor& sensor : sensors) sensor.id = writer.add_sensor(sensor.name, "simulated", "").value();
 
   const double duration_s = options.common.run.duration_s.value_or(kHour_s);

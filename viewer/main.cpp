@@ -15,7 +15,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 int run(int argc, char** argv) {
   using namespace yuragi;
   CLI::App app{"Shows the scenes that a Yuragi daemon streams.", "yuragi-viewer"};
-  app.set_version_flag("--version", std::string("yuragi-viewer ") + yuragi::kVersion);
+  app.set_version_flag("--version", yuragi::with_version("yuragi-viewer"));
   ViewerOptions options;
   add_options(app, options);
   try {

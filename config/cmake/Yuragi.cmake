@@ -59,8 +59,8 @@ function(yuragi_room folder)
 endfunction()
 
 # yuragi_kernel(yuragi_engine_pose strand_kernels.cpp)
-# Compiles a kernel file once for each SIMD row, together with the other kernels of the target in a unity build, with YURAGI_SIMD_ROW set to the row's name; engine/base/simd_row.hpp
-# chooses among them at start. Sanitizer builds have the base row alone.
+# Compiles a kernel file once for each SIMD row, together with the other kernels of the target in a unity build, with
+# YURAGI_SIMD_ROW set to the row's name; engine/base/simd_row.hpp chooses among them at start. Sanitizer builds have the base row alone.
 function(yuragi_kernel target source)
   set(rows x86_64)
   if(NOT YURAGI_SANITIZE)

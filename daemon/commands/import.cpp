@@ -71,7 +71,7 @@ class Target {
       : writer_(open(file)), configuration_(std::move(configuration)), is_watched_(isatty(STDERR_FILENO) != 0) {}
 
   void take(std::string_view sensor, const WindReading& reading) {
-    if (count_ == 0) must(writer_.begin_session({reading.time, std::string("yuragi ") + kVersion, configuration_}));
+    if (count_ == 0) must(writer_.begin_session({reading.time, with_version("yuragi"), configuration_}));
     auto known = sensors_.find(sensor);
     if (known == sensors_.end()) {
       const auto id = writer_.add_sensor(sensor, "import", "");

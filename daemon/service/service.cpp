@@ -28,9 +28,6 @@ namespace {
 
 namespace asio = boost::asio;
 
-std::string software() {
-  return std::string("yuragi ") + kVersion;
-}
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 
 }  // namespace
@@ -98,7 +95,7 @@ class Service::Io {
 
   TcpStreamSettings stream_settings(const Config& config) {
     TcpStreamSettings settings;
-    settings.hello.software = software();
+    settings.hello.software = with_version("yuragi");
     settings.hello.tick_rate_hz = rate_hz_;
     if (animation_) {
       settings.scenes = animation_->describe();
@@ -204,7 +201,8 @@ class Service::Io {
 };
 
 std::unique_ptr<Recorder> Service::Io::make_recorder(const Config& config, const std::filesystem::path& file) const {
-  RecordingInfo info{.started = clock_.now(), .software = software(), .configuration = to_toml(config), .sensors = {}};
+  RecordingInfo info{
+      .started = clock_.now(), .software = with_version("yuragi"), .configuration = to_toml(config), .sensors = {}};
   for (const SensorConfig& sensor : config.sensors) {
     info.sensors.push_back({sensor.name, std::string(sensor.driver->name), to_toml(sensor.values)});
   }

@@ -18,7 +18,7 @@ std::string duration_text(double duration_s) {
   };
   if (whole_s < 3600) return two(whole_s / 60, "min", whole_s % 60, "s");
   if (whole_s < 86400) return two(whole_s / 3600, "h", whole_s % 3600 / 60, "min");
-  return two(whole_s / 86400, whole_s < 172800 ? "day" : "days", whole_s % 86400 / 3600, "h");
+  return two(whole_s / 86400, whole_s / 86400 < 2 ? "day" : "days", whole_s % 86400 / 3600, "h");
 }
 
 }  // namespace yuragi

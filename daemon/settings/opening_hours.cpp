@@ -13,7 +13,7 @@
 namespace yuragi {
 namespace {
 
-constexpr std::size_t kMinutesPerDay = 1440;
+constexpr std::size_t kMinutesPerDay = std::size_t{24} * 60;
 constexpr std::size_t kDays = 7;
 constexpr std::array<std::string_view, kDays> kDayNames = {"Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"};
 

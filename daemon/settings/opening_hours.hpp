@@ -43,7 +43,7 @@ class OpeningHours {
   std::string until_text(UtcTime now) const;
 
  private:
-  static constexpr std::size_t kMinutesPerWeek = 10080;  // 7 x 24 x 60
+  static constexpr std::size_t kMinutesPerWeek = std::size_t{7} * 24 * 60;
 
   std::size_t minute_of_week(UtcTime now) const;
 

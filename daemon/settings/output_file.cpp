@@ -25,12 +25,10 @@ OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const s
   if (const auto status = std::filesystem::status(file_, error); std::filesystem::exists(status)) {
     if (std::filesystem::is_directory(status)) throw cannot_create(name + ": is a folder");
     if (!std::filesystem::is_regular_file(status)) throw cannot_create(name + ": is not a regular file");
-    if (force) file_ = std::filesystem::canonical(file_);
+    if (!force) throw cannot_create(name + ": exists already; --force overwrites it");
+    file_ = std::filesystem::canonical(file_);
   }
   working_path_ = file_.string() + ".part-" + std::to_string(getpid());
-  if (!force && std::filesystem::exists(file_, error)) {
-    throw cannot_create(name + ": exists already; --force overwrites it");
-  }
   // They would be taken for the new file's.
   for (const std::string_view suffix : side_suffixes_) {
     const std::string beside = file_.string() + std::string(suffix);

@@ -50,7 +50,7 @@ BenchScene bench_scene(std::string_view kind, const ParameterValues::Map& given)
 
 std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file) {
   const toml::table config = toml::parse_file(config_file.string());
-  const auto seed = config["seed"].value_or(std::uint64_t{0});
+  const auto seed = config["seed"].value_or(std::uint64_t{1});
   std::vector<BenchScene> scenes;
   for (const toml::node& entry : *config["scene"].as_array()) {
     toml::table scene = *entry.as_table();

@@ -9,6 +9,7 @@
 
 #include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/recording_sink.hpp"
 #include "tests/support/running_sensor.hpp"
@@ -28,12 +29,7 @@ class MicrophoneRig {
 
   void open(ParameterValues::Map given) {
     given.try_emplace("worker", built_path("bin/yuragi"));
-    for (const DriverDescription* driver : driver_table()) {
-      if (driver->name != "microphone") continue;
-      sensor_.emplace(driver->open(*ParameterValues::resolve(driver->parameters, given)));
-      return;
-    }
-    throw std::logic_error("no driver named microphone");
+    sensor_.emplace(driver_named("microphone").open(values_for("microphone", given)));
   }
   /// Ends the driver, as the daemon does.
   void close() {

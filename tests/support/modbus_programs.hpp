@@ -7,6 +7,7 @@
 
 #include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -15,10 +16,7 @@ namespace yuragi::test {
 /// The Modbus driver's sensor, as the daemon opens it.
 inline std::unique_ptr<Sensor> open_modbus_sensor(ParameterValues::Map given) {
   given.try_emplace("profile_dir", source_path("drivers/modbus/profiles"));
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == "modbus") return driver->open(*ParameterValues::resolve(driver->parameters, given));
-  }
-  throw std::logic_error("no driver named modbus");
+  return driver_named("modbus").open(values_for("modbus", given));
 }
 
 /// yuragi-sim modbus, on a free TCP port or as a serial port.

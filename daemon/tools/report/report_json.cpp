@@ -182,7 +182,7 @@ ordered_json json_of_sensor(const RecordingNumbers& recording, const SensorNumbe
 std::string report_json(const RecordingNumbers& recording, const std::string& source) {
   const bool has_any = recording.readings > 0;
   ordered_json json = {{"recording", source},
-                       {"software", std::string("yuragi ") + kVersion},
+                       {"software", with_version("yuragi")},
                        {"readings", recording.readings},
                        {"skipped", recording.skipped},
                        {"sessions", recording.sessions},

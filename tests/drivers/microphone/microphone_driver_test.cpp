@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/microphone/microphone_sensor.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/microphone_rig.hpp"
 
 namespace yuragi {
@@ -16,15 +17,8 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-const DriverDescription& microphone_driver() {
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == "microphone") return *driver;
-  }
-  throw std::logic_error("no driver named microphone");
-}
-
 std::unique_ptr<Sensor> open_with(const ParameterValues::Map& given) {
-  return microphone_driver().open(*ParameterValues::resolve(microphone_driver().parameters, given));
+  return driver_named("microphone").open(values_for("microphone", given));
 }
 
 TEST(MicrophoneDriver, SaysWhatIsWrongWithItsParameters) {

@@ -8,6 +8,7 @@
 #include <sys/file.h>
 
 #include "drivers/sensor/driver.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/modbus_servers.hpp"
 #include "tests/support/places.hpp"
@@ -22,13 +23,6 @@ using Bytes = ScriptedServer::Bytes;
 using testing::Each;
 using testing::HasSubstr;
 
-const DriverDescription& modbus_driver() {
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == "modbus") return *driver;
-  }
-  throw std::logic_error("no driver named modbus");
-}
-
 /// So long that even a machine under load answers; and, for what waits until the end of it, as short as can be.
 constexpr double kPatient_s = 5.0;
 constexpr double kImpatient_s = 0.2;
@@ -36,7 +30,7 @@ constexpr double kImpatient_s = 0.2;
 std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
   given.try_emplace("response_timeout", kPatient_s);
   given.try_emplace("profile_dir", test::source_path("drivers/modbus/profiles"));
-  return modbus_driver().open(*ParameterValues::resolve(modbus_driver().parameters, given));
+  return driver_named("modbus").open(values_for("modbus", given));
 }
 
 std::unique_ptr<Sensor> open_tcp(std::uint16_t port, const std::string& profile = "renke-rs-fsjt-rs-fxjt-n01",

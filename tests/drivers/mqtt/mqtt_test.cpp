@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 
 #include "drivers/sensor/driver.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
 #include "tests/support/mosquitto_broker.hpp"
 #include "tests/support/running_sensor.hpp"
@@ -23,15 +24,8 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-const DriverDescription& mqtt_driver() {
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == "mqtt") return *driver;
-  }
-  throw std::logic_error("no driver named mqtt");
-}
-
 std::unique_ptr<Sensor> open_mqtt_sensor(const ParameterValues::Map& given) {
-  return mqtt_driver().open(*ParameterValues::resolve(mqtt_driver().parameters, given));
+  return driver_named("mqtt").open(values_for("mqtt", given));
 }
 
 /// The driver on a thread of its own, connected to a broker.

@@ -10,6 +10,7 @@
 #include "drivers/bus/osc_message.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
 #include "tests/support/running_sensor.hpp"
 
@@ -21,15 +22,8 @@ using namespace std::string_literals;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-const DriverDescription& osc_driver() {
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == "osc") return *driver;
-  }
-  throw std::logic_error("no driver named osc");
-}
-
 std::unique_ptr<Sensor> open_osc_sensor(const ParameterValues::Map& given) {
-  return osc_driver().open(*ParameterValues::resolve(osc_driver().parameters, given));
+  return driver_named("osc").open(values_for("osc", given));
 }
 
 /// A message of two floats, as any sender makes it.

@@ -7,6 +7,7 @@
 
 #include "drivers/bus/usb_device.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
 
@@ -16,15 +17,8 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-const DriverDescription& usb_driver() {
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == "usb") return *driver;
-  }
-  throw std::logic_error("no driver named usb");
-}
-
 std::unique_ptr<Sensor> open_usb_sensor(const ParameterValues::Map& given) {
-  return usb_driver().open(*ParameterValues::resolve(usb_driver().parameters, given));
+  return driver_named("usb").open(values_for("usb", given));
 }
 
 TEST(UsbDriver, RefusesWhatCannotWorkTogether) {
@@ -66,7 +60,7 @@ TEST(UsbDriver, LooksForADeviceThatNobodyHasAndSaysSo) {
 }
 
 TEST(UsbDriver, FindsWithoutOpeningAnything) {
-  for (const FoundDevice& device : usb_driver().find()) {
+  for (const FoundDevice& device : driver_named("usb").find()) {
     EXPECT_THAT(device.what, HasSubstr("at USB port"));
     EXPECT_THAT(device.settings, HasSubstr("device = "));
     EXPECT_EQ(device.trouble.empty(), device.remedy.empty());

@@ -14,6 +14,7 @@
 #include "simulators/usb/hid_stations.hpp"
 #include "simulators/usb/umockdev_simulator.hpp"
 #include "tests/simulators/usb/steady_wind.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/live_sensor.hpp"
 #include "tests/support/simulator_thread.hpp"
 
@@ -27,13 +28,6 @@ using sim::steady_wind;
 constexpr double kPlayed_m_s = 8.6;
 constexpr double kPlayed_deg = 225.0;
 constexpr double kPace = 40.0;  // of the stations: a Fine Offset says its wind every 1.2 s and not every 48 s
-
-const DriverDescription& driver_named(std::string_view name) {
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == name) return *driver;
-  }
-  throw std::logic_error("no driver named " + std::string(name));
-}
 
 std::unique_ptr<Sensor> open_real(std::string_view driver_name, const ParameterValues::Map& given) {
   const DriverDescription& driver = driver_named(driver_name);

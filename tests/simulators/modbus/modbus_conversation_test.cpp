@@ -10,6 +10,7 @@
 
 #include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/driver_named.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/modbus_servers.hpp"
 #include "tests/support/places.hpp"
@@ -23,10 +24,7 @@ using testing::HasSubstr;
 std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
   given.try_emplace("response_timeout", 5.0);  // even a machine under load answers within it
   given.try_emplace("profile_dir", test::source_path("drivers/modbus/profiles"));
-  for (const DriverDescription* driver : driver_table()) {
-    if (driver->name == "modbus") return driver->open(*ParameterValues::resolve(driver->parameters, given));
-  }
-  throw std::logic_error("no driver named modbus");
+  return driver_named("modbus").open(values_for("modbus", given));
 }
 
 /// yuragi-sim on a free port.
