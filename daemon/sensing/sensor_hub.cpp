@@ -265,8 +265,8 @@ std::vector<NamedPlayer> SensorHub::players() {
   std::vector<NamedPlayer> players;
   for (const Channel& channel : channels_) {
     SensorRunner& runner = *channel.runner;
-    if (runner.player() == nullptr) continue;
-    players.push_back({channel.config.name, runner.player(), [&runner] { runner.wake(); }});
+    RecordingPlayer* const player = runner.player();
+    if (player != nullptr) players.push_back({channel.config.name, player, [&runner] { runner.wake(); }});
   }
   return players;
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "drivers/recording/recording_player.hpp"
 #include "drivers/sensor/sensor.hpp"
 #include "engine/base/spsc_ring.hpp"
 #include "engine/wire/wire.hpp"
@@ -67,8 +68,8 @@ class SensorRunner final : private SensorSink {
   /// Has the sensor polled at once, if it waits.
   void wake();
 
-  /// The sensor's controls, if it plays a recording.
-  RecordingPlayer* player() noexcept { return sensor_->player(); }
+  /// The sensor's controls, if it plays a recording; nullptr otherwise. They live as long as the runner.
+  RecordingPlayer* player() noexcept { return dynamic_cast<RecordingPlayer*>(sensor_.get()); }
 
   LinkReport link() const;
   /// How often the link has been told of; looks cheaply whether there is news.

@@ -25,7 +25,7 @@ struct PlayerReport {
   std::string refusal;                     ///< why the last order was not carried out; empty: it was
 };
 
-/// The controls of a sensor that plays a recording. Thread-safe: yes; orders are carried out on the sensor's thread, by
+/// The controls of a sensor that plays a recording: such a Sensor is one of these, too. Thread-safe: yes; orders are carried out on the sensor's thread, by
 /// its next poll().
 class RecordingPlayer {
  public:

@@ -84,7 +84,6 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
     return *next;
   }
 
-  RecordingPlayer* player() noexcept override { return this; }
 
   std::optional<std::uint64_t> order(const PlayerOrder& order) override {
     const std::lock_guard lock(mutex_);

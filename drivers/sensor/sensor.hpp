@@ -28,8 +28,6 @@ class SensorSink {
   virtual void raw(RawDirection direction, std::span<const std::uint8_t> message) = 0;
 };
 
-class RecordingPlayer;
-
 /// A sensor, real or not. It owns the connection to its device, and reconnects without limit.
 class Sensor {
  public:
@@ -42,10 +40,6 @@ class Sensor {
 
   /// Ends a poll() that waits, from another thread, so that shutting down is quick. No poll() follows.
   virtual void interrupt() noexcept {}
-
-  /// The controls (drivers/recording/recording_player.hpp) of one that plays a recording; nullptr for any other. Lives
-  /// as long as the sensor; may be asked for from another thread.
-  virtual RecordingPlayer* player() noexcept { return nullptr; }
 };
 
 }  // namespace yuragi

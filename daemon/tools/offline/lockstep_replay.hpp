@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "daemon/animation/animation.hpp"
 #include "daemon/settings/config.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 
@@ -20,8 +21,6 @@ struct LockstepResult {
   double wind_max_m_s = 0.0;
   std::uint64_t pose_hash = 0;  ///< over every pose of every tick: the same seed, log and build give the same hash
 };
-
-class Animation;
 
 /// Told of each tick, when it is done.
 using UseTick = std::function<void(double log_time_s, const Animation& animation)>;

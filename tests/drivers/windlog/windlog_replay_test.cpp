@@ -153,7 +153,7 @@ TEST(WindlogReplay, CarriesOutOrdersAndTellsHowItDoes) {
   const auto file = folder / "a.windlog";
   write_session(file, numbered_readings(100));
   const auto sensor = open_replay({{"file", file.string()}, {"loop", true}, {"seam", 0.0}});
-  RecordingPlayer& player = *sensor->player();
+  auto& player = dynamic_cast<RecordingPlayer&>(*sensor);
   ManualClock clock;
   RecordingSink sink;
   EXPECT_FALSE(player.report().position) << "nothing is open before the first poll";
@@ -196,15 +196,16 @@ TEST(WindlogReplay, OrdersWithoutEndAreRefused) {
   const test::TemporaryFolder folder;
   write_session(folder / "a.windlog", numbered_readings(100));
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
+  auto& player = dynamic_cast<RecordingPlayer&>(*sensor);
   int taken = 0;
-  while (taken < 100'000 && sensor->player()->order({.kind = PlayerOrder::Kind::kPause})) ++taken;
+  while (taken < 100'000 && player.order({.kind = PlayerOrder::Kind::kPause})) ++taken;
   EXPECT_GT(taken, 10);
   EXPECT_LT(taken, 1000);
   ManualClock clock;
   RecordingSink sink;
   sensor->poll(clock, sink);
-  EXPECT_EQ(sensor->player()->report().orders_done, static_cast<std::uint64_t>(taken));
-  EXPECT_TRUE(sensor->player()->order({.kind = PlayerOrder::Kind::kResume})) << "there is room again";
+  EXPECT_EQ(player.report().orders_done, static_cast<std::uint64_t>(taken));
+  EXPECT_TRUE(player.order({.kind = PlayerOrder::Kind::kResume})) << "there is room again";
 }
 
 TEST(WindlogReplay, RefusesAnOffsetFromUtcThatIsNone) {
