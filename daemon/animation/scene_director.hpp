@@ -16,19 +16,19 @@ namespace yuragi {
 class SceneDirector {
  public:
   /// Hands a cue over to the animation; false where it has no room for more.
-  using Hand = std::function<bool(const SceneCue&)>;
+  using SendCue = std::function<bool(const SceneCue&)>;
 
-  SceneDirector(const Config& config, Hand hand);
+  SceneDirector(const Config& config, SendCue send_cue);
 
   /// Does what a client asks for, or says why not. `is_local`: it asks from this machine.
-  wire::ControlReply answer(const wire::Control& wish, bool is_local);
+  wire::ControlReply handle(const wire::Control& control, bool is_local);
 
  private:
   wire::ControlReply refuse(std::string why) const;
 
   ControlPermission allowed_;
   std::vector<wire::SceneState> scenes_;
-  Hand hand_;
+  SendCue send_cue_;
 };
 
 }  // namespace yuragi

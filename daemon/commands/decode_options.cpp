@@ -75,9 +75,9 @@ void DecodeCommandOptions::set_line() {
   try {
     decoder.line = line_options_of(*values);
   } catch (const std::runtime_error& error) {
-    const std::string said = error.what();
-    const std::size_t colon = std::min(said.find(':'), said.size());
-    throw ExitError(kExitUsage, option_of(said.substr(0, colon)) + said.substr(colon));
+    const std::string text = error.what();
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    throw ExitError(kExitUsage, option_of(text.substr(0, colon)) + text.substr(colon));
   }
 }
 

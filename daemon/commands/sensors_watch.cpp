@@ -52,7 +52,7 @@ class Deadline {
 class Screen {
  public:
   virtual ~Screen() = default;
-  virtual wire::Subscribe wish() const = 0;
+  virtual wire::Subscribe subscription() const = 0;
   /// What the sensors are, at once and then about twice a second; `source` says whose word it is.
   virtual bool show_sensors(const wire::Sensors& sensors, const std::string& source) = 0;
   virtual bool show_message(const wire::RawTrace& /*trace*/) { return true; }
@@ -63,7 +63,7 @@ class TableScreen final : public Screen {
  public:
   explicit TableScreen(bool once) : once_(once) {}
 
-  wire::Subscribe wish() const override { return {.poses = false, .sensors = true, .client = "sensors watch"}; }
+  wire::Subscribe subscription() const override { return {.poses = false, .sensors = true, .client = "sensors watch"}; }
 
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
@@ -84,7 +84,7 @@ class RawScreen final : public Screen {
  public:
   explicit RawScreen(const WatchOptions& options) : options_(options) {}
 
-  wire::Subscribe wish() const override {
+  wire::Subscribe subscription() const override {
     return {
         .poses = false, .sensors = true, .client = "sensors watch --raw", .raw = true, .raw_sensor = options_.sensor};
   }
@@ -119,7 +119,7 @@ class RawScreen final : public Screen {
 
 void watch_daemon(StreamClient client, const std::string& address, const Deadline& deadline, Screen& screen) {
   const std::string source = "daemon at " + address;
-  client.subscribe(screen.wish());
+  client.subscribe(screen.subscription());
   while (!deadline.is_over()) {
     const auto message = client.receive(kSilenceTimeout);
     if (!message) throw FailureError(connection_lost(address, message.error()));
@@ -136,13 +136,14 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
   const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
   SensorHub hub(config, clock, gusts);
   WindShaper shaper(config, gusts);
-  const wire::Subscribe wish = screen.wish();
-  hub.trace(
-      [&](std::string_view sensor) { return wish.raw && (wish.raw_sensor.empty() || wish.raw_sensor == sensor); });
+  const wire::Subscribe subscription = screen.subscription();
+  hub.trace([&](std::string_view sensor) {
+    return subscription.raw && (subscription.raw_sensor.empty() || subscription.raw_sensor == sensor);
+  });
   const std::string source = "no daemon is running (" + why + "): reading the devices directly";
 
   // A table comes late enough to show something, a raw message at once.
-  MonoTime next_status = clock.now().mono + (wish.raw ? Nanoseconds::zero() : kTableInterval);
+  MonoTime next_status = clock.now().mono + (subscription.raw ? Nanoseconds::zero() : kTableInterval);
   while (!deadline.is_over()) {
     wire::Sensors sensors;
     sensors.wind = hub.advance();

@@ -239,13 +239,13 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
   WindAtPlaces at_places(gusts, std::move(places));
   Table table(out, at_places.places());
   const bool is_watched = isatty(STDERR_FILENO) != 0;
-  const auto told_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
+  const auto shown_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
   const auto run = run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
     DrivingWind wind{state, estimator.ground(), estimator.stroke()};
     if (options.shaped) shaping.shape(wind, true);
     table.add(time_s, wind.state, at_places.read(wind));
-    if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
+    if (is_watched && ++states % shown_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
   });
   const OfflineWindResult& result = run.value();
   table.end(options.output);

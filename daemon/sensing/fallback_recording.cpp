@@ -62,9 +62,9 @@ void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
   if (!silent_since_) silent_since_ = now;
   if (!runner_ && now - *silent_since_ >= after_ && now >= retry_at_) start(now);
   if (!runner_) return;
-  runner_->drain([&](const WindReading& said) {
+  runner_->drain([&](const WindReading& raw) {
     ++readings_;
-    const WindReading reading = calibration_.applied_to(said);
+    const WindReading reading = calibration_.applied_to(raw);
     const bool is_judged = judged_by_ && reading.quality != ReadingQuality::kSimulated;
     if (!is_judged || judge_.judge(reading)) use(reading);
   });

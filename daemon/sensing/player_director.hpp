@@ -28,7 +28,7 @@ class PlayerDirector {
   PlayerDirector(ControlPermission allowed, std::vector<NamedPlayer> players);
 
   /// Gives the orders that a client asks for, or says why not. `is_local`: it asks from this machine.
-  wire::ControlReply answer(const wire::PlayerWish& wish, bool is_local);
+  wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
 
  private:
   wire::PlayerState state_of(const NamedPlayer& named) const;

@@ -16,7 +16,7 @@ namespace yuragi {
 struct SensorEvidence {
   LinkState link = LinkState::kConnecting;
   std::string_view link_detail;              ///< the last thing that happened to the link
-  SourceReport said;                         ///< of all its readings, believed or not
+  SourceReport report;                       ///< of all its readings, believed or not
   bool is_replay = false;                    ///< its driver plays recordings
   ReadingFault fault = ReadingFault::kNone;  ///< what the judge holds of its readings
   Vote vote = Vote::kNone;                   ///< what the other sensors do

@@ -131,27 +131,27 @@ const WindState& SensorHub::advance() {
 }
 
 /// A reading as it was said: what it comes to, and whether it is to be believed.
-void SensorHub::take(std::size_t index, const WindReading& said) {
+void SensorHub::take(std::size_t index, const WindReading& raw) {
   Channel& channel = channels_[index];
-  WindReading reading = channel.config.calibration.applied_to(said);
+  WindReading reading = channel.config.calibration.applied_to(raw);
   // Nothing was said in the future: such a reading would make all that follow late ones.
   reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
   if (!is_plausible(reading)) {
     if (channel.config.judge) channel.judge.count_impossible(1);
     return;
   }
-  if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
+  if (channel.record.has_reading() && reading.time.mono < channel.record.last()->time.mono) return;
   if (reading.is_held) {
-    channel.said.hold(reading.time);
+    channel.record.hold(reading.time);
     estimator_.accept(index, reading);
     return;
   }
-  channel.said.take(reading);
+  channel.record.take(reading);
 
   // What a simulation makes up may be as steady as it likes.
   const bool is_judged = channel.config.judge && reading.quality != ReadingQuality::kSimulated;
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
-  if (makes_sense) vote_.hear(index, reading.time.mono, reading.speed_m_s);
+  if (makes_sense) vote_.accept(index, reading.time.mono, reading.speed_m_s);
   if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
     estimator_.accept(index, reading);
   } else {
@@ -170,11 +170,11 @@ void SensorHub::judge_refusals(Channel& channel) const {
 void SensorHub::compare(MonoTime now) {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     const Channel& channel = channels_[index];
-    const SourceReport said = channel.said.report(now, stale_intervals_);
+    const SourceReport report = channel.record.report(now, stale_intervals_);
     const bool is_measured =
-        !channel.config.driver->plays_recordings && said.last && said.last->quality != ReadingQuality::kSimulated;
-    const bool is_well = said.health == SourceHealth::kLive && channel.judge.fault() <= ReadingFault::kSpike;
-    vote_.seat(index, channel.is_compared && is_measured && is_well);
+        !channel.config.driver->plays_recordings && report.last && report.last->quality != ReadingQuality::kSimulated;
+    const bool is_well = report.health == SourceHealth::kLive && channel.judge.fault() <= ReadingFault::kSpike;
+    vote_.set_comparable(index, channel.is_compared && is_measured && is_well);
   }
   vote_.advance(now);
 }
@@ -183,7 +183,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
   const Channel& channel = channels_[index];
   return {.link = channel.link.state,
           .link_detail = channel.link.detail,
-          .said = channel.said.report(now, stale_intervals_),
+          .report = channel.record.report(now, stale_intervals_),
           .is_replay = channel.config.driver->plays_recordings,
           .fault = channel.judge.fault(),
           .vote = vote_.vote_on(index),
@@ -212,7 +212,7 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
   Channel& channel = channels_[index];
   const SensorEvidence evidence = evidence_of(index, now);
   const SensorState state = state_of(evidence);
-  const SensorState before = state_in(channel.state_gate.told());
+  const SensorState before = state_in(channel.state_gate.reported());
   if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
   const bool is_warning = is_trouble(state) || is_disputed(state, evidence.vote);
   const auto level = is_warning ? spdlog::level::warn : spdlog::level::info;

@@ -72,20 +72,20 @@ class SensorHub {
   bool is_finished() const;
 
  private:
-  static constexpr std::uint32_t kNothingTold = ~0U;
+  static constexpr std::uint32_t kNothingReported = ~0U;
 
   struct Channel {
     SensorConfig config;
     ReadingJudge judge;
     bool is_compared = false;
     std::unique_ptr<SensorRunner> runner;
-    SourceRecord said;  ///< calibrated, believed or not
+    SourceRecord record;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
     std::uint64_t not_believed = 0;  ///< plausible readings that were kept from the wind
     std::uint64_t impossible = 0;    ///< readings that were refused for what they said
     LinkReport link;                 ///< as of its last report
     std::uint64_t link_reports = 0;
-    ChangeGate link_gate{kNothingTold};
+    ChangeGate link_gate{kNothingReported};
     ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
     std::optional<WindReading> last_raw;  ///< before calibration
   };

@@ -36,8 +36,8 @@ struct SensorFacts {
 wire::SensorStatus sensor_status(const SensorFacts& facts);
 
 /// What the stream tells of the recording that is played while every sensor is silent: it counts as replayed once it
-/// speaks. `said`: of its source; `readings`: since it began. Pure.
+/// speaks. `report`: of its source; `readings`: since it began. Pure.
 wire::SensorStatus fallback_status(std::string_view name, std::string_view driver, const LinkReport& link,
-                                   const SourceReport& said, std::uint64_t readings);
+                                   const SourceReport& report, std::uint64_t readings);
 
 }  // namespace yuragi

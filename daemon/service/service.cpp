@@ -101,14 +101,14 @@ class Service::Io {
       settings.scenes = animation_->describe();
       refuse_what_no_client_takes(settings.scenes);
     }
-    settings.on_control = [this](const wire::Control& wish, bool is_local) { return answer(wish, is_local); };
+    settings.on_control = [this](const wire::Control& control, bool is_local) { return handle(control, is_local); };
     settings.max_clients = config.stream.max_clients;
     return settings;
   }
 
-  wire::ControlReply answer(const wire::Control& wish, bool is_local) {
-    if (wish.player) return players_.answer(*wish.player, is_local);
-    if (animation_) return director_.answer(wish, is_local);
+  wire::ControlReply handle(const wire::Control& control, bool is_local) {
+    if (control.player) return players_.handle(*control.player, is_local);
+    if (animation_) return director_.handle(control, is_local);
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
   }
 

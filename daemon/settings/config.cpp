@@ -164,17 +164,18 @@ class ConfigReader {
   template <class Type, class Error>
   Type typed(const toml::table& around, const std::string& prefix, std::string_view name, Result<Type, Error> made) {
     if (made) return std::move(*made);
-    tell(around, prefix, name, made.error());
+    add_error(around, prefix, name, made.error());
     return {};
   }
 
-  void tell(const toml::table& around, const std::string& prefix, std::string_view name,
-            const std::vector<ParameterError>& errors) {
-    for (const ParameterError& error : errors) tell(around, prefix, name, error);
+  void add_error(const toml::table& around, const std::string& prefix, std::string_view name,
+                 const std::vector<ParameterError>& errors) {
+    for (const ParameterError& error : errors) add_error(around, prefix, name, error);
   }
 
   /// A mistake that a default takes part in stands at the table.
-  void tell(const toml::table& around, const std::string& prefix, std::string_view name, const ParameterError& error) {
+  void add_error(const toml::table& around, const std::string& prefix, std::string_view name,
+                 const ParameterError& error) {
     const toml::node* node = around.get(name);
     const toml::table* table = node != nullptr ? node->as_table() : nullptr;
     const toml::node* value = table != nullptr ? table->get(error.name) : nullptr;

@@ -108,7 +108,7 @@ Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValue
                              .east_m = number_or_0("x"),
                              .south_m = number_or_0("z"),
                              .lead_m = lead_m,
-                             .teaches_site = !is_relative && !driver.plays_recordings,
+                             .fits_site = !is_relative && !driver.plays_recordings,
                              .averaging_s = values.number("averaging"),
                              .direction_step_deg = values.number("direction_step")};
 }

@@ -37,7 +37,7 @@ WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> no
 WindShaper::~WindShaper() {
   if (!site_file_) return;
   save_site();
-  tell_of_site_file();
+  log_site_file();
 }
 
 void WindShaper::keep_site_file(std::shared_ptr<SiteSpectrum> gusts) {
@@ -132,7 +132,7 @@ void WindShaper::log_ceiling(const WindShapingReport& report, MonoTime now) {
 }
 
 void WindShaper::save_site() {
-  tell_of_site_file();
+  log_site_file();
   const auto times_s = shaping_.memory().times_s();
   SiteMemory memory{.times_s = {times_s.begin(), times_s.end()}, .octaves_known_s = {}, .octaves_db = {}};
   if (gusts_) {
@@ -143,7 +143,7 @@ void WindShaper::save_site() {
 }
 
 /// What came of the last time that it was written.
-void WindShaper::tell_of_site_file() {
+void WindShaper::log_site_file() {
   if (const Failure failure = site_file_->wait(); !failure.message.empty()) {
     spdlog::warn("shaping: the site's wind could not be saved: {}", failure.message);
   }

@@ -41,7 +41,7 @@ class WindShaper {
   void log_changes();
   void log_ceiling(const WindShapingReport& report, MonoTime now);
   void save_site();
-  void tell_of_site_file();
+  void log_site_file();
   OpeningNews opening() const;
 
   WindShaping shaping_;

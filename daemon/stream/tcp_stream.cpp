@@ -111,9 +111,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     auto& lost = lost_traces_[trace.sensor];
     SharedBytes own = bytes;
     if (lost > 0) {
-      wire::RawTrace told = trace;
-      told.lost += lost;
-      own = share(wire::encode(told));
+      wire::RawTrace sent = trace;
+      sent.lost += lost;
+      own = share(wire::encode(sent));
     }
     lost = queue_.offer_trace(std::move(own)) ? 0 : lost + trace.lost + 1;
     write();
@@ -204,7 +204,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const wire::ControlReply reply =
         answer ? answer(wish, is_local_)
                : wire::ControlReply{.done = false, .message = "this daemon has no scenes", .scenes = {}};
-    const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kTell;
+    const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kReport;
     if (!wish.scene.empty() || changes_players) spdlog::info("client {} {}: {}", peer_, client_name_, reply.message);
     if (!queue_.offer_reply(share(wire::encode(reply)))) return end("it sends requests faster than it reads replies");
     write();

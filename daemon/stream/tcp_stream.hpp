@@ -18,7 +18,7 @@ struct TcpStreamSettings {
   std::size_t max_clients = 32;  ///< more are told so, and let go
   /// Answers a client's wish to show or hide a scene, or to control a recording; `is_local`: it asks from this machine.
   /// None: nothing is taken.
-  std::function<wire::ControlReply(const wire::Control& wish, bool is_local)> on_control = {};
+  std::function<wire::ControlReply(const wire::Control& control, bool is_local)> on_control = {};
   ClientLimits limits = {};
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are looked at
   std::function<MonoTime()> now = steady_now;                ///< what the limits are measured with

@@ -150,11 +150,11 @@ class MosquittoClient final : public MqttClient {
 
   static MosquittoClient& self_of(void* self) { return *static_cast<MosquittoClient*>(self); }
 
-  static void on_connect(mosquitto* client, void* self, int answer) {
+  static void on_connect(mosquitto* client, void* self, int reply) {
     MosquittoClient& me = self_of(self);
-    if (answer != 0) {
+    if (reply != 0) {
       me.refusal_ = fmt::format("{} refuses the connection ({}): check `user` and `password`", describe(me.wanted_),
-                                mosquitto_connack_string(answer));
+                                mosquitto_connack_string(reply));
       return;
     }
     for (const std::string& topic : me.wanted_.topics) {

@@ -40,7 +40,7 @@ void close_if_open(int& descriptor) noexcept {
   const int empty = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (empty >= 0 && dup2(empty, STDIN_FILENO) >= 0 && dup2(output, STDOUT_FILENO) >= 0) execv(words[0], words);
   const int error = errno;
-  [[maybe_unused]] const ssize_t told = write(failure, &error, sizeof error);
+  [[maybe_unused]] const ssize_t written = write(failure, &error, sizeof error);
   _exit(127);
 }
 

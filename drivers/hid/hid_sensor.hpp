@@ -28,8 +28,8 @@ class HidSensor final : public ReopeningSensor {
   void close() noexcept override;
 
  private:
-  Result<MonoTime, Failure> look_after(HidTalk& talk);
-  static std::string why_useless(HidTalk& talk);
+  Result<MonoTime, Failure> look_after(HidExchange& exchange);
+  static std::string why_useless(HidExchange& exchange);
 
   std::span<const StationKind> kinds_;
   HidPlace place_;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "drivers/bus/hid_device.hpp"
-#include "drivers/hid/hid_talk.hpp"
+#include "drivers/hid/hid_exchange.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
@@ -40,7 +40,7 @@ class HidStation {
 
   /// The next step of the protocol, no longer than the station's own time-out. On failure the device must be opened
   /// again; the text is the reason, empty if it is gone or takes nothing.
-  virtual Result<StationStep, Failure> step(HidTalk& talk) = 0;
+  virtual Result<StationStep, Failure> step(HidExchange& exchange) = 0;
 };
 
 /// When a station does what.

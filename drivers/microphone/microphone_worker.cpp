@@ -46,7 +46,7 @@ class Listener {
 
   /// Calls `use` with each block that the piece completes.
   template <class Use>
-  void hear(const AudioBlock& piece, Use&& use) {
+  void take(const AudioBlock& piece, Use&& use) {
     if (piece.lost_frames > 0) {
       lost_ += piece.lost_frames;
       analyser_.restart();
@@ -101,7 +101,7 @@ bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, c
     bool is_read = true;
     while (input.take(piece)) {
       last_sound = clock.now().mono;
-      listener->hear(piece, [&](const MicBlock& block) {
+      listener->take(piece, [&](const MicBlock& block) {
         is_read = is_read && write_all(output, encode_mic_frame(block, listener->hello()));
       });
     }

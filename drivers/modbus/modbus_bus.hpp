@@ -39,7 +39,7 @@ struct ModbusTrouble {
 /// ends that.
 class ModbusBus {
  public:
-  using Answer = Result<ModbusRegisters, ModbusTrouble>;
+  using Reply = Result<ModbusRegisters, ModbusTrouble>;
 
   ModbusBus(const ModbusLine& line, std::unique_ptr<ModbusConnection> connection);
 
@@ -61,8 +61,8 @@ class ModbusBus {
 
   /// Asks, and waits for the answer. The request's transaction is chosen here. Counts in `sink` what it refuses, and
   /// shows it each message.
-  Answer ask(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
-             const Clock& clock, SensorSink& sink);
+  Reply exchange(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
+                 const Clock& clock, SensorSink& sink);
 
   /// How many have asked and not been answered yet.
   std::size_t waiting_count() const;
@@ -74,9 +74,9 @@ class ModbusBus {
   class Turn;
 
   void close_line() noexcept;
-  Answer exchange(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
-                  SensorSink& sink);
-  ModbusTrouble fail(BusStatus status, bool heard_others, SensorSink& sink);
+  Reply transact(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
+                 SensorSink& sink);
+  ModbusTrouble fail(BusStatus status, bool received_others, SensorSink& sink);
   ModbusTrouble refuse(const ModbusRefusal& refusal, SensorSink& sink);
 
   const ModbusLine line_;

@@ -56,7 +56,7 @@ bool merge_two(const ModbusProfile& profile, std::vector<ModbusRead>& reads) {
 
 }  // namespace
 
-bool ModbusRead::tells(ModbusMeasure measure) const {
+bool ModbusRead::contains(ModbusMeasure measure) const {
   return std::ranges::find(measures, measure) != measures.end();
 }
 

@@ -16,7 +16,7 @@ struct ModbusRead {
   ModbusRequest request;
   std::vector<ModbusMeasure> measures;
 
-  bool tells(ModbusMeasure measure) const;
+  bool contains(ModbusMeasure measure) const;
 };
 
 /// The requests that read all that a profile knows, that for the speed first: as few as the profile allows, so that

@@ -47,12 +47,12 @@ class ProbedLine {
   Result<void, Failure> open() { return connection_->open(interruption_); }
 
   /// The registers, or what was wrong with the answer; kTimeout where there was none.
-  Registers ask(const ModbusRequest& request) {
+  Registers cached_exchange(const ModbusRequest& request) {
     const auto key = std::tuple(request.unit, request.function, request.address, request.count);
-    if (const auto known = answers_.find(key); known != answers_.end()) return known->second;
-    const Registers answer = exchange(request);
-    answers_.emplace(key, answer);
-    return answer;
+    if (const auto known = replies_.find(key); known != replies_.end()) return known->second;
+    const Registers reply = exchange(request);
+    replies_.emplace(key, reply);
+    return reply;
   }
 
  private:
@@ -80,13 +80,13 @@ class ProbedLine {
   const ModbusPatience patience_;
   const Interruption& interruption_;
   std::unique_ptr<ModbusConnection> connection_;
-  std::map<std::tuple<std::uint8_t, std::uint8_t, std::uint16_t, std::uint16_t>, Registers> answers_;
+  std::map<std::tuple<std::uint8_t, std::uint8_t, std::uint16_t, std::uint16_t>, Registers> replies_;
   std::uint16_t transaction_ = 0;
 };
 
 /// Does this answer come from a slave? A gateway's exception that none is there does not count.
-bool is_sign_of_life(const Registers& answer) {
-  return answer || (answer.error().why == Refusal::kException && !is_gateway_silence(answer.error().exception));
+bool is_sign_of_life(const Registers& reply) {
+  return reply || (reply.error().why == Refusal::kException && !is_gateway_silence(reply.error().exception));
 }
 
 /// Enters the value of one answer into `fit`. False: it is not plausible. A mark for "no value" does, but not in place
@@ -118,7 +118,7 @@ std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& pr
                 .direction_slave = {}};
   if (profile.direction) fit.direction_slave = profile.direction->slave;
   for (const ModbusRead& read : reads) {
-    const Registers registers = line.ask(read.request);
+    const Registers registers = line.cached_exchange(read.request);
     if (!registers || !take(profile, read, *registers, fit)) return std::nullopt;
   }
   return fit;
@@ -129,23 +129,23 @@ std::optional<ModbusFit> vane_fit_of(const NamedModbusProfile& named, std::uint8
   ModbusProfile profile = named.profile;
   profile.direction->slave = id;
   auto reads = plan_modbus_reads(profile, true);
-  const auto is_direction = [](const ModbusRead& read) { return read.tells(ModbusMeasure::kDirection); };
+  const auto is_direction = [](const ModbusRead& read) { return read.contains(ModbusMeasure::kDirection); };
   std::erase_if(reads, [&](const ModbusRead& read) { return !is_direction(read); });
   return fit_of(named.name, profile, reads, line);
 }
 
 /// Does a slave of this id answer? Devices that ignore requests for registers that they do not have are asked for those
 /// of their own profile, with its line settings.
-bool answers_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
+bool replies_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
   for (ModbusRequest knock : kKnocks) {
     knock.unit = id;
-    if (is_sign_of_life(line.ask(knock))) return true;
+    if (is_sign_of_life(line.cached_exchange(knock))) return true;
   }
   return std::ranges::any_of(plan.profiles, [&](const NamedModbusProfile& named) {
     if (has_side_effects(named.profile) || !is_home_of(settings, named.profile)) return false;
     const auto reads = plan_modbus_reads(named.profile);
     return std::ranges::any_of(reads, [&](const ModbusRead& read) {
-      return read.request.unit == id && is_sign_of_life(line.ask(read.request));
+      return read.request.unit == id && is_sign_of_life(line.cached_exchange(read.request));
     });
   });
 }
@@ -193,7 +193,7 @@ Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbe
     for (const std::uint8_t id : plan.ids) {
       if (interruption.is_set()) return hits;
       progress(settings, id, done++ / all);
-      if (!answers_at_all(id, settings, plan, line)) continue;
+      if (!replies_at_all(id, settings, plan, line)) continue;
       ++hits;
       found({.line = settings, .id = id, .fits = fits_of(id, settings, plan, line, interruption)});
     }

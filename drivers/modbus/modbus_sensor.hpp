@@ -43,9 +43,9 @@ class ModbusSensor final : public ReopeningSensor {
     std::string trouble;    ///< why the readings come without it; empty if they do not
   };
 
-  Result<MonoTime, Failure> ask_first(const Clock& clock, SensorSink& sink);
-  void ask_more(Read& read, const Clock& clock, SensorSink& sink);
-  ModbusBus::Answer ask(const Read& read, const Clock& clock, SensorSink& sink);
+  Result<MonoTime, Failure> read_first(const Clock& clock, SensorSink& sink);
+  void read_more(Read& read, const Clock& clock, SensorSink& sink);
+  ModbusBus::Reply exchange(const Read& read, const Clock& clock, SensorSink& sink);
   /// The next read of this round that is due, or the end of the round.
   MonoTime go_on(MonoTime now, SensorSink& sink);
   MonoTime next_round(MonoTime now) const;

@@ -152,21 +152,21 @@ class MqttSensor final : public ReopeningSensor {
     if (const auto connected = client_->connect(); !connected) return connected.error();
     direction_ = {};
     gust_ = {};
-    has_heard_ = false;
-    heard_at_ = clock.now().mono;
-    return heard_at_;
+    has_received_ = false;
+    received_at_ = clock.now().mono;
+    return received_at_;
   }
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
-    if (!has_heard_) report_unusable(sink, "waits for wind on " + where_ + ": a retained message is none");
+    if (!has_received_) report_unusable(sink, "waits for wind on " + where_ + ": a retained message is none");
     MqttMessage message;
     const MqttStatus status = client_->receive(message, kMqttWait);
     const Instant now = clock.now();
     if (status == MqttStatus::kInterrupted) return Failure{"interrupted"};
     if (status == MqttStatus::kLost) return Failure{client_->trouble()};
     if (status == MqttStatus::kMessage) take(message, now, sink);
-    if (now.mono - heard_at_ >= settings_.silence) {
-      has_heard_ = true;  // the status now reports more than waiting
+    if (now.mono - received_at_ >= settings_.silence) {
+      has_received_ = true;  // the status now reports more than waiting
       report_unusable(sink, fmt::format("no wind has come on {} for {:g} s: check that whoever publishes it runs",
                                         where_, seconds(settings_.silence)));
     }
@@ -206,8 +206,8 @@ class MqttSensor final : public ReopeningSensor {
     const auto plausible = checked(wind);
     if (!plausible) return sink.refused(plausible.error());
 
-    has_heard_ = true;
-    heard_at_ = now.mono;
+    has_received_ = true;
+    received_at_ = now.mono;
     report_connected(sink, where_);
     sink.reading({.time = now,
                   .speed_m_s = *plausible->speed_m_s,
@@ -225,8 +225,8 @@ class MqttSensor final : public ReopeningSensor {
   std::unique_ptr<MqttClient> client_;
   HeldValue direction_;
   HeldValue gust_;
-  bool has_heard_ = false;  // of the wind, since it connected
-  MonoTime heard_at_{};     // or since when it could have
+  bool has_received_ = false;  // of the wind, since it connected
+  MonoTime received_at_{};     // or since when it could have
 };
 
 /// Throws, naming the setting, for what can be neither subscribed to nor found.

@@ -117,21 +117,22 @@ class OscSensor final : public ReopeningSensor {
  protected:
   Result<MonoTime, Failure> open(const Clock& clock) override {
     if (const auto opened = port_->open(); !opened) return opened.error();
-    has_heard_ = false;
-    heard_at_ = clock.now().mono;
-    return heard_at_;
+    has_received_ = false;
+    received_at_ = clock.now().mono;
+    return received_at_;
   }
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
-    if (!has_heard_) report_unusable(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
+    if (!has_received_)
+      report_unusable(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
     const ByteArrival arrival = port_->read(buffer_, kOscWait);
     const Instant now = clock.now();
     if (arrival.status == ByteStatus::kInterrupted) return Failure{"interrupted"};
     if (arrival.status == ByteStatus::kLost || arrival.status == ByteStatus::kEnd) return Failure{"lost " + where_};
     if (arrival.status == ByteStatus::kForeign) sink.refused(Refusal::kNotMine);
     if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
-    if (now.mono - heard_at_ >= settings_.silence) {
-      has_heard_ = true;  // the status now reports more than waiting
+    if (now.mono - received_at_ >= settings_.silence) {
+      has_received_ = true;  // the status now reports more than waiting
       report_unusable(
           sink,
           fmt::format("no wind has come to {} for {:g} s: check that the sender runs, that it sends {} there, and "
@@ -155,8 +156,8 @@ class OscSensor final : public ReopeningSensor {
     if (!osc_address_matches(message.address, settings_.address)) return sink.refused(Refusal::kNotMine);
     const auto wind = wind_of(message, settings_);
     if (!wind) return sink.refused(wind.error());
-    has_heard_ = true;
-    heard_at_ = now.mono;
+    has_received_ = true;
+    received_at_ = now.mono;
     report_connected(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
     sink.reading({.time = now,
                   .speed_m_s = *wind->speed_m_s,
@@ -169,8 +170,8 @@ class OscSensor final : public ReopeningSensor {
   std::string where_;
   std::unique_ptr<BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(kLargestDatagram);
-  bool has_heard_ = false;  // of the wind, since it has the port
-  MonoTime heard_at_{};     // or since when it could have
+  bool has_received_ = false;  // of the wind, since it has the port
+  MonoTime received_at_{};     // or since when it could have
 };
 
 std::unique_ptr<Sensor> open_osc(const ParameterValues& values) {

@@ -72,11 +72,11 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
     auto next = play(now, sink);
     if (next) {
       back_off_ = Nanoseconds{0};
-      tell(sink);
+      report(sink);
     } else {
       // The player, if there is one, keeps its place.
       sink.link(LinkState::kConnecting, next.error().message);
-      told_.reset();
+      reported_.reset();
       back_off_ = back_off_ == Nanoseconds{0} ? kFirstBackOff : std::min(2 * back_off_, kMaxBackOff);
       next = now.mono + back_off_;
     }
@@ -147,12 +147,12 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   }
 
   /// Reports the link state when it has changed.
-  void tell(SensorSink& sink) {
+  void report(SensorSink& sink) {
     const Doing doing = player_->is_finished() ? Doing::kFinished
                         : player_->is_paused() ? Doing::kPaused
                                                : Doing::kPlaying;
-    if (doing == told_) return;
-    told_ = doing;
+    if (doing == reported_) return;
+    reported_ = doing;
     switch (doing) {
       case Doing::kPlaying:
         return sink.link(LinkState::kConnected, "playing " + file_.string());
@@ -175,7 +175,7 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   // Of the sensor's thread.
   std::optional<WindlogPlayer> player_;
   Nanoseconds back_off_{0};
-  std::optional<Doing> told_;
+  std::optional<Doing> reported_;
 
   mutable std::mutex mutex_;  // of what follows; rare, and never on the animation's way
   std::vector<PlayerOrder> waiting_;

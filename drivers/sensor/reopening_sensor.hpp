@@ -45,13 +45,13 @@ class ReopeningSensor : public Sensor {
   void report_finished(SensorSink& sink, const std::string& detail);
 
  private:
-  void tell(SensorSink& sink, LinkState state, const std::string& detail);
+  void report(SensorSink& sink, LinkState state, const std::string& detail);
 
   Backoff backoff_;
   bool is_open_ = false;
   MonoTime next_poll_{};
-  LinkState told_state_ = LinkState::kConnecting;
-  std::string told_detail_;
+  LinkState reported_state_ = LinkState::kConnecting;
+  std::string reported_detail_;
 };
 
 /// A seed for a sensor of this name: any number will do that differs among the sensors of an installation.

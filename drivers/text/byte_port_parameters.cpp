@@ -147,8 +147,8 @@ BytePortAddress byte_port_address_of(const ParameterValues& values) {
     if (address.path.empty()) throw std::runtime_error("file: is missing; transport file needs its path");
   }
 
-  const bool can_be_asked = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
-  if (values.number("poll_interval") > 0.0 && !can_be_asked) {
+  const bool can_be_polled = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
+  if (values.number("poll_interval") > 0.0 && !can_be_polled) {
     throw std::runtime_error("poll_interval: transport " + transport + " goes one way; a request needs serial or tcp");
   }
   return address;

@@ -141,9 +141,9 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   // Only the end of the line before it proves that a line is complete from its beginning on.
   const bool flows =
       settings.text.address.kind == BytePortKind::kSerial || settings.text.address.kind == BytePortKind::kTcpClient;
-  const bool is_asked = settings.text.poll_interval > Nanoseconds::zero();
-  settings.text.doubts_first_line = flows && !is_asked;
-  if (is_asked && settings.text.request.empty()) {
+  const bool is_polled = settings.text.poll_interval > Nanoseconds::zero();
+  settings.text.doubts_first_line = flows && !is_polled;
+  if (is_polled && settings.text.request.empty()) {
     throw std::runtime_error("request: is missing; poll_interval needs something to ask with");
   }
   return settings;

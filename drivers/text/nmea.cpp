@@ -121,9 +121,10 @@ std::string request_of(NmeaFormat format, const std::string& device) {
 /// How the device is asked, if it is.
 void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
   TextSensorSettings& text = settings.text;
-  const bool can_be_asked = text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
+  const bool can_be_polled =
+      text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
   // A Lufft sends nothing unasked.
-  if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_asked) {
+  if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_polled) {
     text.poll_interval = kUmbInterval;
   }
   if (text.poll_interval == Nanoseconds::zero() || !text.request.empty()) return;

@@ -63,10 +63,10 @@ class TextSensor : public ReopeningSensor {
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) final;
   void close() noexcept final;
 
-  bool is_asked() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
+  bool is_polled() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
   bool is_played() const noexcept;
-  bool ask_if_due(MonoTime now, SensorSink& sink);
-  void give_up_answer(MonoTime now, SensorSink& sink);
+  bool request_if_due(MonoTime now, SensorSink& sink);
+  void give_up_reply(MonoTime now, SensorSink& sink);
   Nanoseconds longest_read(MonoTime now) const;
 
   /// Makes lines of what has come. Returns whether a reading was published after which a file that is played has to
@@ -96,10 +96,10 @@ class TextSensor : public ReopeningSensor {
   bool skips_line_ = false;
   bool is_finished_ = false;
 
-  bool awaits_answer_ = false;
+  bool awaits_reply_ = false;
   MonoTime next_request_{};
-  MonoTime answer_due_{};
-  int unanswered_ = 0;
+  MonoTime reply_due_{};
+  int missed_replies_ = 0;
 
   MonoTime last_bytes_{};
   ArrivalWatch readings_;

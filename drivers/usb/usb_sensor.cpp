@@ -82,20 +82,20 @@ Result<MonoTime, Failure> UsbSensor::work(const Clock& clock, SensorSink& sink) 
     is_started_ = true;
   }
 
-  const MonoTime asked_at = clock.now().mono;
+  const MonoTime requested_at = clock.now().mono;
   const auto sample = daq_->sample(*device_, sink);
   const Instant now = clock.now();
   const MonoTime next = std::max(begin + settings_.period, now.mono);
   if (!sample) return suffer(sample.error(), next, sink);
   failures_ = 0;
-  take(*sample, asked_at, now, sink);
+  take(*sample, requested_at, now, sink);
   return next;
 }
 
-void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, SensorSink& sink) {
+void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now, SensorSink& sink) {
   // The device has counted at some moment since the request. Where bus or scheduler delayed it, the count is kept for
   // the next one: a thread that was held up is neither a lull nor a gust.
-  const Nanoseconds doubt = now.mono - asked_at;
+  const Nanoseconds doubt = now.mono - requested_at;
   const bool is_too_vague = kLeastTimesOfDoubt * (doubt + counted_doubt_) > now.mono - counted_at_;
   if (cup_.last_count && is_too_vague) return;
   counted_doubt_ = doubt;

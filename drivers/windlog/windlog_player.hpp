@@ -78,10 +78,10 @@ class WindlogPlayer {
 
  private:
   /// One place of the recording that is played. During a jump there are two.
-  struct Voice {
+  struct Playhead {
     WindlogCursor cursor;
     std::optional<LoggedReading> upcoming = {};
-    std::optional<WindReading> said = {};
+    std::optional<WindReading> current = {};
     MonoTime anchor{};  ///< when `anchor_log` is, or was, due
     Nanoseconds anchor_log{0};
     bool is_frozen = false;  ///< repeats its last reading
@@ -92,7 +92,7 @@ class WindlogPlayer {
     void take();
   };
 
-  WindlogPlayer(PlayerOptions options, Voice playing, Voice leaving, Nanoseconds begin);
+  WindlogPlayer(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin);
   Result<void, Failure> fetch();
   Result<bool, Failure> look_ahead(const Instant& now);
   bool is_at_seam() const;
@@ -100,7 +100,7 @@ class WindlogPlayer {
   Result<void, Failure> jump(MonoTime at, Nanoseconds target);
   void settle(MonoTime now);
   Result<MonoTime, Failure> hold(const Instant& now, const Use& use);
-  void say(MonoTime time, const Instant& now, const Use& use);
+  void publish(MonoTime time, const Instant& now, const Use& use);
   WindReading blended(MonoTime time);
   void follow_leaving(MonoTime time);
   void take_while_paused();
@@ -110,7 +110,7 @@ class WindlogPlayer {
   Nanoseconds place_of_day(const Instant& now);
 
   PlayerOptions options_;
-  Voice playing_, leaving_;
+  Playhead playing_, leaving_;
   double rate_;
   bool is_paused_;
   bool is_finished_ = false;

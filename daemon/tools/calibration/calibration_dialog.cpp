@@ -33,18 +33,18 @@ CalibrationDialog::CalibrationDialog(bool takes_yes)
       has_person_(!takes_yes && isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0),
       is_watched_(isatty(STDERR_FILENO) != 0) {}
 
-void CalibrationDialog::say(const std::string& text) const {
+void CalibrationDialog::print(const std::string& text) const {
   write_at_once(text + "\n");
 }
 
-void CalibrationDialog::wait_for_hands(const std::string& what) const {
-  say(what);
+void CalibrationDialog::wait_until_prepared(const std::string& what) const {
+  print(what);
   if (!has_person_) return;
   write_at_once("Press Enter when ready, Ctrl-C to quit: ");
   read_line();
 }
 
-double CalibrationDialog::ask_number(const std::string& question, double least, double most) const {
+double CalibrationDialog::prompt_number(const std::string& question, double least, double most) const {
   for (;;) {
     write_at_once(fmt::format("{} ({:g} to {:g}): ", question, least, most));
     const std::string line = read_line();

@@ -15,13 +15,13 @@ class CalibrationDialog {
   bool has_person() const noexcept { return has_person_; }
 
   /// A paragraph.
-  void say(const std::string& text) const;
+  void print(const std::string& text) const;
 
   /// What hands are needed for; then waits for Enter.
-  void wait_for_hands(const std::string& what) const;
+  void wait_until_prepared(const std::string& what) const;
 
   /// Asks for a number within a range, again and again. Only where there is somebody.
-  double ask_number(const std::string& question, double least, double most) const;
+  double prompt_number(const std::string& question, double least, double most) const;
 
   /// Asks whether to go on: Enter alone is no. Without a person it is what was given beforehand.
   bool confirm(const std::string& question) const;

@@ -44,22 +44,23 @@ class CalibrationSession {
   std::size_t part_count() const { return request_.parts.size(); }
   CalibrationDialog& dialog() { return dialog_; }
 
-  /// Listens for one stretch: the sensor is first, then the reference. `hands` says what has to be so first; it is not
-  /// asked of a recording.
-  Heard hear(const std::string& hands);
+  /// Listens for one stretch: the sensor is first, then the reference. `preparation` says what has to be so first; it
+  /// is not asked of a recording.
+  CollectedReadings collect(const std::string& preparation);
 
   /// Shows what changes, with `effect` below, asks, and writes it. Values that are as wanted already are left alone.
   void finish(std::vector<ConfigChange> wanted, const std::vector<std::string>& effect);
 
   /// The effect of new calibration values on what the sensor says, m/s (its unit counted): a table, line by line.
-  std::vector<std::string> speed_effect(std::span<const ConfigChange> wanted, std::span<const double> said_m_s) const;
+  std::vector<std::string> speed_effect(std::span<const ConfigChange> wanted,
+                                        std::span<const double> indicated_m_s) const;
 
  private:
   void open_source();
   std::size_t find(const std::string& name) const;
-  void beware(const Heard& heard) const;  ///< says what may be wrong with readings for a calibration
+  void beware(const CollectedReadings& collected) const;  ///< says what may be wrong with readings for a calibration
   ParameterValue value_now(const ConfigChange& change) const;
-  std::string progress_line(double elapsed_s, const Heard& heard) const;
+  std::string progress_line(double elapsed_s, const CollectedReadings& collected) const;
 
   CalibrationRequest request_;
   CalibrationDialog dialog_;
@@ -74,9 +75,9 @@ class CalibrationSession {
 };
 
 /// The speeds that a sensor said, m/s, its unit counted and nothing else of its calibration.
-std::vector<double> said_speeds_m_s(const HeardSensor& heard, const Calibration& calibration);
+std::vector<double> indicated_speeds_m_s(const SensorReadings& collected, const Calibration& calibration);
 
-/// Sensor and reference (hear() with one), as means over blocks that are long enough for the slower of the two, at
+/// Sensor and reference (collect() with one), as means over blocks that are long enough for the slower of the two, at
 /// least `least_block_s`. What the reference says is calibrated, and brought to the sensor's height where both are
 /// known.
 struct ReferencePairs {
@@ -84,7 +85,8 @@ struct ReferencePairs {
   std::vector<TimedSpeed> truth{};
   std::vector<CalibrationPoint> pairs{};
 };
-ReferencePairs pair_with_reference(const CalibrationSession& session, const Heard& heard, double least_block_s);
+ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
+                                   double least_block_s);
 
 /// Throws FailureError (kBadData) with what a fit says is wrong.
 [[noreturn]] void refuse(const Failure& failure);

@@ -22,13 +22,13 @@ struct TimedReading {
 };
 
 /// What one sensor said while it was listened to.
-struct HeardSensor {
+struct SensorReadings {
   std::vector<TimedReading> readings;  ///< in the order of time
   std::set<std::string> settings;      ///< of a recording: its driver's values, each different TOML text that there was
 };
 
 /// One of those for each sensor that is listened to, in the same order.
-using Heard = std::vector<HeardSensor>;
+using CollectedReadings = std::vector<SensorReadings>;
 
 /// How long to listen: live for a duration; of a recording a part, or all of it.
 struct Stretch {
@@ -43,7 +43,7 @@ class CalibrationSource {
  public:
   /// Told about four times a second while listening, and once at the end; of a recording after each so many readings,
   /// with the time that they are of.
-  using Progress = std::function<void(double elapsed_s, const Heard& so_far)>;
+  using Progress = std::function<void(double elapsed_s, const CollectedReadings& so_far)>;
 
   virtual ~CalibrationSource() = default;
 
@@ -53,7 +53,7 @@ class CalibrationSource {
 
   /// Listens, from now on. Live it waits for every sensor's first reading first. Fails where a sensor stays silent,
   /// the daemon ends, or the recording is damaged; ends in time whatever happens.
-  virtual Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) = 0;
+  virtual Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) = 0;
 };
 
 /// The sensors themselves: the running daemon's word where it listens at `address` and has all of them, else their

@@ -17,10 +17,10 @@ struct CsvImportReport {
   std::vector<std::string> columns;  ///< what was taken as what, a line each
   std::size_t rows = 0;              ///< below the header
   std::size_t taken = 0;
-  std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsTold
+  std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsListed
 
   std::size_t refused() const { return rows - taken; }
-  static constexpr std::size_t kMaxRefusalsTold = 5;
+  static constexpr std::size_t kMaxRefusalsListed = 5;
 };
 
 /// Takes each reading, with the name of its sensor. May throw; the import ends with that.

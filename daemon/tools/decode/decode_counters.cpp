@@ -55,17 +55,17 @@ class Mcc1208Decoder final : public UnitDecoder {
 
   void take(const RawUnit& unit, const Sink& sink) override {
     const ByteSpan setup = unit.request.size() == 8 ? unit.request : ByteSpan();
-    const bool is_asked = !setup.empty();
-    if (is_asked && setup[1] == mcc1208_read_calibration(0).request) return take_calibration(unit, sink);
+    const bool is_polled = !setup.empty();
+    if (is_polled && setup[1] == mcc1208_read_calibration(0).request) return take_calibration(unit, sink);
 
-    const bool is_analog = is_asked ? setup[1] == mcc1208_read_analog(0).request : unit.bytes.size() == 2;
+    const bool is_analog = is_polled ? setup[1] == mcc1208_read_analog(0).request : unit.bytes.size() == 2;
     CounterReply reply;
     std::optional<Refusal> why;
     if (is_analog) {
       const auto analog = decode_mcc1208_analog(unit.bytes);
       if (analog) {
         reply.volts =
-            mcc1208_volts(*analog, is_asked ? calibrations_[setup[2] % kMcc1208Inputs] : Mcc1208Calibration{});
+            mcc1208_volts(*analog, is_polled ? calibrations_[setup[2] % kMcc1208Inputs] : Mcc1208Calibration{});
       } else {
         why = analog.error();
       }

@@ -49,8 +49,8 @@ std::string RawHexLines::line_of(const wire::RawTrace& trace) {
     request_ = trace.bytes;
     return {};
   }
-  const bool is_answer = !request_.empty() && sensor_ == trace.sensor;
-  std::string line = is_answer ? to_hex(request_) + " | " : "";
+  const bool is_reply = !request_.empty() && sensor_ == trace.sensor;
+  std::string line = is_reply ? to_hex(request_) + " | " : "";
   request_.clear();
   return line + to_hex(trace.bytes) + "\n";
 }

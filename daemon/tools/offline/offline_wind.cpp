@@ -7,9 +7,9 @@ namespace {
 
 /// Readings as the estimator is to hear them: each with its log time, less those of the gaps, and averaged where a
 /// slower sensor is asked for.
-class HeardReadings {
+class PlayedReadings {
  public:
-  HeardReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
+  PlayedReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
       : playback_(playback), options_(options) {}
 
   /// Nothing at the end, and where the recording cannot be read on.
@@ -88,7 +88,7 @@ class OfflineSource {
   const std::optional<Failure>& failure() const { return readings_.failure(); }
 
   /// Tells the estimator what was said up to `now`, as source `number`.
-  void tell(BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
+  void feed(BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
     for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
       if (!judge(*next_)) {
         ++result.withheld;
@@ -104,7 +104,7 @@ class OfflineSource {
     return !is_judged_ || reading.quality == ReadingQuality::kSimulated || judge_.judge(reading);
   }
 
-  HeardReadings readings_;
+  PlayedReadings readings_;
   bool is_judged_;
   ReadingJudge judge_;
   std::optional<WindReading> next_;
@@ -123,7 +123,7 @@ Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playba
   for (bool goes_on = has_more(); goes_on; ++result.states) {
     const double time_s = static_cast<double>(result.states) / options.rate_hz;
     const MonoTime now(from_seconds(time_s));
-    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].tell(estimator, i, now, result);
+    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].feed(estimator, i, now, result);
     for (const OfflineSource& source : sources) {
       if (source.failure()) return *source.failure();
     }

@@ -136,7 +136,7 @@ std::string Figures::event_titles(int height_px) const {
 PlotPanel Figures::speed_panel() const {
   PlotCurve band{.title = "lowest to highest", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
   PlotCurve mean{.title = "speed", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
-  PlotCurve gust{.title = sensor_.told_gust_m_s ? "gust reported by the sensor" : "3 s gust",
+  PlotCurve gust{.title = sensor_.reported_gust_m_s ? "gust reported by the sensor" : "3 s gust",
                  .style = PlotStyle::kLine,
                  .x = {},
                  .y = {},

@@ -175,11 +175,11 @@ struct SensorNumbers {
   double interval_s = 0.0;  ///< the median; 0 for fewer than two readings
   double mean_m_s = 0.0, deviation_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
   double max_at_s = 0.0;
-  std::optional<double> told_gust_m_s;    ///< the strongest gust that the sensor itself told
-  std::optional<double> gust_3s_m_s;      ///< the highest mean over 3 s, where the interval is at most 1.5 s
-  std::optional<double> direction_deg;    ///< of the mean vector
-  std::optional<double> steadiness;       ///< length of the mean vector over the mean speed, 0 to 1
-  std::optional<double> integral_time_s;  ///< of the speed: its autocorrelation, integrated to its first zero
+  std::optional<double> reported_gust_m_s;  ///< the strongest gust that the sensor itself told
+  std::optional<double> gust_3s_m_s;        ///< the highest mean over 3 s, where the interval is at most 1.5 s
+  std::optional<double> direction_deg;      ///< of the mean vector
+  std::optional<double> steadiness;         ///< length of the mean vector over the mean speed, 0 to 1
+  std::optional<double> integral_time_s;    ///< of the speed: its autocorrelation, integrated to its first zero
 
   std::array<StateTotal, kRecordedStates> states{};
   std::vector<StateEvent> events;  ///< of each state the longest kMaxEvents, by time

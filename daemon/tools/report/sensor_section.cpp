@@ -27,15 +27,15 @@ std::string speed_text(double speed_m_s) {
 }
 
 double gust_of(const SensorNumbers& sensor) {
-  return sensor.told_gust_m_s.value_or(sensor.gust_3s_m_s.value_or(sensor.max_m_s));
+  return sensor.reported_gust_m_s.value_or(sensor.gust_3s_m_s.value_or(sensor.max_m_s));
 }
 
 void add_tiles(PageWriter& page, const SensorNumbers& sensor) {
   page.add("<div class=\"tiles\">\n");
   page.tile(speed_text(sensor.mean_m_s), "mean speed");
-  page.tile(speed_text(gust_of(sensor)), sensor.told_gust_m_s ? "highest gust, reported by the sensor"
-                                         : sensor.gust_3s_m_s ? "highest gust (mean of 3 s)"
-                                                              : "highest reading");
+  page.tile(speed_text(gust_of(sensor)), sensor.reported_gust_m_s ? "highest gust, reported by the sensor"
+                                         : sensor.gust_3s_m_s     ? "highest gust (mean of 3 s)"
+                                                                  : "highest reading");
   if (sensor.direction_deg) {
     page.tile(fmt::format("{:.0f}°", *sensor.direction_deg),
               fmt::format("mean direction: from {}", compass_text(*sensor.direction_deg)));

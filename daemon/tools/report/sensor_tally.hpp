@@ -8,7 +8,7 @@
 #include "daemon/tools/report/gust_means.hpp"
 #include "daemon/tools/report/recording_survey.hpp"
 #include "daemon/tools/report/report_numbers.hpp"
-#include "daemon/tools/report/site_lesson.hpp"
+#include "daemon/tools/report/site_tally.hpp"
 #include "daemon/tools/report/speed_statistics.hpp"
 #include "daemon/tools/report/state_history.hpp"
 #include "daemon/tools/report/welch_spectrum.hpp"
@@ -52,14 +52,14 @@ class SensorTally {
   const ReportSettings& settings_;
   double begin_s_;
   double end_s_;
-  bool tells_gusts_;
+  bool has_gusts_;
   SensorNumbers numbers_;
 
   SourceRecord record_;
   ReadingJudge judge_;
   StateHistory states_;
   RecordedState state_ = RecordedState::kLive;
-  SiteLesson lesson_;
+  SiteTally lesson_;
   bool was_interrupted_ = false;  ///< since the last believed reading
 
   SpeedStatistics speeds_;

@@ -55,8 +55,8 @@ std::string short_number(double value) {
 
 /// Where the wind on top of the table is, and when its gusts come to the middle of the scenes; empty where it is there.
 std::string place_of_wind(const WindState& wind) {
-  if (!wind.is_place_told && wind.upwind_m == 0.0) return {};
-  std::string text = wind.is_place_told ? "at the sensors, " : "at the windward edge, ";
+  if (!wind.is_place_configured && wind.upwind_m == 0.0) return {};
+  std::string text = wind.is_place_configured ? "at the sensors, " : "at the windward edge, ";
   if (std::abs(wind.upwind_m) < 0.05) {
     text += "level with the middle of the scenes";
   } else {

@@ -19,9 +19,9 @@ struct HidMessage {
 
 /// A station's device, clock and sink, for the time of one poll(): every message is shown to the sink.
 /// Owns nothing. Thread-safe: no.
-class HidTalk {
+class HidExchange {
  public:
-  HidTalk(HidDevice& device, const Clock& clock, SensorSink& sink) : device_(device), clock_(clock), sink_(sink) {}
+  HidExchange(HidDevice& device, const Clock& clock, SensorSink& sink) : device_(device), clock_(clock), sink_(sink) {}
 
   MonoTime now() const noexcept { return clock_.now().mono; }
 

@@ -1,4 +1,4 @@
-#include "daemon/commands/ask_daemon.hpp"
+#include "daemon/commands/send_control.hpp"
 
 #include "daemon/commands/exit.hpp"
 #include "daemon/stream/stream_client.hpp"
@@ -11,7 +11,7 @@ constexpr auto kReplyTimeout = std::chrono::seconds(5);
 
 }  // namespace
 
-wire::ControlReply ask_daemon(const std::string& address, const std::string& client, const wire::Control& control) {
+wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control) {
   auto stream = StreamClient::connect(address, kControlConnectTimeout);
   if (!stream) throw ExitError(kExitUnavailable, stream.error().message + ". Is `yuragi run` running?");
   // What cannot be sent any more was refused: the daemon's greeting, which is still to be read, says why.
