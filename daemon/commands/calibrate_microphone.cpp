@@ -1,4 +1,4 @@
-// `yuragi calibrate microphone`: from how loud the wind is to how fast it blows, beside another anemometer.
+// `yuragi calibrate microphone`: fits the conversion of sound level to wind speed, beside another anemometer.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,7 +17,8 @@ namespace yuragi {
 namespace {
 
 constexpr double kMicBlock_s = 5.0;
-/// Of the readings of a block: with fewer the rest was a calm, whose level nobody knows.
+/// The least part of a block's readings that must have a level; otherwise it was mostly calm, where the level is
+/// unknown.
 constexpr double kLeastMeasuredPart = 0.5;
 
 struct MicrophoneOptions {
@@ -25,10 +26,10 @@ struct MicrophoneOptions {
   std::vector<double> speeds_m_s;
 };
 
-/// How the readings were made from levels, so that the levels can be had back.
+/// How readings were computed from levels: needed to compute the levels from readings.
 struct LevelConversion {
   MicCalibration calibration;
-  double noise_power = 0.0;  ///< of a fixed noise floor; 0: it was found while running
+  double noise_power = 0.0;  ///< of a fixed noise floor; 0: it was estimated while running
   MicFitKind kind = MicFitKind::kPowerLaw;
 
   bool operator==(const LevelConversion&) const = default;
@@ -53,7 +54,7 @@ void refuse_another_band(std::string_view key, double then_hz, double now_hz) {
                    key, then_hz, now_hz)});
 }
 
-/// Of a recording the settings that it was made with, else those of the configuration.
+/// For a recording, the settings that it was made with; else those of the configuration.
 LevelConversion level_conversion(const CalibrationSession& session, const SensorReadings& collected) {
   const MicLevelSettings now = mic_level_settings_of(session.sensor().values);
   std::vector<LevelConversion> all;
@@ -162,7 +163,7 @@ MicCalibration calibration_beside(CalibrationSession& session, LevelConversion& 
   return fit.calibration;
 }
 
-/// What levels are taken for, now and then.
+/// The speeds at some levels with the present and the new calibration: the lines of a table.
 std::vector<std::string> level_effect(const CalibrationSession& session, const MicCalibration& then, double noise_power,
                                       const std::vector<MicLevelAndSpeed>& pairs) {
   const MicCalibration now = mic_calibration_of(session.sensor().values);
@@ -202,7 +203,7 @@ void calibrate_microphone(const MicrophoneOptions& options) {
   const MicCalibration found = has_reference ? calibration_beside(session, conversion, pairs)
                                              : calibration_by_two_winds(session, options.speeds_m_s, conversion, pairs);
 
-  // All of it is in the driver's own parameters now: nothing of it may be done twice.
+  // The whole calibration is now in the driver's own parameters: [sensor.calibration] must not apply it twice.
   std::vector<ConfigChange> wanted;
   for (const auto& [key, value] : parameters_of(found)) wanted.push_back({"", key, value});
   wanted.push_back({"calibration", "unit", std::string("m/s")});

@@ -1,4 +1,4 @@
-// `yuragi calibrate north`: the vane's directions become those of the map.
+// `yuragi calibrate north`: determines the vane's offset from true north.
 #include <memory>
 #include <optional>
 
@@ -11,7 +11,7 @@
 namespace yuragi {
 namespace {
 
-constexpr double kLeastVaneSpeed_m_s = 1.0;  // below it a vane points where it was left
+constexpr double kLeastVaneSpeed_m_s = 1.0;  // below it a vane does not turn
 constexpr double kTurnBlock_s = 10.0;
 
 struct NorthOptions {
@@ -19,7 +19,7 @@ struct NorthOptions {
   std::optional<double> bearing_deg;
 };
 
-/// The turn from what the vane says to what is true, by a landmark that it is pointed to.
+/// The offset of the vane, by pointing it at a landmark of known bearing.
 double turn_by_landmark(CalibrationSession& session, double bearing_deg) {
   const CollectedReadings collected = session.collect(
       fmt::format("Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind "
@@ -47,7 +47,7 @@ std::vector<TimedDirection> directions_of(const SensorReadings& collected, const
   return directions;
 }
 
-/// The same, by another vane in the same wind.
+/// The offset, by comparison with another vane in the same wind.
 double turn_by_reference(CalibrationSession& session) {
   const CollectedReadings collected = session.collect("Both vanes must be in the same wind, of more than 1 m/s.");
   Calibration without_north = session.calibration();

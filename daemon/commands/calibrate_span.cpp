@@ -1,4 +1,4 @@
-// `yuragi calibrate span`: gain and offset, or a curve, against winds that are known.
+// `yuragi calibrate span`: fits gain and offset, or a curve, to known winds.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -16,7 +16,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kSpanBlock_s = 10.0;
-constexpr double kMostUnsteadiness = 0.3;  // standard deviation over mean, of a wind that is called steady
+constexpr double kMostUnsteadiness = 0.3;  // standard deviation over mean of a steady wind
 
 struct SpanOptions {
   CalibrationRequest request;
@@ -25,7 +25,7 @@ struct SpanOptions {
   bool wants_curve = false;
 };
 
-/// What the sensor says in a wind of this speed.
+/// The indicated speed in a wind of this true speed.
 CalibrationPoint measure_known_speed(CalibrationSession& session, double speed_m_s) {
   const CollectedReadings collected = session.collect(fmt::format(
       "Set the wind at the sensor to a steady {:g} m/s: with a fan or a wind tunnel, and an accurate meter next to it.",
@@ -47,7 +47,7 @@ CalibrationPoint measure_known_speed(CalibrationSession& session, double speed_m
   return {mean_m_s, speed_m_s};
 }
 
-/// The pairs that the options ask for.
+/// The pairs of indicated and true speed, as the options say.
 std::vector<CalibrationPoint> known_pairs(CalibrationSession& session, const SpanOptions& options) {
   if (!options.points.empty()) return value_or_refuse(parse_calibration_curve(options.points));
   std::vector<CalibrationPoint> pairs;
@@ -64,7 +64,7 @@ std::vector<CalibrationPoint> known_pairs(CalibrationSession& session, const Spa
   return beside.pairs;
 }
 
-/// A gain that is a unit in disguise.
+/// Hints at a wrong unit, where the gain is close to a conversion factor.
 void hint_at_unit(const CalibrationSession& session, CalibrationDialog& dialog, double gain) {
   if (session.calibration().unit_m_s != 1.0) return;
   for (const SpeedUnit& unit : kSpeedUnitTable) {
@@ -102,7 +102,7 @@ void check_options(const SpanOptions& options) {
   }
 }
 
-/// Speeds to show the effect at: those that were measured, from the slowest to the fastest, and what a storm would say.
+/// Indicated speeds at which the effect is shown: some within the measured range, and one of a storm.
 std::vector<double> shown_speeds(const std::vector<CalibrationPoint>& pairs) {
   const auto [low, high] = std::ranges::minmax(pairs, {}, &CalibrationPoint::measured_m_s);
   if (pairs.size() == 1) return {0.5 * low.measured_m_s, low.measured_m_s, 2.0 * low.measured_m_s};

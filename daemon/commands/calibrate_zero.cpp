@@ -1,4 +1,4 @@
-// `yuragi calibrate zero`: what the sensor says in still air becomes 0.
+// `yuragi calibrate zero`: determines the offset of the speed in still air.
 #include <memory>
 
 #include <fmt/format.h>

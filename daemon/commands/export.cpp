@@ -1,4 +1,4 @@
-// `yuragi export`: a recording becomes a CSV file, or a copy of itself.
+// `yuragi export`: converts a recording to CSV, or copies it.
 #include <chrono>
 #include <cstdio>
 #include <memory>

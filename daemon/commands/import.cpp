@@ -1,4 +1,4 @@
-// `yuragi import`: a CSV file becomes a recording.
+// `yuragi import`: converts a CSV file to a recording.
 #include <array>
 #include <chrono>
 #include <fstream>
@@ -64,7 +64,7 @@ CsvImportOptions csv_options(const ImportOptions& options) {
   return csv;
 }
 
-/// Writes what the import finds to one session of a new recording.
+/// Writes the imported readings to one session of a new recording.
 class Target {
  public:
   Target(const std::filesystem::path& file, std::string configuration)
@@ -80,7 +80,7 @@ class Target {
     }
     must(writer_.append(known->second, reading));
 
-    // Transactions of a size that memory holds; a word now and then when it takes long.
+    // Transactions of bounded size; shows progress now and then when it takes long.
     constexpr std::size_t kRowsPerCommit = 100'000;
     if (++count_ % kRowsPerCommit == 0) {
       must(writer_.commit());

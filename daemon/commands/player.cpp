@@ -1,4 +1,4 @@
-// `yuragi player`: how the recordings that a running daemon plays do, and pausing, stepping and moving them.
+// `yuragi player`: shows and controls the recordings that a running daemon plays.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace yuragi {
 namespace {
 
-/// An order is carried out by the sensor's next poll, which is at once; unless its disk hangs.
+/// An order is carried out by the sensor's next poll, which follows at once unless its disk hangs.
 constexpr auto kOrderTimeout = std::chrono::seconds(5);
 constexpr auto kOrderPause = std::chrono::milliseconds(20);
 
@@ -51,7 +51,7 @@ void print_states(const std::vector<wire::PlayerState>& players) {
   for (const wire::PlayerState& player : players) fmt::print("{}", player_text(player));
 }
 
-/// Waits until each player has done what `given` says, and answers how they are then.
+/// Waits until each player has carried out its order in `given`, and returns their states then.
 std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& options,
                                                const std::vector<wire::PlayerState>& given) {
   const auto deadline = std::chrono::steady_clock::now() + kOrderTimeout;
@@ -92,7 +92,7 @@ void give_order(const PlayerCommandOptions& options) {
 
 using PlayerOptionsPointer = std::shared_ptr<PlayerCommandOptions>;
 
-/// Adds `yuragi player NAME`, with what all of them take.
+/// Adds `yuragi player NAME`, with the options that all of them have.
 CLI::App* add_action(CLI::App& player, const char* name, const char* help, const PlayerOptionsPointer& options) {
   CLI::App* command = player.add_subcommand(name, help);
   command

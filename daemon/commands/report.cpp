@@ -1,4 +1,4 @@
-// `yuragi report`: a recording becomes a page that a person reads.
+// `yuragi report`: makes an HTML page of a recording.
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -77,7 +77,7 @@ void write_text(const OutputFile& output, const std::string& name, const std::st
     throw ExitError(kExitCannotCreate, name + ": cannot be written; is the disk full, or the folder not writable?");
 }
 
-/// A word about how far it is, where somebody watches and it takes long.
+/// Shows progress on a terminal.
 class ProgressLine {
  public:
   void show(const std::string& text) {
@@ -95,7 +95,7 @@ class ProgressLine {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// What the gusts of a sensor are taken for: by --height, or by the calibration of the sensor of this name.
+/// The prior of a sensor's gusts: from --height, or from the calibration of the sensor of this name.
 TurbulencePrior prior_of(const Config& config, double height_m, const std::string& name) {
   BlendSourceSettings source;
   if (height_m == 0.0 && !config.wind.default_length_m) {
@@ -103,14 +103,14 @@ TurbulencePrior prior_of(const Config& config, double height_m, const std::strin
       if (sensor.name == name) height_m = sensor.heights.sensor_m.value_or(0.0);
     }
   }
-  // As it was recorded: not brought to another height.
+  // As recorded: not scaled to another height.
   if (height_m > 0.0) source.length_m = iec_length_scale_m(WindComponent::kAlong, height_m);
   return turbulence_prior({.climate = {.turbulence_intensity = config.wind.default_turbulence_intensity},
                            .length_m = config.wind.gust_length_m()},
                           source);
 }
 
-/// Says on the terminal, too, what may be pasted.
+/// Prints the lines for the configuration on the terminal, too.
 void print_site(const SensorNumbers& sensor) {
   if (!sensor.site) return;
   fmt::print(
@@ -129,7 +129,7 @@ void run_report(const ReportOptions& options) {
   if (!options.json.empty() && options.json == options.output) {
     throw ExitError(kExitUsage, "--json: is the name of the page; choose another file");
   }
-  // Before hours of work.
+  // Checked before hours of work.
   OutputFile page_file(options.output, options.force, windlog::kSideSuffixes);
   std::optional<OutputFile> json_file;
   if (!options.json.empty()) json_file.emplace(options.json, options.force, windlog::kSideSuffixes);

@@ -1,4 +1,4 @@
-// `yuragi scene`: what a running daemon shows, and changing that.
+// `yuragi scene`: lists, shows and hides the scenes of a running daemon.
 #include <algorithm>
 #include <memory>
 

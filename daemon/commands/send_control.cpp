@@ -14,7 +14,7 @@ constexpr auto kReplyTimeout = std::chrono::seconds(5);
 wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control) {
   auto stream = StreamClient::connect(address, kControlConnectTimeout);
   if (!stream) throw ExitError(kExitUnavailable, stream.error().message + ". Is `yuragi run` running?");
-  // What cannot be sent any more was refused: the daemon's greeting, which is still to be read, says why.
+  // The daemon has closed the connection: its Hello, which is still to be read, says why.
   if (stream->subscribe({.poses = false, .client = client})) stream->send(control);
   while (true) {
     const auto message = stream->receive(kReplyTimeout);

@@ -6,8 +6,8 @@
 
 namespace yuragi {
 
-/// Sends a running daemon a Control and waits for its answer. `client`: how the command is called in the daemon's log.
-/// Throws ExitError or FailureError where no daemon answers, or it refuses the connection or speaks another protocol.
+/// Sends a Control to a running daemon and waits for the reply. `client`: the name of the command in the daemon's log.
+/// Throws ExitError or FailureError where no daemon replies, or it refuses the connection or has another protocol.
 wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control);
 
 }  // namespace yuragi

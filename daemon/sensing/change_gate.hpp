@@ -8,16 +8,17 @@
 
 namespace yuragi {
 
-/// Decides which changes of a value go into the log, so that it stays readable for months: a change must have held for
-/// a while. The first change is told at once, the next after 1 s, and each doubles what the next must hold, up to
-/// 10 min; each quiet hour halves it again. What flaps faster than that is told a few times an hour, and counted.
+/// Decides which changes of a value are logged: a new value must have lasted for a minimum time. The first change is
+/// reported at once, the second after 1 s; each report doubles the minimum for the next, up to 10 min, and each hour
+/// without a report halves it. So a value that flaps is reported a few times an hour, with the number of changes left
+/// out.
 /// Thread-safe: no. Realtime-safe: yes.
 class ChangeGate {
  public:
-  /// `reported`: what needs no telling, since it is so at the beginning.
+  /// `reported`: the initial value, which is not reported.
   explicit ChangeGate(std::uint32_t reported) : reported_(reported), seen_(reported) {}
 
-  /// The value as of now; answers whether it is to be told.
+  /// Takes the value at `now`; true where it is to be reported.
   bool offer(std::uint32_t value, MonoTime now) noexcept {
     if (value != seen_) {
       if (seen_ != reported_) ++passed_over_;
@@ -33,10 +34,10 @@ class ChangeGate {
     return true;
   }
 
-  /// How many changes before the one that was just told were not.
+  /// How many changes were left out before the last report.
   std::uint64_t passed_over() const noexcept { return reported_passed_over_; }
 
-  /// What was told last.
+  /// The value of the last report.
   std::uint32_t reported() const noexcept { return reported_; }
 
  private:

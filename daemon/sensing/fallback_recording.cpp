@@ -12,7 +12,7 @@
 namespace yuragi {
 namespace {
 
-// A recording that is not there is looked for again after so long.
+// A recording that cannot be opened is tried again after so long.
 constexpr Nanoseconds kRetryInterval = std::chrono::minutes(1);
 
 SensorConfig fallback_sensor(const FallbackConfig& fallback) {
@@ -93,7 +93,7 @@ void FallbackRecording::stop() {
                count_text(readings_, "reading"));
 }
 
-/// Whether it can be read is told once each time that it changes.
+/// Logs each change between readable and unreadable once.
 void FallbackRecording::log_changes() {
   const std::uint64_t reports = runner_->link_reports();
   if (reports == logged_link_reports_) return;

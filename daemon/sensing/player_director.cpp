@@ -28,7 +28,7 @@ PlayerOrder order_of(const wire::PlayerCommand& command) {
   return {.kind = PlayerOrder::Kind::kPause};
 }
 
-/// What a sensor is told, for the log and for a person.
+/// The order in words, for the log and for a person.
 std::string text_of(const wire::PlayerCommand& command) {
   switch (command.action) {
     case wire::PlayerAction::kReport:

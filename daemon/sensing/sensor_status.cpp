@@ -5,7 +5,7 @@
 namespace yuragi {
 namespace {
 
-/// What is told of a sensor and of the fall-back alike.
+/// The part of a status that sensors and the fall-back share.
 wire::SensorStatus status_of_source(std::string_view name, std::string_view driver, LinkState link,
                                     const SourceReport& report) {
   wire::SensorStatus status;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLineInterval_s = 5.0;
 
-/// A line from the keyboard, without blanks around. Throws where there will be no more.
+/// A line from standard input, trimmed. Throws at its end.
 std::string read_line() {
   std::string line;
   if (!std::getline(std::cin, line)) {

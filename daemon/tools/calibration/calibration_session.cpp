@@ -34,8 +34,8 @@ std::string key_of(const ConfigChange& change) {
   return change.table.empty() ? change.key : change.table + "." + change.key;
 }
 
-/// The parameters of a driver that a recording was made with other values of, but for a microphone's own calibration,
-/// which is taken out of what it said.
+/// The driver's parameters whose values differ from those in the recording, except a microphone's own calibration,
+/// which is undone.
 std::set<std::string> settings_that_differ(const SensorConfig& sensor, const SensorReadings& collected) {
   const bool is_microphone = sensor.driver->name == std::string_view("microphone");
   std::set<std::string> keys;
@@ -50,7 +50,7 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Sen
   return keys;
 }
 
-/// What a sensor says of itself while it is listened to.
+/// The live values of a sensor.
 std::string live_text(const SensorConfig& sensor, const SensorReadings& collected) {
   if (collected.readings.empty()) return fmt::format("{}: waiting", sensor.name);
   const WindReading& last = collected.readings.back().reading;
@@ -164,7 +164,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const Config
   for (const ConfigChange& change : wanted) {
     if (!change.table.empty()) changed.set(change.key, change.value);
   }
-  // At the sensor: the way to the height of the scenes comes after, and does not change.
+  // At the height of the sensor: the height factor is applied afterwards, and does not change.
   Calibration now = calibration();
   Calibration then = calibration_of(changed).value();
   now.height_factor = then.height_factor = 1.0;
@@ -212,7 +212,7 @@ std::vector<double> indicated_speeds_m_s(const SensorReadings& collected, const 
 
 ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
                                    double least_block_s) {
-  // Heights count only where both are known: else the two are taken to stand side by side.
+  // Only where both heights are known; else the sensors are assumed to be side by side.
   const Calibration calibration = session.calibration();
   Calibration reference = session.reference()->calibration;
   const bool has_heights =
@@ -243,7 +243,7 @@ void refuse(const Failure& failure) {
 
 double rounded(double value, double step) noexcept {
   const double result = std::round(value / step) * step;
-  // The multiple's nearest decimal, so that it is written as 1.043 and not as 1.0430000000000001.
+  // The nearest decimal, so that it is written as 1.043 and not as 1.0430000000000001.
   const double scale = std::round(1.0 / step);
   return std::round(result * scale) / scale + 0.0;
 }

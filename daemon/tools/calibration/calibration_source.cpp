@@ -18,9 +18,9 @@ using SensorConfigs = std::vector<const SensorConfig*>;
 constexpr auto kDaemonConnectTimeout = std::chrono::seconds(2);
 constexpr auto kDaemonSilence = std::chrono::seconds(5);
 constexpr auto kDevicePause = std::chrono::milliseconds(20);
-constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station speaks every 48 s
+constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station sends every 48 s
 constexpr double kProgressInterval_s = 0.25;
-constexpr std::size_t kReadingsPerProgress = 200'000;  // a second or less
+constexpr std::size_t kReadingsPerProgress = 200'000;  // a second of work or less
 
 Failure unavailable(const std::string& message) {
   return {message, FailureKind::kUnavailable};
@@ -30,7 +30,7 @@ bool all_have_readings(const CollectedReadings& collected) {
   return std::ranges::none_of(collected, [](const SensorReadings& sensor) { return sensor.readings.empty(); });
 }
 
-/// The course of one live stretch: when it begins, how long it takes, when to tell of it.
+/// One live stretch: its beginning, its end, and its progress.
 class LiveStretch {
  public:
   LiveStretch(const SensorConfigs& sensors, double duration_s, const Clock& clock,
@@ -46,7 +46,7 @@ class LiveStretch {
     collected_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
-  /// Is it over? Fails where a sensor stays silent; `link_of` says what its link did last.
+  /// Is it over? Fails where a sensor stays silent; `link_of`: the last report of its link.
   template <class LinkOf>
   Result<bool, Failure> is_over(const LinkOf& link_of) {
     const double now_s = seconds(clock_.now().mono - begun_);
@@ -98,7 +98,7 @@ class DeviceSource final : public CalibrationSource {
 
   Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
-    for (const auto& runner : runners_) runner->drain([](const WindReading&) {});  // what came before
+    for (const auto& runner : runners_) runner->drain([](const WindReading&) {});  // discards earlier readings
     for (;;) {
       std::this_thread::sleep_for(kDevicePause);
       for (std::size_t index = 0; index < runners_.size(); ++index) {
@@ -123,7 +123,7 @@ const wire::SensorStatus* find_status(const wire::Sensors& all, const SensorConf
   return found != all.sensors.end() ? &*found : nullptr;
 }
 
-/// A client of the daemon that has asked for the sensors. Nothing where nobody answers.
+/// A client of the daemon, subscribed to the sensors. Nothing where no daemon replies.
 std::optional<StreamClient> connect_to_daemon(const std::string& address) {
   auto client = StreamClient::connect(address, kDaemonConnectTimeout);
   if (!client || !client->subscribe({.poses = false, .sensors = true, .client = "calibrate"})) return std::nullopt;
@@ -140,7 +140,7 @@ Result<wire::Sensors, Failure> next_sensors(StreamClient& client, const std::str
   }
 }
 
-/// The daemon that has the devices: it tells each sensor's last raw reading about twice a second.
+/// The daemon as the source: it sends each sensor's last raw reading about twice a second.
 class DaemonSource final : public CalibrationSource {
  public:
   DaemonSource(SensorConfigs sensors, std::string address, const Clock& clock)
@@ -150,7 +150,7 @@ class DaemonSource final : public CalibrationSource {
   bool is_live() const override { return true; }
 
   Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
-    // A connection of its own: an old one would hand out what was said while hands were busy.
+    // A new connection: an old one would deliver readings from before the stretch.
     auto client = connect_to_daemon(address_);
     if (!client) return unavailable("the daemon at " + address_ + " no longer answers");
     std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
@@ -164,7 +164,7 @@ class DaemonSource final : public CalibrationSource {
         const wire::SensorStatus* status = find_status(*all, *sensors_[index]);
         if (status == nullptr) continue;
         links[index] = status->detail;
-        // The first message may be about a reading from before.
+        // The first message may contain an older reading.
         const bool is_new = counted[index] && *counted[index] != status->readings && status->raw_speed_m_s;
         counted[index] = status->readings;
         if (is_new) live.add(index, reading_of(*status));
@@ -196,7 +196,7 @@ class RecordedSource final : public CalibrationSource {
   RecordedSource(SensorConfigs sensors, std::filesystem::path file)
       : sensors_(std::move(sensors)), file_(std::move(file)) {}
 
-  /// Can it be read, and has it all of the sensors?
+  /// Checks that it can be read and has all of the sensors.
   Result<void, Failure> check() const {
     const auto reader = opened();
     if (!reader) return reader.error();
@@ -268,7 +268,7 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfi
     } else if (status->readings > 0 && !status->raw_speed_m_s) {
       obstacle = "is an older version, which sends calibrated readings only";
     } else if (sensor->driver->name == std::string_view("microphone")) {
-      // Its readings have gone through gain and exponent, or the curve, as they were when the daemon began.
+      // Its readings were computed with the gain and exponent, or the curve, of when the daemon was started.
       obstacle = "uses the microphone, perhaps with another calibration than the file has now";
     }
     if (!obstacle.empty()) {

@@ -1,4 +1,4 @@
-// `yuragi decode modbus:PROFILE`: a request, which says what is asked, and its response.
+// `yuragi decode modbus:PROFILE`: a request and its response.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ struct RequestedRegisters {
   ModbusRequest request;
 };
 
-/// A request to read registers, of RTU or TCP by its form. Nothing for anything else.
+/// Parses a request to read registers, of RTU or TCP by its format. Nothing for anything else.
 std::optional<RequestedRegisters> requested_registers_of(ByteSpan bytes) {
   constexpr std::size_t kRtuRequest = 8;
   constexpr std::size_t kTcpRequest = 12;
@@ -39,7 +39,7 @@ std::optional<RequestedRegisters> requested_registers_of(ByteSpan bytes) {
   return reads && is_possible ? std::optional(requested) : std::nullopt;
 }
 
-/// The part of an answer that belongs to `quantity`; empty where it was not asked for.
+/// The part of a reply that belongs to `quantity`; empty where it was not requested.
 std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
                                             const ModbusRegisters& registers) {
   const std::size_t count = register_count(quantity.type);
@@ -74,7 +74,7 @@ class ModbusUnitDecoder final : public UnitDecoder {
   }
 
  private:
-  /// One reading of all that the answer holds. What is refused is told besides.
+  /// One reading of all quantities in the reply; refusals of single ones are reported, too.
   void describe_reply(const ModbusRequest& request, const ModbusRegisters& registers, const Sink& sink) const {
     UnitReading reading;
     bool holds_any = false;

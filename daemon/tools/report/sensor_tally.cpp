@@ -10,19 +10,19 @@
 namespace yuragi {
 namespace {
 
-/// Points of the scatter of directions.
+/// The number of points in the scatter plot of directions.
 constexpr double kDirectionPoints = 1500.0;
 constexpr double kDay_s = 86400.0;
 
-/// A segment is a quarter of the longest run at most, so that several make a mean; longer than about an hour is
-/// weather.
+/// A segment is at most a quarter of the longest run, so that several are averaged, and at most about an hour: slower
+/// changes are weather.
 constexpr std::uint64_t kLeastSegment = 64;
 constexpr std::uint64_t kMostSegment = 1 << 15;
 constexpr double kLongestSegment_s = 4100.0;
-/// The autocorrelation is that of half an hour, where there is so much.
+/// The autocorrelation is that of half an hour, where runs are long enough.
 constexpr double kCorrelationBlock_s = 1800.0;
 constexpr double kMostCorrelationSamples = 1 << 17;
-/// Fewer readings with a direction than this, and only the speed is analysed.
+/// With a smaller part of readings with a direction only the speed is analysed.
 constexpr double kMostlyDirected = 0.9;
 
 RecordedState state_of(ReadingFault fault) {
@@ -91,7 +91,7 @@ std::size_t SensorTally::bin_of(double time_s) const {
 }
 
 std::size_t SensorTally::hour_of(UtcTime moment) {
-  // No zone changes its offset but on a quarter of an hour.
+  // Time zones change their offset only on a quarter of an hour.
   const auto quarter =
       std::chrono::floor<std::chrono::duration<std::int64_t, std::ratio<900>>>(moment.time_since_epoch());
   if (known_quarter_ != quarter.count()) {
@@ -117,7 +117,7 @@ void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   WindReading played = reading;
   played.time.mono = MonoTime(log_time);
 
-  // How was it since the last reading? Of a sensor that has spoken once the record knows no interval yet.
+  // The state since the last reading. After a single reading the record has no interval yet.
   const double patience_s = std::max(1.0, settings_.stale_intervals * numbers_.interval_s);
   if (!record_.has_reading()) {
     if (time_s - begin_s_ > patience_s) mark(RecordedState::kStale, begin_s_, time_s);
@@ -134,7 +134,7 @@ void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   ++numbers_.readings;
   ++numbers_.quality.at(static_cast<std::size_t>(reading.quality));
 
-  // What a simulation makes up is not judged, as in the daemon: it may be as steady as it likes.
+  // As in the daemon, simulated readings are not judged: they may be constant.
   const bool is_judged = reading.quality != ReadingQuality::kSimulated;
   const bool is_believed = !is_judged || judge_.judge(played);
   state_ = is_judged ? state_of(judge_.fault()) : RecordedState::kLive;
@@ -213,7 +213,7 @@ void SensorTally::add_to_bin(double time_s, const WindReading& reading, const st
 }
 
 SensorNumbers SensorTally::finish() {
-  // From its last reading to the end of the recording: had it fallen silent?
+  // From its last reading to the end of the recording it may have been silent.
   const MonoTime end(from_seconds(end_s_));
   if (record_.has_reading() && end_s_ > numbers_.last_s) {
     const bool is_live = record_.is_live(end, settings_.stale_intervals);

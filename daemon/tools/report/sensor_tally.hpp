@@ -17,19 +17,19 @@
 
 namespace yuragi {
 
-/// How a recording is judged, and where its hours are counted.
+/// How a recording is judged, and the zone of its local time.
 struct ReportSettings {
   LogRange range;
   std::vector<std::string> sensors;  ///< by name; none: all
   double stale_intervals = 5.0;      ///< [wind] stale_intervals
   JudgeSettings judge;
-  /// What the gusts of a sensor of this name are taken for; none: TurbulencePrior's own.
+  /// The prior of the gusts for a sensor of this name; none: TurbulencePrior's default.
   std::function<TurbulencePrior(const std::string& sensor)> prior;
   /// Local time minus UTC at a moment; none: UTC.
   std::function<Nanoseconds(UtcTime)> utc_offset;
 };
 
-/// Gathers all numbers of one sensor in one pass, in memory that does not grow with the recording. Thread-safe: no.
+/// Computes all numbers of one sensor in one pass, in bounded memory. Thread-safe: no.
 class SensorTally {
  public:
   /// `begin_s` and `end_s`: of the whole recording, log time. `settings` must outlive the tally.
@@ -38,7 +38,7 @@ class SensorTally {
   /// Takes the sensor's next reading, in the order of log time.
   void add(Nanoseconds log_time, const WindReading& reading);
 
-  /// All that there is to say; once, after the last reading.
+  /// The numbers; to be called once, after the last reading.
   SensorNumbers finish();
 
  private:
@@ -75,7 +75,7 @@ class SensorTally {
   std::optional<WelchSpectrum> spectrum_;
   std::optional<IntegralTime> integral_time_;
 
-  std::optional<std::int64_t> known_quarter_;  ///< of an hour, of which the local hour is known
+  std::optional<std::int64_t> known_quarter_;  ///< of an hour, for which the local hour has been computed
   std::size_t known_hour_ = 0;
 };
 

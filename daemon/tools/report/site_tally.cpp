@@ -9,7 +9,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kGapOfIntervals = 3.0;
-/// As BlendSource has them: the means by which a difference is divided, and along which it is taken.
+/// As in BlendSource: memories of the mean speed by which differences are divided, and of the mean direction.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kDirectionMemory_s = 100.0;
 

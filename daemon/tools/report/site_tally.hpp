@@ -16,7 +16,7 @@ class SiteTally {
   /// The next believed reading; `wind`: with the last known direction; empty where there is none yet.
   void add(double time_s, double speed_m_s, const std::optional<WindVector>& wind);
 
-  /// Nothing where the sensor was too slow, or never there for long enough.
+  /// Nothing where the sensor is too slow, or was never live for long enough.
   std::optional<SiteNumbers> numbers() const;
 
  private:

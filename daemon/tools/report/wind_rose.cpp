@@ -18,7 +18,7 @@ constexpr double kMiddle_px = kSize_px / 2.0;
 constexpr double kRadius_px = 195.0;
 /// A disc in the middle for the calm; wedges begin at its edge.
 constexpr double kCalmRadius_px = 26.0;
-/// So much of its sector's angle a wedge fills.
+/// The part of its sector's angle that a wedge fills.
 constexpr double kFill = 0.86;
 
 struct RosePoint {
@@ -93,7 +93,7 @@ std::string draw_wind_rose(const WindRose& rose) {
     }
   }
 
-  // The rings' shares stand above the wedges, between two of them; the calm in the middle.
+  // The rings' labels are drawn over the wedges, between two of them; the calm in the middle.
   for (int ring = 1; ring <= kRings; ++ring) {
     const double share = outer * ring / kRings;
     const RosePoint place = rose_point(kCalmRadius_px + share * px_per_share, 360.0 / kRoseSectors * 1.5);

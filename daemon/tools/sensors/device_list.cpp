@@ -69,7 +69,7 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
                    searched.empty() ? "" : fmt::format(" (looked for devices of {})", searched));
   }
 
-  // A sensor's name must be its own: the second of a driver is "modbus-2".
+  // Names of sensors must be unique: the second of a driver is "modbus-2".
   std::map<std::string_view, int> count_of;
   for (const auto& group : by_device(findings)) {
     fmt::format_to(out, "{}\n", group.front()->device.what);
@@ -83,7 +83,7 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
         fmt::format_to(out, "    [[sensor]]\n    name = \"{0}{1}\"\n    driver = \"{0}\"\n{2}", finding->driver->name,
                        number, indented(device.settings, "    "));
       }
-      // The same trouble is told once.
+      // The same trouble is shown once.
       const bool is_shown =
           shown != nullptr && shown->device.trouble == device.trouble && shown->device.remedy == device.remedy;
       if (device.trouble.empty() || is_shown) continue;
