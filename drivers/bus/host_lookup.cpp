@@ -14,7 +14,7 @@ namespace {
 using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
 using LookupResult = Result<Endpoints, Failure>;
 
-/// Asks the system. Blocks.
+/// The system's look-up. Blocks.
 LookupResult resolve_host(const std::string& host, std::uint16_t port) {
   boost::asio::io_context context;
   boost::asio::ip::tcp::resolver resolver(context);

@@ -97,7 +97,8 @@ class ProcessPort final : public BytePort {
       kill(process_, SIGKILL);
       killed_.push_back(std::exchange(process_, -1));
     }
-    // A killed process is gone within a moment, unless a driver of the system holds it: that one is asked after later.
+    // A killed process is gone within a moment, unless a driver of the system holds it: that one is checked again
+    // later.
     for (int turn = 0; turn < kReapTurns && !killed_.empty(); ++turn) {
       std::erase_if(killed_, [](pid_t process) { return waitpid(process, nullptr, WNOHANG) != 0; });
       if (!killed_.empty()) std::this_thread::sleep_for(kReapTurn);

@@ -1,6 +1,6 @@
-// AcuRite: sends nothing unasked; input report 1 is requested every 18 s. Its contents alternate, so that a report
-// that is the same as the one before is not new. It has no checksum: it is read twice, and must be the same both times.
-// Reports: drivers/decode/hid/acurite.hpp. Source: drivers/SOURCES.md S2.4.
+// AcuRite: sends nothing without a request; input report 1 is requested every 18 s. Its contents alternate, so that a
+// report that is the same as the one before is not new. It has no checksum: it is read twice, and must be the same both
+// times. Reports: drivers/decode/hid/acurite.hpp. Source: drivers/SOURCES.md S2.4.
 #include <algorithm>
 #include <array>
 
@@ -48,7 +48,7 @@ class AcuriteStation final : public HidStation {
     if (why != Refusal::kInvalid) {
       return fail(exchange, why, "sends reports that make no sense: unplug it and plug it in again");
     }
-    // The console is well, and has no sensor, or old numbers of one.
+    // The console works, but has no sensor, or old values of one.
     failures_ = 0;
     exchange.refuse(Refusal::kInvalid);
     return StationStep::unwell(next,

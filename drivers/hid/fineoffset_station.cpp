@@ -6,7 +6,7 @@
 // So it is read once for each time that it writes. That moment is determined at first, by reading a few times in one
 // period of 48 s until the record changes, and again every six hours, since clocks drift. A block is accepted when two
 // reads of it are equal; otherwise it was just being written. Each round of reading begins with the fixed block and
-// ends with the record, so that a late answer to one is not taken for the other.
+// ends with the record, so that a late reply to one is not taken for the other.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -33,7 +33,7 @@ constexpr Nanoseconds kFineOffsetWriting = 2s;    // until a block that was bein
 constexpr int kFineOffsetUnstable = 4;            // times that a block was not the same twice
 constexpr Nanoseconds kFineOffsetStalled = 240s;  // without any change: at the least it counts minutes
 constexpr int kFineOffsetGiveUp = 4;              // failures in a row; then it is opened again
-constexpr std::size_t kFineOffsetRecord = 16;     // what is alike in both models' records
+constexpr std::size_t kFineOffsetRecord = 16;     // the common part of both models' records
 
 using FineOffsetBytes = std::array<std::uint8_t, kFineOffsetBlock>;
 
@@ -50,7 +50,7 @@ class FineOffsetStation final : public HidStation {
     const MonoTime now = exchange.now();
     if (const MonoTime clear = keep_away(now); clear > now) return StationStep::same(clear);
 
-    // One block, which counts when it is like the one before.
+    // Read one block; it is accepted when it is equal to the read before.
     FineOffsetBytes block{};
     const BlockStatus status = read_block(exchange, addresses_[blocks_.size()], block);
     if (status == BlockStatus::kLost) return station_is_gone();
@@ -78,7 +78,7 @@ class FineOffsetStation final : public HidStation {
     unstable_ = 0;
   }
 
-  /// The first time from `time` on at which the console does not write, as far as we know.
+  /// The first time from `time` on at which the console does not write, as far as is known.
   MonoTime keep_away(MonoTime time) const {
     // Each can push the time into the other's window; there is room between them.
     for (int i = 0; i < 4; ++i) time = record_clock_.clear_from(sensor_clock_.clear_from(time));
@@ -107,7 +107,7 @@ class FineOffsetStation final : public HidStation {
     return StationStep::same(exchange.now() + timing_.paced(kFineOffsetWriting));
   }
 
-  /// Where the current record stands; whichever model's ring the address fits.
+  /// Reads the address of the current record, which is in the memory of either model.
   Result<StationStep, Failure> take_fixed_block(HidExchange& exchange) {
     auto fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh1080);
     if (!fixed) fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh3080);
@@ -144,12 +144,12 @@ class FineOffsetStation final : public HidStation {
 
   using Record = std::array<std::uint8_t, kFineOffsetRecord>;
 
-  /// What a look at the console shows, beside the one before.
+  /// The difference between two reads of the record.
   struct RecordChange {
     bool is_first = false;
-    bool has_moved = false;     ///< on to the next record
-    bool has_measured = false;  ///< and has written it into the current one
-    bool has_counted = false;   ///< a minute
+    bool has_moved = false;     ///< the console has begun the next record
+    bool has_measured = false;  ///< it has written a measurement
+    bool has_counted = false;   ///< its minutes have changed
 
     bool is_news() const { return is_first || has_moved || has_measured || has_counted; }
   };
@@ -163,7 +163,7 @@ class FineOffsetStation final : public HidStation {
             .has_counted = record[0] != last_record_[0]};
   }
 
-  /// Learns when the console writes, of what it wrote since the look before.
+  /// Updates the clocks of when the console writes from what has changed since the last read.
   void learn(const RecordChange& change, MonoTime now) {
     const bool is_turn_of_minute = change.has_moved || (change.has_counted && !change.has_measured);
     if (is_turn_of_minute) record_clock_.happened_between(last_read_, now);
@@ -171,12 +171,12 @@ class FineOffsetStation final : public HidStation {
     if (is_searching() && has_measured_alone && sensor_clock_.happened_between(last_read_, now)) end_search(now);
   }
 
-  /// The round is complete.
+  /// Evaluates a complete round.
   StationStep judge(const Record& record, HidExchange& exchange) {
     const MonoTime now = exchange.now();
     const RecordChange change = compare(record);
     learn(change, now);
-    // A look between two of the console's measurements is for its clock alone.
+    // A read between two of the console's measurements is for its clock alone.
     const bool is_due = change.is_first || change.has_measured || now - published_ >= timing_.paced(kFineOffsetEvery);
     const bool was_for_clock = is_searching() && !is_due;
     if (change.is_news()) last_news_ = now;
@@ -221,8 +221,8 @@ class FineOffsetStation final : public HidStation {
       record_clock_.forget();
       search_steps_ = 0;
     }
-    // Once an interval, and soon behind the console's writing, where we know when that is. A look that had to be put
-    // off does not put off the next one.
+    // Once per interval, and soon after the console writes, where that is known. A delayed read does not delay the
+    // next one.
     const Nanoseconds interval = std::max(timing_.interval_or(kFineOffsetEvery), timing_.paced(kFineOffsetEvery));
     due_ = std::max(due_, now - interval / 2) + interval;
     if (sensor_clock_.is_known()) due_ = sensor_clock_.behind(due_ - interval / 4);
@@ -240,23 +240,23 @@ class FineOffsetStation final : public HidStation {
   WriteClock sensor_clock_;  ///< when it writes what it measured
   WriteClock record_clock_;  ///< when it goes on to the next record: at the turn of a minute
 
-  // The round that is under way.
+  // The present round.
   std::vector<std::uint16_t> addresses_;
   std::vector<FineOffsetBytes> blocks_;  ///< that were read, of these addresses
   std::optional<FineOffsetBytes> last_block_;
   int unstable_ = 0;
   std::uint16_t position_ = 0;  ///< of the current record
 
-  // The round before.
+  // The last round.
   MonoTime last_read_{};
   Record last_record_{};
   std::uint16_t last_position_ = 0;
 
-  int search_steps_ = 0;  ///< looks of the search for the sensor clock
+  int search_steps_ = 0;  ///< reads in the search for the sensor clock
   MonoTime searched_{};   ///< when the last search ended
   MonoTime published_{};  ///< the last read whose wind was published
-  MonoTime last_news_{};  ///< the last look that found any change
-  MonoTime due_{};        ///< when the next look should be, if the console does not write just then
+  MonoTime last_news_{};  ///< the last read that found any change
+  MonoTime due_{};        ///< when the next read is due, unless the console writes just then
   int failures_ = 0;      ///< in a row
 };
 

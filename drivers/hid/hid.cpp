@@ -4,9 +4,9 @@
 //   station      USB id      sends                      wind every
 //   wmr100       0fde:ca01   by itself                  14 s       Oregon Scientific WMR100, WMR88, RMS300, RMS600 ...
 //   wmr300       0fde:ca08   while it gets a heartbeat  2.75 s     Oregon Scientific WMR300
-//   fineoffset   1941:8021   when asked                 48 s       Fine Offset WH1080, WH2080, WH3080 and their clones
-//   acurite      24c0:0003   when asked                 18 s       AcuRite 01025, 01035, 01036, 02032, 02064
-//   te923        1130:6801   when asked                 33 s       Hideki TE923: Meade, TFA Nexus, Mebus, IROX
+//   fineoffset   1941:8021   on request                48 s       Fine Offset WH1080, WH2080, WH3080 and their clones
+//   acurite      24c0:0003   on request                18 s       AcuRite 01025, 01035, 01036, 02032, 02064
+//   te923        1130:6801   on request                33 s       Hideki TE923: Meade, TFA Nexus, Mebus, IROX
 //
 // Source: drivers/SOURCES.md S2.
 #include <algorithm>

@@ -5,7 +5,7 @@
 namespace yuragi {
 namespace {
 
-// More than the kernel keeps for a reader (64): a device that floods cannot hold us.
+// More than the kernel keeps for a reader (64), so that a device that never stops sending cannot block this.
 constexpr int kMostWaiting = 128;
 
 }  // namespace

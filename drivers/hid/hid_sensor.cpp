@@ -32,7 +32,7 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
   if (exchange.now() < next_step_) return look_after(exchange);
 
   const Result<StationStep, Failure> step = station_->step(exchange);
-  if (is_interrupted_) return exchange.now();  // the step's result does not count: it was cut short
+  if (is_interrupted_) return exchange.now();  // the step was interrupted: its result does not count
   if (!step)
     return Failure{name_ + " " + (step.error().message.empty() ? why_useless(exchange) : step.error().message)};
   if (step->health == StationHealth::kWell) report_connected(sink, name_);
@@ -41,14 +41,14 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
   return std::min(next_step_, exchange.now() + kLookAfterEvery);
 }
 
-/// The device could not be used. Is it gone, or does it take nothing?
+/// The reason why the device could not be used: gone, or not accepting reports.
 std::string HidSensor::why_useless(HidExchange& exchange) {
   if (exchange.read(Nanoseconds::zero()).status == HidStatus::kLost) return "is gone: plug it in again";
   exchange.refuse(Refusal::kTimeout);
   return "takes nothing that is sent to it: take out its cable and its batteries, and put them in again";
 }
 
-/// Nothing is due. Is it still there?
+/// Nothing is due: checks that the device is still there.
 Result<MonoTime, Failure> HidSensor::look_after(HidExchange& exchange) {
   const HidMessage message = exchange.read(Nanoseconds::zero());
   if (message.status == HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};

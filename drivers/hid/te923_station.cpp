@@ -1,4 +1,4 @@
-// Hideki TE923: asked for a block of its memory, answers in several reports, and wants them acknowledged. The wind in
+// Hideki TE923: replies to a request for a block of its memory in several reports, which are acknowledged. The wind in
 // it is new every 33 s. Blocks: drivers/decode/hid/te923.hpp. Source: drivers/SOURCES.md S2.5.
 #include <array>
 
@@ -37,7 +37,7 @@ class Te923Station final : public HidStation {
     if (why != Refusal::kInvalid) {
       return fail(exchange, why, "sends blocks that make no sense: check its cable");
     }
-    // The console is well, and has no wind.
+    // The console works, but has no wind.
     failures_ = 0;
     exchange.refuse(Refusal::kInvalid);
     return StationStep::unwell(begin + timing_.interval_or(kTe923Every),
@@ -53,7 +53,7 @@ class Te923Station final : public HidStation {
       const HidMessage message = exchange.read(kTe923Report);
       if (message.status == HidStatus::kLost) return false;
       if (message.status != HidStatus::kReport) break;
-      // How many of the next bytes are valid, then those. A count that cannot be spoils the block.
+      // The number of valid bytes, then these. An impossible number invalidates the block.
       const std::size_t count = message.bytes[0];
       const bool is_sound = count <= 7 && count < message.bytes.size();
       const ByteSpan valid = is_sound ? message.bytes.subspan(1, count) : message.bytes;

@@ -1,4 +1,4 @@
-// Oregon Scientific WMR100: it sends a stream of frames by itself once it was sent a start report, the wind about every
+// Oregon Scientific WMR100: after a start report it sends a stream of frames by itself, the wind about every
 // 14 s. Reports and frames: drivers/decode/hid/wmr100.hpp. Source: drivers/SOURCES.md S2.1.
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/hid/hid_station.hpp"
@@ -12,7 +12,7 @@ constexpr Nanoseconds kWmr100Listen = 1s;
 constexpr Nanoseconds kWmr100Silent = 60s;   // the clock's frame comes once a minute, the wind's more often
 constexpr Nanoseconds kWmr100Restart = 30s;  // from one start report to the next, to a console that is silent
 constexpr Nanoseconds kWmr100GiveUp = 180s;  // of silence; then the device is opened again
-constexpr Nanoseconds kWmr100NoWind = 90s;   // six winds that did not come
+constexpr Nanoseconds kWmr100NoWind = 90s;   // six missing winds
 
 class Wmr100Station final : public HidStation {
  public:
@@ -47,7 +47,7 @@ class Wmr100Station final : public HidStation {
     }
   }
 
-  /// It sends frames. Those of the wind, too?
+  /// Checks that its frames include the wind.
   void miss_the_wind(StationStep& step) const {
     if (step.next - wind_ < timing_.paced(kWmr100NoWind)) return;
     step.health = StationHealth::kUnwell;
@@ -70,7 +70,7 @@ class Wmr100Station final : public HidStation {
   StationTiming timing_;
   Wmr100Stream stream_;
   MonoTime started_{};      ///< when the last start report went
-  MonoTime received_at_{};  ///< the last frame that made sense
+  MonoTime received_at_{};  ///< the last valid frame
   MonoTime wind_{};         ///< the last wind
 };
 

@@ -1,4 +1,4 @@
-// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, once it was asked to begin and for
+// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, after a start request and for
 // as long as it gets a heartbeat every 20 s and each data packet is acknowledged. Packets:
 // drivers/decode/hid/wmr300.hpp. Source: drivers/SOURCES.md S2.2; weewx wmr300.py (a console that has fallen silent
 // comes back when the device is opened again).
@@ -20,7 +20,7 @@ class Wmr300Station final : public HidStation {
   explicit Wmr300Station(const StationTiming& timing) : timing_(timing) {}
 
   Result<StationStep, Failure> step(HidExchange& exchange) override {
-    // The heart.
+    // The heartbeat.
     const MonoTime begin = exchange.now();
     if (begin >= next_heartbeat_) {
       if (!exchange.send(kWmr300Heartbeat)) return station_is_gone();
@@ -38,13 +38,13 @@ class Wmr300Station final : public HidStation {
   }
 
  private:
-  /// A packet came. False: the device went while it was answered.
+  /// Handles a packet. False: the device was gone when it was acknowledged.
   bool take(ByteSpan packet, HidExchange& exchange, StationStep& step) {
     const bool is_sound = is_sound_wmr300(packet);
     if (is_sound) received_at_ = step.next;
     if (!wants_wmr300_acknowledgement(packet)) {
       if (!is_sound) exchange.refuse(Refusal::kMalformed);
-      // It identifies itself. If no data came since the heartbeat before, it must be asked to begin.
+      // It identifies itself. If no data came since the heartbeat before, it must be told to start sending.
       const bool is_idle = step.next - data_ > timing_.paced(kWmr300HeartbeatEvery) / 2;
       return !is_wmr300_identity(packet) || !is_idle || exchange.send(encode_wmr300_begin(packet));
     }
@@ -77,8 +77,8 @@ class Wmr300Station final : public HidStation {
 
   StationTiming timing_;
   MonoTime next_heartbeat_{};
-  MonoTime received_at_{};  ///< the last packet that made sense
-  MonoTime data_{};         ///< the last of them that is no mere answer
+  MonoTime received_at_{};  ///< the last valid packet
+  MonoTime data_{};         ///< the last data packet, other than identifications
   MonoTime wind_{};         ///< the last wind
 };
 

@@ -19,7 +19,7 @@
 namespace yuragi {
 namespace {
 
-/// A sound system that has begun hands something over many times a second.
+/// A running sound system delivers samples many times a second.
 constexpr Nanoseconds kSoundTimeout = std::chrono::milliseconds(1500);
 constexpr Nanoseconds kTurn = std::chrono::milliseconds(20);
 
@@ -34,7 +34,7 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// The pieces of a stream, made into blocks with the time at which they were recorded.
+/// Makes blocks of the pieces of a stream, with the time at which they were recorded.
 class Listener {
  public:
   Listener(const MicAnalyserOptions& options, std::string device)

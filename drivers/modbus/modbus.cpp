@@ -1,4 +1,4 @@
-// Wind sensors that speak Modbus, over TCP or a serial line (RTU). Which registers hold what is data: one TOML file a
+// Wind sensors with Modbus, over TCP or a serial line (RTU). Which registers hold what is data: one TOML file a
 // device in drivers/modbus/profiles, which names its source. Functions 3 and 4, big-endian 16-bit registers on the wire
 // (MODBUS Application Protocol Specification V1.1b3).
 #include <algorithm>
@@ -92,7 +92,7 @@ const std::array kModbusParameters = {
               .help = "longest wait for an answer, and for a connection; 0 takes the profile's"},
 };
 
-/// The profile with what the installation sets otherwise.
+/// The profile with the settings of the installation.
 ModbusProfile profile_of(const ParameterValues& values) {
   ModbusProfile profile = load_modbus_profile(values.text("profile"), values.text("profile_dir"));
   if (const std::int64_t baud = values.integer("baud"); baud != 0) profile.baud = static_cast<int>(baud);
@@ -151,7 +151,7 @@ ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) 
   return line;
 }
 
-/// The line of a direction that has one of its own; nullptr where it has not.
+/// The separate line of the vane; nullptr where it has none.
 std::shared_ptr<ModbusBus> direction_bus_of(const ParameterValues& values, const ModbusProfile& profile,
                                             const ModbusLine& line) {
   const std::string& device = values.text("direction_device");

@@ -11,8 +11,8 @@
 namespace yuragi {
 namespace {
 
-/// A connection that was dropped silently looks like a slow device: after so many requests in a row without an answer
-/// it is taken for lost.
+/// A connection that was dropped silently looks like a slow device: after so many requests in a row without a reply it
+/// is assumed lost.
 constexpr int kSilentRequestsBeforeReopen = 3;
 
 ModbusTrouble trouble(ModbusTrouble::Kind kind) {
@@ -76,7 +76,7 @@ class ModbusBus::Turn {
     bus_.free_at_ = now + bus_.min_gap_;
   }
 
-  /// An answer of `unit` may still come, for so long.
+  /// A reply of `unit` may still come until then.
   void expect_late_reply(std::uint8_t unit, MonoTime until) {
     const std::lock_guard lock(bus_.mutex_);
     bus_.unit_ready_at_[unit] = until;
@@ -108,7 +108,7 @@ void ModbusBus::keep_gap(Nanoseconds min_gap) {
 }
 
 Result<MonoTime, Failure> ModbusBus::open(const Interruption& interruption, const Clock& clock) {
-  // Mostly it is open, and this returns without waiting for the turn.
+  // Usually it is open, and this returns without waiting for the line.
   const auto open_since = [this] {
     const std::lock_guard lock(mutex_);
     return open_since_;
@@ -140,7 +140,7 @@ ModbusBus::Reply ModbusBus::exchange(ModbusRequest request, const ModbusPatience
   request.transaction = ++transaction_;
   const Reply reply = transact(request, patience, interruption, sink);
 
-  // A request that was not answered may still be.
+  // A request without a reply may still get one.
   const MonoTime now = clock.now().mono;
   turn.begin_gap(now);
   const bool may_come_late = !reply && (reply.error().kind == kSilence || reply.error().kind == kOthersOnly ||
@@ -173,14 +173,14 @@ ModbusBus::Reply ModbusBus::transact(const ModbusRequest& request, const ModbusP
     const std::size_t leftover = connection_->settle(buffer_, patience, interruption);
     const auto bytes = std::span(buffer_).first(leftover);
     if (leftover > 0) sink.raw(RawDirection::kReceived, bytes);
-    // A late answer, as a rule; noise has been counted when it was taken for an answer.
+    // Usually a late reply; noise has been counted when it was taken for a reply.
     if (leftover > 0 && modbus_crc(bytes) == 0) sink.refused(Refusal::kNotMine);
   }
   is_unsettled_ = true;
   if (!connection_->send(request, patience)) return fail(BusStatus::kLost, false, sink);
   show_sent(line_.framing, request, sink);
 
-  // Messages of others, such as the late answer to an earlier request, are passed over until the time is up.
+  // Messages of others, such as the late reply to an earlier request, are skipped until the time-out.
   bool received_others = false;
   for (;;) {
     const BusMessage message = connection_->receive(buffer_, interruption);

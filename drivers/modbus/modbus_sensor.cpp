@@ -12,13 +12,13 @@ namespace {
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
 constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
 
-/// Does a gateway answer for a slave that does not?
+/// Does a gateway report that a slave does not reply?
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
   return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == Refusal::kException &&
          is_gateway_silence(trouble.refusal.exception);
 }
 
-/// "without direction and gust", for what this read should have brought.
+/// "without direction and gust", for the quantities of this read.
 std::string without(const ModbusRead& read) {
   const bool has_direction = read.contains(ModbusMeasure::kDirection);
   const bool has_gust = read.contains(ModbusMeasure::kGust);
@@ -70,7 +70,7 @@ Result<MonoTime, Failure> ModbusSensor::work(const Clock& clock, SensorSink& sin
     read_more(reads_[step_], clock, sink);
     return go_on(clock.now().mono, sink);
   }
-  // The line may have been opened anew since, by another sensor or after silence.
+  // The line may have been reopened since, by another sensor or after silence.
   const MonoTime opened_before = opened_at_;
   auto begin = open(clock);
   if (!begin || opened_at_ != opened_before) return begin;
@@ -130,7 +130,7 @@ ModbusBus::Reply ModbusSensor::exchange(const Read& read, const Clock& clock, Se
 }
 
 MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {
-  // What is due and has not been asked in this round.
+  // The reads that are due and have not been made in this round.
   while (++step_ < reads_.size()) {
     const Read& read = reads_[step_];
     const bool is_due = now >= read.not_before && now >= read.bus->ready_at(read.what.request.unit);
@@ -138,7 +138,7 @@ MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {
   }
   step_ = 0;
 
-  // All that the round brought goes out together.
+  // All values of the round are published together.
   if (reading_.time.mono < opened_at_ + profile_.warm_up) {
     report_connected(sink, profile_.name + " at " + bus_->where() + " is warming up");
     return next_round(now);

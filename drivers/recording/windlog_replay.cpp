@@ -99,10 +99,10 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   }
 
  private:
-  /// What the link state is reported about.
+  /// The states that are reported by the link.
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
-  /// Plays what is due; answers when the next reading is.
+  /// Plays what is due; returns when the next reading is due.
   Result<MonoTime, Failure> play(const Instant& now, SensorSink& sink) {
     if (!player_) {
       auto opened = WindlogPlayer::open(file_, options_, now);
@@ -177,13 +177,13 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   Nanoseconds back_off_{0};
   std::optional<Doing> reported_;
 
-  mutable std::mutex mutex_;  // of what follows; rare, and never on the animation's way
+  mutable std::mutex mutex_;  // for the members below; seldom locked, and never by the animation
   std::vector<PlayerOrder> waiting_;
   std::uint64_t orders_given_ = 0;
   PlayerReport report_;
 };
 
-/// What `parse` makes of a parameter's text, or an exception that names the parameter.
+/// The result of `parse` for a parameter's text; throws an exception that names the parameter.
 template <class T>
 T value_of(const char* parameter, Result<T, Failure> parsed) {
   if (!parsed) throw std::runtime_error(std::string("windlog: ") + parameter + ": " + parsed.error().message);

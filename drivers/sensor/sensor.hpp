@@ -11,7 +11,7 @@
 
 namespace yuragi {
 
-/// Which way a message went.
+/// The direction of a message.
 enum class RawDirection : std::uint8_t { kReceived, kSent };
 
 /// Receives a sensor's readings, link state, refusals and raw messages. Called on the thread that polls; strings are
@@ -44,7 +44,7 @@ class Sensor {
   virtual void interrupt() noexcept {}
 
   /// The controls (drivers/recording/recording_player.hpp) of one that plays a recording; nullptr for any other. Lives
-  /// as long as the sensor; may be asked for from another thread.
+  /// as long as the sensor; may be called from another thread.
   virtual RecordingPlayer* player() noexcept { return nullptr; }
 };
 

@@ -1,4 +1,4 @@
-// Anemometers that send text, unasked or on request: NMEA 0183 and its variants (drivers/SOURCES.md S4), and the
+// Anemometers that send text, by themselves or on request: NMEA 0183 and its variants (drivers/SOURCES.md S4), and the
 // formats of Gill, FT Technologies and Lufft, over a serial line, a TCP server, UDP datagrams, a file or a pipe. The
 // formats are described with their decoders: drivers/decode/{nmea,gill,ft,umb}.hpp. Requests:
 //
@@ -111,19 +111,19 @@ std::vector<std::string> sentences_of(const std::string& list) {
   return sentences;
 }
 
-/// What the format's devices are asked with; empty where there is no such thing.
+/// The request of the format's devices; empty where there is none.
 std::string request_of(NmeaFormat format, const std::string& device) {
   if (format == NmeaFormat::kUmb) return device + "TR4\r";
   if (format == NmeaFormat::kFt) return fmt::format("${0},WV?*{1:02X}\r\n", device, xor_checksum(device + ",WV?"));
   return "";
 }
 
-/// How the device is asked, if it is.
+/// The request and its interval, for a polled device.
 void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
   TextSensorSettings& text = settings.text;
   const bool can_be_polled =
       text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
-  // A Lufft sends nothing unasked.
+  // A Lufft sends nothing without a request.
   if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_polled) {
     text.poll_interval = kUmbInterval;
   }

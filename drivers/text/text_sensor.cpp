@@ -22,11 +22,11 @@ constexpr Nanoseconds kLineCut = 500ms;
 constexpr Nanoseconds kPatience = 3s;
 /// A device whose usual pause is not known yet is opened again after this.
 constexpr Nanoseconds kFirstSilence = 120s;
-/// An answer that has not come by then never will.
+/// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
 /// The silence after which a device is opened again doubles so often.
 constexpr int kMostDoublings = 6;
-/// A device that does not answer is asked less often: up to so many times the interval.
+/// A device that does not reply gets fewer requests: the interval grows up to so many times.
 constexpr int kRarestRequest = 8;
 /// So many blocks at most are discarded at the beginning; a device that sends more does not stop.
 constexpr int kForgottenBlocks = 64;
@@ -110,7 +110,7 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
   if (is_polled() && !request_if_due(clock.now().mono, sink))
     return Failure{where_ + " takes no request: opened again"};
 
-  // What comes next, unless a file that is played still has something left.
+  // Read the next bytes, unless some of a played file are left.
   ByteArrival arrival{ByteStatus::kBytes};
   if (rest_.empty()) {
     arrival = port_->read(buffer_, longest_read(clock.now().mono));
@@ -148,7 +148,7 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
       break;
   }
 
-  // Only now, when what had come by then has been read.
+  // Only after all received bytes have been read.
   if (awaits_reply_ && now.mono >= reply_due_) give_up_reply(now.mono, sink);
   if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
     sink.refused(Refusal::kTimeout);
@@ -172,7 +172,7 @@ bool TextSensor::request_if_due(MonoTime now, SensorSink& sink) {
   return true;
 }
 
-/// The next request waits until an answer that is merely late has passed: it must not be taken for the next one.
+/// The next request waits until a late reply has passed, which must not be taken for the next one.
 void TextSensor::give_up_reply(MonoTime now, SensorSink& sink) {
   awaits_reply_ = false;
   missed_replies_ = std::min(missed_replies_ + 1, kRarestRequest);
@@ -233,7 +233,7 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink
   if (!judgement) {
     const bool is_readable = is_text(line);
     ++(is_readable ? readable_lines_ : garbled_lines_);
-    // A foreign line may be our own request, echoed by a line with one pair of wires: the answer is still to come.
+    // A foreign line may be our own request, echoed by a line with one pair of wires: the reply is still to come.
     if (judgement.error() != Refusal::kNotMine) awaits_reply_ = false;
     refuse(is_readable ? judgement.error() : Refusal::kMalformed, line, sink);
     return false;
@@ -244,7 +244,7 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink
   return judgement->has_value();
 }
 
-/// What has come of a line that will not be whole any more.
+/// Refuses the received part of an incomplete line.
 void TextSensor::drop_cut_line(SensorSink& sink) {
   const auto cut = assembler_.finish();
   if (!cut) return;
@@ -276,7 +276,7 @@ Nanoseconds TextSensor::silence_limit() const {
   return first * (1 << vain_openings_);
 }
 
-/// Reports the cause where no reading comes.
+/// Reports the cause where there are no readings.
 void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
@@ -315,7 +315,7 @@ std::string TextSensor::silence_trouble() const {
                                : "the device's power and network settings");
 }
 
-/// Something comes, but no lines that could be judged.
+/// Bytes arrive, but no lines.
 std::string TextSensor::trouble_without_lines() const {
   if (late_lines_ > 0) {
     return fmt::format("{} answers, but not within {:g} s: raise response_timeout", where_,

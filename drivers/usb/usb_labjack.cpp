@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint8_t kLabjackCommands = 1;  // the end points
 constexpr std::uint8_t kLabjackReplies = 2;
-/// The number of messages that answer something else before the request is given up.
+/// How many replies to other requests are skipped before the request is given up.
 constexpr int kMostStrangers = 16;
 
 class LabjackDaq final : public UsbDaq {
@@ -60,8 +60,8 @@ class LabjackDaq final : public UsbDaq {
   }
 
  private:
-  /// Sends a command and decodes its reply. What answers another command, such as the one before that came too late, is
-  /// counted and passed over.
+  /// Sends a command and decodes its reply. Replies to other commands, such as a late one to the command before, are
+  /// counted and skipped.
   template <class Decode>
   auto exchange(UsbDevice& device, SensorSink& sink, const LabjackCommand& command, Decode&& decode)
       -> Result<typename decltype(decode(ByteSpan()))::value_type, DaqTrouble> {

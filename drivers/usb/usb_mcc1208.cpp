@@ -37,7 +37,7 @@ class Mcc1208Daq final : public UsbDaq {
       if (!volts) return volts.error();
       sample.reference_v = *volts;
     }
-    // The count last, so that it is as old as the moment that the caller takes for it.
+    // The count last, so that it is as close as possible to the time that the caller assigns to it.
     const auto reply = exchange(device, kMcc1208ReadCounter, sink);
     if (!reply) return reply.error();
     const auto count = decode_mcc1208_count(*reply);
@@ -56,7 +56,7 @@ class Mcc1208Daq final : public UsbDaq {
     return mcc1208_volts(*analog, calibration);
   }
 
-  /// The reply, which lives until the next one.
+  /// The reply, valid until the next one.
   Result<ByteSpan, DaqTrouble> exchange(UsbDevice& device, const Mcc1208Transfer& command, SensorSink& sink) {
     const std::array<std::uint8_t, 8> setup = {command.request_type, command.request,     low(command.value),
                                                high(command.value),  low(command.index),  high(command.index),

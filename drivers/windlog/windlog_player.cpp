@@ -58,7 +58,7 @@ WindReading between(const WindReading& from, const WindReading& to, double part)
   return reading;
 }
 
-// ---- a voice: one place of the recording that is played ----
+// ---- a playhead: one place of the recording that is played ----
 
 MonoTime WindlogPlayer::Playhead::due(double rate) const {
   return anchor + wait_of(seconds(upcoming->log_time - anchor_log) / rate);
@@ -165,7 +165,7 @@ Result<void, Failure> WindlogPlayer::begin_again(const Instant& now, MonoTime at
 
 /// Goes on from `target` at a moment, and fades what was playing out.
 Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
-  // In the middle of a fade the blended wind of that moment replaces both voices, and the older one is free.
+  // In the middle of a fade the blended wind of that moment replaces both playheads, and the older one is free.
   const bool was_fading = is_fading(at);
   leaving_.is_frozen = true;
   leaving_.cursor.seek(target);
@@ -193,7 +193,7 @@ Nanoseconds WindlogPlayer::fade_duration() const {
   return wait_of(std::min(std::max(options_.seam_s, kLeastReadingsOfFade * interval_s), span_s / kParts));
 }
 
-/// The last reading of the playing voice, as of a time, blended with that of a voice that is fading out.
+/// Publishes the last reading of the playing playhead, as of a time, blended with that of one that is fading out.
 void WindlogPlayer::publish(MonoTime time, const Instant& now, const Use& use) {
   // After a change of the rate: time does not go backward.
   if (last_out_) time = std::max(time, last_out_->time.mono);
@@ -212,7 +212,7 @@ WindReading WindlogPlayer::blended(MonoTime time) {
   return between(*leaving_.current, *playing_.current, part);
 }
 
-/// Advances the voice that is fading out to a time; where it cannot be read it repeats its last reading.
+/// Advances the playhead that is fading out to a time; where it cannot be read it repeats its last reading.
 void WindlogPlayer::follow_leaving(MonoTime time) {
   if (leaving_.is_frozen || is_paused_) return;
   for (;;) {
@@ -262,7 +262,7 @@ Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {
 
 // ---- orders ----
 
-/// Anchors both voices where they are now: the rate is about to change.
+/// Anchors both playheads where they are now: the rate is about to change.
 void WindlogPlayer::settle(MonoTime now) {
   for (Playhead* playhead : {&playing_, &leaving_}) {
     if (!is_paused_) playhead->anchor_log = playhead->place(now, rate_);

@@ -44,9 +44,8 @@ struct PlayerPosition {
 /// its end. While it is paused it repeats its reading, marked as held, at its usual interval: the wind holds, and the
 /// sensor does not become stale. Where the recording has a gap, so has the replay.
 ///
-/// A Failure says why the file cannot be read, or that it does not hold what is asked for; an order that fails changes
-/// nothing, and play() tries the same place again.
-/// Thread-safe: no. Realtime-safe: no; it reads a file.
+/// A Failure says why the file cannot be read, or that it does not contain what is requested; an order that fails
+/// changes nothing, and play() tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayer {
  public:
   using Use = std::function<void(const WindReading&)>;
@@ -114,7 +113,7 @@ class WindlogPlayer {
   double rate_;
   bool is_paused_;
   bool is_finished_ = false;
-  bool has_news_ = false;  ///< a reading to hand on while paused
+  bool has_news_ = false;  ///< a reading to publish while paused
   std::uint64_t rounds_ = 0;
   Nanoseconds begin_{0};
   MonoTime fade_begin_{};

@@ -96,7 +96,7 @@ DecodeResult decode_rtu(const ModbusRequest& request, Bytes message) noexcept {
 
   if (message.size() < kShortest) return refuse(Refusal::kTooShort);
   if (!has_right_crc(message)) {
-    // Cut off, or damaged? An answer to this request that stops before its own end is the former.
+    // Cut off, or damaged? A reply to this request that ends too early is the former.
     const bool is_cut =
         message[0] == request.unit && message[1] == request.function && message.size() < 3U + message[2] + kCrc;
     return refuse(is_cut ? Refusal::kTooShort : Refusal::kBadChecksum);
