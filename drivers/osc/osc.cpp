@@ -29,15 +29,15 @@ const std::array kOscParameters = {
               .default_value = std::int64_t{9000},
               .min = 1,
               .max = 65535,
-              .help = "the UDP port that the messages come to"},
+              .help = "the UDP port that messages are received on"},
     Parameter{.name = "host",
               .unit = "",
               .default_value = std::string(""),
-              .help = "listen at this address of this machine only, or at this multicast address; empty: at all"},
+              .help = "local address to listen on, or a multicast address; empty: all"},
     Parameter{.name = "sender",
               .unit = "",
               .default_value = std::string(""),
-              .help = "take messages from this address only; empty: from any"},
+              .help = "accept messages from this address only; empty: from any"},
     Parameter{.name = "address",
               .unit = "",
               .default_value = std::string("/wind"),
@@ -70,7 +70,7 @@ const std::array kOscParameters = {
               .default_value = 5.0,
               .min = 0.1,
               .max = 86400.0,
-              .help = "nothing for so long means that the sender has stopped"},
+              .help = "without a message for this long the sender counts as stopped"},
 };
 
 struct OscSettings {

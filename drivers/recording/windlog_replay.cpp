@@ -25,7 +25,7 @@ const std::array<Parameter, 9> kWindlogParameters = {
     Parameter{.name = "file",
               .unit = "",
               .default_value = std::string{},
-              .help = "the recording (.windlog); required; `yuragi import` makes one of a CSV"},
+              .help = "the recording (.windlog); required; `yuragi import` makes one from CSV"},
     Parameter{.name = "rate",
               .unit = "",
               .default_value = 1.0,
@@ -46,12 +46,12 @@ const std::array<Parameter, 9> kWindlogParameters = {
     Parameter{.name = "same_time_of_day",
               .unit = "",
               .default_value = false,
-              .help = "begin, and begin again, where the recording's local time of day is that of now: the first day "
-                      "from `start` on that has it, else what comes next"},
+              .help = "start, and start again, at the present local time of day: on the first day from `start` on that "
+                      "contains it, else at the next later reading"},
     Parameter{.name = "utc_offset",
               .unit = "",
               .default_value = std::string{},
-              .help = "of the clocks where it was recorded, for same_time_of_day: hours ahead of UTC (1, -3.5); empty: "
+              .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: "
                       "this machine's time zone"},
     Parameter{.name = "paused", .unit = "", .default_value = false, .help = "start paused, at the first reading"},
     Parameter{.name = "sensor",
