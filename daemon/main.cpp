@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
       return app.exit(error) == 0 ? 0 : kExitUsage;
     }
   } catch (const ConfigError& error) {
-    std::fprintf(stderr, "%s\n", error.what());  // its lines begin with the place, as compilers' do
+    std::fprintf(stderr, "%s\n", error.what());  // its lines begin with the place, as a compiler's do
     return kExitConfig;
   } catch (const ExitError& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());

@@ -106,8 +106,8 @@ void run(Simulator& simulator, Faults faults, const RunOptions& options) {
     if (waits[0].revents != 0 || (options.duration_s && time_s >= *options.duration_s)) return;
     if (waits[1].revents != 0) {
       typed.read_lines([&](const std::string& line) {
-        if (const std::string answer = faults.obey(line, time_s); !answer.empty()) {
-          std::fprintf(stderr, "%s\n", answer.c_str());
+        if (const std::string reply = faults.obey(line, time_s); !reply.empty()) {
+          std::fprintf(stderr, "%s\n", reply.c_str());
         }
       });
     }

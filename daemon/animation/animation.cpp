@@ -7,7 +7,7 @@
 namespace yuragi {
 namespace {
 
-/// No more places than sensors can write: a tape is half a megabyte.
+/// Enough places for every sensor, and no more: a tape takes half a megabyte.
 std::size_t most_pens(const Config& config) {
   return std::min(WindStroke::kMostPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
 }
@@ -27,7 +27,7 @@ Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise
     poses_.push_back(&scenes_.back()->pose());
     opacities_.push_back(fades_.back().opacity());
   }
-  // The first frame shows every scene, so that the encoder has all the room that it will ever need.
+  // The first frame shows every scene, so that the encoder allocates its largest buffer.
   largest_frame_bytes_ = encoder_.encode({}, skeletons_, poses_).size();
 }
 

@@ -14,30 +14,29 @@
 
 namespace yuragi {
 
-/// A change of what is shown.
+/// An order to show or hide a scene.
 struct SceneCue {
-  std::size_t scene = 0;  ///< its number, in the order of the configuration
+  std::size_t scene = 0;  ///< its index, in the order of the configuration
   bool shown = true;
-  bool hide_others = false;  ///< and every other scene is hidden in the same time
-  double over_s = 0.0;       ///< at least 0
+  bool hide_others = false;  ///< hide every other scene in the same time
+  double over_s = 0.0;       ///< duration of the fade, at least 0
 };
 
-/// The scenes of an installation, each where it stands and with its gain on the wind, stepped together, and the frame
-/// that shows them. A scene that is hidden stands still and costs nothing. No clock: the daemon's loop, the lock-step
-/// replay and the tests all step this one.
+/// All scenes of an installation, each at its place and with its gain on the wind, stepped together, and the encoder of
+/// their frames. A hidden scene is not stepped. It has no clock: the daemon's loop, the lock-step replay and the tests
+/// step it.
 ///
 /// Thread-safe: no. step(), cue() and encode() are realtime-safe; with [animation] threads above 1 a step waits for the
-/// pool's threads (WorkerPool). Poses do not depend on how many there are.
+/// pool's threads (WorkerPool). Poses do not depend on the number of threads.
 class Animation {
  public:
   /// `gusts`: of the wind that step() will be given.
   Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts);
 
-  /// Writes the wind onto the tapes that carry it over the ground, and moves every scene that is seen, and every fade,
-  /// on by dt_s under it.
+  /// Writes the wind onto the tapes, and advances every visible scene and every fade by dt_s.
   void step(const DrivingWind& wind, double dt_s) noexcept;
 
-  /// Begins a fade. A scene that is not there is no scene to show: nothing happens.
+  /// Begins a fade. Ignored for a scene that does not exist.
   void cue(const SceneCue& cue) noexcept;
 
   /// The frame of the present poses, size prefix included; valid until the next call.
@@ -45,7 +44,7 @@ class Animation {
     return encoder_.encode(info, skeletons_, poses_, opacities_);
   }
 
-  /// The size of a frame in which every scene is seen: none is larger.
+  /// The size of a frame in which every scene is visible, which is the largest.
   std::size_t largest_frame_bytes() const noexcept { return largest_frame_bytes_; }
 
   /// The skeletons, for clients that join.

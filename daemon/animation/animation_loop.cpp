@@ -12,10 +12,10 @@
 namespace yuragi {
 namespace {
 
-// A frame may grow by a few bytes when a field leaves its default; the hand-over buffers have room for that.
+// A frame may grow by a few bytes when a field differs from its default; the buffers have room for that.
 constexpr std::size_t kFrameSlack_bytes = 256;
 
-// However long a machine was halted, the animation goes on as if it had been no longer than this.
+// The longest step after a halt of the machine, however long it was.
 constexpr double kLongestStep_s = 0.1;
 
 void sleep_until(MonoTime deadline) {
@@ -26,7 +26,7 @@ void sleep_until(MonoTime deadline) {
   }
 }
 
-// Changes of what is shown that may wait for the next tick.
+// Cues that may wait for the next tick.
 constexpr std::size_t kWaitingCues = 64;
 
 }  // namespace
@@ -73,7 +73,7 @@ void AnimationLoop::run(const std::stop_token& stop) {
 }
 
 void AnimationLoop::tick(const TickSchedule::Tick& tick) {
-  // Skipped ticks are made up for in one longer step, so that motion keeps its speed; a long halt is not.
+  // Skipped ticks are made up for by one longer step, so that motion keeps its speed, up to a limit.
   wind_.refresh();
   const DrivingWind& wind = wind_.value();
   const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
@@ -89,7 +89,7 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   frames_.writable().assign(frame.begin(), frame.end());
   frames_.publish();
 
-  // Wake the I/O thread. It fails only when nobody has read for 2^64 frames.
+  // Wakes the I/O thread. It fails only when 2^64 frames have not been read.
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(frame_ready_fd_, &one, sizeof one);
 }

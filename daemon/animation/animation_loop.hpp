@@ -14,20 +14,20 @@
 
 namespace yuragi {
 
-/// How the loop keeps time. Read by other threads at any moment.
+/// The timing of the loop. May be read by other threads at any time.
 struct LoopCounters {
   std::atomic<std::uint64_t> ticks{0};
   std::atomic<std::uint64_t> skipped_ticks{0};
-  DurationHistogram lateness;  ///< of the beginning of each tick against its moment
-  DurationHistogram work;      ///< how long each tick took
+  DurationHistogram lateness;  ///< of the start of each tick
+  DurationHistogram work;      ///< duration of each tick
 };
 
-/// The animation's own thread: at a fixed rate it takes the newest wind, steps the scenes, encodes the frame and hands
-/// it over. After start it neither allocates nor waits for anybody: its ways in and out are triple buffers and a
-/// queue of cues, and it wakes the I/O thread by an eventfd.
+/// The animation's thread: at a fixed rate it takes the newest wind, steps the scenes, encodes the frame and publishes
+/// it. Once started it neither allocates nor blocks: wind and frames pass through triple buffers, cues through a ring,
+/// and an eventfd wakes the I/O thread.
 class AnimationLoop {
  public:
-  /// `wind` must outlive the loop; its writer is the I/O thread. The clock must be the machine's: the loop sleeps on
+  /// `wind` must outlive the loop and is written by the I/O thread. The clock must be the system's: the loop sleeps on
   /// CLOCK_MONOTONIC.
   AnimationLoop(Animation& animation, Latest<DrivingWind>& wind, const Clock& clock, double rate_hz);
   ~AnimationLoop();
@@ -41,10 +41,10 @@ class AnimationLoop {
   /// Readable when a frame is ready; read 8 bytes from it, then call take_frame(). Owned by the loop.
   int frame_ready_fd() const noexcept { return frame_ready_fd_; }
 
-  /// The I/O thread: the newest frame, if there is one that it has not had. Valid until the next call.
+  /// For the I/O thread: the newest frame, or null if it was taken already. Valid until the next call.
   const wire::Bytes* take_frame() noexcept { return frames_.refresh() ? &frames_.value() : nullptr; }
 
-  /// The I/O thread: a change of what is shown, which the next tick begins. False where too many wait: it is lost.
+  /// For the I/O thread: queues a cue for the next tick. False where the ring is full: it is dropped.
   bool cue(const SceneCue& cue) { return cues_.push(cue); }
 
   const LoopCounters& counters() const noexcept { return counters_; }

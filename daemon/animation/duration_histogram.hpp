@@ -9,8 +9,8 @@
 
 namespace yuragi {
 
-/// Counts durations in classes eight to the octave, from 1 us to over an hour, so that percentiles of months cost a
-/// few hundred counters. A percentile is told as the upper end of its class, at most an eighth above the truth.
+/// A histogram of durations with eight classes to the octave, from 1 us to over an hour: percentiles in constant
+/// memory. A percentile is the upper end of its class, at most an eighth too large.
 ///
 /// Thread-safe: one writer, any number of readers. Realtime-safe: yes.
 class DurationHistogram {

@@ -4,15 +4,15 @@
 
 namespace yuragi {
 
-/// How much of a scene is seen: an opacity from 0 (hidden) to 1, and its way from the one to the other: a smooth step
-/// (3 s^2 - 2 s^3), which begins and ends at rest. A fade that is turned round midway goes on from where it is.
+/// The opacity of a scene, from 0 (hidden) to 1, and its fade between them: the smooth step 3 s^2 - 2 s^3, whose rate
+/// is 0 at both ends. A fade that is reversed midway continues from its present opacity.
 ///
 /// Thread-safe: no. Realtime-safe: yes.
 class Fade {
  public:
   explicit Fade(bool shown) noexcept : from_(shown ? 1.0 : 0.0), to_(from_) {}
 
-  /// Goes to shown or hidden in over_s, which is at least 0.
+  /// Begins a fade to shown or hidden that takes over_s, at least 0.
   void begin(bool shown, double over_s) noexcept {
     from_ = value();
     to_ = shown ? 1.0 : 0.0;

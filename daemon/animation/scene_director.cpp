@@ -8,32 +8,33 @@
 
 namespace yuragi {
 
-SceneDirector::SceneDirector(const Config& config, Hand hand)
-    : allowed_(config.stream.control), hand_(std::move(hand)) {
+SceneDirector::SceneDirector(const Config& config, SendCue send_cue)
+    : allowed_(config.stream.control), send_cue_(std::move(send_cue)) {
   for (const SceneConfig& scene : config.scenes)
     scenes_.push_back({scene.name, std::string(scene.kind->name), scene.is_shown});
 }
 
-wire::ControlReply SceneDirector::answer(const wire::Control& wish, bool is_local) {
-  if (wish.scene.empty()) return {.done = true, .message = "nothing was changed", .scenes = scenes_};
+wire::ControlReply SceneDirector::handle(const wire::Control& control, bool is_local) {
+  if (control.scene.empty()) return {.done = true, .message = "nothing was changed", .scenes = scenes_};
   const auto found =
-      std::find_if(scenes_.begin(), scenes_.end(), [&](const auto& scene) { return scene.name == wish.scene; });
+      std::find_if(scenes_.begin(), scenes_.end(), [&](const auto& scene) { return scene.name == control.scene; });
   if (found == scenes_.end()) {
     std::string known;
     for (const wire::SceneState& scene : scenes_) known.append(known.empty() ? "" : ", ").append(scene.name);
-    return refuse(fmt::format("there is no scene \"{}\"; there are: {}", wish.scene, known));
+    return refuse(fmt::format("there is no scene \"{}\"; there are: {}", control.scene, known));
   }
   if (const auto refusal = control_refusal(allowed_, is_local, "scenes cannot be switched")) return refuse(*refusal);
 
   const auto index = static_cast<std::size_t>(found - scenes_.begin());
-  if (!hand_({index, wish.shown, wish.hide_others, wish.over_s})) return refuse("too many changes at once; try again");
-  if (wish.hide_others) {
+  if (!send_cue_({index, control.shown, control.hide_others, control.over_s}))
+    return refuse("too many changes at once; try again");
+  if (control.hide_others) {
     for (wire::SceneState& scene : scenes_) scene.shown = false;
   }
-  found->shown = wish.shown;
+  found->shown = control.shown;
   return {.done = true,
-          .message = fmt::format("{} is {}{}, over {:g} s", wish.scene, wish.shown ? "shown" : "hidden",
-                                 wish.hide_others ? ", every other scene hidden" : "", wish.over_s),
+          .message = fmt::format("{} is {}{}, over {:g} s", control.scene, control.shown ? "shown" : "hidden",
+                                 control.hide_others ? ", every other scene hidden" : "", control.over_s),
           .scenes = scenes_};
 }
 

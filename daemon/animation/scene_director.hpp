@@ -8,27 +8,27 @@
 
 namespace yuragi {
 
-/// The I/O thread's side of showing and hiding scenes: it knows what is shown, judges who may change that ([stream]
-/// control), hands what is to be done to the animation, and says what came of it. What is seen at the moment, midway in
-/// a fade, only the animation knows.
+/// Handles clients' requests to show and hide scenes, on the I/O thread: checks the permission ([stream] control),
+/// sends cues to the animation, and replies with the scenes that are shown. A scene counts as shown or hidden from the
+/// beginning of its fade on.
 ///
 /// Thread-safe: no.
 class SceneDirector {
  public:
-  /// Hands a cue over to the animation; false where it has no room for more.
-  using Hand = std::function<bool(const SceneCue&)>;
+  /// Sends a cue to the animation; false where its queue is full.
+  using SendCue = std::function<bool(const SceneCue&)>;
 
-  SceneDirector(const Config& config, Hand hand);
+  SceneDirector(const Config& config, SendCue send_cue);
 
-  /// Does what a client asks for, or says why not. `is_local`: it asks from this machine.
-  wire::ControlReply answer(const wire::Control& wish, bool is_local);
+  /// Carries out a client's request; the reply says why not. `is_local`: the client is on this machine.
+  wire::ControlReply handle(const wire::Control& control, bool is_local);
 
  private:
   wire::ControlReply refuse(std::string why) const;
 
   ControlPermission allowed_;
   std::vector<wire::SceneState> scenes_;
-  Hand hand_;
+  SendCue send_cue_;
 };
 
 }  // namespace yuragi

@@ -6,27 +6,27 @@
 
 namespace yuragi {
 
-/// When the animation ticks: at fixed moments, begin + n * period, whatever happens in between. A loop that comes late
-/// skips the moments that have passed, counts them, and goes on at the next; it never runs after them (no spiral).
+/// The schedule of the animation's ticks: at begin + n * period. A loop that is late skips the ticks that it missed and
+/// counts them; it never catches up.
 ///
 /// Pure: time is a parameter. Thread-safe: no. Realtime-safe: yes.
 class TickSchedule {
  public:
   struct Tick {
-    std::uint64_t number = 0;   ///< of the moment, from 0; skipped moments leave gaps
-    std::uint64_t skipped = 0;  ///< moments that passed unused just before this one
-    Nanoseconds lateness{};     ///< how long after its moment the tick begins
+    std::uint64_t number = 0;   ///< from 0; skipped ticks leave gaps
+    std::uint64_t skipped = 0;  ///< ticks skipped just before this one
+    Nanoseconds lateness{};     ///< how long after its deadline the tick begins
   };
 
   TickSchedule(MonoTime begin, double rate_hz) : begin_(begin), period_(from_seconds(1.0 / rate_hz)) {}
 
   Nanoseconds period() const noexcept { return period_; }
 
-  /// The moment to wait for.
+  /// The deadline to wait for.
   MonoTime next_deadline() const noexcept { return begin_ + static_cast<Nanoseconds::rep>(next_) * period_; }
 
-  /// Begins a tick at `now`, which is next_deadline() or later. When whole periods have passed since, their moments are
-  /// skipped, and the tick is that of the latest moment.
+  /// Begins a tick at `now`, which is next_deadline() or later. Where whole periods have passed since, their ticks are
+  /// skipped, and this is the tick of the latest deadline.
   Tick begin_tick(MonoTime now) noexcept {
     const Nanoseconds since = now - next_deadline();
     const std::uint64_t skipped = since > Nanoseconds::zero() ? static_cast<std::uint64_t>(since / period_) : 0;

@@ -12,7 +12,7 @@ void add_calibrate_north(CLI::App& calibrate);
 void add_calibrate_span(CLI::App& calibrate);
 void add_calibrate_microphone(CLI::App& calibrate);
 
-/// Adds what all of them are asked for; `default_duration` is for the help.
+/// Adds the options that all of them have; `default_duration` is for the help.
 void add_calibration_request(CLI::App& command, CalibrationRequest& request, const std::string& default_duration);
 
 }  // namespace yuragi

@@ -1,4 +1,4 @@
-// `yuragi calibrate microphone`: from how loud the wind is to how fast it blows, beside another anemometer.
+// `yuragi calibrate microphone`: fits the conversion of sound level to wind speed, beside another anemometer.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,32 +17,33 @@ namespace yuragi {
 namespace {
 
 constexpr double kMicBlock_s = 5.0;
-/// Of the readings of a block: with fewer the rest was a calm, whose level nobody knows.
-constexpr double kLeastHeardPart = 0.5;
+/// The least part of a block's readings that must have a level; otherwise it was mostly calm, where the level is
+/// unknown.
+constexpr double kLeastMeasuredPart = 0.5;
 
 struct MicrophoneOptions {
   CalibrationRequest request;
   std::vector<double> speeds_m_s;
 };
 
-/// How the readings were made from levels, so that the levels can be had back.
-struct HeardThrough {
+/// How readings were computed from levels: needed to compute the levels from readings.
+struct LevelConversion {
   MicCalibration calibration;
-  double noise_power = 0.0;  ///< of a fixed noise floor; 0: it was found while running
+  double noise_power = 0.0;  ///< of a fixed noise floor; 0: it was estimated while running
   MicFitKind kind = MicFitKind::kPowerLaw;
 
-  bool operator==(const HeardThrough&) const = default;
+  bool operator==(const LevelConversion&) const = default;
 };
 
-HeardThrough heard_through(const MicLevelSettings& settings) {
-  HeardThrough through{.calibration = settings.calibration};
+LevelConversion level_conversion(const MicLevelSettings& settings) {
+  LevelConversion conversion{.calibration = settings.calibration};
   if (settings.noise_floor_db) {
-    through.noise_power = std::pow(10.0, 0.1 * *settings.noise_floor_db);
-    through.kind = MicFitKind::kPowerLawOrCurve;
-  } else if (std::holds_alternative<MicCurve>(through.calibration)) {
-    through.kind = MicFitKind::kCurve;
+    conversion.noise_power = std::pow(10.0, 0.1 * *settings.noise_floor_db);
+    conversion.kind = MicFitKind::kPowerLawOrCurve;
+  } else if (std::holds_alternative<MicCurve>(conversion.calibration)) {
+    conversion.kind = MicFitKind::kCurve;
   }
-  return through;
+  return conversion;
 }
 
 void refuse_another_band(std::string_view key, double then_hz, double now_hz) {
@@ -53,11 +54,11 @@ void refuse_another_band(std::string_view key, double then_hz, double now_hz) {
                    key, then_hz, now_hz)});
 }
 
-/// Of a recording the settings that it was made with, else those of the configuration.
-HeardThrough heard_through(const CalibrationSession& session, const HeardSensor& heard) {
+/// For a recording, the settings that it was made with; else those of the configuration.
+LevelConversion level_conversion(const CalibrationSession& session, const SensorReadings& collected) {
   const MicLevelSettings now = mic_level_settings_of(session.sensor().values);
-  std::vector<HeardThrough> all;
-  for (const std::string& text : heard.settings) {
+  std::vector<LevelConversion> all;
+  for (const std::string& text : collected.settings) {
     const auto values = parse_values(text, session.sensor().driver->parameters);
     if (!values) {
       refuse({"this version does not understand the settings of this microphone in the recording: " +
@@ -66,10 +67,10 @@ HeardThrough heard_through(const CalibrationSession& session, const HeardSensor&
     const MicLevelSettings then = mic_level_settings_of(*values);
     refuse_another_band("band_low", then.band_low_hz, now.band_low_hz);
     refuse_another_band("band_high", then.band_high_hz, now.band_high_hz);
-    all.push_back(heard_through(then));
+    all.push_back(level_conversion(then));
   }
-  if (all.empty()) return heard_through(now);
-  if (std::ranges::any_of(all, [&all](const HeardThrough& one) { return !(one == all.front()); })) {
+  if (all.empty()) return level_conversion(now);
+  if (std::ranges::any_of(all, [&all](const LevelConversion& one) { return !(one == all.front()); })) {
     refuse(
         {"the calibration of the microphone was changed during this recording: choose a time before or after with "
          "--part"});
@@ -77,26 +78,26 @@ HeardThrough heard_through(const CalibrationSession& session, const HeardSensor&
   return all.front();
 }
 
-std::vector<TimedSpeed> levels_of(const HeardSensor& heard, const HeardThrough& through) {
+std::vector<TimedSpeed> levels_of(const SensorReadings& collected, const LevelConversion& conversion) {
   std::vector<TimedSpeed> levels_db;
-  for (const TimedReading& one : heard.readings) {
-    const auto level_db = mic_level_db(through.calibration, one.reading.speed_m_s, through.noise_power);
+  for (const TimedReading& one : collected.readings) {
+    const auto level_db = mic_level_db(conversion.calibration, one.reading.speed_m_s, conversion.noise_power);
     if (level_db) levels_db.push_back({one.time_s, *level_db});
   }
   return levels_db;
 }
 
 /// Pairs of mean level and mean true speed, block by block.
-std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, HeardThrough& through) {
-  const Heard heard = session.hear(
+std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, LevelConversion& conversion) {
+  const CollectedReadings collected = session.collect(
       "The microphone and the reference must be in the same wind, as close together as possible. Both calm and wind "
       "are\nneeded: the more the wind varies meanwhile, the better.");
-  through = heard_through(session, heard[0]);
-  const ReferencePairs beside = pair_with_reference(session, heard, kMicBlock_s);
+  conversion = level_conversion(session, collected[0]);
+  const ReferencePairs beside = pair_with_reference(session, collected, kMicBlock_s);
   std::map<double, std::size_t> all_in_block;
   std::map<double, std::vector<double>> levels_in_block;
-  for (const TimedReading& one : heard[0].readings) ++all_in_block[std::floor(one.time_s / beside.block_s)];
-  for (const TimedSpeed& one : levels_of(heard[0], through)) {
+  for (const TimedReading& one : collected[0].readings) ++all_in_block[std::floor(one.time_s / beside.block_s)];
+  for (const TimedSpeed& one : levels_of(collected[0], conversion)) {
     levels_in_block[std::floor(one.time_s / beside.block_s)].push_back(one.speed_m_s);
   }
   std::map<double, std::vector<double>> truth_in_block;
@@ -111,58 +112,58 @@ std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, HeardThr
   std::vector<MicLevelAndSpeed> pairs;
   for (const auto& [block, levels_db] : levels_in_block) {
     const auto truth = truth_in_block.find(block);
-    const bool is_heard =
-        static_cast<double>(levels_db.size()) >= kLeastHeardPart * static_cast<double>(all_in_block[block]);
-    if (truth != truth_in_block.end() && is_heard) pairs.push_back({mean_of(levels_db), mean_of(truth->second)});
+    const bool is_measured =
+        static_cast<double>(levels_db.size()) >= kLeastMeasuredPart * static_cast<double>(all_in_block[block]);
+    if (truth != truth_in_block.end() && is_measured) pairs.push_back({mean_of(levels_db), mean_of(truth->second)});
   }
-  session.dialog().say(fmt::format("\nCompared with \"{}\": {} pairs of level and speed, means over {:.0f} s.",
-                                   session.reference()->name, pairs.size(), beside.block_s));
+  session.dialog().print(fmt::format("\nCompared with \"{}\": {} pairs of level and speed, means over {:.0f} s.",
+                                     session.reference()->name, pairs.size(), beside.block_s));
   return pairs;
 }
 
 /// The mean level in a wind of this speed.
-MicLevelAndSpeed hear_level(CalibrationSession& session, double speed_m_s, HeardThrough& through) {
-  const Heard heard =
-      session.hear(fmt::format("Set the wind at the microphone to a steady {:g} m/s, with no other sound.", speed_m_s));
-  through = heard_through(session, heard[0]);
+MicLevelAndSpeed measure_level(CalibrationSession& session, double speed_m_s, LevelConversion& conversion) {
+  const CollectedReadings collected = session.collect(
+      fmt::format("Set the wind at the microphone to a steady {:g} m/s, with no other sound.", speed_m_s));
+  conversion = level_conversion(session, collected[0]);
   double sum_db = 0.0;
-  const std::vector<TimedSpeed> levels_db = levels_of(heard[0], through);
+  const std::vector<TimedSpeed> levels_db = levels_of(collected[0], conversion);
   for (const TimedSpeed& one : levels_db) sum_db += one.speed_m_s;
   if (levels_db.empty()) refuse({"the microphone receives no wind noise: is it in the wind, and is it switched on?"});
   const double level_db = sum_db / static_cast<double>(levels_db.size());
-  session.dialog().say(fmt::format("At {:g} m/s the level is {:.1f} dB, over {}.", speed_m_s, level_db,
-                                   count_text(levels_db.size(), "reading")));
+  session.dialog().print(fmt::format("At {:g} m/s the level is {:.1f} dB, over {}.", speed_m_s, level_db,
+                                     count_text(levels_db.size(), "reading")));
   return {level_db, speed_m_s};
 }
 
 MicCalibration calibration_by_two_winds(CalibrationSession& session, std::vector<double> speeds_m_s,
-                                        HeardThrough& through, std::vector<MicLevelAndSpeed>& pairs) {
-  for (const double speed_m_s : speeds_m_s) pairs.push_back(hear_level(session, speed_m_s, through));
-  if (through.kind == MicFitKind::kCurve) {
+                                        LevelConversion& conversion, std::vector<MicLevelAndSpeed>& pairs) {
+  for (const double speed_m_s : speeds_m_s) pairs.push_back(measure_level(session, speed_m_s, conversion));
+  if (conversion.kind == MicFitKind::kCurve) {
     refuse(
         {"a curve cannot be fitted to two winds, and this microphone uses a curve: set its curve to \"\", or set its "
          "noise_floor"});
   }
   std::ranges::sort(pairs, {}, &MicLevelAndSpeed::speed_m_s);
-  const MicPowerLaw law = value_or_refuse(mic_power_law_through(pairs[0], pairs[1], through.noise_power));
-  session.dialog().say("Fitted a power law through both winds.");
+  const MicPowerLaw law = value_or_refuse(mic_power_law_through(pairs[0], pairs[1], conversion.noise_power));
+  session.dialog().print("Fitted a power law through both winds.");
   return law;
 }
 
-MicCalibration calibration_beside(CalibrationSession& session, HeardThrough& through,
+MicCalibration calibration_beside(CalibrationSession& session, LevelConversion& conversion,
                                   std::vector<MicLevelAndSpeed>& pairs) {
-  pairs = pairs_beside(session, through);
-  const MicFit fit = value_or_refuse(fit_mic_calibration(pairs, through.noise_power, through.kind));
-  session.dialog().say(fmt::format("Fitted a {}: mean error {:.2f} m/s on pairs that were not used for the fit.",
-                                   std::holds_alternative<MicCurve>(fit.calibration) ? "curve" : "power law",
-                                   fit.mean_error_m_s));
-  if (through.kind == MicFitKind::kPowerLaw) {
-    session.dialog().say("(Only a power law was tried: a curve needs a known noise_floor.)");
+  pairs = pairs_beside(session, conversion);
+  const MicFit fit = value_or_refuse(fit_mic_calibration(pairs, conversion.noise_power, conversion.kind));
+  session.dialog().print(fmt::format("Fitted a {}: mean error {:.2f} m/s on pairs that were not used for the fit.",
+                                     std::holds_alternative<MicCurve>(fit.calibration) ? "curve" : "power law",
+                                     fit.mean_error_m_s));
+  if (conversion.kind == MicFitKind::kPowerLaw) {
+    session.dialog().print("(Only a power law was tried: a curve needs a known noise_floor.)");
   }
   return fit.calibration;
 }
 
-/// What levels are taken for, now and then.
+/// The speeds at some levels with the present and the new calibration: the lines of a table.
 std::vector<std::string> level_effect(const CalibrationSession& session, const MicCalibration& then, double noise_power,
                                       const std::vector<MicLevelAndSpeed>& pairs) {
   const MicCalibration now = mic_calibration_of(session.sensor().values);
@@ -197,19 +198,19 @@ void calibrate_microphone(const MicrophoneOptions& options) {
                     fmt::format("\"{}\" is not a microphone; use `yuragi calibrate span`", session.sensor().name));
   }
 
-  HeardThrough through;
+  LevelConversion conversion;
   std::vector<MicLevelAndSpeed> pairs;
-  const MicCalibration found = has_reference ? calibration_beside(session, through, pairs)
-                                             : calibration_by_two_winds(session, options.speeds_m_s, through, pairs);
+  const MicCalibration found = has_reference ? calibration_beside(session, conversion, pairs)
+                                             : calibration_by_two_winds(session, options.speeds_m_s, conversion, pairs);
 
-  // All of it is in the driver's own parameters now: nothing of it may be done twice.
+  // The whole calibration is now in the driver's own parameters: [sensor.calibration] must not apply it twice.
   std::vector<ConfigChange> wanted;
   for (const auto& [key, value] : parameters_of(found)) wanted.push_back({"", key, value});
   wanted.push_back({"calibration", "unit", std::string("m/s")});
   wanted.push_back({"calibration", "gain", 1.0});
   wanted.push_back({"calibration", "offset", 0.0});
   wanted.push_back({"calibration", "curve", std::string()});
-  session.finish(wanted, level_effect(session, found, through.noise_power, pairs));
+  session.finish(wanted, level_effect(session, found, conversion.noise_power, pairs));
 }
 
 }  // namespace

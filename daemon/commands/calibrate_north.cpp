@@ -1,4 +1,4 @@
-// `yuragi calibrate north`: the vane's directions become those of the map.
+// `yuragi calibrate north`: determines the vane's offset from true north.
 #include <memory>
 #include <optional>
 
@@ -11,7 +11,7 @@
 namespace yuragi {
 namespace {
 
-constexpr double kLeastVaneSpeed_m_s = 1.0;  // below it a vane points where it was left
+constexpr double kLeastVaneSpeed_m_s = 1.0;  // below it a vane does not turn
 constexpr double kTurnBlock_s = 10.0;
 
 struct NorthOptions {
@@ -19,26 +19,26 @@ struct NorthOptions {
   std::optional<double> bearing_deg;
 };
 
-/// The turn from what the vane says to what is true, by a landmark that it is pointed to.
+/// The offset of the vane, by pointing it at a landmark of known bearing.
 double turn_by_landmark(CalibrationSession& session, double bearing_deg) {
-  const Heard heard =
-      session.hear(fmt::format("Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind "
-                               "came from there, and hold it\nstill.",
-                               bearing_deg));
-  std::vector<double> said_deg;
-  for (const TimedReading& one : heard[0].readings) {
-    if (one.reading.direction_deg) said_deg.push_back(*one.reading.direction_deg);
+  const CollectedReadings collected = session.collect(
+      fmt::format("Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind "
+                  "came from there, and hold it\nstill.",
+                  bearing_deg));
+  std::vector<double> indicated_deg;
+  for (const TimedReading& one : collected[0].readings) {
+    if (one.reading.direction_deg) indicated_deg.push_back(*one.reading.direction_deg);
   }
-  const DirectionMean mean = value_or_refuse(measure_held_vane(said_deg));
-  session.dialog().say(
+  const DirectionMean mean = value_or_refuse(measure_held_vane(indicated_deg));
+  session.dialog().print(
       fmt::format("\nThe vane reads {:.1f} deg, standard deviation {:.1f} deg, over {}; the true bearing is {:g}.",
                   mean.mean_deg, mean.spread_deg, count_text(mean.count, "reading"), bearing_deg));
   return bearing_deg - mean.mean_deg;
 }
 
-std::vector<TimedDirection> directions_of(const HeardSensor& heard, const Calibration& calibration) {
+std::vector<TimedDirection> directions_of(const SensorReadings& collected, const Calibration& calibration) {
   std::vector<TimedDirection> directions;
-  for (const TimedReading& one : heard.readings) {
+  for (const TimedReading& one : collected.readings) {
     const WindReading reading = calibration.applied_to(one.reading);
     if (reading.direction_deg && reading.speed_m_s >= kLeastVaneSpeed_m_s) {
       directions.push_back({one.time_s, *reading.direction_deg});
@@ -47,15 +47,16 @@ std::vector<TimedDirection> directions_of(const HeardSensor& heard, const Calibr
   return directions;
 }
 
-/// The same, by another vane in the same wind.
+/// The offset, by comparison with another vane in the same wind.
 double turn_by_reference(CalibrationSession& session) {
-  const Heard heard = session.hear("Both vanes must be in the same wind, of more than 1 m/s.");
+  const CollectedReadings collected = session.collect("Both vanes must be in the same wind, of more than 1 m/s.");
   Calibration without_north = session.calibration();
   without_north.north_offset_deg = 0.0;
-  const std::vector<double> turns_deg = pair_turns(
-      directions_of(heard[0], without_north), directions_of(heard[1], session.reference()->calibration), kTurnBlock_s);
+  const std::vector<double> turns_deg =
+      pair_turns(directions_of(collected[0], without_north),
+                 directions_of(collected[1], session.reference()->calibration), kTurnBlock_s);
   const DirectionMean turn = value_or_refuse(measure_turn(turns_deg));
-  session.dialog().say(
+  session.dialog().print(
       fmt::format("\nThe difference is {:+.1f} deg, standard deviation {:.1f} deg, over {} means of {:g} s.",
                   signed_degrees(turn.mean_deg), turn.spread_deg, turn.count, kTurnBlock_s));
   return turn.mean_deg;
@@ -68,11 +69,11 @@ void calibrate_north(NorthOptions options) {
   if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
   if (!has_reference && !options.bearing_deg) {
     if (!session.dialog().has_person()) throw ExitError(kExitUsage, "give --bearing DEG or --reference NAME");
-    session.dialog().say(
+    session.dialog().print(
         "\n"
         "Choose a distant landmark: a tower, a summit. Take its bearing from the sensor from a map (true north: a\n"
         "compass deviates by the declination, and by more near steel).");
-    options.bearing_deg = session.dialog().ask_number("Its bearing, degrees clockwise from north", 0.0, 360.0);
+    options.bearing_deg = session.dialog().prompt_number("Its bearing, degrees clockwise from north", 0.0, 360.0);
   }
 
   const double turn_deg = has_reference ? turn_by_reference(session) : turn_by_landmark(session, *options.bearing_deg);
@@ -81,10 +82,10 @@ void calibrate_north(NorthOptions options) {
   Calibration then = now;
   then.north_offset_deg = north_offset_deg;
   std::vector<std::string> effect = {"   reading     direction now   direction then"};
-  for (const double said_deg : {0.0, 90.0, 180.0, 270.0}) {
+  for (const double indicated_deg : {0.0, 90.0, 180.0, 270.0}) {
     WindReading reading;
-    reading.direction_deg = said_deg;
-    effect.push_back(fmt::format("{:7.0f} deg        {:7.1f} deg     {:7.1f} deg", said_deg,
+    reading.direction_deg = indicated_deg;
+    effect.push_back(fmt::format("{:7.0f} deg        {:7.1f} deg     {:7.1f} deg", indicated_deg,
                                  *now.applied_to(reading).direction_deg, *then.applied_to(reading).direction_deg));
   }
   session.finish({{"calibration", "north_offset", north_offset_deg}}, effect);

@@ -1,4 +1,4 @@
-// `yuragi calibrate span`: gain and offset, or a curve, against winds that are known.
+// `yuragi calibrate span`: fits gain and offset, or a curve, to known winds.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -16,7 +16,7 @@ namespace yuragi {
 namespace {
 
 constexpr double kSpanBlock_s = 10.0;
-constexpr double kMostUnsteadiness = 0.3;  // standard deviation over mean, of a wind that is called steady
+constexpr double kMostUnsteadiness = 0.3;  // standard deviation over mean of a steady wind
 
 struct SpanOptions {
   CalibrationRequest request;
@@ -25,20 +25,21 @@ struct SpanOptions {
   bool wants_curve = false;
 };
 
-/// What the sensor says in a wind of this speed.
-CalibrationPoint hear_known_speed(CalibrationSession& session, double speed_m_s) {
-  const Heard heard = session.hear(fmt::format(
+/// The indicated speed in a wind of this true speed.
+CalibrationPoint measure_known_speed(CalibrationSession& session, double speed_m_s) {
+  const CollectedReadings collected = session.collect(fmt::format(
       "Set the wind at the sensor to a steady {:g} m/s: with a fan or a wind tunnel, and an accurate meter next to it.",
       speed_m_s));
-  const std::vector<double> said_m_s = said_speeds_m_s(heard[0], session.calibration());
-  if (said_m_s.empty()) refuse({"that part of the recording has no readings: check --part"});
-  const auto count = static_cast<double>(said_m_s.size());
+  const std::vector<double> indicated_m_s = indicated_speeds_m_s(collected[0], session.calibration());
+  if (indicated_m_s.empty()) refuse({"that part of the recording has no readings: check --part"});
+  const auto count = static_cast<double>(indicated_m_s.size());
   double mean_m_s = 0.0;
-  for (const double said : said_m_s) mean_m_s += said / count;
+  for (const double indicated : indicated_m_s) mean_m_s += indicated / count;
   double variance = 0.0;
-  for (const double said : said_m_s) variance += (said - mean_m_s) * (said - mean_m_s) / count;
-  session.dialog().say(fmt::format("At {:g} m/s the sensor reads {:.3f} m/s, standard deviation {:.3f} m/s, over {}.",
-                                   speed_m_s, mean_m_s, std::sqrt(variance), count_text(said_m_s.size(), "reading")));
+  for (const double indicated : indicated_m_s) variance += (indicated - mean_m_s) * (indicated - mean_m_s) / count;
+  session.dialog().print(fmt::format("At {:g} m/s the sensor reads {:.3f} m/s, standard deviation {:.3f} m/s, over {}.",
+                                     speed_m_s, mean_m_s, std::sqrt(variance),
+                                     count_text(indicated_m_s.size(), "reading")));
   if (std::sqrt(variance) > kMostUnsteadiness * mean_m_s && mean_m_s > 0.0) {
     refuse({fmt::format("that wind is not steady: its standard deviation is {:.0f} %, allowed: up to {:.0f} %",
                         100.0 * std::sqrt(variance) / mean_m_s, 100.0 * kMostUnsteadiness)});
@@ -46,29 +47,29 @@ CalibrationPoint hear_known_speed(CalibrationSession& session, double speed_m_s)
   return {mean_m_s, speed_m_s};
 }
 
-/// The pairs that the options ask for.
+/// The pairs of indicated and true speed, as the options say.
 std::vector<CalibrationPoint> known_pairs(CalibrationSession& session, const SpanOptions& options) {
   if (!options.points.empty()) return value_or_refuse(parse_calibration_curve(options.points));
   std::vector<CalibrationPoint> pairs;
   if (session.reference() == nullptr) {
-    for (const double speed_m_s : options.speeds_m_s) pairs.push_back(hear_known_speed(session, speed_m_s));
+    for (const double speed_m_s : options.speeds_m_s) pairs.push_back(measure_known_speed(session, speed_m_s));
     return pairs;
   }
-  const Heard heard = session.hear(
+  const CollectedReadings collected = session.collect(
       "Both sensors must be in the same wind, as close together as possible without sheltering each other; the more "
       "the\nwind varies meanwhile, the better.");
-  const ReferencePairs beside = pair_with_reference(session, heard, kSpanBlock_s);
-  session.dialog().say(fmt::format("\nCompared with \"{}\": {} pairs of means over {:.0f} s.",
-                                   session.reference()->name, beside.pairs.size(), beside.block_s));
+  const ReferencePairs beside = pair_with_reference(session, collected, kSpanBlock_s);
+  session.dialog().print(fmt::format("\nCompared with \"{}\": {} pairs of means over {:.0f} s.",
+                                     session.reference()->name, beside.pairs.size(), beside.block_s));
   return beside.pairs;
 }
 
-/// A gain that is a unit in disguise.
+/// Hints at a wrong unit, where the gain is close to a conversion factor.
 void hint_at_unit(const CalibrationSession& session, CalibrationDialog& dialog, double gain) {
   if (session.calibration().unit_m_s != 1.0) return;
   for (const SpeedUnit& unit : kSpeedUnitTable) {
     if (unit.metres_per_second == 1.0 || std::abs(gain / unit.metres_per_second - 1.0) > 0.05) continue;
-    dialog.say(
+    dialog.print(
         fmt::format("A gain of {:.3f} is typical of numbers in {}: if the sensor reports that unit, set unit = \"{}\" "
                     "(of the driver, or in [sensor.calibration]) and start again.",
                     gain, unit.name, unit.name));
@@ -101,7 +102,7 @@ void check_options(const SpanOptions& options) {
   }
 }
 
-/// Speeds to show the effect at: those that were measured, from the slowest to the fastest, and what a storm would say.
+/// Indicated speeds at which the effect is shown: some within the measured range, and one of a storm.
 std::vector<double> shown_speeds(const std::vector<CalibrationPoint>& pairs) {
   const auto [low, high] = std::ranges::minmax(pairs, {}, &CalibrationPoint::measured_m_s);
   if (pairs.size() == 1) return {0.5 * low.measured_m_s, low.measured_m_s, 2.0 * low.measured_m_s};
@@ -121,8 +122,8 @@ void calibrate_span(const SpanOptions& options) {
     std::vector<CalibrationPoint> curve = pairs;
     if (options.points.empty()) {
       CurveFit fit = value_or_refuse(fit_curve(pairs));
-      session.dialog().say(fmt::format("Fitted a curve of {} points: R^2 = {:.4f}, residual {:.3f} m/s.",
-                                       fit.curve.size(), fit.r_squared, fit.residual_m_s));
+      session.dialog().print(fmt::format("Fitted a curve of {} points: R^2 = {:.4f}, residual {:.3f} m/s.",
+                                         fit.curve.size(), fit.r_squared, fit.residual_m_s));
       curve = std::move(fit.curve);
     }
     wanted = {
@@ -131,7 +132,7 @@ void calibrate_span(const SpanOptions& options) {
     const bool is_single = pairs.size() == 1 && options.speeds_m_s.size() == 1;
     const LineFit fit = value_or_refuse(is_single ? fit_line_from_zero(zero_point_m_s(session.calibration()), pairs[0])
                                                   : fit_line(pairs));
-    session.dialog().say(
+    session.dialog().print(
         fit.count <= 2 ? fmt::format("Fitted a line through {}.", is_single ? "its zero and this wind" : "both winds")
                        : fmt::format("Fitted a line through {} pairs with wind: R^2 = {:.4f}, residual {:.3f} m/s.",
                                      fit.count, fit.r_squared, fit.residual_m_s));

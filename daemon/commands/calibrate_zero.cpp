@@ -1,4 +1,4 @@
-// `yuragi calibrate zero`: what the sensor says in still air becomes 0.
+// `yuragi calibrate zero`: determines the offset of the speed in still air.
 #include <memory>
 
 #include <fmt/format.h>
@@ -17,16 +17,16 @@ void calibrate_zero(const CalibrationRequest& request) {
                     "a microphone has no zero: its noise in a calm is found while it runs, or set as its noise_floor");
   }
   if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
-  const Heard heard = session.hear(
+  const CollectedReadings collected = session.collect(
       "The air at the sensor must not move: put a box or a bag over it, close windows, switch off fans, and keep "
       "your\nhands away. Cups must be free to turn.");
   const Calibration calibration = session.calibration();
-  const StillAir air = value_or_refuse(measure_still_air(said_speeds_m_s(heard[0], calibration)));
-  session.dialog().say(
+  const StillAir air = value_or_refuse(measure_still_air(indicated_speeds_m_s(collected[0], calibration)));
+  session.dialog().print(
       fmt::format("\nIn still air the sensor reads {:.3f} m/s, standard deviation {:.3f} m/s, over {}.", air.mean_m_s,
                   air.noise_m_s, count_text(air.count, "reading")));
   if (air.mean_m_s == 0.0) {
-    session.dialog().say("The sensor reads 0 in still air already: nothing to write.");
+    session.dialog().print("The sensor reads 0 in still air already: nothing to write.");
     return;
   }
   const double offset_m_s = rounded(offset_for_zero_m_s(calibration, air.mean_m_s), 0.001);

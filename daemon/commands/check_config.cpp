@@ -1,4 +1,4 @@
-// `yuragi check-config` and `yuragi describe`: what a configuration says, and what one may say.
+// `yuragi check-config` checks and prints a configuration; `yuragi describe` prints all keys.
 #include <memory>
 #include <string>
 

@@ -1,4 +1,4 @@
-// `yuragi decode`: what a log from the field, or a message on the bench, says to the drivers' own decoders.
+// `yuragi decode`: decodes logged messages with the drivers' own decoders.
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -37,7 +37,7 @@ class Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  /// What has come, waiting until something has. Empty: the end.
+  /// The next block, waiting until there is one. Empty: the end.
   ByteSpan read_some() {
     while (true) {
       const ssize_t size = read(fd_, block_.data(), block_.size());
@@ -59,7 +59,7 @@ class Input {
   std::array<std::uint8_t, 16384> block_{};
 };
 
-/// `text` as JSON can hold it: where it is not UTF-8, each byte beyond ASCII as \xNN.
+/// `text` for JSON: where it is not valid UTF-8, each byte beyond ASCII as \xNN.
 std::string as_utf8(std::string_view text) {
   try {
     (void)Json(text).dump();
@@ -90,7 +90,7 @@ Json json_of(const UnitReading& reading) {
   return json;
 }
 
-/// One JSON object a line, each of them written at once.
+/// Writes one JSON object per line, flushing each.
 class Output {
  public:
   explicit Output(bool shows_refused) : shows_refused_(shows_refused) {}
@@ -121,7 +121,7 @@ class Output {
 
  private:
   static void write(const Json& json) {
-    write_at_once(json.dump(-1, ' ', true) + "\n");  // ASCII: harmless in any terminal
+    write_at_once(json.dump(-1, ' ', true) + "\n");  // ASCII only: safe in any terminal
   }
 
   bool shows_refused_;
@@ -161,7 +161,7 @@ void decode_input(DecodeCommandOptions& options) {
   Input input(options.file);
   Output output(options.shows_refused);
 
-  std::string_view text;  // of the message at hand
+  std::string_view text;  // of the present message
   const auto outcome = [&](const UnitDecoder::Outcome& decoded) {
     if (decoded) {
       output.reading(*decoded);

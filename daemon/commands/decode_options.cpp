@@ -14,7 +14,7 @@
 namespace yuragi {
 namespace {
 
-/// An option whose words stand for values.
+/// An option that takes one of several names, each for a value.
 template <class Value>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value,
                         const std::map<std::string, Value>& words, const std::string& help) {
@@ -66,7 +66,7 @@ CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string&
   return option;
 }
 
-/// The driver's own parameters, checked by the driver: what reads a log here reads the device there.
+/// The driver's own parameters, checked by the driver: logs are decoded with the settings of the device.
 void DecodeCommandOptions::set_line() {
   const auto values = ParameterValues::resolve(line_reading_parameters(), given_for_line_);
   if (!values) {
@@ -75,9 +75,9 @@ void DecodeCommandOptions::set_line() {
   try {
     decoder.line = line_options_of(*values);
   } catch (const std::runtime_error& error) {
-    const std::string said = error.what();
-    const std::size_t colon = std::min(said.find(':'), said.size());
-    throw ExitError(kExitUsage, option_of(said.substr(0, colon)) + said.substr(colon));
+    const std::string text = error.what();
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    throw ExitError(kExitUsage, option_of(text.substr(0, colon)) + text.substr(colon));
   }
 }
 

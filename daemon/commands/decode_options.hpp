@@ -10,7 +10,7 @@
 
 namespace yuragi {
 
-/// What `yuragi decode` can be told.
+/// The options of `yuragi decode`.
 class DecodeCommandOptions {
  public:
   std::string format;
@@ -19,18 +19,18 @@ class DecodeCommandOptions {
   bool shows_refused = false;
   UnitDecoderOptions decoder;
 
-  /// Adds all of them to the command, which this object must outlive.
+  /// Adds them to the command; this object must outlive it.
   void add_to(CLI::App& command);
 
-  /// To be called once the command line has been read. Throws ExitError where an option was given that means nothing
-  /// to the format, or where two quantities stand in one column.
+  /// To be called after parsing. Throws ExitError where an option does not apply to the format, or where two quantities
+  /// have the same column.
   void check();
 
  private:
-  /// Options that only some formats read.
+  /// Options that only some formats have.
   struct Limited {
     CLI::Option* option;
-    std::string formats;  ///< their names, with ", " between
+    std::string formats;  ///< their names, separated by ", "
   };
 
   CLI::Option* limit(CLI::Option* option, const std::string& formats);

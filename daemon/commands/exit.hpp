@@ -9,12 +9,12 @@ namespace yuragi {
 
 // How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong.
 inline constexpr int kExitUsage = 64;         ///< the command line
-inline constexpr int kExitDataError = 65;     ///< an input file that holds what it should not
-inline constexpr int kExitNoInput = 66;       ///< an input file that is not there
-inline constexpr int kExitUnavailable = 69;   ///< nobody answers, or an address is taken
-inline constexpr int kExitSoftware = 70;      ///< anything not foreseen
+inline constexpr int kExitDataError = 65;     ///< an input file with invalid content
+inline constexpr int kExitNoInput = 66;       ///< a missing input file
+inline constexpr int kExitUnavailable = 69;   ///< no daemon replies, or an address is in use
+inline constexpr int kExitSoftware = 70;      ///< an unexpected error
 inline constexpr int kExitCannotCreate = 73;  ///< an output file
-inline constexpr int kExitNoPermission = 77;  ///< asked of somebody who does not take it from here
+inline constexpr int kExitNoPermission = 77;  ///< refused by the daemon
 inline constexpr int kExitConfig = 78;        ///< the configuration
 
 /// The exit code for a failure that ends a command.
@@ -36,7 +36,7 @@ constexpr int exit_code_of(FailureKind kind) {
   return kExitSoftware;
 }
 
-/// A failure of a command: its text tells a person what to do, its code tells the shell. Thrown by commands alone, and
+/// A failure of a command, with a text for a person and an exit code for the shell. Thrown by commands alone, and
 /// caught once, in main. Rooms below return a Failure, or throw it as a FailureError.
 class ExitError : public std::runtime_error {
  public:

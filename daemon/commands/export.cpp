@@ -1,4 +1,4 @@
-// `yuragi export`: a recording becomes a CSV file, or a copy of itself.
+// `yuragi export`: converts a recording to CSV, or copies it.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -57,13 +57,13 @@ void export_as_csv(WindlogReader& reader, const ExportOptions& options, std::FIL
 
   const bool is_watched = isatty(STDERR_FILENO) != 0 && isatty(fileno(out)) == 0;
   const auto began = std::chrono::steady_clock::now();
-  bool has_told = false;
+  bool has_shown = false;
   const auto report = export_csv(reader, range, out, [&](std::size_t written) {
     if (!is_watched || std::chrono::steady_clock::now() - began < std::chrono::seconds(1)) return;
     fmt::print(stderr, "\r{} readings", written);
-    has_told = true;
+    has_shown = true;
   });
-  if (has_told) fmt::print(stderr, "\n");
+  if (has_shown) fmt::print(stderr, "\n");
   if (!report) throw ExitError(kExitDataError, report.error().message);
   if (report->skipped > 0)
     fmt::print(stderr, "left out: {} that cannot be readings\n", count_text(report->skipped, "row"));

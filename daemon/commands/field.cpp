@@ -1,4 +1,4 @@
-// `yuragi field`: the wind over a scene, as numbers for other programs.
+// `yuragi field`: exports the wind over a scene for other programs.
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -58,7 +58,7 @@ constexpr const char* kFieldFooter =
     "  yuragi field --windlog mast.windlog --time 600 --size 50m --spacing 0.25 -o meadow.npy\n"
     "  python3 -c 'import numpy; print(numpy.load(\"gusts.npy\")[0, 0].std())'";
 
-/// What `--stress` is without a word (Panofsky and Dutton 1984, chapter 6).
+/// The default of `--stress` (Panofsky and Dutton 1984, chapter 6).
 constexpr double kStressNearTheGround = -0.3;
 
 struct FieldOptions {
@@ -68,7 +68,7 @@ struct FieldOptions {
   std::optional<double> stress;
   FieldFrames frames;
   bool is_frozen = false;
-  bool is_evolving = false;  ///< as it is without, unless a configuration says otherwise
+  bool is_evolving = false;  ///< by default not, unless a configuration says otherwise
   std::optional<std::uint64_t> seed;
   std::optional<std::filesystem::path> recording;
   PlaybackOptions playback;
@@ -114,7 +114,7 @@ FieldGrid grid_of(const FieldOptions& options) {
   return grid;
 }
 
-/// The tile that is asked for, or one that is large enough for the grid.
+/// The tile size given by an option, or one that is large enough for the grid.
 std::size_t tile_of(const FieldOptions& options, const FieldGrid& grid) {
   const bool is_space = options.wind.dims == 3;
   const std::size_t largest = is_space ? kMaxNoiseSize3 : kMaxNoiseSize2;
@@ -134,7 +134,7 @@ std::size_t tile_of(const FieldOptions& options, const FieldGrid& grid) {
   return std::min(largest, std::bit_ceil(std::max<std::size_t>(2 * edge, is_space ? 64 : 256)));
 }
 
-/// Values that go out as they come. What the disk does not take is told.
+/// Writes values as they are computed. Throws where the disk does not take them.
 class FieldFile {
  public:
   FieldFile(std::string name, const std::filesystem::path& path, const std::vector<std::size_t>& shape)
@@ -213,7 +213,7 @@ PlotMap map_of(std::span<const float> frame, const FieldGrid& grid, const std::s
       strongest_m_s = std::max(strongest_m_s, map.values.back());
     }
   }
-  // The strongest wind's arrow reaches to the next.
+  // The arrow of the strongest wind reaches the next place.
   const double metres_per_m_s = static_cast<double>(apart) * grid.spacing_m / strongest_m_s;
   for (std::size_t k = apart / 2; k < grid.count_z; k += apart) {
     for (std::size_t i = apart / 2; i < grid.count_x; i += apart) {
@@ -266,7 +266,7 @@ void run_field(FieldOptions options) {
   }
   FieldFile file(options.output.string(), output.working_path(), shape);
 
-  // Each frame goes out as it is made; the first is kept for the picture.
+  // Each frame is written as it is computed; the first is kept for the picture.
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   std::vector<float> first;
   std::size_t written = 0;
@@ -330,7 +330,7 @@ void add_field(CLI::App& app) {
   command->footer(kFieldFooter);
   auto options = std::make_shared<FieldOptions>();
   WindFieldSettings& wind = options->wind;
-  std::vector<CLI::Option*> of_statistics;  // which a recording answers by itself
+  std::vector<CLI::Option*> of_statistics;  // which a recording makes superfluous
   of_statistics.push_back(command->add_option("--speed", wind.speed_m_s, "mean speed, m/s")
                               ->check(CLI::Range(0.0, 100.0))
                               ->capture_default_str());

@@ -1,4 +1,4 @@
-// `yuragi import`: a CSV file becomes a recording.
+// `yuragi import`: converts a CSV file to a recording.
 #include <array>
 #include <chrono>
 #include <fstream>
@@ -64,7 +64,7 @@ CsvImportOptions csv_options(const ImportOptions& options) {
   return csv;
 }
 
-/// Writes what the import finds to one session of a new recording.
+/// Writes the imported readings to one session of a new recording.
 class Target {
  public:
   Target(const std::filesystem::path& file, std::string configuration)
@@ -80,18 +80,18 @@ class Target {
     }
     must(writer_.append(known->second, reading));
 
-    // Transactions of a size that memory holds; a word now and then when it takes long.
+    // Transactions of bounded size; shows progress now and then when it takes long.
     constexpr std::size_t kRowsPerCommit = 100'000;
     if (++count_ % kRowsPerCommit == 0) {
       must(writer_.commit());
       const bool is_slow = std::chrono::steady_clock::now() - began_ > std::chrono::seconds(1);
       if (is_watched_ && is_slow) fmt::print(stderr, "\r{} readings", count_);
-      has_told_ = has_told_ || (is_watched_ && is_slow);
+      has_shown_ = has_shown_ || (is_watched_ && is_slow);
     }
   }
 
   void close() {
-    if (has_told_) fmt::print(stderr, "\n");
+    if (has_shown_) fmt::print(stderr, "\n");
     must(writer_.close());
   }
 
@@ -109,13 +109,13 @@ class Target {
   WindlogWriter writer_;
   std::string configuration_;
   bool is_watched_;
-  bool has_told_ = false;
+  bool has_shown_ = false;
   std::size_t count_ = 0;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   std::map<std::string, std::int64_t, std::less<>> sensors_;
 };
 
-void tell(const ImportOptions& options, const CsvImportReport& report) {
+void print_report(const ImportOptions& options, const CsvImportReport& report) {
   for (const std::string& line : report.columns) fmt::print("  {}\n", line);
   for (const std::string& line : report.first_refusals) fmt::print(stderr, "left out: {}\n", line);
   if (report.refused() > report.first_refusals.size()) {
@@ -144,11 +144,11 @@ void run_import(const ImportOptions& options) {
   if (!is_standard_input && file.bad()) throw ExitError(kExitNoInput, options.input + ": could not be read completely");
   target.close();
   if (report->taken == 0) {
-    tell(options, *report);
+    print_report(options, *report);
     throw ExitError(kExitDataError, options.input + ": no row is a reading; nothing was written");
   }
   output.commit().value();
-  tell(options, *report);
+  print_report(options, *report);
 }
 
 void add_import(CLI::App& app) {

@@ -1,4 +1,4 @@
-// `yuragi mic-worker`: the process that the driver `microphone` keeps PortAudio in. People use its --list.
+// `yuragi mic-worker`: the child process in which the driver `microphone` runs PortAudio. People use its --list.
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
@@ -21,7 +21,7 @@ struct WorkerOptions {
   bool verbose = false;
 };
 
-/// SIGTERM and SIGINT end the work, and whoever reads no more.
+/// Set by SIGTERM and SIGINT. The work also ends when nobody reads the output any more.
 std::atomic<bool> is_worker_over = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 
@@ -29,9 +29,8 @@ void end_worker(int /*signal*/) {
   is_worker_over = true;
 }
 
-/// What libraries print must not come between the frames: standard output becomes standard error, which is shut up
-/// unless somebody wants to hear (ALSA complains at length of each device that it tries). Returns the true standard
-/// output.
+/// Keeps what libraries print out of the frames: redirects standard output to standard error, and that to /dev/null
+/// unless it is wanted (ALSA prints much about each device that it tries). Returns the original standard output.
 int take_output(bool verbose) {
   const int output = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   if (output < 0) throw ExitError(kExitUnavailable, "mic-worker has no standard output");
@@ -57,7 +56,7 @@ void work(const WorkerOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, end_worker);
   std::signal(SIGINT, end_worker);
-  // Looking for inputs must not start a server. There is one thread yet.
+  // Searching for inputs must not start a JACK server. setenv() is safe: there is only one thread yet.
   setenv("JACK_NO_START_SERVER", "1", 0);  // NOLINT(concurrency-mt-unsafe)
 
   const int output = take_output(options.verbose);
@@ -67,7 +66,7 @@ void work(const WorkerOptions& options) {
   } else {
     static const SystemClock clock;  // outlives the sound system's thread
     const bool was_told = run_microphone_worker(options.worker, *input, clock, output, is_worker_over);
-    // A device that is gone can hang the library when it closes: the system does that better.
+    // Closing a device that is gone can hang the library: exit without closing it.
     if (!was_told) _exit(kExitUnavailable);
   }
 }

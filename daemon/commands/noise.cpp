@@ -55,7 +55,7 @@ struct NoiseOptions {
   std::string out;
 };
 
-/// Refuses what the library would silently bend into range: a sign, or more than 64 bits.
+/// Refuses what the library would silently convert: a sign, or more than 64 bits.
 std::string check_whole_number(const std::string& text) {
   std::uint64_t number = 0;
   const char* const end = text.data() + text.size();
@@ -64,7 +64,7 @@ std::string check_whole_number(const std::string& text) {
   return text + " is not a whole number from 0 to 18446744073709551615";
 }
 
-/// The options that an error is about, as they were given.
+/// The options that an error is about, as given.
 std::string blamed_option(int dims, const NoiseSpec& spec, NoiseError error) {
   switch (error) {
     case NoiseError::kSizeNotAllowed:
@@ -81,7 +81,7 @@ std::string blamed_option(int dims, const NoiseSpec& spec, NoiseError error) {
   return "?";
 }
 
-/// The tile's values, or ExitError that names the options to blame and what it takes.
+/// The values of the tile. Throws ExitError, which names the wrong options and what is allowed.
 std::vector<float> make_values(const NoiseOptions& options) {
   const auto refuse = [&](NoiseError error) {
     return ExitError(kExitUsage,

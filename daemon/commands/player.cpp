@@ -1,4 +1,4 @@
-// `yuragi player`: how the recordings that a running daemon plays do, and pausing, stepping and moving them.
+// `yuragi player`: shows and controls the recordings that a running daemon plays.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -9,24 +9,24 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
-#include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/send_control.hpp"
 
 namespace yuragi {
 namespace {
 
-/// An order is carried out by the sensor's next poll, which is at once; unless its disk hangs.
+/// An order is carried out by the sensor's next poll, which follows at once unless its disk hangs.
 constexpr auto kOrderTimeout = std::chrono::seconds(5);
 constexpr auto kOrderPause = std::chrono::milliseconds(20);
 
 struct PlayerCommandOptions {
   std::string connect = fmt::format("127.0.0.1:{}", wire::kDefaultPort);
-  wire::PlayerWish wish = {};
+  wire::PlayerCommand command = {};
 };
 
-wire::ControlReply ask_players(const PlayerCommandOptions& options, const wire::PlayerWish& wish) {
-  return ask_daemon(options.connect, "player", {.scene = "", .player = wish});
+wire::ControlReply send_command(const PlayerCommandOptions& options, const wire::PlayerCommand& command) {
+  return send_control(options.connect, "player", {.scene = "", .player = command});
 }
 
 /// "1:02:03.4"
@@ -51,12 +51,12 @@ void print_states(const std::vector<wire::PlayerState>& players) {
   for (const wire::PlayerState& player : players) fmt::print("{}", player_text(player));
 }
 
-/// Waits until each player has done what `given` says, and answers how they are then.
+/// Waits until each player has carried out its order in `given`, and returns their states then.
 std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& options,
                                                const std::vector<wire::PlayerState>& given) {
   const auto deadline = std::chrono::steady_clock::now() + kOrderTimeout;
   while (true) {
-    const wire::ControlReply reply = ask_players(options, {.sensor = options.wish.sensor});
+    const wire::ControlReply reply = send_command(options, {.sensor = options.command.sensor});
     const bool is_done = std::ranges::equal(
         reply.players, given, [](const auto& now, const auto& then) { return now.orders_done >= then.order; });
     if (is_done) return reply.players;
@@ -68,14 +68,14 @@ std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& optio
   }
 }
 
-void tell_status(const PlayerCommandOptions& options) {
-  const wire::ControlReply reply = ask_players(options, options.wish);
+void print_status(const PlayerCommandOptions& options) {
+  const wire::ControlReply reply = send_command(options, options.command);
   if (!reply.done) throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, reply.message);
   print_states(reply.players);
 }
 
 void give_order(const PlayerCommandOptions& options) {
-  const wire::ControlReply reply = ask_players(options, options.wish);
+  const wire::ControlReply reply = send_command(options, options.command);
   if (!reply.done) {
     const std::string message = reply.message.empty() ? "this daemon plays no recordings" : reply.message;
     throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, message);
@@ -92,11 +92,12 @@ void give_order(const PlayerCommandOptions& options) {
 
 using PlayerOptionsPointer = std::shared_ptr<PlayerCommandOptions>;
 
-/// Adds `yuragi player NAME`, with what all of them take.
+/// Adds `yuragi player NAME`, with the options that all of them have.
 CLI::App* add_action(CLI::App& player, const char* name, const char* help, const PlayerOptionsPointer& options) {
   CLI::App* command = player.add_subcommand(name, help);
   command
-      ->add_option("--sensor", options->wish.sensor, "this sensor only; default: every sensor that plays a recording")
+      ->add_option("--sensor", options->command.sensor,
+                   "this sensor only; default: every sensor that plays a recording")
       ->type_name("NAME");
   command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
   return command;
@@ -120,27 +121,27 @@ void add_player(CLI::App& app) {
 
   const auto add = [player](const char* name, const char* help, wire::PlayerAction action) {
     auto options = std::make_shared<PlayerCommandOptions>();
-    options->wish.action = action;
+    options->command.action = action;
     CLI::App* command = add_action(*player, name, help, options);
     command->callback([options] { give_order(*options); });
     return std::pair(command, options);
   };
   auto options = std::make_shared<PlayerCommandOptions>();
   add_action(*player, "status", "show the position of each recording", options)->callback([options] {
-    tell_status(*options);
+    print_status(*options);
   });
   add("pause", "pause; the scenes keep the present wind", wire::PlayerAction::kPause);
   add("resume", "go on", wire::PlayerAction::kResume);
   const auto [step, step_options] =
       add("step", "advance by a number of readings, and pause", wire::PlayerAction::kStep);
-  step->add_option("count", step_options->wish.count, "how many readings (default 1)")
+  step->add_option("count", step_options->command.count, "how many readings (default 1)")
       ->check(CLI::Range(std::uint32_t{1}, wire::kMaxSteps));
   const auto [seek, seek_options] = add("seek", "continue from another place", wire::PlayerAction::kSeek);
-  seek->add_option("place", seek_options->wish.place,
+  seek->add_option("place", seek_options->command.place,
                    "seconds from the beginning (90), forward or backward (+30, -30), or a time (ISO 8601)")
       ->required();
   const auto [rate, rate_options] = add("rate", "play faster or slower", wire::PlayerAction::kRate);
-  rate->add_option("rate", rate_options->wish.rate, "seconds of the recording per second, 0.01 to 1000")
+  rate->add_option("rate", rate_options->command.rate, "seconds of the recording per second, 0.01 to 1000")
       ->required()
       ->check(CLI::Range(wire::kMinPlayRate, wire::kMaxPlayRate));
 }

@@ -1,4 +1,4 @@
-// `yuragi replay`: the daemon with a recording for a sensor, at a pace, or in lock-step as fast as it goes.
+// `yuragi replay`: runs the daemon with a recording as its sensor, or replays it in lock-step as fast as possible.
 #include <cstdlib>
 #include <memory>
 
@@ -84,7 +84,7 @@ void replay_at_full_speed(const ReplayOptions& options) {
 
 void replay(const ReplayOptions& options) {
   options.run.set_up_log();
-  WindlogPlayback::open(options.file, options.playback).value();  // else the daemon would wait for it
+  WindlogPlayback::open(options.file, options.playback).value();  // fails now; the daemon would wait for the file
   if (options.rate == "max") return replay_at_full_speed(options);
 
   Config config = options.run.config();

@@ -1,4 +1,4 @@
-// `yuragi report`: a recording becomes a page that a person reads.
+// `yuragi report`: makes an HTML page of a recording.
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -77,25 +77,25 @@ void write_text(const OutputFile& output, const std::string& name, const std::st
     throw ExitError(kExitCannotCreate, name + ": cannot be written; is the disk full, or the folder not writable?");
 }
 
-/// A word about how far it is, where somebody watches and it takes long.
-class Told {
+/// Shows progress on a terminal.
+class ProgressLine {
  public:
-  void tell(const std::string& text) {
+  void show(const std::string& text) {
     if (!is_watched_ || std::chrono::steady_clock::now() - began_ < std::chrono::seconds(1)) return;
     fmt::print(stderr, "\r\x1b[K{}", text);
-    has_told_ = true;
+    has_shown_ = true;
   }
-  ~Told() {
-    if (has_told_) fmt::print(stderr, "\r\x1b[K");
+  ~ProgressLine() {
+    if (has_shown_) fmt::print(stderr, "\r\x1b[K");
   }
 
  private:
   bool is_watched_ = isatty(STDERR_FILENO) != 0;
-  bool has_told_ = false;
+  bool has_shown_ = false;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// What the gusts of a sensor are taken for: by --height, or by the calibration of the sensor of this name.
+/// The prior of a sensor's gusts: from --height, or from the calibration of the sensor of this name.
 TurbulencePrior prior_of(const Config& config, double height_m, const std::string& name) {
   BlendSourceSettings source;
   if (height_m == 0.0 && !config.wind.default_length_m) {
@@ -103,15 +103,15 @@ TurbulencePrior prior_of(const Config& config, double height_m, const std::strin
       if (sensor.name == name) height_m = sensor.heights.sensor_m.value_or(0.0);
     }
   }
-  // As it was recorded: not brought to another height.
+  // As recorded: not scaled to another height.
   if (height_m > 0.0) source.length_m = iec_length_scale_m(WindComponent::kAlong, height_m);
   return turbulence_prior({.climate = {.turbulence_intensity = config.wind.default_turbulence_intensity},
                            .length_m = config.wind.gust_length_m()},
                           source);
 }
 
-/// Says on the terminal, too, what may be pasted.
-void tell_of_site(const SensorNumbers& sensor) {
+/// Prints the lines for the configuration on the terminal, too.
+void print_site(const SensorNumbers& sensor) {
   if (!sensor.site) return;
   fmt::print(
       "# {}: correction of gusts at this site, for gusts of {:.0f} m\n"
@@ -129,7 +129,7 @@ void run_report(const ReportOptions& options) {
   if (!options.json.empty() && options.json == options.output) {
     throw ExitError(kExitUsage, "--json: is the name of the page; choose another file");
   }
-  // Before hours of work.
+  // Checked before hours of work.
   OutputFile page_file(options.output, options.force, windlog::kSideSuffixes);
   std::optional<OutputFile> json_file;
   if (!options.json.empty()) json_file.emplace(options.json, options.force, windlog::kSideSuffixes);
@@ -144,15 +144,15 @@ void run_report(const ReportOptions& options) {
   if (!options.to.empty()) settings.range.to = moment_of(*reader, "--to", options.to);
 
   // The numbers, the figures, the page.
-  Told told;
-  const auto numbers = measure_recording(*reader, settings, [&told](std::uint64_t readings) {
-    told.tell(fmt::format("{} readings (each is read twice)", readings));
+  ProgressLine progress;
+  const auto numbers = measure_recording(*reader, settings, [&progress](std::uint64_t readings) {
+    progress.show(fmt::format("{} readings (each is read twice)", readings));
   });
   if (!numbers) throw ExitError(kExitDataError, options.input + ": " + numbers.error().message);
   const std::string source = std::filesystem::path(options.input).filename();
   std::vector<SensorFigures> figures;
   for (const SensorNumbers& sensor : numbers->sensors) {
-    told.tell(fmt::format("figures {} of {}", figures.size() + 1, numbers->sensors.size()));
+    progress.show(fmt::format("figures {} of {}", figures.size() + 1, numbers->sensors.size()));
     figures.push_back(draw_figures(*numbers, sensor, page_file.working_path()).value());
   }
   write_text(page_file, options.output, report_page(*numbers, figures, source));
@@ -163,7 +163,7 @@ void run_report(const ReportOptions& options) {
   page_file.commit().value();
   fmt::print(stderr, "{}: {} of {}\n", options.output, count_text(numbers->readings, "reading"),
              count_text(numbers->sensors.size(), "sensor"));
-  for (const SensorNumbers& sensor : numbers->sensors) tell_of_site(sensor);
+  for (const SensorNumbers& sensor : numbers->sensors) print_site(sensor);
 }
 
 void add_report(CLI::App& app) {

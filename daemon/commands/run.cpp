@@ -29,7 +29,7 @@ void add_run(CLI::App& app) {
 void add_record(CLI::App& app) {
   CLI::App* command = app.add_subcommand("record", "record the sensors, without scenes");
   command->footer(
-      "A recording that exists is continued. Stop it with Ctrl-C; a crash loses at most the last second.\n"
+      "A recording that exists is continued. Stop it with Ctrl-C; a crash loses at most half a second.\n"
       "  yuragi record storm.windlog --config roof.toml\n"
       "  yuragi replay storm.windlog --rate 4");
   auto options = std::make_shared<RunOptions>();

@@ -20,23 +20,23 @@ struct RunOptions {
   /// Adds --config, --duration, --verbose, and --listen: for a command that is the daemon.
   void add_to(CLI::App& command);
 
-  /// The same with --connect: for a command that asks a running daemon.
+  /// The same with --connect instead of --listen: for a command that is a client of the daemon.
   void add_to_client(CLI::App& command);
 
-  /// The configuration that they name, or the default one. Throws ConfigError.
+  /// The configuration given by them, or the default one. Throws ConfigError.
   Config config() const;
 
-  /// Sends the log to standard error, in the form that a journal and a person can read.
+  /// Directs the log to standard error, in the format for a journal or a terminal.
   void set_up_log() const;
 
  private:
   void add_common(CLI::App& command);
 };
 
-/// Adds --connect, where a running daemon is, and the old name that it had, --listen, which is understood with a note.
+/// Adds --connect, the address of a running daemon, and --listen, its former name, which is accepted with a note.
 void add_connect(CLI::App& command, std::optional<std::string>& address);
 
-/// What an option's text has to go through to be read as seconds: 90, 90s, 5min, 2h.
+/// The CLI transform that reads a duration in seconds: 90, 90s, 5min, 2h.
 CLI::Validator duration_in_seconds();
 
 }  // namespace yuragi

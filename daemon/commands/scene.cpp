@@ -1,13 +1,13 @@
-// `yuragi scene`: what a running daemon shows, and changing that.
+// `yuragi scene`: lists, shows and hides the scenes of a running daemon.
 #include <algorithm>
 #include <memory>
 
 #include <fmt/core.h>
 
-#include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
+#include "daemon/commands/send_control.hpp"
 
 namespace yuragi {
 namespace {
@@ -17,17 +17,17 @@ struct SceneOptions {
   wire::Control control = {};
 };
 
-wire::ControlReply ask(const SceneOptions& options) {
-  return ask_daemon(options.connect, "scene", options.control);
+wire::ControlReply send(const SceneOptions& options) {
+  return send_control(options.connect, "scene", options.control);
 }
 
 void list_scenes(const SceneOptions& options) {
-  for (const wire::SceneState& scene : ask(options).scenes)
+  for (const wire::SceneState& scene : send(options).scenes)
     fmt::print("{:<24} {:<10} {}\n", scene.name, scene.kind, scene.shown ? "shown" : "hidden");
 }
 
 void change_scene(const SceneOptions& options) {
-  const wire::ControlReply reply = ask(options);
+  const wire::ControlReply reply = send(options);
   if (reply.done) {
     fmt::print("{}\n", reply.message);
     return;

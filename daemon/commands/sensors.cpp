@@ -1,4 +1,4 @@
-// `yuragi sensors`: what is plugged in, what a driver can be told, what the sensors say.
+// `yuragi sensors`: lists devices, describes drivers, and shows readings.
 #include "daemon/commands/sensors.hpp"
 
 #include "daemon/commands/command.hpp"

@@ -1,4 +1,4 @@
-// `yuragi sensors describe`: what a driver reads, and what it can be told.
+// `yuragi sensors describe`: describes drivers and their parameters.
 #include <algorithm>
 #include <memory>
 

@@ -1,4 +1,4 @@
-// `yuragi sensors list`: what is plugged in, and how to use it.
+// `yuragi sensors list`: lists the devices that are plugged in, and how to configure them.
 #include <fmt/core.h>
 
 #include "daemon/commands/sensors.hpp"

@@ -1,4 +1,4 @@
-// `yuragi sensors probe modbus`: which Modbus devices are on a line, and what to write into the configuration for them.
+// `yuragi sensors probe modbus`: finds the Modbus devices on a line, and prints their configuration.
 #include <algorithm>
 #include <atomic>
 #include <charconv>
@@ -85,7 +85,7 @@ std::string settings_of(const ModbusLine& line) {
   return fmt::format(", {} 8{}{}", line.baud, line.parity, line.stop_bits);
 }
 
-/// HOST:PORT, or nothing if that is no address.
+/// HOST:PORT, or nothing if it is not an address.
 std::optional<ModbusLine> tcp_line_of(const std::string& where) {
   const std::size_t colon = where.rfind(':');
   if (where.starts_with('/') || colon == std::string::npos || colon == 0) return std::nullopt;
@@ -98,7 +98,7 @@ std::optional<ModbusLine> tcp_line_of(const std::string& where) {
   return line;
 }
 
-/// The name of a serial port that outlasts a restart, where the system has one.
+/// The persistent name of a serial port, where the system has one.
 std::string stable_name(const std::string& device) {
   std::error_code ignored;
   for (const SerialPortInfo& port : find_serial_ports()) {
@@ -126,7 +126,7 @@ ModbusProbePlan plan_of(const ProbeOptions& options) {
 }
 
 void show_progress(const ModbusLine& line, std::uint8_t id, double done) {
-  // In place on a terminal; elsewhere a line for each setting of the port.
+  // Overwritten in place on a terminal; elsewhere a line for each setting of the port.
   static std::string last;
   const std::string trying = fmt::format("trying {}{}", describe(line), settings_of(line));
   if (isatty(STDERR_FILENO) != 0) {

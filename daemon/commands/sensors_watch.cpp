@@ -1,4 +1,4 @@
-// `yuragi sensors watch`: what the sensors say, from the running daemon, or from the devices where none runs.
+// `yuragi sensors watch`: shows the sensors of the running daemon, or the devices themselves where none runs.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -35,7 +35,7 @@ struct WatchOptions {
   std::string sensor;  ///< of raw messages; empty: all
 };
 
-/// Where watching ends by itself.
+/// When watching ends by itself.
 class Deadline {
  public:
   explicit Deadline(const std::optional<double>& duration_s) : duration_s_(duration_s), begun_(clock_.now().mono) {}
@@ -48,22 +48,22 @@ class Deadline {
   MonoTime begun_;
 };
 
-/// What is watched, as it comes from either source. Each function says false when enough was shown.
+/// A view of the messages of either source. Each function returns false when enough has been shown.
 class Screen {
  public:
   virtual ~Screen() = default;
-  virtual wire::Subscribe wish() const = 0;
-  /// What the sensors are, at once and then about twice a second; `source` says whose word it is.
+  virtual wire::Subscribe subscription() const = 0;
+  /// Called with the sensors at once, and then about twice a second; `source` says where they come from.
   virtual bool show_sensors(const wire::Sensors& sensors, const std::string& source) = 0;
   virtual bool show_message(const wire::RawTrace& /*trace*/) { return true; }
 };
 
-/// Table after table: in place on a terminal, one below the other elsewhere.
+/// Shows tables: in place on a terminal, one below the other elsewhere.
 class TableScreen final : public Screen {
  public:
   explicit TableScreen(bool once) : once_(once) {}
 
-  wire::Subscribe wish() const override { return {.poses = false, .sensors = true, .client = "sensors watch"}; }
+  wire::Subscribe subscription() const override { return {.poses = false, .sensors = true, .client = "sensors watch"}; }
 
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
@@ -79,17 +79,17 @@ class TableScreen final : public Screen {
   bool once_;
 };
 
-/// The messages to and from the devices, one below the other.
+/// Shows the messages to and from the devices, one below the other.
 class RawScreen final : public Screen {
  public:
   explicit RawScreen(const WatchOptions& options) : options_(options) {}
 
-  wire::Subscribe wish() const override {
+  wire::Subscribe subscription() const override {
     return {
         .poses = false, .sensors = true, .client = "sensors watch --raw", .raw = true, .raw_sensor = options_.sensor};
   }
 
-  /// Says once where they come from, and whether there is such a sensor.
+  /// Prints once where they come from, and whether there is such a sensor.
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     if (std::exchange(is_begun_, true)) return true;
     std::string known;
@@ -119,7 +119,7 @@ class RawScreen final : public Screen {
 
 void watch_daemon(StreamClient client, const std::string& address, const Deadline& deadline, Screen& screen) {
   const std::string source = "daemon at " + address;
-  client.subscribe(screen.wish());
+  client.subscribe(screen.subscription());
   while (!deadline.is_over()) {
     const auto message = client.receive(kSilenceTimeout);
     if (!message) throw FailureError(connection_lost(address, message.error()));
@@ -136,13 +136,14 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
   const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
   SensorHub hub(config, clock, gusts);
   WindShaper shaper(config, gusts);
-  const wire::Subscribe wish = screen.wish();
-  hub.trace(
-      [&](std::string_view sensor) { return wish.raw && (wish.raw_sensor.empty() || wish.raw_sensor == sensor); });
+  const wire::Subscribe subscription = screen.subscription();
+  hub.trace([&](std::string_view sensor) {
+    return subscription.raw && (subscription.raw_sensor.empty() || subscription.raw_sensor == sensor);
+  });
   const std::string source = "no daemon is running (" + why + "): reading the devices directly";
 
-  // A table comes late enough to show something, a raw message at once.
-  MonoTime next_status = clock.now().mono + (wish.raw ? Nanoseconds::zero() : kTableInterval);
+  // The first table is delayed so that it shows readings; raw messages are not.
+  MonoTime next_status = clock.now().mono + (subscription.raw ? Nanoseconds::zero() : kTableInterval);
   while (!deadline.is_over()) {
     wire::Sensors sensors;
     sensors.wind = hub.advance();
@@ -166,7 +167,7 @@ void watch(const WatchOptions& options) {
     throw ExitError(kExitUsage, "a SENSOR and --hex are for raw messages: add --raw");
   }
   options.run.set_up_log();
-  if (!options.run.verbose) spdlog::set_level(spdlog::level::warn);  // the table tells the rest
+  if (!options.run.verbose) spdlog::set_level(spdlog::level::warn);  // the table shows the rest
   const Config config = options.run.config();
   const std::string& address = config.stream.listen;
   std::unique_ptr<Screen> screen;

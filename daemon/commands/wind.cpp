@@ -1,4 +1,4 @@
-// `yuragi wind`: the estimator of the daemon over a recording, as a table.
+// `yuragi wind`: runs the daemon's estimator over a recording, and prints a table.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -126,7 +126,7 @@ std::string_view name_of(WindSource source) {
   return "?";
 }
 
-/// Text that goes out in blocks. What the disk does not take is told at the end.
+/// Writes text in blocks. A failure to write is reported at the end.
 class Table {
  public:
   Table(std::FILE* out, std::span<const GroundPlace> places) : out_(out) {
@@ -143,7 +143,7 @@ class Table {
   }
 
   void add(double time_s, const WindState& state, std::span<const WindVector> at_places) {
-    // A hair west of north is rounded to north, not to 360.
+    // Just west of north is rounded to 0, not to 360.
     const double direction_deg = std::fmod(std::round(direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
     fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}", time_s, state.wind.u_m_s,
                    state.wind.v_m_s, speed_of(state.wind), direction_deg, state.live_weight, name_of(state.source));
@@ -171,7 +171,7 @@ class Table {
   bool is_complete_ = true;
 };
 
-/// The wind over the ground, read where it is asked for.
+/// The wind over the ground at a given place.
 class WindAtPlaces {
  public:
   WindAtPlaces(std::shared_ptr<const GustNoise> gusts, std::vector<GroundPlace> places)
@@ -224,7 +224,7 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
   }
   std::vector<WindlogPlayback> playbacks;
   playbacks.push_back(WindlogPlayback::open(options.file, options.playback).value());
-  if (!options.also.empty()) settings.sources[0].priority = 1;  // They make the wind together.
+  if (!options.also.empty()) settings.sources[0].priority = 1;  // they are used together
   for (const std::string& text : options.also) {
     const PlacedRecording other = parse_also(text);
     stand_at(settings.sources.emplace_back(settings.sources[0]), other.place, options.lead_m);
@@ -239,13 +239,13 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
   WindAtPlaces at_places(gusts, std::move(places));
   Table table(out, at_places.places());
   const bool is_watched = isatty(STDERR_FILENO) != 0;
-  const auto told_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
+  const auto shown_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
   const auto run = run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
     DrivingWind wind{state, estimator.ground(), estimator.stroke()};
     if (options.shaped) shaping.shape(wind, true);
     table.add(time_s, wind.state, at_places.read(wind));
-    if (is_watched && ++states % told_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
+    if (is_watched && ++states % shown_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
   });
   const OfflineWindResult& result = run.value();
   table.end(options.output);

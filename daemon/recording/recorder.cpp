@@ -9,7 +9,7 @@
 namespace yuragi {
 namespace {
 
-// What arrives between two commits, at tens of thousands a second.
+// Room for the readings between two commits, at tens of thousands a second.
 constexpr std::size_t kRingCapacity = 16'384;
 constexpr Nanoseconds kFirstBackOff = std::chrono::milliseconds(500);
 constexpr Nanoseconds kMaxBackOff = std::chrono::seconds(10);
@@ -62,7 +62,8 @@ void Recorder::run(const std::stop_token& stop) {
     flush();
   }
 
-  // One last attempt, without a pause: for what waited, then for what the ring still held. Nobody pushes any more.
+  // A last attempt, without a pause: for what is pending, then for what is left in the ring. Nothing is pushed any
+  // more.
   retry_at_ = {};
   flush();
   flush();
@@ -78,7 +79,7 @@ void Recorder::run(const std::stop_token& stop) {
   }
 }
 
-/// Moves what was pushed to the disk, or, while that fails, to where it waits for the next attempt.
+/// Writes what was pushed to the disk; while that fails, keeps it for the next attempt.
 void Recorder::flush() {
   Entry entry;
   while (pending_.size() < kMaxPending && ring_.pop(entry)) pending_.push_back(entry);
@@ -98,7 +99,7 @@ void Recorder::flush() {
 }
 
 Result<void, Failure> Recorder::write_pending() {
-  // What is written to a file without a name is gone when it is closed, and SQLite would not say so.
+  // What is written to a deleted file is lost, and SQLite does not report that.
   if (writer_ && !std::filesystem::exists(file_)) return Failure{file_.string() + ": was removed or moved"};
   if (!writer_) {
     if (auto opened = open_session(pending_.front().reading.time); !opened) return opened;
@@ -123,7 +124,7 @@ Result<void, Failure> Recorder::open_session(Instant started) {
   return {};
 }
 
-/// Remembers why nothing can be written (empty: all is well), says so once, and wakes who waits for a status.
+/// Sets why nothing can be written (empty: it can), reports a change once, and wakes those who wait for a status.
 void Recorder::set_status(const std::string& error) {
   bool changed = false;
   {

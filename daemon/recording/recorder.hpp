@@ -27,7 +27,7 @@ struct RecordedSensor {
   std::string options;  ///< TOML
 };
 
-/// What a recording says of the run that makes it.
+/// What a recording says of the run that made it.
 struct RecordingInfo {
   Instant started;
   std::string software;       ///< "yuragi 0.1.0"
@@ -36,23 +36,23 @@ struct RecordingInfo {
 };
 
 struct RecorderStatus {
-  std::uint64_t written = 0;  ///< readings that are safe on the disk
-  std::uint64_t lost = 0;     ///< readings that are not, and never will be
-  std::string error;          ///< why it cannot write at present; empty while all is well
+  std::uint64_t written = 0;  ///< readings committed to the disk
+  std::uint64_t lost = 0;     ///< readings that were dropped
+  std::string error;          ///< why it cannot write at present; empty while it can
 };
 
-/// Writes readings to a recording (.windlog) on a thread of its own, so that no disk can hold up whoever has them.
+/// Writes readings to a recording (.windlog) on a thread of its own, so that a slow disk delays nobody.
 ///
-/// Commits every half second: the death of the process or a power cut takes no more than that. Where the disk is full
-/// or gone it keeps what it can hold, tries again with growing pauses, and counts what it had to give up; when it can
-/// write again it does so in a new session of the same file, and opens the file anew for that.
+/// Commits every half second: a crash or a power cut loses no more than that. Where the disk is full or gone it keeps
+/// up to kMaxPending readings, retries at growing intervals, and counts the readings that it had to drop; it then
+/// reopens the file and continues in a new session.
 class Recorder {
  public:
-  /// Told of each change for the worse or the better, in a sentence, on the recorder's thread.
+  /// Called with a sentence when writing begins to fail and when it works again, on the recorder's thread.
   using Report = std::function<void(std::string_view)>;
 
   static constexpr Nanoseconds kCommitInterval = std::chrono::milliseconds(500);
-  /// What it holds while it cannot write; an hour and more of one sensor at 10 Hz.
+  /// How many readings it keeps while it cannot write: over an hour of one sensor at 10 Hz.
   static constexpr std::size_t kMaxPending = 65'536;
 
   /// Opens or creates the recording and begins its session. Throws FailureError (kCannotCreate) where it cannot.
@@ -61,18 +61,20 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Takes a reading of `info.sensors[sensor]`; false if it is lost (and counted) because it is none that can be
-  /// recorded, or because the disk has failed for long. One thread pushes. Realtime-safe: yes; wait-free.
+  /// Takes a reading of `info.sensors[sensor]`; false if it is dropped (and counted) because it cannot be recorded (no
+  /// such sensor, values that are not finite) or too many wait. To be called by one thread. Realtime-safe: yes;
+  /// wait-free.
   bool push(std::size_t sensor, const WindReading& reading) noexcept;
 
-  /// Writes what it has, leaves one file, and waits for that: well under a second on a disk that works. Nothing may be
-  /// pushed after it; a second call does nothing.
+  /// Writes what is pending, closes the file without side files, and waits for that: well under a second on a working
+  /// disk. Nothing may be pushed after it; a second call does nothing.
   void close();
 
   /// Thread-safe: yes. Realtime-safe: no.
   RecorderStatus status() const;
 
-  /// Waits until its status is so; false if it is not within `at_most`. Thread-safe: yes. Realtime-safe: no.
+  /// Waits until `is_so` holds for its status; false if it does not within `at_most`. Thread-safe: yes. Realtime-safe:
+  /// no.
   bool wait_until(const std::function<bool(const RecorderStatus&)>& is_so, Nanoseconds at_most) const;
 
  private:
@@ -107,7 +109,7 @@ class Recorder {
 
   std::mutex wake_mutex_;
   std::condition_variable_any wake_;
-  std::jthread thread_;  // the last member: it ends before what it uses
+  std::jthread thread_;  // last: it is joined before what it uses is destroyed
 };
 
 }  // namespace yuragi

@@ -12,7 +12,7 @@
 namespace yuragi {
 namespace {
 
-// A recording that is not there is looked for again after so long.
+// A recording that cannot be opened is tried again after so long.
 constexpr Nanoseconds kRetryInterval = std::chrono::minutes(1);
 
 SensorConfig fallback_sensor(const FallbackConfig& fallback) {
@@ -62,9 +62,9 @@ void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
   if (!silent_since_) silent_since_ = now;
   if (!runner_ && now - *silent_since_ >= after_ && now >= retry_at_) start(now);
   if (!runner_) return;
-  runner_->drain([&](const WindReading& said) {
+  runner_->drain([&](const WindReading& raw) {
     ++readings_;
-    const WindReading reading = calibration_.applied_to(said);
+    const WindReading reading = calibration_.applied_to(raw);
     const bool is_judged = judged_by_ && reading.quality != ReadingQuality::kSimulated;
     if (!is_judged || judge_.judge(reading)) use(reading);
   });
@@ -93,7 +93,7 @@ void FallbackRecording::stop() {
                count_text(readings_, "reading"));
 }
 
-/// Whether it can be read is told once each time that it changes.
+/// Logs each change between readable and unreadable once.
 void FallbackRecording::log_changes() {
   const std::uint64_t reports = runner_->link_reports();
   if (reports == logged_link_reports_) return;

@@ -11,38 +11,38 @@
 namespace yuragi {
 namespace {
 
-PlayerOrder order_of(const wire::PlayerWish& wish) {
-  switch (wish.action) {
-    case wire::PlayerAction::kTell:
+PlayerOrder order_of(const wire::PlayerCommand& command) {
+  switch (command.action) {
+    case wire::PlayerAction::kReport:
     case wire::PlayerAction::kPause:
       break;
     case wire::PlayerAction::kResume:
       return {.kind = PlayerOrder::Kind::kResume};
     case wire::PlayerAction::kStep:
-      return {.kind = PlayerOrder::Kind::kStep, .count = wish.count};
+      return {.kind = PlayerOrder::Kind::kStep, .count = command.count};
     case wire::PlayerAction::kSeek:
-      return {.kind = PlayerOrder::Kind::kSeek, .place = wish.place};
+      return {.kind = PlayerOrder::Kind::kSeek, .place = command.place};
     case wire::PlayerAction::kRate:
-      return {.kind = PlayerOrder::Kind::kRate, .rate = wish.rate};
+      return {.kind = PlayerOrder::Kind::kRate, .rate = command.rate};
   }
   return {.kind = PlayerOrder::Kind::kPause};
 }
 
-/// What a sensor is told, for the log and for a person.
-std::string text_of(const wire::PlayerWish& wish) {
-  switch (wish.action) {
-    case wire::PlayerAction::kTell:
+/// The order in words, for the log and for a person.
+std::string text_of(const wire::PlayerCommand& command) {
+  switch (command.action) {
+    case wire::PlayerAction::kReport:
       break;
     case wire::PlayerAction::kPause:
       return "to pause";
     case wire::PlayerAction::kResume:
       return "to resume";
     case wire::PlayerAction::kStep:
-      return fmt::format("to advance by {}", count_text(wish.count, "reading"));
+      return fmt::format("to advance by {}", count_text(command.count, "reading"));
     case wire::PlayerAction::kSeek:
-      return "to seek to " + wish.place;
+      return "to seek to " + command.place;
     case wire::PlayerAction::kRate:
-      return fmt::format("to play at rate {:g}", wish.rate);
+      return fmt::format("to play at rate {:g}", command.rate);
   }
   return "nothing";
 }
@@ -52,23 +52,23 @@ std::string text_of(const wire::PlayerWish& wish) {
 PlayerDirector::PlayerDirector(ControlPermission allowed, std::vector<NamedPlayer> players)
     : allowed_(allowed), players_(std::move(players)) {}
 
-wire::ControlReply PlayerDirector::answer(const wire::PlayerWish& wish, bool is_local) {
+wire::ControlReply PlayerDirector::handle(const wire::PlayerCommand& command, bool is_local) {
   wire::ControlReply reply;
   std::vector<const NamedPlayer*> meant;
   std::string known;
   for (const NamedPlayer& named : players_) {
     known.append(known.empty() ? "" : ", ").append(named.sensor);
-    if (!wish.sensor.empty() && wish.sensor != named.sensor) continue;
+    if (!command.sensor.empty() && command.sensor != named.sensor) continue;
     meant.push_back(&named);
     reply.players.push_back(state_of(named));
   }
   if (meant.empty()) {
     reply.message = players_.empty()
                         ? "no sensor of this daemon plays a recording"
-                        : fmt::format("no sensor \"{}\" plays a recording; there are: {}", wish.sensor, known);
+                        : fmt::format("no sensor \"{}\" plays a recording; there are: {}", command.sensor, known);
     return reply;
   }
-  if (wish.action == wire::PlayerAction::kTell) {
+  if (command.action == wire::PlayerAction::kReport) {
     reply.done = true;
     reply.message = "nothing was changed";
     return reply;
@@ -80,13 +80,13 @@ wire::ControlReply PlayerDirector::answer(const wire::PlayerWish& wish, bool is_
 
   reply.done = true;
   for (std::size_t i = 0; i < meant.size(); ++i) {
-    const auto number = meant[i]->player->order(order_of(wish));
+    const auto number = meant[i]->player->order(order_of(command));
     meant[i]->wake();
     reply.done = reply.done && number;
     reply.players[i].order = number.value_or(0);
     reply.message.append(i == 0 ? "" : ", ").append(meant[i]->sensor);
   }
-  reply.message += reply.done ? " was asked " + text_of(wish) : ": too many requests are pending; try again";
+  reply.message += reply.done ? " was asked " + text_of(command) : ": too many requests are pending; try again";
   return reply;
 }
 

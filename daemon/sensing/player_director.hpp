@@ -14,12 +14,12 @@ namespace yuragi {
 /// A sensor that plays a recording.
 struct NamedPlayer {
   std::string sensor;
-  RecordingPlayer* player = nullptr;  ///< lives longer than the director
-  std::function<void()> wake;         ///< has its thread look for orders at once
+  RecordingPlayer* player = nullptr;  ///< must outlive the director
+  std::function<void()> wake;         ///< makes its thread read orders at once
 };
 
-/// The I/O thread's side of the controls of recordings that play: judges who may use them ([stream] control), hands
-/// orders over to the sensors' threads, and tells how things are.
+/// Handles clients' requests about recordings that play, on the I/O thread: checks the permission ([stream] control),
+/// passes orders to the sensors' threads, and reports positions.
 ///
 /// Thread-safe: no.
 class PlayerDirector {
@@ -27,8 +27,8 @@ class PlayerDirector {
   /// `allowed`: [stream] control.
   PlayerDirector(ControlPermission allowed, std::vector<NamedPlayer> players);
 
-  /// Gives the orders that a client asks for, or says why not. `is_local`: it asks from this machine.
-  wire::ControlReply answer(const wire::PlayerWish& wish, bool is_local);
+  /// Carries out a client's command; the reply says why not. `is_local`: the client is on this machine.
+  wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
 
  private:
   wire::PlayerState state_of(const NamedPlayer& named) const;

@@ -15,8 +15,8 @@ std::string connecting_text(const SensorEvidence& evidence) {
 }
 
 std::string live_text(const SensorEvidence& evidence) {
-  std::string text = evidence.said.interval_s > 0.0
-                         ? fmt::format("a reading every {}", duration_text(evidence.said.interval_s))
+  std::string text = evidence.report.interval_s > 0.0
+                         ? fmt::format("a reading every {}", duration_text(evidence.report.interval_s))
                          : std::string("first reading received");
   if (evidence.vote == Vote::kDisputed && evidence.others_m_s) {
     text += fmt::format(
@@ -28,17 +28,17 @@ std::string live_text(const SensorEvidence& evidence) {
 }
 
 std::string stale_text(const SensorEvidence& evidence) {
-  std::string silence = "no reading for " + duration_text(evidence.said.age_s);
-  if (evidence.said.interval_s <= 0.0) return silence;
+  std::string silence = "no reading for " + duration_text(evidence.report.age_s);
+  if (evidence.report.interval_s <= 0.0) return silence;
   return fmt::format("{}; its usual interval is {}. Is the station switched on, and within range of its sensor?",
-                     silence, duration_text(evidence.said.interval_s));
+                     silence, duration_text(evidence.report.interval_s));
 }
 
 std::string frozen_text(const SensorEvidence& evidence) {
   return fmt::format(
       "the same reading, {:.2f} m/s, {} times in {}. Its electronics may hang, or it may be iced: inspect it, and "
       "switch it off and on",
-      evidence.said.last ? evidence.said.last->speed_m_s : 0.0, evidence.same_count,
+      evidence.report.last ? evidence.report.last->speed_m_s : 0.0, evidence.same_count,
       duration_text(evidence.same_for_s));
 }
 
@@ -69,7 +69,7 @@ std::string implausible_text(const SensorEvidence& evidence) {
 SensorState state_of(const SensorEvidence& evidence) {
   const bool is_connected = evidence.link == LinkState::kConnected;
   const bool makes_no_sense = evidence.fault == ReadingFault::kImplausible;
-  switch (evidence.said.health) {
+  switch (evidence.report.health) {
     case SourceHealth::kSilent:
       if (evidence.link == LinkState::kFinished) return SensorState::kDisconnected;
       return is_connected && makes_no_sense ? SensorState::kImplausible : SensorState::kConnecting;
@@ -83,7 +83,7 @@ SensorState state_of(const SensorEvidence& evidence) {
   if (evidence.fault == ReadingFault::kSeized) return SensorState::kSeized;
   if (makes_no_sense || evidence.vote == Vote::kOutvoted) return SensorState::kImplausible;
   if (evidence.is_replay) return SensorState::kReplayed;
-  const bool is_simulated = evidence.said.last && evidence.said.last->quality == ReadingQuality::kSimulated;
+  const bool is_simulated = evidence.report.last && evidence.report.last->quality == ReadingQuality::kSimulated;
   return is_simulated ? SensorState::kSimulated : SensorState::kLive;
 }
 

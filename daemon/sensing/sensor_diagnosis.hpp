@@ -12,29 +12,29 @@
 
 namespace yuragi {
 
-/// Everything that is known of how a sensor does, at one moment.
+/// From what a sensor's state is derived, at one moment.
 struct SensorEvidence {
   LinkState link = LinkState::kConnecting;
-  std::string_view link_detail;              ///< the last thing that happened to the link
-  SourceReport said;                         ///< of all its readings, believed or not
+  std::string_view link_detail;              ///< the last event of the link
+  SourceReport report;                       ///< of all its readings, believed or not
   bool is_replay = false;                    ///< its driver plays recordings
-  ReadingFault fault = ReadingFault::kNone;  ///< what the judge holds of its readings
-  Vote vote = Vote::kNone;                   ///< what the other sensors do
+  ReadingFault fault = ReadingFault::kNone;  ///< the judge's finding
+  Vote vote = Vote::kNone;                   ///< the result of comparing it with other sensors
 
-  // What the reasons tell.
+  // Figures for reason_of().
   std::size_t same_count = 0;
   double same_for_s = 0.0;
   double still_for_s = 0.0;
   double bad_share = 0.0;
-  double mean_m_s = 0.0;  ///< over some minutes; of the others, too
+  double mean_m_s = 0.0;  ///< mean over some minutes; likewise others_m_s
   std::optional<double> others_m_s{};
 };
 
-/// The one state that the evidence comes to. A device that has gone outweighs what it said before; a silent one is not
-/// judged by its last words; what is wrong outweighs where it comes from. Pure.
+/// The state. While readings arrive, a fault takes precedence over the kind of source (simulated, replayed). Once they
+/// are stale, a lost link takes precedence over faults, and only implausible readings count as one. Pure.
 SensorState state_of(const SensorEvidence& evidence);
 
-/// Why it is in this state and what to do about it, for a person to read. Pure.
+/// Why it is in this state and what to do about it, for a person. Pure.
 std::string reason_of(SensorState state, const SensorEvidence& evidence);
 
 }  // namespace yuragi

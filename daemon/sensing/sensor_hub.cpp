@@ -14,12 +14,12 @@
 namespace yuragi {
 namespace {
 
-/// Is it believed although others differ?
+/// Is it used although others differ?
 bool is_disputed(SensorState state, Vote vote) {
   return is_believed(state) && vote == Vote::kDisputed;
 }
 
-/// What a log line is about: a state, and whether others differ.
+/// The key of a state for the ChangeGate: the state, and whether others differ.
 std::uint32_t key_of(SensorState state, Vote vote) {
   constexpr std::uint32_t kDisputedBit = 1U << 8U;
   return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
@@ -37,7 +37,7 @@ std::string passed_over_text(const ChangeGate& gate) {
   return fmt::format("; {} short changes in between", gate.passed_over());
 }
 
-/// What a configuration expects of its site, with nothing learnt.
+/// The SiteSpectrum that a configuration expects, before any readings.
 std::shared_ptr<SiteSpectrum> make_site_spectrum(const WindConfig& wind) {
   auto site = std::make_shared<SiteSpectrum>();
   site->expect(wind.site_octaves_db);
@@ -49,7 +49,7 @@ std::shared_ptr<SiteSpectrum> make_site_spectrum(const WindConfig& wind) {
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
   auto noise =
       std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed, .evolves = config.wind.is_evolving});
-  malloc_trim(0);  // the C library would keep the 9 MB in which it was made
+  malloc_trim(0);  // returns 9 MB of temporary memory to the system
   return noise;
 }
 
@@ -67,7 +67,7 @@ BlendSettings blend_settings_of(const Config& config) {
                          .rate_hz = config.animation.rate_hz,
                          .site = make_site_spectrum(wind)};
   for (const SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
-  // Behind all sensors, whatever their priorities.
+  // After all sensors, whatever their priorities.
   if (wind.fallback) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
   return settings;
 }
@@ -90,7 +90,7 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
       stale_intervals_(config.wind.stale_intervals),
       vote_(config.sensors.size()),
       fallback_(config, clock) {
-  // Make all of them before any of them starts, so that a mistake in the last stops no running thread.
+  // Construct all before starting any, so that an error in the last one stops no running thread.
   std::vector<std::unique_ptr<Sensor>> sensors;
   for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
   for (std::size_t index = 0; index < sensors.size(); ++index) {
@@ -98,7 +98,7 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
     channel.config = config.sensors[index];
     const std::optional<JudgeSettings>& judged_by = channel.config.judge;
     channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
-    // A sensor whose scale is not to be believed is no witness.
+    // A sensor whose scale is unknown is not compared.
     channel.is_compared = judged_by && channel.config.is_compared && !channel.config.blend.is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
     channels_.push_back(std::move(channel));
@@ -130,28 +130,28 @@ const WindState& SensorHub::advance() {
   return wind_;
 }
 
-/// A reading as it was said: what it comes to, and whether it is to be believed.
-void SensorHub::take(std::size_t index, const WindReading& said) {
+/// Calibrates a raw reading, judges it, and passes it to the estimator where it is believed.
+void SensorHub::take(std::size_t index, const WindReading& raw) {
   Channel& channel = channels_[index];
-  WindReading reading = channel.config.calibration.applied_to(said);
-  // Nothing was said in the future: such a reading would make all that follow late ones.
+  WindReading reading = channel.config.calibration.applied_to(raw);
+  // A time in the future would make all readings that follow late ones.
   reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
   if (!is_plausible(reading)) {
     if (channel.config.judge) channel.judge.count_impossible(1);
     return;
   }
-  if (channel.said.has_spoken() && reading.time.mono < channel.said.last()->time.mono) return;
+  if (channel.record.has_reading() && reading.time.mono < channel.record.last()->time.mono) return;
   if (reading.is_held) {
-    channel.said.hold(reading.time);
+    channel.record.hold(reading.time);
     estimator_.accept(index, reading);
     return;
   }
-  channel.said.take(reading);
+  channel.record.take(reading);
 
-  // What a simulation makes up may be as steady as it likes.
+  // Simulated readings are not judged: they may be constant.
   const bool is_judged = channel.config.judge && reading.quality != ReadingQuality::kSimulated;
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
-  if (makes_sense) vote_.hear(index, reading.time.mono, reading.speed_m_s);
+  if (makes_sense) vote_.accept(index, reading.time.mono, reading.speed_m_s);
   if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
     estimator_.accept(index, reading);
   } else {
@@ -159,22 +159,22 @@ void SensorHub::take(std::size_t index, const WindReading& said) {
   }
 }
 
-/// Readings that were refused before they came to the hub speak against the sensor, too.
+/// Readings that the driver refused as implausible count as faults, too.
 void SensorHub::judge_refusals(Channel& channel) const {
   const std::uint64_t impossible = channel.runner->refused_count(Refusal::kImplausible);
   if (channel.config.judge) channel.judge.count_impossible(impossible - channel.impossible);
   channel.impossible = impossible;
 }
 
-/// Lets those be compared that measure the wind of now, and are well.
+/// Compares the sensors that measure the present wind, and have no fault.
 void SensorHub::compare(MonoTime now) {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     const Channel& channel = channels_[index];
-    const SourceReport said = channel.said.report(now, stale_intervals_);
+    const SourceReport report = channel.record.report(now, stale_intervals_);
     const bool is_measured =
-        !channel.config.driver->plays_recordings && said.last && said.last->quality != ReadingQuality::kSimulated;
-    const bool is_well = said.health == SourceHealth::kLive && channel.judge.fault() <= ReadingFault::kSpike;
-    vote_.seat(index, channel.is_compared && is_measured && is_well);
+        !channel.config.driver->plays_recordings && report.last && report.last->quality != ReadingQuality::kSimulated;
+    const bool is_well = report.health == SourceHealth::kLive && channel.judge.fault() <= ReadingFault::kSpike;
+    vote_.set_comparable(index, channel.is_compared && is_measured && is_well);
   }
   vote_.advance(now);
 }
@@ -183,7 +183,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
   const Channel& channel = channels_[index];
   return {.link = channel.link.state,
           .link_detail = channel.link.detail,
-          .said = channel.said.report(now, stale_intervals_),
+          .report = channel.record.report(now, stale_intervals_),
           .is_replay = channel.config.driver->plays_recordings,
           .fault = channel.judge.fault(),
           .vote = vote_.vote_on(index),
@@ -195,7 +195,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .others_m_s = vote_.others_m_s(index)};
 }
 
-/// The link: a change of its state is news; one more failed attempt is not.
+/// Logs changes of the link's state, but not each failed attempt.
 void SensorHub::log_link(Channel& channel, MonoTime now) const {
   if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.link_reports) {
     channel.link = channel.runner->link();
@@ -212,7 +212,7 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
   Channel& channel = channels_[index];
   const SensorEvidence evidence = evidence_of(index, now);
   const SensorState state = state_of(evidence);
-  const SensorState before = state_in(channel.state_gate.told());
+  const SensorState before = state_in(channel.state_gate.reported());
   if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
   const bool is_warning = is_trouble(state) || is_disputed(state, evidence.vote);
   const auto level = is_warning ? spdlog::level::warn : spdlog::level::info;

@@ -23,26 +23,26 @@
 
 namespace yuragi {
 
-/// All sensors of an installation, and the estimator that makes one wind of what they say. Belongs to the I/O thread;
+/// All sensors of an installation, and the estimator that makes one wind of their readings. Belongs to the I/O thread;
 /// each sensor runs on a thread of its own.
 ///
 /// Each sensor's readings are calibrated, judged by themselves (ReadingJudge) and compared with the other sensors'
-/// (SensorVote). What is not believed is kept from the estimator, for which the sensor has then fallen silent: it hands
-/// over at its own pace, as for any silence. The listener hears everything, before all that.
+/// (SensorVote). Readings that are not believed do not reach the estimator, which treats the sensor as silent and
+/// hands over to other sources as usual. The listener gets every plausible reading, before calibration and judging.
 class SensorHub {
  public:
-  /// Sees each plausible reading, before calibration; the recorder listens here.
+  /// Gets each plausible reading, before calibration; for the recorder.
   using Listener = std::function<void(std::size_t sensor, const WindReading&)>;
 
-  /// Opens and starts every sensor. `noise`: of the gusts. Throws ConfigError where a sensor cannot be made of its
-  /// values.
+  /// Opens and starts every sensor. `noise`: of the gusts; `reach_m`: as make_estimator() takes it. Throws ConfigError
+  /// where a sensor cannot be constructed from its values.
   SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise, Listener listener = {},
             double reach_m = 0.0);
 
-  /// Takes in what has arrived and says what the wind is now. Logs each change of a sensor's state once.
+  /// Takes the readings that have arrived, and returns the wind now. Logs each change of a sensor's state once.
   const WindState& advance();
 
-  /// Does a sensor speak that is believed? A fall-back recording is none. As of the last advance().
+  /// Is any sensor live and believed? The fall-back recording does not count. As of the last advance().
   bool is_any_live() const;
 
   /// The wind as of the last advance().
@@ -50,19 +50,19 @@ class SensorHub {
   const GroundWind& ground() const noexcept { return estimator_.ground(); }
   const WindStroke& stroke() const noexcept { return estimator_.stroke(); }
 
-  /// What is known of the site's gusts; learns on while a quick sensor of the site speaks. Of this thread.
+  /// What is known of the site's gusts; updated while a fast sensor of the site is live. Belongs to this thread.
   const std::shared_ptr<SiteSpectrum>& site() const noexcept { return site_; }
 
-  /// How each sensor does, for the stream and for `sensors watch`; and the fall-back, while it plays.
+  /// The status of each sensor, and of the fall-back while it plays.
   std::vector<wire::SensorStatus> status() const;
 
   /// Decides for each sensor, by its name, whether the messages to and from its device are kept for drain_traces().
   void trace(const std::function<bool(std::string_view sensor)>& is_wanted);
 
-  /// Hands on the messages that were kept since the last time: sensor by sensor, oldest first.
+  /// Passes the messages kept since the last call to `use`: sensor by sensor, oldest first.
   void drain_traces(const std::function<void(const wire::RawTrace&)>& use);
 
-  /// A line for each sensor in the log: what came of it since the start.
+  /// Logs a line of counts for each sensor, since the start.
   void log_summary() const;
 
   /// The controls of the sensors that play a recording; they live as long as the hub.
@@ -72,20 +72,20 @@ class SensorHub {
   bool is_finished() const;
 
  private:
-  static constexpr std::uint32_t kNothingTold = ~0U;
+  static constexpr std::uint32_t kNothingReported = ~0U;
 
   struct Channel {
     SensorConfig config;
     ReadingJudge judge;
     bool is_compared = false;
     std::unique_ptr<SensorRunner> runner;
-    SourceRecord said;  ///< calibrated, believed or not
+    SourceRecord record;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
-    std::uint64_t not_believed = 0;  ///< plausible readings that were kept from the wind
-    std::uint64_t impossible = 0;    ///< readings that were refused for what they said
+    std::uint64_t not_believed = 0;  ///< plausible readings that were left out of the wind
+    std::uint64_t impossible = 0;    ///< readings that were refused as implausible
     LinkReport link;                 ///< as of its last report
     std::uint64_t link_reports = 0;
-    ChangeGate link_gate{kNothingTold};
+    ChangeGate link_gate{kNothingReported};
     ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
     std::optional<WindReading> last_raw;  ///< before calibration
   };
@@ -112,12 +112,12 @@ class SensorHub {
 /// The pattern of gusts of an installation: the estimator and the scenes share it. Set-up work of about 0.1 s.
 std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
 
-/// What a configuration says of the blend, with one source for each of its sensors, and one for the fall-back.
+/// The settings of the blend, with one source for each sensor, and one for the fall-back.
 BlendSettings blend_settings_of(const Config& config);
 
-/// The estimator that a configuration asks for, with one source for each of its sensors, and one for the fall-back.
-/// `reach_m`: from the middle of the scenes to the farthest place of any of them. `site`: what is known of the site's
-/// gusts, and learns more of them; none: what the configuration says of them.
+/// The estimator of a configuration, with one source for each sensor, and one for the fall-back. `reach_m`: from the
+/// middle of the scenes to the farthest place of any of them. `site`: the site's gusts, which the estimator updates;
+/// null: as the configuration expects them.
 BlendedEstimator make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise, double reach_m,
                                 std::shared_ptr<SiteSpectrum> site = {});
 

@@ -70,7 +70,7 @@ void SensorRunner::raw(RawDirection direction, std::span<const std::uint8_t> mes
 void SensorRunner::trace(bool wanted) {
   if (wanted == is_trace_wanted_.load(std::memory_order_relaxed)) return;
   if (wanted && !trace_) trace_ = std::make_unique<SpscRing<RawMessage>>(kTraceCapacity);
-  if (wanted) drain_trace([](const RawMessage&) {});  // what an earlier trace left behind
+  if (wanted) drain_trace([](const RawMessage&) {});  // discards what is left of an earlier trace
   is_trace_wanted_.store(wanted, std::memory_order_release);
 }
 

@@ -18,19 +18,19 @@
 
 namespace yuragi {
 
-/// What a sensor's link did last, for a person to read.
+/// The last change of a sensor's link, for a person.
 struct LinkReport {
   LinkState state = LinkState::kConnecting;
   std::string detail;
 };
 
-/// A message to or from a device, as SensorSink::raw() was told of it, and when.
+/// A message to or from a device, as passed to SensorSink::raw(), and its time.
 struct RawMessage {
   Instant time{};
   RawDirection direction = RawDirection::kReceived;
   std::uint32_t length = 0;  ///< of the whole message
   std::array<std::uint8_t, wire::kMaxRawBytes> bytes{};
-  std::uint64_t lost = 0;  ///< messages just before this one that there was no room for
+  std::uint64_t lost = 0;  ///< messages dropped just before this one, for lack of room
 
   std::span<const std::uint8_t> kept() const {
     return std::span(bytes).first(std::min<std::size_t>(length, bytes.size()));
@@ -38,7 +38,7 @@ struct RawMessage {
 };
 
 /// Runs one sensor on a thread of its own, since a device may block. Readings wait in a ring until the I/O thread takes
-/// them; nothing that the device does can hold that thread up.
+/// them, so that no device delays that thread.
 ///
 /// Thread-safe: the public functions may be called from one other thread.
 class SensorRunner final : private SensorSink {
@@ -49,39 +49,39 @@ class SensorRunner final : private SensorSink {
   SensorRunner(const SensorRunner&) = delete;
   SensorRunner& operator=(const SensorRunner&) = delete;
 
-  /// Hands each reading that has arrived to `use`, oldest first.
+  /// Passes each reading that has arrived to `use`, oldest first.
   template <class Use>
   void drain(Use&& use) {
     readings_.drain(use);
   }
 
-  /// From now on keeps the messages that are exchanged with the device, until drain_trace() hands them on; or no more.
-  /// Room for them is made when they are first wanted. Where it is full, later messages are passed over and counted.
+  /// Starts or stops keeping the messages exchanged with the device for drain_trace(). Allocates the ring at the first
+  /// start. While the ring is full, further messages are dropped and counted.
   void trace(bool wanted);
 
-  /// Hands each message that was kept to `use`, oldest first.
+  /// Passes each message that was kept to `use`, oldest first.
   template <class Use>
   void drain_trace(Use&& use) {
     if (trace_) trace_->drain(use);
   }
 
-  /// Has the sensor polled at once, if it waits.
+  /// Polls the sensor at once, if it is waiting.
   void wake();
 
   /// The sensor's controls, if it plays a recording; nullptr otherwise. They live as long as the runner.
   RecordingPlayer* player() noexcept { return dynamic_cast<RecordingPlayer*>(sensor_.get()); }
 
   LinkReport link() const;
-  /// How often the link has been told of; looks cheaply whether there is news.
+  /// The number of reports of the link: a cheap check whether link() has changed.
   std::uint64_t link_reports() const noexcept { return link_reports_.load(std::memory_order_acquire); }
   std::uint64_t refused_count(Refusal why) const noexcept {
     return refused_[static_cast<std::size_t>(why)].load(std::memory_order_relaxed);
   }
-  /// Messages that have come from the device, of use or not.
+  /// Messages from the device, used or refused.
   std::uint64_t frame_count() const noexcept { return frames_.load(std::memory_order_relaxed); }
-  /// How often the device was found again after it had been lost.
+  /// How often the device was reconnected after it had been lost.
   std::uint64_t reconnect_count() const noexcept { return reconnects_.load(std::memory_order_relaxed); }
-  /// Readings that the ring had no room for, since nobody took them.
+  /// Readings dropped because the ring was full.
   std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
  private:
@@ -103,11 +103,11 @@ class SensorRunner final : private SensorSink {
   std::atomic<std::uint64_t> reconnects_{0};
   bool has_been_connected_ = false;  // of the sensor's thread
 
-  std::unique_ptr<SpscRing<RawMessage>> trace_;  // made before it is first wanted, and then left alone
+  std::unique_ptr<SpscRing<RawMessage>> trace_;  // allocated at the first trace(true), never replaced
   std::atomic<bool> is_trace_wanted_{false};
   std::uint64_t lost_of_trace_ = 0;  // of the sensor's thread: since the last message that was kept
 
-  mutable std::mutex link_mutex_;  // of the link's text: rare, and never on the animation's way
+  mutable std::mutex link_mutex_;  // for link_: seldom locked, and never by the animation
   LinkReport link_;
   std::atomic<std::uint64_t> link_reports_{0};
 

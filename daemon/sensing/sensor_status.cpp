@@ -5,22 +5,22 @@
 namespace yuragi {
 namespace {
 
-/// What is told of a sensor and of the fall-back alike.
+/// The part of a status that sensors and the fall-back share.
 wire::SensorStatus status_of_source(std::string_view name, std::string_view driver, LinkState link,
-                                    const SourceReport& said) {
+                                    const SourceReport& report) {
   wire::SensorStatus status;
   status.name = name;
   status.driver = driver;
   status.link = link;
-  status.health = said.health;
-  if (said.last) {
-    status.speed_m_s = said.last->speed_m_s;
-    status.direction_deg = said.last->direction_deg;
-    status.gust_m_s = said.last->gust_m_s;
-    status.simulated = said.last->quality == ReadingQuality::kSimulated;
+  status.health = report.health;
+  if (report.last) {
+    status.speed_m_s = report.last->speed_m_s;
+    status.direction_deg = report.last->direction_deg;
+    status.gust_m_s = report.last->gust_m_s;
+    status.simulated = report.last->quality == ReadingQuality::kSimulated;
   }
-  status.age_s = said.age_s;
-  status.interval_s = said.interval_s;
+  status.age_s = report.age_s;
+  status.interval_s = report.interval_s;
   return status;
 }
 
@@ -28,7 +28,7 @@ wire::SensorStatus status_of_source(std::string_view name, std::string_view driv
 
 wire::SensorStatus sensor_status(const SensorFacts& facts) {
   const SensorEvidence& evidence = facts.evidence;
-  wire::SensorStatus status = status_of_source(facts.name, facts.driver, evidence.link, evidence.said);
+  wire::SensorStatus status = status_of_source(facts.name, facts.driver, evidence.link, evidence.report);
   status.detail = evidence.link_detail;
   if (facts.last_raw) {
     status.raw_speed_m_s = facts.last_raw->speed_m_s;
@@ -53,12 +53,12 @@ wire::SensorStatus sensor_status(const SensorFacts& facts) {
 }
 
 wire::SensorStatus fallback_status(std::string_view name, std::string_view driver, const LinkReport& link,
-                                   const SourceReport& said, std::uint64_t readings) {
-  wire::SensorStatus status = status_of_source(name, driver, link.state, said);
+                                   const SourceReport& report, std::uint64_t readings) {
+  wire::SensorStatus status = status_of_source(name, driver, link.state, report);
   status.detail = "all sensors are silent: " + link.detail;
   status.readings = readings;
   status.replayed = true;
-  status.state = said.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
+  status.state = report.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
   status.state_reason = status.detail;
   return status;
 }

@@ -13,17 +13,17 @@
 
 namespace yuragi {
 
-/// What has been counted of a sensor since the start.
+/// The counts of a sensor since the start.
 struct SensorCounts {
   std::uint64_t readings = 0;
   std::array<std::uint64_t, kRefusalCount> refused{};  ///< by Refusal
-  std::uint64_t not_believed = 0;                      ///< plausible readings that were kept from the wind
-  std::uint64_t lost = 0;                              ///< readings that there was no room for
+  std::uint64_t not_believed = 0;                      ///< plausible readings that were left out of the wind
+  std::uint64_t lost = 0;                              ///< readings dropped for lack of room
   std::uint64_t frames = 0;                            ///< messages from the device
   std::uint64_t reconnects = 0;
 };
 
-/// All that is known of a sensor at one moment. The texts are the caller's.
+/// Everything that the status of a sensor is made of. The texts must outlive it.
 struct SensorFacts {
   std::string_view name;
   std::string_view driver;
@@ -32,12 +32,12 @@ struct SensorFacts {
   SensorCounts counts{};
 };
 
-/// The same as the stream tells it. Pure.
+/// The same as a message of the stream. Pure.
 wire::SensorStatus sensor_status(const SensorFacts& facts);
 
-/// What the stream tells of the recording that is played while every sensor is silent: it counts as replayed once it
-/// speaks. `said`: of its source; `readings`: since it began. Pure.
+/// The status of the fall-back recording: replayed once it is live, connecting before. `report`: of its source;
+/// `readings`: since it began. Pure.
 wire::SensorStatus fallback_status(std::string_view name, std::string_view driver, const LinkReport& link,
-                                   const SourceReport& said, std::uint64_t readings);
+                                   const SourceReport& report, std::uint64_t readings);
 
 }  // namespace yuragi

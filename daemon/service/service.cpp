@@ -76,14 +76,14 @@ class Service::Io {
 
     io_.run();
 
-    // What the sensors said until now is recorded too.
+    // Readings until now are recorded, too.
     hub_.advance();
     if (recorder_) recorder_->close();
     log_summary();
   }
 
  private:
-  /// The stream's limits hold for all scenes together: better no start than clients that refuse what they get.
+  /// Throws where the scenes exceed the stream's limits: clients would refuse them.
   static void refuse_what_no_client_takes(const wire::Scenes& scenes) {
     const wire::Bytes message = wire::encode(scenes);
     if (wire::decode(std::span(message).subspan(wire::kSizePrefixBytes))) return;
@@ -101,14 +101,14 @@ class Service::Io {
       settings.scenes = animation_->describe();
       refuse_what_no_client_takes(settings.scenes);
     }
-    settings.on_control = [this](const wire::Control& wish, bool is_local) { return answer(wish, is_local); };
+    settings.on_control = [this](const wire::Control& control, bool is_local) { return handle(control, is_local); };
     settings.max_clients = config.stream.max_clients;
     return settings;
   }
 
-  wire::ControlReply answer(const wire::Control& wish, bool is_local) {
-    if (wish.player) return players_.answer(*wish.player, is_local);
-    if (animation_) return director_.answer(wish, is_local);
+  wire::ControlReply handle(const wire::Control& control, bool is_local) {
+    if (control.player) return players_.handle(*control.player, is_local);
+    if (animation_) return director_.handle(control, is_local);
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
   }
 
@@ -119,7 +119,7 @@ class Service::Io {
     return [this](std::size_t sensor, const WindReading& reading) { recorder_->push(sensor, reading); };
   }
 
-  /// Takes in readings and lets the wind go on, at the animation's pace.
+  /// Takes readings and advances the wind, at the rate of the animation.
   void step_wind() {
     DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
     shaper_.shape(wind, clock_.now().utc, hub_.is_any_live());
@@ -128,7 +128,7 @@ class Service::Io {
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     if (options_.end_with_recordings && hub_.is_finished()) return end("the recording has ended");
 
-    // Steps keep to their own grid; those that a halted machine missed are left out.
+    // Steps are at fixed times; those missed while the machine was halted are skipped.
     const auto period = from_seconds(1.0 / rate_hz_);
     next_wind_ = std::max(next_wind_ + period, asio::steady_timer::clock_type::now() - period);
     wind_timer_.expires_at(next_wind_);
@@ -187,7 +187,7 @@ class Service::Io {
   asio::posix::stream_descriptor frame_ready_{io_};
   std::uint64_t frames_made_ = 0;
 
-  // In this order: a second daemon stops at the address that is taken, before it touches the recording or a sensor.
+  // In this order, so that a second daemon fails at the address in use before it touches the recording or a sensor.
   std::shared_ptr<const GustNoise> gusts_;
   std::unique_ptr<Animation> animation_;
   SceneDirector director_;

@@ -9,14 +9,13 @@
 namespace yuragi {
 
 struct ServiceOptions {
-  std::optional<std::filesystem::path> record;  ///< write what the sensors say into this recording
+  std::optional<std::filesystem::path> record;  ///< record the readings into this file
   std::optional<double> duration_s;             ///< end after this long
-  bool end_with_recordings = false;             ///< end when every sensor is a recording that has come to its end
-  bool with_scenes = true;                      ///< without: sensors, recording and their stream only
+  bool end_with_recordings = false;             ///< end when every sensor is a recording that has ended
+  bool with_scenes = true;                      ///< false: sensors, recording and their stream only
 };
 
-/// The daemon: sensors, wind, animation, stream and recording, put together. This is the one place where drivers and
-/// engine meet, and it reads as the way of the data:
+/// The daemon: joins sensors, wind, animation, stream and recording. The data flow:
 ///
 ///   sensors -> SensorHub -> WindShaper -> Latest<DrivingWind> -> AnimationLoop -> Latest<frame> -> TcpStream
 ///                 `-> Recorder
@@ -25,7 +24,7 @@ struct ServiceOptions {
 /// caller of run().
 class Service {
  public:
-  /// Opens what can be opened: sensors, the listening socket, the recording. Throws ConfigError or FailureError.
+  /// Opens the sensors, the listening socket and the recording. Throws ConfigError or FailureError.
   Service(const Config& config, const ServiceOptions& options);
   ~Service();
 

@@ -6,13 +6,13 @@
 
 namespace yuragi {
 
-/// [animation]: the pace.
+/// [animation]: tick rate and threads.
 struct AnimationConfig {
-  double rate_hz = 0.0;     ///< poses a second; the wind goes on at the same pace
-  std::size_t threads = 1;  ///< that share a tick
+  double rate_hz = 0.0;     ///< ticks per second, of the wind and of the scenes
+  std::size_t threads = 1;  ///< that share the work of a tick
 };
 
-/// Of the values of animation_parameters().
+/// From the values of animation_parameters().
 AnimationConfig animation_config_of(const ParameterValues& values);
 
 }  // namespace yuragi

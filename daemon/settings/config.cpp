@@ -19,7 +19,7 @@ constexpr std::string_view kCalibrationKey = "calibration";
 constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
 
-/// Everything that a [[sensor]] or a [[scene]] of this kind may hold.
+/// All keys of a [[sensor]] or a [[scene]] of this kind.
 std::vector<Parameter> parameters_of(const DriverDescription& driver) {
   return {driver.parameters.begin(), driver.parameters.end()};
 }
@@ -31,7 +31,7 @@ std::vector<Parameter> parameters_of(const SceneDescription& scene) {
   return all;
 }
 
-/// And what it held once.
+/// Its retired keys.
 std::span<const RetiredParameter> retired_of(const DriverDescription&) {
   return {};
 }
@@ -39,7 +39,7 @@ std::span<const RetiredParameter> retired_of(const SceneDescription& scene) {
   return scene.retired;
 }
 
-/// A TOML value as a parameter's; nothing for dates, arrays and tables, which no parameter takes.
+/// A TOML value as a parameter's value; nothing for dates, arrays and tables, which no parameter has.
 std::optional<ParameterValue> to_parameter_value(const toml::node& node) {
   if (const auto* flag = node.as_boolean()) return ParameterValue(flag->get());
   if (const auto* whole = node.as_integer()) return ParameterValue(whole->get());
@@ -48,7 +48,7 @@ std::optional<ParameterValue> to_parameter_value(const toml::node& node) {
   return std::nullopt;
 }
 
-/// Walks a parsed file and collects every mistake, each at its place.
+/// Reads a parsed file and collects every error with its place.
 class ConfigReader {
  public:
   explicit ConfigReader(std::string source_name) : source_name_(std::move(source_name)) {}
@@ -82,7 +82,7 @@ class ConfigReader {
     return config;
   }
 
-  /// The tables that a sensor of any driver may have.
+  /// The tables of every sensor.
   SensorConfig read_sensor(const toml::table& entry, std::string name, const DriverDescription& driver,
                            ParameterValues values, const WindConfig& wind) {
     SensorConfig sensor{.name = std::move(name), .driver = &driver, .values = std::move(values)};
@@ -133,7 +133,7 @@ class ConfigReader {
     }
   }
 
-  /// The values at the file's top level, among the tables; check_top_level has told of keys that are neither.
+  /// The values at the file's top level; check_top_level() has reported keys that are neither values nor tables.
   ParameterValues read_top_level(const toml::table& root) {
     std::set<std::string_view> aside;
     for (const auto& [key, node] : root) aside.insert(key.str());
@@ -141,13 +141,13 @@ class ConfigReader {
     return read_values(root, "", general_parameters(), aside);
   }
 
-  /// A table that is there once, or not at all.
+  /// An optional table that may occur once.
   ParameterValues read_table(const toml::table& around, const std::string& prefix, std::string_view name,
                              std::span<const Parameter> parameters) {
     static const toml::table kNothing;
     const toml::node* node = around.get(name);
     const toml::table* table = node != nullptr ? node->as_table() : nullptr;
-    // By pointer: a copy of a TOML table forgets its lines and columns.
+    // By pointer: a copy of a TOML table loses its lines and columns.
     return read_values(table != nullptr ? *table : kNothing, prefix + std::string(name) + ".", parameters, {});
   }
 
@@ -160,21 +160,22 @@ class ConfigReader {
     return read_table(entry, "sensor.", name, parameters);
   }
 
-  /// What the values of a table come to, or what does not fit together in them, each mistake told at its key.
+  /// Converts the values of a table; reports each contradiction at its key.
   template <class Type, class Error>
   Type typed(const toml::table& around, const std::string& prefix, std::string_view name, Result<Type, Error> made) {
     if (made) return std::move(*made);
-    tell(around, prefix, name, made.error());
+    add_error(around, prefix, name, made.error());
     return {};
   }
 
-  void tell(const toml::table& around, const std::string& prefix, std::string_view name,
-            const std::vector<ParameterError>& errors) {
-    for (const ParameterError& error : errors) tell(around, prefix, name, error);
+  void add_error(const toml::table& around, const std::string& prefix, std::string_view name,
+                 const std::vector<ParameterError>& errors) {
+    for (const ParameterError& error : errors) add_error(around, prefix, name, error);
   }
 
-  /// A mistake that a default takes part in stands at the table.
-  void tell(const toml::table& around, const std::string& prefix, std::string_view name, const ParameterError& error) {
+  /// An error at a key, or at the table where the key is left to its default.
+  void add_error(const toml::table& around, const std::string& prefix, std::string_view name,
+                 const ParameterError& error) {
     const toml::node* node = around.get(name);
     const toml::table* table = node != nullptr ? node->as_table() : nullptr;
     const toml::node* value = table != nullptr ? table->get(error.name) : nullptr;
@@ -182,11 +183,11 @@ class ConfigReader {
     mistake(where.source(), prefix + std::string(name) + "." + error.name, error.message);
   }
 
-  /// The values of one table; keys in `aside` are read elsewhere.
+  /// The values of one table, except the keys in `aside`.
   ParameterValues read_values(const toml::table& table, const std::string& prefix,
                               std::span<const Parameter> parameters, const std::set<std::string_view>& aside,
                               std::span<const RetiredParameter> retired = {}) {
-    // One key at a time, so that each mistake is told, at its own place.
+    // One key at a time, so that each error is reported at its own place.
     ParameterValues::Map good;
     for (const auto& [key, node] : table) {
       if (aside.contains(key.str())) continue;
@@ -220,7 +221,7 @@ class ConfigReader {
     std::set<std::string> names;
     for (const toml::node& element : *entries) {
       const toml::table* entry = element.as_table();
-      if (entry == nullptr) continue;  // check_top_level has told
+      if (entry == nullptr) continue;  // reported by check_top_level()
       const Description* description = find_kind(*entry, list, kind_key, descriptions);
       if (description == nullptr) continue;
 
@@ -281,7 +282,7 @@ ParameterValues defaults_of(const Description& description) {
   return ParameterValues::resolve(parameters_of(description), {}).value();
 }
 
-// What there is where a file tells of no sensor, and of no scene.
+// The sensor and the scene of a file without any.
 SensorConfig synthetic_sensor() {
   const DriverDescription& synthetic = description_named(driver_table(), "synthetic");
   return default_sensor(std::string(synthetic.name), synthetic, defaults_of(synthetic));

@@ -21,9 +21,8 @@
 
 namespace yuragi {
 
-/// An installation, read from TOML and made into types once. Every value is within its range; what the file leaves out
-/// has its default. The self-described tables (config_tables.hpp, shaping_parameters.hpp, sensor_blend.hpp) say what
-/// may be written.
+/// The configuration of an installation, parsed from TOML. Every value is within its range; what the file leaves out
+/// has its default. The keys are described in config_tables.hpp, shaping_parameters.hpp and sensor_blend.hpp.
 struct Config {
   std::uint64_t seed = 1;
   StreamConfig stream;
@@ -33,14 +32,13 @@ struct Config {
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
 
-  /// The values of the tables under their names, of which these members were made: what writes the configuration out
-  /// reads them, and nobody else.
+  /// The values of the tables by key, from which the members above were made. For to_toml() only.
   struct ByName {
     ParameterValues stream, animation, wind, shaping;
   } by_name;
 };
 
-/// What is wrong with a configuration, one line for each mistake: `file:line:column: key: what is wrong; what is
+/// The errors in a configuration, one line for each: `file:line:column: key: what is wrong; what is
 /// allowed`.
 class ConfigError : public std::runtime_error {
  public:
@@ -50,32 +48,32 @@ class ConfigError : public std::runtime_error {
 /// What `yuragi run` does without a file: one synthetic sensor and one grass scene.
 Config default_config();
 
-/// A sensor that no file tells of, with the defaults of the tables that every sensor has.
+/// A sensor that is in no file, with the defaults of the tables that every sensor has.
 SensorConfig default_sensor(std::string name, const DriverDescription& driver, ParameterValues values,
                             std::string origin = {});
 
-/// The same installation, listening at another address. The address is not checked.
+/// The same configuration with another listening address, which is not checked.
 Config listening_at(Config config, const std::string& address);
 
-/// Reads a configuration. `source_name` stands in messages. Throws ConfigError with every mistake that was found.
+/// Reads a configuration. `source_name` is the file name in error messages. Throws ConfigError with every error found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
 
 /// The text of a file. Throws ConfigError where it cannot be read.
 std::string read_config_text(const std::filesystem::path& file);
 
-/// The configuration of a file. A file that cannot be read is a ConfigError too.
+/// Reads a configuration file. Throws ConfigError, also where the file cannot be read.
 Config load_config(const std::filesystem::path& file);
 
-/// Makes the sensor, without touching its device. Throws ConfigError where its values cannot work together.
+/// Makes the sensor, without touching its device. Throws ConfigError where its values contradict each other.
 std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor);
 
-/// The configuration as TOML with every value written out, but for what has none where it is left out: what a recording
-/// keeps, and what `check-config` shows. It writes the seed and the values by name; a change of the types alone does
-/// not show.
+/// The configuration as TOML with every value written out, except keys without a default that are not set. Stored in
+/// recordings and printed by `check-config`. Written from `seed`, `by_name` and the tables of sensors and scenes: a
+/// change of other members has no effect on it.
 std::string to_toml(const Config& config);
 std::string to_toml(const ParameterValues& values);
 
-/// The way back: the values of a table alone, such as a recording keeps of each sensor. Fails with the first mistake.
+/// The reverse for one table, such as a recording stores for each sensor. Fails with the first error.
 Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters);
 
 }  // namespace yuragi

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Where lines and columns of TOML (code points, counted from 1) are in the text (bytes).
+/// Converts lines and columns of TOML (in code points, from 1) to byte offsets in the text.
 class TextPlaces {
  public:
   explicit TextPlaces(std::string_view text) : text_(text) {
@@ -33,13 +33,13 @@ class TextPlaces {
     }
     return offset;
   }
-  /// Of a line, counted from 1; behind the last one the text's end.
+  /// The offset of a line, from 1; after the last one the end of the text.
   std::size_t line_start(std::size_t line) const {
     return line == 0 ? 0 : line <= starts_.size() ? starts_[line - 1] : text_.size();
   }
   std::size_t line_count() const { return starts_.size(); }
 
-  /// A line without its end and without blanks around.
+  /// A line, trimmed.
   std::string_view trimmed_line(std::size_t line) const {
     std::string_view content = text_.substr(line_start(line), line_start(line + 1) - line_start(line));
     content.remove_prefix(std::min(content.find_first_not_of(" \t"), content.size()));
@@ -56,19 +56,19 @@ class TextPlaces {
   std::vector<std::size_t> starts_;
 };
 
-/// How a table is written down, which decides how a key is added to it.
+/// How a table is written, which decides how a key is added.
 enum class TableForm : std::uint8_t {
   kHeader,  ///< [sensor.calibration] with lines below
   kInline,  ///< { gain = 1.1 }
-  kDotted,  ///< calibration.gain = 1.1 among the keys of what is around it
+  kDotted,  ///< calibration.gain = 1.1 among the keys of the enclosing table
 };
 
-/// One round of edits of one text: what is to be put where. Places are of the text as it was parsed.
+/// Collects edits of one text. Places refer to the text as it was parsed.
 class SensorEditor {
  public:
   SensorEditor(std::string_view text, const toml::table& entry) : text_(text), places_(text), entry_(entry) {}
 
-  /// Notes that a key is to have a value.
+  /// Adds an edit that sets a key to a value.
   void set(const ConfigChange& change) {
     const toml::node* inner = change.table.empty() ? nullptr : entry_.get(change.table);
     const toml::table* table = change.table.empty() ? &entry_ : inner != nullptr ? inner->as_table() : nullptr;
@@ -85,10 +85,10 @@ class SensorEditor {
     }
   }
 
-  /// The text with everything done.
+  /// The text with all edits applied.
   std::string text() {
     add_new_tables();
-    // From the back, so that places before stay what they are; at one place in the order in which they were asked for.
+    // From the back, so that places before stay valid; several at one place in the order in which they were added.
     std::ranges::stable_sort(edits_, {}, &Edit::from);
     std::string result(text_);
     for (auto edit = edits_.rbegin(); edit != edits_.rend(); ++edit) result.replace(edit->from, edit->size, edit->text);
@@ -107,7 +107,7 @@ class SensorEditor {
     return first == '{' ? TableForm::kInline : first == '[' ? TableForm::kHeader : TableForm::kDotted;
   }
 
-  /// The value that stands last among those of a table, dotted ones included; nullptr: it has none.
+  /// The last value of a table, dotted keys included; nullptr: it has none.
   const toml::node* last_value(const toml::table& table) const {
     const toml::node* last = nullptr;
     for (const auto& [key, node] : table) {
@@ -123,13 +123,13 @@ class SensorEditor {
     return last;
   }
 
-  /// Adds "key = value" to a table, behind the last value of `beside` (the table itself, or what is dotted in it).
+  /// Adds "key = value" to a table, after the last value of `beside` (the table itself, or its dotted keys).
   void add_key(const toml::table& table, const std::string& line, const toml::table* beside) {
     const toml::node* last = last_value(*beside);
     if (form_of(table) == TableForm::kInline) {
       if (last != nullptr) return insert(places_.at(last->source().end), ", " + line);
       const std::size_t brace = places_.at(table.source().begin);
-      // Several keys into an empty one: the first brings the blank in front, each next its comma.
+      // Several keys in an empty table: a space before the first, a comma before each further one.
       const bool is_first = std::ranges::none_of(edits_, [&](const Edit& edit) { return edit.from == brace + 1; });
       return insert(brace + 1, (is_first ? " " : ", ") + line);
     }
@@ -154,7 +154,7 @@ class SensorEditor {
     new_tables_.clear();
   }
 
-  /// The last line of an entry: that of its last value, and comments right below that do not belong to what follows.
+  /// The last line of an entry: that of its last value, or of the comments that follow it directly.
   std::size_t line_behind_entry() const {
     const toml::node* last = last_value(entry_);
     const std::size_t line = last != nullptr ? last->source().end.line : entry_.source().begin.line;
@@ -178,7 +178,7 @@ class SensorEditor {
   TextPlaces places_;
   const toml::table& entry_;
   std::vector<Edit> edits_;
-  std::vector<std::pair<std::string, std::string>> new_tables_;  // their name, and a line in them
+  std::vector<std::pair<std::string, std::string>> new_tables_;  // name, and a line of it
 };
 
 /// The entry of a sensor; nullptr: there is none.
@@ -194,7 +194,7 @@ toml::table* find_sensor(toml::table& root, std::string_view sensor) {
   return nullptr;
 }
 
-/// Makes the changes in what was parsed, to compare with.
+/// Applies the changes to the parsed table, for comparison.
 bool apply(toml::table& entry, std::span<const ConfigChange> changes) {
   for (const ConfigChange& change : changes) {
     toml::table* table = &entry;
@@ -226,7 +226,7 @@ std::string toml_value(const ParameterValue& value) {
     if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";
     return text;
   }
-  // A plain text in double quotes, as people write it; toml++ finds a way for any other.
+  // Simple text in double quotes; toml++ formats any other.
   if (const auto* text = std::get_if<std::string>(&value)) {
     const auto is_plain = [](char sign) { return sign >= ' ' && sign <= '~' && sign != '"' && sign != '\\'; };
     if (std::ranges::all_of(*text, is_plain)) return '"' + *text + '"';
@@ -247,7 +247,7 @@ Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string
     for (const ConfigChange& change : changes) editor.set(change);
     std::string text = editor.text();
 
-    // The proof: the new text says what the old one said, but for the changes.
+    // Verify: the new text must equal the old one but for the changes.
     if (!apply(*entry, changes)) return by_hand(sensor, "a value stands where a table should be", changes);
     if (toml::parse(text) != root) return by_hand(sensor, "its layout is unusual", changes);
     return {boost::system::in_place_value, std::move(text)};

@@ -9,7 +9,7 @@
 
 namespace yuragi {
 
-/// A value that a sensor's entry is to have.
+/// A value to set in a sensor's entry.
 struct ConfigChange {
   std::string table;  ///< "calibration", or empty: the [[sensor]] itself
   std::string key;
@@ -17,15 +17,15 @@ struct ConfigChange {
 };
 
 /// The text of a configuration with some values of one sensor changed, and nothing else: comments, order, layout and
-/// line ends stay. A key that is not there is added behind the others of its table, and [sensor.calibration] where it
-/// is missing. `sensor` is called as parse_config() calls it: by its name, or by its driver.
+/// line ends stay. A missing key is added after the others of its table, a missing [sensor.calibration] is added.
+/// `sensor` is the name as parse_config() gives it: the configured name, or else the driver's.
 ///
-/// The result is parsed again: it says what the old text said but for these changes. Where that cannot be done (or the
-/// text is no TOML, or there is no such sensor), the failure says what to write by hand. Pure: text in, text out.
+/// The result is parsed again to verify that nothing but these values differs. Where it does (or the text is not TOML,
+/// or there is no such sensor), the failure says what to edit by hand. Pure.
 Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string_view sensor,
                                          std::span<const ConfigChange> changes);
 
-/// A value as TOML has it: numbers in the fewest digits that mean them.
+/// A value as TOML; numbers with the fewest digits that read back as the same number.
 std::string toml_value(const ParameterValue& value);
 
 }  // namespace yuragi

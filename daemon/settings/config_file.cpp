@@ -16,14 +16,14 @@ Failure not_written(const std::string& message) {
   return {message, FailureKind::kCannotCreate};
 }
 
-/// Writes a file beside another, for the same people to read.
+/// Writes a file beside another, with the same owner and permissions.
 Result<void, Failure> write_like(const std::filesystem::path& model, const std::filesystem::path& file,
                                  std::string_view text) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   struct stat status {};
   if (stat(model.c_str(), &status) == 0) {
     chmod(file.c_str(), status.st_mode & 07777U);
-    // Only root may give a file away; anybody else owns it anyway, or could not have read it.
+    // Only root may change the owner; for others the file has the right owner already, in practice.
     [[maybe_unused]] const int given = chown(file.c_str(), status.st_uid, status.st_gid);
   }
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -34,7 +34,7 @@ Result<void, Failure> write_like(const std::filesystem::path& model, const std::
   return {};
 }
 
-/// Can a sensor be made of its values? It need not be so with each (this may be another machine than the wall's).
+/// Can a sensor be constructed from its values? Not necessarily: this may be another machine than the daemon's.
 bool can_be_opened(const SensorConfig& sensor) {
   try {
     return open_sensor(sensor) != nullptr;
@@ -43,7 +43,7 @@ bool can_be_opened(const SensorConfig& sensor) {
   }
 }
 
-/// Fails where the daemon would not take the file, or one of its sensors, which it took before.
+/// Fails where the daemon would refuse the file, or a sensor that it accepted before.
 Result<void, Failure> prove(const std::filesystem::path& file, const Config& before) {
   try {
     const Config config = load_config(file);
@@ -69,7 +69,7 @@ Result<std::filesystem::path, Failure> replace_config(const std::filesystem::pat
   const Config before = parse_config(old_text, file.string());
   if (const auto done = prove(output.working_path(), before); !done) return done.error();
 
-  // The old text is safe before the new one takes its place.
+  // The old text is on the disk before the new one replaces it.
   if (read_config_text(real) != old_text) {
     return not_written(file.string() + ": has been changed meanwhile, and was left as it is; begin again");
   }

@@ -17,7 +17,7 @@ const std::array kGeneralParameters = {
               .unit = "",
               .default_value = std::int64_t{1},
               .min = 0,
-              .help = "everything random comes from it: the same seed and wind give the same motion"},
+              .help = "seed of all random numbers: the same seed and wind give the same motion"},
 };
 
 const std::array kStreamParameters = {
@@ -34,18 +34,20 @@ const std::array kStreamParameters = {
     Parameter{.name = "control",
               .unit = "",
               .default_value = std::string("loopback"),
-              .help = "from where scenes may be shown and hidden (yuragi scene): this machine, anywhere, or nobody",
+              .help = "clients that may control scenes and recordings (yuragi scene, yuragi player): on this machine, "
+                      "anywhere, or nobody",
               .choices = kControlPermissionNames},
 };
 
 const std::array kAnimationParameters = {
-    Parameter{.name = "rate", .unit = "Hz", .default_value = 60.0, .min = 1.0, .max = 240.0, .help = "poses a second"},
+    Parameter{
+        .name = "rate", .unit = "Hz", .default_value = 60.0, .min = 1.0, .max = 240.0, .help = "ticks per second"},
     Parameter{.name = "threads",
               .unit = "",
               .default_value = std::int64_t{1},
               .min = 1,
               .max = 64,
-              .help = "threads that share a tick: more than one is worth while from about a million nodes on"},
+              .help = "threads that share a tick; more than one helps from about a million nodes on"},
 };
 
 const std::array kWindParameters = {
@@ -72,27 +74,27 @@ const std::array kWindParameters = {
               .default_value = 0.0,
               .min = 0.0,
               .max = 1000.0,
-              .help = "how far gusts reach, that wind's and those between a sensor's readings: the integral length "
-                      "scale; 0: by the height in each sensor's calibration, 5.7 m a metre up to 60 m (25 m at 4.4 m, "
-                      "85 m at 15 m); where none is told, 57 m, as over open land at 10 m"},
+              .help = "integral length scale of the gusts, of the default wind and between a sensor's readings; 0: "
+                      "from the height in each sensor's calibration, 5.7 m per metre up to 60 m (25 m at 4.4 m, 85 m "
+                      "at 15 m); without a height 57 m, as over open land at 10 m"},
     Parameter{.name = "gustiness",
               .unit = "",
               .default_value = 0.3,
               .min = 0.0,
               .max = 0.6,
-              .help = "how much gusts differ in strength: in real wind some hundred metres are gustier than the next "
-                      "(about 0.3); 0: all alike. Of the gusts that are made up, not of those that a sensor measured"},
+              .help = "variation of the strength of generated gusts over some hundred metres of wind; about 0.3 in "
+                      "real wind, 0: none. Measured gusts are not changed"},
     Parameter{.name = "site_octaves",
               .unit = "dB",
               .default_value = std::string(""),
-              .help = "how much stronger than a slow sensor lets expect the gusts of this site are at 0.0375 to 0.075 "
-                      "Hz, 0.075 to 0.15 Hz and so on, up to 7 numbers, as `yuragi report` prints them for a recording "
-                      "of a quick sensor; the daemon learns them too, while a sensor of 1 s or quicker speaks, and "
+              .help = "power of this site's gusts relative to the fit to a slow sensor, at 0.0375 to 0.075 Hz, 0.075 "
+                      "to 0.15 Hz and so on, up to 7 numbers; `yuragi report` prints them for a recording of a fast "
+                      "sensor. The daemon also fits them while a sensor with an interval of at most 1 s is live, and "
                       "keeps them in site_file of [shaping]"},
     Parameter{.name = "evolving",
               .unit = "",
               .default_value = true,
-              .help = "gusts change while they travel; false: they pass as a picture does (frozen turbulence)"},
+              .help = "gusts change while they travel; false: they travel unchanged (frozen turbulence)"},
     Parameter{.name = "handover",
               .unit = "s",
               .default_value = 3.0,
@@ -114,20 +116,21 @@ const std::array kWindParameters = {
     Parameter{.name = "fallback_recording",
               .unit = "",
               .default_value = std::string{},
-              .help = "a .windlog that is played while every sensor is silent; empty: the default wind blows then"},
+              .help = "a recording (.windlog) that is played while every sensor is silent; empty: none, the default "
+                      "wind is used"},
     Parameter{.name = "fallback_after",
               .unit = "s",
               .default_value = 60.0,
               .min = 1.0,
               .max = 86400.0,
-              .help = "how long every sensor must have been silent for that"},
+              .help = "for how long every sensor must have been silent before it is played"},
 };
 
 const std::array kCalibrationParameters = {
     Parameter{.name = "unit",
               .unit = "",
               .default_value = std::string("m/s"),
-              .help = "what the sensor's numbers really are, where its driver takes them for m/s",
+              .help = "unit of the sensor's speeds, where its driver assumes m/s",
               .choices = kSpeedUnitNames},
     Parameter{.name = "gain",
               .unit = "",
@@ -140,85 +143,82 @@ const std::array kCalibrationParameters = {
               .default_value = 0.0,
               .min = -20.0,
               .max = 20.0,
-              .help = "and this is added, but for a calm"},
+              .help = "added to the speed after the gain, except in a calm"},
     Parameter{.name = "curve",
               .unit = "m/s",
               .default_value = std::string(""),
-              .help = "then points measured:true, \"0:0 5:5.2 12:12.9\"; empty: none"},
+              .help = "applied after gain and offset: points measured:true, \"0:0 5:5.2 12:12.9\"; empty: none"},
     Parameter{.name = "north_offset",
               .unit = "deg",
               .default_value = 0.0,
               .min = -360.0,
               .max = 360.0,
-              .help = "clockwise: where the sensor's mark points instead of to north"},
+              .help = "bearing of the sensor's north mark, clockwise from north"},
     Parameter{.name = "height",
               .unit = "m",
               .default_value = 0.0,
               .min = 0.0,
               .max = 1000.0,
-              .help =
-                  "of the sensor above the ground; it says how far its gusts reach, too (default_length of [wind]); "
-                  "0: the wind is taken as it is measured"},
+              .help = "of the sensor above the ground, to scale its speeds to scene_height; also gives the length of "
+                      "its gusts (default_length of [wind]); 0: speeds are not scaled"},
     Parameter{.name = "scene_height",
               .unit = "m",
               .default_value = 10.0,
               .min = 0.1,
               .max = 1000.0,
-              .help = "the height whose wind moves the scenes"},
+              .help = "height of the wind that moves the scenes"},
     Parameter{.name = "roughness",
               .unit = "m",
               .default_value = 0.03,
               .min = 0.0001,
               .max = 5.0,
-              .help = "of the ground around: 0.0002 water, 0.03 meadow, 0.5 suburb, 1 city"},
+              .help = "roughness length of the surrounding ground: 0.0002 water, 0.03 meadow, 0.5 suburb, 1 city"},
 };
 
 const std::array kJudgeParameters = {
     Parameter{.name = "enabled",
               .unit = "",
               .default_value = true,
-              .help =
-                  "readings that are not believable are kept from the wind (never from a recording); false: all are "
-                  "taken; simulated ones always are"},
+              .help = "implausible readings are not used for the wind (but recorded); false: all readings are used; "
+                      "simulated ones always are"},
     Parameter{.name = "max_speed",
               .unit = "m/s",
               .default_value = kMaxPlausibleSpeed_m_s,
               .min = 1.0,
               .max = kMaxPlausibleSpeed_m_s,
-              .help = "faster than this is out of the sensor's range"},
+              .help = "a speed above this is out of the sensor's range"},
     Parameter{.name = "spike",
               .unit = "m/s",
               .default_value = 4.0,
               .min = 0.1,
               .max = 100.0,
-              .help = "what differs from the last readings by less than this and half the wind is no spike"},
+              .help = "a difference from the last readings below this plus half of the speed is not a spike"},
     Parameter{.name = "slew",
               .unit = "m/s^2",
               .default_value = 5.0,
               .min = 0.01,
               .max = 1000.0,
-              .help = "a larger step is believed once it has lasted for as long as it takes at this rate"},
+              .help = "a larger step is accepted once it has lasted for step / rate"},
     Parameter{.name = "frozen",
               .unit = "s",
               .default_value = 30.0,
               .min = 1.0,
               .max = 86400.0,
-              .help =
-                  "exactly the same for so long, and 20 times, is frozen; a sensor that repeats itself by nature, or "
-                  "never said anything else, has longer"},
+              .help = "a sensor is frozen after 20 exactly equal readings over this time; the time is longer for a "
+                      "sensor that often repeats values, or has never sent another"},
     Parameter{.name = "seized",
               .unit = "s",
               .default_value = 7200.0,
               .min = 60.0,
               .max = 864000.0,
-              .help = "standing still for so long while the other sensors have more than 3 m/s is seized; one that is "
-                      "alone has six times as long, after a windy day"},
+              .help = "a cup is seized when it stands still for this time while the other sensors measure more than 3 "
+                      "m/s; without other sensors after six times as long, following a windy day"},
     Parameter{.name = "compare",
               .unit = "",
               .default_value = true,
-              .help = "its mean over 5 min is compared with the other sensors' (a microphone's never is); where three "
-                      "or more speak, one that "
-                      "differs from most by more than 3 times and 3 m/s for 10 min is not believed"},
+              .help = "compare its mean of 5 min with that of the other sensors (never for a microphone); with three "
+                      "or more live sensors, one that differs from the majority by more than a factor of 3 and 3 m/s "
+                      "for 10 min is not used"},
 };
 
 const std::array kCommonSceneParameters = {
@@ -227,25 +227,35 @@ const std::array kCommonSceneParameters = {
               .default_value = 0.0,
               .min = -1000.0,
               .max = 1000.0,
-              .help = "where the scene stands, to the east"},
-    Parameter{.name = "y", .unit = "m", .default_value = 0.0, .min = -1000.0, .max = 1000.0, .help = "upward"},
-    Parameter{.name = "z", .unit = "m", .default_value = 0.0, .min = -1000.0, .max = 1000.0, .help = "to the south"},
+              .help = "position of the scene to the east"},
+    Parameter{.name = "y",
+              .unit = "m",
+              .default_value = 0.0,
+              .min = -1000.0,
+              .max = 1000.0,
+              .help = "position of the scene upward"},
+    Parameter{.name = "z",
+              .unit = "m",
+              .default_value = 0.0,
+              .min = -1000.0,
+              .max = 1000.0,
+              .help = "position of the scene to the south"},
     Parameter{.name = "heading",
               .unit = "deg",
               .default_value = 0.0,
               .min = -360.0,
               .max = 360.0,
-              .help = "where the scene's own north points to, clockwise from north; the wind is not turned with it"},
+              .help = "rotation of the scene, clockwise from north; the wind is not rotated with it"},
     Parameter{.name = "gain",
               .unit = "",
               .default_value = 1.0,
               .min = 0.0,
               .max = 10.0,
-              .help = "how many times stronger than it is the wind is for this scene"},
+              .help = "factor on the wind speed for this scene"},
     Parameter{.name = "shown",
               .unit = "",
               .default_value = true,
-              .help = "false: hidden until `yuragi scene show` or `switch` asks for it"},
+              .help = "false: hidden until `yuragi scene show` or `yuragi scene switch` shows it"},
 };
 
 const std::array kConfigTables = {

@@ -7,10 +7,9 @@
 
 namespace yuragi {
 
-// What a configuration may hold besides what drivers and scenes hold of their own: every key with its unit, range,
-// default and help.
+// The keys of a configuration, except those of drivers and scenes, each with unit, range, default and help.
 
-/// The tables of the file that are there once, with what each may hold.
+/// A table that occurs once in the file, with its keys.
 struct ConfigTable {
   std::string_view name;
   std::string_view summary;
@@ -23,11 +22,11 @@ std::span<const Parameter> stream_parameters();
 std::span<const Parameter> animation_parameters();
 std::span<const Parameter> wind_parameters();
 
-/// What the tables [sensor.calibration] and [sensor.judge] of a sensor may hold.
+/// The keys of [sensor.calibration] and of [sensor.judge].
 std::span<const Parameter> calibration_parameters();
 std::span<const Parameter> judge_parameters();
 
-/// What a scene of any kind may hold besides: where it stands, its gain, whether it is shown.
+/// The keys that scenes of every kind have: place, gain, whether it is shown.
 std::span<const Parameter> common_scene_parameters();
 
 }  // namespace yuragi

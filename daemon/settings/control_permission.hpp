@@ -9,11 +9,11 @@
 
 namespace yuragi {
 
-/// From where clients may change what is shown and played: [stream] control.
+/// Where clients may control scenes and recordings from: [stream] control.
 enum class ControlPermission : std::uint8_t { kLoopback, kAnywhere, kNobody };
 inline constexpr std::array<std::string_view, 3> kControlPermissionNames = {"loopback", "anywhere", "nobody"};
 
-/// The one of this name, which is among kControlPermissionNames; of any other, kNobody.
+/// The permission of this name; kNobody for an unknown name.
 constexpr ControlPermission control_permission_named(std::string_view name) noexcept {
   for (std::size_t index = 0; index < kControlPermissionNames.size(); ++index) {
     if (name == kControlPermissionNames[index]) return static_cast<ControlPermission>(index);
@@ -21,8 +21,8 @@ constexpr ControlPermission control_permission_named(std::string_view name) noex
   return ControlPermission::kNobody;
 }
 
-/// Why a client may not do `what` ("scenes cannot be switched"), by `allowed`. Nothing where it may. `is_local`: it
-/// asks from this machine.
+/// The reason for refusing a client, which begins with `what` ("scenes cannot be switched"); nothing where `allowed`
+/// permits it. `is_local`: the client is on this machine.
 inline std::optional<std::string> control_refusal(ControlPermission allowed, bool is_local, const std::string& what) {
   if (allowed == ControlPermission::kNobody) return what + ": the configuration has [stream] control = \"nobody\"";
   if (allowed == ControlPermission::kLoopback && !is_local) {

@@ -57,7 +57,7 @@ auto parse_range(std::string_view text, Parse parse) {
   return from && to ? std::optional(std::pair{*from, *to}) : std::nullopt;
 }
 
-/// One rule: the days, and the minutes from the beginning of each; those behind 24:00 are of the next day.
+/// One rule: the days, and the minutes from the beginning of each; those after 24:00 belong to the next day.
 struct OpeningRule {
   std::size_t first_day = 0, last_day = kDays - 1;
   std::size_t from_min = 0, to_min = 0;
@@ -79,13 +79,13 @@ std::optional<OpeningRule> parse_rule(std::string_view text) {
   return rule;
 }
 
-/// The zone's own object, which the library keeps. Null is UTC.
+/// The library's object of the zone. Null: UTC.
 const date::time_zone* find_zone(const std::string& name) {
   if (!name.empty()) return date::locate_zone(name);
   try {
     return date::current_zone();
   } catch (const std::exception&) {
-    return nullptr;  // a machine without /etc/localtime runs on UTC
+    return nullptr;  // without /etc/localtime the machine runs on UTC
   }
 }
 
@@ -94,7 +94,7 @@ const date::time_zone* find_zone(const std::string& name) {
 Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours, const std::string& zone) {
   OpeningHours result;
   const bool has_hours = !without_spaces_around(hours).empty();
-  // No clock is looked at: nobody needs the zones.
+  // Without rules the time zone is not needed.
   if (!has_hours && zone.empty()) return result;
   try {
     result.zone_ = find_zone(zone);
@@ -132,7 +132,7 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
 std::size_t OpeningHours::minute_of_week(UtcTime now) const {
   const auto utc = std::chrono::floor<std::chrono::seconds>(now);
   const auto since_1970 = zone_ != nullptr ? zone_->to_local(utc).time_since_epoch() : utc.time_since_epoch();
-  // The first day of 1970 was a Thursday, three days after a Monday. A time before that counts from its week, too.
+  // 1 January 1970 was a Thursday, three days after a Monday. The modulo is made positive for earlier times.
   constexpr auto kWeek = static_cast<std::int64_t>(kMinutesPerWeek);
   const std::int64_t minutes = std::chrono::floor<std::chrono::minutes>(since_1970).count() + std::int64_t{3} * 24 * 60;
   return static_cast<std::size_t>((minutes % kWeek + kWeek) % kWeek);

@@ -15,13 +15,13 @@ class time_zone;
 
 namespace yuragi {
 
-/// When a house is open, in the local time of its zone, week after week, to the minute.
+/// Weekly opening hours in the local time of a time zone, to the minute.
 ///
 /// Written as rules with commas between them: "10:00-18:00" (every day), "Tue-Sun 10:00-18:00, Thu 18:00-21:00",
-/// "Fri 20:00-02:00" (into the next day), "00:00-24:00". It is open when any rule says so; days that none names are
-/// closed. Summer time is the zone's: 10:00 is what the clock on the wall shows.
+/// "Fri 20:00-02:00" (into the next day), "00:00-24:00". Open whenever any rule says so; days without a
+/// rule are closed. Local time follows the zone's daylight saving time.
 ///
-/// Thread-safe: reading, yes. Asking allocates nothing but texts.
+/// Thread-safe: reading, yes. Only the functions that return text allocate.
 class OpeningHours {
  public:
   /// Open at all hours.
@@ -35,10 +35,10 @@ class OpeningHours {
 
   bool is_open(UtcTime now) const;
 
-  /// Whose local time it is: "Europe/Berlin". Of a machine without a zone: "UTC".
+  /// The time zone: "Europe/Berlin"; "UTC" on a machine without one.
   std::string zone_name() const;
 
-  /// The next change by the clock on the wall, for a person: "until 18:00", "until Tue 10:00" where that is more than a
+  /// The local time of the next change, for a person: "until 18:00", "until Tue 10:00" where that is more than a
   /// day away; empty where there is none.
   std::string until_text(UtcTime now) const;
 

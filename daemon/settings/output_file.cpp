@@ -21,7 +21,7 @@ OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const s
     : file_(std::move(file)), side_suffixes_(side_suffixes) {
   std::error_code error;
   const std::string name = file_.string();
-  // A rename onto a device or a link would replace it.
+  // Renaming onto a device or a link would replace it.
   if (const auto status = std::filesystem::status(file_, error); std::filesystem::exists(status)) {
     if (std::filesystem::is_directory(status)) throw cannot_create(name + ": is a folder");
     if (!std::filesystem::is_regular_file(status)) throw cannot_create(name + ": is not a regular file");
@@ -29,7 +29,7 @@ OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const s
     file_ = std::filesystem::canonical(file_);
   }
   working_path_ = file_.string() + ".part-" + std::to_string(getpid());
-  // They would be taken for the new file's.
+  // SQLite would take them for the new file's.
   for (const std::string_view suffix : side_suffixes_) {
     const std::string beside = file_.string() + std::string(suffix);
     if (!std::filesystem::exists(beside, error)) continue;
@@ -51,7 +51,7 @@ OutputFile::~OutputFile() {
 }
 
 Result<void, Failure> OutputFile::commit() {
-  // Its content reaches the disk before its name does.
+  // The content must reach the disk before the name does.
   if (const int descriptor = open(working_path_.c_str(), O_RDONLY | O_CLOEXEC); descriptor >= 0) {
     fsync(descriptor);
     close(descriptor);

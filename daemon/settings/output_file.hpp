@@ -8,15 +8,15 @@
 
 namespace yuragi {
 
-/// A file that is there as a whole or not at all: it is written under another name beside its own, and takes its own
-/// name with commit(). Without that it is removed.
+/// A file that is created as a whole or not at all: it is written under a temporary name in the same folder, and
+/// renamed by commit(). Without a commit() it is removed.
 class OutputFile {
  public:
-  /// A link is followed. `side_suffixes`: how the names end of what a library keeps beside such a file while it is
-  /// being recorded (windlog::kSideSuffixes); they must live as long as this, and are removed with an unfinished file.
+  /// A link is followed. `side_suffixes`: suffixes of the files that SQLite keeps beside it while it is open
+  /// (windlog::kSideSuffixes); they must outlive this object, and these files are removed with an unfinished file.
   /// Throws FailureError (kCannotCreate) where the file exists already and `force` is false, where it is not a regular
-  /// file, where one of those exists beside it (it is being recorded, or was, when its recorder was killed), or where
-  /// its folder does not exist.
+  /// file, where a file with such a suffix exists beside it (it is being recorded, or its recorder was killed), or
+  /// where its folder does not exist.
   OutputFile(std::filesystem::path file, bool force, std::span<const std::string_view> side_suffixes = {});
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -25,7 +25,7 @@ class OutputFile {
   /// Where to write.
   const std::filesystem::path& working_path() const { return working_path_; }
 
-  /// Gives the file its name, or says why that failed.
+  /// Renames the file to its final name; the failure says why that is not possible.
   Result<void, Failure> commit();
 
  private:

@@ -11,14 +11,14 @@ namespace yuragi {
 struct SceneConfig {
   std::string name;
   const SceneDescription* kind = nullptr;
-  ParameterValues values{};  ///< its kind's own, which it reads when it is made, and common_scene_parameters()
+  ParameterValues values{};  ///< its kind's own parameters, and common_scene_parameters()
 
   ScenePlacement placement{};
-  double wind_gain = 1.0;  ///< how many times stronger than it is the wind is for this scene
+  double wind_gain = 1.0;  ///< factor on the wind speed
   bool is_shown = true;    ///< from the start
 };
 
-/// `values`: of common_scene_parameters(), and the kind's own.
+/// `values`: of common_scene_parameters() and of the kind's own parameters.
 SceneConfig scene_config_of(std::string name, const SceneDescription& kind, ParameterValues values);
 
 }  // namespace yuragi

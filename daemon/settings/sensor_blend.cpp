@@ -18,58 +18,57 @@ const std::array kSensorBlendParameters = {
     Parameter{.name = "role",
               .unit = "",
               .default_value = std::string(kOfDriver),
-              .help =
-                  "relative: only its rise and fall is believed; it gives the gusts that the absolute sensors are too "
-                  "slow for, as strong as theirs. auto: a microphone is relative, all else absolute",
+              .help = "relative: only its fluctuations are used, for the gusts that the absolute sensors are too slow "
+                      "for, scaled to theirs. auto: relative for a microphone, absolute for all others",
               .choices = kRoles},
-    Parameter{
-        .name = "priority",
-        .unit = "",
-        .default_value = std::int64_t{0},
-        .min = 0,
-        .max = 1000,
-        .help = "of those that speak the lowest makes the wind, equal ones together; 0: its place in the file, from 1"},
+    Parameter{.name = "priority",
+              .unit = "",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = 1000,
+              .help = "of the live sensors those with the lowest number make the wind, equal ones together; 0: its "
+                      "position in the file, from 1"},
     Parameter{.name = "weight",
               .unit = "",
               .default_value = 1.0,
               .min = 0.01,
               .max = 100.0,
-              .help = "how much it counts among those of the same priority"},
+              .help = "weight among sensors of the same priority"},
     Parameter{.name = "x",
               .unit = "m",
               .default_value = 0.0,
               .min = -1000.0,
               .max = 1000.0,
-              .help = "where it stands, to the east of the middle of the scenes; a gust that it measures moves on from "
-                      "there with the wind, and what stands upwind of it has gusts that are made up",
+              .help = "position to the east of the middle of the scenes; measured gusts travel from there with the "
+                      "wind; scenes upwind of it have generated gusts",
               .left_out = kAtTheEdge},
-    Parameter{.name = "z",
-              .unit = "m",
-              .default_value = 0.0,
-              .min = -1000.0,
-              .max = 1000.0,
-              .help = "the same to the south; of x and z one is enough, the other is then 0",
-              .left_out = kAtTheEdge},
+    Parameter{
+        .name = "z",
+        .unit = "m",
+        .default_value = 0.0,
+        .min = -1000.0,
+        .max = 1000.0,
+        .help = "position to the south of the middle of the scenes; where only one of x and z is set, the other is 0",
+        .left_out = kAtTheEdge},
     Parameter{.name = "lead",
               .unit = "m",
               .default_value = 0.0,
               .min = 0.0,
               .max = 1000.0,
-              .help =
-                  "with x or z: its gusts enter the scenes so far upwind of where it stands. More of the scenes has "
-                  "the gusts that were really measured, and has them later, by lead over the wind's speed"},
+              .help = "with x or z: its gusts enter the scenes this far upwind of its position. More of the scenes has "
+                      "measured gusts, but later, by lead over wind speed"},
     Parameter{.name = "averaging",
               .unit = "s",
               .default_value = 0.0,
               .min = 0.0,
               .max = 3600.0,
-              .help = "each reading is a mean over so long; 0: over the time between two, which is measured"},
+              .help = "averaging time of each reading; 0: the interval between readings, which is measured"},
     Parameter{.name = "direction_step",
               .unit = "deg",
               .default_value = 0.0,
               .min = 0.0,
               .max = 90.0,
-              .help = "of a vane that knows few directions (16: 22.5, 8: 45); 0: found out from its readings"},
+              .help = "step of a vane with few directions (16: 22.5, 8: 45); 0: determined from its readings"},
 };
 
 }  // namespace
@@ -108,7 +107,7 @@ Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValue
                              .east_m = number_or_0("x"),
                              .south_m = number_or_0("z"),
                              .lead_m = lead_m,
-                             .teaches_site = !is_relative && !driver.plays_recordings,
+                             .fits_site = !is_relative && !driver.plays_recordings,
                              .averaging_s = values.number("averaging"),
                              .direction_step_deg = values.number("direction_step")};
 }

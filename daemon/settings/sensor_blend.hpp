@@ -10,11 +10,11 @@
 
 namespace yuragi {
 
-/// What the table [sensor.blend] of a sensor may hold: its part among several.
+/// The keys of [sensor.blend]: the sensor's share among several.
 std::span<const Parameter> sensor_blend_parameters();
 
-/// Of the values of sensor_blend_parameters() and the sensor's driver, which says what they leave to it; without a
-/// length of the gusts. The error, what does not fit together, names the key that it is about.
+/// From the values of sensor_blend_parameters(), with the driver's defaults where they are "auto"; length_m is not set.
+/// An error (values that contradict each other) names the key.
 Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
                                                             const DriverDescription& driver);
 

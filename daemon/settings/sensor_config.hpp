@@ -13,13 +13,13 @@
 
 namespace yuragi {
 
-/// Above the ground.
+/// Heights above the ground.
 struct SensorHeights {
-  std::optional<double> sensor_m{};  ///< none: it is not known
+  std::optional<double> sensor_m{};  ///< none: unknown
   double scene_m = 10.0;             ///< the height whose wind moves the scenes
 };
 
-/// The values of a sensor's tables under their names: what writes a configuration, or changes one, reads them.
+/// The values of a sensor's tables by key, for writing and editing the configuration.
 struct SensorTables {
   ParameterValues calibration;  ///< calibration_parameters()
   ParameterValues judge;        ///< judge_parameters()
@@ -30,33 +30,33 @@ struct SensorTables {
 struct SensorConfig {
   std::string name;
   const DriverDescription* driver = nullptr;
-  ParameterValues values{};  ///< the driver's own, which it reads when it makes the sensor
-  std::string origin{};      ///< `file:line:column` of its entry; empty where no file has it
+  ParameterValues values{};  ///< the driver's own parameters
+  std::string origin{};      ///< `file:line:column` of its entry; empty: it is in no file
 
-  Calibration calibration{};             ///< [sensor.calibration], heights and all
-  SensorHeights heights{};               ///< what its height_factor comes from
+  Calibration calibration{};             ///< [sensor.calibration], with the height factor
+  SensorHeights heights{};               ///< from which the height factor was computed
   std::optional<JudgeSettings> judge{};  ///< [sensor.judge]; none: every reading is believed
   bool is_compared = false;              ///< [sensor.judge] with the other sensors
-  BlendSourceSettings blend{};           ///< [sensor.blend]; its length_m by the sensor's height, or 0
+  BlendSourceSettings blend{};           ///< [sensor.blend]; length_m from the height, 0 if that is unknown
 
-  SensorTables by_name{};  ///< what these members were made of
+  SensorTables by_name{};  ///< from which the members above were made
 };
 
-/// How far the gusts of a sensor reach, until it tells more of them itself, m: [wind] default_length where it is set;
-/// or as its height says; or as far as the default wind's. Pure.
+/// The integral length of the gusts at a sensor before it is fitted to its readings, m: [wind] default_length where it
+/// is set; else from the sensor's height; else that of the default wind. Pure.
 double gust_length_m(const WindConfig& wind, const SensorConfig& sensor) noexcept;
 
-/// What the height of a sensor says of that, m: 8.1 * 0.7 times it up to 60 m (IEC 61400-1), at least kShortestGusts_m.
-/// Where the calibration brings the speeds to another height, the length goes with them: what is measured goes on
-/// passing the sensor in the same time. Pure.
+/// The integral length at a sensor's height, m: 8.1 * 0.7 times the height, up to 60 m (IEC 61400-1), at least
+/// kShortestGusts_m. Where the calibration scales speeds to another height, the length is scaled by the same factor, so
+/// that the time scale is unchanged. Pure.
 double gust_length_at_height_m(double height_m, const Calibration& calibration) noexcept;
 
-/// Of the values of calibration_parameters(). The error names the key that it is about.
+/// From the values of calibration_parameters(). An error names the key.
 Result<Calibration, ParameterError> calibration_of(const ParameterValues& values);
 SensorHeights sensor_heights_of(const ParameterValues& values);
 
-/// Of the values of judge_parameters(): how strictly the sensor's readings are judged, none where they are not; and
-/// whether they are compared with the other sensors'.
+/// From the values of judge_parameters(): the settings of the sensor's judge, none where its readings are not judged;
+/// and whether the sensor is compared with others.
 std::optional<JudgeSettings> judge_settings_of(const ParameterValues& values);
 bool is_compared(const ParameterValues& values);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSecondsPerDay = 86400.0;
 
-/// What the speeds that site gain and ceiling are given by do not fit together in.
+/// The contradictions among the speeds of site gain and ceiling.
 std::vector<ParameterError> speed_mistakes(const SiteRange& site, double ceiling_m_s, double ceiling_most_m_s) {
   std::vector<ParameterError> mistakes;
   if (site.strong_m_s > 0.0 && !(site.median_m_s > 0.0 && site.strong_m_s > site.median_m_s)) {

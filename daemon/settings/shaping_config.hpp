@@ -11,15 +11,15 @@
 
 namespace yuragi {
 
-/// [shaping]: between the real wind and the scenes'.
+/// [shaping]: how the real wind is changed for the scenes.
 struct ShapingConfig {
   WindShapingSettings settings;
   OpeningHours hours;
-  std::filesystem::path site_file{};  ///< where the memory of the site is kept over a restart; empty: nowhere
+  std::filesystem::path site_file{};  ///< keeps what was learnt of the site over a restart; empty: not kept
 };
 
-/// Of the values of shaping_parameters(); the breeze that the floor adds has the turbulence of `wind`. The errors, what
-/// does not fit together and hours that are none, each name the key that they are about.
+/// From the values of shaping_parameters(); the breeze that the floor adds has the turbulence of `wind`. Each error
+/// (values that contradict each other, invalid hours) names its key.
 Result<ShapingConfig, std::vector<ParameterError>> shaping_config_of(const ParameterValues& values,
                                                                      const WindConfig& wind);
 

@@ -13,7 +13,7 @@ namespace yuragi {
 /// kMost_db; an empty text is none. The failure says what is allowed.
 Result<std::vector<double>, Failure> parse_site_octaves(std::string_view text);
 
-/// The same as a text: "+1.2 -0.4 ...".
+/// The reverse: "+1.2 -0.4 ...".
 std::string site_octaves_text(std::span<const double> octaves_db);
 
 }  // namespace yuragi

@@ -4,8 +4,7 @@
 
 namespace yuragi {
 
-/// Writes `text` to standard output at once, so that whoever reads it there need not wait for more. Throws
-/// FailureError (kCannotCreate) where that is not possible: a full disk, say.
+/// Writes `text` to standard output and flushes it. Throws FailureError (kCannotCreate) where that fails (a full disk).
 void write_at_once(std::string_view text);
 
 }  // namespace yuragi

@@ -11,12 +11,12 @@ namespace yuragi {
 
 /// [stream]: where clients connect, and what they may do.
 struct StreamConfig {
-  std::string listen;  ///< HOST:PORT, an address as parse_address() takes it
+  std::string listen;  ///< HOST:PORT, see parse_address()
   std::size_t max_clients = 0;
   ControlPermission control = ControlPermission::kNobody;  ///< who may switch scenes and control recordings
 };
 
-/// Of the values of stream_parameters(). The error names the key that it is about.
+/// From the values of stream_parameters(). An error names the key.
 Result<StreamConfig, ParameterError> stream_config_of(const ParameterValues& values);
 
 }  // namespace yuragi

@@ -6,19 +6,19 @@
 
 namespace yuragi {
 
-/// The opening hours at a moment, as far as a person wants to know.
+/// The state of the opening hours.
 struct OpeningNews {
   bool has_hours = false;
   bool is_open = true;
   std::string until;  ///< OpeningHours::until_text
 };
 
-/// Does the floor raise the mean by more than this share of what comes of it?
+/// Does the floor raise the mean by more than this share of the result?
 bool is_raised(const WindShapingReport& report, double share = 0.02);
 
-/// Everything that makes the wind of the scenes another than the real one, in one line: "site gain 1.80 (in 5 days 3 h
+/// What is shaping the wind at present, in one line: "site gain 1.80 (in 5 days 3 h
 /// median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; gusts 2.00 times the real ones; closed until 10:00".
-/// Empty where nothing does.
+/// Empty where nothing is.
 std::string shaping_text(const WindShapingReport& report, const WindShapingSettings& settings,
                          const OpeningNews& opening);
 

@@ -14,10 +14,10 @@ namespace {
 constexpr const char* kTimesKey = "seconds_at_each_speed";
 constexpr const char* kOctavesKnownKey = "seconds_of_each_octave_of_gusts";
 constexpr const char* kOctavesKey = "decibels_of_each_octave_of_gusts";
-/// Many times what a file of ours holds: what is longer is none.
+/// Many times the size of a valid file: a larger one is refused.
 constexpr std::streamsize kLongestSiteFile = 64 * 1024;
 
-/// An empty message where all went well.
+/// The failure has an empty text where there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
     OutputFile output(file, true);
@@ -36,7 +36,7 @@ Failure write_site_file(const std::filesystem::path& file, const SiteMemory& mem
   }
 }
 
-/// The numbers of a key, none where it is not there; false where it holds anything else.
+/// The numbers of a key, none where it is missing; false where it has another type.
 bool read_numbers(const nlohmann::json& json, const char* key, std::vector<double>& numbers) {
   if (!json.contains(key)) return true;
   const nlohmann::json& row = json[key];
@@ -69,7 +69,7 @@ Result<SiteMemory, Failure> SiteFile::read() const {
 }
 
 void SiteFile::save(SiteMemory memory) {
-  // Where there is no thread to be had, wait() writes.
+  // Where no thread can be created, wait() writes the file.
   writing_ = std::async(std::launch::async | std::launch::deferred, write_site_file, file_, std::move(memory));
 }
 

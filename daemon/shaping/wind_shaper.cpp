@@ -10,11 +10,11 @@
 namespace yuragi {
 namespace {
 
-/// The clock on the wall is asked so often, and the log is told no sooner.
+/// The interval at which opening hours are checked and changes are logged.
 constexpr auto kLookAtHoursEvery = std::chrono::seconds(1);
 constexpr auto kSaveSiteEvery = std::chrono::hours(1);
 
-// What is news begins well above where it ends, so that the log is not told of every gust.
+// Hysteresis: an effect is logged as begun well above where it is logged as ended, so that not every gust is logged.
 constexpr double kRaisedBegins = 0.10;
 constexpr double kRaisedEnds = 0.02;
 constexpr double kCeilingBegins = 0.02;
@@ -37,7 +37,7 @@ WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> no
 WindShaper::~WindShaper() {
   if (!site_file_) return;
   save_site();
-  tell_of_site_file();
+  log_site_file();
 }
 
 void WindShaper::keep_site_file(std::shared_ptr<SiteSpectrum> gusts) {
@@ -116,7 +116,7 @@ void WindShaper::log_changes() {
   }
 }
 
-/// A storm is one piece of news, however many gusts it has.
+/// A storm is logged once, however many gusts it has.
 void WindShaper::log_ceiling(const WindShapingReport& report, MonoTime now) {
   if (report.ceiling_gain < 1.0 - kCeilingBegins) {
     held_back_ = now;
@@ -132,7 +132,7 @@ void WindShaper::log_ceiling(const WindShapingReport& report, MonoTime now) {
 }
 
 void WindShaper::save_site() {
-  tell_of_site_file();
+  log_site_file();
   const auto times_s = shaping_.memory().times_s();
   SiteMemory memory{.times_s = {times_s.begin(), times_s.end()}, .octaves_known_s = {}, .octaves_db = {}};
   if (gusts_) {
@@ -142,8 +142,8 @@ void WindShaper::save_site() {
   site_file_->save(std::move(memory));
 }
 
-/// What came of the last time that it was written.
-void WindShaper::tell_of_site_file() {
+/// Logs a failure of the last write.
+void WindShaper::log_site_file() {
   if (const Failure failure = site_file_->wait(); !failure.message.empty()) {
     spdlog::warn("shaping: the site's wind could not be saved: {}", failure.message);
   }

@@ -13,8 +13,8 @@
 
 namespace yuragi {
 
-/// WindShaping as an installation has it: with opening hours, a memory of the site that outlives a restart, and a line
-/// in the log where something begins and where it ends. Belongs to the I/O thread.
+/// WindShaping with opening hours, a site file that keeps what was learnt over a restart, and a log line where an
+/// effect begins or ends. Belongs to the I/O thread.
 class WindShaper {
  public:
   /// `noise`: of the gusts, as the estimator has it.
@@ -23,17 +23,16 @@ class WindShaper {
   WindShaper(const WindShaper&) = delete;
   WindShaper& operator=(const WindShaper&) = delete;
 
-  /// Takes up what [shaping] site_file remembers, and keeps it there from now on, once an hour and at the end. Before
-  /// the first shape(). Nothing happens where there is no such file to be, or where a sensor plays a recording: what
-  /// it says is not of this site, or not of now.
-  /// `gusts`: what is known of them, kept with it; none: not kept.
+  /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. To be called before the first
+  /// shape(). Does nothing where no file is configured, or where a sensor plays a recording, which may be of another
+  /// site. `gusts`: the spectrum that is kept in the file too; null: not kept.
   void keep_site_file(std::shared_ptr<SiteSpectrum> gusts = {});
 
-  /// Makes of the real wind the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
-  /// `is_any_live`: a sensor speaks. Where none does, but a recording is played, nothing is learnt of the site.
+  /// Changes the real wind into the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
+  /// `is_any_live`: a sensor is live. Otherwise (the fall-back recording plays) nothing is learnt of the site.
   void shape(DrivingWind& wind, UtcTime utc, bool is_any_live);
 
-  /// What is at work, as of the last shape().
+  /// The effects at present, as of the last shape().
   wire::Shaping status() const;
 
  private:
@@ -41,25 +40,25 @@ class WindShaper {
   void log_changes();
   void log_ceiling(const WindShapingReport& report, MonoTime now);
   void save_site();
-  void tell_of_site_file();
+  void log_site_file();
   OpeningNews opening() const;
 
   WindShaping shaping_;
   OpeningHours hours_;
   std::optional<SiteFile> site_file_;
   std::shared_ptr<SiteSpectrum> gusts_;
-  std::filesystem::path site_path_;  ///< where the file is to be; empty: nowhere
+  std::filesystem::path site_path_;  ///< of the site file; empty: none
 
   bool is_open_ = true;
   UtcTime utc_{};
   MonoTime looked_{}, saved_{};
   bool has_looked_ = false;
 
-  // What the log was told last.
+  // As last logged.
   bool logged_open_ = true, logged_raised_ = false, logged_ceiling_ = false;
   double logged_site_gain_ = 1.0;
-  double strongest_m_s_ = 0.0;  ///< that the ceiling held back since it began
-  MonoTime held_back_{};        ///< when it last did
+  double strongest_m_s_ = 0.0;  ///< largest speed that the ceiling has reduced since it began to
+  MonoTime held_back_{};        ///< when the ceiling last reduced a speed
 };
 
 }  // namespace yuragi

@@ -55,7 +55,7 @@ bool ClientQueue::offer_trace(SharedBytes trace) {
 
 std::span<const std::uint8_t> ClientQueue::to_write(MonoTime now) {
   if (!in_flight_) {
-    // Sensors and traces go before frames: they are small and rare, and frames never end.
+    // Sensors and traces take precedence over frames: they are small and rare, while frames are always waiting.
     if (!setup_.empty()) {
       in_flight_ = std::move(setup_.front());
       setup_.pop_front();
@@ -81,7 +81,7 @@ void ClientQueue::written(std::size_t bytes, MonoTime now) {
   in_flight_written_ += bytes;
   if (in_flight_written_ < in_flight_->size()) return;
 
-  // The whole message is out.
+  // The whole message has been written.
   if (in_flight_is_frame_) ++frames_sent_;
   in_flight_is_frame_ = false;
   in_flight_written_ = 0;

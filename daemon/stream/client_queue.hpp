@@ -17,51 +17,51 @@ struct ClientLimits {
   Nanoseconds stuck_after = std::chrono::seconds(5);
 };
 
-/// Why a client has to go, by the clock.
+/// The time limit that a client has exceeded.
 enum class Overdue : std::uint8_t {
-  kNeverSubscribed,  ///< connected, and did not say what it wants
-  kStuck,            ///< takes nothing of what is being written to it
+  kNeverSubscribed,  ///< connected, but did not subscribe
+  kStuck,            ///< reads nothing of what is being written to it
 };
 std::string_view name_of(Overdue why);
 
-/// What one client is sent, in which order, and when it has to go: one message in flight; behind it at most one frame
-/// and one state of the sensors, each replaced by a newer one, and a bounded number of raw traces, which are not. Pure:
-/// it knows no socket, and time is a parameter.
+/// The messages to one client, their order, and its time limits. One message is in flight; behind it wait at most one
+/// frame and one state of the sensors, each replaced by a newer one, and a bounded number of raw traces, which are
+/// never replaced. Pure: it has no socket, and time is a parameter.
 ///
-/// The socket's side of it: write what to_write() says, tell written() how much of that the socket took, ask again.
+/// The caller writes to_write() to its socket, passes the number of bytes written to written(), and repeats.
 /// Thread-safe: no.
 class ClientQueue {
  public:
-  /// A client that connected at `now` and is to be greeted with `hello`.
+  /// For a client that connected at `now`; `hello` is the first message.
   ClientQueue(const ClientLimits& limits, SharedBytes hello, MonoTime now);
 
-  /// The client's wish. What is not null is sent, in this order: scenes, then the newest of the sensors and frames.
+  /// The client subscribes. Sends those that are not null, in this order: scenes, the newest sensors, the newest frame.
   void subscribe(bool poses, bool sensors, SharedBytes scenes, SharedBytes newest_frame, SharedBytes newest_sensors);
   bool is_subscribed() const noexcept { return subscribed_; }
 
-  /// Newest wins: a frame that waits is replaced, the one in flight is finished. Ignored where the client did not ask.
+  /// Replaces a waiting message of the same kind; one in flight is finished. Ignored unless subscribed to.
   void offer_frame(SharedBytes frame);
   void offer_sensors(SharedBytes sensors);
 
-  /// An answer to what the client asked: sent before anything newer, and never replaced. False where as many wait as
-  /// may: the client asks faster than it reads.
+  /// A reply to the client's request: sent before frames and sensors, and never replaced. False where too many wait:
+  /// the client sends requests faster than it reads.
   bool offer_reply(SharedBytes reply);
 
-  /// A raw trace: sent in its order, and never replaced. False where as many wait as may: it is passed over.
+  /// A raw trace: sent in order, never replaced. False where too many wait: it is dropped.
   bool offer_trace(SharedBytes trace);
 
   /// The rest of the message in flight, or else the next message, which is in flight from `now`. Empty: nothing to
-  /// send. Valid until written() has told of all of it.
+  /// send. Valid until written() has been called for all of it.
   std::span<const std::uint8_t> to_write(MonoTime now);
 
-  /// The socket took the first `bytes` of to_write(), at `now`.
+  /// The socket accepted the first `bytes` of to_write(), at `now`.
   void written(std::size_t bytes, MonoTime now);
 
-  /// Does the client have to go?
+  /// The limit that the client has exceeded, if any: it should be disconnected.
   std::optional<Overdue> overdue(MonoTime now) const;
 
   std::uint64_t frames_sent() const noexcept { return frames_sent_; }
-  std::uint64_t frames_skipped() const noexcept { return frames_skipped_; }  ///< replaced while they waited
+  std::uint64_t frames_skipped() const noexcept { return frames_skipped_; }  ///< replaced while waiting
 
  private:
   ClientLimits limits_;
@@ -78,7 +78,7 @@ class ClientQueue {
   SharedBytes in_flight_;
   bool in_flight_is_frame_ = false;
   std::size_t in_flight_written_ = 0;
-  MonoTime moved_;  // when the message in flight began, or last went on
+  MonoTime moved_;  // when the message in flight began, or last progressed
 
   std::uint64_t frames_sent_ = 0;
   std::uint64_t frames_skipped_ = 0;

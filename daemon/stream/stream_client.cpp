@@ -58,7 +58,7 @@ class StreamClient::Connection {
     asio::async_connect(socket_, endpoints,
                         [&error](const error_code& result, const tcp::endpoint&) { error = result; });
     if (run_for(timeout)) return error;
-    close();  // cancelling alone would let it try the next of the addresses
+    close();  // cancelling alone would make it try the next address
     io_.run();
     return asio::error::timed_out;
   }
@@ -72,7 +72,7 @@ class StreamClient::Connection {
   Result<wire::Message, StreamEnd> receive(Nanoseconds timeout) {
     const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (true) {
-      // What is here already goes first; kinds of a newer server are passed over.
+      // Messages received already come first; those of unknown kinds are skipped.
       while (auto message = reader_.next()) {
         if (*message) return std::move(**message);
         if (message->error() == wire::WireError::kUnknown) continue;
@@ -81,7 +81,7 @@ class StreamClient::Connection {
       }
       if (!socket_.is_open()) return StreamEnd::kClosed;
 
-      // More bytes, in what is left of the time.
+      // Read more, within the rest of the time.
       error_code error;
       std::size_t count = 0;
       socket_.async_read_some(asio::buffer(chunk_), [&](const error_code& result, std::size_t read) {
@@ -92,7 +92,7 @@ class StreamClient::Connection {
       if (!in_time) {
         error_code ignored;
         socket_.cancel(ignored);
-        io_.run();  // the handler may yet bring bytes
+        io_.run();  // the handler may still deliver bytes
       }
       reader_.feed(std::span(chunk_).first(count));
       if (!in_time && count == 0) return StreamEnd::kTimeout;
@@ -101,7 +101,7 @@ class StreamClient::Connection {
   }
 
  private:
-  /// Runs the one operation that was begun. False where it is not done in time: then the caller has to end it.
+  /// Runs the operation that was started. False where it does not complete in time: the caller has to end it.
   bool run_for(Nanoseconds timeout) {
     io_.restart();
     io_.run_for(timeout);

@@ -14,17 +14,17 @@ namespace yuragi {
 
 /// Why there is no message.
 enum class StreamEnd : std::uint8_t {
-  kTimeout,  ///< none came in time; the connection is well, and one may come yet
-  kClosed,   ///< the server closed the connection, or it broke
-  kInvalid,  ///< the server sent what is no message; the connection is closed
+  kTimeout,  ///< none in time; the connection is still open
+  kClosed,   ///< the server closed the connection, or it failed
+  kInvalid,  ///< the server sent an invalid message; the connection is closed
 };
 std::string_view name_of(StreamEnd end);
 
-/// Why the daemon at `address` does not serve this client, where `message` is a greeting that says so: it refuses the
-/// connection, or speaks another protocol. Nothing for any other message.
+/// The failure where `message` is a Hello by which the daemon at `address` refuses the connection or shows that it
+/// speaks another protocol version; nothing for any other message.
 std::optional<Failure> refusal_in(const wire::Message& message, std::string_view address);
 
-/// What a person is told of the end of a connection to the daemon at `address`.
+/// The failure for a connection to the daemon at `address` that ended.
 Failure connection_lost(std::string_view address, StreamEnd end);
 
 [[noreturn]] inline void throw_exception_from_error(StreamEnd end, const boost::source_location&) {
@@ -39,21 +39,20 @@ Failure connection_lost(std::string_view address, StreamEnd end);
 /// Thread-safe: no.
 class StreamClient {
  public:
-  /// Connects to `address` ("HOST:PORT") within `timeout`, or says why not. A name is looked up first, in the system's
-  /// time.
+  /// Connects to `address` ("HOST:PORT") within `timeout`. Looking up a host name comes first and may take longer.
   static Result<StreamClient, Failure> connect(std::string_view address, Nanoseconds timeout);
 
   StreamClient(StreamClient&&) noexcept;
   StreamClient& operator=(StreamClient&&) noexcept;
   ~StreamClient();
 
-  /// Says what is wanted, once. False where the connection is closed.
+  /// Subscribes; once. False where the connection is closed.
   bool subscribe(const wire::Subscribe& request);
 
-  /// Asks to show or hide a scene, after subscribe(). False where the connection is closed.
+  /// Sends a request, after subscribe(). False where the connection is closed.
   bool send(const wire::Control& request);
 
-  /// The next message, which is waited for no longer than `timeout`. Messages of kinds unknown here are passed over.
+  /// Waits at most `timeout` for the next message. Messages of unknown kinds are skipped.
   Result<wire::Message, StreamEnd> receive(Nanoseconds timeout);
 
  private:

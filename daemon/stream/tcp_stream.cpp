@@ -33,14 +33,14 @@ SharedBytes share(wire::Bytes bytes) {
   return std::make_shared<const wire::Bytes>(std::move(bytes));
 }
 
-/// Loopback, also where an IPv6 socket took an IPv4 client.
+/// Loopback, also of an IPv4 client on an IPv6 socket.
 bool is_of_this_machine(const asio::ip::address& address) {
   if (address.is_v6() && address.to_v6().is_v4_mapped())
     return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
   return address.is_loopback();
 }
 
-/// Opens the listening socket, or says what to do instead.
+/// Opens the listening socket. Throws with what to do.
 tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
   const auto address = parse_address(listen);
   if (!address) throw FailureError({"cannot listen: " + address.error().message, FailureKind::kUnavailable});
@@ -59,7 +59,7 @@ tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
   }
 }
 
-/// What all connections are served from.
+/// The messages and settings that all connections share.
 struct Feed {
   TcpStreamSettings settings;
   SharedBytes hello;
@@ -106,30 +106,30 @@ class Connection : public std::enable_shared_from_this<Connection> {
     return is_open() && wants_traces_ && (traced_sensor_.empty() || traced_sensor_ == sensor);
   }
 
-  /// `bytes` are those of `trace`, which most clients get as they are.
+  /// `bytes`: the encoded `trace`, as most clients get it.
   void offer_trace(const wire::RawTrace& trace, const SharedBytes& bytes) {
     auto& lost = lost_traces_[trace.sensor];
     SharedBytes own = bytes;
     if (lost > 0) {
-      wire::RawTrace told = trace;
-      told.lost += lost;
-      own = share(wire::encode(told));
+      wire::RawTrace sent = trace;
+      sent.lost += lost;
+      own = share(wire::encode(sent));
     }
     lost = queue_.offer_trace(std::move(own)) ? 0 : lost + trace.lost + 1;
     write();
   }
 
-  /// What the kernel holds back is old by the time it is read: keep that short.
+  /// Data in the kernel's buffer is old by the time it is read: keep it small.
   void limit_send_buffer() {
     error_code ignored;
     socket_.set_option(asio::socket_base::send_buffer_size(static_cast<int>(feed_->send_buffer_bytes)), ignored);
   }
 
-  /// Lets the client go if its time is over. The answer says why.
+  /// Disconnects the client if it has exceeded a time limit, which is returned.
   std::optional<Overdue> check(MonoTime now) {
     const auto overdue = is_open() ? queue_.overdue(now) : std::nullopt;
     if (overdue) {
-      // It will not read what is still on the way to it: have the kernel forget that too.
+      // It will not read what the kernel still holds for it: discard that, too.
       error_code ignored;
       socket_.set_option(asio::socket_base::linger(true, 0), ignored);
       end(name_of(*overdue));
@@ -146,7 +146,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
  private:
-  /// Writes on, unless a write is under way already.
+  /// Starts the next write, unless one is in progress.
   void write() {
     if (is_writing_ || !is_open()) return;
     const auto bytes = queue_.to_write(feed_->settings.now());
@@ -178,7 +178,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     });
   }
 
-  /// A client may send its subscription, once, and after that its wishes to show or hide scenes.
+  /// A client may send one subscription, and after that Controls.
   void take_message() {
     const auto message = wire::decode(body_);
     if (!message) return end("its message was refused: " + std::string(name_of(message.error())));
@@ -196,7 +196,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     traced_sensor_ = wish->raw_sensor;
     queue_.subscribe(wish->poses, wish->sensors, feed_->scenes, feed_->newest_frame, feed_->newest_sensors);
     write();
-    read_prefix();  // tells when it closes the connection
+    read_prefix();  // notices when it closes the connection
   }
 
   void take_control(const wire::Control& wish) {
@@ -204,7 +204,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const wire::ControlReply reply =
         answer ? answer(wish, is_local_)
                : wire::ControlReply{.done = false, .message = "this daemon has no scenes", .scenes = {}};
-    const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kTell;
+    const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kReport;
     if (!wish.scene.empty() || changes_players) spdlog::info("client {} {}: {}", peer_, client_name_, reply.message);
     if (!queue_.offer_reply(share(wire::encode(reply)))) return end("it sends requests faster than it reads replies");
     write();
@@ -218,7 +218,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool is_local_ = false;
   bool wants_traces_ = false;
   std::string traced_sensor_;                         // empty: all of them
-  std::map<std::string, std::uint64_t> lost_traces_;  // of each sensor, since the last one that found room
+  std::map<std::string, std::uint64_t> lost_traces_;  // of each sensor, since the last trace that was queued
   bool is_writing_ = false;
   std::array<std::uint8_t, wire::kSizePrefixBytes> prefix_{};
   wire::Bytes body_;
@@ -233,7 +233,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
       : acceptor_(open_acceptor(io, listen)), check_timer_(io), accept_timer_(io) {
     feed_->hello = share(wire::encode(settings.hello));
     feed_->scenes = share(wire::encode(settings.scenes));
-    settings.scenes.scenes.clear();  // their bytes are all that is needed from here on
+    settings.scenes.scenes.clear();  // only the encoded bytes are needed from here on
     feed_->settings = std::move(settings);
     endpoint_ = text_of(acceptor_.local_endpoint());
   }
@@ -252,7 +252,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   }
 
   void publish(SharedBytes frame) {
-    // Room for two frames in the kernel: one on its way, one ready to follow.
+    // Room for two frames in the kernel: one in flight, one ready to follow.
     if (2 * frame->size() > feed_->send_buffer_bytes) {
       feed_->send_buffer_bytes = 2 * frame->size();
       for (const auto& connection : connections_) connection->limit_send_buffer();
@@ -299,7 +299,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     });
   }
 
-  /// Out of file descriptors or memory, usually: those who are here stay, and newcomers wait until there is room.
+  /// Usually out of file descriptors or memory: present clients stay, and accepting is tried again later.
   void accept_later(const error_code& error) {
     if (std::exchange(accept_error_, error) != error) spdlog::warn("cannot accept a client: {}", error.message());
     accept_timer_.expires_after(kAcceptBackOff);
@@ -315,7 +315,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     connections_.back()->start();
   }
 
-  /// A greeting that says why, in one write that a fresh socket always has room for, and an end.
+  /// Sends a Hello that says why, in one write that fits into an empty socket buffer, and closes.
   void refuse(tcp::socket socket) const {
     error_code ignored;
     const auto peer = socket.remote_endpoint(ignored);
@@ -362,7 +362,7 @@ TcpStream::~TcpStream() {
   try {
     server_->close();
   } catch (...) {
-    // Nobody to tell. The sockets close with the server, when the last handler lets go of it.
+    // A destructor cannot report errors. The sockets are closed with the last reference to the server.
   }
 }
 

@@ -13,26 +13,27 @@ class io_context;
 namespace yuragi {
 
 struct TcpStreamSettings {
-  wire::Hello hello;             ///< what every client is greeted with
-  wire::Scenes scenes;           ///< what those who ask for poses get first
-  std::size_t max_clients = 32;  ///< more are told so, and let go
-  /// Answers a client's wish to show or hide a scene, or to control a recording; `is_local`: it asks from this machine.
-  /// None: nothing is taken.
-  std::function<wire::ControlReply(const wire::Control& wish, bool is_local)> on_control = {};
+  wire::Hello hello;             ///< the first message to every client
+  wire::Scenes scenes;           ///< the second message to clients that subscribe to poses
+  std::size_t max_clients = 32;  ///< further ones are refused with a Hello that says so
+  /// Carries out a client's request about scenes or recordings and returns the reply; `is_local`: the client is on this
+  /// machine. Empty: every request is refused.
+  std::function<wire::ControlReply(const wire::Control& control, bool is_local)> on_control = {};
   ClientLimits limits = {};
-  Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are looked at
-  std::function<MonoTime()> now = steady_now;                ///< what the limits are measured with
+  Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are checked
+  std::function<MonoTime()> now = steady_now;                ///< the clock of the limits
 
   static MonoTime steady_now() { return std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()); }
 };
 
 /// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
 ///
-/// Each client is greeted, says once what it wants, and gets the newest of it from then on (ClientQueue). After that it
-/// may send Controls, each of which is answered. One that sends anything else, never says what it wants, or stops
-/// reading is let go and logged. Send buffers are kept short, so that what a slow client sees is new.
+/// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue). After
+/// that it may send Controls, each of which gets a reply. A client that sends anything else, does not subscribe, or
+/// stops reading is disconnected, and that is logged. Send buffers are kept small, so that a slow client gets new
+/// frames.
 ///
-/// Everything happens in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
+/// All work is done in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class TcpStream final : public Transport {
  public:
   /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) where
@@ -48,14 +49,14 @@ class TcpStream final : public Transport {
   void publish_sensors(SharedBytes sensors) override;
   std::size_t client_count() const override;
 
-  /// Does a client want to see the messages to and from this sensor's device?
+  /// Has any client subscribed to the raw messages of this sensor's device?
   bool wants_trace(std::string_view sensor) const;
-  /// Sends one to those who do. A client that reads too slowly misses some, and is told how many.
+  /// Sends one to these clients. A client that reads too slowly misses some; the next one counts them.
   void publish_trace(const wire::RawTrace& trace);
 
   void close() override;
 
-  /// Clients let go because they stopped reading.
+  /// How many clients were disconnected because they stopped reading.
   std::uint64_t stuck_clients() const;
 
  private:

@@ -8,10 +8,10 @@
 
 namespace yuragi {
 
-/// A finished message, shared by all clients that it is on the way to. Never changed once it is handed over.
+/// An encoded message, shared by all clients that it is sent to; immutable.
 using SharedBytes = std::shared_ptr<const wire::Bytes>;
 
-/// A way out of the daemon for what it computes: one file each, beside this one.
+/// An output of the daemon for frames and sensors.
 ///
 /// All calls come from the thread that runs the I/O context. None of them waits for a client.
 class Transport {
@@ -21,10 +21,10 @@ class Transport {
   Transport& operator=(const Transport&) = delete;
   virtual ~Transport() = default;
 
-  /// For the log: what it speaks, and where.
+  /// For the log: protocol and address.
   virtual std::string name() const = 0;
 
-  /// The newest frame (an encoded wire::Frame). Clients that are slow miss some, never the last one.
+  /// The newest frame (an encoded wire::Frame). Slow clients miss some, but never the last one.
   virtual void publish(SharedBytes frame) = 0;
 
   /// The newest state of the sensors (an encoded wire::Sensors).
@@ -33,7 +33,7 @@ class Transport {
   /// Clients connected now.
   virtual std::size_t client_count() const = 0;
 
-  /// Ends all connections and takes no more. A second call does nothing.
+  /// Closes all connections and accepts no more. A second call does nothing.
   virtual void close() = 0;
 };
 

@@ -46,7 +46,7 @@ class AudioInput {
  public:
   virtual ~AudioInput() = default;
 
-  /// The devices that were there when the process asked first: PortAudio's list is frozen from then on.
+  /// The devices that were there at the first call: PortAudio's list is frozen from then on.
   virtual Result<std::vector<AudioDevice>, Failure> list() = 0;
 
   /// Opens and starts; what was opened. `now` is the clock, called on the sound system's thread: realtime-safe. The

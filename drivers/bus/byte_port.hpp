@@ -11,11 +11,11 @@
 
 namespace yuragi {
 
-/// Where bytes come from, one after the other.
+/// The kinds of byte ports.
 enum class BytePortKind : std::uint8_t {
   kSerial,     ///< a serial port
-  kTcpClient,  ///< a server in the network that we connect to
-  kUdp,        ///< datagrams that come to one of our ports
+  kTcpClient,  ///< a client of a server in the network
+  kUdp,        ///< datagrams to a local port
   kFile,       ///< a file or named pipe
 };
 
@@ -49,9 +49,9 @@ std::string describe(const BytePortAddress& address);
 
 enum class ByteStatus : std::uint8_t {
   kBytes,        ///< some have come
-  kForeign,      ///< a datagram of another sender than the one that was asked for; it is gone
+  kForeign,      ///< a datagram of another sender than configured, discarded
   kSilence,      ///< none until the time-out
-  kEnd,          ///< of a file that is played; nothing more will come
+  kEnd,          ///< the end of a file that is played
   kInterrupted,  ///< interrupt() was called
   kLost,         ///< the port is gone
 };
@@ -59,7 +59,7 @@ enum class ByteStatus : std::uint8_t {
 struct ByteArrival {
   ByteStatus status = ByteStatus::kSilence;
   std::size_t size = 0;            ///< for kBytes
-  bool is_whole_datagram = false;  ///< UDP: what has come ends here
+  bool is_whole_datagram = false;  ///< UDP: these bytes end a datagram
 };
 
 /// A datagram that is longer than what it is read into loses its end; this is enough for each.

@@ -1,6 +1,7 @@
 // hidapi 0.13, on Linux's hidraw. What it does not do is done here: its enumeration and its opening share one global
 // state without a lock; it does not report where a device is plugged in, so that a device that was away cannot be
-// distinguished from its twin; it answers -1 whether a device refuses or is gone; and nothing can wake a read.
+// distinguished from its twin; it returns -1 both when a device refuses and when it is gone; and nothing can wake a
+// read.
 #include "drivers/bus/hid_device.hpp"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ const char* const kHidPermissionRemedy =
 namespace {
 
 using HidSteadyClock = std::chrono::steady_clock;
-constexpr Nanoseconds kSlice = std::chrono::milliseconds(50);      // a read looks up so often
+constexpr Nanoseconds kSlice = std::chrono::milliseconds(50);      // how often a read checks for interruption
 constexpr Nanoseconds kSpinGuard = std::chrono::milliseconds(10);  // where the system reports "ready" and has nothing
 
 /// hidapi's one global state, set up once and taken down at the end of the process.

@@ -12,7 +12,7 @@
 
 namespace yuragi {
 
-/// The numbers that a USB device is known by.
+/// Vendor and product id of a USB device.
 struct HidId {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
@@ -23,7 +23,7 @@ struct HidId {
 /// "0fde:ca01", as lsusb writes it.
 std::string describe(const HidId& id);
 
-/// Which of several devices alike; what is empty does not matter.
+/// Selects one of several equal devices; empty fields match any.
 struct HidPlace {
   std::string serial;
   std::string path;  ///< a USB port ("1-1.2"), which stays the same while the cable stays in its socket; or a file: a
@@ -34,7 +34,7 @@ struct HidPlace {
 struct HidInfo {
   HidId id;
   std::string node;    ///< "/dev/hidraw0", for as long as it is plugged in
-  std::string port;    ///< "1-1.2"; empty if it does not hang on USB
+  std::string port;    ///< "1-1.2"; empty if it is not on USB
   std::string serial;  ///< empty: it has none
   int interface = -1;  ///< of a USB device
 };
@@ -48,12 +48,12 @@ struct HidListing {
   std::string trouble;  ///< why it cannot be opened; empty: it can
 };
 
-/// What to do about a device node that may not be opened.
+/// What to do about a device node without permission.
 extern const char* const kHidPermissionRemedy;
 
 enum class HidStatus : std::uint8_t {
   kReport,
-  kSilence,      ///< nothing until the time-out; or, of a report that was asked for, no answer
+  kSilence,      ///< nothing until the time-out; of a requested report, no reply
   kInterrupted,  ///< interrupt() was called
   kLost,         ///< the device is gone, or cannot be used any more
 };
@@ -79,12 +79,12 @@ class HidDevice {
   /// The next input report, waiting for at most `timeout`; numbered reports begin with their number.
   virtual HidArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) = 0;
 
-  /// Sends an output report: its number (0 where the device has none), then its bytes. False: it did not go. Waits for
-  /// at most 5 s, the kernel's own limit, which nothing can shorten.
+  /// Sends an output report: its number (0 where the device has none), then its bytes. False: it failed. Waits for at
+  /// most 5 s, the kernel's own fixed limit.
   virtual bool write(std::span<const std::uint8_t> report) = 0;
 
-  /// Asks for input report `id`, which begins with that number. A device that refuses or does not answer (within the
-  /// kernel's 5 s) is silent.
+  /// Requests input report `id`, which begins with that number. kSilence where the device refuses or does not reply
+  /// (within the kernel's 5 s).
   virtual HidArrival get_input_report(std::uint8_t id, std::span<std::uint8_t> buffer) = 0;
 
   /// Ends a read() that waits, within 50 ms, and makes all later work end at once.
@@ -94,7 +94,7 @@ class HidDevice {
 /// The real one, by hidapi (hidraw). Thread-safe: any number of devices may live on any number of threads.
 std::unique_ptr<HidDevice> make_hid_device();
 
-/// What is plugged in that has one of these ids. Opens each for a moment, to see whether it may.
+/// The plugged-in devices with one of these ids. Opens each briefly, to check the permission.
 std::vector<HidListing> list_hid_devices(std::span<const HidId> ids);
 
 }  // namespace yuragi

@@ -12,10 +12,10 @@ namespace yuragi {
 namespace {
 
 using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
-using LookupAnswer = Result<Endpoints, Failure>;
+using LookupResult = Result<Endpoints, Failure>;
 
-/// Asks the system. Blocks.
-LookupAnswer ask_system(const std::string& host, std::uint16_t port) {
+/// The system's look-up. Blocks.
+LookupResult resolve_host(const std::string& host, std::uint16_t port) {
   boost::asio::io_context context;
   boost::asio::ip::tcp::resolver resolver(context);
   boost::system::error_code error;
@@ -37,7 +37,7 @@ struct HostLookup::State {
   std::condition_variable changed;
   bool is_under_way = false;
   bool is_interrupted = false;
-  std::optional<LookupAnswer> answer;
+  std::optional<LookupResult> result;
 };
 
 HostLookup::HostLookup(std::string host, std::uint16_t port) : state_(std::make_shared<State>()) {
@@ -45,7 +45,7 @@ HostLookup::HostLookup(std::string host, std::uint16_t port) : state_(std::make_
   state_->port = port;
 }
 
-LookupAnswer HostLookup::find(Nanoseconds timeout) {
+LookupResult HostLookup::find(Nanoseconds timeout) {
   // An address needs no name server.
   boost::system::error_code no_address;
   const auto address = boost::asio::ip::make_address(state_->host, no_address);
@@ -53,12 +53,12 @@ LookupAnswer HostLookup::find(Nanoseconds timeout) {
 
   std::unique_lock lock(state_->mutex);
   if (state_->is_interrupted) return Failure{"interrupted"};
-  if (!state_->is_under_way && !state_->answer) {
+  if (!state_->is_under_way && !state_->result) {
     try {
       std::thread([state = state_] {
-        LookupAnswer answer = ask_system(state->host, state->port);
+        LookupResult result = resolve_host(state->host, state->port);
         const std::lock_guard guard(state->mutex);
-        state->answer = std::move(answer);
+        state->result = std::move(result);
         state->is_under_way = false;
         state->changed.notify_all();
       }).detach();
@@ -68,15 +68,15 @@ LookupAnswer HostLookup::find(Nanoseconds timeout) {
     }
   }
 
-  state_->changed.wait_for(lock, timeout, [this] { return state_->answer || state_->is_interrupted; });
+  state_->changed.wait_for(lock, timeout, [this] { return state_->result || state_->is_interrupted; });
   if (state_->is_interrupted) return Failure{"interrupted"};
-  if (!state_->answer) {
+  if (!state_->result) {
     return Failure{"no name server tells the address of \"" + state_->host +
                    "\": check the network; an address in place of the name needs none"};
   }
-  LookupAnswer answer = std::move(*state_->answer);
-  state_->answer.reset();
-  return answer;
+  LookupResult result = std::move(*state_->result);
+  state_->result.reset();
+  return result;
 }
 
 bool HostLookup::is_under_way() const {

@@ -12,22 +12,22 @@
 
 namespace yuragi {
 
-/// The addresses of a host name. The system's own look-up cannot be ended, and may wait for a name server for a
-/// long time: here it has a thread to itself, which is abandoned where it takes too long.
+/// Looks up the addresses of a host name. The system's own look-up cannot be interrupted, and may wait for a name
+/// server for a long time: here it runs on a thread of its own, which is abandoned when it takes too long.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class HostLookup {
  public:
   HostLookup(std::string host, std::uint16_t port);
 
-  /// The addresses, best first, at least one. After a failure it can be called again: a look-up that is still under
-  /// way is waited for, not begun anew.
+  /// The addresses, best first, at least one. After a failure it can be called again: a look-up that is still in
+  /// progress is continued.
   Result<std::vector<boost::asio::ip::tcp::endpoint>, Failure> find(Nanoseconds timeout);
 
-  /// Has a look-up been begun that has not ended? After find() failed: it took too long, and can be waited for again.
+  /// Is a look-up in progress? After a failed find(): it took too long, and find() can wait for it again.
   bool is_under_way() const;
 
-  /// Ends a find() that waits, and all later ones.
+  /// Ends a waiting find(), and all later ones.
   void interrupt() noexcept;
 
  private:

@@ -34,7 +34,7 @@ WaitEnd Interruption::wait(int descriptor, WaitFor what, Nanoseconds timeout) co
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(rest);
   const timespec time = {whole.count(), (rest - whole).count()};
 
-  // A signal ends the wait early, which is as good as a time-out: who waits comes again.
+  // A signal ends the wait early, which counts as a time-out: callers wait again.
   if (ppoll(waits.data(), waits.size(), &time, nullptr) <= 0) return WaitEnd::kTimeout;
   return waits[0].revents != 0 ? WaitEnd::kInterrupted : WaitEnd::kReady;
 }

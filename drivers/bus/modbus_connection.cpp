@@ -65,7 +65,7 @@ class LibmodbusConnection final : public ModbusConnection {
     Context context(is_tcp() ? modbus_new_tcp_pi(line_.host.c_str(), std::to_string(line_.port).c_str())
                              : modbus_new_rtu(line_.device.c_str(), line_.baud, line_.parity, 8, line_.stop_bits));
     if (!context) return Failure{explain(modbus_strerror(errno))};
-    // No byte time-out: a whole message has to be there within the response time-out, however it trickles.
+    // No byte time-out: a whole message has to be there within the response time-out, however slowly it arrives.
     modbus_set_byte_timeout(context.get(), 0, 0);
 
     if (is_tcp()) {
@@ -74,7 +74,7 @@ class LibmodbusConnection final : public ModbusConnection {
       modbus_set_socket(context.get(), *socket);
     } else {
       if (modbus_connect(context.get()) != 0) return Failure{explain(modbus_strerror(errno))};
-      // Two programs on one line would receive each other's answers.
+      // Two programs on one line would receive each other's replies.
       if (flock(modbus_get_socket(context.get()), LOCK_EX | LOCK_NB) != 0) {
         modbus_close(context.get());
         return Failure{"cannot open " + describe(line_) + ": another program reads it; end that one first"};

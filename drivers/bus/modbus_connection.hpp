@@ -30,7 +30,7 @@ struct ModbusLine {
 
 /// How long a device may take.
 struct ModbusPatience {
-  Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< from request to the end of the answer
+  Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< from request to the end of the reply
   Nanoseconds byte_timeout = std::chrono::milliseconds(50);  ///< RTU: a line quiet for so long has ended its message
 };
 
@@ -41,12 +41,12 @@ std::string describe(const ModbusLine& line);
 /// Serial Line V1.02, section 2.5.1.1); nothing over TCP.
 Nanoseconds frame_gap(const ModbusLine& line) noexcept;
 
-/// What came of waiting for an answer.
+/// The result of waiting for a reply.
 enum class BusStatus : std::uint8_t {
   kMessage,      ///< a message, not decoded yet
   kSilence,      ///< nothing until the response time-out
   kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
-  kGarbled,      ///< bytes that are no message; the line is no longer in step
+  kGarbled,      ///< bytes that are not a message; message boundaries are lost
   kInterrupted,  ///< the interruption was set
   kLost,         ///< the connection is gone
 };
@@ -71,17 +71,17 @@ class ModbusConnection {
   /// Errors while closing are ignored: the descriptor is gone.
   virtual void close() noexcept = 0;
 
-  /// Reads what the line brings until it has been quiet for the byte time-out, or chattering for the response time-out,
+  /// Reads from the line until it has been quiet for the byte time-out, or chattering for the response time-out,
   /// and returns how much of it is in `buffer` (the rest is dropped). Over TCP there is nothing to wait for: 0.
   virtual std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage> buffer, const ModbusPatience& patience,
                              const Interruption& interruption) = 0;
 
-  /// Sends a request and starts its response time-out. On a serial line, what came unasked is discarded first. False:
+  /// Sends a request and starts its response time-out. On a serial line, unrequested bytes are discarded first. False:
   /// the connection is gone.
   virtual bool send(const ModbusRequest& request, const ModbusPatience& patience) = 0;
 
   /// The next message since, waiting until the response time-out that send() began. Can be called again after a message
-  /// that turned out to be another one's.
+  /// that was another slave's.
   virtual BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) = 0;
 };
 

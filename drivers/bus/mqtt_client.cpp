@@ -55,7 +55,7 @@ class MosquittoClient final : public MqttClient {
     const auto endpoints = lookup_.find(wanted_.connect_timeout);
     if (!endpoints) return Failure{describe(wanted_) + ": " + endpoints.error().message};
 
-    // Of a name with several addresses each has its turn, until one answers. With TLS the name itself must be given,
+    // The addresses of a name are tried in turn, until one replies. With TLS the name itself must be given,
     // since the broker's certificate is for that.
     const std::string address = (*endpoints)[turn_ % endpoints->size()].address().to_string();
     auto connected = connect_to(wanted_.uses_tls ? wanted_.host : address);
@@ -97,7 +97,7 @@ class MosquittoClient final : public MqttClient {
   }
 
  private:
-  /// Connects, and waits until the broker has greeted us and agreed to each topic.
+  /// Connects, and waits until the broker has accepted the connection and each topic.
   Result<void, Failure> connect_to(const std::string& host) {
     if (const int error = begin_to_connect(host); error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
     const auto deadline = MqttClock::now() + wanted_.connect_timeout;
@@ -115,7 +115,7 @@ class MosquittoClient final : public MqttClient {
   }
 
   int begin_to_connect(const std::string& host) {
-    client_.reset(mosquitto_new(nullptr, true, this));  // a name of the library's choice: two of us may be there
+    client_.reset(mosquitto_new(nullptr, true, this));  // a random client id: there may be two of this program
     if (!client_) return errno == ENOMEM ? MOSQ_ERR_NOMEM : MOSQ_ERR_INVAL;
     mosquitto_connect_callback_set(client_.get(), &on_connect);
     mosquitto_subscribe_callback_set(client_.get(), &on_subscribe);
@@ -134,7 +134,7 @@ class MosquittoClient final : public MqttClient {
     return mosquitto_connect_async(client_.get(), host.c_str(), wanted_.port, static_cast<int>(keep_alive.count()));
   }
 
-  /// Waits for the connection for at most `timeout`, and does what there is to do.
+  /// Waits for the socket for at most `timeout`, and lets the library read and write.
   int turn(Nanoseconds timeout) {
     const int socket = mosquitto_socket(client_.get());
     if (socket < 0) return MOSQ_ERR_NO_CONN;
@@ -150,11 +150,11 @@ class MosquittoClient final : public MqttClient {
 
   static MosquittoClient& self_of(void* self) { return *static_cast<MosquittoClient*>(self); }
 
-  static void on_connect(mosquitto* client, void* self, int answer) {
+  static void on_connect(mosquitto* client, void* self, int reply) {
     MosquittoClient& me = self_of(self);
-    if (answer != 0) {
+    if (reply != 0) {
       me.refusal_ = fmt::format("{} refuses the connection ({}): check `user` and `password`", describe(me.wanted_),
-                                mosquitto_connack_string(answer));
+                                mosquitto_connack_string(reply));
       return;
     }
     for (const std::string& topic : me.wanted_.topics) {

@@ -14,13 +14,13 @@ namespace yuragi {
 struct MqttSubscription {
   std::string host;  ///< a name, an IPv4 or an IPv6 address
   std::uint16_t port = 1883;
-  std::string user;  ///< empty: it asks for none
+  std::string user;  ///< empty: none
   std::string password;
   bool uses_tls = false;
-  std::string ca_file;              ///< who vouches for the broker; empty: those that this system trusts
-  std::vector<std::string> topics;  ///< + stands for any one level, # for all that follow
+  std::string ca_file;              ///< certificates that the broker is checked with; empty: the system's
+  std::vector<std::string> topics;  ///< + matches one level, # all that follow
   Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that is silent for so long is pinged; >= 5 s
-  Nanoseconds connect_timeout = std::chrono::seconds(5);  ///< until it has agreed to everything
+  Nanoseconds connect_timeout = std::chrono::seconds(5);  ///< until all subscriptions are accepted
 };
 
 struct MqttMessage {
@@ -63,10 +63,10 @@ class MqttClient {
 /// The real one, by libmosquitto. Throws std::runtime_error where there is no memory or descriptor left for it.
 std::unique_ptr<MqttClient> make_mqtt_client(const MqttSubscription& subscription);
 
-/// Is it a topic that can be subscribed to?
+/// Is it a valid topic filter?
 bool is_mqtt_filter(const std::string& topic);
 
-/// Is `topic` one of those that `filter` stands for?
+/// Does `topic` match `filter`?
 bool mqtt_topic_matches(const std::string& topic, const std::string& filter);
 
 }  // namespace yuragi

@@ -1,5 +1,5 @@
 // liblo 0.31 takes messages apart; its server is of no use here. It would keep the messages of bundles that are meant
-// for later, as many as a stranger sends, and go down into bundles within bundles without end.
+// for later, without a limit, and follow nested bundles without a limit.
 #include "drivers/bus/osc_message.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct FreeOscMessage {
 };
 using LibloMessage = std::unique_ptr<std::remove_pointer_t<lo_message>, FreeOscMessage>;
 
-/// liblo points to where the argument stands in the datagram, which may be no place for a number of 8 bytes.
+/// liblo returns pointers into the datagram, which may be misaligned for a number of 8 bytes.
 template <class Number>
 double osc_number_at(const void* argument) {
   Number number{};
@@ -57,9 +57,9 @@ std::optional<double> osc_number(char type, const void* argument) {
   return std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
-/// Appends the message. False: it is none.
+/// Appends the message. False: it is invalid.
 bool take_message(OscBytes bytes, std::vector<OscMessage>& messages) {
-  // liblo turns the numbers round where they stand.
+  // liblo converts the byte order in place.
   std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
   const LibloMessage message(lo_message_deserialise(copy.data(), copy.size(), nullptr));
   if (!message) return false;

@@ -40,7 +40,7 @@ void close_if_open(int& descriptor) noexcept {
   const int empty = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (empty >= 0 && dup2(empty, STDIN_FILENO) >= 0 && dup2(output, STDOUT_FILENO) >= 0) execv(words[0], words);
   const int error = errno;
-  [[maybe_unused]] const ssize_t told = write(failure, &error, sizeof error);
+  [[maybe_unused]] const ssize_t written = write(failure, &error, sizeof error);
   _exit(127);
 }
 
@@ -97,7 +97,8 @@ class ProcessPort final : public BytePort {
       kill(process_, SIGKILL);
       killed_.push_back(std::exchange(process_, -1));
     }
-    // A killed process is gone within a moment, unless a driver of the system holds it: that one is asked after later.
+    // A killed process is gone within a moment, unless a driver of the system holds it: that one is checked again
+    // later.
     for (int turn = 0; turn < kReapTurns && !killed_.empty(); ++turn) {
       std::erase_if(killed_, [](pid_t process) { return waitpid(process, nullptr, WNOHANG) != 0; });
       if (!killed_.empty()) std::this_thread::sleep_for(kReapTurn);

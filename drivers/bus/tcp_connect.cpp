@@ -1,4 +1,4 @@
-// libmodbus connects by itself, but nothing can end its waiting; hence this.
+// In place of libmodbus's own connect, whose wait cannot be interrupted.
 #include "drivers/bus/tcp_connect.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using TcpEndpoint = boost::asio::ip::tcp::endpoint;
 
-/// The look-up knows nothing of our interruption: it is looked at this often.
+/// The look-up does not know the interruption, which is checked this often.
 constexpr Nanoseconds kLookupSlice = std::chrono::milliseconds(50);
 
 Result<std::vector<TcpEndpoint>, Failure> look_up(HostLookup& host, Nanoseconds timeout,

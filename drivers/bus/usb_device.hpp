@@ -12,7 +12,7 @@
 
 namespace yuragi {
 
-/// What kind of device it is, by its maker's number and the maker's own.
+/// Vendor and product id.
 struct UsbId {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
@@ -41,7 +41,7 @@ struct UsbRequest {
 };
 
 enum class UsbStatus : std::uint8_t {
-  kDone,         ///< `size` bytes have gone over
+  kDone,         ///< `size` bytes were transferred
   kTimeout,      ///< not in time
   kStalled,      ///< the device refuses this request
   kOverflow,     ///< the device sent more than was requested
@@ -65,7 +65,7 @@ class UsbDevice {
   /// Those of its kinds that are plugged in, in the order of their ports.
   virtual Result<std::vector<PluggedUsbDevice>, Failure> plugged() = 0;
 
-  /// Has one of its kinds been plugged in since this was last asked? Waits for nothing.
+  /// Has a device of its kinds been plugged in since the last call? Does not wait.
   virtual bool take_arrival() = 0;
 
   /// Opens one of those and claims its first interface. The failure's text: why, and what to do.
@@ -80,7 +80,7 @@ class UsbDevice {
   virtual UsbTransfer read(std::uint8_t endpoint, std::span<std::uint8_t> data, Nanoseconds timeout) = 0;
   virtual UsbTransfer write(std::uint8_t endpoint, std::span<const std::uint8_t> data, Nanoseconds timeout) = 0;
 
-  /// Ends a transfer that waits and makes all later ones end at once.
+  /// Ends a waiting transfer and makes all later ones end at once.
   virtual void interrupt() noexcept = 0;
 };
 

@@ -8,11 +8,11 @@ namespace yuragi {
 
 /// Why something that arrived, or did not, was not published. Each is counted for each sensor.
 enum class Refusal : std::uint8_t {
-  kTimeout,   ///< no answer in time
-  kTooShort,  ///< an answer that ends too early
-  kNotMine,   ///< an answer of another device, or to another question
+  kTimeout,   ///< no reply in time
+  kTooShort,  ///< a reply that ends too early
+  kNotMine,   ///< a reply of another device, or to another request
   kBadChecksum,
-  kException,    ///< the device answered with an exception
+  kException,    ///< the device replied with an exception
   kMalformed,    ///< not the protocol
   kInvalid,      ///< the device's own mark for "no value"
   kImplausible,  ///< decoded, but no wind blows like that

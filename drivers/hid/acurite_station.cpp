@@ -1,6 +1,6 @@
-// AcuRite: sends nothing unasked; input report 1 is requested every 18 s. Its contents alternate, so that a report
-// that is the same as the one before is not new. It has no checksum: it is read twice, and must be the same both times.
-// Reports: drivers/decode/hid/acurite.hpp. Source: drivers/SOURCES.md S2.4.
+// AcuRite: sends nothing without a request; input report 1 is requested every 18 s. Its contents alternate, so that a
+// report that is the same as the one before is not new. It has no checksum: it is read twice, and must be the same both
+// times. Reports: drivers/decode/hid/acurite.hpp. Source: drivers/SOURCES.md S2.4.
 #include <algorithm>
 #include <array>
 
@@ -21,24 +21,24 @@ class AcuriteStation final : public HidStation {
  public:
   explicit AcuriteStation(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidTalk& talk) override {
-    const MonoTime begin = talk.now();
+  Result<StationStep, Failure> step(HidExchange& exchange) override {
+    const MonoTime begin = exchange.now();
     if (last_new_ == MonoTime{}) last_new_ = begin;
     Report first;
     Report second;
-    if (!ask(talk, first)) return station_is_gone();
-    if (first.size != 0 && !ask(talk, second)) return station_is_gone();
+    if (!request(exchange, first)) return station_is_gone();
+    if (first.size != 0 && !request(exchange, second)) return station_is_gone();
     if (first.size == 0 || second.size == 0) {
-      return fail(talk, Refusal::kTimeout, "does not answer: set the console's USB mode to 3 or 4");
+      return fail(exchange, Refusal::kTimeout, "does not answer: set the console's USB mode to 3 or 4");
     }
     if (first != second) {
-      return fail(talk, Refusal::kMalformed, "says something else each time: unplug it and plug it in again");
+      return fail(exchange, Refusal::kMalformed, "says something else each time: unplug it and plug it in again");
     }
 
     const MonoTime next = begin + timing_.interval_or(kAcuriteEvery);
     if (first == last_) return wait_for_news(next, begin);
     const auto wind = decode_acurite(first.span());
-    if (wind && talk.publish(*wind)) {
+    if (wind && exchange.publish(*wind)) {
       failures_ = 0;
       last_ = first;
       last_new_ = begin;
@@ -46,11 +46,11 @@ class AcuriteStation final : public HidStation {
     }
     const Refusal why = wind ? Refusal::kInvalid : wind.error();
     if (why != Refusal::kInvalid) {
-      return fail(talk, why, "sends reports that make no sense: unplug it and plug it in again");
+      return fail(exchange, why, "sends reports that make no sense: unplug it and plug it in again");
     }
-    // The console is well, and has no sensor, or old numbers of one.
+    // The console works, but has no sensor, or old values of one.
     failures_ = 0;
-    talk.refuse(Refusal::kInvalid);
+    exchange.refuse(Refusal::kInvalid);
     return StationStep::unwell(next,
                                "does not hear its sensors: check their batteries and their distance to the console");
   }
@@ -65,8 +65,8 @@ class AcuriteStation final : public HidStation {
   };
 
   /// Report 1; empty if it was refused. False: the device is gone.
-  static bool ask(HidTalk& talk, Report& report) {
-    const HidMessage message = talk.get_input_report(1, kAcuriteReport1);
+  static bool request(HidExchange& exchange, Report& report) {
+    const HidMessage message = exchange.get_input_report(1, kAcuriteReport1);
     if (message.status == HidStatus::kLost) return false;
     report.size = message.bytes.size();
     std::ranges::copy(message.bytes, report.bytes.begin());
@@ -80,10 +80,10 @@ class AcuriteStation final : public HidStation {
     return StationStep::unwell(next, "says the same again and again: unplug it and plug it in again");
   }
 
-  Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
-    talk.refuse(why);
+  Result<StationStep, Failure> fail(HidExchange& exchange, Refusal why, const std::string& trouble) {
+    exchange.refuse(why);
     if (++failures_ >= kAcuriteGiveUp) return Failure{trouble};
-    return StationStep::unwell(talk.now() + timing_.paced(kAcuriteRetry), trouble);
+    return StationStep::unwell(exchange.now() + timing_.paced(kAcuriteRetry), trouble);
   }
 
   StationTiming timing_;

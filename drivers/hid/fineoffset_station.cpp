@@ -6,7 +6,7 @@
 // So it is read once for each time that it writes. That moment is determined at first, by reading a few times in one
 // period of 48 s until the record changes, and again every six hours, since clocks drift. A block is accepted when two
 // reads of it are equal; otherwise it was just being written. Each round of reading begins with the fixed block and
-// ends with the record, so that a late answer to one is not taken for the other.
+// ends with the record, so that a late reply to one is not taken for the other.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -33,7 +33,7 @@ constexpr Nanoseconds kFineOffsetWriting = 2s;    // until a block that was bein
 constexpr int kFineOffsetUnstable = 4;            // times that a block was not the same twice
 constexpr Nanoseconds kFineOffsetStalled = 240s;  // without any change: at the least it counts minutes
 constexpr int kFineOffsetGiveUp = 4;              // failures in a row; then it is opened again
-constexpr std::size_t kFineOffsetRecord = 16;     // what is alike in both models' records
+constexpr std::size_t kFineOffsetRecord = 16;     // the common part of both models' records
 
 using FineOffsetBytes = std::array<std::uint8_t, kFineOffsetBlock>;
 
@@ -46,26 +46,26 @@ class FineOffsetStation final : public HidStation {
     begin_round();
   }
 
-  Result<StationStep, Failure> step(HidTalk& talk) override {
-    const MonoTime now = talk.now();
+  Result<StationStep, Failure> step(HidExchange& exchange) override {
+    const MonoTime now = exchange.now();
     if (const MonoTime clear = keep_away(now); clear > now) return StationStep::same(clear);
 
-    // One block, which counts when it is like the one before.
+    // Read one block; it is accepted when it is equal to the read before.
     FineOffsetBytes block{};
-    const BlockStatus status = read_block(talk, addresses_[blocks_.size()], block);
+    const BlockStatus status = read_block(exchange, addresses_[blocks_.size()], block);
     if (status == BlockStatus::kLost) return station_is_gone();
     if (status != BlockStatus::kRead) {
-      return fail(talk, status == BlockStatus::kNone ? Refusal::kTimeout : Refusal::kTooShort,
+      return fail(exchange, status == BlockStatus::kNone ? Refusal::kTimeout : Refusal::kTooShort,
                   "does not answer; one that has locked up needs its batteries and its cable taken out");
     }
     if (!last_block_) {
       last_block_ = block;
-      return StationStep::same(talk.now());
+      return StationStep::same(exchange.now());
     }
-    if (*last_block_ != block) return wait_for_writing(talk);
+    if (*last_block_ != block) return wait_for_writing(exchange);
     last_block_.reset();
     blocks_.push_back(block);
-    return blocks_.size() == 1 ? take_fixed_block(talk) : take_record(talk);
+    return blocks_.size() == 1 ? take_fixed_block(exchange) : take_record(exchange);
   }
 
  private:
@@ -78,17 +78,17 @@ class FineOffsetStation final : public HidStation {
     unstable_ = 0;
   }
 
-  /// The first time from `time` on at which the console does not write, as far as we know.
+  /// The first time from `time` on at which the console does not write, as far as is known.
   MonoTime keep_away(MonoTime time) const {
     // Each can push the time into the other's window; there is room between them.
     for (int i = 0; i < 4; ++i) time = record_clock_.clear_from(sensor_clock_.clear_from(time));
     return time;
   }
 
-  static BlockStatus read_block(HidTalk& talk, std::uint16_t address, FineOffsetBytes& block) {
-    if (!talk.discard_waiting() || !talk.send(encode_fineoffset_read(address))) return BlockStatus::kLost;
+  static BlockStatus read_block(HidExchange& exchange, std::uint16_t address, FineOffsetBytes& block) {
+    if (!exchange.discard_waiting() || !exchange.send(encode_fineoffset_read(address))) return BlockStatus::kLost;
     for (std::size_t size = 0; size < block.size();) {
-      const HidMessage message = talk.read(kFineOffsetReport);
+      const HidMessage message = exchange.read(kFineOffsetReport);
       if (message.status == HidStatus::kLost) return BlockStatus::kLost;
       if (message.status != HidStatus::kReport) return size == 0 ? BlockStatus::kNone : BlockStatus::kCutOff;
       if (message.bytes.size() != 8) return BlockStatus::kCutOff;
@@ -99,20 +99,20 @@ class FineOffsetStation final : public HidStation {
   }
 
   /// The block was not the same twice: the console is writing to it, and will soon be done; or the cable is bad.
-  Result<StationStep, Failure> wait_for_writing(HidTalk& talk) {
+  Result<StationStep, Failure> wait_for_writing(HidExchange& exchange) {
     last_block_.reset();
     if (++unstable_ >= kFineOffsetUnstable) {
-      return fail(talk, Refusal::kMalformed, "reads differently each time: check its cable");
+      return fail(exchange, Refusal::kMalformed, "reads differently each time: check its cable");
     }
-    return StationStep::same(talk.now() + timing_.paced(kFineOffsetWriting));
+    return StationStep::same(exchange.now() + timing_.paced(kFineOffsetWriting));
   }
 
-  /// Where the current record stands; whichever model's ring the address fits.
-  Result<StationStep, Failure> take_fixed_block(HidTalk& talk) {
+  /// Reads the address of the current record, which is in the memory of either model.
+  Result<StationStep, Failure> take_fixed_block(HidExchange& exchange) {
     auto fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh1080);
     if (!fixed) fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh3080);
     if (!fixed) {
-      return fail(talk, fixed.error(), "is no Fine Offset console, or has locked up: take out batteries and cable");
+      return fail(exchange, fixed.error(), "is no Fine Offset console, or has locked up: take out batteries and cable");
     }
     // Blocks are read where the memory's own begin; a long record can reach into the next.
     position_ = fixed->current_position;
@@ -122,14 +122,14 @@ class FineOffsetStation final : public HidStation {
     if (offset + kFineOffsetRecord > kFineOffsetBlock) {
       addresses_.push_back(static_cast<std::uint16_t>(first + kFineOffsetBlock));
     }
-    return StationStep::same(talk.now());
+    return StationStep::same(exchange.now());
   }
 
-  Result<StationStep, Failure> take_record(HidTalk& talk) {
+  Result<StationStep, Failure> take_record(HidExchange& exchange) {
     if (blocks_.back() == blocks_.front()) {
-      return fail(talk, Refusal::kNotMine, "answers another question than the one asked: check its cable");
+      return fail(exchange, Refusal::kNotMine, "answers another question than the one asked: check its cable");
     }
-    if (blocks_.size() < addresses_.size()) return StationStep::same(talk.now());
+    if (blocks_.size() < addresses_.size()) return StationStep::same(exchange.now());
 
     Record record{};
     std::array<std::uint8_t, 2 * kFineOffsetBlock> joined{};
@@ -139,23 +139,23 @@ class FineOffsetStation final : public HidStation {
     std::copy_n(joined.begin() + position_ % kFineOffsetBlock, record.size(), record.begin());
     begin_round();
     failures_ = 0;
-    return judge(record, talk);
+    return judge(record, exchange);
   }
 
   using Record = std::array<std::uint8_t, kFineOffsetRecord>;
 
-  /// What a look at the console shows, beside the one before.
-  struct Look {
+  /// The difference between two reads of the record.
+  struct RecordChange {
     bool is_first = false;
-    bool has_moved = false;     ///< on to the next record
-    bool has_measured = false;  ///< and has written it into the current one
-    bool has_counted = false;   ///< a minute
+    bool has_moved = false;     ///< the console has begun the next record
+    bool has_measured = false;  ///< it has written a measurement
+    bool has_counted = false;   ///< its minutes have changed
 
     bool is_news() const { return is_first || has_moved || has_measured || has_counted; }
   };
 
-  Look compare(const Record& record) const {
-    if (last_look_ == MonoTime{}) return {.is_first = true};
+  RecordChange compare(const Record& record) const {
+    if (last_read_ == MonoTime{}) return {.is_first = true};
     // The first byte counts minutes; the rest changes when the console has measured.
     return {.is_first = false,
             .has_moved = position_ != last_position_,
@@ -163,42 +163,42 @@ class FineOffsetStation final : public HidStation {
             .has_counted = record[0] != last_record_[0]};
   }
 
-  /// Learns when the console writes, of what it wrote since the look before.
-  void learn(const Look& look, MonoTime now) {
-    const bool is_turn_of_minute = look.has_moved || (look.has_counted && !look.has_measured);
-    if (is_turn_of_minute) record_clock_.happened_between(last_look_, now);
-    const bool has_measured_alone = look.has_measured && !look.has_moved;
-    if (is_searching() && has_measured_alone && sensor_clock_.happened_between(last_look_, now)) end_search(now);
+  /// Updates the clocks of when the console writes from what has changed since the last read.
+  void learn(const RecordChange& change, MonoTime now) {
+    const bool is_turn_of_minute = change.has_moved || (change.has_counted && !change.has_measured);
+    if (is_turn_of_minute) record_clock_.happened_between(last_read_, now);
+    const bool has_measured_alone = change.has_measured && !change.has_moved;
+    if (is_searching() && has_measured_alone && sensor_clock_.happened_between(last_read_, now)) end_search(now);
   }
 
-  /// The round is complete.
-  StationStep judge(const Record& record, HidTalk& talk) {
-    const MonoTime now = talk.now();
-    const Look look = compare(record);
-    learn(look, now);
-    // A look between two of the console's measurements is for its clock alone.
-    const bool is_due = look.is_first || look.has_measured || now - told_ >= timing_.paced(kFineOffsetEvery);
+  /// Evaluates a complete round.
+  StationStep judge(const Record& record, HidExchange& exchange) {
+    const MonoTime now = exchange.now();
+    const RecordChange change = compare(record);
+    learn(change, now);
+    // A read between two of the console's measurements is for its clock alone.
+    const bool is_due = change.is_first || change.has_measured || now - published_ >= timing_.paced(kFineOffsetEvery);
     const bool was_for_clock = is_searching() && !is_due;
-    if (look.is_news()) last_news_ = now;
+    if (change.is_news()) last_news_ = now;
     last_record_ = record;
     last_position_ = position_;
-    last_look_ = now;
+    last_read_ = now;
 
-    const MonoTime next = next_look(now);
+    const MonoTime next = next_read(now);
     if (now - last_news_ >= timing_.paced(kFineOffsetStalled)) {
-      talk.refuse(Refusal::kInvalid);
+      exchange.refuse(Refusal::kInvalid);
       return StationStep::unwell(
           next, "does not measure any more; one that has locked up needs its batteries and its cable taken out");
     }
     if (was_for_clock) return StationStep::same(next);
-    told_ = now;
-    return publish(record, talk, next);
+    published_ = now;
+    return publish(record, exchange, next);
   }
 
-  static StationStep publish(const Record& record, HidTalk& talk, MonoTime next) {
+  static StationStep publish(const Record& record, HidExchange& exchange, MonoTime next) {
     const auto wind = decode_fineoffset_record(record);
-    if (wind && talk.publish(*wind)) return StationStep::well(next);
-    if (!wind) talk.refuse(wind.error());
+    if (wind && exchange.publish(*wind)) return StationStep::well(next);
+    if (!wind) exchange.refuse(wind.error());
     return StationStep::unwell(next,
                                "has no wind from its sensors: check their batteries and their distance to the console");
   }
@@ -209,7 +209,7 @@ class FineOffsetStation final : public HidStation {
     searched_ = now;
   }
 
-  MonoTime next_look(MonoTime now) {
+  MonoTime next_read(MonoTime now) {
     if (is_searching()) {
       if (++search_steps_ == kFineOffsetSearchSteps) end_search(now);
       due_ = now + timing_.paced(kFineOffsetSearchStep);
@@ -221,42 +221,42 @@ class FineOffsetStation final : public HidStation {
       record_clock_.forget();
       search_steps_ = 0;
     }
-    // Once an interval, and soon behind the console's writing, where we know when that is. A look that had to be put
-    // off does not put off the next one.
+    // Once per interval, and soon after the console writes, where that is known. A delayed read does not delay the
+    // next one.
     const Nanoseconds interval = std::max(timing_.interval_or(kFineOffsetEvery), timing_.paced(kFineOffsetEvery));
     due_ = std::max(due_, now - interval / 2) + interval;
     if (sensor_clock_.is_known()) due_ = sensor_clock_.behind(due_ - interval / 4);
     return due_;
   }
 
-  Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
+  Result<StationStep, Failure> fail(HidExchange& exchange, Refusal why, const std::string& trouble) {
     begin_round();
-    talk.refuse(why);
+    exchange.refuse(why);
     if (++failures_ >= kFineOffsetGiveUp) return Failure{trouble};
-    return StationStep::unwell(talk.now() + timing_.paced(kFineOffsetRetry), trouble);
+    return StationStep::unwell(exchange.now() + timing_.paced(kFineOffsetRetry), trouble);
   }
 
   StationTiming timing_;
   WriteClock sensor_clock_;  ///< when it writes what it measured
   WriteClock record_clock_;  ///< when it goes on to the next record: at the turn of a minute
 
-  // The round that is under way.
+  // The present round.
   std::vector<std::uint16_t> addresses_;
   std::vector<FineOffsetBytes> blocks_;  ///< that were read, of these addresses
   std::optional<FineOffsetBytes> last_block_;
   int unstable_ = 0;
   std::uint16_t position_ = 0;  ///< of the current record
 
-  // The round before.
-  MonoTime last_look_{};
+  // The last round.
+  MonoTime last_read_{};
   Record last_record_{};
   std::uint16_t last_position_ = 0;
 
-  int search_steps_ = 0;  ///< looks of the search for the sensor clock
+  int search_steps_ = 0;  ///< reads in the search for the sensor clock
   MonoTime searched_{};   ///< when the last search ended
-  MonoTime told_{};       ///< the last read whose wind was published
-  MonoTime last_news_{};  ///< the last look that found any change
-  MonoTime due_{};        ///< when the next look should be, if the console does not write just then
+  MonoTime published_{};  ///< the last read whose wind was published
+  MonoTime last_news_{};  ///< the last read that found any change
+  MonoTime due_{};        ///< when the next read is due, unless the console writes just then
   int failures_ = 0;      ///< in a row
 };
 

@@ -4,9 +4,9 @@
 //   station      USB id      sends                      wind every
 //   wmr100       0fde:ca01   by itself                  14 s       Oregon Scientific WMR100, WMR88, RMS300, RMS600 ...
 //   wmr300       0fde:ca08   while it gets a heartbeat  2.75 s     Oregon Scientific WMR300
-//   fineoffset   1941:8021   when asked                 48 s       Fine Offset WH1080, WH2080, WH3080 and their clones
-//   acurite      24c0:0003   when asked                 18 s       AcuRite 01025, 01035, 01036, 02032, 02064
-//   te923        1130:6801   when asked                 33 s       Hideki TE923: Meade, TFA Nexus, Mebus, IROX
+//   fineoffset   1941:8021   on request                48 s       Fine Offset WH1080, WH2080, WH3080 and their clones
+//   acurite      24c0:0003   on request                18 s       AcuRite 01025, 01035, 01036, 02032, 02064
+//   te923        1130:6801   on request                33 s       Hideki TE923: Meade, TFA Nexus, Mebus, IROX
 //
 // Source: drivers/SOURCES.md S2.
 #include <algorithm>
@@ -33,27 +33,26 @@ const std::array kHidParameters = {
     Parameter{.name = "path",
               .unit = "",
               .default_value = std::string(""),
-              .help = "USB port of the station, such as 1-1.2, or its /dev/hidraw node or a link to that; to tell "
-                      "several apart"},
+              .help = "USB port of the station, such as 1-1.2, or its /dev/hidraw node or a link to that; selects one "
+                      "of several"},
     Parameter{.name = "serial",
               .unit = "",
               .default_value = std::string(""),
-              .help = "its serial number, where it has one; to tell several apart"},
+              .help = "its serial number, where it has one; selects one of several"},
     Parameter{
         .name = "poll_interval",
         .unit = "s",
         .default_value = 0.0,
         .min = 0.0,
         .max = 3600.0,
-        .help =
-            "from one question to the next, of fineoffset, acurite and te923; 0 takes the station's own: 48, 18 and 33 "
-            "s. Asking more often gives nothing new, and may lock up a fineoffset, which is not asked more often"},
+        .help = "interval between requests, of fineoffset, acurite and te923; 0 takes the station's own: 48, 18 and 33 "
+                "s. A shorter one gives no new readings; for fineoffset, which might lock up, it has no effect"},
     Parameter{.name = "pace",
               .unit = "",
               .default_value = 1.0,
               .min = 1.0,
               .max = 1000.0,
-              .help = "for a simulated station: how many times as fast as a real one it runs"},
+              .help = "speed relative to a real station, for simulated ones"},
 };
 
 std::span<const StationKind> kinds_named(std::string_view name) {

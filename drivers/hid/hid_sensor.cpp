@@ -28,31 +28,32 @@ Result<MonoTime, Failure> HidSensor::open(const Clock& clock) {
 }
 
 Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) {
-  HidTalk talk(*device_, clock, sink);
-  if (talk.now() < next_step_) return look_after(talk);
+  HidExchange exchange(*device_, clock, sink);
+  if (exchange.now() < next_step_) return look_after(exchange);
 
-  const Result<StationStep, Failure> step = station_->step(talk);
-  if (is_interrupted_) return talk.now();  // the step's result does not count: it was cut short
-  if (!step) return Failure{name_ + " " + (step.error().message.empty() ? why_useless(talk) : step.error().message)};
+  const Result<StationStep, Failure> step = station_->step(exchange);
+  if (is_interrupted_) return exchange.now();  // the step was interrupted: its result does not count
+  if (!step)
+    return Failure{name_ + " " + (step.error().message.empty() ? why_useless(exchange) : step.error().message)};
   if (step->health == StationHealth::kWell) report_connected(sink, name_);
   if (step->health == StationHealth::kUnwell) report_unusable(sink, name_ + " " + step->trouble);
   next_step_ = step->next;
-  return std::min(next_step_, talk.now() + kLookAfterEvery);
+  return std::min(next_step_, exchange.now() + kLookAfterEvery);
 }
 
-/// The device could not be used. Is it gone, or does it take nothing?
-std::string HidSensor::why_useless(HidTalk& talk) {
-  if (talk.read(Nanoseconds::zero()).status == HidStatus::kLost) return "is gone: plug it in again";
-  talk.refuse(Refusal::kTimeout);
+/// The reason why the device could not be used: gone, or not accepting reports.
+std::string HidSensor::why_useless(HidExchange& exchange) {
+  if (exchange.read(Nanoseconds::zero()).status == HidStatus::kLost) return "is gone: plug it in again";
+  exchange.refuse(Refusal::kTimeout);
   return "takes nothing that is sent to it: take out its cable and its batteries, and put them in again";
 }
 
-/// Nothing is due. Is it still there?
-Result<MonoTime, Failure> HidSensor::look_after(HidTalk& talk) {
-  const HidMessage message = talk.read(Nanoseconds::zero());
+/// Nothing is due: checks that the device is still there.
+Result<MonoTime, Failure> HidSensor::look_after(HidExchange& exchange) {
+  const HidMessage message = exchange.read(Nanoseconds::zero());
   if (message.status == HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};
-  if (message.status == HidStatus::kReport) talk.refuse(Refusal::kNotMine);
-  return std::min(next_step_, talk.now() + kLookAfterEvery);
+  if (message.status == HidStatus::kReport) exchange.refuse(Refusal::kNotMine);
+  return std::min(next_step_, exchange.now() + kLookAfterEvery);
 }
 
 void HidSensor::interrupt() noexcept {

@@ -13,7 +13,7 @@
 namespace yuragi {
 
 /// A USB HID weather station of one of several families, whichever is found at the place. Between two requests to a
-/// station that only answers, its presence is checked once a second, so that an unplugged one is noticed.
+/// station that sends nothing unrequested, its presence is checked once a second, so that an unplugged one is noticed.
 class HidSensor final : public ReopeningSensor {
  public:
   /// `kinds` must outlive this. `seed` makes the waits of several sensors differ.
@@ -28,8 +28,8 @@ class HidSensor final : public ReopeningSensor {
   void close() noexcept override;
 
  private:
-  Result<MonoTime, Failure> look_after(HidTalk& talk);
-  static std::string why_useless(HidTalk& talk);
+  Result<MonoTime, Failure> look_after(HidExchange& exchange);
+  static std::string why_useless(HidExchange& exchange);
 
   std::span<const StationKind> kinds_;
   HidPlace place_;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "drivers/bus/hid_device.hpp"
-#include "drivers/hid/hid_talk.hpp"
+#include "drivers/hid/hid_exchange.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
@@ -16,7 +16,7 @@ namespace yuragi {
 /// The state of a station after one step.
 enum class StationHealth : std::uint8_t {
   kSame,    ///< as before
-  kWell,    ///< it gave a wind
+  kWell,    ///< it sent a valid wind
   kUnwell,  ///< it is there, but sends no valid wind
 };
 
@@ -33,22 +33,22 @@ struct StationStep {
   }
 };
 
-/// The protocol of one family of stations, from the moment that the device was opened: made anew each time.
+/// The protocol of one family of stations; a new object each time that the device is opened.
 class HidStation {
  public:
   virtual ~HidStation() = default;
 
   /// The next step of the protocol, no longer than the station's own time-out. On failure the device must be opened
-  /// again; the text is the reason, empty if it is gone or takes nothing.
-  virtual Result<StationStep, Failure> step(HidTalk& talk) = 0;
+  /// again; the text is the reason, empty if it is gone or accepts nothing.
+  virtual Result<StationStep, Failure> step(HidExchange& exchange) = 0;
 };
 
-/// When a station does what.
+/// The timing of a station.
 struct StationTiming {
-  double pace = 1.0;             ///< how many times as fast as a real one it runs: above 1 for simulated ones alone
+  double pace = 1.0;             ///< speed relative to a real station: above 1 for simulated ones only
   Nanoseconds poll_interval{0};  ///< from one request to the next; 0: the station's own
 
-  /// A duration of the real station as it is here.
+  /// A duration of the real station, divided by the pace.
   Nanoseconds paced(Nanoseconds duration) const { return from_seconds(seconds(duration) / pace); }
   Nanoseconds interval_or(Nanoseconds own) const {
     return poll_interval > Nanoseconds::zero() ? poll_interval : paced(own);
@@ -63,7 +63,7 @@ struct StationKind {
   std::unique_ptr<HidStation> (*make)(const StationTiming& timing);
 };
 
-// One a file. Their protocols stand in drivers/decode.
+// Each in its own file. The protocols are described in drivers/decode.
 std::unique_ptr<HidStation> make_wmr100_station(const StationTiming& timing);
 std::unique_ptr<HidStation> make_wmr300_station(const StationTiming& timing);
 std::unique_ptr<HidStation> make_fineoffset_station(const StationTiming& timing);

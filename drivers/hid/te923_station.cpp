@@ -1,4 +1,4 @@
-// Hideki TE923: asked for a block of its memory, answers in several reports, and wants them acknowledged. The wind in
+// Hideki TE923: replies to a request for a block of its memory in several reports, which are acknowledged. The wind in
 // it is new every 33 s. Blocks: drivers/decode/hid/te923.hpp. Source: drivers/SOURCES.md S2.5.
 #include <array>
 
@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 constexpr Nanoseconds kTe923Every = 33s;
 constexpr Nanoseconds kTe923Retry = 5s;
-constexpr Nanoseconds kTe923Answer = 3s;      // for the whole block
+constexpr Nanoseconds kTe923Reply = 3s;       // for the whole block
 constexpr Nanoseconds kTe923Report = 1200ms;  // for its next report
 constexpr int kTe923GiveUp = 4;               // failures in a row; then it is opened again
 
@@ -20,39 +20,40 @@ class Te923Station final : public HidStation {
  public:
   explicit Te923Station(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidTalk& talk) override {
-    const MonoTime begin = talk.now();
-    if (!talk.discard_waiting() || !talk.send(encode_te923_request(kTe923Readings))) return station_is_gone();
-    if (!read_block(talk)) return station_is_gone();
-    if (size_ > 0 && !talk.send(encode_te923_acknowledgement(kTe923Readings))) return station_is_gone();
+  Result<StationStep, Failure> step(HidExchange& exchange) override {
+    const MonoTime begin = exchange.now();
+    if (!exchange.discard_waiting() || !exchange.send(encode_te923_request(kTe923Readings))) return station_is_gone();
+    if (!read_block(exchange)) return station_is_gone();
+    if (size_ > 0 && !exchange.send(encode_te923_acknowledgement(kTe923Readings))) return station_is_gone();
 
-    if (size_ == 0) return fail(talk, Refusal::kTimeout, "does not answer: check the console's power and its cable");
+    if (size_ == 0)
+      return fail(exchange, Refusal::kTimeout, "does not answer: check the console's power and its cable");
     const auto wind = decode_te923(ByteSpan(block_).first(size_));
-    if (wind && talk.publish(*wind)) {
+    if (wind && exchange.publish(*wind)) {
       failures_ = 0;
       return StationStep::well(begin + timing_.interval_or(kTe923Every));
     }
     const Refusal why = wind ? Refusal::kInvalid : wind.error();
     if (why != Refusal::kInvalid) {
-      return fail(talk, why, "sends blocks that make no sense: check its cable");
+      return fail(exchange, why, "sends blocks that make no sense: check its cable");
     }
-    // The console is well, and has no wind.
+    // The console works, but has no wind.
     failures_ = 0;
-    talk.refuse(Refusal::kInvalid);
+    exchange.refuse(Refusal::kInvalid);
     return StationStep::unwell(begin + timing_.interval_or(kTe923Every),
                                "has lost its anemometer: check its battery and its distance to the console");
   }
 
  private:
   /// Collects a block, or as much of it as comes. False: the device is gone.
-  bool read_block(HidTalk& talk) {
+  bool read_block(HidExchange& exchange) {
     size_ = 0;
-    const MonoTime deadline = talk.now() + kTe923Answer;
-    while (size_ < kTe923Block && talk.now() < deadline) {
-      const HidMessage message = talk.read(kTe923Report);
+    const MonoTime deadline = exchange.now() + kTe923Reply;
+    while (size_ < kTe923Block && exchange.now() < deadline) {
+      const HidMessage message = exchange.read(kTe923Report);
       if (message.status == HidStatus::kLost) return false;
       if (message.status != HidStatus::kReport) break;
-      // How many of the next bytes are valid, then those. A count that cannot be spoils the block.
+      // The number of valid bytes, then these. An impossible number invalidates the block.
       const std::size_t count = message.bytes[0];
       const bool is_sound = count <= 7 && count < message.bytes.size();
       const ByteSpan valid = is_sound ? message.bytes.subspan(1, count) : message.bytes;
@@ -62,10 +63,10 @@ class Te923Station final : public HidStation {
     return true;
   }
 
-  Result<StationStep, Failure> fail(HidTalk& talk, Refusal why, const std::string& trouble) {
-    talk.refuse(why);
+  Result<StationStep, Failure> fail(HidExchange& exchange, Refusal why, const std::string& trouble) {
+    exchange.refuse(why);
     if (++failures_ >= kTe923GiveUp) return Failure{trouble};
-    return StationStep::unwell(talk.now() + timing_.paced(kTe923Retry), trouble);
+    return StationStep::unwell(exchange.now() + timing_.paced(kTe923Retry), trouble);
   }
 
   StationTiming timing_;

@@ -1,4 +1,4 @@
-// Oregon Scientific WMR100: it sends a stream of frames by itself once it was sent a start report, the wind about every
+// Oregon Scientific WMR100: after a start report it sends a stream of frames by itself, the wind about every
 // 14 s. Reports and frames: drivers/decode/hid/wmr100.hpp. Source: drivers/SOURCES.md S2.1.
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/hid/hid_station.hpp"
@@ -12,24 +12,24 @@ constexpr Nanoseconds kWmr100Listen = 1s;
 constexpr Nanoseconds kWmr100Silent = 60s;   // the clock's frame comes once a minute, the wind's more often
 constexpr Nanoseconds kWmr100Restart = 30s;  // from one start report to the next, to a console that is silent
 constexpr Nanoseconds kWmr100GiveUp = 180s;  // of silence; then the device is opened again
-constexpr Nanoseconds kWmr100NoWind = 90s;   // six winds that did not come
+constexpr Nanoseconds kWmr100NoWind = 90s;   // six missing winds
 
 class Wmr100Station final : public HidStation {
  public:
   explicit Wmr100Station(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidTalk& talk) override {
+  Result<StationStep, Failure> step(HidExchange& exchange) override {
     if (started_ == MonoTime{}) {
-      if (!talk.send(kWmr100Start)) return station_is_gone();
-      started_ = heard_ = wind_ = talk.now();
+      if (!exchange.send(kWmr100Start)) return station_is_gone();
+      started_ = received_at_ = wind_ = exchange.now();
     }
-    const HidMessage message = talk.read(kWmr100Listen);
+    const HidMessage message = exchange.read(kWmr100Listen);
     if (message.status == HidStatus::kLost) return station_is_gone();
-    if (message.status != HidStatus::kReport) return bear_silence(talk);
+    if (message.status != HidStatus::kReport) return bear_silence(exchange);
 
-    StationStep step = StationStep::same(talk.now());
+    StationStep step = StationStep::same(exchange.now());
     for (const std::uint8_t byte : wmr100_report_bytes(message.bytes)) {
-      if (const auto frame = take_wmr100_byte(stream_, byte)) judge(*frame, talk, step);
+      if (const auto frame = take_wmr100_byte(stream_, byte)) judge(*frame, exchange, step);
     }
     if (step.health == StationHealth::kSame) miss_the_wind(step);
     return step;
@@ -37,41 +37,41 @@ class Wmr100Station final : public HidStation {
 
  private:
   /// A frame ended.
-  void judge(const Result<DecodedWind, Refusal>& frame, HidTalk& talk, StationStep& step) {
-    if (frame || frame.error() == Refusal::kNotMine) heard_ = step.next;
+  void judge(const Result<DecodedWind, Refusal>& frame, HidExchange& exchange, StationStep& step) {
+    if (frame || frame.error() == Refusal::kNotMine) received_at_ = step.next;
     if (!frame) {
-      talk.refuse(frame.error());
-    } else if (talk.publish(*frame)) {
+      exchange.refuse(frame.error());
+    } else if (exchange.publish(*frame)) {
       wind_ = step.next;
       step.health = StationHealth::kWell;
     }
   }
 
-  /// It sends frames. Those of the wind, too?
+  /// Checks that its frames include the wind.
   void miss_the_wind(StationStep& step) const {
     if (step.next - wind_ < timing_.paced(kWmr100NoWind)) return;
     step.health = StationHealth::kUnwell;
     step.trouble = "sends no wind: check the anemometer's battery and its distance to the console";
   }
 
-  Result<StationStep, Failure> bear_silence(HidTalk& talk) {
-    const MonoTime now = talk.now();
-    const Nanoseconds silent = now - heard_;
+  Result<StationStep, Failure> bear_silence(HidExchange& exchange) {
+    const MonoTime now = exchange.now();
+    const Nanoseconds silent = now - received_at_;
     if (silent < timing_.paced(kWmr100Silent)) return StationStep::same(now);
     if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"says nothing, so it is opened again"};
     if (now - started_ >= timing_.paced(kWmr100Restart)) {
       started_ = now;
-      talk.refuse(Refusal::kTimeout);
-      if (!talk.send(kWmr100Start)) return station_is_gone();
+      exchange.refuse(Refusal::kTimeout);
+      if (!exchange.send(kWmr100Start)) return station_is_gone();
     }
     return StationStep::unwell(now, "says nothing: check the console's power");
   }
 
   StationTiming timing_;
   Wmr100Stream stream_;
-  MonoTime started_{};  ///< when the last start report went
-  MonoTime heard_{};    ///< the last frame that made sense
-  MonoTime wind_{};     ///< the last wind
+  MonoTime started_{};      ///< when the last start report went
+  MonoTime received_at_{};  ///< the last valid frame
+  MonoTime wind_{};         ///< the last wind
 };
 
 }  // namespace

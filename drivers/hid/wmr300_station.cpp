@@ -1,4 +1,4 @@
-// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, once it was asked to begin and for
+// Oregon Scientific WMR300: it sends packets by itself, the wind every 2.5 to 3 s, after a start request and for
 // as long as it gets a heartbeat every 20 s and each data packet is acknowledged. Packets:
 // drivers/decode/hid/wmr300.hpp. Source: drivers/SOURCES.md S2.2; weewx wmr300.py (a console that has fallen silent
 // comes back when the device is opened again).
@@ -19,56 +19,56 @@ class Wmr300Station final : public HidStation {
  public:
   explicit Wmr300Station(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidTalk& talk) override {
-    // The heart.
-    const MonoTime begin = talk.now();
+  Result<StationStep, Failure> step(HidExchange& exchange) override {
+    // The heartbeat.
+    const MonoTime begin = exchange.now();
     if (begin >= next_heartbeat_) {
-      if (!talk.send(kWmr300Heartbeat)) return station_is_gone();
-      if (next_heartbeat_ == MonoTime{}) heard_ = wind_ = begin;
+      if (!exchange.send(kWmr300Heartbeat)) return station_is_gone();
+      if (next_heartbeat_ == MonoTime{}) received_at_ = wind_ = begin;
       next_heartbeat_ = begin + timing_.paced(kWmr300HeartbeatEvery);
     }
 
     const Nanoseconds until_heartbeat = next_heartbeat_ - begin;
-    const HidMessage message = talk.read(std::min(kWmr300Listen, until_heartbeat));
+    const HidMessage message = exchange.read(std::min(kWmr300Listen, until_heartbeat));
     if (message.status == HidStatus::kLost) return station_is_gone();
-    StationStep step = StationStep::same(talk.now());
-    if (message.status == HidStatus::kReport && !take(message.bytes, talk, step)) return station_is_gone();
-    if (step.health == StationHealth::kSame) return miss_the_wind(talk, step);
+    StationStep step = StationStep::same(exchange.now());
+    if (message.status == HidStatus::kReport && !take(message.bytes, exchange, step)) return station_is_gone();
+    if (step.health == StationHealth::kSame) return miss_the_wind(exchange, step);
     return step;
   }
 
  private:
-  /// A packet came. False: the device went while it was answered.
-  bool take(ByteSpan packet, HidTalk& talk, StationStep& step) {
+  /// Handles a packet. False: the device was gone when it was acknowledged.
+  bool take(ByteSpan packet, HidExchange& exchange, StationStep& step) {
     const bool is_sound = is_sound_wmr300(packet);
-    if (is_sound) heard_ = step.next;
+    if (is_sound) received_at_ = step.next;
     if (!wants_wmr300_acknowledgement(packet)) {
-      if (!is_sound) talk.refuse(Refusal::kMalformed);
-      // It identifies itself. If no data came since the heartbeat before, it must be asked to begin.
+      if (!is_sound) exchange.refuse(Refusal::kMalformed);
+      // It identifies itself. If no data came since the heartbeat before, it must be told to start sending.
       const bool is_idle = step.next - data_ > timing_.paced(kWmr300HeartbeatEvery) / 2;
-      return !is_wmr300_identity(packet) || !is_idle || talk.send(encode_wmr300_begin(packet));
+      return !is_wmr300_identity(packet) || !is_idle || exchange.send(encode_wmr300_begin(packet));
     }
 
     const auto acknowledgement = encode_wmr300_acknowledgement(packet);
     const auto wind = decode_wmr300(packet);
     if (is_sound) data_ = step.next;
     if (!wind) {
-      talk.refuse(wind.error());
-    } else if (talk.publish(*wind)) {
+      exchange.refuse(wind.error());
+    } else if (exchange.publish(*wind)) {
       wind_ = step.next;
       step.health = StationHealth::kWell;
     }
-    return talk.send(acknowledgement);
+    return exchange.send(acknowledgement);
   }
 
-  Result<StationStep, Failure> miss_the_wind(HidTalk& talk, StationStep step) {
-    if (step.next - heard_ > timing_.paced(kWmr300GiveUp)) {
-      talk.refuse(Refusal::kTimeout);
+  Result<StationStep, Failure> miss_the_wind(HidExchange& exchange, StationStep step) {
+    if (step.next - received_at_ > timing_.paced(kWmr300GiveUp)) {
+      exchange.refuse(Refusal::kTimeout);
       return Failure{"says nothing that makes sense, so it is opened again"};
     }
     if (step.next - wind_ > timing_.paced(kWmr300NoWind)) {
       step.health = StationHealth::kUnwell;
-      step.trouble = step.next - heard_ > timing_.paced(kWmr300NoWind)
+      step.trouble = step.next - received_at_ > timing_.paced(kWmr300NoWind)
                          ? "says nothing that makes sense: check the console's power and the cable"
                          : "sends no wind: check the anemometer's battery and its distance to the console";
     }
@@ -77,9 +77,9 @@ class Wmr300Station final : public HidStation {
 
   StationTiming timing_;
   MonoTime next_heartbeat_{};
-  MonoTime heard_{};  ///< the last packet that made sense
-  MonoTime data_{};   ///< the last of them that is no mere answer
-  MonoTime wind_{};   ///< the last wind
+  MonoTime received_at_{};  ///< the last valid packet
+  MonoTime data_{};         ///< the last data packet, other than identifications
+  MonoTime wind_{};         ///< the last wind
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ bool WriteClock::happened_between(MonoTime from, MonoTime to) {
   const Window seen = {from, to};
   window_ = window_ ? window_before(to) : seen;
 
-  // What both allow. A window that the new look rules out was of another time: the console's clock was set, or drifted.
+  // The intersection. If it is empty, the console's clock was set, or has drifted: only the new window holds.
   for (const Nanoseconds shift : {Nanoseconds::zero(), period_}) {
     const Window common = {std::max(window_->from + shift, seen.from), std::min(window_->to + shift, seen.to)};
     if (common.from < common.to) {

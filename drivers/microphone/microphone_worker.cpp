@@ -19,7 +19,7 @@
 namespace yuragi {
 namespace {
 
-/// A sound system that has begun hands something over many times a second.
+/// A running sound system delivers samples many times a second.
 constexpr Nanoseconds kSoundTimeout = std::chrono::milliseconds(1500);
 constexpr Nanoseconds kTurn = std::chrono::milliseconds(20);
 
@@ -34,7 +34,7 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// The pieces of a stream, made into blocks with the time at which they were recorded.
+/// Makes blocks of the pieces of a stream, with the time at which they were recorded.
 class Listener {
  public:
   Listener(const MicAnalyserOptions& options, std::string device)
@@ -46,7 +46,7 @@ class Listener {
 
   /// Calls `use` with each block that the piece completes.
   template <class Use>
-  void hear(const AudioBlock& piece, Use&& use) {
+  void take(const AudioBlock& piece, Use&& use) {
     if (piece.lost_frames > 0) {
       lost_ += piece.lost_frames;
       analyser_.restart();
@@ -101,7 +101,7 @@ bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, c
     bool is_read = true;
     while (input.take(piece)) {
       last_sound = clock.now().mono;
-      listener->hear(piece, [&](const MicBlock& block) {
+      listener->take(piece, [&](const MicBlock& block) {
         is_read = is_read && write_all(output, encode_mic_frame(block, listener->hello()));
       });
     }

@@ -20,7 +20,7 @@ struct MicWorkerOptions {
 /// (drivers/decode/microphone/mic_frame.hpp) to `output`, until the reader closes it, the device stops, or `is_over`.
 /// After an error it ends soon and reports why: restarting the process is the only reliable recovery of PortAudio.
 ///
-/// Blocks. Returns true if it was asked to end, false if the microphone failed (a trouble frame has the reason). The
+/// Blocks. Returns true if it was told to end, false if the microphone failed (a trouble frame has the reason). The
 /// caller then ends the process without destroying `input`, whose library may hang.
 bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, const Clock& clock, int output,
                            const std::atomic<bool>& is_over);

@@ -1,4 +1,4 @@
-// Wind sensors that speak Modbus, over TCP or a serial line (RTU). Which registers hold what is data: one TOML file a
+// Wind sensors with Modbus, over TCP or a serial line (RTU). Which registers hold what is data: one TOML file a
 // device in drivers/modbus/profiles, which names its source. Functions 3 and 4, big-endian 16-bit registers on the wire
 // (MODBUS Application Protocol Specification V1.1b3).
 #include <algorithm>
@@ -24,7 +24,7 @@ const std::array kModbusParameters = {
     Parameter{.name = "profile_dir",
               .unit = "",
               .default_value = std::string(""),
-              .help = "a directory to look for profiles in first"},
+              .help = "a directory that is searched for profiles first"},
     Parameter{.name = "transport",
               .unit = "",
               .default_value = std::string("tcp"),
@@ -36,11 +36,11 @@ const std::array kModbusParameters = {
     Parameter{.name = "device",
               .unit = "",
               .default_value = std::string(""),
-              .help = "rtu: the serial port, best by its stable name in /dev/serial/by-id"},
+              .help = "rtu: the serial port, preferably by its stable name in /dev/serial/by-id"},
     Parameter{.name = "direction_device",
               .unit = "",
               .default_value = std::string(""),
-              .help = "rtu: the serial port of the direction's slave, where it has one of its own"},
+              .help = "rtu: the serial port of the vane, where it is on a separate line"},
     Parameter{.name = "baud",
               .unit = "bit/s",
               .default_value = std::int64_t{0},
@@ -58,13 +58,13 @@ const std::array kModbusParameters = {
               .min = 0,
               .max = 2,
               .help = "rtu: 0 takes the profile's"},
-    Parameter{
-        .name = "speed_slave",
-        .unit = "",
-        .default_value = std::int64_t{0},
-        .min = 0,
-        .max = 247,
-        .help = "id of the slave that measures speed, and whatever else the profile has there; 0 takes the profile's"},
+    Parameter{.name = "speed_slave",
+              .unit = "",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = 247,
+              .help = "id of the slave that measures speed, and the other quantities that the profile has on it; 0 "
+                      "takes the profile's"},
     Parameter{.name = "direction_slave",
               .unit = "",
               .default_value = std::int64_t{0},
@@ -76,23 +76,24 @@ const std::array kModbusParameters = {
               .default_value = 0.0,
               .min = 0.0,
               .max = 3600.0,
-              .help = "from one reading to the next; 0 takes the profile's"},
+              .help = "interval between readings; 0 takes the profile's"},
     Parameter{.name = "min_gap",
               .unit = "s",
               .default_value = 0.0,
               .min = 0.0,
               .max = 10.0,
-              .help = "from an answer to the next request on this line, for adapters that turn around slowly; 0 takes "
+              .help = "least time from a reply to the next request on this line, for adapters that switch direction "
+                      "slowly; 0 takes "
                       "the profile's"},
     Parameter{.name = "response_timeout",
               .unit = "s",
               .default_value = 0.0,
               .min = 0.0,
               .max = 10.0,
-              .help = "longest wait for an answer, and for a connection; 0 takes the profile's"},
+              .help = "longest wait for a reply, and for a connection; 0 takes the profile's"},
 };
 
-/// The profile with what the installation sets otherwise.
+/// The profile with the settings of the installation.
 ModbusProfile profile_of(const ParameterValues& values) {
   ModbusProfile profile = load_modbus_profile(values.text("profile"), values.text("profile_dir"));
   if (const std::int64_t baud = values.integer("baud"); baud != 0) profile.baud = static_cast<int>(baud);
@@ -151,7 +152,7 @@ ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) 
   return line;
 }
 
-/// The line of a direction that has one of its own; nullptr where it has not.
+/// The separate line of the vane; nullptr where it has none.
 std::shared_ptr<ModbusBus> direction_bus_of(const ParameterValues& values, const ModbusProfile& profile,
                                             const ModbusLine& line) {
   const std::string& device = values.text("direction_device");

@@ -11,8 +11,8 @@
 namespace yuragi {
 namespace {
 
-/// A connection that was dropped silently looks like a slow device: after so many requests in a row without an answer
-/// it is taken for lost.
+/// A connection that was dropped silently looks like a slow device: after so many requests in a row without a reply it
+/// is assumed lost.
 constexpr int kSilentRequestsBeforeReopen = 3;
 
 ModbusTrouble trouble(ModbusTrouble::Kind kind) {
@@ -76,8 +76,8 @@ class ModbusBus::Turn {
     bus_.free_at_ = now + bus_.min_gap_;
   }
 
-  /// An answer of `unit` may still come, for so long.
-  void expect_late_answer(std::uint8_t unit, MonoTime until) {
+  /// A reply of `unit` may still come until then.
+  void expect_late_reply(std::uint8_t unit, MonoTime until) {
     const std::lock_guard lock(bus_.mutex_);
     bus_.unit_ready_at_[unit] = until;
   }
@@ -108,7 +108,7 @@ void ModbusBus::keep_gap(Nanoseconds min_gap) {
 }
 
 Result<MonoTime, Failure> ModbusBus::open(const Interruption& interruption, const Clock& clock) {
-  // Mostly it is open, and this returns without waiting for the turn.
+  // Usually it is open, and this returns without waiting for the line.
   const auto open_since = [this] {
     const std::lock_guard lock(mutex_);
     return open_since_;
@@ -131,24 +131,24 @@ MonoTime ModbusBus::ready_at(std::uint8_t unit) const {
   return unit_ready_at_[unit];
 }
 
-ModbusBus::Answer ModbusBus::ask(ModbusRequest request, const ModbusPatience& patience,
-                                 const Interruption& interruption, const Clock& clock, SensorSink& sink) {
+ModbusBus::Reply ModbusBus::exchange(ModbusRequest request, const ModbusPatience& patience,
+                                     const Interruption& interruption, const Clock& clock, SensorSink& sink) {
   using enum ModbusTrouble::Kind;
   Turn turn(*this, interruption);
   if (!turn.has_line() || !turn.wait_for_gap(interruption, clock.now().mono)) return trouble(kInterrupted);
 
   request.transaction = ++transaction_;
-  const Answer answer = exchange(request, patience, interruption, sink);
+  const Reply reply = transact(request, patience, interruption, sink);
 
-  // A request that was not answered may still be.
+  // A request without a reply may still get one.
   const MonoTime now = clock.now().mono;
   turn.begin_gap(now);
-  const bool may_come_late = !answer && (answer.error().kind == kSilence || answer.error().kind == kOthersOnly ||
-                                         answer.error().refusal.why == Refusal::kTooShort);
+  const bool may_come_late = !reply && (reply.error().kind == kSilence || reply.error().kind == kOthersOnly ||
+                                        reply.error().refusal.why == Refusal::kTooShort);
   if (may_come_late && line_.framing == ModbusFraming::kRtu) {
-    turn.expect_late_answer(request.unit, now + patience.response_timeout);
+    turn.expect_late_reply(request.unit, now + patience.response_timeout);
   }
-  return answer;
+  return reply;
 }
 
 std::size_t ModbusBus::waiting_count() const {
@@ -167,46 +167,46 @@ void ModbusBus::close_line() noexcept {
   open_since_.reset();
 }
 
-ModbusBus::Answer ModbusBus::exchange(const ModbusRequest& request, const ModbusPatience& patience,
-                                      const Interruption& interruption, SensorSink& sink) {
+ModbusBus::Reply ModbusBus::transact(const ModbusRequest& request, const ModbusPatience& patience,
+                                     const Interruption& interruption, SensorSink& sink) {
   if (is_unsettled_) {
     const std::size_t leftover = connection_->settle(buffer_, patience, interruption);
     const auto bytes = std::span(buffer_).first(leftover);
     if (leftover > 0) sink.raw(RawDirection::kReceived, bytes);
-    // A late answer, as a rule; noise has been counted when it was taken for an answer.
+    // Usually a late reply; noise has been counted when it was taken for a reply.
     if (leftover > 0 && modbus_crc(bytes) == 0) sink.refused(Refusal::kNotMine);
   }
   is_unsettled_ = true;
   if (!connection_->send(request, patience)) return fail(BusStatus::kLost, false, sink);
   show_sent(line_.framing, request, sink);
 
-  // Messages of others, such as the late answer to an earlier request, are passed over until the time is up.
-  bool heard_others = false;
+  // Messages of others, such as the late reply to an earlier request, are skipped until the time-out.
+  bool received_others = false;
   for (;;) {
     const BusMessage message = connection_->receive(buffer_, interruption);
-    if (message.status != BusStatus::kMessage) return fail(message.status, heard_others, sink);
+    if (message.status != BusStatus::kMessage) return fail(message.status, received_others, sink);
     const auto bytes = std::span(buffer_).first(message.size);
     sink.raw(RawDirection::kReceived, bytes);
 
     const auto registers = decode_modbus(line_.framing, request, bytes);
     if (registers || registers.error().why == Refusal::kException) {
       silent_requests_ = 0;
-      is_unsettled_ = heard_others;
+      is_unsettled_ = received_others;
     }
     if (registers) return *registers;
     if (registers.error().why != Refusal::kNotMine) return refuse(registers.error(), sink);
     sink.refused(Refusal::kNotMine);
-    heard_others = true;
+    received_others = true;
   }
 }
 
 /// No message came.
-ModbusTrouble ModbusBus::fail(BusStatus status, bool heard_others, SensorSink& sink) {
+ModbusTrouble ModbusBus::fail(BusStatus status, bool received_others, SensorSink& sink) {
   using enum ModbusTrouble::Kind;
   switch (status) {
     case BusStatus::kSilence:
       if (++silent_requests_ >= kSilentRequestsBeforeReopen) close_line();
-      if (heard_others) return trouble(kOthersOnly);
+      if (received_others) return trouble(kOthersOnly);
       sink.refused(Refusal::kTimeout);
       return trouble(kSilence);
     case BusStatus::kCutOff:

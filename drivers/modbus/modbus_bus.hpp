@@ -14,7 +14,7 @@
 
 namespace yuragi {
 
-/// Why a request brought no registers. Refusals have been counted.
+/// Why a request gave no registers. Refusals have been counted.
 struct ModbusTrouble {
   enum class Kind : std::uint8_t {
     kSilence,      ///< nothing came in time
@@ -28,10 +28,10 @@ struct ModbusTrouble {
 };
 
 /// One line with Modbus devices: a serial port, or a host and port. All sensors on that line share it, each from a
-/// thread of its own, and are served one after the other in the order in which they asked.
+/// thread of its own, and are served one after the other in the order of their requests.
 ///
-/// A late answer to one request is never taken for that to another. Over TCP each request has a transaction id. On a
-/// serial line only the slave's id distinguishes answers, so a slave that did not answer in time is not asked again for
+/// A late reply to one request is never taken for that to another. Over TCP each request has a transaction id. On a
+/// serial line only the slave's id distinguishes replies, so a slave that did not reply in time gets no request for
 /// another response time-out (ready_at()), and after any error nothing is sent before the line has been quiet. A device
 /// that is slower than two time-outs needs a longer one.
 ///
@@ -39,7 +39,7 @@ struct ModbusTrouble {
 /// ends that.
 class ModbusBus {
  public:
-  using Answer = Result<ModbusRegisters, ModbusTrouble>;
+  using Reply = Result<ModbusRegisters, ModbusTrouble>;
 
   ModbusBus(const ModbusLine& line, std::unique_ptr<ModbusConnection> connection);
 
@@ -50,21 +50,21 @@ class ModbusBus {
   /// Can sensors with these settings share it? The failure's text says what differs.
   Result<void, Failure> suits(const ModbusLine& line) const;
 
-  /// From an answer to the next request, of any sensor: the longest gap asked for is kept.
+  /// Sets the least time from a reply to the next request of any sensor; the longest of all calls holds.
   void keep_gap(Nanoseconds min_gap);
 
   /// Opens the line if it is not open. Returns when that was; the failure's text: why, and what to do.
   Result<MonoTime, Failure> open(const Interruption& interruption, const Clock& clock);
 
-  /// From when on a device may be asked; a time that has passed, mostly.
+  /// From when on a slave may get a request; usually a time in the past.
   MonoTime ready_at(std::uint8_t unit) const;
 
-  /// Asks, and waits for the answer. The request's transaction is chosen here. Counts in `sink` what it refuses, and
-  /// shows it each message.
-  Answer ask(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
-             const Clock& clock, SensorSink& sink);
+  /// Sends a request and waits for the reply. Sets the request's transaction id. Counts refusals in `sink`, and shows
+  /// it each message.
+  Reply exchange(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
+                 const Clock& clock, SensorSink& sink);
 
-  /// How many have asked and not been answered yet.
+  /// How many exchanges are waiting or in progress.
   std::size_t waiting_count() const;
 
   /// To be called after an interruption was set, so that a caller that waits for its turn notices it.
@@ -74,9 +74,9 @@ class ModbusBus {
   class Turn;
 
   void close_line() noexcept;
-  Answer exchange(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
-                  SensorSink& sink);
-  ModbusTrouble fail(BusStatus status, bool heard_others, SensorSink& sink);
+  Reply transact(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
+                 SensorSink& sink);
+  ModbusTrouble fail(BusStatus status, bool received_others, SensorSink& sink);
   ModbusTrouble refuse(const ModbusRefusal& refusal, SensorSink& sink);
 
   const ModbusLine line_;
@@ -84,16 +84,16 @@ class ModbusBus {
 
   mutable std::mutex mutex_;
   std::condition_variable turn_ended_;
-  std::deque<std::uint64_t> waiting_;  ///< tickets; the first one has its turn
+  std::deque<std::uint64_t> waiting_;  ///< tickets; the first one has the line
   std::uint64_t last_ticket_ = 0;
   Nanoseconds min_gap_;
   MonoTime free_at_{};                         ///< when the gap after the last exchange has passed
-  std::array<MonoTime, 256> unit_ready_at_{};  ///< when a late answer of that unit is over
+  std::array<MonoTime, 256> unit_ready_at_{};  ///< until when a late reply of that unit may come
   std::optional<MonoTime> open_since_;         ///< empty: the line is not open
 
-  // Of the caller that has the turn.
+  // Of the caller that has the line.
   std::unique_ptr<ModbusConnection> connection_;
-  bool is_unsettled_ = true;  ///< something may still be under way on the line
+  bool is_unsettled_ = true;  ///< a message may still be on the line
   int silent_requests_ = 0;   ///< in a row, to any slave
   std::uint16_t transaction_ = 0;
   std::array<std::uint8_t, kModbusMaxMessage> buffer_{};

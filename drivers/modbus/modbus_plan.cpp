@@ -16,7 +16,7 @@ ModbusRead read_of(const ModbusProfile& profile, ModbusMeasure measure) {
           .measures = {measure}};
 }
 
-/// One read instead of two, if there can be one.
+/// One read instead of two, if possible.
 std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead& one, const ModbusRead& other) {
   const auto has_side_effect = [&profile](ModbusMeasure measure) {
     return quantity_of(profile, measure).read_has_side_effect;
@@ -40,7 +40,7 @@ std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead&
   return read;
 }
 
-/// Merges the first two that can be; false: none can.
+/// Merges the first two reads that can be merged; false: none can.
 bool merge_two(const ModbusProfile& profile, std::vector<ModbusRead>& reads) {
   for (auto one = reads.begin(); one != reads.end(); ++one) {
     for (auto other = std::next(one); other != reads.end(); ++other) {
@@ -56,7 +56,7 @@ bool merge_two(const ModbusProfile& profile, std::vector<ModbusRead>& reads) {
 
 }  // namespace
 
-bool ModbusRead::tells(ModbusMeasure measure) const {
+bool ModbusRead::contains(ModbusMeasure measure) const {
   return std::ranges::find(measures, measure) != measures.end();
 }
 

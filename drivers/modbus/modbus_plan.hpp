@@ -11,23 +11,23 @@ namespace yuragi {
 
 enum class ModbusMeasure : std::uint8_t { kSpeed, kDirection, kGust };
 
-/// One request, and the quantities in its answer.
+/// One request, and the quantities in its reply.
 struct ModbusRead {
   ModbusRequest request;
   std::vector<ModbusMeasure> measures;
 
-  bool tells(ModbusMeasure measure) const;
+  bool contains(ModbusMeasure measure) const;
 };
 
-/// The requests that read all that a profile knows, that for the speed first: as few as the profile allows, so that
-/// registers that adjoin on one slave come together, and those whose reading has side effects alone.
+/// The requests that read all quantities of a profile, the speed first: as few as the profile allows, so that
+/// adjoining registers of one slave are read together, and those whose reading has side effects alone.
 /// `is_direction_apart`: the direction is on a line of its own.
 std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_direction_apart = false);
 
 /// The quantity of `measure` in the profile, which must have it.
 const ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure);
 
-/// The part of an answer to `request` that belongs to `quantity`.
+/// The part of a reply to `request` that belongs to `quantity`.
 std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
                                             const ModbusRegisters& registers);
 

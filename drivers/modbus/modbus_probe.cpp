@@ -14,10 +14,10 @@ namespace {
 
 using Registers = Result<ModbusRegisters, ModbusRefusal>;
 
-/// How long a line must be quiet between two requests: shorter than in service, since most stay unanswered.
+/// How long a line must be quiet between two requests: shorter than in service, since most get no reply.
 constexpr Nanoseconds kProbeQuiet = std::chrono::milliseconds(20);
 
-/// What nearly every device has: a first register of the one kind or the other.
+/// Requests that nearly every device replies to: the first register of either kind.
 constexpr std::array kKnocks = {ModbusRequest{.function = 3, .address = 0, .count = 1},
                                 ModbusRequest{.function = 4, .address = 0, .count = 1}};
 
@@ -35,7 +35,7 @@ bool is_home_of(const ModbusLine& line, const ModbusProfile& profile) {
          (line.baud == profile.baud && line.parity == profile.parity && line.stop_bits == profile.stop_bits);
 }
 
-/// One open line. Answers are cached, so that nothing is requested twice.
+/// One open line. Replies are cached, so that nothing is requested twice.
 class ProbedLine {
  public:
   ProbedLine(const ModbusLine& line, Nanoseconds response_timeout, const Interruption& interruption)
@@ -46,13 +46,13 @@ class ProbedLine {
 
   Result<void, Failure> open() { return connection_->open(interruption_); }
 
-  /// The registers, or what was wrong with the answer; kTimeout where there was none.
-  Registers ask(const ModbusRequest& request) {
+  /// The registers, or what was wrong with the reply; kTimeout where there was none.
+  Registers cached_exchange(const ModbusRequest& request) {
     const auto key = std::tuple(request.unit, request.function, request.address, request.count);
-    if (const auto known = answers_.find(key); known != answers_.end()) return known->second;
-    const Registers answer = exchange(request);
-    answers_.emplace(key, answer);
-    return answer;
+    if (const auto known = replies_.find(key); known != replies_.end()) return known->second;
+    const Registers reply = exchange(request);
+    replies_.emplace(key, reply);
+    return reply;
   }
 
  private:
@@ -60,7 +60,7 @@ class ProbedLine {
     constexpr ModbusRefusal kSilence{Refusal::kTimeout};
     std::array<std::uint8_t, kModbusMaxMessage> buffer{};
     request.transaction = ++transaction_;
-    // A TCP peer that is no Modbus server may close the connection.
+    // A TCP peer that is not a Modbus server may close the connection.
     if (!connection_->is_open() && !connection_->open(interruption_)) return kSilence;
     connection_->settle(buffer, patience_, interruption_);
     if (!connection_->send(request, patience_)) {
@@ -80,16 +80,16 @@ class ProbedLine {
   const ModbusPatience patience_;
   const Interruption& interruption_;
   std::unique_ptr<ModbusConnection> connection_;
-  std::map<std::tuple<std::uint8_t, std::uint8_t, std::uint16_t, std::uint16_t>, Registers> answers_;
+  std::map<std::tuple<std::uint8_t, std::uint8_t, std::uint16_t, std::uint16_t>, Registers> replies_;
   std::uint16_t transaction_ = 0;
 };
 
-/// Does this answer come from a slave? A gateway's exception that none is there does not count.
-bool is_sign_of_life(const Registers& answer) {
-  return answer || (answer.error().why == Refusal::kException && !is_gateway_silence(answer.error().exception));
+/// Does this reply come from a slave? A gateway's exception that none is there does not count.
+bool is_sign_of_life(const Registers& reply) {
+  return reply || (reply.error().why == Refusal::kException && !is_gateway_silence(reply.error().exception));
 }
 
-/// Enters the value of one answer into `fit`. False: it is not plausible. A mark for "no value" does, but not in place
+/// Enters the value of one reply into `fit`. False: it is not plausible. A mark for "no value" does, but not in place
 /// of the speed.
 bool take(const ModbusProfile& profile, const ModbusRead& read, const ModbusRegisters& registers, ModbusFit& fit) {
   for (const ModbusMeasure measure : read.measures) {
@@ -106,7 +106,7 @@ bool take(const ModbusProfile& profile, const ModbusRead& read, const ModbusRegi
   return true;
 }
 
-/// The profile's values on that line, if all of its reads are answered with plausible values.
+/// The profile's values on that line, if all of its reads get replies with plausible values.
 std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& profile,
                                 const std::vector<ModbusRead>& reads, ProbedLine& line) {
   ModbusFit fit{.profile = name,
@@ -118,7 +118,7 @@ std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& pr
                 .direction_slave = {}};
   if (profile.direction) fit.direction_slave = profile.direction->slave;
   for (const ModbusRead& read : reads) {
-    const Registers registers = line.ask(read.request);
+    const Registers registers = line.cached_exchange(read.request);
     if (!registers || !take(profile, read, *registers, fit)) return std::nullopt;
   }
   return fit;
@@ -129,23 +129,23 @@ std::optional<ModbusFit> vane_fit_of(const NamedModbusProfile& named, std::uint8
   ModbusProfile profile = named.profile;
   profile.direction->slave = id;
   auto reads = plan_modbus_reads(profile, true);
-  const auto is_direction = [](const ModbusRead& read) { return read.tells(ModbusMeasure::kDirection); };
+  const auto is_direction = [](const ModbusRead& read) { return read.contains(ModbusMeasure::kDirection); };
   std::erase_if(reads, [&](const ModbusRead& read) { return !is_direction(read); });
   return fit_of(named.name, profile, reads, line);
 }
 
-/// Does a slave of this id answer? Devices that ignore requests for registers that they do not have are asked for those
-/// of their own profile, with its line settings.
-bool answers_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
+/// Does a slave of this id reply? For devices that ignore requests for registers that they do not have, those of their
+/// own profile are read, with its line settings.
+bool replies_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
   for (ModbusRequest knock : kKnocks) {
     knock.unit = id;
-    if (is_sign_of_life(line.ask(knock))) return true;
+    if (is_sign_of_life(line.cached_exchange(knock))) return true;
   }
   return std::ranges::any_of(plan.profiles, [&](const NamedModbusProfile& named) {
     if (has_side_effects(named.profile) || !is_home_of(settings, named.profile)) return false;
     const auto reads = plan_modbus_reads(named.profile);
     return std::ranges::any_of(reads, [&](const ModbusRead& read) {
-      return read.request.unit == id && is_sign_of_life(line.ask(read.request));
+      return read.request.unit == id && is_sign_of_life(line.cached_exchange(read.request));
     });
   });
 }
@@ -166,14 +166,14 @@ std::vector<ModbusFit> fits_of(std::uint8_t id, const ModbusLine& settings, cons
     fits.push_back(*std::move(fit));
   }
 
-  // Nothing? Then perhaps the vane of a pair whose cup is elsewhere.
+  // No fit: it may be the vane of a pair whose cup is elsewhere.
   const bool may_be_vane = fits.empty();
   for (const NamedModbusProfile& named : plan.profiles) {
     if (!may_be_vane || has_side_effects(named.profile) || has_one_slave(named.profile)) continue;
     if (auto fit = vane_fit_of(named, id, line)) fits.push_back(*std::move(fit));
   }
 
-  // What explains most comes first, and then what has not been set otherwise.
+  // The fits with the most quantities come first, and among them those with factory settings.
   std::ranges::stable_sort(fits, std::greater<>(), [](const ModbusFit& fit) {
     return std::tuple(fit.direction_deg.has_value(), fit.gust_m_s.has_value(), fit.is_at_home);
   });
@@ -193,7 +193,7 @@ Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbe
     for (const std::uint8_t id : plan.ids) {
       if (interruption.is_set()) return hits;
       progress(settings, id, done++ / all);
-      if (!answers_at_all(id, settings, plan, line)) continue;
+      if (!replies_at_all(id, settings, plan, line)) continue;
       ++hits;
       found({.line = settings, .id = id, .fits = fits_of(id, settings, plan, line, interruption)});
     }

@@ -11,7 +11,7 @@
 
 namespace yuragi {
 
-/// A profile under the name by which a configuration asks for it.
+/// A profile and its name in a configuration.
 struct NamedModbusProfile {
   std::string name;
   ModbusProfile profile;
@@ -20,13 +20,13 @@ struct NamedModbusProfile {
 /// Where to look for Modbus devices.
 struct ModbusProbePlan {
   std::vector<ModbusLine> lines;  ///< the same port or host with each of its possible settings, the likeliest first
-  std::vector<std::uint8_t> ids;  ///< slaves to ask
+  std::vector<std::uint8_t> ids;  ///< slave ids to try
   std::vector<NamedModbusProfile> profiles;
   Nanoseconds response_timeout = std::chrono::milliseconds(200);
-  bool tries_all_lines = false;  ///< go on after a line on which a slave answered
+  bool tries_all_lines = false;  ///< continue after a line on which a slave replied
 };
 
-/// A profile whose registers a device answers with plausible values.
+/// A profile for whose registers a device replies with plausible values.
 struct ModbusFit {
   std::string profile;  ///< by the name that a configuration uses
   std::string device;
@@ -38,7 +38,7 @@ struct ModbusFit {
   bool is_at_home = false;  ///< line settings and ids are those of the profile itself
 };
 
-/// A slave that answered.
+/// A slave that replied.
 struct ModbusHit {
   ModbusLine line;
   std::uint8_t id = 0;
@@ -51,7 +51,7 @@ using ModbusProbeProgress = std::function<void(const ModbusLine& line, std::uint
 /// Called with each slave that is found, at once.
 using ModbusProbeFound = std::function<void(const ModbusHit& hit)>;
 
-/// Requests a register or two from every id on every line, and the profiles' registers from those that answer. Reads
+/// Requests a register or two from every id on every line, and the profiles' registers from those that reply. Reads
 /// only, and leaves out every profile in which a reading has side effects. Returns how many slaves were found, or why a
 /// line cannot be opened. Ends soon after `interruption` was set.
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
@@ -62,7 +62,7 @@ Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbe
 std::vector<ModbusLine> likely_modbus_lines(const std::string& device, const std::vector<NamedModbusProfile>& profiles,
                                             const std::vector<int>& bauds, const std::vector<char>& parities);
 
-/// Every profile that is shipped, in the order of their names. `directory` is looked into first.
+/// Every profile that is shipped, in the order of their names. `directory` is searched first.
 std::vector<NamedModbusProfile> shipped_modbus_profiles(const std::string& directory);
 
 /// The [[sensor]] table for a configuration, for a fit that has a speed. `device` is the name of the serial port to

@@ -19,7 +19,7 @@ inline constexpr std::array<std::int64_t, 8> kModbusBauds = {1200, 2400, 4800, 9
 /// drivers/modbus/profiles/README.md lists the keys, drivers/SOURCES.md S1 the devices and their documents.
 struct ModbusProfile {
   std::string name;      ///< of the device, for people
-  std::string source;    ///< where its register map was read
+  std::string source;    ///< the document with its register map
   std::string revision;  ///< of the device or its firmware, where the map differs among them
 
   bool is_serial = true;  ///< its native transport; a serial device can also be reached over TCP, through a gateway
@@ -28,8 +28,8 @@ struct ModbusProfile {
   int stop_bits = 1;
 
   Nanoseconds poll_interval = std::chrono::milliseconds(250);     ///< more frequent requests bring nothing new
-  Nanoseconds min_gap{0};                                         ///< from an answer to the next request
-  Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< longest wait for an answer
+  Nanoseconds min_gap{0};                                         ///< from a reply to the next request
+  Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< longest wait for a reply
   Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< serial line: silence that ends a message
   Nanoseconds delay_after_open{0};                                ///< from opening to the first request
   Nanoseconds warm_up{0};                                         ///< from opening until readings are valid
@@ -40,14 +40,14 @@ struct ModbusProfile {
 
   ModbusQuantity speed;
   std::optional<ModbusQuantity> direction;
-  std::optional<ModbusQuantity> gust;  ///< the strongest of the device's own recent past
+  std::optional<ModbusQuantity> gust;  ///< the device's own gust: its strongest recent speed
 };
 
 /// Reads a profile's text. Throws std::runtime_error "file:line:column: key: what is wrong, what is allowed"; `file` is
 /// used in that text only. Keys that no profile has are refused.
 ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file);
 
-/// The device has another id than in the profile: the speed moves there, and all else that was on the same slave.
+/// Sets the id of the slave that measures the speed, and of all other quantities on the same slave.
 void set_slave(ModbusProfile& profile, std::uint8_t id);
 
 /// Finds and reads a profile: a path, if `name` contains '/' or ends in ".toml"; otherwise NAME.toml in `directory` (if

@@ -12,16 +12,16 @@ namespace {
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
 constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
 
-/// Does a gateway answer for a slave that does not?
+/// Does a gateway report that a slave does not reply?
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
   return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == Refusal::kException &&
          is_gateway_silence(trouble.refusal.exception);
 }
 
-/// "without direction and gust", for what this read should have brought.
+/// "without direction and gust", for the quantities of this read.
 std::string without(const ModbusRead& read) {
-  const bool has_direction = read.tells(ModbusMeasure::kDirection);
-  const bool has_gust = read.tells(ModbusMeasure::kGust);
+  const bool has_direction = read.contains(ModbusMeasure::kDirection);
+  const bool has_gust = read.contains(ModbusMeasure::kGust);
   return fmt::format("without {}{}{}", has_direction ? "direction" : "", has_direction && has_gust ? " and " : "",
                      has_gust ? "gust" : "");
 }
@@ -43,7 +43,7 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
   const bool is_direction_apart = direction_bus_ != bus_;
   for (const ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
     ModbusBus* const line =
-        is_direction_apart && what.tells(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
+        is_direction_apart && what.contains(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
     reads_.push_back(
         {.what = what, .bus = line, .backoff = Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed), .trouble = {}});
   }
@@ -67,33 +67,33 @@ Result<MonoTime, Failure> ModbusSensor::open(const Clock& clock) {
 
 Result<MonoTime, Failure> ModbusSensor::work(const Clock& clock, SensorSink& sink) {
   if (step_ > 0) {
-    ask_more(reads_[step_], clock, sink);
+    read_more(reads_[step_], clock, sink);
     return go_on(clock.now().mono, sink);
   }
-  // The line may have been opened anew since, by another sensor or after silence.
+  // The line may have been reopened since, by another sensor or after silence.
   const MonoTime opened_before = opened_at_;
   auto begin = open(clock);
   if (!begin || opened_at_ != opened_before) return begin;
-  return ask_first(clock, sink);
+  return read_first(clock, sink);
 }
 
-Result<MonoTime, Failure> ModbusSensor::ask_first(const Clock& clock, SensorSink& sink) {
+Result<MonoTime, Failure> ModbusSensor::read_first(const Clock& clock, SensorSink& sink) {
   Read& read = reads_.front();
   const MonoTime ready_at = bus_->ready_at(read.what.request.unit);
   round_start_ = clock.now().mono;
   if (ready_at > round_start_) return ready_at;
 
-  const ModbusBus::Answer answer = ask(read, clock, sink);
+  const ModbusBus::Reply reply = exchange(read, clock, sink);
   const Instant now = clock.now();
-  if (!answer) {
-    if (answer.error().kind == ModbusTrouble::Kind::kInterrupted) return now.mono;
-    if (answer.error().kind == ModbusTrouble::Kind::kLost) return Failure{explain(read, answer.error())};
-    report_unusable(sink, explain(read, answer.error()));
-    return has_cost_time(answer.error()) ? now.mono + read.backoff.next() : next_round(now.mono);
+  if (!reply) {
+    if (reply.error().kind == ModbusTrouble::Kind::kInterrupted) return now.mono;
+    if (reply.error().kind == ModbusTrouble::Kind::kLost) return Failure{explain(read, reply.error())};
+    report_unusable(sink, explain(read, reply.error()));
+    return has_cost_time(reply.error()) ? now.mono + read.backoff.next() : next_round(now.mono);
   }
   read.backoff.reset();
 
-  const auto speed_m_s = decode_speed_m_s(profile_.speed, registers_of(profile_.speed, read.what.request, *answer));
+  const auto speed_m_s = decode_speed_m_s(profile_.speed, registers_of(profile_.speed, read.what.request, *reply));
   if (!speed_m_s) {
     sink.refused(speed_m_s.error());
     report_connected(sink,
@@ -103,34 +103,34 @@ Result<MonoTime, Failure> ModbusSensor::ask_first(const Clock& clock, SensorSink
   }
   reading_ = {
       .time = now, .speed_m_s = *speed_m_s, .direction_deg = {}, .gust_m_s = {}, .quality = ReadingQuality::kGood};
-  take(read, *answer, sink);
+  take(read, *reply, sink);
   return go_on(now.mono, sink);
 }
 
-void ModbusSensor::ask_more(Read& read, const Clock& clock, SensorSink& sink) {
+void ModbusSensor::read_more(Read& read, const Clock& clock, SensorSink& sink) {
   // The vane's own line, where it has one, is opened here; without it there is no direction.
   if (const auto opened = read.bus->open(interruption_, clock); !opened) {
     read.trouble = without(read.what) + ": " + opened.error().message;
     read.not_before = clock.now().mono + read.backoff.next();
     return;
   }
-  const ModbusBus::Answer answer = ask(read, clock, sink);
-  if (answer) {
+  const ModbusBus::Reply reply = exchange(read, clock, sink);
+  if (reply) {
     read.backoff.reset();
-    take(read, *answer, sink);
+    take(read, *reply, sink);
     return;
   }
-  read.trouble = without(read.what) + ": " + explain(read, answer.error());
+  read.trouble = without(read.what) + ": " + explain(read, reply.error());
   read.not_before = clock.now().mono + read.backoff.next();
 }
 
-ModbusBus::Answer ModbusSensor::ask(const Read& read, const Clock& clock, SensorSink& sink) {
+ModbusBus::Reply ModbusSensor::exchange(const Read& read, const Clock& clock, SensorSink& sink) {
   const ModbusPatience patience{.response_timeout = profile_.response_timeout, .byte_timeout = profile_.byte_timeout};
-  return read.bus->ask(read.what.request, patience, interruption_, clock, sink);
+  return read.bus->exchange(read.what.request, patience, interruption_, clock, sink);
 }
 
 MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {
-  // What is due and has not been asked in this round.
+  // The reads that are due and have not been made in this round.
   while (++step_ < reads_.size()) {
     const Read& read = reads_[step_];
     const bool is_due = now >= read.not_before && now >= read.bus->ready_at(read.what.request.unit);
@@ -138,7 +138,7 @@ MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {
   }
   step_ = 0;
 
-  // All that the round brought goes out together.
+  // All values of the round are published together.
   if (reading_.time.mono < opened_at_ + profile_.warm_up) {
     report_connected(sink, profile_.name + " at " + bus_->where() + " is warming up");
     return next_round(now);
@@ -161,8 +161,8 @@ void ModbusSensor::take(Read& read, const ModbusRegisters& registers, SensorSink
   const auto part = [&](const ModbusQuantity& quantity) {
     return registers_of(quantity, read.what.request, registers);
   };
-  if (read.what.tells(ModbusMeasure::kDirection)) take_direction(read, part(*profile_.direction), sink);
-  if (read.what.tells(ModbusMeasure::kGust)) take_gust(read, part(*profile_.gust), sink);
+  if (read.what.contains(ModbusMeasure::kDirection)) take_direction(read, part(*profile_.direction), sink);
+  if (read.what.contains(ModbusMeasure::kGust)) take_gust(read, part(*profile_.gust), sink);
 }
 
 void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink) {

@@ -12,11 +12,11 @@
 
 namespace yuragi {
 
-/// A wind sensor of one or two Modbus slaves, asked in rounds, one exchange a poll(): the speed, then what did not come
-/// along with it (direction, gust).
+/// A wind sensor of one or two Modbus slaves, read in rounds, one exchange per poll(): the speed, then what did not
+/// come along with it (direction, gust).
 ///
 /// Each round publishes one reading at most, timed when the speed arrived. Without a speed there is none; without a
-/// direction or gust it goes without. A slave that does not answer is asked less and less often, so that it does
+/// direction or gust it goes without. A slave that does not reply gets fewer requests, so that it does
 /// not slow the others down: after waits that double from 0.25 s up to 10 s.
 class ModbusSensor final : public ReopeningSensor {
  public:
@@ -39,13 +39,13 @@ class ModbusSensor final : public ReopeningSensor {
     ModbusRead what;
     ModbusBus* bus;
     Backoff backoff;
-    MonoTime not_before{};  ///< its slave has not answered: not asked before
+    MonoTime not_before{};  ///< after a missing reply: no request before this
     std::string trouble;    ///< why the readings come without it; empty if they do not
   };
 
-  Result<MonoTime, Failure> ask_first(const Clock& clock, SensorSink& sink);
-  void ask_more(Read& read, const Clock& clock, SensorSink& sink);
-  ModbusBus::Answer ask(const Read& read, const Clock& clock, SensorSink& sink);
+  Result<MonoTime, Failure> read_first(const Clock& clock, SensorSink& sink);
+  void read_more(Read& read, const Clock& clock, SensorSink& sink);
+  ModbusBus::Reply exchange(const Read& read, const Clock& clock, SensorSink& sink);
   /// The next read of this round that is due, or the end of the round.
   MonoTime go_on(MonoTime now, SensorSink& sink);
   MonoTime next_round(MonoTime now) const;
@@ -59,12 +59,12 @@ class ModbusSensor final : public ReopeningSensor {
   const std::shared_ptr<ModbusBus> bus_;
   const std::shared_ptr<ModbusBus> direction_bus_;
   Interruption interruption_;
-  std::vector<Read> reads_;  ///< the first one brings the speed
+  std::vector<Read> reads_;  ///< the first one reads the speed
 
   MonoTime opened_at_{};
   MonoTime round_start_{};
   std::size_t step_ = 0;  ///< which of the reads is next
-  WindReading reading_;   ///< of the round that is under way
+  WindReading reading_;   ///< of the present round
 };
 
 }  // namespace yuragi

@@ -64,16 +64,16 @@ const std::array kMqttParameters = {
     Parameter{.name = "ca_file",
               .unit = "",
               .default_value = std::string(""),
-              .help = "the CA certificate (PEM) of the broker; empty: those that this system trusts"},
+              .help = "the CA certificate (PEM) of the broker; empty: those of the system"},
     Parameter{.name = "preset",
               .unit = "",
               .default_value = std::string("number"),
-              .help = "where the wind stands in common messages; what is set besides changes it",
+              .help = "settings for a common publisher; topics, paths and unit that are set override them",
               .choices = kMqttPresetNames},
     Parameter{.name = "topic",
               .unit = "",
               .default_value = std::string(""),
-              .help = "the topic of the speed, and of all that has no topic of its own; + stands for any level"},
+              .help = "the topic of the speed, and of quantities without a topic of their own; + matches any level"},
     Parameter{.name = "speed_path",
               .unit = "",
               .default_value = std::string(""),
@@ -99,13 +99,13 @@ const std::array kMqttParameters = {
               .default_value = 60.0,
               .min = 0.1,
               .max = 86400.0,
-              .help = "a direction or gust from a topic of its own goes with the speeds of so long"},
+              .help = "a direction or gust from a topic of its own is used for this long"},
     Parameter{.name = "silence",
               .unit = "s",
               .default_value = 900.0,
               .min = 0.1,
               .max = 86400.0,
-              .help = "no wind for so long means that whoever publishes it has stopped"},
+              .help = "without a message for this long the publisher counts as stopped"},
     Parameter{.name = "keep_alive",
               .unit = "s",
               .default_value = std::int64_t{15},
@@ -152,21 +152,21 @@ class MqttSensor final : public ReopeningSensor {
     if (const auto connected = client_->connect(); !connected) return connected.error();
     direction_ = {};
     gust_ = {};
-    has_heard_ = false;
-    heard_at_ = clock.now().mono;
-    return heard_at_;
+    has_received_ = false;
+    received_at_ = clock.now().mono;
+    return received_at_;
   }
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
-    if (!has_heard_) report_unusable(sink, "waits for wind on " + where_ + ": a retained message is none");
+    if (!has_received_) report_unusable(sink, "waits for wind on " + where_ + ": a retained message is none");
     MqttMessage message;
     const MqttStatus status = client_->receive(message, kMqttWait);
     const Instant now = clock.now();
     if (status == MqttStatus::kInterrupted) return Failure{"interrupted"};
     if (status == MqttStatus::kLost) return Failure{client_->trouble()};
     if (status == MqttStatus::kMessage) take(message, now, sink);
-    if (now.mono - heard_at_ >= settings_.silence) {
-      has_heard_ = true;  // the status now reports more than waiting
+    if (now.mono - received_at_ >= settings_.silence) {
+      has_received_ = true;  // the status now reports more than waiting
       report_unusable(sink, fmt::format("no wind has come on {} for {:g} s: check that whoever publishes it runs",
                                         where_, seconds(settings_.silence)));
     }
@@ -206,8 +206,8 @@ class MqttSensor final : public ReopeningSensor {
     const auto plausible = checked(wind);
     if (!plausible) return sink.refused(plausible.error());
 
-    has_heard_ = true;
-    heard_at_ = now.mono;
+    has_received_ = true;
+    received_at_ = now.mono;
     report_connected(sink, where_);
     sink.reading({.time = now,
                   .speed_m_s = *plausible->speed_m_s,
@@ -225,8 +225,8 @@ class MqttSensor final : public ReopeningSensor {
   std::unique_ptr<MqttClient> client_;
   HeldValue direction_;
   HeldValue gust_;
-  bool has_heard_ = false;  // of the wind, since it connected
-  MonoTime heard_at_{};     // or since when it could have
+  bool has_received_ = false;  // of the wind, since it connected
+  MonoTime received_at_{};     // or since when it could have
 };
 
 /// Throws, naming the setting, for what can be neither subscribed to nor found.

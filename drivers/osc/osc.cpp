@@ -29,15 +29,15 @@ const std::array kOscParameters = {
               .default_value = std::int64_t{9000},
               .min = 1,
               .max = 65535,
-              .help = "the UDP port that the messages come to"},
+              .help = "the UDP port that messages are received on"},
     Parameter{.name = "host",
               .unit = "",
               .default_value = std::string(""),
-              .help = "listen at this address of this machine only, or at this multicast address; empty: at all"},
+              .help = "local address to listen on, or a multicast address; empty: all"},
     Parameter{.name = "sender",
               .unit = "",
               .default_value = std::string(""),
-              .help = "take messages from this address only; empty: from any"},
+              .help = "accept messages from this address only; empty: from any"},
     Parameter{.name = "address",
               .unit = "",
               .default_value = std::string("/wind"),
@@ -70,7 +70,7 @@ const std::array kOscParameters = {
               .default_value = 5.0,
               .min = 0.1,
               .max = 86400.0,
-              .help = "nothing for so long means that the sender has stopped"},
+              .help = "without a message for this long the sender counts as stopped"},
 };
 
 struct OscSettings {
@@ -117,21 +117,22 @@ class OscSensor final : public ReopeningSensor {
  protected:
   Result<MonoTime, Failure> open(const Clock& clock) override {
     if (const auto opened = port_->open(); !opened) return opened.error();
-    has_heard_ = false;
-    heard_at_ = clock.now().mono;
-    return heard_at_;
+    has_received_ = false;
+    received_at_ = clock.now().mono;
+    return received_at_;
   }
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
-    if (!has_heard_) report_unusable(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
+    if (!has_received_)
+      report_unusable(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
     const ByteArrival arrival = port_->read(buffer_, kOscWait);
     const Instant now = clock.now();
     if (arrival.status == ByteStatus::kInterrupted) return Failure{"interrupted"};
     if (arrival.status == ByteStatus::kLost || arrival.status == ByteStatus::kEnd) return Failure{"lost " + where_};
     if (arrival.status == ByteStatus::kForeign) sink.refused(Refusal::kNotMine);
     if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
-    if (now.mono - heard_at_ >= settings_.silence) {
-      has_heard_ = true;  // the status now reports more than waiting
+    if (now.mono - received_at_ >= settings_.silence) {
+      has_received_ = true;  // the status now reports more than waiting
       report_unusable(
           sink,
           fmt::format("no wind has come to {} for {:g} s: check that the sender runs, that it sends {} there, and "
@@ -155,8 +156,8 @@ class OscSensor final : public ReopeningSensor {
     if (!osc_address_matches(message.address, settings_.address)) return sink.refused(Refusal::kNotMine);
     const auto wind = wind_of(message, settings_);
     if (!wind) return sink.refused(wind.error());
-    has_heard_ = true;
-    heard_at_ = now.mono;
+    has_received_ = true;
+    received_at_ = now.mono;
     report_connected(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
     sink.reading({.time = now,
                   .speed_m_s = *wind->speed_m_s,
@@ -169,8 +170,8 @@ class OscSensor final : public ReopeningSensor {
   std::string where_;
   std::unique_ptr<BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(kLargestDatagram);
-  bool has_heard_ = false;  // of the wind, since it has the port
-  MonoTime heard_at_{};     // or since when it could have
+  bool has_received_ = false;  // of the wind, since it has the port
+  MonoTime received_at_{};     // or since when it could have
 };
 
 std::unique_ptr<Sensor> open_osc(const ParameterValues& values) {

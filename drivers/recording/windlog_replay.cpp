@@ -25,7 +25,7 @@ const std::array<Parameter, 9> kWindlogParameters = {
     Parameter{.name = "file",
               .unit = "",
               .default_value = std::string{},
-              .help = "the recording (.windlog); required; `yuragi import` makes one of a CSV"},
+              .help = "the recording (.windlog); required; `yuragi import` makes one from CSV"},
     Parameter{.name = "rate",
               .unit = "",
               .default_value = 1.0,
@@ -46,12 +46,12 @@ const std::array<Parameter, 9> kWindlogParameters = {
     Parameter{.name = "same_time_of_day",
               .unit = "",
               .default_value = false,
-              .help = "begin, and begin again, where the recording's local time of day is that of now: the first day "
-                      "from `start` on that has it, else what comes next"},
+              .help = "start, and start again, at the present local time of day: on the first day from `start` on that "
+                      "contains it, else at the next later reading"},
     Parameter{.name = "utc_offset",
               .unit = "",
               .default_value = std::string{},
-              .help = "of the clocks where it was recorded, for same_time_of_day: hours ahead of UTC (1, -3.5); empty: "
+              .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: "
                       "this machine's time zone"},
     Parameter{.name = "paused", .unit = "", .default_value = false, .help = "start paused, at the first reading"},
     Parameter{.name = "sensor",
@@ -72,11 +72,11 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
     auto next = play(now, sink);
     if (next) {
       back_off_ = Nanoseconds{0};
-      tell(sink);
+      report(sink);
     } else {
       // The player, if there is one, keeps its place.
       sink.link(LinkState::kConnecting, next.error().message);
-      told_.reset();
+      reported_.reset();
       back_off_ = back_off_ == Nanoseconds{0} ? kFirstBackOff : std::min(2 * back_off_, kMaxBackOff);
       next = now.mono + back_off_;
     }
@@ -98,10 +98,10 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   }
 
  private:
-  /// What the link state is reported about.
+  /// The states that are reported by the link.
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
-  /// Plays what is due; answers when the next reading is.
+  /// Plays what is due; returns when the next reading is due.
   Result<MonoTime, Failure> play(const Instant& now, SensorSink& sink) {
     if (!player_) {
       auto opened = WindlogPlayer::open(file_, options_, now);
@@ -146,12 +146,12 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   }
 
   /// Reports the link state when it has changed.
-  void tell(SensorSink& sink) {
+  void report(SensorSink& sink) {
     const Doing doing = player_->is_finished() ? Doing::kFinished
                         : player_->is_paused() ? Doing::kPaused
                                                : Doing::kPlaying;
-    if (doing == told_) return;
-    told_ = doing;
+    if (doing == reported_) return;
+    reported_ = doing;
     switch (doing) {
       case Doing::kPlaying:
         return sink.link(LinkState::kConnected, "playing " + file_.string());
@@ -174,15 +174,15 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   // Of the sensor's thread.
   std::optional<WindlogPlayer> player_;
   Nanoseconds back_off_{0};
-  std::optional<Doing> told_;
+  std::optional<Doing> reported_;
 
-  mutable std::mutex mutex_;  // of what follows; rare, and never on the animation's way
+  mutable std::mutex mutex_;  // for the members below; seldom locked, and never by the animation
   std::vector<PlayerOrder> waiting_;
   std::uint64_t orders_given_ = 0;
   PlayerReport report_;
 };
 
-/// What `parse` makes of a parameter's text, or an exception that names the parameter.
+/// The result of `parse` for a parameter's text; throws an exception that names the parameter.
 template <class T>
 T value_of(const char* parameter, Result<T, Failure> parsed) {
   if (!parsed) throw std::runtime_error(std::string("windlog: ") + parameter + ": " + parsed.error().message);

@@ -10,7 +10,7 @@
 
 namespace yuragi {
 
-/// What time it is, and a wait until a time: a test may make both. Thread-safe.
+/// The time, and waiting until a time; tests substitute another. Thread-safe.
 class Clock {
  public:
   virtual ~Clock() = default;

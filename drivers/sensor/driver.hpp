@@ -16,16 +16,17 @@ struct DriverDescription {
   std::string_view name;
   std::string_view summary;
   std::span<const Parameter> parameters;
-  /// Makes a sensor of resolved values, without touching the device: poll() does that. Throws std::runtime_error,
-  /// saying what to do, where the values cannot work together or name a file that is not there.
+  /// Constructs a sensor from resolved values, without touching the device: poll() does that. Throws
+  /// std::runtime_error, saying what to do, where the values contradict each other or name a missing file.
   std::unique_ptr<Sensor> (*open)(const ParameterValues& values);
-  /// What is plugged in that this driver could read; nullptr where there is nothing to plug in. Opens nothing for
-  /// longer than it takes to look at it.
+  /// Finds plugged-in devices that this driver can read; nullptr where nothing can be plugged in. Opens devices only
+  /// briefly.
   std::vector<FoundDevice> (*find)() = nullptr;
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
   /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it
-  /// hangs. It is compared with no other sensor, and beside others only its gusts count, unless configured otherwise.
+  /// is mounted. It is compared with no other sensor, and beside others only its gusts count, unless configured
+  /// otherwise.
   bool is_relative = false;
 };
 

@@ -26,28 +26,28 @@ MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
   }
   if (is_open_) close();
   is_open_ = false;
-  tell(sink, LinkState::kConnecting, next.error().message);
+  report(sink, LinkState::kConnecting, next.error().message);
   next_poll_ = clock.now().mono + backoff_.next();
   return next_poll_;
 }
 
 void ReopeningSensor::report_connected(SensorSink& sink, const std::string& detail) {
   backoff_.reset();
-  tell(sink, LinkState::kConnected, detail);
+  report(sink, LinkState::kConnected, detail);
 }
 
 void ReopeningSensor::report_unusable(SensorSink& sink, const std::string& detail) {
-  tell(sink, LinkState::kConnecting, detail);
+  report(sink, LinkState::kConnecting, detail);
 }
 
 void ReopeningSensor::report_finished(SensorSink& sink, const std::string& detail) {
-  tell(sink, LinkState::kFinished, detail);
+  report(sink, LinkState::kFinished, detail);
 }
 
-void ReopeningSensor::tell(SensorSink& sink, LinkState state, const std::string& detail) {
-  if (state == told_state_ && detail == told_detail_) return;
-  told_state_ = state;
-  told_detail_ = detail;
+void ReopeningSensor::report(SensorSink& sink, LinkState state, const std::string& detail) {
+  if (state == reported_state_ && detail == reported_detail_) return;
+  reported_state_ = state;
+  reported_detail_ = detail;
   sink.link(state, detail);
 }
 

@@ -33,28 +33,28 @@ class ReopeningSensor : public Sensor {
   /// Closes the device. Called after a failed work() too; never twice.
   virtual void close() noexcept = 0;
 
-  /// Has the device come back, as far as can be seen without waiting? Asked at each poll() that comes too early for the
-  /// next attempt to open it, which is then made at once.
+  /// Has the device returned, as far as can be seen without waiting? Called at each poll() before the next attempt to
+  /// open it is due; if true, the attempt is made at once.
   virtual bool poll_for_return() { return false; }
 
   /// For work(): the device sends valid messages. `detail` is for people: what it is, and where.
   void report_connected(SensorSink& sink, const std::string& detail);
   /// For work(): the device is open, but sends no valid messages; why, and what to do.
   void report_unusable(SensorSink& sink, const std::string& detail);
-  /// For work(): what there was to read has been read to its end.
+  /// For work(): the input has been read to its end.
   void report_finished(SensorSink& sink, const std::string& detail);
 
  private:
-  void tell(SensorSink& sink, LinkState state, const std::string& detail);
+  void report(SensorSink& sink, LinkState state, const std::string& detail);
 
   Backoff backoff_;
   bool is_open_ = false;
   MonoTime next_poll_{};
-  LinkState told_state_ = LinkState::kConnecting;
-  std::string told_detail_;
+  LinkState reported_state_ = LinkState::kConnecting;
+  std::string reported_detail_;
 };
 
-/// A seed for a sensor of this name: any number will do that differs among the sensors of an installation.
+/// A seed for a sensor of this name: numbers that differ among the sensors of an installation.
 std::uint32_t seed_of(std::string_view name) noexcept;
 
 }  // namespace yuragi

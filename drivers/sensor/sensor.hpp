@@ -11,7 +11,7 @@
 
 namespace yuragi {
 
-/// Which way a message went.
+/// The direction of a message.
 enum class RawDirection : std::uint8_t { kReceived, kSent };
 
 /// Receives a sensor's readings, link state, refusals and raw messages. Called on the thread that polls; strings are

@@ -22,7 +22,7 @@ const std::array kSyntheticParameters = {
               .max = 1.0,
               .help = "turbulence intensity: standard deviation over mean speed"},
     Parameter{
-        .name = "rate", .unit = "Hz", .default_value = 4.0, .min = 0.01, .max = 100.0, .help = "readings a second"},
+        .name = "rate", .unit = "Hz", .default_value = 4.0, .min = 0.01, .max = 100.0, .help = "readings per second"},
     Parameter{.name = "seed",
               .unit = "",
               .default_value = std::int64_t{1},

@@ -19,41 +19,41 @@ const std::vector<Parameter>& parameters_of_every_port() {
       {.name = "transport",
        .unit = "",
        .default_value = std::string("serial"),
-       .help = "serial: a serial port; tcp: a server to connect to; udp: datagrams that are sent to us; file: a file "
+       .help = "serial: a serial port; tcp: a server to connect to; udp: datagrams sent to this machine; file: a file "
                "or named pipe",
        .choices = kByteTransports},
       {.name = "device",
        .unit = "",
        .default_value = std::string(""),
-       .help = "serial: the port, best by its stable name in /dev/serial/by-id"},
+       .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
       {.name = "baud",
        .unit = "bit/s",
        .default_value = std::int64_t{9600},
        .min = kBytePortBauds.front(),
        .max = kBytePortBauds.back(),
-       .help = "serial: as the device is set; NMEA 0183 has 4800, most anemometers 9600 or 19200"},
+       .help = "serial: as set in the device; NMEA 0183 has 4800, most anemometers 9600 or 19200"},
       {.name = "data_bits",
        .unit = "",
        .default_value = std::int64_t{8},
        .min = 7,
        .max = 8,
-       .help = "serial: in each character"},
+       .help = "serial: data bits of each character"},
       {.name = "parity",
        .unit = "",
        .default_value = std::string("none"),
-       .help = "serial: behind the bits of each character",
+       .help = "serial: parity bit of each character",
        .choices = kByteParities},
       {.name = "stop_bits",
        .unit = "",
        .default_value = std::int64_t{1},
        .min = 1,
        .max = 2,
-       .help = "serial: behind each character"},
+       .help = "serial: stop bits of each character"},
       {.name = "host",
        .unit = "",
        .default_value = std::string(""),
        .help = "tcp: name or address of the server; udp: the local address to listen at, or a multicast address; "
-               "empty: all of this machine's"},
+               "empty: all addresses of this machine"},
       {.name = "port",
        .unit = "",
        .default_value = std::int64_t{10110},
@@ -63,38 +63,38 @@ const std::vector<Parameter>& parameters_of_every_port() {
       {.name = "sender",
        .unit = "",
        .default_value = std::string(""),
-       .help = "udp: take only what comes from this address; empty: from any"},
+       .help = "udp: accept datagrams from this address only; empty: from any"},
       {.name = "file", .unit = "", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
       {.name = "play_rate",
        .unit = "Hz",
        .default_value = 0.0,
        .min = 0.0,
        .max = 1e6,
-       .help = "file: 0 follows what is appended to it; otherwise it is played once from its beginning, so many "
-               "readings a second"},
+       .help = "file: 0 follows what is appended to it; otherwise it is played once from its beginning, with this many "
+               "readings per second"},
       {.name = "request",
        .unit = "",
        .default_value = std::string(""),
-       .help = "what to send to get one answer, with its line end (\"?\\r\\n\"); empty: the format's own"},
+       .help = "request for one reading, with its line end (\"?\\r\\n\"); empty: the format's own"},
       {.name = "poll_interval",
        .unit = "s",
        .default_value = 0.0,
        .min = 0.0,
        .max = 3600.0,
-       .help = "from one request to the next; 0: the device speaks by itself"},
+       .help = "interval between requests; 0: the device sends without requests"},
       {.name = "response_timeout",
        .unit = "s",
        .default_value = 0.5,
        .min = 0.05,
        .max = 60.0,
-       .help = "longest wait for the answer to a request"},
+       .help = "longest wait for the reply to a request"},
       {.name = "silence_timeout",
        .unit = "s",
        .default_value = 0.0,
        .min = 0.0,
        .max = 86400.0,
-       .help = "a device that says nothing for so long is opened again; 0: ten times its usual pause between "
-               "readings, at least 6 s, and twice as long after each time in vain"},
+       .help = "a device that is silent for this long is opened again; 0: ten times its usual pause between readings, "
+               "at least 6 s, doubled after each attempt without a reading"},
   };
   return kParameters;
 }
@@ -105,13 +105,13 @@ std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, dou
   std::vector<Parameter> all = std::move(own);
   const auto& others = parameters_of_every_port();
   all.insert(all.end(), others.begin(), others.end());
-  all.push_back({.name = "delay_after_open",
-                 .unit = "s",
-                 .default_value = delay_after_open_s,
-                 .min = 0.0,
-                 .max = 60.0,
-                 .help = "what comes so soon after opening is not believed; an Arduino starts anew whenever its port "
-                         "is opened"});
+  all.push_back(
+      {.name = "delay_after_open",
+       .unit = "s",
+       .default_value = delay_after_open_s,
+       .min = 0.0,
+       .max = 60.0,
+       .help = "messages are discarded for this long after opening; an Arduino restarts whenever its port is opened"});
   return all;
 }
 
@@ -147,8 +147,8 @@ BytePortAddress byte_port_address_of(const ParameterValues& values) {
     if (address.path.empty()) throw std::runtime_error("file: is missing; transport file needs its path");
   }
 
-  const bool can_be_asked = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
-  if (values.number("poll_interval") > 0.0 && !can_be_asked) {
+  const bool can_be_polled = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
+  if (values.number("poll_interval") > 0.0 && !can_be_polled) {
     throw std::runtime_error("poll_interval: transport " + transport + " goes one way; a request needs serial or tcp");
   }
   return address;

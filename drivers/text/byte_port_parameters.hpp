@@ -8,7 +8,7 @@
 
 namespace yuragi {
 
-/// The parameters of drivers that read text from a byte port: where it comes from, how it is asked for, and when a
+/// The parameters of drivers that read text from a byte port: its source, the request for it, and when a
 /// silent device is opened again. `own` are the driver's, which come first; `delay_after_open_s` is a default.
 std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s);
 

@@ -29,14 +29,14 @@ const std::array kLineReading = {
     Parameter{.name = "separator",
               .unit = "",
               .default_value = std::string("comma"),
-              .help = "between columns; blank: any number of blanks and tabs",
+              .help = "between columns; blank: any number of spaces and tabs",
               .choices = kLineSeparators},
     Parameter{.name = "speed_column",
               .unit = "",
               .default_value = std::int64_t{1},
               .min = 0,
               .max = static_cast<double>(kMaxTextFields),
-              .help = "the first column is 1; 0: none"},
+              .help = "number of the column, from 1; 0: none"},
     Parameter{.name = "direction_column",
               .unit = "",
               .default_value = std::int64_t{2},
@@ -61,16 +61,17 @@ const std::array kLineReading = {
     Parameter{.name = "speed_scale",
               .unit = "",
               .default_value = 1.0,
-              .help = "speed and gust are the number times this (0.1 for tenths) plus speed_offset"},
-    Parameter{.name = "speed_offset", .unit = "", .default_value = 0.0, .help = "in the speed's unit"},
+              .help = "factor on speed and gust (0.1 for tenths), before speed_offset is added"},
+    Parameter{
+        .name = "speed_offset", .unit = "", .default_value = 0.0, .help = "added to speed and gust, in speed_unit"},
     Parameter{.name = "direction_scale",
               .unit = "",
               .default_value = 1.0,
-              .help = "the direction in degrees is the number times this (22.5 for points 0 to 15)"},
+              .help = "factor that gives the direction in degrees (22.5 for points 0 to 15)"},
     Parameter{.name = "invalid",
               .unit = "",
               .default_value = std::string(""),
-              .help = "the number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},
+              .help = "number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},
 };
 
 std::vector<Parameter> line_driver_parameters() {
@@ -80,7 +81,7 @@ std::vector<Parameter> line_driver_parameters() {
                  .default_value = 0.0,
                  .min = -360.0,
                  .max = 360.0,
-                 .help = "where the vane's own mark points, clockwise from north"});
+                 .help = "bearing of the vane's north mark, clockwise from north"});
   return with_byte_port_parameters(std::move(own), 2.0);
 }
 const std::vector<Parameter> kLineParameters = line_driver_parameters();
@@ -141,9 +142,9 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   // Only the end of the line before it proves that a line is complete from its beginning on.
   const bool flows =
       settings.text.address.kind == BytePortKind::kSerial || settings.text.address.kind == BytePortKind::kTcpClient;
-  const bool is_asked = settings.text.poll_interval > Nanoseconds::zero();
-  settings.text.doubts_first_line = flows && !is_asked;
-  if (is_asked && settings.text.request.empty()) {
+  const bool is_polled = settings.text.poll_interval > Nanoseconds::zero();
+  settings.text.doubts_first_line = flows && !is_polled;
+  if (is_polled && settings.text.request.empty()) {
     throw std::runtime_error("request: is missing; poll_interval needs something to ask with");
   }
   return settings;
@@ -152,7 +153,7 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
 extern const DriverDescription kLineDriver;
 const DriverDescription kLineDriver{
     .name = "line",
-    .summary = "microcontrollers that print numbers, one reading a line",
+    .summary = "microcontrollers that print numbers, one reading per line",
     .parameters = kLineParameters,
     .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
       const LineSensorSettings settings = line_sensor_settings_of(values);

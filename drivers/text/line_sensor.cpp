@@ -16,11 +16,11 @@ std::size_t shape_of(std::string_view line, char separator) {
 
   // Any number of blanks separates once.
   std::size_t words = 0;
-  bool is_in_word = false;
+  bool is_in_token = false;
   for (const char c : line) {
     const bool is_blank = c == ' ' || c == '\t';
-    if (!is_blank && !is_in_word) ++words;
-    is_in_word = !is_blank;
+    if (!is_blank && !is_in_token) ++words;
+    is_in_token = !is_blank;
   }
   return words;
 }

@@ -1,4 +1,4 @@
-// Anemometers that send text, unasked or on request: NMEA 0183 and its variants (drivers/SOURCES.md S4), and the
+// Anemometers that send text, by themselves or on request: NMEA 0183 and its variants (drivers/SOURCES.md S4), and the
 // formats of Gill, FT Technologies and Lufft, over a serial line, a TCP server, UDP datagrams, a file or a pipe. The
 // formats are described with their decoders: drivers/decode/{nmea,gill,ft,umb}.hpp. Requests:
 //
@@ -31,31 +31,29 @@ const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
         {.name = "format",
          .unit = "",
          .default_value = std::string("auto"),
-         .help = "auto: each line by its look; ft and umb also know how their devices are asked",
+         .help = "auto: detected for each line; ft and umb also send the requests of these devices",
          .choices = kNmeaFormats},
         {.name = "sentences",
          .unit = "",
          .default_value = std::string(""),
-         .help = "nmea: take only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
+         .help = "nmea: accept only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
         {.name = "talker",
          .unit = "",
          .default_value = std::string(""),
          .help =
-             "take only what this one says: two characters before the sentence (WI), Gill's node letter (Q); empty: "
-             "any"},
+             "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q); empty: any"},
         {.name = "reference",
          .unit = "",
          .default_value = std::string("auto"),
-         .help =
-             "which directions to take where a device says several: from north (MWD, MDA), relative to its own mark "
-             "(MWV R, VWR, XDR, Gill, FT, UMB), true (MWV T, VWT); auto: the first of these that it says",
+         .help = "which direction to use where a device sends several: from north (MWD, MDA), relative to its own mark "
+                 "(MWV R, VWR, XDR, Gill, FT, UMB), true (MWV T, VWT); auto: the first of these that it sends",
          .choices = kNmeaReferences},
         {.name = "north_offset",
          .unit = "deg",
          .default_value = 0.0,
          .min = -360.0,
          .max = 360.0,
-         .help = "where the device's own mark points, clockwise from north: added to relative and true directions"},
+         .help = "bearing of the device's north mark, clockwise from north: added to relative and true directions"},
         {.name = "variation",
          .unit = "deg",
          .default_value = 0.0,
@@ -65,19 +63,20 @@ const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
         {.name = "missing_checksum",
          .unit = "",
          .default_value = std::string("auto"),
-         .help = "lines without a checksum; auto: NMEA sentences are accepted over a network and from a file, and "
-                 "refused on a serial line, where nothing else finds a wrong bit; the makers' own formats always have "
-                 "one. A wrong checksum is always refused",
+         .help =
+             "lines without a checksum; auto: NMEA sentences are accepted over a network and from a file, and "
+             "refused on a serial line, where nothing else detects a wrong bit; the makers' own formats always have "
+             "one. A wrong checksum is always refused",
          .choices = kMissingChecksum},
         {.name = "missing_status",
          .unit = "",
          .default_value = std::string("accept"),
-         .help = "lines without the status that is due; accepted ones are marked uncertain",
+         .help = "lines without their status field; accepted ones are marked uncertain",
          .choices = kMissingStatus},
         {.name = "address",
          .unit = "",
          .default_value = std::string("01"),
-         .help = "ft, umb: two characters, the device to ask"},
+         .help = "ft, umb: address of the device, two characters"},
         {.name = "xdr_id",
          .unit = "",
          .default_value = std::int64_t{0},
@@ -111,19 +110,20 @@ std::vector<std::string> sentences_of(const std::string& list) {
   return sentences;
 }
 
-/// What the format's devices are asked with; empty where there is no such thing.
+/// The request of the format's devices; empty where there is none.
 std::string request_of(NmeaFormat format, const std::string& device) {
   if (format == NmeaFormat::kUmb) return device + "TR4\r";
   if (format == NmeaFormat::kFt) return fmt::format("${0},WV?*{1:02X}\r\n", device, xor_checksum(device + ",WV?"));
   return "";
 }
 
-/// How the device is asked, if it is.
+/// The request and its interval, for a polled device.
 void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
   TextSensorSettings& text = settings.text;
-  const bool can_be_asked = text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
-  // A Lufft sends nothing unasked.
-  if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_asked) {
+  const bool can_be_polled =
+      text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
+  // A Lufft sends nothing without a request.
+  if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_polled) {
     text.poll_interval = kUmbInterval;
   }
   if (text.poll_interval == Nanoseconds::zero() || !text.request.empty()) return;
@@ -166,7 +166,7 @@ NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
 extern const DriverDescription kNmeaDriver;
 const DriverDescription kNmeaDriver{
     .name = "nmea",
-    .summary = "anemometers that say NMEA 0183, or the text of Gill, FT Technologies or Lufft",
+    .summary = "anemometers that send NMEA 0183, or the text of Gill, FT Technologies or Lufft",
     .parameters = kNmeaParameters,
     .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
       const NmeaSensorSettings settings = nmea_sensor_settings_of(values);

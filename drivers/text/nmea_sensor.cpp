@@ -98,9 +98,9 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
 
   // Is it one of the configured sentences?
   const MessageName message = name_of_message(format, line);
-  const bool is_asked_for = settings_.sentences.empty() ||
-                            std::ranges::find(settings_.sentences, message.sentence) != settings_.sentences.end();
-  if (!is_asked_for || (!settings_.talker.empty() && message.talker != settings_.talker)) return Refusal::kNotMine;
+  const bool is_wanted = settings_.sentences.empty() ||
+                         std::ranges::find(settings_.sentences, message.sentence) != settings_.sentences.end();
+  if (!is_wanted || (!settings_.talker.empty() && message.talker != settings_.talker)) return Refusal::kNotMine;
 
   // Publish it, or has another source sent the same?
   const WindChoice::Source source = {.name = fmt::format("{} of {}", message.sentence, message.talker),

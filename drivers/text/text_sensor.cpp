@@ -22,11 +22,11 @@ constexpr Nanoseconds kLineCut = 500ms;
 constexpr Nanoseconds kPatience = 3s;
 /// A device whose usual pause is not known yet is opened again after this.
 constexpr Nanoseconds kFirstSilence = 120s;
-/// An answer that has not come by then never will.
-constexpr Nanoseconds kLatestAnswer = 2s;
+/// A reply that is later than this is not expected any more.
+constexpr Nanoseconds kLatestReply = 2s;
 /// The silence after which a device is opened again doubles so often.
 constexpr int kMostDoublings = 6;
-/// A device that does not answer is asked less often: up to so many times the interval.
+/// A device that does not reply gets fewer requests: the interval grows up to so many times.
 constexpr int kRarestRequest = 8;
 /// So many blocks at most are discarded at the beginning; a device that sends more does not stop.
 constexpr int kForgottenBlocks = 64;
@@ -85,7 +85,7 @@ Result<MonoTime, Failure> TextSensor::open(const Clock& clock) {
   const MonoTime now = clock.now().mono;
   is_fresh_ = settings_.delay_after_open > 0ns;
   skips_line_ = settings_.doubts_first_line;
-  awaits_answer_ = false;
+  awaits_reply_ = false;
   next_request_ = now;
   last_bytes_ = now;
   readings_.restart(now);
@@ -107,9 +107,10 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
     for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == ByteStatus::kBytes; ++i) {
     }
   }
-  if (is_asked() && !ask_if_due(clock.now().mono, sink)) return Failure{where_ + " takes no request: opened again"};
+  if (is_polled() && !request_if_due(clock.now().mono, sink))
+    return Failure{where_ + " takes no request: opened again"};
 
-  // What comes next, unless a file that is played still has something left.
+  // Read the next bytes, unless some of a played file are left.
   ByteArrival arrival{ByteStatus::kBytes};
   if (rest_.empty()) {
     arrival = port_->read(buffer_, longest_read(clock.now().mono));
@@ -147,8 +148,8 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
       break;
   }
 
-  // Only now, when what had come by then has been read.
-  if (awaits_answer_ && now.mono >= answer_due_) give_up_answer(now.mono, sink);
+  // Only after all received bytes have been read.
+  if (awaits_reply_ && now.mono >= reply_due_) give_up_reply(now.mono, sink);
   if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
     sink.refused(Refusal::kTimeout);
     vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
@@ -160,28 +161,28 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
 }
 
 /// False: the port is lost.
-bool TextSensor::ask_if_due(MonoTime now, SensorSink& sink) {
-  if (awaits_answer_ || now < next_request_) return true;
+bool TextSensor::request_if_due(MonoTime now, SensorSink& sink) {
+  if (awaits_reply_ || now < next_request_) return true;
   drop_cut_line(sink);
   if (!port_->write(bytes_of(settings_.request))) return false;
   sink.raw(RawDirection::kSent, bytes_of(settings_.request));
-  awaits_answer_ = true;
-  answer_due_ = now + settings_.response_timeout;
+  awaits_reply_ = true;
+  reply_due_ = now + settings_.response_timeout;
   next_request_ = now + settings_.poll_interval;
   return true;
 }
 
-/// The next request waits until an answer that is merely late has passed: it must not be taken for the next one.
-void TextSensor::give_up_answer(MonoTime now, SensorSink& sink) {
-  awaits_answer_ = false;
-  unanswered_ = std::min(unanswered_ + 1, kRarestRequest);
-  next_request_ = now + std::max<Nanoseconds>(kLatestAnswer, unanswered_ * settings_.poll_interval);
+/// The next request waits until a late reply has passed, which must not be taken for the next one.
+void TextSensor::give_up_reply(MonoTime now, SensorSink& sink) {
+  awaits_reply_ = false;
+  missed_replies_ = std::min(missed_replies_ + 1, kRarestRequest);
+  next_request_ = now + std::max<Nanoseconds>(kLatestReply, missed_replies_ * settings_.poll_interval);
   refuse(Refusal::kTimeout, "", sink);
 }
 
 Nanoseconds TextSensor::longest_read(MonoTime now) const {
-  if (!is_asked()) return kLongestRead;
-  const MonoTime due = awaits_answer_ ? answer_due_ : next_request_;
+  if (!is_polled()) return kLongestRead;
+  const MonoTime due = awaits_reply_ ? reply_due_ : next_request_;
   return std::clamp<Nanoseconds>(due - now, 0ns, kLongestRead);
 }
 
@@ -222,7 +223,7 @@ void TextSensor::take_broken_line(Refusal why, std::span<const std::uint8_t> end
 bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink& sink) {
   if (std::exchange(skips_line_, false)) return false;
   sink.raw(RawDirection::kReceived, bytes_of(line));
-  if (is_asked() && !awaits_answer_) {
+  if (is_polled() && !awaits_reply_) {
     ++late_lines_;
     refuse(Refusal::kNotMine, line, sink);
     return false;
@@ -232,18 +233,18 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink
   if (!judgement) {
     const bool is_readable = is_text(line);
     ++(is_readable ? readable_lines_ : garbled_lines_);
-    // A foreign line may be our own request, echoed by a line with one pair of wires: the answer is still to come.
-    if (judgement.error() != Refusal::kNotMine) awaits_answer_ = false;
+    // A foreign line may be our own request, echoed by a line with one pair of wires: the reply is still to come.
+    if (judgement.error() != Refusal::kNotMine) awaits_reply_ = false;
     refuse(is_readable ? judgement.error() : Refusal::kMalformed, line, sink);
     return false;
   }
-  awaits_answer_ = false;
-  unanswered_ = 0;
+  awaits_reply_ = false;
+  missed_replies_ = 0;
   if (*judgement) publish(**judgement, sink);
   return judgement->has_value();
 }
 
-/// What has come of a line that will not be whole any more.
+/// Refuses the received part of an incomplete line.
 void TextSensor::drop_cut_line(SensorSink& sink) {
   const auto cut = assembler_.finish();
   if (!cut) return;
@@ -275,7 +276,7 @@ Nanoseconds TextSensor::silence_limit() const {
   return first * (1 << vain_openings_);
 }
 
-/// Reports the cause where no reading comes.
+/// Reports the cause where there are no readings.
 void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
@@ -309,12 +310,12 @@ Refusal TextSensor::main_refusal() const {
 
 std::string TextSensor::silence_trouble() const {
   const bool is_serial = settings_.address.kind == BytePortKind::kSerial;
-  return fmt::format("{} {}: check {}", where_, is_asked() ? "does not answer" : "is open, but says nothing",
+  return fmt::format("{} {}: check {}", where_, is_polled() ? "does not answer" : "is open, but says nothing",
                      is_serial ? "the device's power, its wires (TX and RX crossed?) and baud"
                                : "the device's power and network settings");
 }
 
-/// Something comes, but no lines that could be judged.
+/// Bytes arrive, but no lines.
 std::string TextSensor::trouble_without_lines() const {
   if (late_lines_ > 0) {
     return fmt::format("{} answers, but not within {:g} s: raise response_timeout", where_,

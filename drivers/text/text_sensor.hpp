@@ -22,19 +22,19 @@ namespace yuragi {
 struct TextSensorSettings {
   BytePortAddress address;
   LineEnding ending = LineEnding::kNewline;
-  bool doubts_first_line = false;  ///< joined in the middle of a line, the first one lacks its beginning
+  bool doubts_first_line = false;  ///< the first line may lack its beginning
   Nanoseconds delay_after_open{};  ///< messages before that are discarded
   Nanoseconds silence_timeout{};   ///< after which the device is opened again; zero: from its usual pauses
   double play_rate_hz = 0.0;       ///< of a file that is played
-  std::string request;             ///< what to send for one answer
-  Nanoseconds poll_interval{};     ///< zero: the device sends unasked
+  std::string request;             ///< what to send for one reply
+  Nanoseconds poll_interval{};     ///< zero: the device sends without requests
   Nanoseconds response_timeout{};  ///< at most the poll interval
 };
 
 /// Those of the parameters that with_byte_port_parameters() adds. Throws std::runtime_error.
 TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
 
-/// A device that sends one line per reading, unasked or on request. This base assembles lines from the bytes, sends
+/// A device that sends one line per reading, by itself or on request. This base assembles lines from the bytes, sends
 /// requests, detects silence and invalid lines, and reports them; a driver decodes a line.
 class TextSensor : public ReopeningSensor {
  public:
@@ -63,14 +63,14 @@ class TextSensor : public ReopeningSensor {
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) final;
   void close() noexcept final;
 
-  bool is_asked() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
+  bool is_polled() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
   bool is_played() const noexcept;
-  bool ask_if_due(MonoTime now, SensorSink& sink);
-  void give_up_answer(MonoTime now, SensorSink& sink);
+  bool request_if_due(MonoTime now, SensorSink& sink);
+  void give_up_reply(MonoTime now, SensorSink& sink);
   Nanoseconds longest_read(MonoTime now) const;
 
-  /// Makes lines of what has come. Returns whether a reading was published after which a file that is played has to
-  /// wait.
+  /// Splits received bytes into lines. Returns whether a reading was published, after which a file that is played has
+  /// to wait.
   bool take_bytes(const Instant& now, SensorSink& sink);
   bool take_line(std::string_view line, const Instant& now, SensorSink& sink);
   void take_broken_line(Refusal why, std::span<const std::uint8_t> end, SensorSink& sink);
@@ -96,10 +96,10 @@ class TextSensor : public ReopeningSensor {
   bool skips_line_ = false;
   bool is_finished_ = false;
 
-  bool awaits_answer_ = false;
+  bool awaits_reply_ = false;
   MonoTime next_request_{};
-  MonoTime answer_due_{};
-  int unanswered_ = 0;
+  MonoTime reply_due_{};
+  int missed_replies_ = 0;
 
   MonoTime last_bytes_{};
   ArrivalWatch readings_;

@@ -17,8 +17,9 @@ namespace yuragi {
 /// Where the cup and the vane are connected.
 struct DaqWiring {
   std::uint8_t counter = 0;
-  std::optional<std::uint8_t> vane_channel = 0;        ///< the vane's wiper; empty: there is no vane
-  std::optional<std::uint8_t> reference_channel = {};  ///< the voltage over the vane's track; empty: it is known
+  std::optional<std::uint8_t> vane_channel = 0;  ///< the vane's wiper; empty: there is no vane
+  std::optional<std::uint8_t> reference_channel =
+      {};  ///< the voltage across the vane's potentiometer; empty: it is known
 };
 
 /// What a device reports about itself.
@@ -35,8 +36,8 @@ struct DaqSample {
 
 /// Why a round failed. Refusals have been counted.
 struct DaqTrouble {
-  std::string message;   ///< behind the device's name: "does not answer"
-  bool is_lost = false;  ///< the device has to be opened again; otherwise the next round may do
+  std::string message;   ///< after the device's name: "does not answer"
+  bool is_lost = false;  ///< the device has to be opened again; otherwise the next round may succeed
 };
 
 /// The protocol of one kind of counter and ADC device. Holds the device's state from start() on; one is made each time
@@ -70,10 +71,10 @@ std::span<const UsbDaqModel* const> usb_daq_models();
 /// A channel of the wiring that the model does not have; empty: none.
 std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring);
 
-/// What a transfer that did not succeed means, counted in `sink`.
+/// The trouble of a failed transfer, counted in `sink`.
 DaqTrouble trouble_of(UsbStatus status, SensorSink& sink);
 
-/// What a reply that was refused means, counted in `sink`.
+/// The trouble of a refused reply, counted in `sink`.
 DaqTrouble trouble_of(Refusal why, SensorSink& sink);
 
 }  // namespace yuragi

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint8_t kLabjackCommands = 1;  // the end points
 constexpr std::uint8_t kLabjackReplies = 2;
-/// The number of messages that answer something else before the request is given up.
+/// How many replies to other requests are skipped before the request is given up.
 constexpr int kMostStrangers = 16;
 
 class LabjackDaq final : public UsbDaq {
@@ -25,18 +25,19 @@ class LabjackDaq final : public UsbDaq {
   }
 
   Result<DaqIdentity, DaqTrouble> start(UsbDevice& device, SensorSink& sink) override {
-    const auto identity = ask(device, sink, encode_labjack_identity(), decode_labjack_identity);
+    const auto identity = exchange(device, sink, encode_labjack_identity(), decode_labjack_identity);
     if (!identity) return identity.error();
     const std::uint8_t counter = *request_.counter;
-    const auto configured = ask(device, sink, encode_labjack_configuration(counter),
-                                [counter](ByteSpan reply) { return decode_labjack_configuration(counter, reply); });
+    const auto configured = exchange(device, sink, encode_labjack_configuration(counter), [counter](ByteSpan reply) {
+      return decode_labjack_configuration(counter, reply);
+    });
     if (!configured) return configured.error();
 
     // High voltage inputs have a slope and an offset each, in two blocks; the others share one of both.
     const bool is_high = identity->input == LabjackInput::kHighVoltage;
-    const auto slopes = ask(device, sink, encode_labjack_memory(is_high ? 3 : 0), decode_labjack_memory);
+    const auto slopes = exchange(device, sink, encode_labjack_memory(is_high ? 3 : 0), decode_labjack_memory);
     if (!slopes) return slopes.error();
-    const auto offsets = is_high ? ask(device, sink, encode_labjack_memory(4), decode_labjack_memory) : slopes;
+    const auto offsets = is_high ? exchange(device, sink, encode_labjack_memory(4), decode_labjack_memory) : slopes;
     if (!offsets) return offsets.error();
     for (std::size_t channel = 0; channel < calibrations_.size(); ++channel) {
       const LabjackCalibration own = is_high ? LabjackCalibration{(*slopes)[channel], (*offsets)[channel]}
@@ -48,8 +49,8 @@ class LabjackDaq final : public UsbDaq {
 
   Result<DaqSample, DaqTrouble> sample(UsbDevice& device, SensorSink& sink) override {
     ++request_.echo;
-    const auto reply = ask(device, sink, encode_labjack_feedback(request_),
-                           [this](ByteSpan bytes) { return decode_labjack(request_, bytes); });
+    const auto reply = exchange(device, sink, encode_labjack_feedback(request_),
+                                [this](ByteSpan bytes) { return decode_labjack(request_, bytes); });
     if (!reply) return reply.error();
     DaqSample sample;
     sample.count = *reply->count;
@@ -59,10 +60,10 @@ class LabjackDaq final : public UsbDaq {
   }
 
  private:
-  /// Sends a command and decodes its reply. What answers another command, such as the one before that came too late, is
-  /// counted and passed over.
+  /// Sends a command and decodes its reply. Replies to other commands, such as a late one to the command before, are
+  /// counted and skipped.
   template <class Decode>
-  auto ask(UsbDevice& device, SensorSink& sink, const LabjackCommand& command, Decode&& decode)
+  auto exchange(UsbDevice& device, SensorSink& sink, const LabjackCommand& command, Decode&& decode)
       -> Result<typename decltype(decode(ByteSpan()))::value_type, DaqTrouble> {
     sink.raw(RawDirection::kSent, command.span());
     const UsbTransfer sent = device.write(kLabjackCommands, command.span(), timeout_);

@@ -16,7 +16,7 @@ class Mcc1208Daq final : public UsbDaq {
     for (const auto& [channel, calibration] :
          {std::pair{wiring_.vane_channel, &vane_}, {wiring_.reference_channel, &reference_}}) {
       if (!channel) continue;
-      const auto reply = ask(device, mcc1208_read_calibration(*channel), sink);
+      const auto reply = exchange(device, mcc1208_read_calibration(*channel), sink);
       if (!reply) return reply.error();
       const auto decoded = decode_mcc1208_calibration(*reply);
       if (!decoded && decoded.error() != Refusal::kInvalid) return trouble_of(decoded.error(), sink);
@@ -37,8 +37,8 @@ class Mcc1208Daq final : public UsbDaq {
       if (!volts) return volts.error();
       sample.reference_v = *volts;
     }
-    // The count last, so that it is as old as the moment that the caller takes for it.
-    const auto reply = ask(device, kMcc1208ReadCounter, sink);
+    // The count last, so that it is as close as possible to the time that the caller assigns to it.
+    const auto reply = exchange(device, kMcc1208ReadCounter, sink);
     if (!reply) return reply.error();
     const auto count = decode_mcc1208_count(*reply);
     if (!count) return trouble_of(count.error(), sink);
@@ -49,23 +49,23 @@ class Mcc1208Daq final : public UsbDaq {
  private:
   Result<double, DaqTrouble> read_volts(UsbDevice& device, std::uint8_t channel, const Mcc1208Calibration& calibration,
                                         SensorSink& sink) {
-    const auto reply = ask(device, mcc1208_read_analog(channel), sink);
+    const auto reply = exchange(device, mcc1208_read_analog(channel), sink);
     if (!reply) return reply.error();
     const auto analog = decode_mcc1208_analog(*reply);
     if (!analog) return trouble_of(analog.error(), sink);
     return mcc1208_volts(*analog, calibration);
   }
 
-  /// The reply, which lives until the next one.
-  Result<ByteSpan, DaqTrouble> ask(UsbDevice& device, const Mcc1208Transfer& question, SensorSink& sink) {
-    const std::array<std::uint8_t, 8> setup = {question.request_type, question.request,     low(question.value),
-                                               high(question.value),  low(question.index),  high(question.index),
-                                               low(question.length),  high(question.length)};
+  /// The reply, valid until the next one.
+  Result<ByteSpan, DaqTrouble> exchange(UsbDevice& device, const Mcc1208Transfer& command, SensorSink& sink) {
+    const std::array<std::uint8_t, 8> setup = {command.request_type, command.request,     low(command.value),
+                                               high(command.value),  low(command.index),  high(command.index),
+                                               low(command.length),  high(command.length)};
     sink.raw(RawDirection::kSent, setup);
-    const UsbRequest request = {question.request_type, question.request, question.value, question.index};
-    const UsbTransfer transfer = device.control(request, std::span(buffer_).first(question.length), timeout_);
+    const UsbRequest request = {command.request_type, command.request, command.value, command.index};
+    const UsbTransfer transfer = device.control(request, std::span(buffer_).first(command.length), timeout_);
     if (transfer.status != UsbStatus::kDone) return trouble_of(transfer.status, sink);
-    if (transfer.size > question.length) return trouble_of(UsbStatus::kOverflow, sink);
+    if (transfer.size > command.length) return trouble_of(UsbStatus::kOverflow, sink);
     const ByteSpan reply = ByteSpan(buffer_).first(transfer.size);
     sink.raw(RawDirection::kReceived, reply);
     return reply;

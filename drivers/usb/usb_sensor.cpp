@@ -27,7 +27,7 @@ std::optional<double> MeanDirection::mean_deg() const {
   if (std::hypot(east_, north_) < kCancelled) return std::nullopt;
   const double mean_deg = std::atan2(east_, north_) / kRadiansPerDegree;
   const double turned_deg = mean_deg < 0.0 ? mean_deg + 360.0 : mean_deg;
-  return turned_deg < 360.0 ? turned_deg : 0.0;  // a negative hair rounds up to a whole turn
+  return turned_deg < 360.0 ? turned_deg : 0.0;  // a tiny negative value rounds up to a whole turn
 }
 
 UsbSensor::UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<UsbDevice> device)
@@ -38,7 +38,7 @@ UsbSensor::~UsbSensor() {
 }
 
 Result<MonoTime, Failure> UsbSensor::open(const Clock& clock) {
-  // Which of those that are plugged in is it?
+  // Select the device among those plugged in.
   auto plugged = device_->plugged();
   if (!plugged) return plugged.error();
   std::erase_if(*plugged, [this](const PluggedUsbDevice& device) { return !is_wanted(device); });
@@ -82,20 +82,20 @@ Result<MonoTime, Failure> UsbSensor::work(const Clock& clock, SensorSink& sink) 
     is_started_ = true;
   }
 
-  const MonoTime asked_at = clock.now().mono;
+  const MonoTime requested_at = clock.now().mono;
   const auto sample = daq_->sample(*device_, sink);
   const Instant now = clock.now();
   const MonoTime next = std::max(begin + settings_.period, now.mono);
   if (!sample) return suffer(sample.error(), next, sink);
   failures_ = 0;
-  take(*sample, asked_at, now, sink);
+  take(*sample, requested_at, now, sink);
   return next;
 }
 
-void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, SensorSink& sink) {
+void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now, SensorSink& sink) {
   // The device has counted at some moment since the request. Where bus or scheduler delayed it, the count is kept for
-  // the next one: a thread that was held up is neither a lull nor a gust.
-  const Nanoseconds doubt = now.mono - asked_at;
+  // the next one: a delayed thread must not appear as a lull or a gust.
+  const Nanoseconds doubt = now.mono - requested_at;
   const bool is_too_vague = kLeastTimesOfDoubt * (doubt + counted_doubt_) > now.mono - counted_at_;
   if (cup_.last_count && is_too_vague) return;
   counted_doubt_ = doubt;
@@ -129,7 +129,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime asked_at, Instant now, Se
   direction_.clear();
 }
 
-/// No sample came. What it counted meanwhile will come with the next one, over the time that has passed.
+/// There was no sample. The pulses counted meanwhile are in the next one, over the time that has passed.
 Result<MonoTime, Failure> UsbSensor::suffer(const DaqTrouble& trouble, MonoTime again, SensorSink& sink) {
   const std::string detail = name_ + " " + trouble.message;
   if (trouble.is_lost || ++failures_ >= kRoundsBeforeReopen) return Failure{detail};

@@ -59,7 +59,7 @@ class UsbSensor final : public ReopeningSensor {
   std::string name_of_wanted() const;
   Failure wrong_device(const std::string& serial);
   Result<MonoTime, Failure> suffer(const DaqTrouble& trouble, MonoTime again, SensorSink& sink);
-  void take(const DaqSample& sample, MonoTime asked_at, Instant now, SensorSink& sink);
+  void take(const DaqSample& sample, MonoTime requested_at, Instant now, SensorSink& sink);
 
   UsbSettings settings_;
   std::unique_ptr<UsbDevice> device_;

@@ -58,24 +58,24 @@ WindReading between(const WindReading& from, const WindReading& to, double part)
   return reading;
 }
 
-// ---- a voice: one place of the recording that is played ----
+// ---- a playhead: one place of the recording that is played ----
 
-MonoTime WindlogPlayer::Voice::due(double rate) const {
+MonoTime WindlogPlayer::Playhead::due(double rate) const {
   return anchor + wait_of(seconds(upcoming->log_time - anchor_log) / rate);
 }
 
-Nanoseconds WindlogPlayer::Voice::place(MonoTime now, double rate) const {
+Nanoseconds WindlogPlayer::Playhead::place(MonoTime now, double rate) const {
   return anchor_log + wait_of(seconds(now - anchor) * rate);
 }
 
-void WindlogPlayer::Voice::go_to(MonoTime at, Nanoseconds log_time) {
+void WindlogPlayer::Playhead::go_to(MonoTime at, Nanoseconds log_time) {
   anchor = at;
   anchor_log = log_time;
   is_frozen = false;
 }
 
-void WindlogPlayer::Voice::take() {
-  said = upcoming->reading;
+void WindlogPlayer::Playhead::take() {
+  current = upcoming->reading;
   upcoming.reset();
 }
 
@@ -89,15 +89,15 @@ Result<WindlogPlayer, Failure> WindlogPlayer::open(const std::filesystem::path& 
   if (!leaving) return leaving.error();
   const auto begin = begin_of_playback(*playing, options.playback.start);
   if (!begin) return begin.error();
-  WindlogPlayer player(std::move(options), Voice{.cursor = std::move(*playing)}, Voice{.cursor = std::move(*leaving)},
-                       *begin);
+  WindlogPlayer player(std::move(options), Playhead{.cursor = std::move(*playing)},
+                       Playhead{.cursor = std::move(*leaving)}, *begin);
   const Nanoseconds from = player.options_.at_time_of_day ? player.place_of_day(now) : *begin;
   player.playing_.cursor.seek(from);
   player.playing_.go_to(now.mono, from);
   return player;
 }
 
-WindlogPlayer::WindlogPlayer(PlayerOptions options, Voice playing, Voice leaving, Nanoseconds begin)
+WindlogPlayer::WindlogPlayer(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin)
     : options_(std::move(options)),
       playing_(std::move(playing)),
       leaving_(std::move(leaving)),
@@ -122,7 +122,7 @@ Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use
       if (const auto begun = begin_again(now, due); !begun) return begun.error();
     } else {
       playing_.take();
-      say(due, now, use);
+      publish(due, now, use);
     }
   }
 }
@@ -165,7 +165,7 @@ Result<void, Failure> WindlogPlayer::begin_again(const Instant& now, MonoTime at
 
 /// Goes on from `target` at a moment, and fades what was playing out.
 Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
-  // In the middle of a fade the blended wind of that moment replaces both voices, and the older one is free.
+  // In the middle of a fade the blended wind of that moment replaces both playheads, and the older one is free.
   const bool was_fading = is_fading(at);
   leaving_.is_frozen = true;
   leaving_.cursor.seek(target);
@@ -176,13 +176,13 @@ Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
 
   std::swap(playing_, leaving_);
   playing_.go_to(at, target);
-  playing_.said.reset();
+  playing_.current.reset();
   if (was_fading) {
     leaving_.is_frozen = true;
-    leaving_.said = last_out_;
+    leaving_.current = last_out_;
   }
   fade_begin_ = at;
-  fade_ = leaving_.said ? fade_duration() : Nanoseconds{0};
+  fade_ = leaving_.current ? fade_duration() : Nanoseconds{0};
   return {};
 }
 
@@ -193,8 +193,8 @@ Nanoseconds WindlogPlayer::fade_duration() const {
   return wait_of(std::min(std::max(options_.seam_s, kLeastReadingsOfFade * interval_s), span_s / kParts));
 }
 
-/// The last reading of the playing voice, as of a time, blended with that of a voice that is fading out.
-void WindlogPlayer::say(MonoTime time, const Instant& now, const Use& use) {
+/// Publishes the last reading of the playing playhead, as of a time, blended with that of one that is fading out.
+void WindlogPlayer::publish(MonoTime time, const Instant& now, const Use& use) {
   // After a change of the rate: time does not go backward.
   if (last_out_) time = std::max(time, last_out_->time.mono);
   WindReading reading = blended(time);
@@ -205,14 +205,14 @@ void WindlogPlayer::say(MonoTime time, const Instant& now, const Use& use) {
 }
 
 WindReading WindlogPlayer::blended(MonoTime time) {
-  if (!is_fading(time)) return *playing_.said;
+  if (!is_fading(time)) return *playing_.current;
   const double done = std::max(0.0, seconds(time - fade_begin_) / seconds(fade_));
   const double part = done * done * (3.0 - 2.0 * done);
   follow_leaving(time);
-  return between(*leaving_.said, *playing_.said, part);
+  return between(*leaving_.current, *playing_.current, part);
 }
 
-/// Advances the voice that is fading out to a time; where it cannot be read it repeats its last reading.
+/// Advances the playhead that is fading out to a time; where it cannot be read it repeats its last reading.
 void WindlogPlayer::follow_leaving(MonoTime time) {
   if (leaving_.is_frozen || is_paused_) return;
   for (;;) {
@@ -229,7 +229,7 @@ void WindlogPlayer::follow_leaving(MonoTime time) {
 
 /// While it is paused: repeats the reading, so that the sensor does not become stale.
 Result<MonoTime, Failure> WindlogPlayer::hold(const Instant& now, const Use& use) {
-  if (!playing_.said) {
+  if (!playing_.current) {
     const auto has_more = look_ahead(now);
     if (!has_more) return has_more.error();
     if (!*has_more) return now.mono + kAfterTheEnd;
@@ -239,7 +239,7 @@ Result<MonoTime, Failure> WindlogPlayer::hold(const Instant& now, const Use& use
   const MonoTime due = has_news_ || !last_out_ ? now.mono : last_out_->time.mono + interval;
   if (due > now.mono) return due;
   has_news_ = false;
-  say(now.mono, now, use);
+  publish(now.mono, now, use);
   return now.mono + interval;
 }
 
@@ -262,11 +262,11 @@ Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {
 
 // ---- orders ----
 
-/// Anchors both voices where they are now: the rate is about to change.
+/// Anchors both playheads where they are now: the rate is about to change.
 void WindlogPlayer::settle(MonoTime now) {
-  for (Voice* voice : {&playing_, &leaving_}) {
-    if (!is_paused_) voice->anchor_log = voice->place(now, rate_);
-    voice->anchor = now;
+  for (Playhead* playhead : {&playing_, &leaving_}) {
+    if (!is_paused_) playhead->anchor_log = playhead->place(now, rate_);
+    playhead->anchor = now;
   }
 }
 
@@ -329,7 +329,7 @@ PlayerPosition WindlogPlayer::position(MonoTime now) const {
   if (is_finished_) place = last;
   return {.log_time = std::clamp(place, Nanoseconds{0}, last),
           .length = last,
-          .recorded = playing_.said       ? playing_.said->time.utc
+          .recorded = playing_.current    ? playing_.current->time.utc
                       : playing_.upcoming ? playing_.upcoming->reading.time.utc
                                           : UtcTime{},
           .rate = rate_,

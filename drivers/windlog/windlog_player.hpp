@@ -44,9 +44,8 @@ struct PlayerPosition {
 /// its end. While it is paused it repeats its reading, marked as held, at its usual interval: the wind holds, and the
 /// sensor does not become stale. Where the recording has a gap, so has the replay.
 ///
-/// A Failure says why the file cannot be read, or that it does not hold what is asked for; an order that fails changes
-/// nothing, and play() tries the same place again.
-/// Thread-safe: no. Realtime-safe: no; it reads a file.
+/// A Failure says why the file cannot be read, or that it does not contain what is requested; an order that fails
+/// changes nothing, and play() tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayer {
  public:
   using Use = std::function<void(const WindReading&)>;
@@ -78,10 +77,10 @@ class WindlogPlayer {
 
  private:
   /// One place of the recording that is played. During a jump there are two.
-  struct Voice {
+  struct Playhead {
     WindlogCursor cursor;
     std::optional<LoggedReading> upcoming = {};
-    std::optional<WindReading> said = {};
+    std::optional<WindReading> current = {};
     MonoTime anchor{};  ///< when `anchor_log` is, or was, due
     Nanoseconds anchor_log{0};
     bool is_frozen = false;  ///< repeats its last reading
@@ -92,7 +91,7 @@ class WindlogPlayer {
     void take();
   };
 
-  WindlogPlayer(PlayerOptions options, Voice playing, Voice leaving, Nanoseconds begin);
+  WindlogPlayer(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin);
   Result<void, Failure> fetch();
   Result<bool, Failure> look_ahead(const Instant& now);
   bool is_at_seam() const;
@@ -100,7 +99,7 @@ class WindlogPlayer {
   Result<void, Failure> jump(MonoTime at, Nanoseconds target);
   void settle(MonoTime now);
   Result<MonoTime, Failure> hold(const Instant& now, const Use& use);
-  void say(MonoTime time, const Instant& now, const Use& use);
+  void publish(MonoTime time, const Instant& now, const Use& use);
   WindReading blended(MonoTime time);
   void follow_leaving(MonoTime time);
   void take_while_paused();
@@ -110,11 +109,11 @@ class WindlogPlayer {
   Nanoseconds place_of_day(const Instant& now);
 
   PlayerOptions options_;
-  Voice playing_, leaving_;
+  Playhead playing_, leaving_;
   double rate_;
   bool is_paused_;
   bool is_finished_ = false;
-  bool has_news_ = false;  ///< a reading to hand on while paused
+  bool has_news_ = false;  ///< a reading to publish while paused
   std::uint64_t rounds_ = 0;
   Nanoseconds begin_{0};
   MonoTime fade_begin_{};

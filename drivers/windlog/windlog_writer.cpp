@@ -67,7 +67,7 @@ Result<void, Failure> WindlogWriter::prepare_file() {
   if (!fresh) return fresh.error();
   if (auto done = database_.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL"); !done) return done;
 
-  // All of the schema or nothing of it, whenever the power goes.
+  // In one transaction: the whole schema or nothing, even after a power cut.
   if (*fresh) {
     const std::string create = "BEGIN IMMEDIATE; PRAGMA application_id = " + std::to_string(windlog::kApplicationId) +
                                "; PRAGMA user_version = " + std::to_string(windlog::kFormatVersion) + ";" +
@@ -174,7 +174,7 @@ Result<void, Failure> WindlogWriter::write(sqlite::Statement& statement) {
   return {};
 }
 
-/// Goes back to the last commit; answers what went wrong before it did.
+/// Rolls back to the last commit; returns the failure that led to it.
 Result<void, Failure> WindlogWriter::undo() {
   Failure failure = database_.failure();
   // SQLite rolls back by itself after some errors.

@@ -67,7 +67,7 @@ class WindlogWriter {
   std::int64_t session_ = 0;
 };
 
-/// Can this reading stand in a recording?
+/// Can this reading be recorded?
 bool is_recordable(const WindReading& reading) noexcept;
 
 }  // namespace yuragi

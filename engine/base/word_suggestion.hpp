@@ -11,7 +11,7 @@ namespace yuragi {
 /// neighbours exchanged: the optimal string alignment distance), if they are few for its length; else empty.
 std::string_view suggest_word(std::string_view word, std::span<const std::string> known);
 
-/// What a person is told of arguments that nothing takes, in the order in which they stand: 'unexpected argument:
+/// The message about arguments that nothing takes, in their order: 'unexpected argument:
 /// "runn"; did you mean "run"?'. Empty for none.
 std::string unexpected_arguments_text(std::span<const std::string> arguments, std::span<const std::string> known);
 

@@ -28,7 +28,7 @@ std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept;
 void fill_spectrum(RealFft& fft, const NoiseSpec& spec);
 
 /// The same for modes of any amplitude: `amplitude(wave_x, wave_z, wave_y)` is the standard deviation of a mode's real
-/// part, and of its imaginary part. It is asked once for each mode that is drawn.
+/// part, and of its imaginary part. It is evaluated once for each mode that is drawn.
 void fill_modes(RealFft& fft, std::uint64_t seed,
                 const std::function<double(std::int64_t, std::int64_t, std::int64_t)>& amplitude);
 

@@ -67,7 +67,7 @@ void tilt(const TiltKernelArguments& arguments) noexcept {
   }
 }
 
-void answer(const LeafKernelArguments& arguments) noexcept {
+void respond(const LeafKernelArguments& arguments) noexcept {
   const LeafKernelArguments in = arguments;
   float* const __restrict lean_east = in.out_lean_east_rad;
   float* const __restrict lean_south = in.out_lean_south_rad;
@@ -106,6 +106,6 @@ void flutter(const FlutterKernelArguments& arguments) noexcept {
 
 }  // namespace
 
-const CrownKernels YURAGI_ROW_NAME(crown_kernels) = {split, force, tilt, answer, flutter};
+const CrownKernels YURAGI_ROW_NAME(crown_kernels) = {split, force, tilt, respond, flutter};
 
 }  // namespace yuragi

@@ -79,7 +79,7 @@ struct CrownKernels {
   void (*split)(const SplitKernelArguments&) noexcept;
   void (*force)(const ForceKernelArguments&) noexcept;
   void (*tilt)(const TiltKernelArguments&) noexcept;
-  void (*answer)(const LeafKernelArguments&) noexcept;
+  void (*respond)(const LeafKernelArguments&) noexcept;
   void (*flutter)(const FlutterKernelArguments&) noexcept;
 };
 extern const CrownKernels crown_kernels_x86_64;

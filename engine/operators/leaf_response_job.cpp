@@ -30,7 +30,7 @@ LeafResponseJob::Problem LeafResponseJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
   const double per_flutter_speed = 1.0 / flutter_speed_m_s;
-  kLeafRows[row.value_or(best_simd_row())].answer(
+  kLeafRows[row.value_or(best_simd_row())].respond(
       {.count = wind_east_m_s.size(),
        .wind_east_m_s = wind_east_m_s.data(),
        .wind_south_m_s = wind_south_m_s.data(),

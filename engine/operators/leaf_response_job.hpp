@@ -8,7 +8,7 @@
 
 namespace yuragi {
 
-/// How leaves answer the wind in each place of a crown: how far they lean with it, and how much they flutter.
+/// How leaves respond to the wind in each place of a crown: how far they lean with it, and how much they flutter.
 ///
 /// The lean is lean_rad times bend_share() of s = wind / half_lean_speed, toward where the wind blows to. The deviation
 /// of the flutter is flutter_rad (1 - (1 + q/8)^-8), q = (wind / flutter_speed)^2, which is 1 - exp(-q) to within 0.033

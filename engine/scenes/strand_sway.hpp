@@ -18,7 +18,7 @@
 
 namespace yuragi {
 
-/// How strands answer the wind.
+/// How strands respond to the wind.
 struct StrandSwaySpec {
   double max_bend_rad = 1.4;
   double half_bend_speed_m_s = 7.0;

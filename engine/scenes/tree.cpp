@@ -34,7 +34,7 @@
 //   sample   the wind at each branch, and how hard it pulls there, against the mean wind              BranchForceJob
 //            how far each branch is from the windward side                                            WindSideJob
 //            what is above a threshold that rises from there moves it up and down, the rest sideways  SplitJob
-//            how leaves answer the wind at each twig, and the noise that each leaf reads              LeafResponseJob
+//            how leaves respond to the wind at each twig, and the noise that each leaf reads          LeafResponseJob
 //   project  the two parts tilt the branch: theta and phi                                             TiltJob
 //            which overshoots and sways on at a pace of its own, a damped oscillator                  OscillatorJob
 //            a leaf leans and flutters as its petiole lets it                                         FlutterJob
@@ -214,7 +214,7 @@ struct Wood {
   Oscillators oscillators;
 };
 
-/// The leaves, how each gives way and flutters, and how they answer the wind at each twig.
+/// The leaves, how each gives way and flutters, and how they respond to the wind at each twig.
 struct Foliage {
   CarriedPlaces places;
   std::vector<std::uint32_t> twig;  ///< of each spray
@@ -576,7 +576,7 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
   return (1.0 - hybrid_) * 2.0 * largest_rad + hybrid_ * swayed_rad;
 }
 
-// The bend of a leaf is give lean W + axis flutter V noise, W and V being how it answers the wind u at its twig, 0
+// The bend of a leaf is give lean W + axis flutter V noise, W and V being how it responds to the wind u at its twig, 0
 // to 1. u is that of the ground (at most L, and changing by at most dL a tick: SceneWind, WindGrid) times a factor for
 // the crown's gusts and the tree's own, each the noise (cut at n, and changing by at most largest_change() of its
 // CarriedNoise) times its deviation d. So u is at most L (1 + sum of d n), and changes by at most dL (1 + sum of d n) +

@@ -7,7 +7,7 @@
 
 namespace yuragi {
 
-/// What trees of a species have in common: how they grow, and how they answer the wind (Chiba, section 3.3).
+/// What trees of a species have in common: how they grow, and how they respond to the wind (Chiba, section 3.3).
 struct TreeSpecies {
   std::string_view name;
   std::array<double, 3> sway_deg;  ///< how far trunk, limbs and twigs bend in a wind of force 1 (streamlined_drag)

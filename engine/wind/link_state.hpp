@@ -7,10 +7,10 @@
 
 namespace yuragi {
 
-/// Does a sensor's device answer? The stream (pose.fbs) has the same in the same order.
+/// Does a sensor's device reply? The stream (pose.fbs) has the same in the same order.
 enum class LinkState : std::uint8_t {
   kConnecting,  ///< looking for it; also between attempts
-  kConnected,   ///< open, and the last exchange was answered
+  kConnected,   ///< open, and the last exchange succeeded
   kFinished,    ///< a recording that came to its end; nothing more will come
 };
 inline constexpr std::array<std::string_view, 3> kLinkStateNames = {"connecting", "connected", "finished"};

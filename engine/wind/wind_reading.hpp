@@ -16,7 +16,7 @@ enum class ReadingQuality : std::uint8_t {
 
 /// One reading of a sensor, decoded, in SI units, before calibration. Finite and physical by the time it is published.
 struct WindReading {
-  Instant time;            ///< when the answer arrived
+  Instant time;            ///< when it arrived
   double speed_m_s = 0.0;  ///< at least 0
   std::optional<double>
       direction_deg;               ///< where the wind comes *from*, clockwise from north, [0, 360); empty: not known

@@ -26,7 +26,7 @@ struct WindState {
   double upwind_m = 0.0;
   double to_middle_s = 0.0;  ///< how long a gust takes from there to the middle; 0 where it has passed it already
   /// That place is the sensors' configured position; otherwise it is the windward edge.
-  bool is_place_told = false;
+  bool is_place_configured = false;
 };
 
 }  // namespace yuragi

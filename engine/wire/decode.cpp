@@ -43,7 +43,7 @@ bool read(const fb::WindPlace* from, WindState& to) {
   if (from == nullptr) return true;
   to.upwind_m = static_cast<double>(from->upwind_m());
   to.to_middle_s = static_cast<double>(from->to_middle_s());
-  to.is_place_told = from->is_told();
+  to.is_place_configured = from->is_configured();
   return is_within(to.upwind_m, -kMaxWay_m, kMaxWay_m) && is_within(to.to_middle_s, 0.0, kMaxDuration_s);
 }
 
@@ -159,7 +159,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
   return read(from.shaping(), to.shaping);
 }
 
-bool read(const fb::PlayerWish& from, PlayerWish& to) {
+bool read(const fb::PlayerCommand& from, PlayerCommand& to) {
   if (from.action() > fb::PlayerAction_MAX) return false;
   to.action = static_cast<PlayerAction>(from.action());
   to.count = from.count();

@@ -160,11 +160,11 @@ flatbuffers::Offset<fb::Shaping> add_shaping(Builder& builder, const Shaping& sh
   return table.Finish();
 }
 
-flatbuffers::Offset<fb::PlayerWish> add_player(Builder& builder, const PlayerWish& wish) {
+flatbuffers::Offset<fb::PlayerCommand> add_player(Builder& builder, const PlayerCommand& wish) {
   const auto sensor = add_text(builder, wish.sensor);
   const auto place = add_text(builder, wish.place);
-  return fb::CreatePlayerWish(builder, static_cast<fb::PlayerAction>(wish.action), sensor, wish.count, place,
-                              wish.rate);
+  return fb::CreatePlayerCommand(builder, static_cast<fb::PlayerAction>(wish.action), sensor, wish.count, place,
+                                 wish.rate);
 }
 
 flatbuffers::Offset<fb::PlayerState> add_player(Builder& builder, const PlayerState& player) {
@@ -244,7 +244,7 @@ Bytes encode(const Sensors& sensors) {
 Bytes encode(const Control& control) {
   Builder builder;
   const auto scene = add_text(builder, control.scene);
-  const auto player = control.player ? add_player(builder, *control.player) : flatbuffers::Offset<fb::PlayerWish>();
+  const auto player = control.player ? add_player(builder, *control.player) : flatbuffers::Offset<fb::PlayerCommand>();
   return finish(builder, fb::Body_Control,
                 fb::CreateControl(builder, scene, control.shown, control.hide_others,
                                   static_cast<float>(control.over_s), player));

@@ -17,7 +17,8 @@ inline fb::Wind to_schema(const WindState& state) {
 }
 
 inline fb::WindPlace place_to_schema(const WindState& state) {
-  return fb::WindPlace(static_cast<float>(state.upwind_m), static_cast<float>(state.to_middle_s), state.is_place_told);
+  return fb::WindPlace(static_cast<float>(state.upwind_m), static_cast<float>(state.to_middle_s),
+                       state.is_place_configured);
 }
 
 }  // namespace yuragi::wire

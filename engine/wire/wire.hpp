@@ -141,11 +141,11 @@ struct Sensors {
   Shaping shaping = {};
 };
 
-enum class PlayerAction : std::uint8_t { kTell, kPause, kResume, kStep, kSeek, kRate };
+enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };
 
 /// What sensors that play a recording are to do.
-struct PlayerWish {
-  PlayerAction action = PlayerAction::kTell;
+struct PlayerCommand {
+  PlayerAction action = PlayerAction::kReport;
   std::string sensor = {};  ///< its name; empty: each that plays a recording
   std::uint32_t count = 1;  ///< kStep: 1 to kMaxSteps
   std::string place = {};   ///< kSeek: seconds, "+30", "-30", or a moment
@@ -158,7 +158,7 @@ struct Control {
   bool shown = true;
   bool hide_others = false;  ///< and hide every other scene, in the same time
   double over_s = 2.0;       ///< 0 to kMaxFade_s
-  std::optional<PlayerWish> player = std::nullopt;
+  std::optional<PlayerCommand> player = std::nullopt;
 };
 
 struct SceneState {
@@ -180,7 +180,7 @@ struct PlayerState {
   bool is_finished = false;
   bool loops = false;
   std::uint64_t rounds = 0;  ///< how often it began again
-  std::uint64_t order = 0;   ///< the number of the order that this answers; 0: none
+  std::uint64_t order = 0;   ///< the number of the order that this replies to; 0: none
   std::uint64_t orders_done = 0;
   std::string refusal;  ///< why the last order was not carried out
 };

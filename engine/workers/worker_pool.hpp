@@ -10,14 +10,15 @@
 
 namespace yuragi {
 
-/// Threads that share a work out with the caller, for scenes that are too large for one core in a tick.
+/// Threads that share work with the caller, for scenes that are too large for one core in a tick.
 ///
-/// The caller does a part itself. Between works a thread spins for kSpin, and sleeps after that: in a loop of works
-/// that follow each other nobody sleeps, and paced at 60 Hz nobody burns a core (a wake-up then costs some 50 us a
-/// work). Thread-safe: no, one caller. Realtime-safe: run() neither allocates nor locks; it waits for the slowest part.
+/// The caller does a part itself. Between two pieces of work a thread polls kSpins times, some tens of microseconds,
+/// and then sleeps: in a loop of work without pauses no thread sleeps, and at 60 Hz none burns a core (waking the
+/// threads then costs some 50 us per tick). Thread-safe: no, one caller. Realtime-safe: run() neither allocates nor
+/// locks; it waits for the slowest part.
 class WorkerPool {
  public:
-  /// `threads`: how many share a work, the caller among them; 0 is taken as 1.
+  /// `threads`: how many share the work, the caller among them; 0 counts as 1.
   explicit WorkerPool(std::size_t threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;

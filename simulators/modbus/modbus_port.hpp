@@ -13,10 +13,10 @@ namespace yuragi::sim {
 /// The connection of a simulated Modbus bus: a TCP port or a serial one.
 class ModbusPort {
  public:
-  /// A question, and whom to answer.
-  struct ClientQuestion {
+  /// A request, and which client sent it.
+  struct ClientRequest {
     int client;
-    ModbusQuestion question;
+    SlaveRequest request;
   };
 
   virtual ~ModbusPort() = default;
@@ -26,10 +26,10 @@ class ModbusPort {
   virtual std::string name() const = 0;
 
   virtual std::vector<int> descriptors() const = 0;
-  /// The questions that have come over those descriptors that can be read. Never waits.
-  virtual std::vector<ClientQuestion> receive(std::span<const int> ready) = 0;
-  /// Says bytes to a client; to one that is gone, nothing.
-  virtual void say(int client, std::span<const std::uint8_t> bytes) = 0;
+  /// The requests that have arrived on those of the descriptors that can be read. Never waits.
+  virtual std::vector<ClientRequest> receive(std::span<const int> ready) = 0;
+  /// Sends bytes to a client; nothing where it has gone.
+  virtual void send(int client, std::span<const std::uint8_t> bytes) = 0;
 
   /// Closes all connections and the port.
   virtual void leave() = 0;

@@ -45,7 +45,7 @@ std::size_t rtu_length(const ModbusBytes& bytes) {
 
 }  // namespace
 
-std::optional<ModbusQuestion> take_tcp_question(ModbusBytes& incoming) {
+std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming) {
   if (incoming.size() < kTcpHeader) return std::nullopt;
   const std::size_t length = word_at(incoming, 4);
   if (word_at(incoming, 2) != 0 || length < 2 || length > kLongestTcpBody) {
@@ -53,16 +53,16 @@ std::optional<ModbusQuestion> take_tcp_question(ModbusBytes& incoming) {
     return std::nullopt;
   }
   if (incoming.size() < kTcpHeader + length) return std::nullopt;
-  const ModbusQuestion question{.transaction = word_at(incoming, 0),
-                                .unit = incoming[6],
-                                .function = incoming[7],
-                                .address = word_at(incoming, 8),
-                                .count = word_at(incoming, 10)};
+  const SlaveRequest request{.transaction = word_at(incoming, 0),
+                             .unit = incoming[6],
+                             .function = incoming[7],
+                             .address = word_at(incoming, 8),
+                             .count = word_at(incoming, 10)};
   incoming.erase(incoming.begin(), incoming.begin() + static_cast<std::ptrdiff_t>(kTcpHeader + length));
-  return question;
+  return request;
 }
 
-std::optional<ModbusQuestion> take_rtu_question(ModbusBytes& incoming) {
+std::optional<SlaveRequest> take_rtu_request(ModbusBytes& incoming) {
   while (incoming.size() >= kShortestRtu) {
     const std::size_t length = rtu_length(incoming);
     if (length == 0) return std::nullopt;
@@ -72,42 +72,42 @@ std::optional<ModbusQuestion> take_rtu_question(ModbusBytes& incoming) {
       incoming.erase(incoming.begin());
       continue;
     }
-    const ModbusQuestion question{.transaction = 0,
-                                  .unit = incoming[0],
-                                  .function = incoming[1],
-                                  .address = word_at(incoming, 2),
-                                  .count = word_at(incoming, 4)};
+    const SlaveRequest request{.transaction = 0,
+                               .unit = incoming[0],
+                               .function = incoming[1],
+                               .address = word_at(incoming, 2),
+                               .count = word_at(incoming, 4)};
     incoming.erase(incoming.begin(), incoming.begin() + static_cast<std::ptrdiff_t>(length));
-    return question;
+    return request;
   }
   return std::nullopt;
 }
 
-ModbusBytes registers_answer(std::uint8_t function, std::span<const std::uint16_t> registers) {
-  ModbusBytes answer = {function, static_cast<std::uint8_t>(2 * registers.size())};
+ModbusBytes registers_reply(std::uint8_t function, std::span<const std::uint16_t> registers) {
+  ModbusBytes reply = {function, static_cast<std::uint8_t>(2 * registers.size())};
   for (const std::uint16_t value : registers) {
-    answer.push_back(static_cast<std::uint8_t>(value >> 8U));
-    answer.push_back(static_cast<std::uint8_t>(value & 0xFFU));
+    reply.push_back(static_cast<std::uint8_t>(value >> 8U));
+    reply.push_back(static_cast<std::uint8_t>(value & 0xFFU));
   }
-  return answer;
+  return reply;
 }
 
-ModbusBytes exception_answer(std::uint8_t function, std::uint8_t code) {
+ModbusBytes exception_reply(std::uint8_t function, std::uint8_t code) {
   return {static_cast<std::uint8_t>(function | 0x80U), code};
 }
 
-ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& answer) {
-  const std::size_t length = 1 + answer.size();
+ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& reply) {
+  const std::size_t length = 1 + reply.size();
   ModbusBytes message = {
       static_cast<std::uint8_t>(transaction >> 8U), static_cast<std::uint8_t>(transaction & 0xFFU), 0,   0,
       static_cast<std::uint8_t>(length >> 8U),      static_cast<std::uint8_t>(length & 0xFFU),      unit};
-  message.insert(message.end(), answer.begin(), answer.end());
+  message.insert(message.end(), reply.begin(), reply.end());
   return message;
 }
 
-ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& answer) {
+ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& reply) {
   ModbusBytes message = {unit};
-  message.insert(message.end(), answer.begin(), answer.end());
+  message.insert(message.end(), reply.begin(), reply.end());
   const std::uint16_t sum = sum_of(message);
   message.push_back(static_cast<std::uint8_t>(sum & 0xFFU));
   message.push_back(static_cast<std::uint8_t>(sum >> 8U));

@@ -20,7 +20,7 @@ inline constexpr std::uint8_t kDeviceFailure = 4;
 inline constexpr std::uint8_t kGatewayTargetSilent = 11;
 
 /// A master's request.
-struct ModbusQuestion {
+struct SlaveRequest {
   std::uint16_t transaction = 0;  ///< TCP only
   std::uint8_t unit = 0;
   std::uint8_t function = 0;
@@ -30,16 +30,16 @@ struct ModbusQuestion {
 
 /// Takes the first whole request out of the bytes of a TCP client; nothing while it is incomplete. Bytes that cannot be
 /// Modbus empty `incoming`.
-std::optional<ModbusQuestion> take_tcp_question(ModbusBytes& incoming);
+std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming);
 
 /// The same for a serial line: bytes without a valid CRC are skipped one by one.
-std::optional<ModbusQuestion> take_rtu_question(ModbusBytes& incoming);
+std::optional<SlaveRequest> take_rtu_request(ModbusBytes& incoming);
 
 /// The part of a reply that both framings carry: these registers.
-ModbusBytes registers_answer(std::uint8_t function, std::span<const std::uint16_t> registers);
-ModbusBytes exception_answer(std::uint8_t function, std::uint8_t code);
+ModbusBytes registers_reply(std::uint8_t function, std::span<const std::uint16_t> registers);
+ModbusBytes exception_reply(std::uint8_t function, std::uint8_t code);
 
-ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& answer);
-ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& answer);
+ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& reply);
+ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& reply);
 
 }  // namespace yuragi::sim

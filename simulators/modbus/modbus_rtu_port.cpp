@@ -17,16 +17,16 @@ class RtuPort final : public ModbusPort {
     return pty_.is_plugged_in() ? std::vector<int>{pty_.descriptor()} : std::vector<int>{};
   }
 
-  std::vector<ClientQuestion> receive(std::span<const int> ready) override {
-    std::vector<ClientQuestion> received;
+  std::vector<ClientRequest> receive(std::span<const int> ready) override {
+    std::vector<ClientRequest> received;
     if (std::ranges::count(ready, pty_.descriptor()) == 0) return received;
     const auto bytes = pty_.read();
     incoming_.insert(incoming_.end(), bytes.begin(), bytes.end());
-    while (const auto question = take_rtu_question(incoming_)) received.push_back({0, *question});
+    while (const auto request = take_rtu_request(incoming_)) received.push_back({0, *request});
     return received;
   }
 
-  void say(int /*client*/, std::span<const std::uint8_t> bytes) override { pty_.write(bytes); }
+  void send(int /*client*/, std::span<const std::uint8_t> bytes) override { pty_.write(bytes); }
 
   void leave() override {
     pty_.unplug();

@@ -94,13 +94,13 @@ class ModbusSimulator::State {
     }
     port_->come_back();
 
-    for (const ModbusPort::ClientQuestion& asked : port_->receive(ready)) answer(asked);
-    say_what_is_due();
+    for (const ModbusPort::ClientRequest& received : port_->receive(ready)) reply(received);
+    send_what_is_due();
   }
 
   std::string status() const {
     return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}{}{}", moment_.speed_m_s, moment_.direction_deg,
-                       count_text(answered_, "response"), fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
+                       count_text(replied_, "response"), fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
   }
 
  private:
@@ -110,64 +110,64 @@ class ModbusSimulator::State {
   }
 
   /// The reply of a device without a fault; reading a clearing register clears.
-  static ModbusBytes right_answer(SimulatedSlave& slave, const ModbusQuestion& question) {
-    if (question.function != slave.model.function) return exception_answer(question.function, kIllegalFunction);
-    if (question.count < 1 || question.count > kMostRegisters) {
-      return exception_answer(question.function, kIllegalValue);
+  static ModbusBytes right_reply(SimulatedSlave& slave, const SlaveRequest& request) {
+    if (request.function != slave.model.function) return exception_reply(request.function, kIllegalFunction);
+    if (request.count < 1 || request.count > kMostRegisters) {
+      return exception_reply(request.function, kIllegalValue);
     }
     std::vector<std::uint16_t> values;
-    for (unsigned i = 0; i < question.count; ++i) {
-      const auto value = slave.registers.at(static_cast<std::uint16_t>(question.address + i));
-      if (!value) return exception_answer(question.function, kIllegalAddress);
+    for (unsigned i = 0; i < request.count; ++i) {
+      const auto value = slave.registers.at(static_cast<std::uint16_t>(request.address + i));
+      if (!value) return exception_reply(request.function, kIllegalAddress);
       values.push_back(*value);
     }
     const std::uint16_t clearing = slave.model.clearing_register;
-    if (clearing >= question.address && clearing < question.address + question.count) slave.window.clear();
-    return registers_answer(question.function, values);
+    if (clearing >= request.address && clearing < request.address + request.count) slave.window.clear();
+    return registers_reply(request.function, values);
   }
 
-  void answer(const ModbusPort::ClientQuestion& asked) {
+  void reply(const ModbusPort::ClientRequest& received) {
     // Where nobody has that id, a gateway says so, and a serial line stays silent.
-    const ModbusQuestion& question = asked.question;
-    SimulatedSlave* const slave = slave_of(question.unit);
+    const SlaveRequest& request = received.request;
+    SimulatedSlave* const slave = slave_of(request.unit);
     if (slave == nullptr) {
-      if (!port_->is_rtu()) say(asked, exception_answer(question.function, kGatewayTargetSilent), 0.0);
+      if (!port_->is_rtu()) send(received, exception_reply(request.function, kGatewayTargetSilent), 0.0);
       return;
     }
-    const bool is_well = !fault_ || (options_.id && *options_.id != question.unit);
-    ++answered_;
-    if (is_well) return say(asked, right_answer(*slave, question), 0.0);
-    answer_wrongly(asked, right_answer(*slave, question));
+    const bool is_well = !fault_ || (options_.id && *options_.id != request.unit);
+    ++replied_;
+    if (is_well) return send(received, right_reply(*slave, request), 0.0);
+    reply_wrongly(received, right_reply(*slave, request));
   }
 
-  void answer_wrongly(ModbusPort::ClientQuestion asked, const ModbusBytes& right) {
+  void reply_wrongly(ModbusPort::ClientRequest received, const ModbusBytes& right) {
     switch (*fault_) {
       case FaultKind::kSilence:
         return;
       case FaultKind::kLate:
-        return say(asked, right, options_.late_s);
+        return send(received, right, options_.late_s);
       case FaultKind::kException:
-        return say(asked, exception_answer(asked.question.function, kDeviceFailure), 0.0);
+        return send(received, exception_reply(received.request.function, kDeviceFailure), 0.0);
       case FaultKind::kWrongTransaction:
-        --asked.question.transaction;
-        return say(asked, right, 0.0);
+        --received.request.transaction;
+        return send(received, right, 0.0);
       case FaultKind::kWrongId:
-        ++asked.question.unit;
-        return say(asked, right, 0.0);
+        ++received.request.unit;
+        return send(received, right, 0.0);
       case FaultKind::kGarbage:
       case FaultKind::kSplit:
       case FaultKind::kPartial:
       case FaultKind::kBadChecksum:
-        return say_damaged(asked.client, message(asked.question, right));
+        return send_damaged(received.client, message(received.request, right));
       case FaultKind::kFreeze:
       case FaultKind::kSpike:
       case FaultKind::kDisconnect:
       case FaultKind::kUnplug:
-        return say(asked, right, 0.0);
+        return send(received, right, 0.0);
     }
   }
 
-  void say_damaged(int client, ModbusBytes bytes) {
+  void send_damaged(int client, ModbusBytes bytes) {
     if (fault_ == FaultKind::kSplit) {
       // A byte, then some, then the rest.
       const auto first = bytes.begin() + 1;
@@ -188,22 +188,21 @@ class ModbusSimulator::State {
     queue(client, std::move(bytes), 0.0);
   }
 
-  ModbusBytes message(const ModbusQuestion& question, const ModbusBytes& answer) const {
-    return port_->is_rtu() ? rtu_message(question.unit, answer)
-                           : tcp_message(question.transaction, question.unit, answer);
+  ModbusBytes message(const SlaveRequest& request, const ModbusBytes& reply) const {
+    return port_->is_rtu() ? rtu_message(request.unit, reply) : tcp_message(request.transaction, request.unit, reply);
   }
 
-  void say(const ModbusPort::ClientQuestion& asked, const ModbusBytes& answer, double delay_s) {
-    queue(asked.client, message(asked.question, answer), delay_s);
+  void send(const ModbusPort::ClientRequest& received, const ModbusBytes& reply, double delay_s) {
+    queue(received.client, message(received.request, reply), delay_s);
   }
 
   void queue(int client, ModbusBytes bytes, double delay_s) {
     outgoing_.push_back({now_s_ + delay_s, client, std::move(bytes)});
   }
 
-  void say_what_is_due() {
+  void send_what_is_due() {
     for (const DueMessage& out : outgoing_) {
-      if (out.due_s <= now_s_) port_->say(out.client, out.bytes);
+      if (out.due_s <= now_s_) port_->send(out.client, out.bytes);
     }
     std::erase_if(outgoing_, [this](const DueMessage& out) { return out.due_s <= now_s_; });
   }
@@ -218,7 +217,7 @@ class ModbusSimulator::State {
   double now_s_ = 0.0;
   PlayedMoment moment_;
   std::optional<FaultKind> fault_;
-  std::uint64_t answered_ = 0;
+  std::uint64_t replied_ = 0;
 };
 
 ModbusSimulator::ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port,

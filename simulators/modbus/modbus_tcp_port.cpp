@@ -47,8 +47,8 @@ class TcpPort final : public ModbusPort {
     return all;
   }
 
-  std::vector<ClientQuestion> receive(std::span<const int> ready) override {
-    std::vector<ClientQuestion> received;
+  std::vector<ClientRequest> receive(std::span<const int> ready) override {
+    std::vector<ClientRequest> received;
     for (const int descriptor : ready) {
       if (descriptor == listener_) {
         accept_client();
@@ -58,14 +58,14 @@ class TcpPort final : public ModbusPort {
           clients_.erase(client);
           continue;
         }
-        while (const auto question = take_tcp_question(client->second)) received.push_back({descriptor, *question});
+        while (const auto request = take_tcp_request(client->second)) received.push_back({descriptor, *request});
       }
     }
     return received;
   }
 
-  void say(int client, std::span<const std::uint8_t> bytes) override {
-    if (clients_.contains(client)) send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  void send(int client, std::span<const std::uint8_t> bytes) override {
+    if (clients_.contains(client)) ::send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }
 
   void leave() override {

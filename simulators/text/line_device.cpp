@@ -14,7 +14,7 @@ class LineDevice final : public TextDevice {
 
   std::span<const FaultKind> known_faults() const override { return {}; }
 
-  std::vector<std::string> say(const PlayedMoment& moment, std::optional<FaultKind> /*fault*/) override {
+  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> /*fault*/) override {
     // As Serial.println() of an Arduino ends a line.
     constexpr std::string_view kKeys = "speed={:.2f} direction={:.1f}\r\n";
     constexpr std::string_view kColumns = "{:.2f},{:.1f}\r\n";

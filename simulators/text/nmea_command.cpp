@@ -14,7 +14,7 @@ struct NmeaOptions {
 };
 
 void simulate_nmea(NmeaOptions options) {
-  const bool is_mute = std::ranges::any_of(options.formats, [](const auto& format) { return only_answers(format); });
+  const bool is_mute = std::ranges::any_of(options.formats, [](const auto& format) { return is_only_polled(format); });
   if (is_mute && options.formats.size() > 1)
     throw CLI::ValidationError("--format", "umb cannot be combined with another format");
   if (is_mute) options.text.rate_hz = 0.0;

@@ -36,24 +36,24 @@ constexpr double kKmhOfAMetrePerSecond = 3.6;
 constexpr double kGillCalm_m_s = 0.05;
 
 /// What a fault changes in a message.
-struct Voice {
+struct Style {
   std::string_view talker = "WI";
   char node = 'Q';
   unsigned checksum_error = 0;
 };
 
-std::string with_checksum(std::string_view start, std::string_view body, std::string_view end, const Voice& voice) {
+std::string with_checksum(std::string_view start, std::string_view body, std::string_view end, const Style& style) {
   unsigned sum = 0;
   for (const char c : body) sum ^= static_cast<unsigned char>(c);
-  return fmt::format("{}{}{}{:02X}\r\n", start, body, end, sum ^ voice.checksum_error);
+  return fmt::format("{}{}{}{:02X}\r\n", start, body, end, sum ^ style.checksum_error);
 }
 
-std::string sentence(const std::string& body, const Voice& voice) {
-  return with_checksum("$", body, "*", voice);
+std::string sentence(const std::string& body, const Style& style) {
+  return with_checksum("$", body, "*", style);
 }
 
-std::string gill_frame(const std::string& body, const Voice& voice) {
-  return with_checksum("\x02", body, "\x03", voice);
+std::string gill_frame(const std::string& body, const Style& style) {
+  return with_checksum("\x02", body, "\x03", style);
 }
 
 /// Whole degrees, 0 to 359.
@@ -61,8 +61,8 @@ int whole_deg(double direction_deg) {
   return static_cast<int>(std::lround(direction_deg) % 360);
 }
 
-std::string mwv(const PlayedMoment& now, const Voice& voice) {
-  return sentence(fmt::format("{}MWV,{:.1f},R,{:.2f},M,A", voice.talker, now.direction_deg, now.speed_m_s), voice);
+std::string mwv(const PlayedMoment& now, const Style& style) {
+  return sentence(fmt::format("{}MWV,{:.1f},R,{:.2f},M,A", style.talker, now.direction_deg, now.speed_m_s), style);
 }
 
 /// The eight fields that end MWD and MDA.
@@ -71,57 +71,57 @@ std::string from_north(const PlayedMoment& now) {
                      now.speed_m_s);
 }
 
-std::string mwd(const PlayedMoment& now, const Voice& voice) {
-  return sentence(fmt::format("{}MWD,{}", voice.talker, from_north(now)), voice);
+std::string mwd(const PlayedMoment& now, const Style& style) {
+  return sentence(fmt::format("{}MWD,{}", style.talker, from_north(now)), style);
 }
 
-std::string mda(const PlayedMoment& now, const Voice& voice) {
+std::string mda(const PlayedMoment& now, const Style& style) {
   constexpr std::string_view kWeather = "29.9200,I,1.0132,B,12.5,C,,,55.0,,3.7,C";
-  return sentence(fmt::format("{}MDA,{},{}", voice.talker, kWeather, from_north(now)), voice);
+  return sentence(fmt::format("{}MDA,{},{}", style.talker, kWeather, from_north(now)), style);
 }
 
-std::string from_bow(std::string_view name, const PlayedMoment& now, const Voice& voice) {
+std::string from_bow(std::string_view name, const PlayedMoment& now, const Style& style) {
   const bool is_left = now.direction_deg > 180.0;
   return sentence(
-      fmt::format("{}{},{:.1f},{},{:.2f},N,{:.2f},M,{:.2f},K", voice.talker, name,
+      fmt::format("{}{},{:.1f},{},{:.2f},N,{:.2f},M,{:.2f},K", style.talker, name,
                   is_left ? 360.0 - now.direction_deg : now.direction_deg, is_left ? 'L' : 'R',
                   now.speed_m_s * kKnotsOfAMetrePerSecond, now.speed_m_s, now.speed_m_s * kKmhOfAMetrePerSecond),
-      voice);
+      style);
 }
-std::string vwr(const PlayedMoment& now, const Voice& voice) {
-  return from_bow("VWR", now, voice);
+std::string vwr(const PlayedMoment& now, const Style& style) {
+  return from_bow("VWR", now, style);
 }
-std::string vwt(const PlayedMoment& now, const Voice& voice) {
-  return from_bow("VWT", now, voice);
+std::string vwt(const PlayedMoment& now, const Style& style) {
+  return from_bow("VWT", now, style);
 }
 
-std::string xdr(const PlayedMoment& now, const Voice& voice) {
+std::string xdr(const PlayedMoment& now, const Style& style) {
   const auto turned = [&](double by_deg) { return whole_deg(now.direction_deg + by_deg + 360.0); };
   return sentence(
-      fmt::format("{}XDR,A,{},D,0,A,{},D,1,A,{},D,2,S,{:.1f},M,0,S,{:.1f},M,1,S,{:.1f},M,2", voice.talker, turned(-5.0),
+      fmt::format("{}XDR,A,{},D,0,A,{},D,1,A,{},D,2,S,{:.1f},M,0,S,{:.1f},M,1,S,{:.1f},M,2", style.talker, turned(-5.0),
                   turned(0.0), turned(5.0), 0.9 * now.speed_m_s, now.speed_m_s, 1.1 * now.speed_m_s),
-      voice);
+      style);
 }
 
-std::string gill(const PlayedMoment& now, const Voice& voice) {
+std::string gill(const PlayedMoment& now, const Style& style) {
   const std::string direction = now.speed_m_s < kGillCalm_m_s ? "" : fmt::format("{:03}", whole_deg(now.direction_deg));
-  return gill_frame(fmt::format("{},{},{:06.2f},M,00,", voice.node, direction, now.speed_m_s), voice);
+  return gill_frame(fmt::format("{},{},{:06.2f},M,00,", style.node, direction, now.speed_m_s), style);
 }
 
-std::string gill_uv(const PlayedMoment& now, const Voice& voice) {
+std::string gill_uv(const PlayedMoment& now, const Style& style) {
   const double from_rad = now.direction_deg * kRadPerDeg;
-  return gill_frame(fmt::format("{},{:+07.2f},{:+07.2f},M,00,", voice.node, -now.speed_m_s * std::cos(from_rad),
+  return gill_frame(fmt::format("{},{:+07.2f},{:+07.2f},M,00,", style.node, -now.speed_m_s * std::cos(from_rad),
                                 now.speed_m_s * std::sin(from_rad)),
-                    voice);
+                    style);
 }
 
-std::string ft(const PlayedMoment& now, const Voice& voice) {
-  return sentence(fmt::format("{},WVP={:05.1f},{:03},0", voice.talker, now.speed_m_s, whole_deg(now.direction_deg)),
-                  voice);
+std::string ft(const PlayedMoment& now, const Style& style) {
+  return sentence(fmt::format("{},WVP={:05.1f},{:03},0", style.talker, now.speed_m_s, whole_deg(now.direction_deg)),
+                  style);
 }
 
-std::string umb(const PlayedMoment& now, const Voice& voice) {
-  return sentence(fmt::format("{}MWV,{:05.1f},R,{:05.1f},M,A", voice.talker, now.direction_deg, now.speed_m_s), voice);
+std::string umb(const PlayedMoment& now, const Style& style) {
+  return sentence(fmt::format("{}MWV,{:05.1f},R,{:05.1f},M,A", style.talker, now.direction_deg, now.speed_m_s), style);
 }
 
 bool is_ft_request(std::string_view line) {
@@ -133,7 +133,7 @@ bool is_umb_request(std::string_view line) {
 
 struct Format {
   std::string_view name;
-  std::string (*say)(const PlayedMoment& now, const Voice& voice);
+  std::string (*send_messages)(const PlayedMoment& now, const Style& style);
   bool (*is_request)(std::string_view line) = nullptr;
 };
 constexpr std::array<Format, 10> kFormats = {{{"mwv", mwv},
@@ -156,16 +156,16 @@ class NmeaDevice final : public TextDevice {
     return kKnown;
   }
 
-  std::vector<std::string> say(const PlayedMoment& moment, std::optional<FaultKind> fault) override {
-    Voice voice;
-    if (fault == FaultKind::kBadChecksum) voice.checksum_error = 1;
+  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) override {
+    Style style;
+    if (fault == FaultKind::kBadChecksum) style.checksum_error = 1;
     if (fault == FaultKind::kWrongId) {
-      voice.talker = "II";
-      voice.node = 'R';
+      style.talker = "II";
+      style.node = 'R';
     }
     std::vector<std::string> messages;
     messages.reserve(formats_.size());
-    for (const Format& format : formats_) messages.push_back(format.say(moment, voice));
+    for (const Format& format : formats_) messages.push_back(format.send_messages(moment, style));
     return messages;
   }
 
@@ -200,7 +200,7 @@ std::unique_ptr<TextDevice> make_nmea_device(const std::vector<std::string>& for
   return std::make_unique<NmeaDevice>(std::move(chosen));
 }
 
-bool only_answers(std::string_view nmea_format) {
+bool is_only_polled(std::string_view nmea_format) {
   return nmea_format == "umb";
 }
 

@@ -17,6 +17,6 @@ std::vector<std::string> nmea_format_names();
 std::unique_ptr<TextDevice> make_nmea_device(const std::vector<std::string>& formats);
 
 /// Does a device of this format send only on request?
-bool only_answers(std::string_view nmea_format);
+bool is_only_polled(std::string_view nmea_format);
 
 }  // namespace yuragi::sim

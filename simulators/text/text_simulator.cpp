@@ -45,30 +45,30 @@ void TextSimulator::serve(std::span<const int> ready, double time_s, std::option
   }
   wire_->bring_back();
 
-  hear(wire_->read(ready), time_s, fault);
+  receive(wire_->read(ready), time_s, fault);
   while (!waiting_.empty() && waiting_.front().time_s <= time_s) {
     wire_->write(waiting_.front().bytes);
     waiting_.pop_front();
   }
-  for (; rate_hz_ > 0.0 && next_s_ <= time_s; next_s_ += 1.0 / rate_hz_) say(next_s_, fault);
+  for (; rate_hz_ > 0.0 && next_s_ <= time_s; next_s_ += 1.0 / rate_hz_) send_messages(next_s_, fault);
 }
 
-void TextSimulator::hear(std::string_view bytes, double time_s, std::optional<FaultKind> fault) {
+void TextSimulator::receive(std::string_view bytes, double time_s, std::optional<FaultKind> fault) {
   for (const char c : bytes) {
     if (c != '\r' && c != '\n') {
       if (request_.size() < kLongestRequest) request_ += c;
       continue;
     }
     const std::string request = std::exchange(request_, "");
-    if (!request.empty() && device_->is_request(request)) say(time_s, fault);
+    if (!request.empty() && device_->is_request(request)) send_messages(time_s, fault);
   }
 }
 
-void TextSimulator::say(double time_s, std::optional<FaultKind> fault) {
+void TextSimulator::send_messages(double time_s, std::optional<FaultKind> fault) {
   moment_ = wind_.at(time_s, fault);
   if (fault == FaultKind::kSilence) return;
-  for (const std::string& message : device_->say(moment_, fault)) send(message, time_s, fault);
-  ++said_;
+  for (const std::string& message : device_->send_messages(moment_, fault)) send(message, time_s, fault);
+  ++sent_;
 }
 
 void TextSimulator::send(const std::string& message, double time_s, std::optional<FaultKind> fault) {
@@ -98,7 +98,7 @@ void TextSimulator::send_after(double delay_s, const std::string& bytes, double 
 
 std::string TextSimulator::status() const {
   return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}, {} said{}{}", moment_.speed_m_s, moment_.direction_deg,
-                     wire_->place(), said_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
+                     wire_->place(), sent_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
 }
 
 }  // namespace yuragi::sim

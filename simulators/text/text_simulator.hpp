@@ -26,7 +26,7 @@ class TextDevice {
   virtual std::span<const FaultKind> known_faults() const = 0;
 
   /// Its messages about one moment, with their line ends.
-  virtual std::vector<std::string> say(const PlayedMoment& moment, std::optional<FaultKind> fault) = 0;
+  virtual std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) = 0;
 
   /// Is this line, without its end, the device's request?
   virtual bool is_request(std::string_view line) const = 0;
@@ -47,8 +47,8 @@ class TextSimulator final : public Simulator {
   std::string status() const override;
 
  private:
-  void hear(std::string_view bytes, double time_s, std::optional<FaultKind> fault);
-  void say(double time_s, std::optional<FaultKind> fault);
+  void receive(std::string_view bytes, double time_s, std::optional<FaultKind> fault);
+  void send_messages(double time_s, std::optional<FaultKind> fault);
   void send(const std::string& message, double time_s, std::optional<FaultKind> fault);
   void send_after(double delay_s, const std::string& bytes, double time_s);
 
@@ -68,7 +68,7 @@ class TextSimulator final : public Simulator {
   std::string request_;
   std::deque<Waiting> waiting_;
   PlayedMoment moment_;
-  std::uint64_t said_ = 0;
+  std::uint64_t sent_ = 0;
   std::optional<FaultKind> fault_;
 };
 

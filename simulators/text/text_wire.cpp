@@ -88,18 +88,18 @@ class TcpWire final : public TextWire {
   }
 
   std::string read(std::span<const int> ready) override {
-    std::string heard;
+    std::string received;
     for (tcp::socket& client : clients_) {
       if (!has(ready, client.native_handle())) continue;
       std::array<char, 512> block{};
       boost::system::error_code error;
       const std::size_t size = client.read_some(boost::asio::buffer(block), error);
-      heard.append(block.data(), size);
+      received.append(block.data(), size);
       if (error && error != boost::asio::error::would_block) client.close(error);
     }
     if (listener_.is_open()) accept_all();
     std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
-    return heard;
+    return received;
   }
 
   void write(std::string_view bytes) override {

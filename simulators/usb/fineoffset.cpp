@@ -36,10 +36,10 @@ constexpr double kFirstUpdate_s = 7.0;  // the two clocks of the console are not
 constexpr double kFirstMinute_s = 31.0;
 constexpr double kNearWriting_s = 3.0;
 constexpr double kWriteByte_s = 0.03;
-constexpr double kBlockAnswer_s = 0.02;      // from the request to the first report
+constexpr double kBlockReply_s = 0.02;       // from the request to the first report
 constexpr double kBlockReport_s = 0.01;      // from one report to the next
 constexpr double kBlockSplitReport_s = 0.3;  // with the fault
-constexpr double kBlockLateAnswer_s = 2.5;   // with the fault: longer than a host's time-out of 1 s
+constexpr double kBlockLateReply_s = 2.5;    // with the fault: longer than a host's time-out of 1 s
 
 }  // namespace
 
@@ -138,15 +138,15 @@ bool FineOffset::take_output(std::span<const std::uint8_t> report) {
   const auto address = static_cast<std::uint16_t>((report[1] << 8U) | report[2]);
   const bool is_repeated = std::equal(report.begin(), report.begin() + 4, report.begin() + 4);
   if (report[0] == 0xA1 && is_repeated) {
-    answer(address);
+    reply(address);
   } else if (report[0] == 0xA2 && report[4] == 0xA2) {
     write(address, report.subspan(5, 1));
-    say(UsbBytes(8, 0xA5), kBlockAnswer_s);
+    queue_report(UsbBytes(8, 0xA5), kBlockReply_s);
   }
   return true;
 }
 
-void FineOffset::answer(std::uint16_t address) {
+void FineOffset::reply(std::uint16_t address) {
   ++blocks_read_;
   const double since_s = std::abs(now_s() - last_write_s_);
   const double until_s = std::min(next_update_s_, next_minute_s_) - now_s();
@@ -154,16 +154,16 @@ void FineOffset::answer(std::uint16_t address) {
 
   UsbBytes block(32, 0xFF);
   for (std::size_t i = 0; i < block.size() && address + i < kMemory; ++i) block[i] = memory_[address + i];
-  say_block(std::move(block));
+  queue_block(std::move(block));
 }
 
-void FineOffset::say_block(UsbBytes block) {
+void FineOffset::queue_block(UsbBytes block) {
   if (suffers(FaultKind::kGarbage)) block = random_bytes(block.size());
   if (suffers(FaultKind::kPartial)) block.resize(16);
-  double delay_s = suffers(FaultKind::kLate) ? kBlockLateAnswer_s : kBlockAnswer_s;
+  double delay_s = suffers(FaultKind::kLate) ? kBlockLateReply_s : kBlockReply_s;
   for (std::size_t at = 0; at < block.size(); at += 8) {
     const auto from = block.begin() + static_cast<std::ptrdiff_t>(at);
-    say(UsbBytes(from, from + 8), delay_s);
+    queue_report(UsbBytes(from, from + 8), delay_s);
     delay_s += suffers(FaultKind::kSplit) ? kBlockSplitReport_s : kBlockReport_s;
   }
 }

@@ -37,8 +37,8 @@ class FineOffset final : public HidModel {
   void write(std::uint16_t address, std::span<const std::uint8_t> bytes);
   void update_current_record();
   void end_minute();
-  void answer(std::uint16_t address);
-  void say_block(UsbBytes block);
+  void reply(std::uint16_t address);
+  void queue_block(UsbBytes block);
   std::vector<std::uint8_t> measured() const;
 
   std::uint16_t record_size_;

@@ -143,7 +143,7 @@ bool HidModel::out(std::uint8_t endpoint, std::span<const std::uint8_t> data) {
   return has_out_endpoint_ && endpoint == kTheEndpoint && take_output(data);
 }
 
-void HidModel::say(UsbBytes report, double delay_s) {
+void HidModel::queue_report(UsbBytes report, double delay_s) {
   if (waiting_.size() == kLongestQueue) waiting_.pop_front();
   waiting_.push_back({now_s_ + delay_s, std::move(report)});
 }

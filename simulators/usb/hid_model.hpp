@@ -20,7 +20,7 @@ struct HidIdentity {
   std::string product_name;
   UsbBytes report_descriptor;     ///< HID 1.11 specification, 6.2.2
   std::uint8_t report_size = 8;   ///< of the interrupt end points, bytes
-  std::uint8_t interval_ms = 10;  ///< how often the host asks for a report
+  std::uint8_t interval_ms = 10;  ///< how often the host polls for a report
   bool has_out_endpoint = false;  ///< otherwise output reports come as SET_REPORT
   bool is_full_speed = false;     ///< otherwise low speed, with packets of 8 bytes
 };
@@ -68,9 +68,9 @@ class HidModel : public UsbDevice {
   double paced(double duration_s) const noexcept { return duration_s / options_.pace; }
 
   /// Queues a report for the host, to be fetched from `delay_s` on. What is not fetched is dropped after some seconds.
-  void say(UsbBytes report, double delay_s = 0.0);
+  void queue_report(UsbBytes report, double delay_s = 0.0);
   /// Drops the reports that have not been fetched.
-  void say_nothing_more() { waiting_.clear(); }
+  void drop_reports() { waiting_.clear(); }
   UsbBytes random_bytes(std::size_t size);
   /// A number from 0 up to, but without, `end`.
   std::uint64_t random_below(std::uint64_t end) { return random_() % end; }

@@ -66,7 +66,7 @@ void HidrawNode::unplug() {
   for (ProgramCall& reader : readers_) reader.fail(EIO);
   readers_.clear();
   pending_.clear();
-  readiness_.set_ready(true);  // a program that waits in poll() is told
+  readiness_.set_ready(true);  // wakes a program that waits in poll()
 }
 
 void HidrawNode::read_reports() {
@@ -99,7 +99,7 @@ void HidrawNode::hand_out_reports() {
     readiness_.set_ready(!reports_.empty());
     const ProgramMemory buffer = reader.argument();
     buffer.write(0, report);
-    reader.answer(static_cast<long>(std::min(buffer.bytes().size(), report.size())));
+    reader.reply(static_cast<long>(std::min(buffer.bytes().size(), report.size())));
   }
   readiness_.set_ready(host_ == nullptr || !reports_.empty());
 }
@@ -132,27 +132,27 @@ void HidrawNode::obey_ioctl(ProgramCall call) {
   switch (without_size(request)) {
     case without_size(HIDIOCGRDESCSIZE):
       memory.write_value(static_cast<int>(descriptor.size()));
-      return call.answer(0);
+      return call.reply(0);
     case without_size(HIDIOCGRDESC): {
-      hidraw_report_descriptor answer{};
-      answer.size = static_cast<std::uint32_t>(std::min<std::size_t>(descriptor.size(), sizeof answer.value));
-      std::copy_n(descriptor.begin(), answer.size, answer.value);
-      memory.write_value(answer);
-      return call.answer(0);
+      hidraw_report_descriptor reply{};
+      reply.size = static_cast<std::uint32_t>(std::min<std::size_t>(descriptor.size(), sizeof reply.value));
+      std::copy_n(descriptor.begin(), reply.size, reply.value);
+      memory.write_value(reply);
+      return call.reply(0);
     }
     case without_size(HIDIOCGRAWINFO):
       memory.write_value(hidraw_devinfo{.bustype = BUS_USB,
                                         .vendor = static_cast<std::int16_t>(summary.vendor_id),
                                         .product = static_cast<std::int16_t>(summary.product_id)});
-      return call.answer(0);
+      return call.reply(0);
     case without_size(HIDIOCGRAWNAME(0)): {
       const std::string name = summary.manufacturer + " " + summary.product;
       memory.write(0, bytes_of(name));
-      return call.answer(static_cast<long>(std::min(size, name.size() + 1)));
+      return call.reply(static_cast<long>(std::min(size, name.size() + 1)));
     }
     case without_size(HIDIOCGRAWUNIQ(0)):
       memory.write(0, bytes_of(summary.serial));
-      return call.answer(static_cast<long>(std::min(size, summary.serial.size() + 1)));
+      return call.reply(static_cast<long>(std::min(size, summary.serial.size() + 1)));
     case without_size(HIDIOCGFEATURE(0)):
       return get_report(std::move(call), memory, kHidrawFeatureReport);
     case without_size(HIDIOCGINPUT(0)):
@@ -182,7 +182,7 @@ void HidrawNode::get_report(ProgramCall call, const ProgramMemory& buffer, std::
   submit(kept, std::move(transfer), [kept, buffer, skipped](const UsbOutcome& outcome) {
     if (outcome.is_refused) return kept->fail(EPIPE);
     buffer.write(skipped, outcome.data);
-    kept->answer(static_cast<long>(outcome.size + skipped));
+    kept->reply(static_cast<long>(outcome.size + skipped));
   });
 }
 
@@ -202,7 +202,7 @@ void HidrawNode::set_report(ProgramCall call, std::span<const std::uint8_t> repo
   const auto kept = std::make_shared<ProgramCall>(std::move(call));
   submit(kept, std::move(transfer), [kept, whole](const UsbOutcome& outcome) {
     if (outcome.is_refused) return kept->fail(EPIPE);
-    kept->answer(static_cast<long>(whole));
+    kept->reply(static_cast<long>(whole));
   });
 }
 

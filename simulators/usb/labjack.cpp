@@ -133,7 +133,7 @@ class Labjack final : public UsbDevice {
     // A late reply is sent with the next command.
     std::ranges::move(late_, std::back_inserter(replies_));
     late_.clear();
-    if (std::optional<UsbBytes> reply = answer(data)) {
+    if (std::optional<UsbBytes> reply = reply_to(data)) {
       (fault_ == FaultKind::kLate ? late_ : replies_).push_back(spoilt(std::move(*reply)));
     }
     while (replies_.size() > kMostReplies) replies_.pop_front();
@@ -151,7 +151,7 @@ class Labjack final : public UsbDevice {
   }
 
  private:
-  std::optional<UsbBytes> answer(UsbView command) {
+  std::optional<UsbBytes> reply_to(UsbView command) {
     if (!is_sealed(command)) return UsbBytes{0xB8, 0xB8};
     const UsbView data = command.subspan(kFrameHeader);
     switch (command[3]) {

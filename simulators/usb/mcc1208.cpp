@@ -80,7 +80,7 @@ class Mcc1208 final : public UsbDevice {
 
   std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> /*data*/) override {
     if (fault_ == FaultKind::kException) return std::nullopt;
-    std::optional<UsbBytes> reply = setup.request_type == 0xC0 ? answer(setup) : obey(setup);
+    std::optional<UsbBytes> reply = setup.request_type == 0xC0 ? reply_to(setup) : obey(setup);
     if (!reply) return std::nullopt;
     if (reply->size() > setup.length) reply->resize(setup.length);
     if (fault_ == FaultKind::kGarbage) {
@@ -94,7 +94,7 @@ class Mcc1208 final : public UsbDevice {
   bool out(std::uint8_t /*endpoint*/, std::span<const std::uint8_t> /*data*/) override { return false; }
 
  private:
-  std::optional<UsbBytes> answer(const UsbSetup& setup) const {
+  std::optional<UsbBytes> reply_to(const UsbSetup& setup) const {
     UsbBytes reply;
     switch (setup.request) {
       case 0x10: {

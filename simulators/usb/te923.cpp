@@ -19,10 +19,10 @@ constexpr std::array kTe923Faults = {FaultKind::kSilence,     FaultKind::kFreeze
                                      FaultKind::kGarbage,     FaultKind::kSplit,  FaultKind::kPartial,
                                      FaultKind::kBadChecksum, FaultKind::kLate};
 constexpr double kTe923Every_s = 33.0;
-constexpr double kTe923Answer_s = 0.05;      // from the request to the first report
+constexpr double kTe923Reply_s = 0.05;       // from the request to the first report
 constexpr double kTe923Report_s = 0.01;      // from one report to the next
 constexpr double kTe923SplitReport_s = 0.3;  // with the fault
-constexpr double kTe923LateAnswer_s = 8.0;   // with the fault: longer than a host's time-out of 5 s
+constexpr double kTe923LateReply_s = 8.0;    // with the fault: longer than a host's time-out of 5 s
 constexpr unsigned kTe923ReadingsAt = 0x020001;
 constexpr double kMetrePerSecond_mph = 1.0 / 0.44704;
 
@@ -61,7 +61,7 @@ class Te923 final : public HidModel {
     if (report.size() != 8) return false;
     const bool is_request = report[0] == 0x05 && report[1] == 0xAF && xor_of(report.subspan(1, 5)) == 0;
     if (is_request && !suffers(FaultKind::kSilence)) {
-      answer(report[2] + 0x100U * report[3] + 0x10000U * report[4]);
+      reply(report[2] + 0x100U * report[3] + 0x10000U * report[4]);
     }
     return true;
   }
@@ -74,7 +74,7 @@ class Te923 final : public HidModel {
     readings_[at + 1] = static_cast<std::uint8_t>((digit(1000) << 4U) | digit(100));
   }
 
-  void answer(unsigned address) {
+  void reply(unsigned address) {
     // The block: header, memory, check byte. Only the readings are more than empty memory here.
     UsbBytes block(33, 0x00);
     block[0] = 0x5A;
@@ -84,14 +84,14 @@ class Te923 final : public HidModel {
     if (suffers(FaultKind::kGarbage)) block = random_bytes(block.size());
     if (suffers(FaultKind::kPartial)) block.resize(block.size() / 2);
 
-    say_nothing_more();
-    double delay_s = suffers(FaultKind::kLate) ? kTe923LateAnswer_s : kTe923Answer_s;
+    drop_reports();
+    double delay_s = suffers(FaultKind::kLate) ? kTe923LateReply_s : kTe923Reply_s;
     for (std::size_t at = 0; at < block.size();) {
       const std::size_t count = std::min<std::size_t>(7, block.size() - at);
       UsbBytes report(8);
       report[0] = static_cast<std::uint8_t>(count);
       std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
-      say(std::move(report), delay_s);
+      queue_report(std::move(report), delay_s);
       delay_s += suffers(FaultKind::kSplit) ? kTe923SplitReport_s : kTe923Report_s;
       at += count;
     }

@@ -39,7 +39,7 @@ ProgramCallQueue::State& state_of(UMockdevIoctlBase* handler) {
   return **static_cast<SharedState*>(g_object_get_data(reinterpret_cast<GObject*>(handler), kStateKey));
 }
 
-// Umockdev calls these on a thread of its own. A call is kept until the simulator's thread has answered it.
+// Umockdev calls these on a thread of its own. A call is kept until the simulator's thread has completed it.
 gboolean keep_call(UMockdevIoctlBase* handler, UMockdevIoctlClient* client, ProgramCallKind kind) {
   ProgramCallQueue::State& state = state_of(handler);
   g_object_ref(client);

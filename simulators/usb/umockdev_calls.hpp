@@ -46,7 +46,7 @@ class ProgramMemory {
 
 enum class ProgramCallKind : std::uint8_t { kIoctl, kRead, kWrite };
 
-/// A system call on a device node in which the program under test waits. It is answered once; on destruction with EIO,
+/// A system call on a device node in which the program under test waits. It is completed once; on destruction with EIO,
 /// if it was not. Movable. Thread-safe: no.
 class ProgramCall {
  public:
@@ -64,7 +64,7 @@ class ProgramCall {
   /// Of an ioctl: its argument, which is a pointer or a number. Of a read or a write: the buffer.
   ProgramMemory argument() const;
 
-  void answer(long result) { finish(result, 0); }
+  void reply(long result) { finish(result, 0); }
   void fail(int error) { finish(-1, error); }
 
  private:

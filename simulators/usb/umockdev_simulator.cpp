@@ -78,7 +78,8 @@ struct UmockdevSimulator::State {
       add(hid_path, hid_description(socket, hid_path, index));
       add(hid_path + "/hidraw/" + hidraw_node, hidraw_description(hid_path, hidraw_node, index));
     }
-    for (auto path = device.paths.rbegin(); path != device.paths.rend(); ++path) testbed.tell("/sys" + *path, "add");
+    for (auto path = device.paths.rbegin(); path != device.paths.rend(); ++path)
+      testbed.send_uevent("/sys" + *path, "add");
     socket.plugged = std::move(device);
   }
 
@@ -99,7 +100,7 @@ struct UmockdevSimulator::State {
       gone.push_back(std::move(node));
     }
     for (const std::string& path : device.paths) {
-      testbed.tell("/sys" + path, "remove");
+      testbed.send_uevent("/sys" + path, "remove");
       testbed.remove("/sys" + path);
     }
     for (const std::string& name : device.node_names) {

@@ -11,7 +11,7 @@ namespace yuragi::sim {
 
 /// Simulated USB devices in a testbed of umockdev's: programs that run beside it in that testbed find them with libusb,
 /// and stations with hidapi's hidraw backend, as if they were plugged in. Unplugged, a device vanishes with its nodes,
-/// and returns with new ones; udev's listeners are told of both.
+/// and returns with new ones; udev's listeners get a uevent for both.
 class UmockdevSimulator final : public Simulator {
  public:
   /// Throws std::runtime_error where this program does not run in umockdev (see is_in_umockdev()).

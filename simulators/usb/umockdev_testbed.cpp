@@ -74,7 +74,7 @@ void UmockdevTestbed::remove(const std::string& sysfs_path) {
   umockdev_testbed_remove_device(testbed_.get(), sysfs_path.c_str());
 }
 
-void UmockdevTestbed::tell(const std::string& sysfs_path, const std::string& action) {
+void UmockdevTestbed::send_uevent(const std::string& sysfs_path, const std::string& action) {
   umockdev_testbed_uevent(testbed_.get(), sysfs_path.c_str(), action.c_str());
 }
 

@@ -35,7 +35,7 @@ class UmockdevTestbed {
   /// Removes one, and its node.
   void remove(const std::string& sysfs_path);
   /// Sends a uevent to udev's listeners: `action` is "add" or "remove".
-  void tell(const std::string& sysfs_path, const std::string& action);
+  void send_uevent(const std::string& sysfs_path, const std::string& action);
 
   /// From now on calls on that node ("/dev/...") are put into the queue. Throws std::runtime_error.
   void attach(const std::string& node, const ProgramCallQueue& calls);

@@ -111,8 +111,8 @@ void add_hid_command(CLI::App& app) {
   std::vector<std::string> names;
   for (const std::string_view name : hid_station_names()) names.emplace_back(name);
   CLI::App* command = add_usb_options(app, "hid", "USB weather stations", names, options,
-                                      [](const std::string& name, const UsbOptions& asked) {
-                                        return make_hid_station(name, asked.pace, asked.common.synthetic.seed);
+                                      [](const std::string& name, const UsbOptions& chosen) {
+                                        return make_hid_station(name, chosen.pace, chosen.common.synthetic.seed);
                                       });
   command->add_option("--pace", options->pace, "how many times faster than the real station it measures")
       ->check(CLI::Range(0.1, 1000.0))

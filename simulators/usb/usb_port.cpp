@@ -90,8 +90,8 @@ std::optional<UsbOutcome> UsbPort::attempt(const UsbTransfer& transfer) {
   };
 
   if (transfer.endpoint == 0) {
-    const bool is_answered = !is_silent_ || !transfer.setup.is_to_host() || UsbControlPipe::is_standard(transfer.setup);
-    if (!is_answered) return std::nullopt;
+    const bool gets_reply = !is_silent_ || !transfer.setup.is_to_host() || UsbControlPipe::is_standard(transfer.setup);
+    if (!gets_reply) return std::nullopt;
     give(control_pipe_.control(transfer.setup, transfer.data));
     if (!outcome.is_refused && !transfer.setup.is_to_host()) outcome.size = transfer.data.size();
   } else if (transfer.is_to_host) {

@@ -103,9 +103,9 @@ UsbControlPipe::UsbControlPipe(UsbDevice& device)
     : device_(device), configuration_value_(summary_of(device.descriptors()).configuration_value) {}
 
 std::optional<UsbBytes> UsbControlPipe::control(const UsbSetup& setup, std::span<const std::uint8_t> data) {
-  std::optional<UsbBytes> answer = is_standard(setup) ? standard(setup) : device_.control(setup, data);
-  if (answer) answer->resize(setup.is_to_host() ? std::min<std::size_t>(answer->size(), setup.length) : 0);
-  return answer;
+  std::optional<UsbBytes> reply = is_standard(setup) ? standard(setup) : device_.control(setup, data);
+  if (reply) reply->resize(setup.is_to_host() ? std::min<std::size_t>(reply->size(), setup.length) : 0);
+  return reply;
 }
 
 std::optional<UsbBytes> UsbControlPipe::standard(const UsbSetup& setup) {

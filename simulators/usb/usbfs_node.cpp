@@ -54,7 +54,7 @@ void UsbfsNode::obey(ProgramCall call) {
       return discard(std::move(call));
     case USBDEVFS_GET_CAPABILITIES:
       call.argument().pointed_to(0, sizeof kCapabilities).write_value(kCapabilities);
-      return call.answer(0);
+      return call.reply(0);
     case USBDEVFS_GETDRIVER:
       return call.fail(ENODATA);  // no kernel driver holds an interface
     case USBDEVFS_CLAIMINTERFACE:
@@ -65,7 +65,7 @@ void UsbfsNode::obey(ProgramCall call) {
     case USBDEVFS_RESET:
     case USBDEVFS_IOCTL:
     case USBDEVFS_DISCONNECT_CLAIM:
-      return call.answer(0);
+      return call.reply(0);
     default:
       return call.fail(ENOTTY);
   }
@@ -110,7 +110,7 @@ void UsbfsNode::submit(ProgramCall call) {
   urb.transfer =
       host_->submit(std::move(transfer), [this, address](const UsbOutcome& outcome) { finish(address, outcome); });
   under_way_.insert_or_assign(address, std::move(urb));
-  call.answer(0);
+  call.reply(0);
 }
 
 void UsbfsNode::discard(ProgramCall call) {
@@ -122,13 +122,13 @@ void UsbfsNode::discard(ProgramCall call) {
   if (found == under_way_.end()) return call.fail(EINVAL);
   host_->cancel(found->second.transfer);
   finish(address, -ENOENT, 0);
-  call.answer(0);
+  call.reply(0);
 }
 
 void UsbfsNode::reap(ProgramCall call) {
   if (done_.empty()) return call.fail(host_ == nullptr ? ENODEV : EAGAIN);
   call.argument().pointed_to(0, sizeof(void*)).point_to(0, done_.front().memory);
-  call.answer(0);
+  call.reply(0);
   done_.pop_front();
   readiness_.set_ready(host_ == nullptr || !done_.empty());
 }

@@ -22,10 +22,10 @@ namespace yuragi::sim {
 namespace {
 
 constexpr std::uint16_t kVersion = 0x0111;
-constexpr std::uint16_t kAskList = 0x8005;
-constexpr std::uint16_t kAskImport = 0x8003;
-constexpr std::uint16_t kTellList = 0x0005;
-constexpr std::uint16_t kTellImport = 0x0003;
+constexpr std::uint16_t kRequestList = 0x8005;
+constexpr std::uint16_t kRequestImport = 0x8003;
+constexpr std::uint16_t kReplyList = 0x0005;
+constexpr std::uint16_t kReplyImport = 0x0003;
 constexpr std::uint32_t kStatusNone = 4;   // ST_NODEV
 constexpr std::uint32_t kStatusTaken = 2;  // ST_DEV_BUSY
 
@@ -39,7 +39,7 @@ constexpr std::uint32_t kNotIsochronous = 0xFFFFFFFF;  // as the number of packe
 constexpr std::uint32_t kFullSpeed = 2;  // 12 Mbit/s
 constexpr std::uint32_t kBus = 1;
 
-constexpr std::size_t kQuestionSize = 8;
+constexpr std::size_t kRequestSize = 8;
 constexpr std::size_t kBusIdSize = 32;
 constexpr std::size_t kPathSize = 256;
 constexpr std::size_t kTransferHeadSize = 48;
@@ -87,7 +87,7 @@ void put_record(UsbBytes& bytes, const UsbipOffer& offer) {
   }
 }
 
-UsbBytes answer_head(std::uint16_t code, std::uint32_t status) {
+UsbBytes reply_head(std::uint16_t code, std::uint32_t status) {
   UsbBytes bytes;
   put_word(bytes, kVersion);
   put_word(bytes, code);
@@ -95,18 +95,18 @@ UsbBytes answer_head(std::uint16_t code, std::uint32_t status) {
   return bytes;
 }
 
-Result<UsbipTaken, Failure> take_question(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kQuestionSize) return UsbipTaken{};
+Result<UsbipTaken, Failure> take_request(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kRequestSize) return UsbipTaken{};
   if (const std::uint16_t version = usbip_word_at(bytes, 0); version != kVersion) {
     return Failure{fmt::format("USB/IP version {:#06x}; only {:#06x} is supported", version, kVersion)};
   }
   switch (const std::uint16_t code = usbip_word_at(bytes, 2)) {
-    case kAskList:
-      return UsbipTaken{UsbipListRequest{}, kQuestionSize};
-    case kAskImport: {
-      if (bytes.size() < kQuestionSize + kBusIdSize) return UsbipTaken{};
-      const auto field = bytes.subspan(kQuestionSize, kBusIdSize);
-      return UsbipTaken{UsbipImportRequest{{field.begin(), std::ranges::find(field, 0)}}, kQuestionSize + kBusIdSize};
+    case kRequestList:
+      return UsbipTaken{UsbipListRequest{}, kRequestSize};
+    case kRequestImport: {
+      if (bytes.size() < kRequestSize + kBusIdSize) return UsbipTaken{};
+      const auto field = bytes.subspan(kRequestSize, kBusIdSize);
+      return UsbipTaken{UsbipImportRequest{{field.begin(), std::ranges::find(field, 0)}}, kRequestSize + kBusIdSize};
     }
     default:
       return Failure{fmt::format("unknown USB/IP request code {:#06x}", code)};
@@ -145,11 +145,11 @@ Result<UsbipTaken, Failure> take_transfer(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 Result<UsbipTaken, Failure> take_usbip_message(UsbipPhase phase, std::span<const std::uint8_t> bytes) {
-  return phase == UsbipPhase::kQuestions ? take_question(bytes) : take_transfer(bytes);
+  return phase == UsbipPhase::kRequests ? take_request(bytes) : take_transfer(bytes);
 }
 
 UsbBytes usbip_list_reply(std::span<const UsbipOffer> offers) {
-  UsbBytes bytes = answer_head(kTellList, 0);
+  UsbBytes bytes = reply_head(kReplyList, 0);
   put_long(bytes, static_cast<std::uint32_t>(offers.size()));
   for (const UsbipOffer& offer : offers) {
     put_record(bytes, offer);
@@ -164,8 +164,8 @@ UsbBytes usbip_list_reply(std::span<const UsbipOffer> offers) {
 }
 
 UsbBytes usbip_import_reply(const UsbipOffer* offer, bool is_taken) {
-  if (offer == nullptr || is_taken) return answer_head(kTellImport, is_taken ? kStatusTaken : kStatusNone);
-  UsbBytes bytes = answer_head(kTellImport, 0);
+  if (offer == nullptr || is_taken) return reply_head(kReplyImport, is_taken ? kStatusTaken : kStatusNone);
+  UsbBytes bytes = reply_head(kReplyImport, 0);
   put_record(bytes, *offer);
   return bytes;
 }

@@ -18,7 +18,7 @@ namespace yuragi::sim {
 // Pure. Bytes from the host are hostile. Source: Linux Documentation/usb/usbip_protocol.rst.
 
 /// A connection begins with one request about the server, and carries a device's transfers once one was imported.
-enum class UsbipPhase : std::uint8_t { kQuestions, kTransfers };
+enum class UsbipPhase : std::uint8_t { kRequests, kTransfers };
 
 /// Requests the list of devices.
 struct UsbipListRequest {};

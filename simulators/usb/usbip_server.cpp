@@ -29,12 +29,12 @@ struct UsbipServer::State {
     explicit Client(tcp::socket connected) : socket(std::move(connected)) {}
 
     tcp::socket socket;
-    UsbipPhase phase = UsbipPhase::kQuestions;
+    UsbipPhase phase = UsbipPhase::kRequests;
     std::optional<std::size_t> device;  // the port that it has imported
     UsbBytes in;
     UsbBytes out;
     bool is_gone = false;
-    bool ends_after_answer = false;
+    bool ends_after_reply = false;
   };
 
   State(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<UsbPort>> all)
@@ -90,7 +90,7 @@ struct UsbipServer::State {
       client.out.erase(client.out.begin(), client.out.begin() + static_cast<std::ptrdiff_t>(size));
     }
     const bool is_broken = error && error != asio::error::would_block;
-    if (is_broken || client.out.size() > kMostUnread || (client.ends_after_answer && client.out.empty())) {
+    if (is_broken || client.out.size() > kMostUnread || (client.ends_after_reply && client.out.empty())) {
       client.is_gone = true;
     }
   }
@@ -98,7 +98,7 @@ struct UsbipServer::State {
   /// Handles each whole message that has arrived.
   void obey(Client& client) {
     std::size_t done = 0;
-    while (!client.is_gone && !client.ends_after_answer) {
+    while (!client.is_gone && !client.ends_after_reply) {
       const auto taken = take_usbip_message(client.phase, std::span(client.in).subspan(done));
       if (!taken) {
         client.is_gone = true;
@@ -117,8 +117,8 @@ struct UsbipServer::State {
     for (std::size_t i = 0; i < ports.size(); ++i) {
       if (ports[i]->is_plugged_in()) offers.push_back(offer(i));
     }
-    say(client, usbip_list_reply(offers));
-    client.ends_after_answer = true;
+    queue(client, usbip_list_reply(offers));
+    client.ends_after_reply = true;
   }
 
   void obey(Client& client, const UsbipImportRequest& request) {
@@ -126,14 +126,14 @@ struct UsbipServer::State {
       if (request.bus_id != bus_id(i) || !ports[i]->is_plugged_in()) continue;
       const bool is_taken = std::ranges::any_of(clients, [i](const auto& other) { return other->device == i; });
       const UsbipOffer offered = offer(i);
-      say(client, usbip_import_reply(&offered, is_taken));
+      queue(client, usbip_import_reply(&offered, is_taken));
       if (is_taken) break;
       client.phase = UsbipPhase::kTransfers;
       client.device = i;
       return;
     }
-    if (client.out.empty()) say(client, usbip_import_reply(nullptr, false));
-    client.ends_after_answer = true;
+    if (client.out.empty()) queue(client, usbip_import_reply(nullptr, false));
+    client.ends_after_reply = true;
   }
 
   void obey(Client& client, const UsbipSubmit& submit) const {
@@ -144,22 +144,22 @@ struct UsbipServer::State {
                                    .data = submit.data,
                                    .max_size = submit.length});
     // At once, so that an unlink later in the same bytes finds the transfer answered or waiting.
-    tell_outcomes(client);
+    send_outcomes(client);
   }
 
   void obey(Client& client, const UsbipUnlink& unlink) const {
     const bool was_waiting = ports[*client.device]->cancel(unlink.unlinked);
-    say(client, usbip_unlink_reply(unlink.number, was_waiting ? kUsbipUnlinked : kUsbipDone));
+    queue(client, usbip_unlink_reply(unlink.number, was_waiting ? kUsbipUnlinked : kUsbipDone));
   }
 
-  void tell_outcomes(Client& client) const {
+  void send_outcomes(Client& client) const {
     for (const UsbOutcome& outcome : ports[*client.device]->take_outcomes()) {
-      say(client, usbip_submit_reply(static_cast<std::uint32_t>(outcome.id),
-                                     outcome.is_refused ? kUsbipStalled : kUsbipDone, outcome.size, outcome.data));
+      queue(client, usbip_submit_reply(static_cast<std::uint32_t>(outcome.id),
+                                       outcome.is_refused ? kUsbipStalled : kUsbipDone, outcome.size, outcome.data));
     }
   }
 
-  static void say(Client& client, const UsbBytes& bytes) {
+  static void queue(Client& client, const UsbBytes& bytes) {
     client.out.insert(client.out.end(), bytes.begin(), bytes.end());
   }
 
@@ -211,7 +211,7 @@ void UsbipServer::serve(std::span<const int> ready, double time_s, std::optional
       State::read(*client);
       state.obey(*client);
     }
-    if (client->device && !client->is_gone) state.tell_outcomes(*client);
+    if (client->device && !client->is_gone) state.send_outcomes(*client);
     State::write(*client);
   }
   state.drop_those_that_are_gone();

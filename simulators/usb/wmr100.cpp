@@ -50,7 +50,7 @@ class Wmr100 final : public HidModel {
     for (std::size_t i = 0; i < kFrameKinds.size(); ++i) {
       if (now_s() < next_s_[i]) continue;
       next_s_[i] = std::max(next_s_[i] + paced(kFrameKinds[i].every_s), now_s());
-      if (is_started_ && !suffers(FaultKind::kSilence)) say_frame(frame(kFrameKinds[i].kind));
+      if (is_started_ && !suffers(FaultKind::kSilence)) queue_frame(frame(kFrameKinds[i].kind));
     }
   }
 
@@ -98,7 +98,7 @@ class Wmr100 final : public HidModel {
     return bytes;
   }
 
-  void say_frame(UsbBytes bytes) {
+  void queue_frame(UsbBytes bytes) {
     if (suffers(FaultKind::kGarbage)) bytes = random_bytes(bytes.size());
     if (suffers(FaultKind::kPartial)) bytes.resize(bytes.size() / 2);
     bytes.insert(bytes.begin(), {0xFF, 0xFF});
@@ -112,7 +112,7 @@ class Wmr100 final : public HidModel {
       UsbBytes report(8);
       report[0] = static_cast<std::uint8_t>(suffers(FaultKind::kGarbage) ? random_below(256) : count);
       std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
-      say(std::move(report), report_from_s_ - now_s());
+      queue_report(std::move(report), report_from_s_ - now_s());
       report_from_s_ += gap_s;
       at += count;
     }

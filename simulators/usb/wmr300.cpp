@@ -52,11 +52,11 @@ class Wmr300 final : public HidModel {
  protected:
   void play() override {
     gust_m_s_ = std::max(gust_m_s_, wind().speed_m_s);
-    const bool speaks = has_begun_ && now_s() < heard_s_ + paced(kRunsOnFor_s) && !suffers(FaultKind::kSilence);
+    const bool sends = has_begun_ && now_s() < received_s_ + paced(kRunsOnFor_s) && !suffers(FaultKind::kSilence);
     for (std::size_t i = 0; i < kPacketKinds.size(); ++i) {
       if (now_s() < next_s_[i]) continue;
       next_s_[i] = std::max(next_s_[i] + paced(kPacketKinds[i].every_s), now_s());
-      if (speaks) say_packet(packet(kPacketKinds[i]));
+      if (sends) queue_packet(packet(kPacketKinds[i]));
     }
   }
 
@@ -65,13 +65,13 @@ class Wmr300 final : public HidModel {
       return report.size() >= head.size() && std::equal(head.begin(), head.end(), report.begin());
     };
     if (begins_with(kHeartbeat)) {
-      heard_s_ = now_s();
-      if (!suffers(FaultKind::kSilence)) say_packet(who_it_is());
+      received_s_ = now_s();
+      if (!suffers(FaultKind::kSilence)) queue_packet(who_it_is());
     } else if (begins_with(kBegin)) {
       has_begun_ = true;
-      if (!suffers(FaultKind::kSilence)) say_packet({0x41, 0x43, 0x4B, 0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1});
+      if (!suffers(FaultKind::kSilence)) queue_packet({0x41, 0x43, 0x4B, 0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1});
     } else if (begins_with(kAcknowledgement)) {
-      heard_s_ = now_s();
+      received_s_ = now_s();
     }
     return true;
   }
@@ -108,18 +108,18 @@ class Wmr300 final : public HidModel {
     return bytes;
   }
 
-  void say_packet(UsbBytes bytes) {
+  void queue_packet(UsbBytes bytes) {
     if (suffers(FaultKind::kPartial)) {
       bytes.resize(bytes.size() / 2);  // a short packet ends the report
     } else {
       bytes.resize(kWmr300Report, 0x00);
     }
     if (suffers(FaultKind::kGarbage)) bytes = random_bytes(kWmr300Report);
-    say(std::move(bytes));
+    queue_report(std::move(bytes));
   }
 
   bool has_begun_ = false;
-  double heard_s_ = 0.0;  ///< when the host's last message came
+  double received_s_ = 0.0;  ///< when the host's last message came
   std::array<double, kPacketKinds.size()> next_s_{};
   double gust_m_s_ = 0.0;  ///< since the last wind packet
 };

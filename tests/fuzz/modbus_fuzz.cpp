@@ -20,7 +20,7 @@ void require(bool holds) {
 /// What the first bytes of an input choose; the rest is the message.
 constexpr std::size_t kChoices = 8;
 
-void decode_answer(std::span<const std::uint8_t> input) {
+void decode_reply(std::span<const std::uint8_t> input) {
   const ModbusRequest request = {.transaction = static_cast<std::uint16_t>((input[0] << 8U) | input[1]),
                                  .unit = input[2],
                                  .function = static_cast<std::uint8_t>(3U + (input[3] & 1U)),
@@ -50,7 +50,7 @@ void decode_answer(std::span<const std::uint8_t> input) {
 void check_plan(const ModbusProfile& profile) {
   for (const bool is_direction_apart : {false, true}) {
     const auto reads = plan_modbus_reads(profile, is_direction_apart);
-    require(!reads.empty() && reads.front().tells(ModbusMeasure::kSpeed));
+    require(!reads.empty() && reads.front().contains(ModbusMeasure::kSpeed));
     for (const ModbusRead& read : reads) {
       require(read.request.count >= 1 && read.request.count <= kModbusMaxRegisters);
       ModbusRegisters registers;
@@ -82,7 +82,7 @@ void read_profile(std::string_view text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {  // NOLINT(readability-identifier-naming)
   const std::span input(data, size);
-  if (size > kChoices) decode_answer(input);
+  if (size > kChoices) decode_reply(input);
   read_profile({reinterpret_cast<const char*>(data), size});
   return 0;
 }

@@ -41,18 +41,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   for (std::size_t at = 1; at < size;) {
     const std::uint8_t how = data[at++];
     if (how == 255) {
-      text.far_end.says.push_back({ByteStatus::kLost, "", false});
+      text.far_end.incoming.push_back({ByteStatus::kLost, "", false});
     } else if (how > kLongest) {
       text.run(std::chrono::milliseconds(100) * (how - kLongest));
     } else {
       const std::size_t length = std::min<std::size_t>(how, size - at);
       if (length > 0) {
         const std::string piece(reinterpret_cast<const char*>(data + at), length);
-        text.far_end.says.push_back({ByteStatus::kBytes, piece, how % 2 == 0});
+        text.far_end.incoming.push_back({ByteStatus::kBytes, piece, how % 2 == 0});
       }
       at += length;
     }
-    if (text.far_end.says.size() > 16) text.run(std::chrono::seconds(20));
+    if (text.far_end.incoming.size() > 16) text.run(std::chrono::seconds(20));
   }
   text.run(std::chrono::minutes(1));
 

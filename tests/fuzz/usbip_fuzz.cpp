@@ -38,7 +38,7 @@ void obey(UsbPort& port, const UsbipMessage& message, double time_s) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {  // NOLINT(readability-identifier-naming)
-  for (const UsbipPhase phase : {UsbipPhase::kQuestions, UsbipPhase::kTransfers}) {
+  for (const UsbipPhase phase : {UsbipPhase::kRequests, UsbipPhase::kTransfers}) {
     const std::unique_ptr<UsbPort> port = echo_port();
     std::span bytes(data, size);
     for (double time_s = 0.0;; time_s += 0.02) {

@@ -39,7 +39,7 @@ void demand_consistency(const wire::Message& message) {
     if (trace->bytes.size() > wire::kMaxRawBytes || trace->bytes.size() > trace->length) std::abort();
   }
   if (const auto* control = std::get_if<wire::Control>(&message); control != nullptr && control->player) {
-    const wire::PlayerWish& wish = *control->player;
+    const wire::PlayerCommand& wish = *control->player;
     if (!(wish.rate >= wire::kMinPlayRate && wish.rate <= wire::kMaxPlayRate)) std::abort();
     if (wish.count < 1 || wish.count > wire::kMaxSteps) std::abort();
   }

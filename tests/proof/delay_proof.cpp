@@ -20,7 +20,7 @@
 #include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 #include "engine/wind/ground/wind_tapes.hpp"
-#include "tests/proof/heard_wind.hpp"
+#include "tests/proof/estimated_wind.hpp"
 
 namespace yuragi::proof {
 namespace {
@@ -84,7 +84,7 @@ BandWeights trusted(double interval_s) {
 
 /// From the reading to the wind: it is held for an interval, and what the bands pass of that, each as far as it is
 /// trusted, adds up. A tick takes what is there at its end, as if it had been there from its begin on.
-Complex heard(double frequency_hz, double interval_s) {
+Complex estimated(double frequency_hz, double interval_s) {
   return averaged(frequency_hz, interval_s) * OctaveFollower::Response(frequency_hz).weighted(trusted(interval_s)) *
          ahead_by(kDelayTick_s, frequency_hz);
 }
@@ -285,16 +285,16 @@ void expect_as_derived(Passage& passage) {
     const Pair& pair = passage.pairs()[i];
     // The wave is cosine in the wind outside: what is measured of it counts from there.
     const double reading_s = derived_s(averaged, pair, interval_s);
-    const double heard_s = derived_s(heard, pair, interval_s);
-    EXPECT_NEAR(blend_group_delay_s(pair.centre_hz(), interval_s, interval_s), reading_s + heard_s + kDelayTick_s,
-                kTolerance * heard_s)
+    const double blend_s = derived_s(estimated, pair, interval_s);
+    EXPECT_NEAR(blend_group_delay_s(pair.centre_hz(), interval_s, interval_s), reading_s + blend_s + kDelayTick_s,
+                kTolerance * blend_s)
         << "what the estimator says of itself, at " << pair.centre_hz() << " Hz";
     const double bent_s = derived_s(bent, pair, interval_s);
-    const double heard_measured_s = passage.wind_delay_s(i) - reading_s;
+    const double blend_measured_s = passage.wind_delay_s(i) - reading_s;
     const double bent_measured_s = passage.pose_delay_s(i) - passage.wind_delay_s(i);
     fmt::print("| {:.4g} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n", pair.centre_hz(), reading_s,
-               heard_s, heard_measured_s, bent_s, bent_measured_s, passage.pose_delay_s(i));
-    EXPECT_NEAR(heard_measured_s, heard_s, 0.25 * kDelayTick_s + kTolerance * heard_s) << pair.centre_hz() << " Hz";
+               blend_s, blend_measured_s, bent_s, bent_measured_s, passage.pose_delay_s(i));
+    EXPECT_NEAR(blend_measured_s, blend_s, 0.25 * kDelayTick_s + kTolerance * blend_s) << pair.centre_hz() << " Hz";
     EXPECT_NEAR(bent_measured_s, bent_s, 0.25 * kDelayTick_s + kTolerance * bent_s) << pair.centre_hz() << " Hz";
   }
   expect_on_time_at_places(passage);

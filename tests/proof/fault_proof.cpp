@@ -19,7 +19,7 @@
 #include "engine/scenes/scene_wind.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 #include "tests/proof/band_power.hpp"
-#include "tests/proof/heard_wind.hpp"
+#include "tests/proof/estimated_wind.hpp"
 #include "tests/proof/sonic_record.hpp"
 
 namespace yuragi::proof {
@@ -90,12 +90,12 @@ struct Steps {
 
 /// A run in which the clock that only grows leaps ten years on, and the sensor with it; and then back again, where time
 /// that is over is not lived again.
-std::vector<WindVector> leaping_wind(HeardWind heard, Readings readings) {
+std::vector<WindVector> leaping_wind(EstimatedWind estimated, Readings readings) {
   constexpr Nanoseconds kLeap = std::chrono::years(10);
   for (WindReading& reading : readings) reading.time.mono += kLeap;
   const double leap_s = seconds(kLeap);
-  std::vector<WindVector> winds = wind_of(heard, readings, leap_s + kFaultFrom_s, leap_s + kEnd_s);
-  winds.push_back(heard.advance(MonoTime(from_seconds(kEnd_s))));
+  std::vector<WindVector> winds = wind_of(estimated, readings, leap_s + kFaultFrom_s, leap_s + kEnd_s);
+  winds.push_back(estimated.advance(MonoTime(from_seconds(kEnd_s))));
   return winds;
 }
 
@@ -127,13 +127,13 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
   Steps restarted;
   std::map<std::string, Steps> faulty;
   for (std::uint64_t seed = 1; seed <= kStepSeeds; ++seed) {
-    HeardWind usual(seed);
+    EstimatedWind usual(seed);
     wind_of(usual, readings_, 0.0, kSettled_s);
     std::vector<WindVector> winds = wind_of(usual, readings_, kSettled_s, kFaultFrom_s);
     for (const auto& [name, readings] : faults) {
-      HeardWind heard = usual;
+      EstimatedWind estimated = usual;
       std::vector<WindVector> after = {winds.back()};
-      std::ranges::copy(wind_of(heard, readings, kFaultFrom_s, kEnd_s), std::back_inserter(after));
+      std::ranges::copy(wind_of(estimated, readings, kFaultFrom_s, kEnd_s), std::back_inserter(after));
       faulty[name].add(largest_felt_step_m_s(after));
     }
     std::vector<WindVector> leaping = {winds.back()};
@@ -141,7 +141,7 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
     faulty["clock leaps 10 years"].add(largest_felt_step_m_s(leaping));
     std::ranges::copy(wind_of(usual, readings_, kFaultFrom_s, kEndOfRecord_s), std::back_inserter(winds));
     normal.add(largest_felt_step_m_s(winds));
-    HeardWind begun(seed + 1000);
+    EstimatedWind begun(seed + 1000);
     restarted.add(largest_felt_step_m_s(wind_of(begun, readings_, kFaultFrom_s, kEnd_s)));
   }
   faulty["restart"] = restarted;
@@ -160,10 +160,10 @@ TEST_P(WindFaults, AClockThatIsSetDoesNotMoveIt) {
   for (const int years : {-10, 10}) {
     const Readings set =
         with_fault([years](WindReading& reading, int) { reading.time.utc += std::chrono::years(years); });
-    HeardWind usual(1);
-    HeardWind heard(1);
+    EstimatedWind usual(1);
+    EstimatedWind estimated(1);
     const std::vector<WindVector> expected = wind_of(usual, readings_, 0.0, kEnd_s);
-    const std::vector<WindVector> winds = wind_of(heard, set, 0.0, kEnd_s);
+    const std::vector<WindVector> winds = wind_of(estimated, set, 0.0, kEnd_s);
     ASSERT_EQ(winds.size(), expected.size());
     for (std::size_t i = 0; i < winds.size(); ++i) {
       ASSERT_EQ(winds[i].u_m_s, expected[i].u_m_s);
@@ -196,14 +196,14 @@ TEST_P(WindFaults, InAGapItGoesOnAsTheModelDoes) {
   double both_m2_s2 = 0.0;
   double usual_m2_s2 = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    HeardWind heard(seed);
-    const std::vector<WindVector> before = wind_of(heard, gap, 0.0, kFaultFrom_s);
+    EstimatedWind estimated(seed);
+    const std::vector<WindVector> before = wind_of(estimated, gap, 0.0, kFaultFrom_s);
     // The last 100 s before the gap, and the gap.
     const std::vector<WindVector> last(before.end() - 100L * kTicksASecond, before.end());
-    const Turbulence turbulence = heard.estimator().turbulence();
-    const WindVector ahead = heard.estimator().ground().gusts.ahead;
+    const Turbulence turbulence = estimated.estimator().turbulence();
+    const WindVector ahead = estimated.estimator().ground().gusts.ahead;
     const WindMoments usual = moments_of(last);
-    std::vector<WindVector> winds = wind_of(heard, gap, kFaultFrom_s, kFaultTo_s);
+    std::vector<WindVector> winds = wind_of(estimated, gap, kFaultFrom_s, kFaultTo_s);
     const WindMoments both = moments_of(winds);
     for (WindVector& wind : winds) wind = {wind.u_m_s * ahead.u_m_s + wind.v_m_s * ahead.v_m_s, 0.0};
     const double sigma_m_s = turbulence.intensity * speed_of(usual.mean);

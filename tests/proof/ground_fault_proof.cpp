@@ -17,7 +17,7 @@
 
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
-#include "tests/proof/heard_wind.hpp"
+#include "tests/proof/estimated_wind.hpp"
 #include "tests/proof/sonic_record.hpp"
 
 namespace yuragi::proof {
@@ -77,7 +77,7 @@ class Ground {
     }
   }
 
-  void hear(const std::vector<WindReading>& readings, double from_s, double to_s) {
+  void estimate(const std::vector<WindReading>& readings, double from_s, double to_s) {
     const MonoTime from(from_seconds(from_s));
     auto next = std::ranges::lower_bound(readings, from, {}, [](const WindReading& said) { return said.time.mono; });
     const auto ticks = std::lround((to_s - from_s) / kGroundTick_s);
@@ -182,17 +182,17 @@ TEST_P(GroundFaults, NoPlaceMovesMuchMoreThanItMovesAnyway) {
   std::vector<Motion> at_places(cases.size());
   for (std::uint64_t seed = 1; seed <= kGroundSeeds; ++seed) {
     Ground ground(size_m, seed);
-    ground.hear(readings, 0.0, kBegin_s);
+    ground.estimate(readings, 0.0, kBegin_s);
     ground.forget();
-    ground.hear(readings, kBegin_s, kChange_s);
+    ground.estimate(readings, kBegin_s, kChange_s);
     for (std::size_t i = 0; i < cases.size(); ++i) {
       Ground other = ground;
       other.forget();
-      other.hear(cases[i].readings, kChange_s, kChangeEnd_s);
+      other.estimate(cases[i].readings, kChange_s, kChangeEnd_s);
       at_sensor[i].add(other.at_sensor());
       at_places[i].add(other.at_places());
     }
-    ground.hear(readings, kChange_s, kRecordEnd_s);
+    ground.estimate(readings, kChange_s, kRecordEnd_s);
     usual.add(ground.at_places());
   }
 

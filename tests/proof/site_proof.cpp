@@ -18,7 +18,7 @@
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 #include "tests/proof/band_power.hpp"
-#include "tests/proof/heard_wind.hpp"
+#include "tests/proof/estimated_wind.hpp"
 #include "tests/proof/sonic_record.hpp"
 
 namespace yuragi::proof {
@@ -37,15 +37,15 @@ constexpr double kSiteFrom_hz = 0.0375;
 constexpr double kSiteTo_hz = 0.6;
 constexpr double kSiteSegment_s = 300.0;
 
-BlendSettings blend_of(double length_m, std::uint64_t seed, std::shared_ptr<SiteSpectrum> site, bool teaches) {
+BlendSettings blend_of(double length_m, std::uint64_t seed, std::shared_ptr<SiteSpectrum> site, bool fits) {
   return {.climate = {.turbulence_intensity = kUsualIntensity, .seed = seed},
           .rate_hz = kSiteTick_hz,
           .site = std::move(site),
-          .sources = {{.length_m = length_m, .teaches_site = teaches}}};
+          .sources = {{.length_m = length_m, .fits_site = fits}}};
 }
 
 /// What a sensor of this interval shows of the site.
-std::shared_ptr<SiteSpectrum> taught_by(const SonicRecord& record, double interval_s, double length_m) {
+std::shared_ptr<SiteSpectrum> fitted_by(const SonicRecord& record, double interval_s, double length_m) {
   auto site = std::make_shared<SiteSpectrum>();
   BlendedEstimator estimator(1, blend_of(length_m, 1, site, true), shared_noise());
   for (const WindReading& reading : block_means(record, interval_s)) {
@@ -133,9 +133,9 @@ TEST(SiteProof, WhatAQuickSensorShowsOfASiteHelpsASlowOneOnAnotherHalfHour) {
   for (std::size_t number = 0; number < 2; ++number) {
     for (const double quick_s : {0.1, 1.0}) {
       fmt::print("site of {} by a sensor of {} s:{}\n", records[1 - number]->name, quick_s,
-                 text_of(*taught_by(*records[1 - number], quick_s, own_m)));
+                 text_of(*fitted_by(*records[1 - number], quick_s, own_m)));
     }
-    const auto site = taught_by(*records[1 - number], 1.0, own_m);
+    const auto site = fitted_by(*records[1 - number], 1.0, own_m);
     std::vector<SonicRecord> stretches = {*records[number]};
     for (int part = 0; part < 3; ++part) stretches.push_back(part_of(*records[number], part, 3));
     for (const SonicRecord& stretch : stretches) {

@@ -21,8 +21,7 @@ struct FakeLine {
 };
 
 /// A whole answer to `request`, on TCP.
-inline std::vector<std::uint8_t> answer_with(const ModbusRequest& request,
-                                             const std::vector<std::uint16_t>& registers) {
+inline std::vector<std::uint8_t> reply_with(const ModbusRequest& request, const std::vector<std::uint16_t>& registers) {
   std::vector<std::uint8_t> bytes = {static_cast<std::uint8_t>(request.transaction >> 8U),
                                      static_cast<std::uint8_t>(request.transaction & 0xFFU),
                                      0,

@@ -16,8 +16,8 @@ namespace yuragi {
 /// Runs a program to its end, which must be a good one.
 inline void run_program(const std::vector<std::string>& command) {
   ChildProcess program(command);
-  const std::string said = program.rest();
-  if (program.wait() != 0) throw std::runtime_error(command[0] + " failed: " + said);
+  const std::string output = program.rest();
+  if (program.wait() != 0) throw std::runtime_error(command[0] + " failed: " + output);
 }
 
 /// Debian's MQTT broker on the loopback, which a test can end, hold up and start again at the same port.

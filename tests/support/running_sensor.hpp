@@ -32,13 +32,13 @@ class RunningSensor final : private SensorSink {
   template <class Condition>
   bool wait_until(Condition&& holds, Nanoseconds at_most = kHang) {
     std::unique_lock lock(mutex_);
-    return said_.wait_for(lock, at_most, [&] { return holds(std::as_const(sink_)); });
+    return changed_.wait_for(lock, at_most, [&] { return holds(std::as_const(sink_)); });
   }
   /// Moves what it said in whole polls into the test's own sink, until `holds()`; false as above.
   template <class Condition>
   bool take_until(RecordingSink& taken, Condition&& holds, Nanoseconds at_most = kHang) {
     std::unique_lock lock(mutex_);
-    return said_.wait_for(lock, at_most, [&] {
+    return changed_.wait_for(lock, at_most, [&] {
       for (const WindReading& reading : take(sink_.readings, whole_.readings)) taken.reading(reading);
       for (const Refusal why : take(sink_.refusals, whole_.refusals)) taken.refused(why);
       for (const auto& link : take(sink_.links, whole_.links)) taken.link(link.state, link.detail);
@@ -79,11 +79,11 @@ class RunningSensor final : private SensorSink {
   };
 
   /// The first `count` of these, which are no longer there then.
-  template <class Said>
-  static std::vector<Said> take(std::vector<Said>& said, std::size_t& count) {
-    const auto end = said.begin() + static_cast<std::ptrdiff_t>(std::exchange(count, 0));
-    std::vector<Said> taken(std::make_move_iterator(said.begin()), std::make_move_iterator(end));
-    said.erase(said.begin(), end);
+  template <class Value>
+  static std::vector<Value> take(std::vector<Value>& values, std::size_t& count) {
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(std::exchange(count, 0));
+    std::vector<Value> taken(std::make_move_iterator(values.begin()), std::make_move_iterator(end));
+    values.erase(values.begin(), end);
     return taken;
   }
 
@@ -109,7 +109,7 @@ class RunningSensor final : private SensorSink {
       const std::lock_guard lock(mutex_);
       what(sink_);
     }
-    said_.notify_all();
+    changed_.notify_all();
   }
   void reading(const WindReading& reading) override {
     change([&](RecordingSink& sink) { sink.reading(reading); });
@@ -127,7 +127,7 @@ class RunningSensor final : private SensorSink {
   const SystemClock clock_;
   std::unique_ptr<Sensor> sensor_;
   std::mutex mutex_;
-  std::condition_variable said_;
+  std::condition_variable changed_;
   RecordingSink sink_;
   Whole whole_;
   std::mutex sleep_mutex_;

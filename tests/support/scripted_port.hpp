@@ -22,16 +22,16 @@ struct FarEnd {
     bool is_datagram = false;
   };
 
-  std::deque<Message> says;
-  std::vector<std::string> heard;
+  std::deque<Message> incoming;
+  std::vector<std::string> written;
   bool can_open = true;
   bool can_write = true;
   int opened = 0;
   int closed = 0;
-  /// Called with each request; says() what it likes.
-  std::function<void(const std::string& request)> answer;
+  /// Called with each request; incoming() what it likes.
+  std::function<void(const std::string& request)> on_request;
 
-  void say(std::string_view text) { says.push_back({ByteStatus::kBytes, std::string(text), false}); }
+  void send(std::string_view text) { incoming.push_back({ByteStatus::kBytes, std::string(text), false}); }
 };
 
 /// Waiting for nothing moves the clock.
@@ -47,26 +47,26 @@ class ScriptedPort final : public BytePort {
   void close() noexcept override { ++far_end_.closed; }
 
   ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
-    if (far_end_.says.empty()) {
+    if (far_end_.incoming.empty()) {
       clock_.advance(timeout);
       return {};
     }
-    FarEnd::Message& message = far_end_.says.front();
+    FarEnd::Message& message = far_end_.incoming.front();
     const std::size_t size = std::min(buffer.size(), message.bytes.size());
     std::copy_n(message.bytes.begin(), size, buffer.begin());
     const ByteArrival arrival = {message.status, size, message.is_datagram};
     message.bytes.erase(0, size);
-    if (message.bytes.empty()) far_end_.says.pop_front();
+    if (message.bytes.empty()) far_end_.incoming.pop_front();
     return arrival;
   }
 
   bool write(std::span<const std::uint8_t> bytes) override {
     if (!far_end_.can_write) return false;
-    far_end_.heard.emplace_back(bytes.begin(), bytes.end());
-    if (far_end_.answer) far_end_.answer(far_end_.heard.back());
+    far_end_.written.emplace_back(bytes.begin(), bytes.end());
+    if (far_end_.on_request) far_end_.on_request(far_end_.written.back());
     return true;
   }
-  void interrupt() noexcept override { far_end_.says.push_front({ByteStatus::kInterrupted, "", false}); }
+  void interrupt() noexcept override { far_end_.incoming.push_front({ByteStatus::kInterrupted, "", false}); }
 
  private:
   FarEnd& far_end_;

@@ -59,11 +59,11 @@ class ScriptedServer {
       poll(waits.data(), waits.size(), -1);
       if (waits[0].revents != 0) return;
       if (waits[1].revents != 0) client = Descriptor(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
-      if (waits[2].revents != 0 && !answer(client.get())) client.reset();
+      if (waits[2].revents != 0 && !reply_to(client.get())) client.reset();
     }
   }
 
-  bool answer(int client) {
+  bool reply_to(int client) {
     Bytes request(512);
     const ssize_t size = recv(client, request.data(), request.size(), 0);
     if (size <= 0) return false;

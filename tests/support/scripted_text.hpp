@@ -37,9 +37,9 @@ struct ScriptedText {
     for (int idle = 0; clock.now().mono < end && idle < 100'000; ++idle) clock.advance_to(sensor->poll(clock, sink));
   }
   /// Polls until all that is said has been read, and a pause besides.
-  void hear(std::string_view text) {
-    far_end.say(text);
-    while (!far_end.says.empty()) clock.advance_to(sensor->poll(clock, sink));
+  void receive(std::string_view text) {
+    far_end.send(text);
+    while (!far_end.incoming.empty()) clock.advance_to(sensor->poll(clock, sink));
     run(std::chrono::milliseconds(250));
   }
 };

@@ -36,15 +36,16 @@ class ImpatientPort final : public BytePort {
 };
 
 /// The real wire, which tells when something is said.
-class ToldWire final : public sim::TextWire {
+class ObservedWire final : public sim::TextWire {
  public:
-  ToldWire(std::unique_ptr<sim::TextWire> wire, bool& has_spoken) : wire_(std::move(wire)), has_spoken_(has_spoken) {}
+  ObservedWire(std::unique_ptr<sim::TextWire> wire, bool& has_written)
+      : wire_(std::move(wire)), has_written_(has_written) {}
 
   std::span<const sim::FaultKind> known_faults() const override { return wire_->known_faults(); }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
   std::string read(std::span<const int> ready) override { return wire_->read(ready); }
   void write(std::string_view bytes) override {
-    has_spoken_ = true;
+    has_written_ = true;
     wire_->write(bytes);
   }
   void take_away() override { wire_->take_away(); }
@@ -53,7 +54,7 @@ class ToldWire final : public sim::TextWire {
 
  private:
   std::unique_ptr<sim::TextWire> wire_;
-  bool& has_spoken_;
+  bool& has_written_;
 };
 
 /// A wind that stands still.
@@ -71,8 +72,8 @@ class StillWind final : public sim::PlayedWind {
 class TextBench {
  public:
   /// What stands between the two: a wire's faults are tried by its `know`.
-  std::unique_ptr<sim::TextWire> told(std::unique_ptr<sim::TextWire> wire) {
-    return std::make_unique<ToldWire>(std::move(wire), has_spoken_);
+  std::unique_ptr<sim::TextWire> observed(std::unique_ptr<sim::TextWire> wire) {
+    return std::make_unique<ObservedWire>(std::move(wire), has_written_);
   }
   std::unique_ptr<BytePort> port(const BytePortAddress& address) {
     return std::make_unique<ImpatientPort>(make_byte_port(address), patience_);
@@ -113,11 +114,11 @@ class TextBench {
     for (const pollfd& wait : waits) {
       if (wait.revents != 0) ready.push_back(wait.fd);
     }
-    has_spoken_ = false;
+    has_written_ = false;
     simulator_->serve(ready, time_s_, fault);
 
     // What was said is on its way, and arrives in this step also on a machine that has other things to do.
-    patience_ = has_spoken_ ? std::chrono::milliseconds(100) : std::chrono::microseconds(200);
+    patience_ = has_written_ ? std::chrono::milliseconds(100) : std::chrono::microseconds(200);
     sensor_->poll(clock, sink);
     patience_ = std::chrono::microseconds(200);
     sensor_->poll(clock, sink);
@@ -126,7 +127,7 @@ class TextBench {
   std::unique_ptr<sim::TextSimulator> simulator_;
   std::unique_ptr<Sensor> sensor_;
   Nanoseconds patience_ = std::chrono::milliseconds(1);
-  bool has_spoken_ = false;
+  bool has_written_ = false;
   double time_s_ = 0.0;
 };
 

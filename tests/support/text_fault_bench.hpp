@@ -42,7 +42,7 @@ class TextFaultBench : public testing::Test {
       given["host"] = std::string("127.0.0.1");
       given["port"] = std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))};
     }
-    bench_.put(std::make_unique<sim::TextSimulator>(std::move(device), bench_.told(std::move(carried)), rate_hz,
+    bench_.put(std::make_unique<sim::TextSimulator>(std::move(device), bench_.observed(std::move(carried)), rate_hz,
                                                     sim::MeasuredWind(std::make_unique<StillWind>(wind_)), 1),
                make_sensor(values_for(driver_name_, given), bench_));
   }

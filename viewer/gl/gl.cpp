@@ -36,7 +36,8 @@ void compile(const GlShader& shader, const std::string& name, std::string_view s
 
 std::atomic<int> error_count{0};
 
-void GLAPIENTRY hear(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void*) {
+void GLAPIENTRY log_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
+                            const void*) {
   if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH) return;
   ++error_count;
   std::fprintf(stderr, "yuragi-viewer: OpenGL: %.*s\n", length, text);
@@ -137,7 +138,7 @@ void report_gl_errors() {
   if (!epoxy_has_gl_extension("GL_KHR_debug") && epoxy_gl_version() < 43) return;
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-  glDebugMessageCallback(hear, nullptr);
+  glDebugMessageCallback(log_message, nullptr);
 }
 
 int gl_error_count() {

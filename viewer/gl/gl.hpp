@@ -64,7 +64,7 @@ using GlFramebuffer = GlObject<GlFramebufferKind>;
 using GlRenderbuffer = GlObject<GlRenderbufferKind>;
 using GlProgram = GlObject<GlProgramKind>;
 
-/// Where a program finds the block of uniforms that all looks share (view.hpp).
+/// Where a program finds the block of uniforms that all renderers share (view.hpp).
 inline constexpr GLuint kViewBinding = 0;
 
 /// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error

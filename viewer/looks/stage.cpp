@@ -22,12 +22,12 @@ constexpr Bounds kNoField{glm::vec3(1e6F), glm::vec3(-1e6F)};
 }  // namespace
 
 void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
-  looks_.clear();
+  renderers_.clear();
   bounds_.clear();
   scenes_ = std::move(scenes);
   for (const wire::SceneModel& scene : scenes_) {
     bounds_.push_back(bounds_of(scene.skeleton));
-    looks_.push_back(make_look(scene));
+    renderers_.push_back(make_scene_renderer(scene));
   }
 }
 
@@ -44,8 +44,8 @@ Bounds Stage::bounds() const {
 
 CameraPlace Stage::home(double aspect) const {
   bool is_all_field = true;
-  for (std::size_t scene = 0; scene < looks_.size(); ++scene) {
-    is_all_field = is_all_field && (!is_chosen(scene) || looks_[scene]->is_field());
+  for (std::size_t scene = 0; scene < renderers_.size(); ++scene) {
+    is_all_field = is_all_field && (!is_chosen(scene) || renderers_[scene]->is_field());
   }
   return is_all_field ? place_across(bounds()) : place_around(bounds(), aspect);
 }
@@ -63,7 +63,7 @@ bool Stage::is_seen(const PoseMoment& moment, std::size_t scene) const {
 
 Bounds Stage::field(const PoseMoment& moment) const {
   const auto grows = [&](std::size_t scene) {
-    return is_seen(moment, scene) && looks_[scene]->is_field() && moment.opacities[scene] > 0.5F;
+    return is_seen(moment, scene) && renderers_[scene]->is_field() && moment.opacities[scene] > 0.5F;
   };
   return around(bounds_, grows).value_or(kNoField);
 }
@@ -80,29 +80,29 @@ void Stage::draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarg
   glDisable(GL_SCISSOR_TEST);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 
-  for (std::size_t scene = 0; scene < looks_.size(); ++scene) {
+  for (std::size_t scene = 0; scene < renderers_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
-    Look& look = *looks_[scene];
-    look.move_to(moment.poses[scene]);
+    SceneRenderer& renderer = *renderers_[scene];
+    renderer.move_to(moment.poses[scene]);
     door_.open(moment.opacities[scene], scene);
-    look.draw(view);
+    renderer.draw(view);
     door_.begin_mark(kHole);
-    look.draw_hole();
+    renderer.draw_hole();
     door_.end_mark();
-    if (look.casts_shadow()) {
+    if (renderer.casts_shadow()) {
       view_buffer_.set(flat);
       door_.begin_mark(kShadow);
-      look.draw(flat);
+      renderer.draw(flat);
       door_.end_mark();
       view_buffer_.set(view);
     }
     door_.close();
   }
   landscape_.draw();
-  for (std::size_t scene = 0; scene < looks_.size(); ++scene) {
+  for (std::size_t scene = 0; scene < renderers_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     door_.open(moment.opacities[scene], scene);
-    looks_[scene]->draw_light();
+    renderers_[scene]->draw_light();
     door_.close();
   }
   target.resolve();

@@ -8,13 +8,13 @@
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/view_buffer.hpp"
 #include "viewer/looks/landscape.hpp"
-#include "viewer/looks/look.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/meshes/view.hpp"
 #include "viewer/stream/pose_moment.hpp"
 
 namespace yuragi {
 
-/// All scene views, each with its renderer (Look), in a landscape. Needs a current context; on its thread.
+/// All scene views, each with its SceneRenderer, in a landscape. Needs a current context; on its thread.
 class Stage {
  public:
   /// Replaces the scenes.
@@ -41,8 +41,8 @@ class Stage {
   Bounds field(const PoseMoment& moment) const;
 
   std::vector<wire::SceneModel> scenes_;
-  std::vector<std::unique_ptr<Look>> looks_;  // one a scene
-  std::vector<Bounds> bounds_;                // one a scene
+  std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // one a scene
+  std::vector<Bounds> bounds_;                             // one a scene
   std::optional<std::string> only_;
   Landscape landscape_;
   ScreenDoor door_;

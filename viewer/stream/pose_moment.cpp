@@ -51,7 +51,7 @@ void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& 
   out.wind.reading_age_s = std::lerp(a.wind.reading_age_s, b.wind.reading_age_s, weight);
   out.wind.upwind_m = std::lerp(a.wind.upwind_m, b.wind.upwind_m, weight);
   out.wind.to_middle_s = std::lerp(a.wind.to_middle_s, b.wind.to_middle_s, weight);
-  out.wind.is_place_told = weight < 0.5 ? a.wind.is_place_told : b.wind.is_place_told;
+  out.wind.is_place_configured = weight < 0.5 ? a.wind.is_place_configured : b.wind.is_place_configured;
   out.wind.source = weight < 0.5 ? a.wind.source : b.wind.source;
 }
 

@@ -62,11 +62,11 @@ class StreamConnection::Session {
   void set_status(StreamState state, std::string text) {
     const std::lock_guard lock(mutex_);
     status_ = {state, std::move(text)};
-    tell_news();
+    announce_change();
   }
 
   /// With mutex_ held.
-  void tell_news() {
+  void announce_change() {
     has_news_ = true;
     news_.notify_all();
   }
@@ -152,7 +152,7 @@ class StreamConnection::Session {
     } else if (const auto* hello = std::get_if<wire::Hello>(&message)) {
       status_.text = fmt::format("connected to {} ({})", address(), hello->software);
     }
-    tell_news();
+    announce_change();
   }
 
   // --- its end ---

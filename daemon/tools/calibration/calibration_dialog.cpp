@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLineInterval_s = 5.0;
 
-/// A line from the keyboard, without blanks around. Throws where there will be no more.
+/// A line from standard input, trimmed. Throws at its end.
 std::string read_line() {
   std::string line;
   if (!std::getline(std::cin, line)) {
@@ -33,18 +33,18 @@ CalibrationDialog::CalibrationDialog(bool takes_yes)
       has_person_(!takes_yes && isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0),
       is_watched_(isatty(STDERR_FILENO) != 0) {}
 
-void CalibrationDialog::say(const std::string& text) const {
+void CalibrationDialog::print(const std::string& text) const {
   write_at_once(text + "\n");
 }
 
-void CalibrationDialog::wait_for_hands(const std::string& what) const {
-  say(what);
+void CalibrationDialog::wait_until_prepared(const std::string& what) const {
+  print(what);
   if (!has_person_) return;
   write_at_once("Press Enter when ready, Ctrl-C to quit: ");
   read_line();
 }
 
-double CalibrationDialog::ask_number(const std::string& question, double least, double most) const {
+double CalibrationDialog::prompt_number(const std::string& question, double least, double most) const {
   for (;;) {
     write_at_once(fmt::format("{} ({:g} to {:g}): ", question, least, most));
     const std::string line = read_line();

@@ -5,25 +5,25 @@
 namespace yuragi {
 
 /// Leads a person through a calibration: steps and results on standard output, live values on standard error. Where
-/// nobody can be asked (no terminal, or --yes) it never waits.
+/// there is no person (no terminal, or --yes) it never waits.
 class CalibrationDialog {
  public:
-  /// `takes_yes`: every question is answered with yes, and hands are taken to be ready.
+  /// `takes_yes`: every confirm() is true, and wait_until_prepared() does not wait.
   explicit CalibrationDialog(bool takes_yes);
 
-  /// Is there somebody to ask?
+  /// Is there a person at the terminal?
   bool has_person() const noexcept { return has_person_; }
 
-  /// A paragraph.
-  void say(const std::string& text) const;
+  /// Prints a paragraph.
+  void print(const std::string& text) const;
 
-  /// What hands are needed for; then waits for Enter.
-  void wait_for_hands(const std::string& what) const;
+  /// Prints what a person has to prepare, and waits for Enter.
+  void wait_until_prepared(const std::string& what) const;
 
-  /// Asks for a number within a range, again and again. Only where there is somebody.
-  double ask_number(const std::string& question, double least, double most) const;
+  /// Prompts for a number until one within the range is given. Precondition: has_person().
+  double prompt_number(const std::string& question, double least, double most) const;
 
-  /// Asks whether to go on: Enter alone is no. Without a person it is what was given beforehand.
+  /// Asks whether to go on; Enter alone means no. Without a person: `takes_yes`.
   bool confirm(const std::string& question) const;
 
   /// Live values: in one place on a terminal, elsewhere a line every few seconds. The last one stays.

@@ -34,12 +34,12 @@ std::string key_of(const ConfigChange& change) {
   return change.table.empty() ? change.key : change.table + "." + change.key;
 }
 
-/// The parameters of a driver that a recording was made with other values of, but for a microphone's own calibration,
-/// which is taken out of what it said.
-std::set<std::string> settings_that_differ(const SensorConfig& sensor, const HeardSensor& heard) {
+/// The driver's parameters whose values differ from those in the recording, except a microphone's own calibration,
+/// which is undone.
+std::set<std::string> settings_that_differ(const SensorConfig& sensor, const SensorReadings& collected) {
   const bool is_microphone = sensor.driver->name == std::string_view("microphone");
   std::set<std::string> keys;
-  for (const std::string& text : heard.settings) {
+  for (const std::string& text : collected.settings) {
     const auto values = parse_values(text, sensor.driver->parameters);
     if (!values) return {"some that this version does not understand: " + values.error().message};
     for (const auto& [key, value] : values->all()) {
@@ -50,14 +50,14 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Hea
   return keys;
 }
 
-/// What a sensor says of itself while it is listened to.
-std::string live_text(const SensorConfig& sensor, const HeardSensor& heard) {
-  if (heard.readings.empty()) return fmt::format("{}: waiting", sensor.name);
-  const WindReading& last = heard.readings.back().reading;
+/// The live values of a sensor.
+std::string live_text(const SensorConfig& sensor, const SensorReadings& collected) {
+  if (collected.readings.empty()) return fmt::format("{}: waiting", sensor.name);
+  const WindReading& last = collected.readings.back().reading;
   const double speed_m_s = last.speed_m_s * sensor.calibration.unit_m_s;
   return fmt::format("{}: {:.2f} m/s{}, {}", sensor.name, speed_m_s,
                      last.direction_deg ? fmt::format(" from {:.0f} deg", *last.direction_deg) : "",
-                     count_text(heard.readings.size(), "reading"));
+                     count_text(collected.readings.size(), "reading"));
 }
 
 }  // namespace
@@ -93,8 +93,8 @@ void CalibrationSession::open_source() {
   source_ = (is_live() ? make_live_source(std::move(sensors), address, clock_)
                        : make_recorded_source(std::move(sensors), request_.recording))
                 .value();
-  dialog_.say(fmt::format("Calibrating the sensor \"{}\" ({}) of {}, from {}.", sensor().name, sensor().driver->name,
-                          request_.config_file.string(), source_->description()));
+  dialog_.print(fmt::format("Calibrating the sensor \"{}\" ({}) of {}, from {}.", sensor().name, sensor().driver->name,
+                            request_.config_file.string(), source_->description()));
 }
 
 std::size_t CalibrationSession::find(const std::string& name) const {
@@ -106,51 +106,51 @@ std::size_t CalibrationSession::find(const std::string& name) const {
   throw usage(fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
 }
 
-Heard CalibrationSession::hear(const std::string& hands) {
+CollectedReadings CalibrationSession::collect(const std::string& preparation) {
   if (!source_) open_source();
   Stretch stretch{.duration_s = duration_s_};
   if (is_live()) {
-    dialog_.wait_for_hands("\n" + hands);
+    dialog_.wait_until_prepared("\n" + preparation);
   } else if (stretches_ < request_.parts.size()) {
     stretch = parse_part(request_.parts[stretches_]);
   }
   ++stretches_;
-  bool is_told = false;
-  Heard heard =
+  bool is_shown = false;
+  CollectedReadings collected =
       source_
-          ->hear(stretch,
-                 [this, &is_told](double elapsed_s, const Heard& so_far) {
-                   if (is_live())
-                     return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
-                   dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
-                   is_told = true;
-                 })
+          ->collect(stretch,
+                    [this, &is_shown](double elapsed_s, const CollectedReadings& so_far) {
+                      if (is_live())
+                        return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
+                      dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
+                      is_shown = true;
+                    })
           .value();
-  if (is_told) dialog_.show(0.0, "the recording was read", true);
-  beware(heard);
-  return heard;
+  if (is_shown) dialog_.show(0.0, "the recording was read", true);
+  beware(collected);
+  return collected;
 }
 
-void CalibrationSession::beware(const Heard& heard) const {
-  for (std::size_t index = 0; index < heard.size(); ++index) {
+void CalibrationSession::beware(const CollectedReadings& collected) const {
+  for (std::size_t index = 0; index < collected.size(); ++index) {
     const SensorConfig& one = index == 0 ? sensor() : *reference();
-    if (const auto keys = settings_that_differ(one, heard[index]); !keys.empty()) {
-      dialog_.say(fmt::format("Warning: when this was recorded, the driver of \"{}\" had different settings: {}.",
-                              one.name, fmt::join(keys, ", ")));
+    if (const auto keys = settings_that_differ(one, collected[index]); !keys.empty()) {
+      dialog_.print(fmt::format("Warning: when this was recorded, the driver of \"{}\" had different settings: {}.",
+                                one.name, fmt::join(keys, ", ")));
     }
   }
   const auto is_simulated = [](const TimedReading& one) { return one.reading.quality == ReadingQuality::kSimulated; };
-  for (const HeardSensor& one : heard) {
+  for (const SensorReadings& one : collected) {
     if (std::ranges::any_of(one.readings, is_simulated)) {
-      dialog_.say("Warning: these readings are simulated.");
+      dialog_.print("Warning: these readings are simulated.");
       break;
     }
   }
 }
 
-std::string CalibrationSession::progress_line(double elapsed_s, const Heard& heard) const {
-  std::string line = fmt::format("{:3.0f} of {:.0f} s  {}", elapsed_s, duration_s_, live_text(sensor(), heard[0]));
-  if (reference_) line += "  " + live_text(*reference(), heard[1]);
+std::string CalibrationSession::progress_line(double elapsed_s, const CollectedReadings& collected) const {
+  std::string line = fmt::format("{:3.0f} of {:.0f} s  {}", elapsed_s, duration_s_, live_text(sensor(), collected[0]));
+  if (reference_) line += "  " + live_text(*reference(), collected[1]);
   return line;
 }
 
@@ -159,21 +159,21 @@ ParameterValue CalibrationSession::value_now(const ConfigChange& change) const {
 }
 
 std::vector<std::string> CalibrationSession::speed_effect(std::span<const ConfigChange> wanted,
-                                                          std::span<const double> said_m_s) const {
+                                                          std::span<const double> indicated_m_s) const {
   ParameterValues changed = sensor().by_name.calibration;
   for (const ConfigChange& change : wanted) {
     if (!change.table.empty()) changed.set(change.key, change.value);
   }
-  // At the sensor: the way to the height of the scenes comes after, and does not change.
+  // At the height of the sensor: the height factor is applied afterwards, and does not change.
   Calibration now = calibration();
   Calibration then = calibration_of(changed).value();
   now.height_factor = then.height_factor = 1.0;
   std::vector<std::string> lines = {"   reading          speed now        speed then"};
-  for (const double said : said_m_s) {
+  for (const double indicated : indicated_m_s) {
     WindReading reading;
-    reading.speed_m_s = said / now.unit_m_s;
-    lines.push_back(fmt::format("{:8.2f} m/s       {:8.2f} m/s   {:6.2f} m/s", said, now.applied_to(reading).speed_m_s,
-                                then.applied_to(reading).speed_m_s));
+    reading.speed_m_s = indicated / now.unit_m_s;
+    lines.push_back(fmt::format("{:8.2f} m/s       {:8.2f} m/s   {:6.2f} m/s", indicated,
+                                now.applied_to(reading).speed_m_s, then.applied_to(reading).speed_m_s));
   }
   return lines;
 }
@@ -181,7 +181,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const Config
 void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vector<std::string>& effect) {
   std::erase_if(wanted, [this](const ConfigChange& change) { return change.value == value_now(change); });
   if (wanted.empty()) {
-    dialog_.say("\nThe configuration has these values already: nothing to write.");
+    dialog_.print("\nThe configuration has these values already: nothing to write.");
     return;
   }
   std::string text = "\n";
@@ -189,29 +189,30 @@ void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vec
     text += fmt::format("  {:<24} {} -> {}\n", key_of(change), toml_value(value_now(change)), toml_value(change.value));
   }
   for (const std::string& line : effect) text += "  " + line + "\n";
-  dialog_.say(text);
+  dialog_.print(text);
 
   const auto edited = edit_sensor(text_, sensor().name, wanted);
   if (!edited) throw ConfigError(request_.config_file.string() + ": " + edited.error().message);
   if (request_.is_dry_run) {
-    dialog_.say("A dry run: nothing was written.");
+    dialog_.print("A dry run: nothing was written.");
   } else if (!dialog_.confirm(fmt::format("Write this to {}?", request_.config_file.string()))) {
-    dialog_.say("Nothing was written.");
+    dialog_.print("Nothing was written.");
   } else {
     const auto kept = replace_config(request_.config_file, text_, *edited).value();
-    dialog_.say(fmt::format("{} was written; the previous version is in {}. Restart a running daemon to apply it.",
-                            request_.config_file.string(), kept.string()));
+    dialog_.print(fmt::format("{} was written; the previous version is in {}. Restart a running daemon to apply it.",
+                              request_.config_file.string(), kept.string()));
   }
 }
 
-std::vector<double> said_speeds_m_s(const HeardSensor& heard, const Calibration& calibration) {
+std::vector<double> indicated_speeds_m_s(const SensorReadings& collected, const Calibration& calibration) {
   std::vector<double> speeds_m_s;
-  for (const TimedReading& one : heard.readings) speeds_m_s.push_back(one.reading.speed_m_s * calibration.unit_m_s);
+  for (const TimedReading& one : collected.readings) speeds_m_s.push_back(one.reading.speed_m_s * calibration.unit_m_s);
   return speeds_m_s;
 }
 
-ReferencePairs pair_with_reference(const CalibrationSession& session, const Heard& heard, double least_block_s) {
-  // Heights count only where both are known: else the two are taken to stand side by side.
+ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
+                                   double least_block_s) {
+  // Only where both heights are known; else the sensors are assumed to be side by side.
   const Calibration calibration = session.calibration();
   Calibration reference = session.reference()->calibration;
   const bool has_heights =
@@ -220,19 +221,19 @@ ReferencePairs pair_with_reference(const CalibrationSession& session, const Hear
   const double to_sensor = has_heights ? 1.0 / calibration.height_factor : 1.0;
 
   ReferencePairs result{.block_s = least_block_s};
-  for (const HeardSensor& one : heard) {
+  for (const SensorReadings& one : collected) {
     if (one.readings.size() < 2) continue;
     const double span_s = one.readings.back().time_s - one.readings.front().time_s;
     result.block_s = std::max(result.block_s, 3.0 * span_s / static_cast<double>(one.readings.size() - 1));
   }
-  std::vector<TimedSpeed> said;
-  for (const TimedReading& one : heard[0].readings) {
-    said.push_back({one.time_s, one.reading.speed_m_s * calibration.unit_m_s});
+  std::vector<TimedSpeed> indicated;
+  for (const TimedReading& one : collected[0].readings) {
+    indicated.push_back({one.time_s, one.reading.speed_m_s * calibration.unit_m_s});
   }
-  for (const TimedReading& one : heard[1].readings) {
+  for (const TimedReading& one : collected[1].readings) {
     result.truth.push_back({one.time_s, reference.applied_to(one.reading).speed_m_s * to_sensor});
   }
-  result.pairs = pair_means(said, result.truth, result.block_s);
+  result.pairs = pair_means(indicated, result.truth, result.block_s);
   return result;
 }
 
@@ -242,7 +243,7 @@ void refuse(const Failure& failure) {
 
 double rounded(double value, double step) noexcept {
   const double result = std::round(value / step) * step;
-  // The multiple's nearest decimal, so that it is written as 1.043 and not as 1.0430000000000001.
+  // The nearest decimal, so that it is written as 1.043 and not as 1.0430000000000001.
   const double scale = std::round(1.0 / step);
   return std::round(result * scale) / scale + 0.0;
 }

@@ -18,19 +18,19 @@ using SensorConfigs = std::vector<const SensorConfig*>;
 constexpr auto kDaemonConnectTimeout = std::chrono::seconds(2);
 constexpr auto kDaemonSilence = std::chrono::seconds(5);
 constexpr auto kDevicePause = std::chrono::milliseconds(20);
-constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station speaks every 48 s
+constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station sends every 48 s
 constexpr double kProgressInterval_s = 0.25;
-constexpr std::size_t kReadingsPerProgress = 200'000;  // a second or less
+constexpr std::size_t kReadingsPerProgress = 200'000;  // a second of work or less
 
 Failure unavailable(const std::string& message) {
   return {message, FailureKind::kUnavailable};
 }
 
-bool all_have_spoken(const Heard& heard) {
-  return std::ranges::none_of(heard, [](const HeardSensor& sensor) { return sensor.readings.empty(); });
+bool all_have_readings(const CollectedReadings& collected) {
+  return std::ranges::none_of(collected, [](const SensorReadings& sensor) { return sensor.readings.empty(); });
 }
 
-/// The course of one live stretch: when it begins, how long it takes, when to tell of it.
+/// One live stretch: its beginning, its end, and its progress.
 class LiveStretch {
  public:
   LiveStretch(const SensorConfigs& sensors, double duration_s, const Clock& clock,
@@ -40,34 +40,34 @@ class LiveStretch {
         clock_(clock),
         progress_(progress),
         begun_(clock.now().mono),
-        heard_(sensors.size()) {}
+        collected_(sensors.size()) {}
 
   void add(std::size_t sensor, const WindReading& reading) {
-    heard_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
+    collected_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
-  /// Is it over? Fails where a sensor stays silent; `link_of` says what its link did last.
+  /// Is it over? Fails where a sensor stays silent; `link_of`: the last report of its link.
   template <class LinkOf>
   Result<bool, Failure> is_over(const LinkOf& link_of) {
     const double now_s = seconds(clock_.now().mono - begun_);
-    if (!all_spoke_at_s_ && all_have_spoken(heard_)) all_spoke_at_s_ = now_s;
-    const double elapsed_s = all_spoke_at_s_ ? now_s - *all_spoke_at_s_ : 0.0;
-    const bool is_over = all_spoke_at_s_ && elapsed_s >= duration_s_;
+    if (!all_live_from_s_ && all_have_readings(collected_)) all_live_from_s_ = now_s;
+    const double elapsed_s = all_live_from_s_ ? now_s - *all_live_from_s_ : 0.0;
+    const bool is_over = all_live_from_s_ && elapsed_s >= duration_s_;
     if (is_over || now_s >= next_progress_s_) {
-      progress_(elapsed_s, heard_);
+      progress_(elapsed_s, collected_);
       next_progress_s_ = now_s + kProgressInterval_s;
     }
-    if (!all_spoke_at_s_ && now_s >= kFirstReadingTimeout_s) return silent(link_of);
+    if (!all_live_from_s_ && now_s >= kFirstReadingTimeout_s) return silent(link_of);
     return is_over;
   }
 
-  Heard take() { return std::move(heard_); }
+  CollectedReadings take() { return std::move(collected_); }
 
  private:
   template <class LinkOf>
   Failure silent(const LinkOf& link_of) const {
     std::size_t sensor = 0;
-    while (!heard_[sensor].readings.empty()) ++sensor;
+    while (!collected_[sensor].readings.empty()) ++sensor;
     return unavailable(
         fmt::format("the sensor \"{}\" has sent nothing for {:.0f} s ({}); `yuragi sensors watch --raw {}` shows its "
                     "messages",
@@ -79,8 +79,8 @@ class LiveStretch {
   const Clock& clock_;
   const CalibrationSource::Progress& progress_;
   MonoTime begun_;
-  Heard heard_;
-  std::optional<double> all_spoke_at_s_;
+  CollectedReadings collected_;
+  std::optional<double> all_live_from_s_;
   double next_progress_s_ = 0.0;
 };
 
@@ -96,9 +96,9 @@ class DeviceSource final : public CalibrationSource {
   std::string description() const override { return "the devices themselves"; }
   bool is_live() const override { return true; }
 
-  Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) override {
+  Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
-    for (const auto& runner : runners_) runner->drain([](const WindReading&) {});  // what came before
+    for (const auto& runner : runners_) runner->drain([](const WindReading&) {});  // discards earlier readings
     for (;;) {
       std::this_thread::sleep_for(kDevicePause);
       for (std::size_t index = 0; index < runners_.size(); ++index) {
@@ -123,7 +123,7 @@ const wire::SensorStatus* find_status(const wire::Sensors& all, const SensorConf
   return found != all.sensors.end() ? &*found : nullptr;
 }
 
-/// A client of the daemon that has asked for the sensors. Nothing where nobody answers.
+/// A client of the daemon, subscribed to the sensors. Nothing where no daemon replies.
 std::optional<StreamClient> connect_to_daemon(const std::string& address) {
   auto client = StreamClient::connect(address, kDaemonConnectTimeout);
   if (!client || !client->subscribe({.poses = false, .sensors = true, .client = "calibrate"})) return std::nullopt;
@@ -140,7 +140,7 @@ Result<wire::Sensors, Failure> next_sensors(StreamClient& client, const std::str
   }
 }
 
-/// The daemon that has the devices: it tells each sensor's last raw reading about twice a second.
+/// The daemon as the source: it sends each sensor's last raw reading about twice a second.
 class DaemonSource final : public CalibrationSource {
  public:
   DaemonSource(SensorConfigs sensors, std::string address, const Clock& clock)
@@ -149,8 +149,8 @@ class DaemonSource final : public CalibrationSource {
   std::string description() const override { return "the running daemon at " + address_; }
   bool is_live() const override { return true; }
 
-  Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) override {
-    // A connection of its own: an old one would hand out what was said while hands were busy.
+  Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
+    // A new connection: an old one would deliver readings from before the stretch.
     auto client = connect_to_daemon(address_);
     if (!client) return unavailable("the daemon at " + address_ + " no longer answers");
     std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
@@ -164,7 +164,7 @@ class DaemonSource final : public CalibrationSource {
         const wire::SensorStatus* status = find_status(*all, *sensors_[index]);
         if (status == nullptr) continue;
         links[index] = status->detail;
-        // The first message may be about a reading from before.
+        // The first message may contain an older reading.
         const bool is_new = counted[index] && *counted[index] != status->readings && status->raw_speed_m_s;
         counted[index] = status->readings;
         if (is_new) live.add(index, reading_of(*status));
@@ -196,7 +196,7 @@ class RecordedSource final : public CalibrationSource {
   RecordedSource(SensorConfigs sensors, std::filesystem::path file)
       : sensors_(std::move(sensors)), file_(std::move(file)) {}
 
-  /// Can it be read, and has it all of the sensors?
+  /// Checks that it can be read and has all of the sensors.
   Result<void, Failure> check() const {
     const auto reader = opened();
     if (!reader) return reader.error();
@@ -215,27 +215,27 @@ class RecordedSource final : public CalibrationSource {
   std::string description() const override { return "the recording " + file_.string(); }
   bool is_live() const override { return false; }
 
-  Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) override {
+  Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     auto open = opened();
     if (!open) return open.error();
     WindlogReader& reader = *open;
     if (stretch.from_s) reader.seek(from_seconds(*stretch.from_s));
-    Heard heard(sensors_.size());
+    CollectedReadings collected(sensors_.size());
     for (std::size_t count = 1;; ++count) {
       auto logged = reader.next();
       if (!logged) return Failure{logged.error().message, FailureKind::kBadData};
       if (!*logged) break;
       const double time_s = seconds((*logged)->log_time);
       if (stretch.to_s && time_s >= *stretch.to_s) break;
-      if (count % kReadingsPerProgress == 0) progress(time_s, heard);
+      if (count % kReadingsPerProgress == 0) progress(time_s, collected);
       const LoggedSensor& from = reader.sensors()[(*logged)->sensor];
       for (std::size_t index = 0; index < sensors_.size(); ++index) {
         if (sensors_[index]->name != from.name) continue;
-        heard[index].readings.push_back({time_s, (*logged)->reading});
-        if (from.driver == sensors_[index]->driver->name) heard[index].settings.insert(from.options);
+        collected[index].readings.push_back({time_s, (*logged)->reading});
+        if (from.driver == sensors_[index]->driver->name) collected[index].settings.insert(from.options);
       }
     }
-    return heard;
+    return collected;
   }
 
  private:
@@ -252,9 +252,9 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfi
   auto client = connect_to_daemon(address);
   if (!client) return std::make_unique<DeviceSource>(std::move(sensors), clock);
 
-  const auto told = next_sensors(*client, address);
-  if (!told) return told.error();
-  const wire::Sensors& all = *told;
+  const auto received = next_sensors(*client, address);
+  if (!received) return received.error();
+  const wire::Sensors& all = *received;
   const auto held = std::ranges::count_if(
       sensors, [&all](const SensorConfig* sensor) { return find_status(all, *sensor) != nullptr; });
   if (held == 0) return std::make_unique<DeviceSource>(std::move(sensors), clock);
@@ -268,7 +268,7 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfi
     } else if (status->readings > 0 && !status->raw_speed_m_s) {
       obstacle = "is an older version, which sends calibrated readings only";
     } else if (sensor->driver->name == std::string_view("microphone")) {
-      // Its readings have gone through gain and exponent, or the curve, as they were when the daemon began.
+      // Its readings were computed with the gain and exponent, or the curve, of when the daemon was started.
       obstacle = "uses the microphone, perhaps with another calibration than the file has now";
     }
     if (!obstacle.empty()) {

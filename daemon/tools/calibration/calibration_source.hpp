@@ -15,35 +15,34 @@
 
 namespace yuragi {
 
-/// A reading before calibration, and when it came: seconds since listening began, or since the recording did.
+/// A reading before calibration, and its time in seconds since collecting began, or since the recording began.
 struct TimedReading {
   double time_s = 0.0;
   WindReading reading;
 };
 
-/// What one sensor said while it was listened to.
-struct HeardSensor {
+/// The readings collected from one sensor.
+struct SensorReadings {
   std::vector<TimedReading> readings;  ///< in the order of time
-  std::set<std::string> settings;      ///< of a recording: its driver's values, each different TOML text that there was
+  std::set<std::string> settings;      ///< of a recording: each different TOML text of its driver's values
 };
 
-/// One of those for each sensor that is listened to, in the same order.
-using Heard = std::vector<HeardSensor>;
+/// One for each sensor of the source, in the same order.
+using CollectedReadings = std::vector<SensorReadings>;
 
-/// How long to listen: live for a duration; of a recording a part, or all of it.
+/// What to collect: live for a duration; of a recording a part, or all of it.
 struct Stretch {
   double duration_s = 30.0;
   std::optional<double> from_s = std::nullopt;
   std::optional<double> to_s = std::nullopt;
 };
 
-/// Where the readings come from that a calibration is made of. Each kind gives them as the sensors said them, before
-/// any [sensor.calibration].
+/// Where the readings for a calibration come from. They are raw: before any [sensor.calibration].
 class CalibrationSource {
  public:
-  /// Told about four times a second while listening, and once at the end; of a recording after each so many readings,
-  /// with the time that they are of.
-  using Progress = std::function<void(double elapsed_s, const Heard& so_far)>;
+  /// Called about four times a second while collecting live, and once at the end; of a recording at
+  /// intervals, with the log time.
+  using Progress = std::function<void(double elapsed_s, const CollectedReadings& so_far)>;
 
   virtual ~CalibrationSource() = default;
 
@@ -51,13 +50,13 @@ class CalibrationSource {
   virtual std::string description() const = 0;
   virtual bool is_live() const = 0;
 
-  /// Listens, from now on. Live it waits for every sensor's first reading first. Fails where a sensor stays silent,
-  /// the daemon ends, or the recording is damaged; ends in time whatever happens.
-  virtual Result<Heard, Failure> hear(const Stretch& stretch, const Progress& progress) = 0;
+  /// Collects readings from now on; live, the duration begins with the last sensor's first reading. Fails where a
+  /// sensor stays silent, the daemon ends, or the recording is damaged. Always ends in bounded time.
+  virtual Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) = 0;
 };
 
-/// The sensors themselves: the running daemon's word where it listens at `address` and has all of them, else their
-/// devices. `sensors` and `clock` must outlive it. Fails where a daemon has them and cannot give raw
+/// Live readings: from the running daemon at `address` where it has all of these sensors, else from the devices
+/// themselves. `sensors` and `clock` must outlive it. Fails where a daemon has the sensors, but does not send raw
 /// readings.
 Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(std::vector<const SensorConfig*> sensors,
                                                                      const std::string& address, const Clock& clock);

@@ -31,8 +31,7 @@ constexpr std::array<std::pair<std::string_view, SpeedUnit>, 14> kSpeedUnits = {
                                                                                  {"knots", kKnots},
                                                                                  {"mph", kMilesPerHour}}};
 
-// What loggers call their columns, once letters are small, signs are gone and a unit is cut off. The first that is
-// there is taken.
+// Usual names of columns, in lower case, without punctuation and unit. The first that is found is used.
 constexpr std::array<std::string_view, 15> kTimeNames = {"utc",       "utctime",  "timeutc", "datetimeutc", "dateutc",
                                                          "timestamp", "datetime", "isotime", "time",        "date",
                                                          "unixtime",  "unix",     "epoch",   "ts",          "t"};
@@ -63,7 +62,7 @@ std::span<const std::string_view> usual_names(CsvRole role) {
     case CsvRole::kElapsed:
     case CsvRole::kQuality:
     case CsvRole::kSensor:
-      break;  // taken from our own export alone
+      break;  // only in yuragi's own exports
   }
   return {};
 }
@@ -76,7 +75,7 @@ bool is_word_sign(char c) {
   return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
 }
 
-/// The words of a name in small letters: "Wind Speed (km/h)" has wind, speed, km, h.
+/// The words of a name in lower case: "Wind Speed (km/h)" has wind, speed, km, h.
 std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> words(1);
   for (const char sign : name) {
@@ -97,7 +96,7 @@ std::string joined(std::span<const std::string> words) {
   return all;
 }
 
-/// A name taken apart: "wind_speed_10m (km/h)" is "windspeed" in "kmh".
+/// A parsed name: "wind_speed_10m (km/h)" is "windspeed" in "kmh".
 struct NameParts {
   std::string stem;
   std::string unit;
@@ -121,7 +120,7 @@ NameParts parts_of(std::string_view name) {
     break;
   }
 
-  // A height says nothing about what a column is.
+  // A height is not part of the name.
   std::erase_if(words, [](const std::string& word) {
     return word.size() > 1 && word.back() == 'm' &&
            std::all_of(word.begin(), word.end() - 1, [](char c) { return c >= '0' && c <= '9'; });
@@ -173,7 +172,7 @@ Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& heade
   };
   const auto is_given = [&given](CsvRole role) { return !given[static_cast<std::size_t>(role)].empty(); };
 
-  // What the user says.
+  // As the user says.
   for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
     if (given[role].empty()) continue;
     const auto found = std::find_if(header.begin(), header.end(),
@@ -184,7 +183,7 @@ Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& heade
     columns[role] = column_at(header, static_cast<std::size_t>(found - header.begin()));
   }
 
-  // What the names say. Components are looked for only where there is no speed, and the other way round.
+  // By their names. Components are searched for only where there is no speed, and vice versa.
   const auto guess = [&](CsvRole role) {
     if (at(role)) return;
     for (const std::string_view usual : usual_names(role)) {
@@ -204,7 +203,7 @@ Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& heade
     guess(CsvRole::kV);
   }
 
-  // Our own export tells more.
+  // yuragi's own exports have further columns.
   if (fmt::format("{}", fmt::join(header, ",")) == kExportedHeader) {
     const auto named = [&header](std::string_view name) {
       return column_at(header, static_cast<std::size_t>(std::ranges::find(header, name) - header.begin()));

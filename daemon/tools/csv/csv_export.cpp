@@ -28,7 +28,7 @@ void append_utc(std::string& text, UtcTime time) {
                  clock.minutes().count(), clock.seconds().count(), clock.subseconds().count());
 }
 
-/// A text as a field: in quotes where it has to be. A line has no end in the middle.
+/// A text as a field, quoted where necessary. Line ends are replaced.
 void append_text(std::string& text, std::string_view field) {
   if (field.find_first_of(",\"\n\r") == std::string_view::npos) {
     text += field;

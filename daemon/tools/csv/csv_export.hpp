@@ -10,7 +10,7 @@
 
 namespace yuragi {
 
-/// Which part of a recording goes out, in log time: from `from` on, and before `to`.
+/// The part of a recording to export, in log time: from `from` on, and before `to`.
 struct CsvExportRange {
   Nanoseconds from{0};
   Nanoseconds to = Nanoseconds::max();
@@ -18,15 +18,15 @@ struct CsvExportRange {
 
 struct CsvExportReport {
   std::size_t written = 0;
-  std::size_t skipped = 0;  ///< rows that cannot be readings
+  std::size_t skipped = 0;  ///< rows of the recording that are not valid readings
 };
 
-/// Writes readings as CSV (kExportedHeader): UTC in ISO 8601 to the nanosecond, log time, numbers with all the digits
-/// that give back the same number, always with a decimal point; empty where there is no value. What `yuragi import`
-/// makes of it are the same readings.
+/// Writes readings as CSV (kExportedHeader): UTC in ISO 8601 to the nanosecond, log time, numbers with as many
+/// digits as give the same number when read, always with a decimal point; empty where there is no value. `yuragi
+/// import` reads the same readings from it.
 ///
-/// `out` is written to and stays the caller's. `progress` is told now and then how many rows there are. Fails as the
-/// reader does, or where `out` takes no more. Thread-safe: yes, with a reader of one's own.
+/// `out` is not closed. `progress` is called now and then with the number of rows. Fails as the reader does, or where
+/// `out` cannot be written to. Thread-safe: yes, with separate readers.
 Result<CsvExportReport, Failure> export_csv(WindlogReader& reader, const CsvExportRange& range, std::FILE* out,
                                             const std::function<void(std::size_t)>& progress = {});
 

@@ -62,7 +62,7 @@ class Import {
   }
 
   void refuse(std::size_t line, const std::string& why) {
-    if (report_.first_refusals.size() >= CsvImportReport::kMaxRefusalsTold) return;
+    if (report_.first_refusals.size() >= CsvImportReport::kMaxRefusalsListed) return;
     report_.first_refusals.push_back(name_ + ":" + std::to_string(line) + ": " + why);
   }
 

@@ -14,25 +14,25 @@
 namespace yuragi {
 
 struct CsvImportReport {
-  std::vector<std::string> columns;  ///< what was taken as what, a line each
+  std::vector<std::string> columns;  ///< how each column was understood, a line each
   std::size_t rows = 0;              ///< below the header
   std::size_t taken = 0;
-  std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsTold
+  std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsListed
 
   std::size_t refused() const { return rows - taken; }
-  static constexpr std::size_t kMaxRefusalsTold = 5;
+  static constexpr std::size_t kMaxRefusalsListed = 5;
 };
 
-/// Takes each reading, with the name of its sensor. May throw; the import ends with that.
+/// Called for each reading, with the name of its sensor. May throw, which ends the import.
 using CsvReadingSink = std::function<void(std::string_view sensor, const WindReading& reading)>;
 
 /// Reads a CSV file with a header: each row is a reading with UTC, and with a monotonic time that begins at zero. Rows
-/// that are no readings, or go back in time, are refused and counted. A decimal comma is understood where the delimiter
-/// is another sign.
+/// that are not valid readings, or go back in time, are refused and counted. A decimal comma is understood where the
+/// delimiter is another character.
 ///
-/// `name` stands in messages. `in` is read once, in blocks. Believes nothing: any bytes may come. Fails where there is
-/// no header that can be understood, or where a line is endless, or at the first bad row if `strict`. Thread-safe: yes,
-/// with streams of their own.
+/// `name` is the file name in messages. `in` is read once, in blocks, and may contain any bytes. Fails where the header
+/// is not understood, where a line is longer than kLongestLine, or at the first refused row if `strict`. Thread-safe:
+/// yes, with separate streams.
 Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string& name, const CsvImportOptions& options,
                                             const CsvReadingSink& sink);
 

@@ -10,7 +10,7 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
-/// A field as it stands between two delimiters, made plain where it stands.
+/// Trims and unquotes a field in place.
 std::string_view plain_field(std::span<char> field) {
   while (!field.empty() && is_blank(field.front())) field = field.subspan(1);
   while (!field.empty() && is_blank(field.back())) field = field.first(field.size() - 1);
@@ -32,7 +32,7 @@ CsvLines::CsvLines(std::istream& in, char comment) : in_(in), comment_(comment),
 bool CsvLines::next() {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   while (in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) {
-    // The line's end counts, where it is not the file's.
+    // gcount() includes the line end, which the last line may lack.
     size_ = static_cast<std::size_t>(in_.gcount()) - (in_.eof() ? 0 : 1);
     ++number_;
     if (size_ > 0 && buffer_[size_ - 1] == '\r') --size_;

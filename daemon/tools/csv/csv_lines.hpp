@@ -8,18 +8,18 @@
 
 namespace yuragi {
 
-/// The lines of a CSV file, one after the other: without those that are empty or begin with the comment's sign, and
-/// without line ends ("\n" or "\r\n") and byte order mark. Thread-safe: no.
+/// Reads the lines of a CSV file one by one: skips empty ones and comments, and removes line ends ("\n" or "\r\n") and
+/// byte order mark. Thread-safe: no.
 class CsvLines {
  public:
   static constexpr std::size_t kLongestLine = 1 << 20;
 
-  /// `in` must outlive this. `comment` 0: no line is one.
+  /// `in` must outlive this. `comment`: what comment lines begin with; 0: there are none.
   CsvLines(std::istream& in, char comment);
 
   /// Goes to the next line; false where there is none, or where it is longer than kLongestLine.
   bool next();
-  /// The line that next() went to; valid until it is called again, and may be written over (split_csv_line).
+  /// The line that next() read; valid until the next call, and may be modified (split_csv_line).
   std::span<char> line() { return {buffer_.data(), size_}; }
   /// Of the file, from 1.
   std::size_t number() const { return number_; }
@@ -34,8 +34,8 @@ class CsvLines {
   bool is_too_long_ = false;
 };
 
-/// The fields of a line, without spaces around them and without the quotes that they stand in (RFC 4180: a delimiter
-/// within quotes is text, and a quote there stands twice). False where a quote is not closed. Works in place: `fields`
+/// Splits a line into fields, without spaces around them and without enclosing quotes (RFC 4180: a delimiter within
+/// quotes is text, and a quote within them is doubled). False where a quote is not closed. Works in place: `fields`
 /// point into the line.
 bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::string_view>& fields);
 

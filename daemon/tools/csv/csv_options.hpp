@@ -9,7 +9,7 @@
 
 namespace yuragi {
 
-/// In what a CSV file gives directions.
+/// The unit of directions in a CSV file.
 enum class CsvDirectionUnit : std::uint8_t {
   kAuto,  ///< radians if the column's name says so, or else degrees
   kDegrees,
@@ -22,11 +22,11 @@ struct CsvImportOptions {
   CsvTimeFormat time_format = CsvTimeFormat::kAuto;
   std::optional<SpeedUnit> unit;  ///< of speed, gust, u and v; empty: as the column's name says, or else m/s
   CsvDirectionUnit direction_unit = CsvDirectionUnit::kAuto;
-  bool direction_is_toward = false;  ///< the column says where the wind blows to
+  bool direction_is_toward = false;  ///< directions are where the wind blows to
   bool components_are_from = false;  ///< u and v point to where the wind comes from
-  char delimiter = 0;                ///< ',', ';' or tab; 0: whichever the header has most of
-  char comment = '#';                ///< lines that begin with it are passed over; 0: none are
-  std::string sensor = "imported";   ///< what the readings' sensor is called, unless the file is our own export
+  char delimiter = 0;                ///< ',', ';' or tab; 0: the one most frequent in the header
+  char comment = '#';                ///< lines that begin with it are skipped; 0: none are
+  std::string sensor = "imported";   ///< name of the sensor, unless the file is an export of yuragi's
   bool strict = false;               ///< fail at the first row that is refused
 };
 

@@ -28,7 +28,7 @@ std::optional<std::string_view> field(const CsvFields& fields, CsvRole role) {
   return fields[static_cast<std::size_t>(role)];
 }
 
-/// The ways in which loggers write that they have no value.
+/// Usual notations for a missing value.
 bool is_missing(std::string_view text) {
   static constexpr std::array<std::string_view, 8> kWords = {"", "NAN", "NA", "N/A", "NULL", "NONE", "-", "--"};
   return text.size() <= 4 && std::find(kWords.begin(), kWords.end(), upper(text)) != kWords.end();
@@ -84,7 +84,7 @@ Result<WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
                    (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "")};
   }
 
-  // The time comes last: only a row that is taken moves it on.
+  // The time comes last: only an accepted row advances it.
   const auto time = read_time(fields);
   if (!time) return time.error();
   reading.time = *time;
@@ -102,7 +102,7 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
   const auto utc = parse_time(text, format);
   if (!utc) return refusal("not a time (" + std::string(name_of(format)) + "):", text);
 
-  // Monotonic time: what our own export says, or else UTC since the first row.
+  // Monotonic time: from yuragi's own export, or else UTC since the first row.
   Instant time{MonoTime(*utc - first_utc_.value_or(*utc)), *utc};
   if (const auto elapsed = field(fields, CsvRole::kElapsed)) {
     const auto ns = parse_decimal(*elapsed, kElapsedDecimals);
@@ -114,7 +114,7 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
   if (time.mono < last_) return refusal("time goes back:", text);
   if (!is_recordable(recordable)) return refusal("time out of range:", text);
 
-  // The first row that is taken settles what the times look like.
+  // The first accepted row determines the format of times.
   time_format_ = format;
   if (!first_utc_) first_utc_ = *utc;
   last_ = time.mono;
@@ -160,7 +160,7 @@ Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, WindReadi
 Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_view text) const {
   if (is_missing(text)) return std::optional<double>{};
 
-  // A point of the compass by its name, or a number in whatever it is.
+  // The name of a compass point, or a number in the unit of the column.
   double direction_deg = 0.0;
   if (const auto point_deg = compass_point_deg(text)) {
     direction_deg = *point_deg;
@@ -177,7 +177,7 @@ Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_
     if (unit == CsvDirectionUnit::kPoint16) direction_deg = *number * kDegPerCompassPoint;
   }
 
-  // Both ways to count a circle are understood, -180 to 180 and 0 to 360; a little more is rounding.
+  // Both -180 to 180 and 0 to 360 are accepted, and a little more for rounding.
   constexpr double kTolerance_deg = 0.01;
   if (direction_deg < -180.0 - kTolerance_deg || direction_deg > 360.0 + kTolerance_deg) {
     return refusal("direction out of range:", text);

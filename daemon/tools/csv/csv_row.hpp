@@ -12,18 +12,18 @@
 
 namespace yuragi {
 
-/// The fields of a row, by role; none where there is no such column.
+/// The fields of a row, by role; none for a missing column.
 using CsvFields = std::array<std::optional<std::string_view>, kCsvRoleCount>;
 
-/// Makes readings of the rows of one CSV file. Thread-safe: no.
+/// Converts the rows of one CSV file to readings. Thread-safe: no.
 class CsvRowReader {
  public:
   CsvRowReader(const CsvColumns& columns, const CsvImportOptions& options);
 
-  /// The reading in a row, or why there is none. Rows come in the order of the file.
+  /// The reading in a row, or why it is refused. To be called in the order of the file.
   Result<WindReading, Failure> read(const CsvFields& fields);
 
-  /// Which column is taken as what, a line each; complete once a row was read.
+  /// How each column was understood, a line each; complete after the first row.
   std::vector<std::string> describe() const;
 
  private:

@@ -41,7 +41,7 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
   const bool is_negative = !text.empty() && text.front() == '-';
   if (is_negative || (!text.empty() && text.front() == '+')) text.remove_prefix(1);
 
-  // Digits are taken one by one until the wanted decimals are there; a fraction that is too short counts as zeros.
+  // Digits are taken one by one up to the number of decimals; a shorter fraction is filled up with zeros.
   std::int64_t value = 0;
   bool in_fraction = false;
   bool has_digits = false;

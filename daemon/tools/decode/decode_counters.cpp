@@ -1,4 +1,4 @@
-// `yuragi decode mcc1208` and `labjack`: replies are counts and voltages; what wind these are, the options say.
+// `yuragi decode mcc1208` and `labjack`: replies are counts and voltages, which the options convert to wind.
 #include <algorithm>
 #include <array>
 
@@ -10,20 +10,20 @@
 namespace yuragi {
 namespace {
 
-/// What a reply holds, as far as it goes.
+/// The content of a reply.
 struct CounterReply {
   std::optional<std::uint32_t> count;
   std::optional<double> volts;        ///< of the vane's wiper, if there is a vane
-  std::optional<double> reference_v;  ///< over the vane's track, where the reply has that too
+  std::optional<double> reference_v;  ///< across the vane's potentiometer, where the reply contains it
 };
 
-/// What counts and voltages mean, reply after reply.
+/// Converts counts and voltages to wind, reply by reply.
 class CounterMeaning {
  public:
   explicit CounterMeaning(const UnitDecoderOptions& options) : options_(options) {}
 
-  /// The wind of a reply, as far as the options say. Refused: the counter went back, or on by more than any wind
-  /// drives.
+  /// The wind of a reply, as far as the options allow. Refused: the counter decreased, or increased by more than any
+  /// wind could make it.
   UnitDecoder::Outcome of(const CounterReply& reply) {
     UnitReading reading;
     reading.count = reply.count;
@@ -40,7 +40,7 @@ class CounterMeaning {
     return reading;
   }
 
-  /// A reply was no use: how far apart the next two counts are is not known.
+  /// After a refused reply: the time between the next two counts is not known.
   void interrupt() { cup_ = {}; }
 
  private:
@@ -48,24 +48,24 @@ class CounterMeaning {
   CupState cup_;
 };
 
-/// Replies to control transfers. The setup packet before one says what it is, else its length does.
+/// Replies to control transfers, identified by the setup packet before them, or by their length.
 class Mcc1208Decoder final : public UnitDecoder {
  public:
   explicit Mcc1208Decoder(const UnitDecoderOptions& options) : meaning_(options) {}
 
   void take(const RawUnit& unit, const Sink& sink) override {
     const ByteSpan setup = unit.request.size() == 8 ? unit.request : ByteSpan();
-    const bool is_asked = !setup.empty();
-    if (is_asked && setup[1] == mcc1208_read_calibration(0).request) return take_calibration(unit, sink);
+    const bool is_polled = !setup.empty();
+    if (is_polled && setup[1] == mcc1208_read_calibration(0).request) return take_calibration(unit, sink);
 
-    const bool is_analog = is_asked ? setup[1] == mcc1208_read_analog(0).request : unit.bytes.size() == 2;
+    const bool is_analog = is_polled ? setup[1] == mcc1208_read_analog(0).request : unit.bytes.size() == 2;
     CounterReply reply;
     std::optional<Refusal> why;
     if (is_analog) {
       const auto analog = decode_mcc1208_analog(unit.bytes);
       if (analog) {
         reply.volts =
-            mcc1208_volts(*analog, is_asked ? calibrations_[setup[2] % kMcc1208Inputs] : Mcc1208Calibration{});
+            mcc1208_volts(*analog, is_polled ? calibrations_[setup[2] % kMcc1208Inputs] : Mcc1208Calibration{});
       } else {
         why = analog.error();
       }
@@ -83,7 +83,7 @@ class Mcc1208Decoder final : public UnitDecoder {
   }
 
  private:
-  /// What an input is off by, for its later values. One that was never written leaves them as they are.
+  /// The calibration of an input, for its later values. An unwritten one is ignored.
   void take_calibration(const RawUnit& unit, const Sink& sink) {
     const auto calibration = decode_mcc1208_calibration(unit.bytes);
     if (!calibration) return sink(UnitRefusal{calibration.error(), "the calibration of an input"});
@@ -95,7 +95,7 @@ class Mcc1208Decoder final : public UnitDecoder {
   CounterMeaning meaning_;
 };
 
-/// What a feedback reply answers: as its command says; without that, as its own echo and length let it be guessed.
+/// The command of a feedback reply: as given; else guessed from its echo and length.
 LabjackRequest labjack_request_of(const RawUnit& unit) {
   constexpr std::size_t kCommandEcho = 6;
   constexpr std::size_t kReplyEcho = 8;

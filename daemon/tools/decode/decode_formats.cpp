@@ -17,7 +17,7 @@
 namespace yuragi {
 namespace {
 
-/// A format in which every message stands for itself.
+/// A format in which every message is decoded by itself.
 class StatelessDecoder final : public UnitDecoder {
  public:
   using Decode = std::function<Result<DecodedWind, Refusal>(ByteSpan message)>;
@@ -29,7 +29,7 @@ class StatelessDecoder final : public UnitDecoder {
   Decode decode_;
 };
 
-/// The bytes of a WMR100's reports, whose frames end where they like.
+/// The bytes of a WMR100's reports, whose frames are not aligned to reports.
 class Wmr100Decoder final : public UnitDecoder {
  public:
   void take(const RawUnit& unit, const Sink& sink) override {

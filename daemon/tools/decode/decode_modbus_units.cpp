@@ -1,4 +1,4 @@
-// `yuragi decode modbus:PROFILE`: a request, which says what is asked, and its response.
+// `yuragi decode modbus:PROFILE`: a request and its response.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,43 +10,43 @@
 namespace yuragi {
 namespace {
 
-struct AskedRegisters {
+struct RequestedRegisters {
   ModbusFraming framing = ModbusFraming::kRtu;
   ModbusRequest request;
 };
 
-/// A request to read registers, of RTU or TCP by its form. Nothing for anything else.
-std::optional<AskedRegisters> asked_registers_of(ByteSpan bytes) {
+/// Parses a request to read registers, of RTU or TCP by its format. Nothing for anything else.
+std::optional<RequestedRegisters> requested_registers_of(ByteSpan bytes) {
   constexpr std::size_t kRtuRequest = 8;
   constexpr std::size_t kTcpRequest = 12;
   constexpr std::size_t kTcpHeader = 6;  // in front of the unit id
-  AskedRegisters asked;
+  RequestedRegisters requested;
   if (bytes.size() == kRtuRequest && modbus_crc(bytes.first(6)) == little_endian_16(bytes, 6)) {
-    asked.framing = ModbusFraming::kRtu;
+    requested.framing = ModbusFraming::kRtu;
   } else if (bytes.size() == kTcpRequest && big_endian_16(bytes, 2) == 0 && big_endian_16(bytes, 4) == 6) {
-    asked.framing = ModbusFraming::kTcp;
-    asked.request.transaction = big_endian_16(bytes, 0);
+    requested.framing = ModbusFraming::kTcp;
+    requested.request.transaction = big_endian_16(bytes, 0);
     bytes = bytes.subspan(kTcpHeader);
   } else {
     return std::nullopt;
   }
-  asked.request.unit = bytes[0];
-  asked.request.function = bytes[1];
-  asked.request.address = big_endian_16(bytes, 2);
-  asked.request.count = big_endian_16(bytes, 4);
-  const bool reads = asked.request.function == 3 || asked.request.function == 4;
-  const bool is_possible = asked.request.count >= 1 && asked.request.count <= kModbusMaxRegisters;
-  return reads && is_possible ? std::optional(asked) : std::nullopt;
+  requested.request.unit = bytes[0];
+  requested.request.function = bytes[1];
+  requested.request.address = big_endian_16(bytes, 2);
+  requested.request.count = big_endian_16(bytes, 4);
+  const bool reads = requested.request.function == 3 || requested.request.function == 4;
+  const bool is_possible = requested.request.count >= 1 && requested.request.count <= kModbusMaxRegisters;
+  return reads && is_possible ? std::optional(requested) : std::nullopt;
 }
 
-/// The part of an answer that belongs to `quantity`; empty where it was not asked for.
+/// The part of a reply that belongs to `quantity`; empty where it was not requested.
 std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
                                             const ModbusRegisters& registers) {
   const std::size_t count = register_count(quantity.type);
-  const bool is_asked = request.unit == quantity.slave && request.function == quantity.function &&
-                        request.address <= quantity.address &&
-                        quantity.address + count <= std::size_t{request.address} + request.count;
-  if (!is_asked) return {};
+  const bool is_polled = request.unit == quantity.slave && request.function == quantity.function &&
+                         request.address <= quantity.address &&
+                         quantity.address + count <= std::size_t{request.address} + request.count;
+  if (!is_polled) return {};
   return registers.span().subspan(static_cast<std::size_t>(quantity.address - request.address), count);
 }
 
@@ -58,11 +58,11 @@ class ModbusUnitDecoder final : public UnitDecoder {
     if (unit.request.empty()) {
       return sink(UnitRefusal{Refusal::kMalformed, "no request: write request | response on one line"});
     }
-    const auto asked = asked_registers_of(unit.request);
-    if (!asked) {
+    const auto requested = requested_registers_of(unit.request);
+    if (!requested) {
       return sink(UnitRefusal{Refusal::kMalformed, "the request does not read registers, or its checksum is wrong"});
     }
-    const auto registers = decode_modbus(asked->framing, asked->request, unit.bytes);
+    const auto registers = decode_modbus(requested->framing, requested->request, unit.bytes);
     if (!registers) {
       const ModbusRefusal& refusal = registers.error();
       const bool is_exception = refusal.why == Refusal::kException;
@@ -70,12 +70,12 @@ class ModbusUnitDecoder final : public UnitDecoder {
           refusal.why,
           is_exception ? fmt::format("{}, {}", refusal.exception, modbus_exception_name(refusal.exception)) : ""});
     }
-    tell(asked->request, *registers, sink);
+    describe_reply(requested->request, *registers, sink);
   }
 
  private:
-  /// One reading of all that the answer holds. What is refused is told besides.
-  void tell(const ModbusRequest& request, const ModbusRegisters& registers, const Sink& sink) const {
+  /// One reading of all quantities in the reply; refusals of single ones are reported, too.
+  void describe_reply(const ModbusRequest& request, const ModbusRegisters& registers, const Sink& sink) const {
     UnitReading reading;
     bool holds_any = false;
     const auto take_value = [&](const ModbusQuantity& quantity, const char* what, const auto& decode,

@@ -1,5 +1,5 @@
-// `yuragi decode wmr100`, `te923` and `fineoffset` with --reports: input reports of 8 bytes one by one, as they come
-// over USB, put together to what the drivers' decoders read.
+// `yuragi decode wmr100`, `te923` and `fineoffset` with --reports: input reports of 8 bytes, as received
+// over USB, are joined to the messages that the drivers' decoders read.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -21,7 +21,7 @@ bool is_report(const RawUnit& unit, const UnitDecoder::Sink& sink) {
   return false;
 }
 
-/// How many of the next bytes are valid, then those: all of them are one stream.
+/// Each report has the number of valid bytes, then these: they form one stream.
 class Wmr100Reports final : public UnitDecoder {
  public:
   explicit Wmr100Reports(std::unique_ptr<UnitDecoder> stream) : stream_(std::move(stream)) {}
@@ -35,7 +35,7 @@ class Wmr100Reports final : public UnitDecoder {
   std::unique_ptr<UnitDecoder> stream_;
 };
 
-/// The same, in blocks of 34 bytes, each behind a request.
+/// The same, in blocks of 34 bytes, each after a request.
 class Te923Reports final : public UnitDecoder {
  public:
   void take(const RawUnit& unit, const Sink& sink) override {
@@ -46,7 +46,7 @@ class Te923Reports final : public UnitDecoder {
     if (block_.size() >= kTe923Block) finish(sink);
   }
 
-  /// What has come of a block.
+  /// The received part of a block.
   void finish(const Sink& sink) override {
     if (block_.empty()) return;
     sink(outcome_of(decode_te923(block_)));
@@ -58,7 +58,7 @@ class Te923Reports final : public UnitDecoder {
 };
 
 /// Four reports are a block of the console's memory, whose address is in the request before the first of them. The
-/// fixed block at 0 says where the current record stands.
+/// fixed block at 0 contains the address of the current record.
 class FineOffsetReports final : public UnitDecoder {
  public:
   void take(const RawUnit& unit, const Sink& sink) override {
@@ -106,7 +106,7 @@ class FineOffsetReports final : public UnitDecoder {
 
   std::array<std::uint8_t, kFineOffsetBlock> block_{};
   std::size_t size_ = 0;
-  std::optional<std::uint16_t> address_;   ///< of the block that is coming
+  std::optional<std::uint16_t> address_;   ///< of the block being received
   std::optional<std::uint16_t> position_;  ///< of the current record
   std::vector<std::uint8_t> memory_;       ///< the last block or two
   std::size_t memory_address_ = 0;

@@ -9,7 +9,7 @@
 
 namespace yuragi {
 
-/// The bytes that a text of hexadecimal digits stands for, as dumps and manuals print them: two digits a byte, of
+/// Parses bytes in hexadecimal digits, as dumps and manuals print them: two digits a byte, of
 /// either case, with or without "0x" in front, and with blanks, tabs, commas, colons or hyphens between bytes. Empty
 /// for an empty text; nothing for anything else.
 std::optional<std::vector<std::uint8_t>> parse_hex(std::string_view text);
@@ -17,7 +17,7 @@ std::optional<std::vector<std::uint8_t>> parse_hex(std::string_view text);
 /// "d4 36 0e"
 std::string to_hex(std::span<const std::uint8_t> bytes);
 
-/// What people read beside the digits: printable ASCII as it is, every other byte as a dot.
+/// The text column of a hex dump: printable ASCII as it is, every other byte as a dot.
 std::string to_printable(std::span<const std::uint8_t> bytes);
 
 }  // namespace yuragi

@@ -27,7 +27,7 @@ std::string raw_text(const wire::RawTrace& trace) {
   const auto out = std::back_inserter(text);
   if (trace.lost > 0) fmt::format_to(out, "... {} messages of {:.40} were skipped\n", trace.lost, trace.sensor);
 
-  // The first line says whose it is; the others go on under it.
+  // Only the first line has the time and the sensor.
   std::string margin =
       fmt::format("{} {:<12.12} {} ", time_of_day(trace.utc_ns), trace.sensor, trace.received ? "<-" : "->");
   const std::span<const std::uint8_t> bytes = trace.bytes;
@@ -49,8 +49,8 @@ std::string RawHexLines::line_of(const wire::RawTrace& trace) {
     request_ = trace.bytes;
     return {};
   }
-  const bool is_answer = !request_.empty() && sensor_ == trace.sensor;
-  std::string line = is_answer ? to_hex(request_) + " | " : "";
+  const bool is_reply = !request_.empty() && sensor_ == trace.sensor;
+  std::string line = is_reply ? to_hex(request_) + " | " : "";
   request_.clear();
   return line + to_hex(trace.bytes) + "\n";
 }

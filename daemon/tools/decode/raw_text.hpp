@@ -6,16 +6,16 @@
 
 namespace yuragi {
 
-/// A message to or from a device, for a terminal: when (UTC), which sensor, "<-" from the device or "->" to it, its
-/// bytes in hexadecimal digits, 16 a line, and beside them as text. A line before it tells of messages that were passed
-/// over. Lines end in '\n' and have 100 columns at most.
+/// A message to or from a device, for a terminal: time (UTC), sensor, "<-" from the device or "->" to it, and its bytes
+/// in hexadecimal digits, 16 a line, with their text beside. A line before it gives the number of messages that were
+/// dropped. Lines end in '\n' and have 100 columns at most.
 std::string raw_text(const wire::RawTrace& trace);
 
-/// Messages as `yuragi decode --hex` reads them: what was received, in hexadecimal digits, a line each; behind what was
-/// sent just before, "request | response". Thread-safe: no.
+/// Messages in the format that `yuragi decode --hex` reads: a line of hexadecimal digits for each received message, as
+/// "request | response" where a message was sent just before. Thread-safe: no.
 class RawHexLines {
  public:
-  /// The line of this message; empty for one that was sent, which waits for its answer.
+  /// The line of this message; empty for one that was sent, which is kept until its reply.
   std::string line_of(const wire::RawTrace& trace);
 
  private:

@@ -62,7 +62,7 @@ void UnitReader::take_hex_line(const Sink& sink) {
     } else if (form_ == Form::kHexFrames) {
       sink({.bytes = *bytes, .request = *request, .text = text, .why = {}});
     } else {
-      // The bytes of text end their lines themselves, or with the message.
+      // Lines of text end at their line ends, or with the message.
       UnitReader lines(Form::kLines, ending_);
       const auto with_digits = [&](ReadUnit unit) {
         unit.text = text;

@@ -11,18 +11,18 @@
 
 namespace yuragi {
 
-/// One message of an input, or why there is none: the input itself, as text, and what is wrong with it.
+/// One message of an input, or the text of the input and what is wrong with it.
 struct ReadUnit {
   ByteSpan bytes;
-  ByteSpan request;            ///< what stands before '|' in hexadecimal input
-  std::string_view text;       ///< what stood in the input
-  std::optional<Refusal> why;  ///< nothing can be decoded
+  ByteSpan request;            ///< what is before '|' in hexadecimal input
+  std::string_view text;       ///< as it is in the input
+  std::optional<Refusal> why;  ///< why nothing can be decoded
   std::string_view detail = {};
 };
 
-/// Cuts an input into messages, however its bytes come: into lines, as the drivers do it (LineAssembler), or a message
-/// from each line of hexadecimal digits, "request | response" where there are two. There, blank lines and lines that
-/// begin with '#' are passed over. Memory is bounded. Thread-safe: no.
+/// Splits an input, which may arrive in blocks of any size, into messages: lines, as the drivers do (LineAssembler), or
+/// one message for each line of hexadecimal digits ("request | response" where there are two). Blank lines of the
+/// latter and those that begin with '#' are skipped. Memory is bounded. Thread-safe: no.
 class UnitReader {
  public:
   enum class Form : std::uint8_t {
@@ -34,9 +34,9 @@ class UnitReader {
 
   UnitReader(Form form, LineEnding ending) : form_(form), ending_(ending), lines_(ending) {}
 
-  /// Takes the next bytes of the input and tells `sink` of each message that they end.
+  /// Takes the next bytes of the input, and calls `sink` with each message that they complete.
   void feed(ByteSpan bytes, const Sink& sink);
-  /// The input ends here, within a line perhaps.
+  /// Called at the end of the input, which may be within a line.
   void finish(const Sink& sink);
 
  private:

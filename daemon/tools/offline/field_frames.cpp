@@ -12,7 +12,7 @@
 namespace yuragi {
 namespace {
 
-/// The estimator steps as often as this at least: its filters are made for the daemon's rate.
+/// The least rate of the estimator's steps: its filters are designed for the daemon's rate.
 constexpr double kLeastTickRate_hz = 50.0;
 
 }  // namespace
@@ -39,7 +39,7 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
   GroundWind ground;
   const GroundWindField field(ground, *noise);
 
-  // Some ticks a frame. A frame is of the first tick at its time or after it.
+  // Several ticks per frame. A frame is that of the first tick at its time or after it.
   OfflineWindOptions offline;
   offline.rate_hz = frames.rate_hz * std::ceil(kLeastTickRate_hz / frames.rate_hz);
   offline.judge = config.sensors[0].judge;

@@ -13,7 +13,7 @@
 
 namespace yuragi {
 
-/// Which moments of a field are wanted.
+/// The moments at which a field is sampled.
 struct FieldFrames {
   double first_s = 0.0;
   std::size_t count = 1;
@@ -22,15 +22,15 @@ struct FieldFrames {
   double time_s(std::size_t frame) const { return first_s + static_cast<double>(frame) / rate_hz; }
 };
 
-/// Is told each frame in order: sample_field() of that moment. May throw.
+/// Called with each frame in order: sample_field() at that moment. May throw.
 using UseField = std::function<void(std::span<const float> values)>;
 
 /// The frames of a wind with given statistics.
 void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const FieldFrames& frames,
                           const UseField& use);
 
-/// The frames of the live wind over the ground, as the daemon with this configuration would have had it while the
-/// recording was made: the estimator hears it reading by reading from its beginning on. Fails where the recording
+/// The frames of the live wind over the ground, as the daemon with this configuration would have estimated it while the
+/// recording was made: the estimator takes its readings one by one from the beginning on. Fails where the recording
 /// cannot be read, or ends before the last frame.
 Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback,
                                            const Config& config, const FieldGrid& grid, const FieldFrames& frames,

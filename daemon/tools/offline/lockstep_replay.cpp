@@ -44,7 +44,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const s
     // Readings that are due by this tick, at their own log time.
     const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
     const auto played = player.play(now, [&](const WindReading& reading) {
-      // As the daemon would: what is not believed moves nothing.
+      // As in the daemon: readings that are not believed are left out.
       if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) return;
       if (!estimator.accept(0, reading)) return;
       ++result.readings;
@@ -53,7 +53,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const s
     });
     if (!played) return played.error();
 
-    // A recording is always open: log time is not the time of a wall.
+    // Opening hours do not apply: log time is not local time.
     DrivingWind wind{estimator.advance(MonoTime(from_seconds(now_s))), estimator.ground(), estimator.stroke()};
     shaping.shape(wind, true);
     const WindState& state = wind.state;

@@ -10,19 +10,19 @@
 
 namespace yuragi {
 
-/// What a recording did, played through estimator and scenes as fast as the machine can.
+/// The result of a replay through estimator and scenes.
 struct LockstepResult {
   std::uint64_t readings = 0;
   std::uint64_t ticks = 0;
   double log_duration_s = 0.0;
   double reading_mean_m_s = 0.0;  ///< of the readings, as recorded
   double reading_max_m_s = 0.0;
-  double wind_mean_m_s = 0.0;  ///< of the wind that moved the scenes, from the moment that the sensor was followed
+  double wind_mean_m_s = 0.0;  ///< of the wind that moved the scenes, from the first live reading on
   double wind_max_m_s = 0.0;
   std::uint64_t pose_hash = 0;  ///< over every pose of every tick: the same seed, log and build give the same hash
 };
 
-/// Told of each tick, when it is done.
+/// Called at the end of each tick.
 using UseTick = std::function<void(double log_time_s, const Animation& animation)>;
 
 /// Replays in log time, tick by tick, with no clock and no thread, so that every run of the same seed and recording

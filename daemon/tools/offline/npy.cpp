@@ -46,7 +46,7 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   const std::string header = npy_header(shape);
   out.write(header.data(), static_cast<std::streamsize>(header.size()));
   out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
-  // Closing writes what is still buffered: only then is it known whether all of it found room.
+  // Closing writes what is still buffered: only then is it known whether all was written.
   out.close();
   if (!out) {
     throw FailureError({"cannot write " + file.string() + "; is its folder writable, and the disk not full?",

@@ -5,17 +5,17 @@
 namespace yuragi {
 namespace {
 
-/// Readings as the estimator is to hear them: each with its log time, less those of the gaps, and averaged where a
-/// slower sensor is asked for.
-class HeardReadings {
+/// The readings for the estimator: each at its log time, without those in the gaps, and averaged where a slower sensor
+/// is simulated.
+class PlayedReadings {
  public:
-  HeardReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
+  PlayedReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
       : playback_(playback), options_(options) {}
 
-  /// Nothing at the end, and where the recording cannot be read on.
+  /// Nothing at the end, or where the recording cannot be read.
   std::optional<WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
 
-  /// Why it cannot be read on; nothing if it can.
+  /// Why it cannot be read; nothing if it can.
   const std::optional<Failure>& failure() const { return failure_; }
 
  private:
@@ -32,12 +32,12 @@ class HeardReadings {
     }
   }
 
-  /// The mean over one block of time; blocks in which nothing was said are passed over.
+  /// The mean over one block of time; blocks without readings are skipped.
   std::optional<WindReading> next_mean() {
     if (!held_) held_ = next_single();
     if (!held_) return std::nullopt;
-    // In whole nanoseconds, of which one may be lost on the way through seconds: a reading on the edge of two blocks is
-    // the later one's, and who asks for the wind of the block's end hears it.
+    // In whole nanoseconds, which may be off by one after conversion from seconds: a reading on the edge of two blocks
+    // belongs to the later one, and the mean is available at the end of its block.
     const Nanoseconds interval = from_seconds(*options_.sensor_interval_s);
     const Nanoseconds edge = ((held_->time.mono.time_since_epoch() + Nanoseconds(1)) / interval + 1) * interval;
     const MonoTime end(from_seconds(seconds(edge)));
@@ -75,7 +75,7 @@ class HeardReadings {
   std::optional<Failure> failure_;
 };
 
-/// One source of the estimator: what it says next, and whether that is to be believed.
+/// One source of the estimator, and the judge of its readings.
 class OfflineSource {
  public:
   OfflineSource(WindlogPlayback& playback, const OfflineWindOptions& options)
@@ -87,8 +87,8 @@ class OfflineSource {
   bool has_more() const { return next_.has_value(); }
   const std::optional<Failure>& failure() const { return readings_.failure(); }
 
-  /// Tells the estimator what was said up to `now`, as source `number`.
-  void tell(BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
+  /// Passes the readings up to `now` to the estimator, as source `number`.
+  void feed(BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
     for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
       if (!judge(*next_)) {
         ++result.withheld;
@@ -104,7 +104,7 @@ class OfflineSource {
     return !is_judged_ || reading.quality == ReadingQuality::kSimulated || judge_.judge(reading);
   }
 
-  HeardReadings readings_;
+  PlayedReadings readings_;
   bool is_judged_;
   ReadingJudge judge_;
   std::optional<WindReading> next_;
@@ -119,11 +119,11 @@ Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playba
   std::vector<OfflineSource> sources;
   for (WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
   const auto has_more = [&] { return std::ranges::any_of(sources, &OfflineSource::has_more); };
-  // The last reading is heard by the tick at its time or after it, which is the last.
+  // The last tick is the first at or after the last reading.
   for (bool goes_on = has_more(); goes_on; ++result.states) {
     const double time_s = static_cast<double>(result.states) / options.rate_hz;
     const MonoTime now(from_seconds(time_s));
-    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].tell(estimator, i, now, result);
+    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].feed(estimator, i, now, result);
     for (const OfflineSource& source : sources) {
       if (source.failure()) return *source.failure();
     }

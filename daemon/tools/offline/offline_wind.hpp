@@ -13,32 +13,32 @@
 
 namespace yuragi {
 
-/// A stretch of log time, from `from_s` on and before `to_s`, in which nothing is heard of the sensor.
+/// A stretch of log time, from `from_s` on and before `to_s`, whose readings are left out.
 struct OfflineGap {
   double from_s = 0.0;
   double to_s = 0.0;
 };
 
 struct OfflineWindOptions {
-  double rate_hz = 60.0;  ///< states a second of log time
-  /// The sensor as a slower one: its readings are vector means over so long, heard at their end.
+  double rate_hz = 60.0;  ///< states per second of log time
+  /// Simulates a slower sensor: its readings are vector means over so long, available at the end of each.
   std::optional<double> sensor_interval_s{};
   std::vector<OfflineGap> gaps{};
-  double until_s = std::numeric_limits<double>::infinity();  ///< no tick after this, and nothing is read beyond it
-  /// What is believed of the readings, as in the daemon; empty: everything.
+  double until_s = std::numeric_limits<double>::infinity();  ///< the last tick; nothing is read beyond it
+  /// Judges the readings as the daemon does; empty: all are believed.
   std::optional<JudgeSettings> judge{};
 };
 
 struct OfflineWindResult {
-  std::uint64_t readings = 0;  ///< that the estimator heard
+  std::uint64_t readings = 0;  ///< that the estimator took
   std::uint64_t withheld = 0;  ///< that were not believed
   std::uint64_t states = 0;
   double duration_s = 0.0;  ///< of log time
 };
 
-/// Runs an estimator over recordings, as fast as it can: source i hears each reading of `playbacks[i]` at its own log
-/// time, and `use` is told the state of each tick, from log time 0 to the last reading or `until_s`. What the options
-/// say of the sensor holds for each. Fails where a recording cannot be read on.
+/// Runs an estimator over recordings, as fast as possible: source i takes each reading of `playbacks[i]` at its own log
+/// time, and `use` is called with the state of each tick, from log time 0 to the last reading or `until_s`. The options
+/// of the sensor apply to each source. Fails where a recording cannot be read.
 Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
                                                const OfflineWindOptions& options,
                                                const std::function<void(double time_s, const WindState&)>& use);

@@ -33,7 +33,7 @@ std::string_view style_of(PlotStyle style) {
   return "lines";
 }
 
-/// How far apart marks of a time axis are, and how they are written, so that there are about seven.
+/// The distance and format of the tics of a time axis, so that there are about seven.
 struct TimeMarks {
   double step_s;
   std::string_view format;
@@ -62,7 +62,7 @@ TimeMarks time_marks(double span_s) {
   return {std::ceil(span_s / kMostMarks / (365.0 * kDay_s)) * 365.0 * kDay_s, kDates};
 }
 
-/// What stands before the plot command of a panel. All of it is set anew, so that nothing is left of the one before.
+/// The settings before the plot command of a panel. All are set, so that none is left of the panel before.
 void add_axes(std::string& script, const PlotPanel& panel, int width_px) {
   const auto out = std::back_inserter(script);
   fmt::format_to(out, "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\n",
@@ -79,7 +79,7 @@ void add_axes(std::string& script, const PlotPanel& panel, int width_px) {
   add_range("x", panel.x_range);
   add_range("y", panel.y_range);
 
-  // Times line up between panels; so do their marks.
+  // Time axes line up between panels, with the same tics.
   if (panel.is_x_time && panel.x_range) {
     const TimeMarks marks = time_marks(panel.x_range->second - panel.x_range->first);
     fmt::format_to(out, "set format x \"{}\" time\nset xtics {:g}\n", marks.format, marks.step_s);
@@ -123,7 +123,7 @@ std::string script_of(const std::string& file, bool is_svg, std::span<const Plot
                    static_cast<double>(below_px) / height_px);
     add_axes(script, panel, width_px);
 
-    // The numbers follow the plot command, one block a curve.
+    // The numbers follow the plot command, one block per curve.
     std::string commands;
     std::string data;
     for (const PlotCurve& curve : panel.curves) {

@@ -16,7 +16,7 @@ enum class PlotStyle : std::uint8_t {
   kLine,
   kPoints,
   kSteps,
-  kDots,  ///< points that are small and pale: many of them
+  kDots,  ///< small pale points, for large numbers of them
   kBand,  ///< the area between `y` and `y2`
   kBars,  ///< from 0 to `y`, touching each other
 };
@@ -25,9 +25,9 @@ struct PlotCurve {
   std::string title;  ///< empty: not in the legend
   PlotStyle style = PlotStyle::kLine;
   std::vector<double> x;
-  std::vector<double> y;        ///< as many as `x`; what is not finite is left out, and ends a line
-  std::vector<double> y2 = {};  ///< of a band: as many
-  std::string color = {};       ///< "#rrggbb"; empty: the next of gnuplot's own
+  std::vector<double> y;        ///< as many as `x`; a value that is not finite interrupts the line
+  std::vector<double> y2 = {};  ///< of a band: as many as `x`
+  std::string color = {};       ///< "#rrggbb"; empty: gnuplot's next default
 };
 
 /// A stretch of the x axis that is coloured behind the curves, over a part of the panel's height (0 bottom, 1 top).
@@ -50,20 +50,20 @@ struct PlotPanel {
   bool is_x_time = false;  ///< x is seconds since 1970, written as dates and times of UTC
   std::optional<std::pair<double, double>> x_range = {};
   std::optional<std::pair<double, double>> y_range = {};
-  double x_step = 0.0;  ///< between two marks of an x axis that is no time; 0: as gnuplot likes
-  double y_step = 0.0;  ///< between two marks of the y axis; 0: as gnuplot likes; below 0: no marks
+  double x_step = 0.0;  ///< between two tics of an x axis without times; 0: automatic
+  double y_step = 0.0;  ///< between two tics of the y axis; 0: automatic; below 0: no tics
   std::vector<PlotSpan> spans = {};
   int height_px = 480;
 };
 
-/// Where the x axes of times begin and end in a picture, from its left and right edge: all panels' line up.
+/// The margins left and right of x axes with times, the same in all panels so that they line up.
 inline constexpr int kTimeAxisLeft_px = 70;
 inline constexpr int kTimeAxisRight_px = 24;
 
 enum class PlotBackground : std::uint8_t { kWhite, kNone };
 
-/// Draws the panels below one another into `file`, whose name ends in .png or .svg; one of that name is replaced. By
-/// gnuplot. Fails where the name is another one, the file cannot be written, or gnuplot is not installed.
+/// Draws the panels below one another into `file` (.png or .svg), which is replaced, with gnuplot. Fails where the name
+/// has another extension, the file cannot be written, or gnuplot is not installed.
 Result<void, Failure> draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px = 1000,
                                 PlotBackground background = PlotBackground::kWhite);
 

@@ -23,7 +23,7 @@ struct PlotMap {
   std::size_t columns = 0;  ///< samples along x
   double first_x = 0.0, step_x = 1.0;
   double first_y = 0.0, step_y = 1.0;  ///< a step may be below 0
-  std::vector<double> values;          ///< rows of `columns` each, from first_y on; what is not finite is left out
+  std::vector<double> values;  ///< rows of `columns` each, from first_y on; values that are not finite are not drawn
   std::vector<PlotArrow> arrows;
 };
 

@@ -14,7 +14,7 @@
 namespace yuragi {
 namespace {
 
-/// Runs gnuplot on a script. False: it is not installed, or not content.
+/// Runs gnuplot on a script. False: it is not installed, or failed.
 bool run_gnuplot(const std::string& script_file) {
   std::string program = "gnuplot";
   std::string argument = script_file;
@@ -56,7 +56,7 @@ Result<void, Failure> draw_script(
     const std::string& file, const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of) {
   if (auto named = check_plot_name(file); !named) return named;
 
-  // The script goes beside the picture, and is never finished: so it is removed with the rest.
+  // The script is an OutputFile without a commit(), so it is removed.
   OutputFile picture(file, true);
   const OutputFile script(file + ".gnuplot", true);
   std::ofstream(script.working_path(), std::ios::binary) << script_of(picture.working_path(), file.ends_with(".svg"));

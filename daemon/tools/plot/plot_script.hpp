@@ -8,21 +8,19 @@
 
 namespace yuragi {
 
-// What all pictures share that gnuplot draws: plot.cpp (curves), plot_map.cpp (a map).
+// Shared by all plots that gnuplot draws: plot.cpp (curves), plot_map.cpp (a map).
 
-/// Fails unless a plot can be drawn into a file of this name: to be asked before hours of work.
+/// Fails unless a plot can be drawn into a file of this name; for checking that before hours of work.
 Result<void, Failure> check_plot_name(const std::string& file);
 
-/// Text as gnuplot takes it: in single quotes, in which a quote stands twice. Line ends, which would end the command,
-/// become spaces.
+/// Text quoted for gnuplot: in single quotes, with quotes doubled. Line ends become spaces.
 std::string plot_text(std::string_view text);
 
-/// The lines of a script that say where the picture goes, how large it is, and whether it is white where nothing
-/// is drawn or has nothing there.
+/// The lines of a script that set the output file, the size, and the background: white or transparent.
 std::string plot_output(const std::string& file, bool is_svg, int width_px, int height_px, bool has_background = true);
 
-/// Draws into `file` by the script that `script_of` makes for a picture of that name; the picture takes the name of
-/// `file` when it is whole. Fails as draw_plot().
+/// Draws into a temporary file by the script that `script_of` makes for its name, and renames that to `file`. Fails as
+/// draw_plot().
 Result<void, Failure> draw_script(
     const std::string& file, const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of);
 

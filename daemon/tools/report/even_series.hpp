@@ -7,8 +7,8 @@
 
 namespace yuragi {
 
-/// Makes of readings, which come when they like, runs of evenly spaced samples, by straight lines between them. A
-/// sensor that keeps its pace is passed on as it is. Thread-safe: no.
+/// Resamples readings at irregular times to runs of evenly spaced samples, by linear interpolation. Readings that are
+/// evenly spaced already are passed on unchanged. Thread-safe: no.
 class EvenSeries {
  public:
   /// `step_s` (above 0) between two samples.
@@ -34,7 +34,7 @@ class EvenSeries {
   }
 
  private:
-  /// A reading that comes by so little of a step too early for its sample is taken for it.
+  /// A reading that is early for its sample by no more than this part of a step is used as it is.
   static constexpr double kTolerance = 1e-3;
 
   static EvenSample between(const EvenSample& a, const EvenSample& b, double part) {

@@ -7,10 +7,10 @@ namespace yuragi {
 namespace {
 
 constexpr double kGust_s = 3.0;
-/// So many readings of 3 s are looked at; a sensor that says more in that time has no gust.
+/// The most readings in 3 s; a sensor that sends more has no gust.
 constexpr std::size_t kMostPast = 1000;
 constexpr double kBlock_s = 600.0;
-/// A block counts when so much of it was heard, in a wind that is no calm.
+/// A block counts when it has so much of its readings, and is not calm.
 constexpr double kWholeBlock = 0.95;
 constexpr double kLeastMean_m_s = 1.0;
 

@@ -9,14 +9,14 @@
 
 namespace yuragi {
 
-/// The mean speed of the last 3 s, which is what meteorologists call the gust when it is at its highest (WMO No. 8,
-/// Guide to Instruments, part I, chapter 5). Thread-safe: no.
+/// The mean speed of the last 3 s, whose maximum meteorologists call the gust (WMO No. 8, Guide to Instruments, part I,
+/// chapter 5). Thread-safe: no.
 class ThreeSecondMean {
  public:
-  /// For a sensor of this interval; it must be at most kLongestInterval_s to tell anything.
+  /// For a sensor of this interval; there are no means where it is above kLongestInterval_s.
   explicit ThreeSecondMean(double interval_s) : interval_s_(interval_s) {}
 
-  /// Takes a reading; answers the mean of the 3 s up to it, where there were readings all the time.
+  /// Takes a reading; returns the mean of the 3 s up to it, where there is no gap in them.
   std::optional<double> add(Nanoseconds time, double speed_m_s);
 
   static constexpr double kLongestInterval_s = 1.5;

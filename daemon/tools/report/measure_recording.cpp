@@ -20,7 +20,7 @@ std::string names_of(const RecordingSurvey& survey) {
   return names + (survey.sensors.size() > kMostNamed ? ", ..." : "");
 }
 
-/// Which of the survey's sensors are asked for.
+/// Which of the survey's sensors are selected.
 Result<std::vector<bool>, Failure> chosen_sensors(const RecordingSurvey& survey,
                                                   const std::vector<std::string>& wanted) {
   std::vector<bool> is_chosen(survey.sensors.size(), wanted.empty());
@@ -44,7 +44,7 @@ Result<std::vector<bool>, Failure> chosen_sensors(const RecordingSurvey& survey,
 
 Result<RecordingNumbers, Failure> measure_recording(WindlogReader& reader, const ReportSettings& settings,
                                                     const ReadingProgress& progress) {
-  // First what there is, then its numbers.
+  // First the survey, then the numbers.
   const auto survey = survey_recording(reader, settings.range, progress);
   if (!survey) return survey.error();
   const auto is_chosen = chosen_sensors(*survey, settings.sensors);
@@ -66,7 +66,7 @@ Result<RecordingNumbers, Failure> measure_recording(WindlogReader& reader, const
   for (std::size_t i = 0; i < tallies.size(); ++i) {
     if ((*is_chosen)[i]) tallies[i].emplace(survey->sensors[i], numbers.begin_s, numbers.end_s, settings);
   }
-  // A recording that is still being written has grown meanwhile; the survey's end is ours.
+  // A recording that is still being written has grown meanwhile: stop at the end of the survey.
   LogRange range = settings.range;
   if (survey->readings > 0) range.to = std::min(range.to, survey->end + Nanoseconds{1});
   std::uint64_t count = survey->readings;

@@ -8,12 +8,12 @@
 
 namespace yuragi {
 
-/// A page of more sensors than this is no page.
+/// The largest number of sensors in a report.
 inline constexpr std::size_t kMaxReportedSensors = 16;
 
-/// Reads a recording twice and takes its numbers. A recording without readings has none, and no sensors. Fails as the
-/// reader does, and where a sensor of `settings.sensors` is not there or there are more than kMaxReportedSensors.
-/// Memory does not grow with the length of the recording. Thread-safe: no. Realtime-safe: no.
+/// Computes the numbers of a recording, which it reads twice. A recording without readings has none, and no sensors.
+/// Fails as the reader does, and where a sensor of `settings.sensors` is missing or there are more than
+/// kMaxReportedSensors. Memory does not grow with the length of the recording. Thread-safe: no. Realtime-safe: no.
 Result<RecordingNumbers, Failure> measure_recording(WindlogReader& reader, const ReportSettings& settings,
                                                     const ReadingProgress& progress = {});
 

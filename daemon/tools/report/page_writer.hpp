@@ -9,8 +9,8 @@
 
 namespace yuragi {
 
-/// Writes a page piece by piece. Texts that it is given are HTML: what comes from outside goes through page_text()
-/// first. Thread-safe: no.
+/// Writes a page piece by piece. Its arguments are HTML: text from outside has to be escaped by page_text().
+/// Thread-safe: no.
 class PageWriter {
  public:
   template <class... Arguments>

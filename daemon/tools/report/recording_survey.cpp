@@ -12,7 +12,7 @@ constexpr std::size_t kMaxIntervals = 100'000;
 constexpr double kClockSet_s = 2.0;
 constexpr std::uint64_t kReadingsPerWord = 50'000;
 
-/// The survey of one sensor, as its readings come.
+/// Surveys one sensor, reading by reading.
 class Surveyor {
  public:
   explicit Surveyor(const LoggedSensor& sensor) {
@@ -25,7 +25,7 @@ class Surveyor {
     const double interval_s = seconds(log_time - last_);
     if (survey_.readings > 0 && intervals_s_.size() < kMaxIntervals) intervals_s_.push_back(interval_s);
 
-    // A run goes on while the sensor keeps to the pace of its last readings.
+    // A run continues while the interval is that of the last readings.
     reading.time.mono = MonoTime(log_time);
     record_.take(reading);
     if (interval_s > kBridgedIntervals * record_.interval_s()) {
@@ -66,7 +66,7 @@ class Surveyor {
   std::uint64_t steady_ = 0;
 };
 
-/// Counts how often the recorder's clock was set: UTC then leaves the line of log time.
+/// Counts how often the recorder's clock was set: the difference of UTC and log time then changes.
 class ClockWatch {
  public:
   void add(const LoggedReading& logged, RecordingSurvey& survey) {

@@ -20,7 +20,7 @@ struct LogRange {
 /// A silence of more than so many intervals ends a run of readings; shorter ones are bridged by a straight line.
 inline constexpr double kBridgedIntervals = 3.0;
 
-/// What must be known of a sensor before its numbers can be taken in one pass.
+/// What must be known of a sensor before its numbers can be computed in one pass.
 struct SensorSurvey {
   std::string name;
   std::string driver;
@@ -36,19 +36,19 @@ struct RecordingSurvey {
   std::uint64_t readings = 0;
   std::uint64_t skipped = 0;
   Nanoseconds begin{0}, end{0};  ///< log time of the first and the last reading
-  UtcTime first{}, last{};       ///< as its clock said
-  std::uint64_t clock_sets = 0;  ///< by more than 2 s
+  UtcTime first{}, last{};       ///< by its clock
+  std::uint64_t clock_sets = 0;  ///< how often its clock was set by more than 2 s
   double largest_clock_set_s = 0.0;
-  std::vector<SensorSurvey> sensors;   ///< by name, in the order in which they first spoke
+  std::vector<SensorSurvey> sensors;   ///< by name, in the order of their first readings
   std::vector<std::size_t> sensor_of;  ///< index into `sensors` of each WindlogReader::sensors()
 
-  static constexpr std::size_t kNone = SIZE_MAX;  ///< in `sensor_of`: not heard
+  static constexpr std::size_t kNone = SIZE_MAX;  ///< in `sensor_of`: without readings
 };
 
 /// Called now and then with the readings so far.
 using ReadingProgress = std::function<void(std::uint64_t readings)>;
 
-/// Reads `range` once. Sensors of one name are one sensor, in whatever session. Fails as the reader does.
+/// Reads `range` once. Sensors of the same name in several sessions are one sensor. Fails as the reader does.
 Result<RecordingSurvey, Failure> survey_recording(WindlogReader& reader, const LogRange& range,
                                                   const ReadingProgress& progress);
 

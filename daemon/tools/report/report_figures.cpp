@@ -76,19 +76,19 @@ class Figures {
   double axis_s(double time_s) const { return seconds(recording_.utc_at(time_s).time_since_epoch()); }
 
   PlotPanel time_panel() const {
-    // One reading has a time, but no duration; and gnuplot knows no axis of microseconds in this century.
+    // One reading has no duration, and gnuplot cannot draw an axis of microseconds at times since 1970.
     const double margin_s = recording_.duration_s() < 1.0 ? 1.0 : 0.0;
     PlotPanel panel;
     panel.is_x_time = true;
     panel.x_range = {{axis_s(recording_.begin_s) - margin_s, axis_s(recording_.end_s) + margin_s}};
-    // Silences stand behind the curves.
+    // Silences are drawn behind the curves.
     for (const auto& [from_s, to_s] : stretches(RecordedState::kStale, RecordedState::kStale)) {
       panel.spans.push_back({.from = from_s, .to = to_s, .color = "#dddddd"});
     }
     return panel;
   }
 
-  /// Where, on the axis, the gravest state of the bins is one of these.
+  /// The stretches of the axis where the most serious state of the bins is one of these.
   std::vector<std::pair<double, double>> stretches(RecordedState first, RecordedState last) const {
     std::vector<std::pair<double, double>> found;
     const double bin_s = recording_.duration_s() / static_cast<double>(kTimeBins);
@@ -113,7 +113,7 @@ class Figures {
   std::filesystem::path scratch_;
 };
 
-/// What the mouse is told over each event: nothing is seen of it.
+/// Invisible elements with a tooltip for each event.
 std::string Figures::event_titles(int height_px) const {
   constexpr double kLeastWidth_px = 3.0;
   const double axis_px = kWidth_px - kTimeAxisLeft_px - kTimeAxisRight_px;
@@ -136,7 +136,7 @@ std::string Figures::event_titles(int height_px) const {
 PlotPanel Figures::speed_panel() const {
   PlotCurve band{.title = "lowest to highest", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
   PlotCurve mean{.title = "speed", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
-  PlotCurve gust{.title = sensor_.told_gust_m_s ? "gust reported by the sensor" : "3 s gust",
+  PlotCurve gust{.title = sensor_.reported_gust_m_s ? "gust reported by the sensor" : "3 s gust",
                  .style = PlotStyle::kLine,
                  .x = {},
                  .y = {},
@@ -160,7 +160,7 @@ PlotPanel Figures::speed_panel() const {
     has_band = has_band || bin.max_m_s > bin.min_m_s;
     highest_m_s = std::max({highest_m_s, bin.max_m_s, bin.gust_m_s.value_or(0.0)});
   }
-  // Of few readings there is no line to be seen.
+  // A line through few readings would be invisible.
   if (mean.x.size() < kFewReadings) mean.style = PlotStyle::kPoints;
 
   PlotPanel panel = time_panel();
@@ -182,7 +182,7 @@ PlotPanel Figures::direction_panel() const {
     readings.x.push_back(axis_s(point.time_s));
     readings.y.push_back(point.direction_deg);
   }
-  // Points, not lines: a wind that passes through north would draw one through everything.
+  // Points, not lines: a wind passing through north would draw a line across the panel.
   PlotCurve mean{.title = {}, .style = PlotStyle::kDots, .x = {}, .y = {}, .color = kWindColor};
   for (const TimeBin& bin : sensor_.bins) {
     const WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
@@ -259,10 +259,10 @@ Result<std::string, Failure> Figures::spectrum() {
   if (!sensor_.spectrum) return {};
   const SpectrumNumbers& numbers = *sensor_.spectrum;
 
-  // Means over eighths of an octave: as many points high up as low down.
+  // Means over eighths of an octave: the same density of points at all frequencies.
   PlotCurve measured{.title = "measured", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
   constexpr double kPerOctave = 8.0;
-  // Without the last line, at Nyquist's frequency, which has half of the power.
+  // Without the line at the Nyquist frequency, which has half of the power.
   const std::size_t lines = numbers.density_m2_s2_hz.size() - 1;
   for (std::size_t k = 1; k < lines;) {
     const double place = std::floor(kPerOctave * std::log2(static_cast<double>(k)));

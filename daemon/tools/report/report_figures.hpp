@@ -23,13 +23,13 @@ struct SensorFigures {
   std::string diurnal;
 };
 
-/// Draws them, by gnuplot but for the rose. `scratch`: a file name that is free, in a folder that can be written to.
+/// Draws them with gnuplot, except the rose. `scratch`: an unused file name in a writable folder.
 /// Fails where gnuplot is not installed or cannot draw. Realtime-safe: no.
 Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
                                             const std::filesystem::path& scratch);
 
-/// A page's SVG element that shows a whole SVG file as it is, as an image of its own: neither its ids nor its styles
-/// are the page's. `over`: SVG elements that lie over it.
+/// An SVG element that embeds a whole SVG file as an image, so that its ids and styles do not collide with the page's.
+/// `over`: SVG elements that are drawn over it.
 std::string embedded_plot(std::string_view svg, int width_px, int height_px, std::string_view label,
                           std::string_view over = {});
 

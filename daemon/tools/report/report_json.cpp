@@ -148,7 +148,7 @@ ordered_json json_of_sensor(const RecordingNumbers& recording, const SensorNumbe
                        {"deviation_m_s", sensor.deviation_m_s},
                        {"min_m_s", sensor.min_m_s},
                        {"max_m_s", sensor.max_m_s},
-                       {"told_gust_m_s", json_of(sensor.told_gust_m_s)},
+                       {"told_gust_m_s", json_of(sensor.reported_gust_m_s)},
                        {"gust_3s_m_s", json_of(sensor.gust_3s_m_s)},
                        {"direction_deg", json_of(sensor.direction_deg)},
                        {"steadiness", json_of(sensor.steadiness)},

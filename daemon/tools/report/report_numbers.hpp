@@ -17,10 +17,10 @@
 
 namespace yuragi {
 
-/// How a sensor did at one moment, the gravest last.
+/// The state of a sensor, the most serious last.
 enum class RecordedState : std::uint8_t {
   kLive,
-  kStale,        ///< silent for several of its own intervals, as the daemon judges (SourceRecord)
+  kStale,        ///< silent for several of its own intervals (SourceRecord)
   kSpike,        ///< from here on ReadingFault: a reading is held back
   kImplausible,  ///< out of range, or a spike, again and again
   kFrozen,       ///< exactly the same value again and again
@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, 6> kRecordedStateNames = {"live", 
                                                                         "implausible", "frozen", "seized"};
 inline constexpr std::size_t kRecordedStates = kRecordedStateNames.size();
 
-/// A stretch in which a sensor was not live. Of a silence it is all the time from one reading to the next.
+/// A stretch in which a sensor was not live. A silence lasts from one reading to the next.
 struct StateEvent {
   RecordedState state = RecordedState::kStale;
   double from_s = 0.0;
@@ -39,14 +39,14 @@ struct StateEvent {
   double length_s() const { return to_s - from_s; }
 };
 
-/// How often, and for how long in all.
+/// The number of events, and their total duration.
 struct StateTotal {
   std::uint64_t count = 0;
   double time_s = 0.0;
   double longest_s = 0.0;
 };
 
-/// What fell into one column of the time series; a recording of any length has kTimeBins of them.
+/// One column of the time series; every recording has kTimeBins of them.
 struct TimeBin {
   std::uint64_t count = 0;  ///< believed readings
   double time_sum_s = 0.0;
@@ -56,9 +56,9 @@ struct TimeBin {
   std::uint64_t directed = 0;  ///< readings with a direction
   double u_sum_m_s = 0.0;
   double v_sum_m_s = 0.0;
-  std::optional<double> gust_m_s;  ///< the strongest that the sensor told, or 3 s mean
+  std::optional<double> gust_m_s;  ///< the largest reported by the sensor, or else 3 s mean
   RecordedState gravest = RecordedState::kLive;
-  bool follows_silence = false;  ///< the sensor was stale before it: no line leads here
+  bool follows_silence = false;  ///< the sensor was stale before it: the line is interrupted
 
   double time_s() const { return time_sum_s / static_cast<double>(count); }
   double mean_m_s() const { return speed_sum_m_s / static_cast<double>(count); }
@@ -72,21 +72,21 @@ struct DirectionPoint {
 };
 
 inline constexpr std::size_t kRoseSectors = kCompassPoints.size();
-/// Lower edges of the rose's speed classes; below the first is a calm (engine/wind/README.md W37).
+/// Lower edges of the rose's speed classes; below the first it is calm (engine/wind/README.md W37).
 inline constexpr std::array<double, 6> kRoseClasses_m_s = {0.5, 2.0, 4.0, 6.0, 8.0, 11.0};
 
 /// Where the wind came from: shares of the readings with a direction.
 struct WindRose {
   std::uint64_t count = 0;  ///< readings with a direction
   double calm_share = 0.0;
-  /// [sector][class]; sector 0 is centred on north, the others follow clockwise. All of them and the calm make 1.
+  /// [sector][class]; sector 0 is centred on north, the others follow clockwise. The sum with the calm is 1.
   std::array<std::array<double, kRoseClasses_m_s.size()>, kRoseSectors> share{};
 };
 
-/// How often which speed blew.
+/// The distribution of speeds.
 struct SpeedDistribution {
   double class_m_s = 0.5;     ///< width of a class; the first begins at 0
-  std::vector<double> share;  ///< up to the last class that has any
+  std::vector<double> share;  ///< up to the last class that is not empty
   /// Weibull's shape k and scale c by the method of moments, k = (sd / mean)^-1.086 (Justus, Hargraves, Mikhail and
   /// Graber 1978, Methods for estimating wind speed frequency distributions). Nothing where the wind did not vary.
   std::optional<double> weibull_shape;
@@ -114,9 +114,9 @@ struct VonKarmanFit {
   double speed_m_s = 0.0;     ///< U: root mean square of the segments' mean speeds
   double intensity = 0.0;     ///< TI = sigma / U
   double time_scale_s = 0.0;  ///< T = L / U
-  /// L. Nothing where the octaves do not hold the bend of the spectrum, so that any larger or smaller L fits as well.
+  /// L. Nothing where the octaves do not contain the bend of the spectrum, so that L is not determined.
   std::optional<double> length_m;
-  double rms_db = 0.0;  ///< what remains between the octaves and the fit
+  double rms_db = 0.0;  ///< residual of the octaves
   double from_hz = 0.0, to_hz = 0.0;
 
   double sigma_m_s() const { return intensity * speed_m_s; }
@@ -148,18 +148,18 @@ struct SpectrumNumbers {
   }
 };
 
-/// Gusts and turbulence of blocks of 10 minutes, the meteorologist's measure.
+/// Gusts and turbulence of blocks of 10 minutes, as usual in meteorology.
 struct BlockNumbers {
   std::uint64_t blocks = 0;                    ///< whole ones in a wind of at least 1 m/s
   std::optional<double> turbulence_intensity;  ///< mean of sd / mean
   std::optional<double> gust_factor;           ///< mean of highest 3 s mean / mean; where the interval is at most 1.5 s
 };
 
-/// What a quick sensor shows of its site's gusts: SiteSpectrum, as the daemon learns it.
+/// The SiteSpectrum that the daemon would fit to a fast sensor.
 struct SiteNumbers {
-  double length_m = 0.0;           ///< that the gusts of the slow sensor were taken for
-  double known_s = 0.0;            ///< how long it was learnt
-  std::vector<double> octaves_db;  ///< from SiteSpectrum::kFrom_hz on, as far as the sensor is quick enough
+  double length_m = 0.0;           ///< integral length that was assumed for the slow sensor
+  double known_s = 0.0;            ///< for how long it was fitted
+  std::vector<double> octaves_db;  ///< from SiteSpectrum::kFrom_hz on, as far as the sensor is fast enough
 };
 
 struct SensorNumbers {
@@ -167,7 +167,7 @@ struct SensorNumbers {
   std::string driver;
   std::uint64_t readings = 0;
   std::uint64_t believed = 0;
-  std::uint64_t spikes = 0;                ///< readings that turned out to be one
+  std::uint64_t spikes = 0;                ///< readings that were spikes
   std::array<std::uint64_t, 3> quality{};  ///< readings by ReadingQuality
   std::uint64_t directed = 0;              ///< believed readings with a direction
   double first_s = 0.0, last_s = 0.0;
@@ -175,14 +175,14 @@ struct SensorNumbers {
   double interval_s = 0.0;  ///< the median; 0 for fewer than two readings
   double mean_m_s = 0.0, deviation_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
   double max_at_s = 0.0;
-  std::optional<double> told_gust_m_s;    ///< the strongest gust that the sensor itself told
-  std::optional<double> gust_3s_m_s;      ///< the highest mean over 3 s, where the interval is at most 1.5 s
-  std::optional<double> direction_deg;    ///< of the mean vector
-  std::optional<double> steadiness;       ///< length of the mean vector over the mean speed, 0 to 1
-  std::optional<double> integral_time_s;  ///< of the speed: its autocorrelation, integrated to its first zero
+  std::optional<double> reported_gust_m_s;  ///< the strongest gust reported by the sensor itself
+  std::optional<double> gust_3s_m_s;        ///< the highest mean over 3 s, where the interval is at most 1.5 s
+  std::optional<double> direction_deg;      ///< of the mean vector
+  std::optional<double> steadiness;         ///< length of the mean vector over the mean speed, 0 to 1
+  std::optional<double> integral_time_s;    ///< of the speed: its autocorrelation, integrated to its first zero
 
   std::array<StateTotal, kRecordedStates> states{};
-  std::vector<StateEvent> events;  ///< of each state the longest kMaxEvents, by time
+  std::vector<StateEvent> events;  ///< the longest kMaxEvents of each state, by time
   static constexpr std::size_t kMaxEvents = 100;
 
   std::vector<TimeBin> bins;  ///< kTimeBins over the whole recording
@@ -196,20 +196,20 @@ struct SensorNumbers {
   std::optional<SiteNumbers> site;
 };
 
-/// The recording, or the part of it that was asked for.
+/// The recording, or the selected part of it.
 struct RecordingNumbers {
   std::uint64_t readings = 0;
-  std::uint64_t skipped = 0;         ///< rows that cannot be readings
+  std::uint64_t skipped = 0;         ///< rows that are not valid readings
   std::size_t sessions = 0;          ///< of the whole file
   double begin_s = 0.0;              ///< of the first reading, log time
   double end_s = 0.0;                ///< of the last one
-  UtcTime first{}, last{};           ///< as its clock said; `first` is at begin_s
+  UtcTime first{}, last{};           ///< by its clock; `first` is at begin_s
   std::uint64_t clock_sets = 0;      ///< how often the recorder's clock was set by more than 2 s
-  double largest_clock_set_s = 0.0;  ///< its sign: forward is above 0
+  double largest_clock_set_s = 0.0;  ///< positive: forward
   double stale_intervals = 0.0;      ///< the rule for silence
   std::vector<SensorNumbers> sensors;
 
-  /// The moment of a log time, if the clock had not been set in between.
+  /// The UTC of a log time, assuming that the clock was not set in between.
   UtcTime utc_at(double time_s) const { return first + from_seconds(time_s - begin_s); }
   double duration_s() const { return end_s - begin_s; }
 };

@@ -8,7 +8,7 @@
 
 namespace yuragi {
 
-/// The whole page: one HTML file that needs nothing else, and no script. `source`: the recording's name. `figures`: one
+/// The whole page: one self-contained HTML file without scripts. `source`: the recording's name. `figures`: one
 /// for each of the recording's sensors. All text from outside is escaped (page_text).
 std::string report_page(const RecordingNumbers& recording, std::span<const SensorFigures> figures,
                         const std::string& source);

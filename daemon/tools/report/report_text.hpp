@@ -8,8 +8,8 @@
 
 namespace yuragi {
 
-/// Text from outside as it may stand in HTML or SVG, between tags or in a quoted attribute: with no sign that means
-/// something there, valid UTF-8 (what is not becomes U+FFFD, and so do control characters), and cut when very long.
+/// Text from outside, escaped for HTML or SVG, between tags or in a quoted attribute: without special characters, valid
+/// UTF-8 (invalid bytes and control characters become U+FFFD), and truncated when very long.
 std::string page_text(std::string_view text);
 
 /// "2018-07-20 14:00:00 UTC".

@@ -16,7 +16,7 @@ namespace yuragi {
 namespace {
 
 std::string percent(double part) {
-  // What is there is not nothing, and what is not all is not all.
+  // Rounding gives neither 0 % for something nor 100 % for less than all.
   if (part > 0.0 && part < 0.001) return "below 0.1 %";
   if (part < 1.0 && part > 0.999) return "above 99.9 %";
   return fmt::format("{:.3g} %", 100.0 * part);
@@ -27,15 +27,15 @@ std::string speed_text(double speed_m_s) {
 }
 
 double gust_of(const SensorNumbers& sensor) {
-  return sensor.told_gust_m_s.value_or(sensor.gust_3s_m_s.value_or(sensor.max_m_s));
+  return sensor.reported_gust_m_s.value_or(sensor.gust_3s_m_s.value_or(sensor.max_m_s));
 }
 
 void add_tiles(PageWriter& page, const SensorNumbers& sensor) {
   page.add("<div class=\"tiles\">\n");
   page.tile(speed_text(sensor.mean_m_s), "mean speed");
-  page.tile(speed_text(gust_of(sensor)), sensor.told_gust_m_s ? "highest gust, reported by the sensor"
-                                         : sensor.gust_3s_m_s ? "highest gust (mean of 3 s)"
-                                                              : "highest reading");
+  page.tile(speed_text(gust_of(sensor)), sensor.reported_gust_m_s ? "highest gust, reported by the sensor"
+                                         : sensor.gust_3s_m_s     ? "highest gust (mean of 3 s)"
+                                                                  : "highest reading");
   if (sensor.direction_deg) {
     page.tile(fmt::format("{:.0f}°", *sensor.direction_deg),
               fmt::format("mean direction: from {}", compass_text(*sensor.direction_deg)));
@@ -114,7 +114,7 @@ void add_octaves(PageWriter& page, const SpectrumNumbers& spectrum) {
 
 /// Why a slope may be smaller than that of turbulence.
 std::string_view slope_remark(const SpectrumNumbers& spectrum) {
-  // Three times above the bend von Karman's has come to 1.5.
+  // At three times the bend von Karman's slope has reached 1.5.
   const bool is_bent = spectrum.von_karman && spectrum.power_law->beta < 1.5 &&
                        spectrum.power_law->from_hz < 3.0 * 0.146 / spectrum.von_karman->time_scale_s;
   return is_bent ? "; these frequencies are near the bend of the spectrum, where it is flatter" : "";
@@ -158,7 +158,7 @@ void add_turbulence(PageWriter& page, const SensorNumbers& sensor) {
   page.add("</tbody></table>\n");
 }
 
-/// The recording's wind as the default wind of a configuration, where it is long enough to be somebody's wind.
+/// The recording's wind as the default wind of a configuration, where it is long enough.
 void add_default_wind(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor) {
   constexpr double kLeast_s = 600.0;
   const bool has_fit = sensor.spectrum && sensor.spectrum->von_karman;
@@ -176,7 +176,7 @@ void add_default_wind(PageWriter& page, const RecordingNumbers& recording, const
   page.add("</pre>\n");
 }
 
-/// What a slow sensor at this place cannot tell of its gusts, ready to be copied.
+/// The site_octaves for a slow sensor at this place, ready to be copied.
 void add_site(PageWriter& page, const SensorNumbers& sensor) {
   if (!sensor.site) return;
   const SiteNumbers& site = *sensor.site;
@@ -224,7 +224,7 @@ void add_spectrum(PageWriter& page, const RecordingNumbers& recording, const Sen
   add_site(page, sensor);
 }
 
-/// What a state means, for a technician.
+/// The meaning of a state, for a technician.
 std::string_view meaning_of(RecordedState state) {
   switch (state) {
     case RecordedState::kLive:

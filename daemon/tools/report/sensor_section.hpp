@@ -8,10 +8,10 @@
 
 namespace yuragi {
 
-/// One sentence, as HTML: how the wind was, and whether the sensor was heard.
+/// One sentence, as HTML: the wind, and how long the sensor was live.
 std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& sensor);
 
-/// Everything about one sensor: figures, tables, states and gaps. `is_first`: no new sheet of paper begins before it.
+/// Everything about one sensor: figures, tables, states and gaps. `is_first`: no page break before it.
 void add_sensor_section(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor,
                         const SensorFigures& figures, bool is_first);
 

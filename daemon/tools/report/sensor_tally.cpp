@@ -10,19 +10,19 @@
 namespace yuragi {
 namespace {
 
-/// Points of the scatter of directions.
+/// The number of points in the scatter plot of directions.
 constexpr double kDirectionPoints = 1500.0;
 constexpr double kDay_s = 86400.0;
 
-/// A segment is a quarter of the longest run at most, so that several make a mean; longer than about an hour is
-/// weather.
+/// A segment is at most a quarter of the longest run, so that several are averaged, and at most about an hour: slower
+/// changes are weather.
 constexpr std::uint64_t kLeastSegment = 64;
 constexpr std::uint64_t kMostSegment = 1 << 15;
 constexpr double kLongestSegment_s = 4100.0;
-/// The autocorrelation is that of half an hour, where there is so much.
+/// The autocorrelation is that of half an hour, where runs are long enough.
 constexpr double kCorrelationBlock_s = 1800.0;
 constexpr double kMostCorrelationSamples = 1 << 17;
-/// Fewer readings with a direction than this, and only the speed is analysed.
+/// With a smaller part of readings with a direction only the speed is analysed.
 constexpr double kMostlyDirected = 0.9;
 
 RecordedState state_of(ReadingFault fault) {
@@ -47,7 +47,7 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
     : settings_(settings),
       begin_s_(begin_s),
       end_s_(end_s),
-      tells_gusts_(survey.gusts > 0),
+      has_gusts_(survey.gusts > 0),
       judge_(settings.judge),
       lesson_(settings.prior ? settings.prior(survey.name) : TurbulencePrior{}, survey.interval_s),
       three_seconds_(survey.interval_s),
@@ -91,7 +91,7 @@ std::size_t SensorTally::bin_of(double time_s) const {
 }
 
 std::size_t SensorTally::hour_of(UtcTime moment) {
-  // No zone changes its offset but on a quarter of an hour.
+  // Time zones change their offset only on a quarter of an hour.
   const auto quarter =
       std::chrono::floor<std::chrono::duration<std::int64_t, std::ratio<900>>>(moment.time_since_epoch());
   if (known_quarter_ != quarter.count()) {
@@ -114,31 +114,31 @@ void SensorTally::mark(RecordedState state, double from_s, double to_s) {
 
 void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   const double time_s = seconds(log_time);
-  WindReading heard = reading;
-  heard.time.mono = MonoTime(log_time);
+  WindReading played = reading;
+  played.time.mono = MonoTime(log_time);
 
-  // How was it since the last reading? Of a sensor that has spoken once the record knows no interval yet.
+  // The state since the last reading. After a single reading the record has no interval yet.
   const double patience_s = std::max(1.0, settings_.stale_intervals * numbers_.interval_s);
-  if (!record_.has_spoken()) {
+  if (!record_.has_reading()) {
     if (time_s - begin_s_ > patience_s) mark(RecordedState::kStale, begin_s_, time_s);
     numbers_.first_s = time_s;
     numbers_.first = reading.time.utc;
   } else {
     const bool was_silent = numbers_.readings == 1 ? time_s - numbers_.last_s > patience_s
-                                                   : !record_.is_live(heard.time.mono, settings_.stale_intervals);
+                                                   : !record_.is_live(played.time.mono, settings_.stale_intervals);
     mark(was_silent ? RecordedState::kStale : state_, numbers_.last_s, time_s);
   }
   numbers_.last_s = time_s;
   numbers_.last = reading.time.utc;
-  record_.take(heard);
+  record_.take(played);
   ++numbers_.readings;
   ++numbers_.quality.at(static_cast<std::size_t>(reading.quality));
 
-  // What a simulation makes up is not judged, as in the daemon: it may be as steady as it likes.
+  // As in the daemon, simulated readings are not judged: they may be constant.
   const bool is_judged = reading.quality != ReadingQuality::kSimulated;
-  const bool is_believed = !is_judged || judge_.judge(heard);
+  const bool is_believed = !is_judged || judge_.judge(played);
   state_ = is_judged ? state_of(judge_.fault()) : RecordedState::kLive;
-  if (is_believed) add_believed(log_time, heard);
+  if (is_believed) add_believed(log_time, played);
 }
 
 void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading) {
@@ -159,7 +159,7 @@ void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading)
     if (value) highest = std::max(highest.value_or(*value), *value);
   };
   raise(numbers_.gust_3s_m_s, mean_m_s);
-  raise(numbers_.told_gust_m_s, reading.gust_m_s);
+  raise(numbers_.reported_gust_m_s, reading.gust_m_s);
 
   // Directions, as vectors.
   if (reading.direction_deg) {
@@ -176,7 +176,7 @@ void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading)
   }
   lesson_.add(time_s, speed_m_s,
               held_direction_deg_ ? std::optional(wind_from(speed_m_s, *held_direction_deg_)) : std::nullopt);
-  add_to_bin(time_s, reading, tells_gusts_ ? reading.gust_m_s : mean_m_s);
+  add_to_bin(time_s, reading, has_gusts_ ? reading.gust_m_s : mean_m_s);
 
   if (!series_) return;
   EvenSample sample{.speed_m_s = speed_m_s, .wind = {}};
@@ -213,9 +213,9 @@ void SensorTally::add_to_bin(double time_s, const WindReading& reading, const st
 }
 
 SensorNumbers SensorTally::finish() {
-  // From its last reading to the end of the recording: had it fallen silent?
+  // From its last reading to the end of the recording it may have been silent.
   const MonoTime end(from_seconds(end_s_));
-  if (record_.has_spoken() && end_s_ > numbers_.last_s) {
+  if (record_.has_reading() && end_s_ > numbers_.last_s) {
     const bool is_live = record_.is_live(end, settings_.stale_intervals);
     mark(is_live ? state_ : RecordedState::kStale, numbers_.last_s, end_s_);
   }

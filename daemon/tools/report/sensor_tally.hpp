@@ -8,7 +8,7 @@
 #include "daemon/tools/report/gust_means.hpp"
 #include "daemon/tools/report/recording_survey.hpp"
 #include "daemon/tools/report/report_numbers.hpp"
-#include "daemon/tools/report/site_lesson.hpp"
+#include "daemon/tools/report/site_tally.hpp"
 #include "daemon/tools/report/speed_statistics.hpp"
 #include "daemon/tools/report/state_history.hpp"
 #include "daemon/tools/report/welch_spectrum.hpp"
@@ -17,19 +17,19 @@
 
 namespace yuragi {
 
-/// How a recording is judged, and where its hours are counted.
+/// How a recording is judged, and the zone of its local time.
 struct ReportSettings {
   LogRange range;
   std::vector<std::string> sensors;  ///< by name; none: all
   double stale_intervals = 5.0;      ///< [wind] stale_intervals
   JudgeSettings judge;
-  /// What the gusts of a sensor of this name are taken for; none: TurbulencePrior's own.
+  /// The prior of the gusts for a sensor of this name; none: TurbulencePrior's default.
   std::function<TurbulencePrior(const std::string& sensor)> prior;
   /// Local time minus UTC at a moment; none: UTC.
   std::function<Nanoseconds(UtcTime)> utc_offset;
 };
 
-/// Gathers all numbers of one sensor in one pass, in memory that does not grow with the recording. Thread-safe: no.
+/// Computes all numbers of one sensor in one pass, in bounded memory. Thread-safe: no.
 class SensorTally {
  public:
   /// `begin_s` and `end_s`: of the whole recording, log time. `settings` must outlive the tally.
@@ -38,7 +38,7 @@ class SensorTally {
   /// Takes the sensor's next reading, in the order of log time.
   void add(Nanoseconds log_time, const WindReading& reading);
 
-  /// All that there is to say; once, after the last reading.
+  /// The numbers; to be called once, after the last reading.
   SensorNumbers finish();
 
  private:
@@ -52,14 +52,14 @@ class SensorTally {
   const ReportSettings& settings_;
   double begin_s_;
   double end_s_;
-  bool tells_gusts_;
+  bool has_gusts_;
   SensorNumbers numbers_;
 
   SourceRecord record_;
   ReadingJudge judge_;
   StateHistory states_;
   RecordedState state_ = RecordedState::kLive;
-  SiteLesson lesson_;
+  SiteTally lesson_;
   bool was_interrupted_ = false;  ///< since the last believed reading
 
   SpeedStatistics speeds_;
@@ -75,7 +75,7 @@ class SensorTally {
   std::optional<WelchSpectrum> spectrum_;
   std::optional<IntegralTime> integral_time_;
 
-  std::optional<std::int64_t> known_quarter_;  ///< of an hour, of which the local hour is known
+  std::optional<std::int64_t> known_quarter_;  ///< of an hour, for which the local hour has been computed
   std::size_t known_hour_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What is fitted to a spectrum: its slope, its octaves, von Karman's three numbers.
+// Fits to a spectrum: its slope, its octaves, and von Karman's three parameters.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,13 +11,13 @@
 namespace yuragi {
 namespace {
 
-/// The slope is that of the decade below two fifths of the Nyquist frequency: above it what the sampling folds back
-/// shows, and what the sensor averages away is missed.
+/// The slope is fitted to the decade below two fifths of the Nyquist frequency: above it aliasing adds power, and
+/// averaging by the sensor removes some.
 constexpr double kSlopeEnds_nyquist = 0.4;
 constexpr double kSlopeDecade = 10.0;
 constexpr std::size_t kLeastLines = 4;
 
-/// Of the octaves those are fitted that the detrending and the window leave whole, up to half of the Nyquist frequency.
+/// The fit uses the octaves that detrending and window do not affect, up to half of the Nyquist frequency.
 constexpr double kFitBegins_lines = 3.0;
 constexpr double kFitEnds_nyquist = 0.5;
 constexpr std::size_t kLeastOctaves = 3;
@@ -94,7 +94,7 @@ void fit_von_karman(SpectrumNumbers& spectrum, const std::vector<OctaveLines>& l
       std::ranges::count_if(spectrum.octaves, [](const auto& band) { return band.is_in_fit; }));
   if (count < kLeastOctaves || !(speed_m_s > 0.0)) return;
 
-  // For each time scale the level that suits it best, in closed form; then the best time scale. From scales whose bend
+  // For each time scale the best level, in closed form; then the best time scale. From scales whose bend
   // lies above all octaves to those whose bend lies below.
   const double shortest_s = 0.02 * spectrum.step_s;
   const double longest_s = 20.0 * static_cast<double>(spectrum.segment_readings) * spectrum.step_s;

@@ -6,7 +6,7 @@
 namespace yuragi {
 
 void SpeedHistogram::add(double speed_m_s) {
-  // A speed that was written with one decimal is on an edge, and belongs above it.
+  // A speed with one decimal is on an edge, and belongs to the class above.
   const double place = std::floor(speed_m_s * kClasses_per_m_s + 1e-6);
   ++counts_[static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(kClasses - 1)))];
   ++count_;
@@ -38,7 +38,7 @@ void SpeedStatistics::add(double speed_m_s, std::size_t hour) {
   all_.add(speed_m_s);
   by_hour_[hour].add(speed_m_s);
   hour_sum_m_s_[hour] += speed_m_s;
-  const double distance = speed_m_s - mean_m_s_;  // Welford's sums do not lose a small variance of a large mean
+  const double distance = speed_m_s - mean_m_s_;  // Welford's method: accurate for a small variance with a large mean
   mean_m_s_ += distance / static_cast<double>(all_.count());
   squares_m2_s2_ += distance * (speed_m_s - mean_m_s_);
 }
@@ -54,7 +54,7 @@ SpeedDistribution SpeedStatistics::distribution() const {
   result.p50_m_s = all_.percentile_m_s(0.50);
   result.p90_m_s = all_.percentile_m_s(0.90);
   result.p99_m_s = all_.percentile_m_s(0.99);
-  // Justus et al. 1978 give it for shapes from 1 to 10; a wind steadier than that has no use for it.
+  // Justus et al. 1978 give it for shapes from 1 to 10; not for a steadier wind.
   const double variation = mean_m_s_ > 0.0 ? deviation_m_s() / mean_m_s_ : 0.0;
   if (variation > 0.1 && variation < 1.2) {
     result.weibull_shape = std::pow(variation, -1.086);

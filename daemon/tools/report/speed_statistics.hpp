@@ -10,16 +10,16 @@
 
 namespace yuragi {
 
-/// How often which speed blew, in classes of 0.1 m/s. Thread-safe: no.
+/// The distribution of speeds, in classes of 0.1 m/s. Thread-safe: no.
 class SpeedHistogram {
  public:
   void add(double speed_m_s);
   std::uint64_t count() const { return count_; }
 
-  /// The speed that `part` (0 to 1) of the readings do not exceed, by a straight line within its class. 0 for none.
+  /// The speed that `part` (0 to 1) of the readings do not exceed, interpolated linearly within its class. 0 for none.
   double percentile_m_s(double part) const;
 
-  /// Shares of classes of `fine` of ours, up to the last that has any.
+  /// Shares of classes made of `fine` of these each, up to the last that is not empty.
   std::vector<double> shares(std::size_t fine) const;
 
  private:
@@ -29,7 +29,7 @@ class SpeedHistogram {
   std::uint64_t count_ = 0;
 };
 
-/// Mean, deviation and distribution of a sensor's speeds, by hour of the day too. Thread-safe: no.
+/// Mean, standard deviation and distribution of a sensor's speeds, in all and by hour of the day. Thread-safe: no.
 class SpeedStatistics {
  public:
   void add(double speed_m_s, std::size_t hour);

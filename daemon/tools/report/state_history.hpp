@@ -7,11 +7,11 @@
 
 namespace yuragi {
 
-/// Keeps the story of a sensor's states in memory that does not grow: totals, and the longest events of each.
+/// The history of a sensor's states in bounded memory: totals, and the longest events of each.
 /// Thread-safe: no.
 class StateHistory {
  public:
-  /// From one moment to the next it was in this state. Stretches come in order; equal ones that touch are one.
+  /// Adds a stretch in one state. Stretches come in order; adjoining ones of the same state are merged.
   void add(RecordedState state, double from_s, double to_s);
 
   std::array<StateTotal, kRecordedStates> totals();

@@ -9,7 +9,7 @@
 namespace yuragi {
 namespace {
 
-/// Takes the straight line that fits best out of evenly spaced values.
+/// Subtracts the best straight line from evenly spaced values.
 void detrend(std::span<double> values) {
   const auto count = static_cast<double>(values.size());
   const double middle = 0.5 * (count - 1.0);
@@ -54,7 +54,7 @@ void WelchSpectrum::take_segment() {
   const auto count = static_cast<double>(samples_.size());
   mean_speed_m_s /= count;
 
-  // Along the segment's own mean wind; a wind of no direction has only a speed.
+  // Along the segment's own mean wind; without directions, of the speed.
   const double length = speed_of(mean);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const WindVector wind = samples_[i].wind.value_or(WindVector{});
@@ -98,7 +98,7 @@ void IntegralTime::add(double speed_m_s) {
   samples_.push_back(speed_m_s);
   if (samples_.size() < block_) return;
 
-  // By Wiener and Khinchin; the zeros behind the block keep its end from meeting its beginning.
+  // By the Wiener-Khinchin theorem; zero padding prevents circular correlation.
   double mean = 0.0;
   for (const double value : samples_) mean += value;
   mean /= static_cast<double>(block_);

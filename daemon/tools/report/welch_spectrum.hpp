@@ -16,20 +16,20 @@ struct EvenSample {
   std::optional<WindVector> wind;  ///< nothing: its direction is not known
 };
 
-/// Gathers a spectrum (SpectrumNumbers says how) from an endless series, segment by segment, in memory that does not
-/// grow. Thread-safe: no.
+/// Estimates a spectrum (SpectrumNumbers says how) from a series of any length, segment by segment, in bounded memory.
+/// Thread-safe: no.
 class WelchSpectrum {
  public:
-  /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, whatever the samples' directions.
+  /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, even where samples have a direction.
   WelchSpectrum(std::size_t segment, double step_s, bool is_of_speed);
 
   /// The next sample of the series.
   void add(const EvenSample& sample);
 
-  /// The series breaks off here: what comes next does not follow on what was before.
+  /// The series is interrupted: the next sample begins a new run.
   void interrupt() { samples_.clear(); }
 
-  /// What has been gathered, with its fits; nothing without a whole segment.
+  /// The spectrum with its fits; nothing without a whole segment.
   std::optional<SpectrumNumbers> numbers() const;
 
  private:
@@ -46,7 +46,7 @@ class WelchSpectrum {
   std::size_t segments_ = 0;
 };
 
-/// Gathers the autocorrelation of blocks of a series. Thread-safe: no.
+/// Estimates the autocorrelation of blocks of a series. Thread-safe: no.
 class IntegralTime {
  public:
   IntegralTime(std::size_t block, double step_s);

@@ -18,7 +18,7 @@ constexpr double kMiddle_px = kSize_px / 2.0;
 constexpr double kRadius_px = 195.0;
 /// A disc in the middle for the calm; wedges begin at its edge.
 constexpr double kCalmRadius_px = 26.0;
-/// So much of its sector's angle a wedge fills.
+/// The part of its sector's angle that a wedge fills.
 constexpr double kFill = 0.86;
 
 struct RosePoint {
@@ -41,7 +41,7 @@ double outer_share(const WindRose& rose) {
 }
 
 void add_piece(std::string& svg, double from_px, double to_px, double middle_deg, std::string_view color,
-               const std::string& told) {
+               const std::string& label) {
   const double half_deg = 0.5 * kFill * 360.0 / kRoseSectors;
   const RosePoint a = rose_point(from_px, middle_deg - half_deg);
   const RosePoint b = rose_point(to_px, middle_deg - half_deg);
@@ -50,7 +50,7 @@ void add_piece(std::string& svg, double from_px, double to_px, double middle_deg
   fmt::format_to(std::back_inserter(svg),
                  "<path fill=\"{}\" d=\"M{:.1f},{:.1f}L{:.1f},{:.1f}A{:.1f},{:.1f} 0 0 1 {:.1f},{:.1f}L{:.1f},{:.1f}"
                  "A{:.1f},{:.1f} 0 0 0 {:.1f},{:.1f}Z\"><title>{}</title></path>\n",
-                 color, a.x, a.y, b.x, b.y, to_px, to_px, c.x, c.y, d.x, d.y, from_px, from_px, a.x, a.y, told);
+                 color, a.x, a.y, b.x, b.y, to_px, to_px, c.x, c.y, d.x, d.y, from_px, from_px, a.x, a.y, label);
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ std::string draw_wind_rose(const WindRose& rose) {
     }
   }
 
-  // The rings' shares stand above the wedges, between two of them; the calm in the middle.
+  // The rings' labels are drawn over the wedges, between two of them; the calm in the middle.
   for (int ring = 1; ring <= kRings; ++ring) {
     const double share = outer * ring / kRings;
     const RosePoint place = rose_point(kCalmRadius_px + share * px_per_share, 360.0 / kRoseSectors * 1.5);

@@ -15,8 +15,8 @@ inline constexpr std::array<std::string_view, kRoseClasses_m_s.size()> kRoseColo
 /// "2 to 4 m/s" and so on.
 std::string rose_class_text(std::size_t speed_class);
 
-/// An SVG element: a wedge a sector toward where the wind came from, its length the share of the readings, in the
-/// colours of the speeds; each piece tells its numbers when the mouse is on it. (gnuplot 5.4 has no such diagram.)
+/// An SVG element: a wedge for each sector, in the direction that the wind came from, as long as its share of the
+/// readings, in the colours of the speeds; each piece has a tooltip with its numbers. (gnuplot 5.4 has no wind rose.)
 std::string draw_wind_rose(const WindRose& rose);
 
 }  // namespace yuragi

@@ -33,10 +33,10 @@ std::vector<std::vector<const DeviceFinding*>> by_device(std::span<const DeviceF
   return groups;
 }
 
-std::string names_of(std::span<const DriverDescription* const> drivers, bool that_can_look) {
+std::string names_of(std::span<const DriverDescription* const> drivers, bool that_can_search) {
   std::string names;
   for (const DriverDescription* driver : drivers) {
-    if ((driver->find != nullptr) == that_can_look)
+    if ((driver->find != nullptr) == that_can_search)
       names += fmt::format("{}{}", names.empty() ? "" : ", ", driver->name);
   }
   return names;
@@ -64,16 +64,16 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
   std::string text;
   const auto out = std::back_inserter(text);
   if (findings.empty()) {
-    const std::string asked = names_of(drivers, true);
+    const std::string searched = names_of(drivers, true);
     fmt::format_to(out, "No device found that a driver could read{}.\n",
-                   asked.empty() ? "" : fmt::format(" (looked for devices of {})", asked));
+                   searched.empty() ? "" : fmt::format(" (looked for devices of {})", searched));
   }
 
-  // A sensor's name must be its own: the second of a driver is "modbus-2".
+  // Names of sensors must be unique: the second of a driver is "modbus-2".
   std::map<std::string_view, int> count_of;
   for (const auto& group : by_device(findings)) {
     fmt::format_to(out, "{}\n", group.front()->device.what);
-    const DeviceFinding* told = nullptr;
+    const DeviceFinding* shown = nullptr;
     for (const DeviceFinding* finding : group) {
       const FoundDevice& device = finding->device;
       if (!device.settings.empty()) {
@@ -83,11 +83,11 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
         fmt::format_to(out, "    [[sensor]]\n    name = \"{0}{1}\"\n    driver = \"{0}\"\n{2}", finding->driver->name,
                        number, indented(device.settings, "    "));
       }
-      // The same trouble is told once.
-      const bool is_told =
-          told != nullptr && told->device.trouble == device.trouble && told->device.remedy == device.remedy;
-      if (device.trouble.empty() || is_told) continue;
-      told = finding;
+      // The same trouble is shown once.
+      const bool is_shown =
+          shown != nullptr && shown->device.trouble == device.trouble && shown->device.remedy == device.remedy;
+      if (device.trouble.empty() || is_shown) continue;
+      shown = finding;
       fmt::format_to(out, "  It cannot be opened:\n{}", indented(device.trouble, "    "));
       if (!device.remedy.empty()) fmt::format_to(out, "  What to do:\n{}", indented(device.remedy, "    "));
     }

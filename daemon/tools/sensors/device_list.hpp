@@ -14,12 +14,12 @@ struct DeviceFinding {
   FoundDevice device;
 };
 
-/// Asks every driver that can look what is plugged in, in the order of the table. One that fails to look is a finding
-/// with that trouble.
+/// Searches for devices with every driver that can, in the order of the table. A search that fails is a finding with
+/// that trouble.
 std::vector<DeviceFinding> find_devices(std::span<const DriverDescription* const> drivers);
 
-/// What was found, for a person: each device with the TOML to paste into a configuration, and with what keeps it from
-/// being opened and what to do about that. Says so where nothing was found. `drivers` are those that were asked.
+/// The findings, for a person: each device with the TOML to paste into a configuration, and, where it cannot be opened,
+/// why and what to do. Says so where nothing was found. `drivers` are those that were searched with.
 std::string device_list(std::span<const DeviceFinding> findings, std::span<const DriverDescription* const> drivers);
 
 }  // namespace yuragi

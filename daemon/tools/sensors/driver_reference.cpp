@@ -7,7 +7,7 @@
 namespace yuragi {
 namespace {
 
-/// Text that stands in a cell of a Markdown table.
+/// Escapes text for a cell of a Markdown table.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

@@ -7,7 +7,7 @@
 
 namespace yuragi {
 
-// Pages about drivers, made from their own descriptions, so that they are never out of date.
+// Pages about drivers, generated from their descriptions.
 
 /// Each parameter with its help, unit, range and default, for a terminal.
 std::string parameter_text(std::span<const Parameter> parameters);
@@ -15,7 +15,7 @@ std::string parameter_text(std::span<const Parameter> parameters);
 /// A line for each driver: name and summary.
 std::string driver_names(std::span<const DriverDescription* const> drivers);
 
-/// All that one driver can be told, for a terminal.
+/// The reference of one driver with all parameters, for a terminal.
 std::string describe_driver(const DriverDescription& driver);
 
 /// All drivers on one page, in Markdown.

@@ -12,7 +12,7 @@
 namespace yuragi {
 namespace {
 
-/// Does a recording speak, and nothing else?
+/// Are recordings the only live sensors?
 bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
   const auto speaks = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
   return std::ranges::any_of(sensors, speaks) &&
@@ -31,7 +31,7 @@ std::string_view wind_source(const wire::Sensors& sensors) {
   return "?";
 }
 
-/// In capitals where somebody should look, or could take it for the wind of now.
+/// In capitals for trouble, and where it is not the present wind.
 std::string state_text(SensorState state) {
   std::string text(name_of(state));
   const bool is_quiet =
@@ -53,10 +53,10 @@ std::string short_number(double value) {
   return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0);
 }
 
-/// Where the wind on top of the table is, and when its gusts come to the middle of the scenes; empty where it is there.
+/// The place of the wind on top of the table, and when its gusts reach the middle of the scenes; empty where that is 0.
 std::string place_of_wind(const WindState& wind) {
-  if (!wind.is_place_told && wind.upwind_m == 0.0) return {};
-  std::string text = wind.is_place_told ? "at the sensors, " : "at the windward edge, ";
+  if (!wind.is_place_configured && wind.upwind_m == 0.0) return {};
+  std::string text = wind.is_place_configured ? "at the sensors, " : "at the windward edge, ";
   if (std::abs(wind.upwind_m) < 0.05) {
     text += "level with the middle of the scenes";
   } else {

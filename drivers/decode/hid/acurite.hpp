@@ -12,8 +12,8 @@ namespace yuragi {
 // AcuRite 01025, 01035, 01036, 02032, 02064 (USB 24c0:0003).
 // Source: weewx drivers/acurite.py and issue 39; wxforum topic 27244 (speed); drivers/SOURCES.md S2.4.
 //
-// Nothing is sent unasked: input report 1 is requested every 18 s. Its contents alternate, so that a direction comes
-// every 36 s.
+// Nothing is sent without a request: input report 1 is requested every 18 s. Its contents alternate, so that a
+// direction comes every 36 s.
 //
 //   0   1, the report's id
 //   1   high nibble: channel; low nibble with byte 2: the sensor's id. xF here and ff in byte 3: no sensor

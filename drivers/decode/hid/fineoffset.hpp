@@ -42,7 +42,7 @@ struct FineOffsetFixedBlock {
   std::uint16_t current_position = 0;  ///< address of the current record
 };
 
-/// The 8 bytes that ask for the 32 bytes at `address`; hidapi wants a report id 0 in front.
+/// The 8 bytes that request the 32 bytes at `address`; hidapi needs a report id 0 before them.
 std::array<std::uint8_t, 8> encode_fineoffset_read(std::uint16_t address) noexcept;
 
 /// The fixed block's first 32 bytes (or more of it), or kTooShort, or kMalformed (another mark), or kImplausible (a

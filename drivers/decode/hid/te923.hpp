@@ -15,7 +15,7 @@ namespace yuragi {
 // Source: weewx drivers/te923.py, whose indices count from behind the header byte: ours count from the block's first
 // byte, and are one more; drivers/SOURCES.md S2.5.
 //
-// A block is asked for with an output report of 8 bytes, comes in input reports of 8 bytes (how many of the next 7 are
+// A block is requested by an output report of 8 bytes, comes in input reports of 8 bytes (how many of the next 7 are
 // valid, then those), and is acknowledged.
 //
 //   request   05 af, address low, middle, high, exclusive or of af and these three, 00 00  (acknowledgement: 24 for 05)

@@ -55,8 +55,8 @@ std::array<std::uint8_t, 6> encode_wmr300_begin(ByteSpan identity) noexcept {
 
 bool is_sound_wmr300(ByteSpan packet) noexcept {
   if (!wants_wmr300_acknowledgement(packet)) {
-    const bool is_answer = packet.size() > 2 && packet[0] == 'A' && packet[1] == 'C' && packet[2] == 'K';
-    return is_answer || is_wmr300_identity(packet);
+    const bool is_reply = packet.size() > 2 && packet[0] == 'A' && packet[1] == 'C' && packet[2] == 'K';
+    return is_reply || is_wmr300_identity(packet);
   }
   // The history's sum has its low byte first, the others' their high byte; it is longer than a report.
   constexpr std::size_t kSum = 2;

@@ -14,7 +14,7 @@ namespace yuragi {
 // Oregon Scientific WMR300 (USB 0fde:ca08).
 // Source: weewx drivers/wmr300.py; drivers/SOURCES.md S2.2.
 //
-// Every packet is one input report. A heartbeat is answered by the console's identification (0x57 "WMR300,A002," and
+// Every packet is one input report. The console replies to a heartbeat with its identification (0x57 "WMR300,A002," and
 // two bytes, at 12 and 13, which go back to it in the packet 73 e5 0a 26 that begins the sending of data). It sends for
 // about 100 s by itself, and goes on while it gets a heartbeat every 20 s and an acknowledgement of every packet 0xD1
 // to 0xDC. Wind, every 2.5 to 3 s, is packet 0xD4 (54 bytes, numbers big-endian, 0x7Fxx: no data):
@@ -38,10 +38,10 @@ inline constexpr std::array<std::uint8_t, 5> kWmr300Heartbeat = {0xA6, 0x91, 0xC
 /// padding. The packet's state is all in itself: nothing is kept. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept;
 
-/// Is this the console's answer to a heartbeat? If it does not send data yet, it must be asked to begin.
+/// Is this the console's reply to a heartbeat? If it does not send data yet, it must be told to start.
 bool is_wmr300_identity(ByteSpan packet) noexcept;
 
-/// What makes the console that answered `identity` send data; is_wmr300_identity() holds for it.
+/// The packet that makes the console that replied with `identity` send data; is_wmr300_identity() holds for it.
 std::array<std::uint8_t, 6> encode_wmr300_begin(ByteSpan identity) noexcept;
 
 /// Is the packet whole and undamaged, whatever its kind? Data packets end with a sum; what has none passes by its head

@@ -138,12 +138,12 @@ MicEstimator::Levels MicEstimator::levels_of_window() const {
     double total = 0.0;
     double all = 0.0;
     for (const MicBlock& block : window_) {
-      const MicChannel& heard = block.channels[channel];
-      clipped += static_cast<double>(heard.clipped) / blocks;
-      total += static_cast<double>(heard.total_power) / blocks;
-      levels.high_power += static_cast<double>(heard.high_power) / blocks;
+      const MicChannel& input = block.channels[channel];
+      clipped += static_cast<double>(input.clipped) / blocks;
+      total += static_cast<double>(input.total_power) / blocks;
+      levels.high_power += static_cast<double>(input.high_power) / blocks;
       for (std::size_t band = 0; band < hello_.bands; ++band) {
-        const double power = static_cast<double>(heard.power[band]) / blocks;
+        const double power = static_cast<double>(input.power[band]) / blocks;
         all += power;
         levels.power[channel] += wind_part[band] * power;
       }
@@ -208,8 +208,8 @@ Result<std::optional<MicEstimate>, Refusal> MicEstimator::add(const MicBlock& bl
 std::optional<double> MicEstimator::add_gust(double speed_m_s, double duration_s) {
   recent_.push_back({time_s_, speed_m_s});
   while (recent_.front().time_s <= time_s_ - kGustWindow_s) recent_.pop_front();
-  const double heard_s = time_s_ - recent_.front().time_s + duration_s;
-  if (heard_s >= kGustWindow_s - duration_s) {
+  const double measured_s = time_s_ - recent_.front().time_s + duration_s;
+  if (measured_s >= kGustWindow_s - duration_s) {
     double mean_m_s = 0.0;
     for (const Gust& one : recent_) mean_m_s += one.speed_m_s / static_cast<double>(recent_.size());
     while (!gusts_.empty() && gusts_.back().speed_m_s <= mean_m_s) gusts_.pop_back();

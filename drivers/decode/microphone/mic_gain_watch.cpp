@@ -19,9 +19,9 @@ constexpr double kLoud_db = -30.0;
 }  // namespace
 
 void RunningPair::add(double a, double b, double duration_s, double memory_s) noexcept {
-  heard_s += duration_s;
-  if (!(heard_s > 0.0)) return;
-  const double weight = std::min(1.0, duration_s / std::min(heard_s, memory_s));
+  measured_s += duration_s;
+  if (!(measured_s > 0.0)) return;
+  const double weight = std::min(1.0, duration_s / std::min(measured_s, memory_s));
   const double step_a = a - mean_a;
   const double step_b = b - mean_b;
   mean_a += weight * step_a;
@@ -52,7 +52,7 @@ void MicGainWatch::add(double level_db, std::optional<double> high_db, double du
   const bool goes_against = now_.variance_b > kMoves && now_.correlation() < kOpposite;
   const bool follows_late = after_.variance_b > kMoves && after_.correlation() < kLateOpposite;
   const bool is_too_even = now_.mean_a > kLoud_db && now_.variance_a < kTooEven_db * kTooEven_db;
-  suspects_ = now_.heard_s >= kBeforeSuspicion_s && (goes_against || follows_late || is_too_even);
+  suspects_ = now_.measured_s >= kBeforeSuspicion_s && (goes_against || follows_late || is_too_even);
 }
 
 }  // namespace yuragi

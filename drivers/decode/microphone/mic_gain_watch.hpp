@@ -12,7 +12,7 @@ struct RunningPair {
   double mean_a = 0.0, mean_b = 0.0;
   double variance_a = 0.0, variance_b = 0.0;
   double covariance = 0.0;
-  double heard_s = 0.0;
+  double measured_s = 0.0;
 
   /// Values that held for `duration_s`; what is older than `memory_s` fades.
   void add(double a, double b, double duration_s, double memory_s) noexcept;

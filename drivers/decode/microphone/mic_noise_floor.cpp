@@ -19,11 +19,11 @@ void MicNoiseFloor::add(double level_db, double duration_s) noexcept {
   const double bin = std::clamp((level_db - kLowest_db) / kBin_db, 0.0, static_cast<double>(kBins - 1));
   weight_s_[static_cast<std::size_t>(bin)] += duration_s;
   total_s_ = total_s_ * keep + duration_s;
-  heard_s_ += duration_s;
+  measured_s_ += duration_s;
 }
 
 std::optional<double> MicNoiseFloor::floor_db() const noexcept {
-  if (heard_s_ < std::min(kBeforeBelief_s, 0.5 * memory_s_)) return std::nullopt;
+  if (measured_s_ < std::min(kBeforeBelief_s, 0.5 * memory_s_)) return std::nullopt;
   double below_s = 0.0;
   std::size_t bin = 0;
   while (bin + 1 < kBins && below_s + weight_s_[bin] < kPercentile * total_s_) below_s += weight_s_[bin++];

@@ -30,7 +30,7 @@ class MicNoiseFloor {
   static constexpr std::size_t kBins = 640;
 
   double memory_s_;
-  double heard_s_ = 0.0;
+  double measured_s_ = 0.0;
   double total_s_ = 0.0;  ///< what is remembered
   std::array<double, kBins> weight_s_{};
 };

@@ -4,7 +4,7 @@ namespace yuragi {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
-using Answer = Result<ModbusRegisters, ModbusRefusal>;
+using DecodeResult = Result<ModbusRegisters, ModbusRefusal>;
 
 constexpr std::size_t kTcpHeader = 7;      // transaction id, protocol id, length, unit id
 constexpr std::size_t kTcpLengthFrom = 6;  // the length field counts from here
@@ -27,7 +27,7 @@ ModbusRefusal refuse(Refusal why, std::uint8_t exception = 0) {
 }
 
 /// What both framings carry: function, byte count, registers; or function with the high bit, exception code.
-Answer decode_pdu(const ModbusRequest& request, Bytes pdu) {
+DecodeResult decode_pdu(const ModbusRequest& request, Bytes pdu) {
   if (pdu.size() < 2) return refuse(Refusal::kTooShort);
   if (pdu[0] == (request.function | kExceptionBit)) {
     return pdu.size() == 2 ? refuse(Refusal::kException, pdu[1]) : refuse(Refusal::kMalformed);
@@ -74,7 +74,7 @@ std::array<std::uint8_t, 8> encode_rtu(const ModbusRequest& request) noexcept {
   return message;
 }
 
-Answer decode_tcp(const ModbusRequest& request, Bytes message) noexcept {
+DecodeResult decode_tcp(const ModbusRequest& request, Bytes message) noexcept {
   // The header: is this Modbus, whole, and for us?
   if (message.size() < kTcpHeader) return refuse(Refusal::kTooShort);
   const std::size_t whole = kTcpLengthFrom + big_endian(message, 4);
@@ -88,7 +88,7 @@ Answer decode_tcp(const ModbusRequest& request, Bytes message) noexcept {
   return decode_pdu(request, message.subspan(kTcpHeader));
 }
 
-Answer decode_rtu(const ModbusRequest& request, Bytes message) noexcept {
+DecodeResult decode_rtu(const ModbusRequest& request, Bytes message) noexcept {
   constexpr std::size_t kShortest = 1 + 2 + kCrc;  // an exception
   const bool stray = message.size() > kShortest && message[0] != request.unit &&
                      (message[0] == 0x00 || message[0] == 0xFF) && has_right_crc(message.subspan(1));
@@ -96,7 +96,7 @@ Answer decode_rtu(const ModbusRequest& request, Bytes message) noexcept {
 
   if (message.size() < kShortest) return refuse(Refusal::kTooShort);
   if (!has_right_crc(message)) {
-    // Cut off, or damaged? An answer to this request that stops before its own end is the former.
+    // Cut off, or damaged? A reply to this request that ends too early is the former.
     const bool is_cut =
         message[0] == request.unit && message[1] == request.function && message.size() < 3U + message[2] + kCrc;
     return refuse(is_cut ? Refusal::kTooShort : Refusal::kBadChecksum);
@@ -106,7 +106,7 @@ Answer decode_rtu(const ModbusRequest& request, Bytes message) noexcept {
   return decode_pdu(request, message.subspan(1, message.size() - 1 - kCrc));
 }
 
-Answer decode_modbus(ModbusFraming framing, const ModbusRequest& request, Bytes message) noexcept {
+DecodeResult decode_modbus(ModbusFraming framing, const ModbusRequest& request, Bytes message) noexcept {
   return framing == ModbusFraming::kTcp ? decode_tcp(request, message) : decode_rtu(request, message);
 }
 

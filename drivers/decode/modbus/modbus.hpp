@@ -17,7 +17,7 @@ namespace yuragi {
 
 /// The longest message on either transport (libmodbus: MODBUS_MAX_ADU_LENGTH).
 inline constexpr std::size_t kModbusMaxMessage = 260;
-/// The most registers that one request may ask for.
+/// The most registers in one request.
 inline constexpr std::size_t kModbusMaxRegisters = 125;
 
 /// How a message is wrapped on its way.
@@ -44,7 +44,7 @@ std::array<std::uint8_t, 6> encode_rtu_without_crc(const ModbusRequest& request)
 /// The request as it goes on a serial line, its CRC behind it.
 std::array<std::uint8_t, 8> encode_rtu(const ModbusRequest& request) noexcept;
 
-/// What an answer holds.
+/// The content of a reply.
 struct ModbusRegisters {
   std::array<std::uint16_t, kModbusMaxRegisters> values{};
   std::size_t count = 0;
@@ -78,7 +78,7 @@ std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) noexcept;
 /// "illegal data address" for 2; "unknown exception" for a code that the specification does not have.
 std::string_view modbus_exception_name(std::uint8_t code) noexcept;
 
-/// Is this exception a gateway's report that the slave behind it does not answer?
+/// Is this exception a gateway's report that the slave behind it does not reply?
 bool is_gateway_silence(std::uint8_t exception) noexcept;
 
 }  // namespace yuragi

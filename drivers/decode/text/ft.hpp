@@ -20,7 +20,7 @@ struct FtOptions {
   WhenMissing status = WhenMissing::kRefuse;  ///< of either format; a reading without one is kUncertain
 };
 
-/// The wind in one line, or why there is none: as sentence_of() refuses, then kNotMine (an answer to another command),
+/// The wind in one line, or why there is none: as sentence_of() refuses, then kNotMine (a reply to another command),
 /// kMalformed, kInvalid (its status says so, or no value is there), kImplausible. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_ft(const FtOptions& options, std::string_view line) noexcept;
 

@@ -9,7 +9,7 @@
 namespace yuragi {
 namespace {
 
-using GillAnswer = Result<DecodedWind, Refusal>;
+using GillResult = Result<DecodedWind, Refusal>;
 
 constexpr char kStx = '\x02';
 constexpr char kEtx = '\x03';
@@ -42,7 +42,7 @@ Result<std::string_view, Refusal> gill_body_of(const GillOptions& options, std::
 }
 
 /// Two numbers as they stand in the fields behind the node, times `factor`: speed and direction, or components.
-GillAnswer decode_gill_values(const GillOptions& options, const TextFields& fields, double factor, DecodedWind wind) {
+GillResult decode_gill_values(const GillOptions& options, const TextFields& fields, double factor, DecodedWind wind) {
   if (is_signed(fields[1]) || is_signed(fields[2])) {
     const auto u = parse_number(fields[1]);
     const auto v = parse_number(fields[2]);
@@ -71,7 +71,7 @@ bool is_hexadecimal(std::string_view text) {
 
 }  // namespace
 
-GillAnswer decode_gill(const GillOptions& options, std::string_view line) noexcept {
+GillResult decode_gill(const GillOptions& options, std::string_view line) noexcept {
   if (const auto text = trimmed(line); !text.empty() && text.front() == '$') {
     return decode_nmea({.checksum = options.checksum, .status = options.status, .xdr_first_id = 0}, text);
   }

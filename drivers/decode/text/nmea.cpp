@@ -11,7 +11,7 @@
 namespace yuragi {
 namespace {
 
-using NmeaAnswer = Result<DecodedWind, Refusal>;
+using NmeaResult = Result<DecodedWind, Refusal>;
 using NmeaValue = Result<std::optional<double>, Refusal>;
 
 /// MWV and XDR know miles per hour too.
@@ -43,7 +43,7 @@ NmeaValue first_speed(const TextFields& fields, std::initializer_list<SpeedPlace
 }
 
 /// $--MWV,angle,R|T,speed,K|N|M|S,A|V
-NmeaAnswer decode_mwv(const NmeaOptions& options, const TextFields& fields) {
+NmeaResult decode_mwv(const NmeaOptions& options, const TextFields& fields) {
   DecodedWind wind;
 
   // The status first: the other fields of an invalid sentence do not matter.
@@ -73,7 +73,7 @@ NmeaAnswer decode_mwv(const NmeaOptions& options, const TextFields& fields) {
 }
 
 /// The eight fields deg,T,deg,M,kn,N,m/s,M that MWD and MDA share, from field `at` on.
-NmeaAnswer decode_north(const TextFields& fields, std::size_t at) {
+NmeaResult decode_north(const TextFields& fields, std::size_t at) {
   DecodedWind wind;
   const bool is_true = !fields[at].empty();
   const std::size_t direction = is_true ? at : at + 2;
@@ -92,7 +92,7 @@ NmeaAnswer decode_north(const TextFields& fields, std::size_t at) {
 }
 
 /// $--VWR and VWT,0..180,L|R,kn,N,m/s,M,km/h,K
-NmeaAnswer decode_side(const TextFields& fields, WindReference reference) {
+NmeaResult decode_side(const TextFields& fields, WindReference reference) {
   const NmeaValue angle_deg = parse_number(fields[1]);
   if (!angle_deg) return angle_deg.error();
   const NmeaValue speed_m_s = first_speed(fields, {{5, "M"}, {3, "N"}, {7, "K"}});
@@ -133,7 +133,7 @@ XdrRole xdr_role(std::string_view id, int first_id) {
 
 /// $--XDR and quadruples of type, value, unit, id. The mean is the reading and the greatest speed the gust; a device
 /// that sends only the first id has its reading there.
-NmeaAnswer decode_xdr(const NmeaOptions& options, const TextFields& fields) {
+NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
   DecodedWind wind;
   wind.reference = WindReference::kRelative;
   bool has_wind = false;
@@ -166,7 +166,7 @@ NmeaAnswer decode_xdr(const NmeaOptions& options, const TextFields& fields) {
 
 }  // namespace
 
-NmeaAnswer decode_nmea(const NmeaOptions& options, std::string_view line) noexcept {
+NmeaResult decode_nmea(const NmeaOptions& options, std::string_view line) noexcept {
   const auto sentence = sentence_of(line, options.checksum);
   if (!sentence) return sentence.error();
   const TextFields fields = split_fields(*sentence, ',');

@@ -115,7 +115,7 @@ LabjackCommand encode_labjack_feedback(const LabjackRequest& request) noexcept {
 }
 
 Result<LabjackReply, LabjackRefusal> decode_labjack(const LabjackRequest& request, ByteSpan reply) noexcept {
-  // The answer to this question?
+  // Is it the reply to this request?
   constexpr std::size_t kValues = 3;  // behind error, part and echo
   const auto data = data_of_reply(kLabjackFeedback, reply);
   if (!data) return data.error();
@@ -123,7 +123,7 @@ Result<LabjackReply, LabjackRefusal> decode_labjack(const LabjackRequest& reques
   if ((*data)[2] != request.echo) return refuse_labjack(Refusal::kNotMine);
   if ((*data)[0] != 0) return refuse_labjack(Refusal::kException, (*data)[0]);
 
-  // As many values as were asked for, in their order.
+  // As many values as were requested, in their order.
   const std::size_t size = kValues + (request.analog_channel ? 2U : 0U) + (request.reference_channel ? 2U : 0U) +
                            (request.counter ? 4U : 0U);
   if (data->size() != even(size)) return refuse_labjack(Refusal::kMalformed);

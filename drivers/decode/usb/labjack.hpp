@@ -52,10 +52,10 @@ struct LabjackRefusal {
 /// Counter 0 or 1 alone, on FIO4 (also on the U3-HV), and FIO0 to FIO3 analogue: what LabjackRequest relies on. The
 /// counter begins at 0.
 LabjackCommand encode_labjack_configuration(std::uint8_t counter) noexcept;
-/// kInvalid where the device did not do what the command asked for.
+/// kInvalid where the device did not do what the command requested.
 Result<void, LabjackRefusal> decode_labjack_configuration(std::uint8_t counter, ByteSpan reply) noexcept;
 
-/// What a feedback command asks for, in this order.
+/// The parts of a feedback command, in this order.
 struct LabjackRequest {
   std::uint8_t echo = 0;
   std::optional<std::uint8_t> analog_channel = 0;      ///< AIN against ground

@@ -21,7 +21,7 @@ struct BlendSourceSettings {
   double south_m = 0.0;             ///< (a relative one is taken to stand where those do whose gusts it fills)
   double lead_m = 0.0;              ///< its pen is placed so far upwind: more of the wind is known, but later
   double length_m = 0.0;            ///< integral length scale before anything is measured; 0: the blend's length
-  bool teaches_site = false;        ///< its readings are live and of this site: they update the site's spectrum
+  bool fits_site = false;           ///< its readings are live and of this site: they update the site's spectrum
   double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
   double direction_step_deg = 0.0;  ///< resolution of its vane; 0: detected
 };
@@ -37,7 +37,7 @@ struct BlendSettings {
   double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
   double reach_m = 0.0;           ///< from the middle of the scenes to the farthest place of any of them
   double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
-  /// The site's measured spectrum: corrects the noise of slow sources, and is updated by sources with `teaches_site`.
+  /// The site's measured spectrum: corrects the noise of slow sources, and is updated by sources with `fits_site`.
   /// Used on the estimator's thread only. None: no correction.
   std::shared_ptr<SiteSpectrum> site{};
   std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults

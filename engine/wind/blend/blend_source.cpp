@@ -83,11 +83,11 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
       across_(gust_variances(noise, kAcrossPerAlong * blend.climate.turbulence_intensity,
                              turbulence_prior(blend, settings).length_m)),
       site_(blend.site),
-      teacher_(turbulence_prior(blend, settings), blend.fit_memory_s) {}
+      site_fit_(turbulence_prior(blend, settings), blend.fit_memory_s) {}
 
 bool BlendSource::accept(const WindReading& reading, const Around& around) noexcept {
   if (!is_plausible(reading)) return false;
-  const bool is_first = !record_.has_spoken();
+  const bool is_first = !record_.has_reading();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
   if (gap_s < 0.0) return false;  // older than the last reading
   if (reading.is_held && !is_first) {
@@ -96,7 +96,7 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   }
   if (gap_s > kGapIntervals * expected_interval_s()) {
     measured_.break_off();
-    teacher_.break_off();
+    site_fit_.break_off();
   }
 
   record_.take(reading);
@@ -156,11 +156,11 @@ void BlendSource::set_full_trust() noexcept {
 /// Adds a reading, a mean over so long, to the turbulence, and to the site's spectrum if the source may update it.
 void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
-  const bool tells_across = has_vane() && !is_coarse();
-  measured_.take(wind_, ahead, speed_m_s, tells_across);
-  if (!site_ || !settings_.teaches_site || record_.last()->quality == ReadingQuality::kSimulated) return;
-  teacher_.observe(
-      {.wind = wind_, .ahead = ahead, .speed_m_s = speed_m_s, .interval_s = mean_of_s, .tells_across = tells_across},
+  const bool has_across = has_vane() && !is_coarse();
+  measured_.take(wind_, ahead, speed_m_s, has_across);
+  if (!site_ || !settings_.fits_site || record_.last()->quality == ReadingQuality::kSimulated) return;
+  site_fit_.observe(
+      {.wind = wind_, .ahead = ahead, .speed_m_s = speed_m_s, .interval_s = mean_of_s, .has_across = has_across},
       measured_, *site_);
 }
 
@@ -198,9 +198,9 @@ void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& p
   const double late_s = std::max(0.0, record_.age_s(now) - kLateAfterIntervals * interval_s_);
   if (late_s == 0.0) {
     // Until its readings span the memory, the mean of all of them.
-    spoken_s_ = std::min(spoken_s_ + dt_s, kSpeedMemory_s);
-    if (spoken_s_ > 0.0) {
-      speed_m_s_ += -std::expm1(-dt_s / spoken_s_) * (record_.last()->speed_m_s - speed_m_s_);
+    measured_s_ = std::min(measured_s_ + dt_s, kSpeedMemory_s);
+    if (measured_s_ > 0.0) {
+      speed_m_s_ += -std::expm1(-dt_s / measured_s_) * (record_.last()->speed_m_s - speed_m_s_);
     }
   }
   for (std::size_t i = 0; i < trusts_.size(); ++i) {

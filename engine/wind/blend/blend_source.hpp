@@ -8,7 +8,7 @@
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/direction_keeper.hpp"
 #include "engine/wind/blend/relative_scale.hpp"
-#include "engine/wind/blend/site_teacher.hpp"
+#include "engine/wind/blend/site_spectrum_fit.hpp"
 #include "engine/wind/blend/source_record.hpp"
 #include "engine/wind/turbulence/gust_variances.hpp"
 #include "engine/wind/turbulence/octave_follower.hpp"
@@ -97,13 +97,13 @@ class BlendSource {
   BandWeights trust_{}, full_trust_{}, passed_{};
   double interval_s_ = 0.0;  ///< that the full trust is made for
   double speed_m_s_ = 0.0;
-  double spoken_s_ = 0.0;  ///< for so long, at most the memory of that speed
+  double measured_s_ = 0.0;  ///< for so long, at most the memory of that speed
 
   WindTurbulence measured_;
   Turbulence turbulence_;
   GustVariances along_, across_;  ///< what each octave of the noise has of it
   std::shared_ptr<SiteSpectrum> site_;
-  SiteTeacher teacher_;
+  SiteSpectrumFit site_fit_;
   std::size_t since_kept_ = 0;  ///< readings
   double fitted_s_ = 0.0;       ///< time since the last fit
 };

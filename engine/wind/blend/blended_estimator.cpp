@@ -21,7 +21,7 @@ constexpr double kIntervalsOfAGust = 3.0;
 /// A low pass has done 98 % of its way after 4 time constants.
 constexpr double kPlaneRateTimesHandover = 4.0;
 /// Sources at a place of their own have at least so much weight there.
-constexpr double kLeastWord = 1e-6;
+constexpr double kLeastWeight = 1e-6;
 /// Less than this is nothing.
 constexpr double kLeastShare = 1e-9;
 /// How fast the strength of the gusts follows what it should be.
@@ -64,7 +64,7 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
       pens_(places_.count(),
             Pen{.shares = std::vector<BandWeights>(source_count), .written = std::vector<BandWeights>(source_count)}),
       shares_(source_count),
-      words_(source_count),
+      weights_(source_count),
       level_shares_(source_count),
       place_weights_(source_count),
       passed_(source_count) {
@@ -90,7 +90,7 @@ bool BlendedEstimator::accept(std::size_t index, const WindReading& reading) noe
 /// Does another source measure the direction of the wind that is shown?
 bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    if (i == besides || !choice_.is_chosen(i) || choice_.word(i) < 0.5 * kLeastShare) continue;
+    if (i == besides || !choice_.is_chosen(i) || choice_.weight(i) < 0.5 * kLeastShare) continue;
     if (sources_[i].has_vane() && sources_[i].record().is_live(state_.time, settings_.stale_intervals)) return true;
   }
   return false;
@@ -98,7 +98,7 @@ bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
 
 /// The shares of each source in the mean and in each band.
 void BlendedEstimator::share_out(double dt_s) noexcept {
-  share_words();
+  share_bands();
   share_mean(dt_s);
   for (std::size_t pen = 0; pen < pens_.size(); ++pen) share_at(pen);
 }
@@ -106,32 +106,32 @@ void BlendedEstimator::share_out(double dt_s) noexcept {
 /// The shares of the sources in a band, by weight times trust; their sum is the mean of the trusts, weighted in the
 /// same way, so that sources which do not resolve the band take nothing from one that does (engine/wind/README.md W23).
 /// Returns the sum of the shares.
-double BlendedEstimator::share_level(std::size_t level, std::span<const double> words,
+double BlendedEstimator::share_level(std::size_t level, std::span<const double> weights,
                                      std::span<double> shares) const noexcept {
   double all = 0.0;
   double trusted = 0.0;
   double squares = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const double trust = sources_[i].trust()[level];
-    all += words[i];
-    trusted += words[i] * trust;
-    squares += words[i] * trust * trust;
+    all += weights[i];
+    trusted += weights[i] * trust;
+    squares += weights[i] * trust * trust;
   }
   const double scale = trusted > kLeastShare ? std::min(all, 1.0) * squares / (trusted * trusted) : 1.0;
   double known = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    shares[i] = scale * words[i] * sources_[i].trust()[level];
+    shares[i] = scale * weights[i] * sources_[i].trust()[level];
     known += shares[i];
   }
   return known;
 }
 
 /// The shares among all sources, wherever they stand.
-void BlendedEstimator::share_words() noexcept {
-  for (std::size_t i = 0; i < sources_.size(); ++i) words_[i] = choice_.word(i);
+void BlendedEstimator::share_bands() noexcept {
+  for (std::size_t i = 0; i < sources_.size(); ++i) weights_[i] = choice_.weight(i);
   for (std::size_t level = 0; level <= kBands; ++level) {
-    share_level(level, words_, level_shares_);
-    for (std::size_t i = 0; i < sources_.size(); ++i) shares_[i].word[level] = level_shares_[i];
+    share_level(level, weights_, level_shares_);
+    for (std::size_t i = 0; i < sources_.size(); ++i) shares_[i].weights[level] = level_shares_[i];
   }
 }
 
@@ -139,14 +139,14 @@ void BlendedEstimator::share_words() noexcept {
 /// as slowly as a hand-over.
 void BlendedEstimator::share_mean(double dt_s) noexcept {
   const double plane_part = -std::expm1(-kPlaneRateTimesHandover / settings_.handover_s * dt_s);
-  for (std::size_t i = 0; i < sources_.size(); ++i) level_shares_[i] = shares_[i].word[0];
+  for (std::size_t i = 0; i < sources_.size(); ++i) level_shares_[i] = shares_[i].weights[0];
   plane_.weigh(level_shares_, 1.0, place_weights_);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     Share& share = shares_[i];
-    share.tilt += plane_part * (place_weights_[i].middle - share.word[0] - share.tilt);
+    share.tilt += plane_part * (place_weights_[i].middle - share.weights[0] - share.tilt);
     share.per_m_east += plane_part * (place_weights_[i].per_m_east - share.per_m_east);
     share.per_m_south += plane_part * (place_weights_[i].per_m_south - share.per_m_south);
-    share.middle = share.word[0] + share.tilt;
+    share.middle = share.weights[0] + share.tilt;
   }
 }
 
@@ -156,21 +156,21 @@ void BlendedEstimator::share_mean(double dt_s) noexcept {
 void BlendedEstimator::share_at(std::size_t index) noexcept {
   Pen& pen = pens_[index];
   double all = 0.0;
-  pen.word = 0.0;
+  pen.weight = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    all += choice_.word(i);
-    if (places_.pen_of(i) == index) pen.word += choice_.word(i);
+    all += choice_.weight(i);
+    if (places_.pen_of(i) == index) pen.weight += choice_.weight(i);
   }
   // Where none of them is selected at present, they are written all the same: nothing jumps when one is selected.
-  const double own = pens_.size() == 1 ? 0.0 : kLeastWord;
-  const double sum = pen.word + own * static_cast<double>(places_.sources_at(index));
+  const double own = pens_.size() == 1 ? 0.0 : kLeastWeight;
+  const double sum = pen.weight + own * static_cast<double>(places_.sources_at(index));
   const double times = sum > kLeastShare ? all / sum : 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    words_[i] = places_.pen_of(i) == index ? times * (choice_.word(i) + own) : 0.0;
+    weights_[i] = places_.pen_of(i) == index ? times * (choice_.weight(i) + own) : 0.0;
     pen.shares[i][0] = shares_[i].middle;
   }
   for (std::size_t level = 1; level <= kBands; ++level) {
-    const double left = std::max(0.0, 1.0 - share_level(level, words_, level_shares_));
+    const double left = std::max(0.0, 1.0 - share_level(level, weights_, level_shares_));
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       pen.shares[i][level] = level_shares_[i] + left * choice_.gusts(i) * sources_[i].trust()[level];
     }
@@ -178,7 +178,7 @@ void BlendedEstimator::share_at(std::size_t index) noexcept {
 }
 
 /// A source's mean (level 0) or band, with the gain of a relative one.
-WindVector BlendedEstimator::said(std::size_t index, std::size_t level) const noexcept {
+WindVector BlendedEstimator::level_of(std::size_t index, std::size_t level) const noexcept {
   const BlendSource& source = sources_[index];
   const WindVector value = level == 0 ? source.mean() : source.band(level - 1);
   if (!settings_.sources[index].is_relative) return value;
@@ -196,13 +196,13 @@ void BlendedEstimator::learn_scales(double dt_s) noexcept {
     BandWeights common{};
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       if (settings_.sources[i].is_relative) continue;
-      const BandWeights& word = shares_[i].word;
-      weight += word[0];
-      pair.speed_m_s += word[0] * sources_[i].speed_m_s();
-      pair.independent_after_s += word[0] * kIntervalsOfAGust * sources_[i].record().expected_interval_s();
+      const BandWeights& weights = shares_[i].weights;
+      weight += weights[0];
+      pair.speed_m_s += weights[0] * sources_[i].speed_m_s();
+      pair.independent_after_s += weights[0] * kIntervalsOfAGust * sources_[i].record().expected_interval_s();
       for (std::size_t level = 1; level <= kBands; ++level) {
-        pair.gust_m_s += word[level] * dot(said(i, level), ground_.gusts.ahead);
-        common[level] += word[level] * sources_[i].passed()[level];
+        pair.gust_m_s += weights[level] * dot(level_of(i, level), ground_.gusts.ahead);
+        common[level] += weights[level] * sources_[i].passed()[level];
       }
     }
     if (weight < 0.5) continue;
@@ -222,7 +222,7 @@ BlendedEstimator::MeasuredMean BlendedEstimator::measure_mean() noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Share& share = shares_[i];
     const bool is_relative = settings_.sources[i].is_relative;
-    const WindVector mean = said(i, 0);
+    const WindVector mean = level_of(i, 0);
     measured.weight += share.middle;
     measured.mean = measured.mean + share.middle * mean;
     measured.speed_m_s += share.middle * sources_[i].speed_m_s() * (is_relative ? sources_[i].scale.mean_gain() : 1.0);
@@ -250,16 +250,16 @@ double BlendedEstimator::trust() const noexcept {
   double knowable = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     for (std::size_t level = 1; level <= kBands; ++level) {
-      known += choice_.word(i) * sources_[i].trust()[level];
-      knowable += choice_.word(i) * sources_[i].full_trust()[level];
+      known += choice_.weight(i) * sources_[i].trust()[level];
+      knowable += choice_.weight(i) * sources_[i].full_trust()[level];
     }
   }
   return knowable > 0.0 ? std::clamp(known / std::max(knowable, known), 0.0, 1.0) : 0.0;
 }
 
 /// The sources at one place add up by amplitude.
-BlendedEstimator::Power BlendedEstimator::power_heard(const OctaveFollower::Response& bands,
-                                                      std::span<const BandWeights> shares) const noexcept {
+BlendedEstimator::Power BlendedEstimator::measured_power(const OctaveFollower::Response& bands,
+                                                         std::span<const BandWeights> shares) const noexcept {
   SourceResponse sum;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const std::complex<double> in_bands = bands.weighted(shares[i]);
@@ -317,8 +317,8 @@ void BlendedEstimator::place_pens() noexcept {
   double largest = kLeastShare;
   double all = 0.0;
   for (const Pen& pen : pens_) {
-    largest = std::max(largest, pen.word);
-    all += pen.word;
+    largest = std::max(largest, pen.weight);
+    all += pen.weight;
   }
   const WindVector ahead = stroke_.ahead;
   for (std::size_t i = 0; i < pens_.size(); ++i) {
@@ -327,8 +327,8 @@ void BlendedEstimator::place_pens() noexcept {
     WindPen& pen = stroke_.pens[i];
     pen.east_m = place.east_m - upwind_m * ahead.u_m_s;
     pen.south_m = place.south_m + upwind_m * ahead.v_m_s;
-    pen.part = all > kLeastShare ? pens_[i].word / all : 1.0 / static_cast<double>(pens_.size());
-    pen.presence = std::clamp(2.0 * pens_[i].word / largest, 0.0, 1.0);
+    pen.part = all > kLeastShare ? pens_[i].weight / all : 1.0 / static_cast<double>(pens_.size());
+    pen.presence = std::clamp(2.0 * pens_[i].weight / largest, 0.0, 1.0);
     pen.now.east_m = pen.east_m - stroke_.carried_east_m;
     pen.now.south_m = pen.south_m - stroke_.carried_south_m;
   }
@@ -351,7 +351,7 @@ void BlendedEstimator::write_gusts() noexcept {
         const double written = share * (level == 0 ? 1.0 : fade_[level]);
         pens_[p].written[i][level] = written;
         pen.weights[level] += written;
-        if (level > 0 && share > 0.0) gust = gust + share * said(i, level);
+        if (level > 0 && share > 0.0) gust = gust + share * level_of(i, level);
       }
       if (level == 0) continue;
       if (pen.weights[level] > kLeastShare && fade_[level] < 1.0) is_fading_ = true;
@@ -396,7 +396,7 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
   double variance_along = (1.0 - measured.weight) * climate_along_[octave];
   double variance_across = (1.0 - measured.weight) * climate_across_[octave];
   for (std::size_t index = 0; index < sources_.size(); ++index) {
-    if (!sources_[index].record().has_spoken()) continue;
+    if (!sources_[index].record().has_reading()) continue;
     const double share = variance_share(index, frequency_hz, measured);
     variance_along += share * sources_[index].along()[octave];
     variance_across += share * sources_[index].across()[octave];
@@ -416,7 +416,7 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
   if (is_way) {
     Power known;
     for (std::size_t p = 0; p < pens_.size(); ++p) {
-      const Power here = power_heard(bands, pens_[p].shares);
+      const Power here = measured_power(bands, pens_[p].shares);
       known.along += stroke_.pens[p].part * here.along;
       known.across += stroke_.pens[p].part * here.across;
     }
@@ -430,8 +430,8 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
   const std::size_t lane = octave - GustNoise::kFirstTileOctave;
   stroke_.octave_hz[lane] = static_cast<float>(known_hz);
   for (std::size_t p = 0; p < pens_.size(); ++p) {
-    const Power now = power_heard(bands, pens_[p].shares);
-    const Power written = is_fading_ ? power_heard(bands, pens_[p].written) : now;
+    const Power now = measured_power(bands, pens_[p].shares);
+    const Power written = is_fading_ ? measured_power(bands, pens_[p].written) : now;
     WindPen& pen = stroke_.pens[p];
     approach(pen.now.known_along[lane], now.along);
     approach(pen.now.known_across[lane], now.across);
@@ -449,10 +449,10 @@ void BlendedEstimator::show(const MeasuredMean& measured) noexcept {
   const WindVector way = noise_->everywhere(ground_.gusts);
   ground_.everywhere = measured.mean + way;
   state_.upwind_m = 0.0;
-  double told = 0.0;
+  double configured = 0.0;
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     WindPen& pen = stroke_.pens[p];
-    if (!places_.place(p).is_edge) told += pen.part;
+    if (!places_.place(p).is_edge) configured += pen.part;
     pen.now.mean = measured.mean;
     pen.now.way = way;
     const OctaveLanes known_along = pen.written.known_along;
@@ -468,7 +468,7 @@ void BlendedEstimator::show(const MeasuredMean& measured) noexcept {
     state_.upwind_m -= pen.part * (pen.east_m * stroke_.ahead.u_m_s - pen.south_m * stroke_.ahead.v_m_s);
   }
   state_.wind = wind_where_measured(ground_, stroke_, *noise_);
-  state_.is_place_told = told > 0.5;
+  state_.is_place_configured = configured > 0.5;
   state_.to_middle_s = std::max(state_.upwind_m, 0.0) / advection_m_s_;
   if (const double speed_m_s = speed_of(state_.wind); speed_m_s > kMaxPlausibleSpeed_m_s) {
     state_.wind = (kMaxPlausibleSpeed_m_s / speed_m_s) * state_.wind;
@@ -495,7 +495,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   }
   choice_.step(dt_s);
   for (BlendSource& source : sources_) {
-    if (source.record().has_spoken()) source.step(now, dt_s, parts);
+    if (source.record().has_reading()) source.step(now, dt_s, parts);
   }
   share_out(dt_s);
   learn_scales(dt_s);
@@ -536,10 +536,10 @@ Turbulence BlendedEstimator::turbulence() const noexcept {
   double left = 1.0;
   Turbulence sum{.intensity = 0.0, .time_scale_s = 0.0};
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const double word = std::min(choice_.word(i), left);
-    left -= word;
-    sum.intensity += word * sources_[i].turbulence().intensity;
-    sum.time_scale_s += word * sources_[i].turbulence().time_scale_s;
+    const double weight = std::min(choice_.weight(i), left);
+    left -= weight;
+    sum.intensity += weight * sources_[i].turbulence().intensity;
+    sum.time_scale_s += weight * sources_[i].turbulence().time_scale_s;
   }
   sum.intensity += left * settings_.climate.turbulence_intensity;
   sum.time_scale_s += left * settings_.length_m / std::max(settings_.climate.mean_speed_m_s, kLeastSpeed_m_s);

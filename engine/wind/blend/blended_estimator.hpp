@@ -7,9 +7,9 @@
 
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/mean_wind_plane.hpp"
 #include "engine/wind/blend/pen_places.hpp"
 #include "engine/wind/blend/source_choice.hpp"
-#include "engine/wind/blend/wall_plane.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 #include "engine/wind/ground/wind_stroke.hpp"
 #include "engine/wind/source_report.hpp"
@@ -39,7 +39,7 @@ namespace yuragi {
 /// Several sources: SourceChoice selects and weights them. Those selected at one place share each band by weight times
 /// trust (W23), so that a slow one dominates the mean and a fast one the gusts; a relative one supplies the gusts that
 /// they do not resolve, scaled to theirs. Sources at several places each have a tape of their own, and their means make
-/// a plane (WallPlane). A source without a vane contributes nothing across the wind, and
+/// a plane (MeanWindPlane). A source without a vane contributes nothing across the wind, and
 /// one with 8 or 16 points only slow fluctuations.
 ///
 /// Delay: what comes from a sensor is later than the wind by half of what it averages over, half of the interval that a
@@ -58,8 +58,8 @@ class BlendedEstimator {
   /// begin. Allocates.
   BlendedEstimator(std::size_t source_count, const BlendSettings& settings, std::shared_ptr<const GustNoise> noise);
 
-  /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored and
-  /// answered with false.
+  /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored:
+  /// false.
   bool accept(std::size_t source, const WindReading& reading) noexcept;
 
   /// Goes on to `now` and says what the wind is where it is measured.
@@ -85,9 +85,9 @@ class BlendedEstimator {
 
   /// The shares of a source at the moment: of the mean, and of the bands among all sources together.
   struct Share {
-    BandWeights word{};   ///< of the mean (0) and each band (1 + band), among the selected sources
-    double middle = 0.0;  ///< of the mean in the middle of the scenes
-    double tilt = 0.0;    ///< what the plane adds there; it and the slopes follow the plane slowly
+    BandWeights weights{};  ///< of the mean (0) and each band (1 + band), among the selected sources
+    double middle = 0.0;    ///< of the mean in the middle of the scenes
+    double tilt = 0.0;      ///< what the plane adds there; it and the slopes follow the plane slowly
     double per_m_east = 0.0, per_m_south = 0.0;
   };
 
@@ -95,7 +95,7 @@ class BlendedEstimator {
   struct Pen {
     std::vector<BandWeights> shares;   ///< of each source: of the mean, and of the bands at this place
     std::vector<BandWeights> written;  ///< as far as the tape can hold them
-    double word = 0.0;                 ///< the sum of its sources' weights (SourceChoice)
+    double weight = 0.0;               ///< the sum of its sources' weights (SourceChoice)
   };
 
   /// The mean by all sources together, and its weight.
@@ -113,21 +113,21 @@ class BlendedEstimator {
   bool is_direction_live(std::size_t besides) const noexcept;
   void share_out(double dt_s) noexcept;
   void share_mean(double dt_s) noexcept;
-  void share_words() noexcept;
-  double share_level(std::size_t level, std::span<const double> words, std::span<double> shares) const noexcept;
+  void share_bands() noexcept;
+  double share_level(std::size_t level, std::span<const double> weights, std::span<double> shares) const noexcept;
   void share_at(std::size_t pen) noexcept;
   void learn_scales(double dt_s) noexcept;
   MeasuredMean measure_mean() noexcept;
   double trust() const noexcept;
   double newest_age_s() const noexcept;
-  WindVector said(std::size_t source, std::size_t level) const noexcept;
+  WindVector level_of(std::size_t source, std::size_t level) const noexcept;
   void carry_gusts(const MeasuredMean& measured, double dt_s) noexcept;
   double gust_length_m(const MeasuredMean& measured) const noexcept;
   void place_pens() noexcept;
   void write_gusts() noexcept;
   void weigh_gusts(const MeasuredMean& measured, double dt_s) noexcept;
   void weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept;
-  Power power_heard(const OctaveFollower::Response& bands, std::span<const BandWeights> shares) const noexcept;
+  Power measured_power(const OctaveFollower::Response& bands, std::span<const BandWeights> shares) const noexcept;
   void show(const MeasuredMean& measured) noexcept;
   double variance_share(std::size_t source, double frequency_hz, const MeasuredMean& measured) const noexcept;
 
@@ -137,7 +137,7 @@ class BlendedEstimator {
   GustVariances climate_along_, climate_across_;
   std::vector<BlendSource> sources_;
   SourceChoice choice_;
-  WallPlane plane_;
+  MeanWindPlane plane_;
   PenPlaces places_;
   std::vector<Pen> pens_;
   GroundWind ground_;
@@ -151,7 +151,7 @@ class BlendedEstimator {
 
   // Made anew in each tick; for each source.
   std::vector<Share> shares_;
-  std::vector<double> words_, level_shares_;
+  std::vector<double> weights_, level_shares_;
   std::vector<PlaceWeights> place_weights_;
   std::vector<SourceResponse> passed_;  ///< at the octave at hand
   BandWeights fade_{};                  ///< what the tape can hold of each band

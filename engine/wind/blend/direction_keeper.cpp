@@ -14,8 +14,8 @@ namespace {
 constexpr double kVaneCalm_m_s = 0.5;
 /// After so many whole steps in a row a vane is taken for a coarse one; a fine one makes such steps by chance, one in
 /// 15 at most, so that after other turns more of them are needed.
-constexpr std::size_t kTurnsToTell = 3;
-constexpr std::size_t kTurnsToTellIfFine = 12;
+constexpr std::size_t kTurnsToDecide = 3;
+constexpr std::size_t kTurnsToDecideIfFine = 12;
 /// 22.5 degrees may come as 22 or 23.
 constexpr double kRounding_deg = 0.6;
 /// The longest smoothing: a coarse vane that has turned is followed within about 100 s, however low the turbulence.
@@ -45,18 +45,18 @@ WindVector DirectionKeeper::take(const WindReading& reading, double dt_s, WindVe
     if (otherwise_is_live || !is_known_) toward_ = otherwise;
     return toward_;
   }
-  const WindVector said = wind_from(1.0, *reading.direction_deg);
+  const WindVector measured = wind_from(1.0, *reading.direction_deg);
   note_step(*reading.direction_deg);
   const double wind = std::clamp(reading.speed_m_s / kVaneCalm_m_s, 0.0, 1.0);
   const double smoothed = is_known_ && memory_s_ > 0.0 ? -std::expm1(-dt_s / memory_s_) : 1.0;
-  toward_ = turned_toward(is_known_ ? toward_ : otherwise, said, wind * wind * smoothed);
+  toward_ = turned_toward(is_known_ ? toward_ : otherwise, measured, wind * wind * smoothed);
   is_known_ = is_known_ || wind > 0.0;
   return toward_;
 }
 
 double DirectionKeeper::step_deg() const noexcept {
   if (given_step_deg_ > 0.0) return given_step_deg_;
-  const std::size_t needed = was_fine_ ? kTurnsToTellIfFine : kTurnsToTell;
+  const std::size_t needed = was_fine_ ? kTurnsToDecideIfFine : kTurnsToDecide;
   return turns_of_8_ >= needed ? 45.0 : turns_of_16_ >= needed ? 22.5 : 0.0;
 }
 
@@ -85,7 +85,7 @@ void DirectionKeeper::note_step(double direction_deg) noexcept {
   turns_of_16_ = is_multiple(turn_deg, 22.5) ? turns_of_16_ + 1 : 0;
   turns_of_8_ = is_multiple(turn_deg, 45.0) ? turns_of_8_ + 1 : 0;
   if (turns_of_16_ == 0) was_fine_ = true;
-  if (turns_of_16_ >= kTurnsToTellIfFine) was_fine_ = false;
+  if (turns_of_16_ >= kTurnsToDecideIfFine) was_fine_ = false;
 }
 
 }  // namespace yuragi

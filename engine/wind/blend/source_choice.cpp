@@ -67,14 +67,15 @@ void SourceChoice::step(double dt_s) noexcept {
   const auto is_live = [](const Entry& entry) { return entry.is_live; };
 
   // The weights; a source that is selected already need not wait. Then those of the gusts.
-  const bool given = give(&Entry::word_wanted, false, is_ready) || give(&Entry::word_wanted, true, is_ready) > 0.0 ||
-                     give(&Entry::word_wanted, false, is_live) || give(&Entry::word_wanted, true, is_live);
-  bool relative_has_word = false;
+  const bool given = give(&Entry::weight_wanted, false, is_ready) ||
+                     give(&Entry::weight_wanted, true, is_ready) > 0.0 || give(&Entry::weight_wanted, false, is_live) ||
+                     give(&Entry::weight_wanted, true, is_live);
+  bool relative_has_weight = false;
   for (Entry& entry : entries_) {
-    if (entry.word_wanted > 0.0 && entry.is_live) entry.is_ready = true;
-    relative_has_word = relative_has_word || (entry.is_relative && entry.word_wanted > 0.0);
+    if (entry.weight_wanted > 0.0 && entry.is_live) entry.is_ready = true;
+    relative_has_weight = relative_has_weight || (entry.is_relative && entry.weight_wanted > 0.0);
   }
-  if (relative_has_word) {
+  if (relative_has_weight) {
     for (Entry& entry : entries_) entry.gusts_wanted = 0.0;
   } else if (given) {
     if (!give(&Entry::gusts_wanted, true, is_ready)) give(&Entry::gusts_wanted, true, is_live);
@@ -84,12 +85,12 @@ void SourceChoice::step(double dt_s) noexcept {
   const bool is_first = !std::exchange(has_begun_, true);
   for (Entry& entry : entries_) {
     if (is_first) {
-      entry.word.value = entry.word_wanted;
+      entry.weight.value = entry.weight_wanted;
       entry.gusts.value = entry.gusts_wanted;
     }
-    entry.word.step(entry.word_wanted, kRateTimesHandover / handover_s_, dt_s);
+    entry.weight.step(entry.weight_wanted, kRateTimesHandover / handover_s_, dt_s);
     entry.gusts.step(entry.gusts_wanted, kRateTimesHandover / handover_s_, dt_s);
-    entry.is_chosen = entry.word_wanted > 0.0 || entry.gusts_wanted > 0.0;
+    entry.is_chosen = entry.weight_wanted > 0.0 || entry.gusts_wanted > 0.0;
   }
 }
 

@@ -10,8 +10,7 @@
 
 namespace yuragi {
 
-/// Selects among several sources and weights them: by role, priority and weight, with hysteresis, slewed. (In names,
-/// `word` is a source's weight.)
+/// Selects among several sources and weights them: by role, priority and weight, with hysteresis, slewed.
 ///
 /// The live absolute sources of the lowest priority number share the total weight of 1 by their settings; where there
 /// are none, the relative ones do; where no source is live, the weights stay. A source that has failed is chosen again
@@ -32,7 +31,7 @@ class SourceChoice {
   /// Is it selected, for the mean or for gusts, or still being faded in?
   bool is_chosen(std::size_t source) const noexcept { return entries_[source].is_chosen; }
   /// Its weight, 0 to 1, in the mean and in the gusts that it resolves.
-  double word(std::size_t source) const noexcept { return std::clamp(entries_[source].word.value, 0.0, 1.0); }
+  double weight(std::size_t source) const noexcept { return std::clamp(entries_[source].weight.value, 0.0, 1.0); }
   /// Its weight, 0 to 1, in the gusts that the selected absolute sources do not resolve.
   double gusts(std::size_t source) const noexcept { return std::clamp(entries_[source].gusts.value, 0.0, 1.0); }
 
@@ -47,8 +46,8 @@ class SourceChoice {
     bool is_chosen = false;
     double live_for_s = 0.0;
     int failures = 0;
-    double word_wanted = 0.0, gusts_wanted = 0.0;
-    CriticallyDamped word, gusts;
+    double weight_wanted = 0.0, gusts_wanted = 0.0;
+    CriticallyDamped weight, gusts;
   };
 
   template <class MayTake>

@@ -30,7 +30,7 @@ class SourceRecord {
     if (last_) last_->time = time;
   }
 
-  bool has_spoken() const noexcept { return last_.has_value(); }
+  bool has_reading() const noexcept { return last_.has_value(); }
   const std::optional<WindReading>& last() const noexcept { return last_; }
 
   /// The median of the last intervals; 0 before the second reading.

@@ -176,19 +176,19 @@ void extend(std::vector<CalibrationPoint>& curve, std::vector<CalibrationPoint>&
 
 }  // namespace
 
-Result<StillAir, Failure> measure_still_air(std::span<const double> said_m_s) {
-  StillAir air{.count = said_m_s.size(), .mean_m_s = mean_of(said_m_s)};
+Result<StillAir, Failure> measure_still_air(std::span<const double> indicated_m_s) {
+  StillAir air{.count = indicated_m_s.size(), .mean_m_s = mean_of(indicated_m_s)};
   if (air.count < kFewestStillReadings) {
     return Failure{"only " + std::to_string(air.count) + " readings came, and " + std::to_string(kFewestStillReadings) +
                    " are the least: measure longer with --for"};
   }
   double squares = 0.0;
-  for (const double value : said_m_s) squares += (value - air.mean_m_s) * (value - air.mean_m_s);
+  for (const double value : indicated_m_s) squares += (value - air.mean_m_s) * (value - air.mean_m_s);
   air.noise_m_s = std::sqrt(squares / static_cast<double>(air.count - 1));
 
   // Moving air shows in the scatter, air that comes to rest in the difference of the two halves.
   const double drift_m_s =
-      mean_of(said_m_s.subspan(air.count / 2)) - mean_of(said_m_s.subspan(0, air.count - air.count / 2));
+      mean_of(indicated_m_s.subspan(air.count / 2)) - mean_of(indicated_m_s.subspan(0, air.count - air.count / 2));
   const bool is_calm = air.noise_m_s <= kMostStillNoise_m_s && std::abs(drift_m_s) <= kMostStillDrift_m_s;
   if (!is_calm) {
     return Failure{"this is no calm: the readings scatter by " + figure(air.noise_m_s) + " m/s and drift by " +
@@ -225,8 +225,8 @@ DirectionMean direction_mean(std::span<const double> directions_deg) noexcept {
               length > 0.0 ? std::sqrt(-2.0 * std::log(length)) / kRadians : std::numeric_limits<double>::infinity()};
 }
 
-Result<DirectionMean, Failure> measure_held_vane(std::span<const double> said_deg) {
-  const DirectionMean mean = direction_mean(said_deg);
+Result<DirectionMean, Failure> measure_held_vane(std::span<const double> indicated_deg) {
+  const DirectionMean mean = direction_mean(indicated_deg);
   if (mean.count < kFewestHeldReadings) {
     return Failure{"only " + std::to_string(mean.count) + " directions came, and " +
                    std::to_string(kFewestHeldReadings) +
@@ -254,20 +254,20 @@ Result<DirectionMean, Failure> measure_turn(std::span<const double> turns_deg) {
   return mean;
 }
 
-std::vector<double> pair_turns(std::span<const TimedDirection> said, std::span<const TimedDirection> truth,
+std::vector<double> pair_turns(std::span<const TimedDirection> indicated, std::span<const TimedDirection> truth,
                                double block_s) {
   struct Block {
-    std::vector<double> said_deg, true_deg;
+    std::vector<double> indicated_deg, true_deg;
   };
   std::map<std::int64_t, Block> blocks;
   const auto number_of = [block_s](double time_s) { return static_cast<std::int64_t>(std::floor(time_s / block_s)); };
-  for (const TimedDirection& one : said) blocks[number_of(one.time_s)].said_deg.push_back(one.direction_deg);
+  for (const TimedDirection& one : indicated) blocks[number_of(one.time_s)].indicated_deg.push_back(one.direction_deg);
   for (const TimedDirection& one : truth) blocks[number_of(one.time_s)].true_deg.push_back(one.direction_deg);
   std::vector<double> turns_deg;
   for (const auto& [number, block] : blocks) {
-    if (block.said_deg.empty() || block.true_deg.empty()) continue;
+    if (block.indicated_deg.empty() || block.true_deg.empty()) continue;
     turns_deg.push_back(
-        signed_degrees(direction_mean(block.true_deg).mean_deg - direction_mean(block.said_deg).mean_deg));
+        signed_degrees(direction_mean(block.true_deg).mean_deg - direction_mean(block.indicated_deg).mean_deg));
   }
   return turns_deg;
 }
@@ -283,7 +283,8 @@ Result<LineFit, Failure> fit_line(std::span<const CalibrationPoint> pairs) {
 
   LineFit fit = least_squares(some);
   measure_fit(
-      some, [&fit](double said_m_s) { return fit.gain * said_m_s + fit.offset_m_s; }, fit.r_squared, fit.residual_m_s);
+      some, [&fit](double indicated_m_s) { return fit.gain * indicated_m_s + fit.offset_m_s; }, fit.r_squared,
+      fit.residual_m_s);
   if (auto agrees = check_r_squared(fit.r_squared); !agrees) return agrees.error();
   if (auto possible = check_gain(fit.gain); !possible) return possible.error();
   return fit;
@@ -334,29 +335,29 @@ Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs) {
   const Calibration calibration{.curve = fit.curve};
   measure_fit(
       some,
-      [&calibration](double said_m_s) {
-        WindReading said;
-        said.speed_m_s = said_m_s;
-        return calibration.applied_to(said).speed_m_s;
+      [&calibration](double indicated_m_s) {
+        WindReading indicated;
+        indicated.speed_m_s = indicated_m_s;
+        return calibration.applied_to(indicated).speed_m_s;
       },
       fit.r_squared, fit.residual_m_s);
   return fit;
 }
 
-std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> said, std::span<const TimedSpeed> truth,
+std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> indicated, std::span<const TimedSpeed> truth,
                                          double block_s) {
   struct Block {
-    double said_m_s = 0.0, true_m_s = 0.0;  // sums
-    std::size_t said_count = 0, true_count = 0;
+    double indicated_m_s = 0.0, true_m_s = 0.0;  // sums
+    std::size_t indicated_count = 0, true_count = 0;
   };
   std::map<std::int64_t, Block> blocks;
   const auto block_at = [&](double time_s) -> Block& {
     return blocks[static_cast<std::int64_t>(std::floor(time_s / block_s))];
   };
-  for (const TimedSpeed& one : said) {
+  for (const TimedSpeed& one : indicated) {
     Block& block = block_at(one.time_s);
-    block.said_m_s += one.speed_m_s;
-    ++block.said_count;
+    block.indicated_m_s += one.speed_m_s;
+    ++block.indicated_count;
   }
   for (const TimedSpeed& one : truth) {
     Block& block = block_at(one.time_s);
@@ -365,8 +366,8 @@ std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> said, std::
   }
   std::vector<CalibrationPoint> pairs;
   for (const auto& [number, block] : blocks) {
-    if (block.said_count == 0 || block.true_count == 0) continue;
-    pairs.push_back({block.said_m_s / static_cast<double>(block.said_count),
+    if (block.indicated_count == 0 || block.true_count == 0) continue;
+    pairs.push_back({block.indicated_m_s / static_cast<double>(block.indicated_count),
                      block.true_m_s / static_cast<double>(block.true_count)});
   }
   return pairs;

@@ -24,7 +24,7 @@ struct StillAir {
 };
 
 /// Refuses fewer than 10 readings, more scatter or drift than still air has, and more than a zero error can be.
-Result<StillAir, Failure> measure_still_air(std::span<const double> said_m_s);
+Result<StillAir, Failure> measure_still_air(std::span<const double> indicated_m_s);
 
 /// The offset with which `calibration` makes 0 of `still_m_s`; its gain and curve stay.
 double offset_for_zero_m_s(const Calibration& calibration, double still_m_s) noexcept;
@@ -42,7 +42,7 @@ struct DirectionMean {
 DirectionMean direction_mean(std::span<const double> directions_deg) noexcept;
 
 /// The direction of a vane that is held by hand. Refuses fewer than 5 readings, and a vane that moved.
-Result<DirectionMean, Failure> measure_held_vane(std::span<const double> said_deg);
+Result<DirectionMean, Failure> measure_held_vane(std::span<const double> indicated_deg);
 
 /// The turn between two vanes in the same wind, from the angles sensor to reference, degrees. Refuses fewer than 20,
 /// and vanes that do not turn together.
@@ -56,7 +56,7 @@ struct TimedDirection {
 
 /// Two vanes side by side: the turn from the mean of the one to the mean of the other in each block of `block_s` in
 /// which both have readings, degrees in (-180, 180].
-std::vector<double> pair_turns(std::span<const TimedDirection> said, std::span<const TimedDirection> truth,
+std::vector<double> pair_turns(std::span<const TimedDirection> indicated, std::span<const TimedDirection> truth,
                                double block_s);
 
 /// The same angle in (-180, 180].
@@ -102,7 +102,7 @@ struct TimedSpeed {
 
 /// Two sensors side by side: means over blocks of `block_s`, of the blocks in which both have readings. In the order of
 /// time.
-std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> said, std::span<const TimedSpeed> truth,
+std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> indicated, std::span<const TimedSpeed> truth,
                                          double block_s);
 
 }  // namespace yuragi

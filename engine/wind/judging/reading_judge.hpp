@@ -81,7 +81,7 @@ class ReadingJudge {
   static constexpr std::size_t kWindow = 7;
 
   ReadingFault fault_of(const WindReading& reading, double time_s, std::optional<double> others_m_s) noexcept;
-  // Each takes the reading in, and answers whether that is its fault.
+  // Each takes the reading, and returns whether it has that fault.
   bool check_spike(WindVector wind, double time_s) noexcept;
   bool is_suspect(WindVector wind) const noexcept;
   bool is_confirmed(double time_s) const noexcept;

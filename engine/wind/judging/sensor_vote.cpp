@@ -22,14 +22,14 @@ SensorVote::SensorVote(std::size_t sensor_count, const VoteSettings& settings)
   means_m_s_.reserve(sensor_count);
 }
 
-void SensorVote::hear(std::size_t sensor, MonoTime time, double speed_m_s) noexcept {
+void SensorVote::accept(std::size_t sensor, MonoTime time, double speed_m_s) noexcept {
   Voter& voter = voters_[sensor];
   const double passed_s = voter.last ? seconds(time - *voter.last) : 0.0;
   if (passed_s < 0.0) return;
   // The mean of all readings until they span the memory, then an exponential one.
   const bool is_first = !voter.last || passed_s > settings_.memory_s;
-  voter.heard_s = is_first ? 0.0 : voter.heard_s + passed_s;
-  const double part = is_first ? 1.0 : passed_s / std::max(passed_s, std::min(voter.heard_s, settings_.memory_s));
+  voter.measured_s = is_first ? 0.0 : voter.measured_s + passed_s;
+  const double part = is_first ? 1.0 : passed_s / std::max(passed_s, std::min(voter.measured_s, settings_.memory_s));
   if (passed_s > 0.0 || is_first) voter.mean_m_s += part * (speed_m_s - voter.mean_m_s);
   voter.last = time;
 }
@@ -68,7 +68,7 @@ Vote SensorVote::vote_on(std::size_t sensor) const noexcept {
 }
 
 bool SensorVote::can_be_compared(const Voter& voter) const noexcept {
-  return voter.is_seated && voter.heard_s >= settings_.memory_s;
+  return voter.is_comparable && voter.measured_s >= settings_.memory_s;
 }
 
 bool SensorVote::agree(double a_m_s, double b_m_s) const noexcept {

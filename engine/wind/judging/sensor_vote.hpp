@@ -39,10 +39,10 @@ class SensorVote {
   explicit SensorVote(std::size_t sensor_count, const VoteSettings& settings = {});
 
   /// Takes a reading of a sensor, at its own time, calibrated. One that is earlier than the last changes nothing.
-  void hear(std::size_t sensor, MonoTime time, double speed_m_s) noexcept;
+  void accept(std::size_t sensor, MonoTime time, double speed_m_s) noexcept;
 
   /// Whether a sensor can be compared at the moment: it is live, not a recording, and not frozen.
-  void seat(std::size_t sensor, bool takes_part) noexcept { voters_[sensor].is_seated = takes_part; }
+  void set_comparable(std::size_t sensor, bool takes_part) noexcept { voters_[sensor].is_comparable = takes_part; }
 
   /// Advances to `now`. Counts votes about once a second.
   void advance(MonoTime now) noexcept;
@@ -55,9 +55,9 @@ class SensorVote {
 
  private:
   struct Voter {
-    bool is_seated = false;
+    bool is_comparable = false;
     std::optional<MonoTime> last;
-    double heard_s = 0.0;
+    double measured_s = 0.0;
     double mean_m_s = 0.0;
     std::optional<double> others_m_s;
     double outvoted_s = 0.0;  ///< time of contradiction, less time of agreement

@@ -127,9 +127,9 @@ bool WindShaping::restore(std::span<const double> times_s) noexcept {
 /// Adds the speed to the site's memory, at most once a second.
 void WindShaping::remember(double mean_m_s, double dt_s) noexcept {
   if (settings_.site.median_m_s <= 0.0) return;
-  heard_s_ += dt_s;
-  if (heard_s_ < kRememberEvery_s) return;
-  memory_.add(std::max(mean_m_s, 0.0), std::exchange(heard_s_, 0.0));
+  unstored_s_ += dt_s;
+  if (unstored_s_ < kRememberEvery_s) return;
+  memory_.add(std::max(mean_m_s, 0.0), std::exchange(unstored_s_, 0.0));
   look_at_memory();
 }
 

@@ -94,8 +94,8 @@ class WindShaping {
   std::shared_ptr<const GustNoise> noise_;
   GustVariances along_, across_;  ///< of the breeze
   SpeedMemory memory_;
-  double live_s_ = 0.0;   ///< for how long the wind has been a sensor's
-  double heard_s_ = 0.0;  ///< time since the memory was updated
+  double live_s_ = 0.0;      ///< for how long the wind has been a sensor's
+  double unstored_s_ = 0.0;  ///< time since the memory was updated
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
   CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
   CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0};

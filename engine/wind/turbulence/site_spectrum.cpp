@@ -15,7 +15,7 @@ constexpr double kNothingFor_s = 600.0;
 /// A single half hour of a gusty day may differ by as much.
 constexpr double kMostLearnt_db = 20.0;
 /// The fastest waves that readings resolve (TurbulenceFit): frequency times interval.
-constexpr double kToldUpTo = 0.37;
+constexpr double kResolvedUpTo = 0.37;
 
 }  // namespace
 
@@ -66,8 +66,8 @@ bool SiteSpectrum::restore(std::span<const double> known_s, std::span<const doub
 }
 
 double SiteSpectrum::power(double frequency_hz, double interval_s) const noexcept {
-  const double told_hz = kToldUpTo / interval_s;
-  if (interval_s <= kQuick_s || frequency_hz <= told_hz) return 1.0;
+  const double resolved_hz = kResolvedUpTo / interval_s;
+  if (interval_s <= kQuick_s || frequency_hz <= resolved_hz) return 1.0;
   // Between the middles of octaves by the logarithm; nothing an octave below the first, and on beyond the last.
   const Decibels octaves = octaves_db();
   const auto level_db = [&octaves](double at_hz) {
@@ -77,7 +77,7 @@ double SiteSpectrum::power(double frequency_hz, double interval_s) const noexcep
     const double low_db = above > 0 ? octaves[above - 1] : 0.0;
     return low_db + t * (octaves[std::min(above, kOctaves - 1)] - low_db);
   };
-  return std::pow(10.0, 0.1 * (level_db(frequency_hz) - level_db(told_hz)));
+  return std::pow(10.0, 0.1 * (level_db(frequency_hz) - level_db(resolved_hz)));
 }
 
 }  // namespace yuragi

@@ -73,7 +73,7 @@ std::string_view explain(SpectrumError error) noexcept;
   throw std::invalid_argument(std::string(explain(error)));
 }
 
-/// One spectrum, ready to be asked. Thread-safe and realtime-safe: yes.
+/// One spectrum, ready to be evaluated. Thread-safe and realtime-safe: yes.
 class WindSpectrum {
  public:
   static Result<WindSpectrum, SpectrumError> make(const SpectrumSettings& settings) noexcept;

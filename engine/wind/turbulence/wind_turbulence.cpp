@@ -24,7 +24,7 @@ void WindTurbulence::forget(double dt_s) noexcept {
   across_.forget(dt_s);
 }
 
-void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, bool tells_across) noexcept {
+void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, bool has_across) noexcept {
   const std::size_t size = history_.size();
   history_[next_] = wind;
   next_ = (next_ + 1) % size;
@@ -42,7 +42,7 @@ void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, b
     for (std::size_t back = count; back < 2 * count; ++back) older = older + reading(back);
     const WindVector difference = 1.0 / (static_cast<double>(count) * speed_m_s) * (newer - older);
     along_.add(scale, limited(difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s), speed_m_s);
-    if (!tells_across) continue;
+    if (!has_across) continue;
     across_.add(scale, limited(difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s), speed_m_s);
   }
 }

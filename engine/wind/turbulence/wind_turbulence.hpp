@@ -28,7 +28,7 @@ class WindTurbulence {
   /// After a gap: what comes next is not compared with what was.
   void break_off() noexcept { history_size_ = 0; }
   /// The next reading, in a wind that blows toward the unit vector `ahead` with a mean of speed_m_s (above 0).
-  void take(WindVector wind, WindVector ahead, double speed_m_s, bool tells_across) noexcept;
+  void take(WindVector wind, WindVector ahead, double speed_m_s, bool has_across) noexcept;
   /// Fits both, for readings that are means over interval_s.
   void fit(double interval_s, double speed_m_s) noexcept;
 

@@ -28,7 +28,7 @@ class SceneDirectorTest : public testing::Test {
 
 TEST_F(SceneDirectorTest, HandsOnWhatItIsAskedForAndTellsHowThingsAre) {
   SceneDirector here = director("loopback");
-  const auto reply = here.answer({.scene = "meadow", .shown = true, .hide_others = true, .over_s = 3.0}, true);
+  const auto reply = here.handle({.scene = "meadow", .shown = true, .hide_others = true, .over_s = 3.0}, true);
   EXPECT_TRUE(reply.done);
   EXPECT_EQ(reply.message, "meadow is shown, every other scene hidden, over 3 s");
   ASSERT_EQ(cues_.size(), 1U);
@@ -45,7 +45,7 @@ TEST_F(SceneDirectorTest, HandsOnWhatItIsAskedForAndTellsHowThingsAre) {
 
 TEST_F(SceneDirectorTest, TellsWithoutChangingAnythingWhereNoSceneIsNamed) {
   SceneDirector here = director("nobody");
-  const auto reply = here.answer({.scene = ""}, false);
+  const auto reply = here.handle({.scene = ""}, false);
   EXPECT_TRUE(reply.done);
   EXPECT_TRUE(reply.scenes[0].shown);
   EXPECT_FALSE(reply.scenes[1].shown);
@@ -53,24 +53,24 @@ TEST_F(SceneDirectorTest, TellsWithoutChangingAnythingWhereNoSceneIsNamed) {
 }
 
 TEST_F(SceneDirectorTest, TakesItOnlyFromThoseWhoMay) {
-  const wire::Control wish{.scene = "meadow"};
-  EXPECT_TRUE(director("loopback").answer(wish, true).done);
-  EXPECT_FALSE(director("loopback").answer(wish, false).done);
-  EXPECT_TRUE(director("anywhere").answer(wish, false).done);
-  EXPECT_FALSE(director("nobody").answer(wish, true).done);
+  const wire::Control control{.scene = "meadow"};
+  EXPECT_TRUE(director("loopback").handle(control, true).done);
+  EXPECT_FALSE(director("loopback").handle(control, false).done);
+  EXPECT_TRUE(director("anywhere").handle(control, false).done);
+  EXPECT_FALSE(director("nobody").handle(control, true).done);
   EXPECT_EQ(cues_.size(), 2U);
-  const auto refused = director("loopback").answer(wish, false);
+  const auto refused = director("loopback").handle(control, false);
   EXPECT_FALSE(refused.scenes[1].shown) << "nothing has changed";
   EXPECT_THAT(refused.message, HasSubstr("control"));
 }
 
 TEST_F(SceneDirectorTest, SaysWhichScenesThereAreAndWhenThereIsNoRoom) {
   SceneDirector here = director("loopback");
-  const auto unknown = here.answer({.scene = "forest"}, true);
+  const auto unknown = here.handle({.scene = "forest"}, true);
   EXPECT_FALSE(unknown.done);
   EXPECT_THAT(unknown.message, HasSubstr("bank, meadow"));
   is_full_ = true;
-  const auto full = here.answer({.scene = "meadow"}, true);
+  const auto full = here.handle({.scene = "meadow"}, true);
   EXPECT_FALSE(full.done);
   EXPECT_FALSE(full.scenes[1].shown);
 }

@@ -47,11 +47,11 @@ TEST_F(DecodeCommand, TellsOfWhatIsRefusedOnRequestOnly) {
   EXPECT_EQ(quiet.text, "");
   EXPECT_THAT(quiet.error, HasSubstr("0 readings; refused: bad checksum 1, not mine 2; --refused shows each"));
 
-  const auto told = run(input, {"nmea", "--refused"});
-  EXPECT_EQ(told.code, 0);
-  ASSERT_EQ(told.objects.size(), 3U);
-  EXPECT_EQ(told.objects[0]["refused"], "not mine");
-  EXPECT_EQ(told.text.substr(told.text.rfind("{")),
+  const auto received = run(input, {"nmea", "--refused"});
+  EXPECT_EQ(received.code, 0);
+  ASSERT_EQ(received.objects.size(), 3U);
+  EXPECT_EQ(received.objects[0]["refused"], "not mine");
+  EXPECT_EQ(received.text.substr(received.text.rfind("{")),
             "{\"refused\":\"bad checksum\",\"input\":\"$WIMWV,1,R,1,M,A*00\"}\n");
 }
 

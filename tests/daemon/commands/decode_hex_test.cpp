@@ -150,12 +150,12 @@ TEST_F(DecodeCommand, GivesCountsAndVoltsAndTheirMeaningWhereTheOptionsSayIt) {
   EXPECT_TRUE(plain.objects[1]["direction_deg"].is_null());
 
   // 20 pulses in 2 s, of 0.7 m each: 7 m/s. Half of a track of 356 degrees: 178.
-  auto told = run("d2 04 00 00\ne6 04 00 00\n00 0c\n",
-                  {"mcc1208", "--hex", "--slope", "0.7", "--interval", "2", "--vane-reference", "10"});
-  ASSERT_EQ(told.objects.size(), 3U);
-  EXPECT_TRUE(told.objects[0]["speed_m_s"].is_null()) << "one count is no speed";
-  EXPECT_TRUE(is_value(told.objects[1]["speed_m_s"], 7.0, 1e-9));
-  EXPECT_TRUE(is_value(told.objects[2]["direction_deg"], 178.0, 1e-9));
+  auto received = run("d2 04 00 00\ne6 04 00 00\n00 0c\n",
+                      {"mcc1208", "--hex", "--slope", "0.7", "--interval", "2", "--vane-reference", "10"});
+  ASSERT_EQ(received.objects.size(), 3U);
+  EXPECT_TRUE(received.objects[0]["speed_m_s"].is_null()) << "one count is no speed";
+  EXPECT_TRUE(is_value(received.objects[1]["speed_m_s"], 7.0, 1e-9));
+  EXPECT_TRUE(is_value(received.objects[2]["direction_deg"], 178.0, 1e-9));
 }
 
 TEST_F(DecodeCommand, TakesACountersReplyForWhatWasAsked) {

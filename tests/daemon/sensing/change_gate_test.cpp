@@ -14,7 +14,7 @@ TEST(ChangeGate, WhatIsSoFromTheBeginningIsNotToldAndTheFirstChangeAtOnce) {
   EXPECT_FALSE(gate.offer(0, gate_time(0.0)));
   EXPECT_TRUE(gate.offer(1, gate_time(0.1)));
   EXPECT_FALSE(gate.offer(1, gate_time(0.2))) << "once";
-  EXPECT_EQ(gate.told(), 1U);
+  EXPECT_EQ(gate.reported(), 1U);
 }
 
 TEST(ChangeGate, AChangeThatDoesNotLastIsCountedAndNotTold) {
@@ -25,13 +25,13 @@ TEST(ChangeGate, AChangeThatDoesNotLastIsCountedAndNotTold) {
   EXPECT_FALSE(gate.offer(3, gate_time(5.0)));
   EXPECT_TRUE(gate.offer(3, gate_time(6.5)));
   EXPECT_EQ(gate.passed_over(), 1U) << "the 2 was never told";
-  EXPECT_EQ(gate.told(), 3U);
+  EXPECT_EQ(gate.reported(), 3U);
 }
 
 TEST(ChangeGate, AMonthOfFlappingIsReadableAndCountedInFull) {
   for (const double period_s : {0.5, 7.0, 45.0, 400.0}) {
     ChangeGate gate(0);
-    int told = 0;
+    int reported = 0;
     std::uint64_t passed_over = 0;
     std::uint64_t changes = 0;
     std::uint32_t value = 0;
@@ -45,11 +45,11 @@ TEST(ChangeGate, AMonthOfFlappingIsReadableAndCountedInFull) {
         next_change_s = now_s + period_s;
       }
       if (!gate.offer(value, gate_time(now_s))) continue;
-      ++told;
+      ++reported;
       passed_over += gate.passed_over();
     }
-    EXPECT_LT(told, 30 * 24 * 6) << period_s << " s: more than six lines an hour";
-    EXPECT_GT(told, 30) << period_s << " s: that it flaps is told again and again";
+    EXPECT_LT(reported, 30 * 24 * 6) << period_s << " s: more than six lines an hour";
+    EXPECT_GT(reported, 30) << period_s << " s: that it flaps is told again and again";
     EXPECT_LE(passed_over, changes);
   }
 }
@@ -59,7 +59,7 @@ TEST(ChangeGate, AChangeAfterAQuietDayIsToldWithinASecondOrTwo) {
   for (int i = 0; i < 100000; ++i) gate.offer(static_cast<std::uint32_t>(i / 2 % 2), gate_time(i));
   gate.offer(0, gate_time(100'001.0));
   gate.offer(0, gate_time(101'000.0));
-  ASSERT_EQ(gate.told(), 0U);
+  ASSERT_EQ(gate.reported(), 0U);
   gate.offer(1, gate_time(190'000.0));
   EXPECT_TRUE(gate.offer(1, gate_time(190'002.0)));
 }

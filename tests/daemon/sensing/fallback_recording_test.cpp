@@ -17,14 +17,14 @@ namespace {
 using namespace std::chrono_literals;
 using test::write_session;
 
-/// A sensor that speaks ten times a second while `is_answering`.
-std::atomic<bool> is_answering{false};
+/// A sensor that speaks ten times a second while `is_sending`.
+std::atomic<bool> is_sending{false};
 
 class WilfulSensor final : public Sensor {
  public:
   MonoTime poll(const Clock& clock, SensorSink& sink) override {
     const Instant now = clock.now();
-    if (is_answering && now.mono - last_ >= 100ms) {
+    if (is_sending && now.mono - last_ >= 100ms) {
       WindReading reading;
       reading.time = now;
       reading.speed_m_s = 12.0;
@@ -47,7 +47,7 @@ const DriverDescription kWilfulDriver{
 class FallbackRecordingTest : public ::testing::Test {
  protected:
   FallbackRecordingTest() {
-    is_answering = false;
+    is_sending = false;
     std::vector<WindReading> readings;
     readings.reserve(1500);
     for (std::int64_t i = 0; i < 1500; ++i) {
@@ -96,11 +96,11 @@ TEST_F(FallbackRecordingTest, PlaysWhileEverySensorIsSilentAndEndsWhenOneIsLiveA
   std::vector<double> recorded;
   SensorHub hub(config_, clock_, make_gust_noise(config_),
                 [&](std::size_t, const WindReading& reading) { recorded.push_back(reading.speed_m_s); });
-  is_answering = true;
+  is_sending = true;
   ASSERT_TRUE(tick_until(hub, [&] { return last_.u_m_s > 11.0; })) << "the sensors' wind";
   EXPECT_EQ(hub.status().size(), 2U);
 
-  is_answering = false;
+  is_sending = false;
   const MonoTime silent = clock_.now().mono;
   ASSERT_TRUE(tick_until(hub, [&] { return plays(hub); }));
   EXPECT_GE(clock_.now().mono - silent, 5s);
@@ -112,7 +112,7 @@ TEST_F(FallbackRecordingTest, PlaysWhileEverySensorIsSilentAndEndsWhenOneIsLiveA
   ASSERT_TRUE(tick_until(hub, [&] { return std::abs(last_.u_m_s - 4.0) < 0.3; })) << "the recording's wind";
   EXPECT_EQ(std::ranges::count(recorded, 4.0), 0) << "no sensor said that";
 
-  is_answering = true;
+  is_sending = true;
   ASSERT_TRUE(tick_until(hub, [&] { return hub.status().size() == 2; }));
   ASSERT_TRUE(tick_until(hub, [&] { return last_.u_m_s > 11.0; }));
   // From 12 to 4 m/s and back, over 3 s: critically damped, at most 0.37 w e a second with w = 4/3 for the weight, and

@@ -15,10 +15,10 @@ struct NotedPlayer final : RecordingPlayer {
     orders.push_back(order);
     return orders.size();
   }
-  PlayerReport report() const override { return told; }
+  PlayerReport report() const override { return reported; }
 
   std::vector<PlayerOrder> orders;
-  PlayerReport told;
+  PlayerReport reported;
   bool is_full = false;
 };
 
@@ -34,7 +34,7 @@ class PlayerDirectorTest : public testing::Test {
 
 TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
   PlayerDirector here = director(ControlPermission::kLoopback);
-  const auto one = here.answer({.action = wire::PlayerAction::kSeek, .sensor = "yard", .place = "+30"}, true);
+  const auto one = here.handle({.action = wire::PlayerAction::kSeek, .sensor = "yard", .place = "+30"}, true);
   EXPECT_TRUE(one.done);
   EXPECT_EQ(one.message, "yard was asked to seek to +30");
   ASSERT_EQ(one.players.size(), 1U);
@@ -45,28 +45,28 @@ TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
   EXPECT_EQ(yard_.orders[0].place, "+30");
   EXPECT_EQ(woken_, 1);
 
-  const auto all = here.answer({.action = wire::PlayerAction::kStep, .count = 7}, true);
+  const auto all = here.handle({.action = wire::PlayerAction::kStep, .count = 7}, true);
   EXPECT_EQ(all.message, "roof, yard was asked to advance by 7 readings");
   EXPECT_EQ(roof_.orders.at(0).count, 7U);
   EXPECT_EQ(yard_.orders.at(1).count, 7U);
-  here.answer({.action = wire::PlayerAction::kPause}, true);
-  here.answer({.action = wire::PlayerAction::kResume}, true);
-  here.answer({.action = wire::PlayerAction::kRate, .rate = 0.5}, true);
+  here.handle({.action = wire::PlayerAction::kPause}, true);
+  here.handle({.action = wire::PlayerAction::kResume}, true);
+  here.handle({.action = wire::PlayerAction::kRate, .rate = 0.5}, true);
   EXPECT_EQ(roof_.orders.at(1).kind, PlayerOrder::Kind::kPause);
   EXPECT_EQ(roof_.orders.at(2).kind, PlayerOrder::Kind::kResume);
   EXPECT_EQ(roof_.orders.at(3).rate, 0.5);
 }
 
 TEST_F(PlayerDirectorTest, TellsEveryoneHowThingsAreAndChangesNothing) {
-  roof_.told = {.file = "storm.windlog",
-                .position = PlayerPosition{.log_time = std::chrono::seconds(90),
-                                           .length = std::chrono::seconds(3600),
-                                           .rate = 2.0,
-                                           .is_paused = true,
-                                           .rounds = 3},
-                .orders_done = 4,
-                .refusal = "no"};
-  const auto reply = director(ControlPermission::kNobody).answer({}, false);
+  roof_.reported = {.file = "storm.windlog",
+                    .position = PlayerPosition{.log_time = std::chrono::seconds(90),
+                                               .length = std::chrono::seconds(3600),
+                                               .rate = 2.0,
+                                               .is_paused = true,
+                                               .rounds = 3},
+                    .orders_done = 4,
+                    .refusal = "no"};
+  const auto reply = director(ControlPermission::kNobody).handle({}, false);
   EXPECT_TRUE(reply.done);
   ASSERT_EQ(reply.players.size(), 2U);
   EXPECT_EQ(reply.players[0].sensor, "roof");
@@ -83,24 +83,24 @@ TEST_F(PlayerDirectorTest, TellsEveryoneHowThingsAreAndChangesNothing) {
 }
 
 TEST_F(PlayerDirectorTest, TakesOrdersOnlyFromThoseWhoMay) {
-  const wire::PlayerWish pause{.action = wire::PlayerAction::kPause};
-  EXPECT_FALSE(director(ControlPermission::kNobody).answer(pause, true).done);
-  EXPECT_FALSE(director(ControlPermission::kLoopback).answer(pause, false).done);
+  const wire::PlayerCommand pause{.action = wire::PlayerAction::kPause};
+  EXPECT_FALSE(director(ControlPermission::kNobody).handle(pause, true).done);
+  EXPECT_FALSE(director(ControlPermission::kLoopback).handle(pause, false).done);
   EXPECT_TRUE(roof_.orders.empty());
-  EXPECT_THAT(director(ControlPermission::kLoopback).answer(pause, false).message, HasSubstr("[stream] control"));
-  EXPECT_TRUE(director(ControlPermission::kAnywhere).answer(pause, false).done);
+  EXPECT_THAT(director(ControlPermission::kLoopback).handle(pause, false).message, HasSubstr("[stream] control"));
+  EXPECT_TRUE(director(ControlPermission::kAnywhere).handle(pause, false).done);
 }
 
 TEST_F(PlayerDirectorTest, SaysWhatThereIsWhereNothingFits) {
-  const auto unknown = director(ControlPermission::kLoopback).answer({.sensor = "cellar"}, true);
+  const auto unknown = director(ControlPermission::kLoopback).handle({.sensor = "cellar"}, true);
   EXPECT_FALSE(unknown.done);
   EXPECT_TRUE(unknown.players.empty());
   EXPECT_THAT(unknown.message, HasSubstr("roof, yard"));
-  const auto none = PlayerDirector(ControlPermission::kLoopback, {}).answer({}, true);
+  const auto none = PlayerDirector(ControlPermission::kLoopback, {}).handle({}, true);
   EXPECT_FALSE(none.done);
   EXPECT_THAT(none.message, HasSubstr("no sensor of this daemon"));
   roof_.is_full = true;
-  const auto full = director(ControlPermission::kLoopback).answer({.action = wire::PlayerAction::kPause}, true);
+  const auto full = director(ControlPermission::kLoopback).handle({.action = wire::PlayerAction::kPause}, true);
   EXPECT_FALSE(full.done);
   EXPECT_EQ(full.players[0].order, 0U);
 }

@@ -77,12 +77,12 @@ TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid
   script_.first_poll = [](const Clock& clock, SensorSink& sink) { sink.reading(reading_at(clock, 6.0)); };
   config_.sensors[0].calibration.gain = 1.5;
   config_.sensors[0].calibration.north_offset_deg = 180.0;
-  std::vector<double> heard;
+  std::vector<double> received;
   SensorHub hub(config_, clock_, make_gust_noise(config_),
-                [&](std::size_t, const WindReading& reading) { heard.push_back(reading.speed_m_s); });
+                [&](std::size_t, const WindReading& reading) { received.push_back(reading.speed_m_s); });
   script_.polled.get_future().wait();
   EXPECT_NEAR(wind_after_a_while(hub, clock_).wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
-  EXPECT_EQ(heard, std::vector{6.0});
+  EXPECT_EQ(received, std::vector{6.0});
   EXPECT_EQ(hub.status()[0].speed_m_s, 9.0);
   EXPECT_EQ(hub.status()[0].raw_speed_m_s, 6.0);
   EXPECT_EQ(hub.status()[0].raw_direction_deg, 90.0);
@@ -94,15 +94,15 @@ TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
     sink.link(LinkState::kConnected, "here");
     sink.reading(reading_at(clock, 6.0));
   };
-  std::vector<double> heard;
+  std::vector<double> received;
   SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t sensor, const WindReading& reading) {
     EXPECT_EQ(sensor, 0U);
-    heard.push_back(reading.speed_m_s);
+    received.push_back(reading.speed_m_s);
   });
   script_.polled.get_future().wait();
 
   const WindState state = wind_after_a_while(hub, clock_);
-  EXPECT_EQ(heard, std::vector{6.0});
+  EXPECT_EQ(received, std::vector{6.0});
   EXPECT_NE(state.source, WindSource::kDefault);
   EXPECT_NEAR(state.wind.u_m_s, -6.0, 0.2);
 
@@ -120,17 +120,17 @@ class HoldingSensor final : public Sensor {
  public:
   MonoTime poll(const Clock& clock, SensorSink& sink) override {
     const Instant now = clock.now();
-    if (now.mono - said_.time.mono >= std::chrono::milliseconds(100)) {
-      said_.is_held = said_.speed_m_s > 0.0;
-      said_.time = now;
-      said_.speed_m_s = 6.0;
-      sink.reading(said_);
+    if (now.mono - reading_.time.mono >= std::chrono::milliseconds(100)) {
+      reading_.is_held = reading_.speed_m_s > 0.0;
+      reading_.time = now;
+      reading_.speed_m_s = 6.0;
+      sink.reading(reading_);
     }
     return now.mono + std::chrono::milliseconds(1);
   }
 
  private:
-  WindReading said_;
+  WindReading reading_;
 };
 
 const DriverDescription kHoldingDriver{
@@ -140,15 +140,15 @@ const DriverDescription kHoldingDriver{
 
 TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
   config_.sensors[0].driver = &kHoldingDriver;
-  std::atomic<int> heard = 0;
-  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { ++heard; });
+  std::atomic<int> received = 0;
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { ++received; });
   // Two minutes: a sensor that measured the same for so long would be frozen.
   for (int tick = 0; tick < 1200; ++tick) {
     clock_.advance(std::chrono::milliseconds(100));
     ASSERT_TRUE(clock_.wait_for_waiters(1));
     hub.advance();
   }
-  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(received, 1);
   EXPECT_EQ(hub.status()[0].readings, 1U);
   EXPECT_EQ(hub.status()[0].state, SensorState::kLive) << "two minutes after it was first said";
 }
@@ -160,12 +160,12 @@ TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
     sink.reading(reading_at(clock, std::numeric_limits<double>::quiet_NaN()));
     sink.reading(reading_at(clock, -3.0));
   };
-  bool heard = false;
-  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { heard = true; });
+  bool received = false;
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { received = true; });
   script_.polled.get_future().wait();
   hub.advance();
 
-  EXPECT_FALSE(heard);
+  EXPECT_FALSE(received);
   const wire::SensorStatus status = hub.status().at(0);
   EXPECT_EQ(status.readings, 0U);
   EXPECT_FALSE(status.speed_m_s.has_value());

@@ -26,33 +26,33 @@ using ::testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What a sensor's thread hands to the test, which speaks in its place while the thread waits.
-struct Mouth {
+struct SensorControl {
   std::promise<SensorSink*> sink;
   std::promise<void> end;
 };
-std::deque<Mouth>* mouths = nullptr;
-std::size_t mouths_given = 0;
+std::deque<SensorControl>* controls = nullptr;
+std::size_t controls_given = 0;
 
-class SpokenSensor final : public Sensor {
+class ControlledSensor final : public Sensor {
  public:
-  SpokenSensor() : mouth_(mouths->at(mouths_given++)) {}
+  ControlledSensor() : control_(controls->at(controls_given++)) {}
   MonoTime poll(const Clock&, SensorSink& sink) override {
-    mouth_.sink.set_value(&sink);
-    mouth_.end.get_future().wait();
+    control_.sink.set_value(&sink);
+    control_.end.get_future().wait();
     return MonoTime::max();
   }
-  void interrupt() noexcept override { mouth_.end.set_value(); }
+  void interrupt() noexcept override { control_.end.set_value(); }
 
  private:
-  Mouth& mouth_;
+  SensorControl& control_;
 };
 
-std::unique_ptr<Sensor> open_spoken(const ParameterValues&) {
-  return std::make_unique<SpokenSensor>();
+std::unique_ptr<Sensor> open_controlled(const ParameterValues&) {
+  return std::make_unique<ControlledSensor>();
 }
-const DriverDescription kSpokenDriver{.name = "spoken", .summary = "", .parameters = {}, .open = open_spoken};
+const DriverDescription kControlledDriver{.name = "spoken", .summary = "", .parameters = {}, .open = open_controlled};
 const DriverDescription kPlayedDriver{
-    .name = "played", .summary = "", .parameters = {}, .open = open_spoken, .plays_recordings = true};
+    .name = "played", .summary = "", .parameters = {}, .open = open_controlled, .plays_recordings = true};
 
 class SensorJudgement : public ::testing::Test {
  protected:
@@ -60,7 +60,7 @@ class SensorJudgement : public ::testing::Test {
     config_ = default_config();
     config_.wind.default_speed_m_s = 2.0;
     config_.sensors.clear();
-    for (std::size_t i = 0; i < sensor_count; ++i) add_sensor(kSpokenDriver);
+    for (std::size_t i = 0; i < sensor_count; ++i) add_sensor(kControlledDriver);
     auto logger = std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log_));
     logger->set_pattern("%l %v");
     usual_logger_ = spdlog::default_logger();
@@ -77,18 +77,18 @@ class SensorJudgement : public ::testing::Test {
 
   void start() {
     static const auto noise = make_gust_noise(default_config());
-    mouths_.resize(config_.sensors.size());
-    mouths = &mouths_;
-    mouths_given = 0;
+    controls_.resize(config_.sensors.size());
+    controls = &controls_;
+    controls_given = 0;
     hub_ =
         std::make_unique<SensorHub>(config_, clock_, noise, [this](std::size_t, const WindReading&) { ++recorded_; });
-    for (Mouth& mouth : mouths_) {
-      sinks_.push_back(mouth.sink.get_future().get());
+    for (SensorControl& control : controls_) {
+      sinks_.push_back(control.sink.get_future().get());
       sinks_.back()->link(LinkState::kConnected, "here");
     }
   }
 
-  void say(std::size_t sensor, double speed_m_s, double direction_deg = 250.0, double late_s = 0.0) {
+  void publish(std::size_t sensor, double speed_m_s, double direction_deg = 250.0, double late_s = 0.0) {
     WindReading reading;
     reading.time = clock_.now();
     reading.time.mono -= from_seconds(late_s);
@@ -130,7 +130,7 @@ class SensorJudgement : public ::testing::Test {
 
   ManualClock clock_;
   Config config_;
-  std::deque<Mouth> mouths_;
+  std::deque<SensorControl> controls_;
   std::vector<SensorSink*> sinks_;
   std::unique_ptr<SensorHub> hub_;
   ReadingQuality quality_ = ReadingQuality::kGood;
@@ -152,20 +152,20 @@ class SensorJudgementOfThree : public SensorJudgement {
 
 TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenItMoves) {
   start();
-  go_on(120, [&] { say(0, breeze()); });
+  go_on(120, [&] { publish(0, breeze()); });
   EXPECT_EQ(state(), SensorState::kLive);
   EXPECT_EQ(hub_->wind().source, WindSource::kLive);
   const double normal_step_m_s = std::exchange(largest_step_m_s_, 0.0);
 
-  go_on(60, [&] { say(0, 6.5); });
+  go_on(60, [&] { publish(0, 6.5); });
   EXPECT_EQ(state(), SensorState::kFrozen);
   EXPECT_THAT(reason(), HasSubstr("the same reading, 6.50 m/s, 60 times"));
   EXPECT_EQ(hub_->status()[0].health, SourceHealth::kLive) << "it speaks";
   EXPECT_EQ(hub_->status()[0].speed_m_s, 6.5) << "what it says is shown";
-  go_on(60, [&] { say(0, 6.5); });
+  go_on(60, [&] { publish(0, 6.5); });
   EXPECT_NE(hub_->wind().source, WindSource::kLive);
 
-  go_on(30, [&] { say(0, breeze()); });
+  go_on(30, [&] { publish(0, breeze()); });
   EXPECT_EQ(state(), SensorState::kLive);
   EXPECT_EQ(hub_->wind().source, WindSource::kLive);
   EXPECT_LT(largest_step_m_s_, 2.0 * normal_step_m_s) << "neither loss nor return is a jump";
@@ -178,10 +178,10 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
 
 TEST_F(SensorJudgement, SpikesDoNotReachTheWind) {
   start();
-  go_on(60, [&] { say(0, breeze()); });
+  go_on(60, [&] { publish(0, breeze()); });
   const double normal_wind_m_s = std::exchange(largest_wind_m_s_, 0.0);
   int second = 0;
-  go_on(300, [&] { say(0, second++ % 20 == 0 ? 55.0 : breeze()); });
+  go_on(300, [&] { publish(0, second++ % 20 == 0 ? 55.0 : breeze()); });
   EXPECT_EQ(state(), SensorState::kLive) << "one in twenty is no fault";
   EXPECT_LT(largest_wind_m_s_, 1.5 * normal_wind_m_s);
   EXPECT_EQ(recorded_, 360);
@@ -190,11 +190,11 @@ TEST_F(SensorJudgement, SpikesDoNotReachTheWind) {
 
 TEST_F(SensorJudgement, ASensorThatSaysNonsenseAgainAndAgainIsImplausibleUntilItSpeaksSense) {
   start();
-  go_on(60, [&] { say(0, breeze()); });
-  go_on(30, [&] { say(0, kNan); });
+  go_on(60, [&] { publish(0, breeze()); });
+  go_on(30, [&] { publish(0, kNan); });
   EXPECT_EQ(state(), SensorState::kImplausible);
   EXPECT_THAT(reason(), HasSubstr("of its last readings"));
-  go_on(90, [&] { say(0, breeze()); });
+  go_on(90, [&] { publish(0, breeze()); });
   EXPECT_EQ(state(), SensorState::kLive);
   EXPECT_EQ(lines_of_log_with("implausible: "), 1) << log_.str();
 }
@@ -202,7 +202,7 @@ TEST_F(SensorJudgement, ASensorThatSaysNonsenseAgainAndAgainIsImplausibleUntilIt
 TEST_F(SensorJudgement, ASimulationMayBeAsSteadyAsItLikesAndSoMayOneThatIsNotJudged) {
   quality_ = ReadingQuality::kSimulated;
   start();
-  go_on(900, [&] { say(0, 6.0); });
+  go_on(900, [&] { publish(0, 6.0); });
   EXPECT_EQ(state(), SensorState::kSimulated);
   EXPECT_EQ(hub_->wind().source, WindSource::kLive);
 }
@@ -210,8 +210,8 @@ TEST_F(SensorJudgement, ASimulationMayBeAsSteadyAsItLikesAndSoMayOneThatIsNotJud
 TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
   config_.sensors[0].judge.reset();
   start();
-  go_on(60, [&] { say(0, breeze()); });
-  go_on(300, [&] { say(0, 6.0); });
+  go_on(60, [&] { publish(0, breeze()); });
+  go_on(300, [&] { publish(0, 6.0); });
   EXPECT_EQ(state(), SensorState::kLive);
   EXPECT_EQ(hub_->wind().source, WindSource::kLive);
 }
@@ -220,12 +220,12 @@ TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
   config_.sensors[0].judge->frozen_s = 100.0;
   config_.sensors[0].judge->max_speed_m_s = 40.0;
   start();
-  go_on(60, [&] { say(0, breeze()); });
-  go_on(95, [&] { say(0, 6.0); });
+  go_on(60, [&] { publish(0, breeze()); });
+  go_on(95, [&] { publish(0, 6.0); });
   EXPECT_EQ(state(), SensorState::kLive);
-  go_on(10, [&] { say(0, 6.0); });
+  go_on(10, [&] { publish(0, 6.0); });
   EXPECT_EQ(state(), SensorState::kFrozen);
-  go_on(30, [&] { say(0, 41.0 + 0.1 * breeze()); });
+  go_on(30, [&] { publish(0, 41.0 + 0.1 * breeze()); });
   EXPECT_EQ(state(), SensorState::kImplausible);
 }
 
@@ -233,9 +233,9 @@ TEST_F(SensorJudgement, ARecordingIsJudgedAsTheSensorWasAndNeverTakenForLive) {
   config_.sensors.clear();
   add_sensor(kPlayedDriver);
   start();
-  go_on(60, [&] { say(0, breeze()); });
+  go_on(60, [&] { publish(0, breeze()); });
   EXPECT_EQ(state(), SensorState::kReplayed);
-  go_on(60, [&] { say(0, 5.0); });
+  go_on(60, [&] { publish(0, 5.0); });
   EXPECT_EQ(state(), SensorState::kFrozen);
   EXPECT_TRUE(hub_->status()[0].replayed);
   sinks_[0]->link(LinkState::kFinished, "the end");
@@ -246,7 +246,7 @@ TEST_F(SensorJudgement, ARecordingIsJudgedAsTheSensorWasAndNeverTakenForLive) {
 TEST_F(SensorJudgement, SilenceIsStaleAndADeviceThatGoesIsDisconnected) {
   start();
   EXPECT_EQ(state(), SensorState::kConnecting);
-  go_on(30, [&] { say(0, breeze()); });
+  go_on(30, [&] { publish(0, breeze()); });
   go_on(10, [] {});
   EXPECT_EQ(state(), SensorState::kStale);
   EXPECT_THAT(reason(), HasSubstr("no reading for 10"));
@@ -260,7 +260,7 @@ TEST_F(SensorJudgement, AFlappingSensorDoesNotFloodTheLog) {
   start();
   int second = 0;
   go_on(3600, [&] {
-    if (second++ % 20 < 8) say(0, breeze());  // twelve seconds of silence: stale
+    if (second++ % 20 < 8) publish(0, breeze());  // twelve seconds of silence: stale
   });
   EXPECT_GE(lines_of_log_with("sensor spoken0: stale"), 1);
   EXPECT_LE(lines_of_log_with("sensor spoken0"), 14) << log_.str();
@@ -269,9 +269,9 @@ TEST_F(SensorJudgement, AFlappingSensorDoesNotFloodTheLog) {
 TEST_F(SensorJudgementOfThree, TheOneThatIsOutvotedLosesTheWindToTheNext) {
   start();
   const auto all_say = [&](double first_m_s) {
-    say(0, breeze(first_m_s));
-    say(1, breeze(5.0), 251.0);
-    say(2, breeze(6.0), 249.0);
+    publish(0, breeze(first_m_s));
+    publish(1, breeze(5.0), 251.0);
+    publish(2, breeze(6.0), 249.0);
   };
   go_on(60, [&] { all_say(5.5); });
   go_on(1000, [&] { all_say(33.0); });
@@ -290,9 +290,9 @@ TEST_F(SensorJudgementOfThree, WhoIsNotToBeComparedIsNeverOutvoted) {
   config_.sensors[0].is_compared = false;
   start();
   go_on(1000, [&] {
-    say(0, breeze(33.0));
-    say(1, breeze(5.0));
-    say(2, breeze(6.0));
+    publish(0, breeze(33.0));
+    publish(1, breeze(5.0));
+    publish(2, breeze(6.0));
   });
   EXPECT_EQ(state(0), SensorState::kLive);
 }
@@ -300,8 +300,8 @@ TEST_F(SensorJudgementOfThree, WhoIsNotToBeComparedIsNeverOutvoted) {
 TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
   start();
   go_on(1000, [&] {
-    say(0, breeze(3.0));
-    say(1, breeze(25.0));
+    publish(0, breeze(3.0));
+    publish(1, breeze(25.0));
   });
   for (const std::size_t sensor : {0U, 1U}) {
     EXPECT_EQ(state(sensor), SensorState::kLive);
@@ -315,13 +315,13 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
 TEST_F(SensorJudgementOfTwo, ACupThatStandsStillWhereTheOtherHasWindIsSeized) {
   config_.sensors[0].judge->seized_s = 900.0;
   start();
-  const auto other_says = [&] { say(1, breeze(7.0)); };
-  go_on(60, [&] { say(0, breeze()), other_says(); });
-  go_on(1400, [&] { say(0, 0.0), other_says(); });
+  const auto publish_other = [&] { publish(1, breeze(7.0)); };
+  go_on(60, [&] { publish(0, breeze()), publish_other(); });
+  go_on(1400, [&] { publish(0, 0.0), publish_other(); });
   EXPECT_EQ(state(0), SensorState::kSeized);
   EXPECT_THAT(reason(0), HasSubstr("while the other sensors measure 7"));
   EXPECT_GT(speed_of(hub_->wind().wind), 3.0) << "the other's wind";
-  go_on(20, [&] { say(0, breeze()), other_says(); });
+  go_on(20, [&] { publish(0, breeze()), publish_other(); });
   EXPECT_EQ(state(0), SensorState::kLive);
 }
 
@@ -338,28 +338,28 @@ TEST_F(SensorJudgementOfTwo, RandomFaultsLeaveTheWindFiniteAndBoundedAndTheState
     if (fault == 0) clock_.set_utc(clock_.now().utc + from_seconds(chance(2) ? kTenYears_s : -kTenYears_s));
     frozen_m_s = breeze();
     go_on(5.0 + static_cast<double>(random() % 40), [&] {
-      say(1 - sensor, breeze());
+      publish(1 - sensor, breeze());
       switch (fault) {
         case 1:
           return;  // silence
         case 2:
-          return say(sensor, chance(3) ? kNan : breeze());
+          return publish(sensor, chance(3) ? kNan : breeze());
         case 3:
-          return say(sensor, chance(4) ? 0.1 * static_cast<double>(random() % 1200) : breeze());
+          return publish(sensor, chance(4) ? 0.1 * static_cast<double>(random() % 1200) : breeze());
         case 4:
-          return say(sensor, frozen_m_s);
+          return publish(sensor, frozen_m_s);
         case 5:  // late ones, and such as come from the future
-          return say(sensor, breeze(), 250.0, chance(2) ? 3.0 : -kTenYears_s);
+          return publish(sensor, breeze(), 250.0, chance(2) ? 3.0 : -kTenYears_s);
         case 6:
-          for (int i = 0; i < 12; ++i) say(sensor, breeze(), static_cast<double>(random() % 360));
+          for (int i = 0; i < 12; ++i) publish(sensor, breeze(), static_cast<double>(random() % 360));
           return;
         case 7:
           sinks_[sensor]->link(chance(2) ? LinkState::kConnected : LinkState::kConnecting, "flaps");
           return;
         case 8:
-          return say(sensor, 0.0);
+          return publish(sensor, 0.0);
         default:
-          return say(sensor, breeze());
+          return publish(sensor, breeze());
       }
     });
     if (HasFatalFailure()) return;
@@ -372,8 +372,8 @@ TEST_F(SensorJudgementOfTwo, RandomFaultsLeaveTheWindFiniteAndBoundedAndTheState
   WindVector sum{};
   int seconds_seen = 0;
   go_on(180, [&] {
-    say(0, breeze());
-    say(1, breeze());
+    publish(0, breeze());
+    publish(1, breeze());
     if (++seconds_seen > 120) sum = sum + hub_->wind().wind;
   });
   EXPECT_EQ(state(0), SensorState::kLive) << reason(0);

@@ -16,7 +16,7 @@ SensorEvidence well() {
   evidence.link_detail = "answers at 10.0.0.5:502";
   WindReading reading;
   reading.speed_m_s = 3.42;
-  evidence.said = {.health = SourceHealth::kLive, .interval_s = 1.0, .age_s = 0.4, .last = reading};
+  evidence.report = {.health = SourceHealth::kLive, .interval_s = 1.0, .age_s = 0.4, .last = reading};
   return evidence;
 }
 
@@ -42,8 +42,8 @@ TEST(SensorState, BeforeItsFirstReadingItIsConnecting) {
 
 TEST(SensorState, SilenceOfADeviceThatIsThereIsStaleAndOfOneThatHasGoneDisconnected) {
   SensorEvidence evidence = well();
-  evidence.said.health = SourceHealth::kStale;
-  evidence.said.age_s = 12.34;
+  evidence.report.health = SourceHealth::kStale;
+  evidence.report.age_s = 12.34;
   EXPECT_EQ(state_of(evidence), SensorState::kStale);
   EXPECT_THAT(reason(evidence), StartsWith("no reading for 12.3 s; its usual interval is 1 s"));
   evidence.link = LinkState::kConnecting;
@@ -89,7 +89,7 @@ TEST(SensorState, ASingleSpikeChangesNothing) {
 TEST(SensorState, AFaultOfTheReadingsIsForgottenWithTheDevice) {
   SensorEvidence evidence = well();
   evidence.fault = ReadingFault::kFrozen;
-  evidence.said.health = SourceHealth::kStale;
+  evidence.report.health = SourceHealth::kStale;
   EXPECT_EQ(state_of(evidence), SensorState::kStale);
   evidence.link = LinkState::kConnecting;
   EXPECT_EQ(state_of(evidence), SensorState::kDisconnected);
@@ -101,19 +101,19 @@ TEST(SensorState, ADeviceThatSaysNothingButNonsenseIsImplausible) {
   evidence.fault = ReadingFault::kImplausible;
   evidence.bad_share = 1.0;
   EXPECT_EQ(state_of(evidence), SensorState::kImplausible);
-  evidence.said.health = SourceHealth::kStale;
+  evidence.report.health = SourceHealth::kStale;
   EXPECT_EQ(state_of(evidence), SensorState::kImplausible);
 }
 
 TEST(SensorState, SimulationsAndRecordingsSaySo) {
   SensorEvidence evidence = well();
-  evidence.said.last->quality = ReadingQuality::kSimulated;
+  evidence.report.last->quality = ReadingQuality::kSimulated;
   EXPECT_EQ(state_of(evidence), SensorState::kSimulated);
   evidence.is_replay = true;
   EXPECT_EQ(state_of(evidence), SensorState::kReplayed);
   evidence.fault = ReadingFault::kFrozen;
   EXPECT_EQ(state_of(evidence), SensorState::kFrozen) << "what is wrong matters more";
-  evidence.said.health = SourceHealth::kStale;
+  evidence.report.health = SourceHealth::kStale;
   evidence.link = LinkState::kFinished;
   EXPECT_EQ(state_of(evidence), SensorState::kDisconnected);
 }

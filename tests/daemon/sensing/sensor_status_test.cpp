@@ -18,7 +18,7 @@ SensorFacts roof_that_speaks() {
   reading.speed_m_s = 4.5;
   reading.direction_deg = 192.0;
   reading.gust_m_s = 6.0;
-  facts.evidence.said = {.health = SourceHealth::kLive, .interval_s = 1.0, .age_s = 0.4, .last = reading};
+  facts.evidence.report = {.health = SourceHealth::kLive, .interval_s = 1.0, .age_s = 0.4, .last = reading};
   reading.speed_m_s = 3.0;
   reading.direction_deg = 180.0;
   facts.last_raw = reading;
@@ -70,10 +70,10 @@ TEST(SensorStatus, TellsWhatWasRefusedByItsReasonAndNothingOfTheRest) {
 
 TEST(SensorStatus, WhatIsMadeUpOrPlayedIsMarked) {
   SensorFacts facts = roof_that_speaks();
-  facts.evidence.said.last->quality = ReadingQuality::kSimulated;
+  facts.evidence.report.last->quality = ReadingQuality::kSimulated;
   EXPECT_TRUE(sensor_status(facts).simulated);
   EXPECT_EQ(sensor_status(facts).state, SensorState::kSimulated);
-  facts.evidence.said.last->quality = ReadingQuality::kGood;
+  facts.evidence.report.last->quality = ReadingQuality::kGood;
   facts.evidence.is_replay = true;
   EXPECT_TRUE(sensor_status(facts).replayed);
   EXPECT_EQ(sensor_status(facts).state, SensorState::kReplayed);
@@ -81,13 +81,13 @@ TEST(SensorStatus, WhatIsMadeUpOrPlayedIsMarked) {
 
 TEST(SensorStatus, TheFallbackIsReplayedOnceItSpeaksAndSaysWhyItPlays) {
   const LinkReport link{.state = LinkState::kConnected, .detail = "plays calm.windlog"};
-  const SourceReport said = roof_that_speaks().evidence.said;
+  const SourceReport report = roof_that_speaks().evidence.report;
   const wire::SensorStatus begins = fallback_status("fall-back", "windlog", link, {}, 0);
   EXPECT_EQ(begins.state, SensorState::kConnecting);
   EXPECT_TRUE(begins.replayed);
   EXPECT_FALSE(begins.speed_m_s);
 
-  const wire::SensorStatus plays = fallback_status("fall-back", "windlog", link, said, 7);
+  const wire::SensorStatus plays = fallback_status("fall-back", "windlog", link, report, 7);
   EXPECT_EQ(plays.name, "fall-back");
   EXPECT_EQ(plays.driver, "windlog");
   EXPECT_EQ(plays.state, SensorState::kReplayed);

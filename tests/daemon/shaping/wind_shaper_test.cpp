@@ -25,15 +25,15 @@ using ::testing::Not;
 constexpr double kShaperTick_s = 1.0 / 60.0;
 
 /// What the log is told while this lives.
-class ToldLog {
+class CapturedLog {
  public:
-  ToldLog() : before_(spdlog::default_logger()) {
+  CapturedLog() : before_(spdlog::default_logger()) {
     spdlog::set_default_logger(
         std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(text_)));
   }
-  ~ToldLog() { spdlog::set_default_logger(before_); }
-  ToldLog(const ToldLog&) = delete;
-  ToldLog& operator=(const ToldLog&) = delete;
+  ~CapturedLog() { spdlog::set_default_logger(before_); }
+  CapturedLog(const CapturedLog&) = delete;
+  CapturedLog& operator=(const CapturedLog&) = delete;
 
   /// How many lines hold this.
   int count(const std::string& words) const {
@@ -104,7 +104,7 @@ TEST(WindShaper, TellsHowStrongGustsAreWhereTheyAreNotTheRealOnes) {
 }
 
 TEST(WindShaper, OpensAndClosesByTheWallAndSaysSo) {
-  const ToldLog log;
+  const CapturedLog log;
   ShaperBench wall("hours = \"10:00-18:00\"\nzone = \"Etc/UTC\"\nfade = 20\n");
   EXPECT_EQ(wall.after(6.0, 60.0), 0.0);
   EXPECT_EQ(wall.text(), "closed until 10:00");
@@ -131,7 +131,7 @@ TEST(WindShaper, NoJumpOfTheClockIsOneOfTheWind) {
 }
 
 TEST(WindShaper, TheFloorIsToldOnceHoweverTheWindFlickers) {
-  const ToldLog log;
+  const CapturedLog log;
   ShaperBench wall("floor = 2\nover = 10\n");
   for (int i = 0; i < 50; ++i) wall.after(i % 2 == 0 ? 1.0 : 1.4, 5.0);
   EXPECT_THAT(wall.text(), ::testing::MatchesRegex("floor: raised 1\\.[0-9] to 2\\.[01] m/s"));
@@ -142,7 +142,7 @@ TEST(WindShaper, TheFloorIsToldOnceHoweverTheWindFlickers) {
 }
 
 TEST(WindShaper, AStormIsToldOnceHoweverManyGustsItHas) {
-  const ToldLog log;
+  const CapturedLog log;
   ShaperBench wall("");
   for (int i = 0; i < 100; ++i) wall.after(i % 2 == 0 ? 12.0 : 30.0, 2.0);
   EXPECT_EQ(log.count("storm: 30.0 m/s is limited to"), 1);
@@ -179,7 +179,7 @@ TEST_F(SiteFileTest, TheSiteIsRememberedOverARestart) {
     while (!std::filesystem::exists(file_) && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
     EXPECT_TRUE(std::filesystem::exists(file_));
   }
-  const ToldLog log;
+  const CapturedLog log;
   ShaperBench wall(with_file());
   wall.shaper.keep_site_file();
   EXPECT_NEAR(wall.after(2.0), 4.0, 0.1);
@@ -196,7 +196,7 @@ TEST_F(SiteFileTest, TheSitesGustsAreRememberedOverARestart) {
     wall.shaper.keep_site_file(learnt);
     wall.after(2.0);
   }
-  const ToldLog log;
+  const CapturedLog log;
   const auto known = std::make_shared<SiteSpectrum>();
   ShaperBench wall("site_file = \"" + file_.string() + "\"\n");
   wall.shaper.keep_site_file(known);
@@ -208,7 +208,7 @@ TEST_F(SiteFileTest, AFileFromBeforeGustsWereLearntIsStillRead) {
   std::string times;
   for (std::size_t bin = 0; bin < SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
   std::ofstream(file_) << "{\"seconds_at_each_speed\": [" << times << "]}";
-  const ToldLog log;
+  const CapturedLog log;
   const auto gusts = std::make_shared<SiteSpectrum>();
   ShaperBench wall(with_file());
   wall.shaper.keep_site_file(gusts);
@@ -220,7 +220,7 @@ TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
   for (const char* wrong : {"", "{", "[]", "{\"seconds_at_each_speed\": 3}", "{\"seconds_at_each_speed\": [1, \"x\"]}",
                             "{\"seconds_at_each_speed\": [1, 2]}", "{\"seconds_at_each_speed\": [-1e999]}"}) {
     std::ofstream(file_) << wrong;
-    const ToldLog log;
+    const CapturedLog log;
     {
       ShaperBench wall(with_file());
       wall.shaper.keep_site_file();
@@ -232,7 +232,7 @@ TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
 }
 
 TEST_F(SiteFileTest, AFolderThatIsNotThereIsToldAndNoReasonToStop) {
-  const ToldLog log;
+  const CapturedLog log;
   {
     ShaperBench wall("site_median = 4\nsite_file = \"" + (folder_ / "not" / "there.json").string() + "\"\n");
     wall.shaper.keep_site_file();

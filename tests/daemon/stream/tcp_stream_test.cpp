@@ -123,8 +123,8 @@ class TcpStreamTest : public testing::Test {
     settings.scenes = samples::scenes();
     settings.check_every = 1ms;
     settings.now = [this] { return now_; };
-    settings.on_control = [this](const wire::Control& wish, bool is_local) {
-      wishes_.push_back(wish);
+    settings.on_control = [this](const wire::Control& control, bool is_local) {
+      controls_.push_back(control);
       all_were_local_ = all_were_local_ && is_local;
       return wire::ControlReply{.done = true, .message = "it is done", .scenes = {}};
     };
@@ -142,7 +142,7 @@ class TcpStreamTest : public testing::Test {
     return done();
   }
 
-  std::vector<wire::Control> wishes_;
+  std::vector<wire::Control> controls_;
   bool all_were_local_ = true;
   MonoTime now_{std::chrono::hours(1)};
   asio::io_context io_{1};
@@ -323,8 +323,8 @@ TEST_F(TcpStreamTest, AClientThatNeverSubscribesIsDroppedAfterItsTime) {
 }
 
 TEST_F(TcpStreamTest, WhoeverSendsWhatAClientMayNotSendIsDropped) {
-  wire::Bytes two_wishes = wire::encode(wire::Subscribe{.client = ""});
-  two_wishes.insert(two_wishes.end(), two_wishes.begin(), two_wishes.end());
+  wire::Bytes two_controls = wire::encode(wire::Subscribe{.client = ""});
+  two_controls.insert(two_controls.end(), two_controls.begin(), two_controls.end());
   const std::vector<wire::Bytes> offences{
       {'G', 'E', 'T', ' ', '/', ' ', 'H', 'T', 'T', 'P'},  // an impossible length
       {0x01, 0x10, 0, 0},                                  // one byte more than the server reads
@@ -332,7 +332,7 @@ TEST_F(TcpStreamTest, WhoeverSendsWhatAClientMayNotSendIsDropped) {
       {8, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8},                // garbage of an honest length
       wire::encode(samples::hello()),                      // a server's message
       wire::encode(wire::Subscribe{.protocol = 2, .client = "new"}),
-      two_wishes,
+      two_controls,
   };
   TestClient good(io_, stream_.local_endpoint());
   good.send(wire::encode(wire::Subscribe{.client = ""}));
@@ -436,33 +436,33 @@ TEST_F(TcpStreamTest, AnAddressOfAnotherMachineOrNoneIsRefused) {
   EXPECT_THROW(TcpStream(io_, "nonsense", settings()), FailureError);
 }
 
-TEST_F(TcpStreamTest, EveryWishToShowASceneIsAnswered) {
+TEST_F(TcpStreamTest, EveryRequestToShowASceneGetsAReply) {
   TestClient client(io_, stream_.local_endpoint());
   client.send(wire::encode(wire::Subscribe{.poses = false, .client = "test"}));
   client.send(wire::encode(wire::Control{.scene = "meadow", .shown = false, .over_s = 1.5}));
   client.send(wire::encode(wire::Control{.scene = "bank"}));
   ASSERT_TRUE(turn_until([&] { return client.replies.size() == 2; }));
   EXPECT_EQ(client.replies[0].message, "it is done");
-  ASSERT_EQ(wishes_.size(), 2u);
-  EXPECT_EQ(wishes_[0].scene, "meadow");
-  EXPECT_FALSE(wishes_[0].shown);
-  EXPECT_EQ(wishes_[0].over_s, 1.5);
+  ASSERT_EQ(controls_.size(), 2u);
+  EXPECT_EQ(controls_[0].scene, "meadow");
+  EXPECT_FALSE(controls_[0].shown);
+  EXPECT_EQ(controls_[0].over_s, 1.5);
   EXPECT_TRUE(all_were_local_) << "127.0.0.1 is this machine";
 }
 
-TEST_F(TcpStreamTest, AWishOfOneWhoHasNotSubscribedIsNotTaken) {
+TEST_F(TcpStreamTest, AControlBeforeTheSubscriptionIsRefused) {
   TestClient client(io_, stream_.local_endpoint());
   client.send(wire::encode(wire::Control{.scene = "meadow"}));
   EXPECT_TRUE(turn_until([&] { return client.closed; }));
-  EXPECT_TRUE(wishes_.empty());
+  EXPECT_TRUE(controls_.empty());
 }
 
-TEST_F(TcpStreamTest, AWishThatIsNoneEndsTheConnection) {
+TEST_F(TcpStreamTest, AnInvalidControlEndsTheConnection) {
   TestClient client(io_, stream_.local_endpoint());
   client.send(wire::encode(wire::Subscribe{.poses = false, .client = "test"}));
   client.send(wire::encode(wire::Control{.scene = "meadow", .over_s = -1.0}));
   EXPECT_TRUE(turn_until([&] { return client.closed; }));
-  EXPECT_TRUE(wishes_.empty());
+  EXPECT_TRUE(controls_.empty());
 }
 
 }  // namespace

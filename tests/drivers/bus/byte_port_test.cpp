@@ -81,7 +81,7 @@ class SerialBytePortTest : public testing::Test {
     address_.path = name.data();
   }
 
-  std::string far_end_hears(std::size_t size) const {
+  std::string far_end_reads(std::size_t size) const {
     std::string text(size, '\0');
     std::size_t at = 0;
     while (at < size) {
@@ -91,7 +91,7 @@ class SerialBytePortTest : public testing::Test {
     }
     return text.substr(0, at);
   }
-  void far_end_says(std::string_view text) const {
+  void far_end_writes(std::string_view text) const {
     ASSERT_EQ(::write(far_end_.get(), text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
 
@@ -105,10 +105,10 @@ TEST_F(SerialBytePortTest, CarriesEveryByteUnchangedBothWays) {
   ASSERT_TRUE(port->open().has_value());
   std::string all(256, '\0');
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<char>(i);
-  far_end_says(all);
+  far_end_writes(all);
   EXPECT_EQ(read_text(*port, all.size()), all);
   ASSERT_TRUE(write_text(*port, all));
-  EXPECT_EQ(far_end_hears(all.size()), all);
+  EXPECT_EQ(far_end_reads(all.size()), all);
 }
 
 TEST_F(SerialBytePortTest, SetsTheLineUpAsItIsTold) {
@@ -140,14 +140,14 @@ TEST_F(SerialBytePortTest, ForgetsWhatCameBeforeItWasOpened) {
   tcgetattr(kept_.get(), &raw);
   cfmakeraw(&raw);
   tcsetattr(kept_.get(), TCSANOW, &raw);
-  far_end_says("old");
+  far_end_writes("old");
   const auto deadline = std::chrono::steady_clock::now() + kHang;
   for (int waiting = 0; waiting < 3 && std::chrono::steady_clock::now() < deadline;) {
     ioctl(kept_.get(), FIONREAD, &waiting);
   }
   const auto port = make_byte_port(address_);
   ASSERT_TRUE(port->open().has_value());
-  far_end_says("new");
+  far_end_writes("new");
   EXPECT_EQ(read_text(*port, 3), "new");
 }
 
@@ -272,15 +272,15 @@ TEST(HostLookup, FindsAddressesAndNamesAndGivesUpAtItsTime) {
 }
 
 /// A socket to send datagrams from, at an address of its own.
-class Talker {
+class Sender {
  public:
-  explicit Talker(const char* from) : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  explicit Sender(const char* from) : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in address = at(from, 0);
     if (bind(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
       throw std::runtime_error("no address to send from");
     }
   }
-  void say(std::string_view text, std::uint16_t port, const char* to = "127.0.0.1") const {
+  void send(std::string_view text, std::uint16_t port, const char* to = "127.0.0.1") const {
     const sockaddr_in address = at(to, port);
     ASSERT_EQ(
         sendto(socket_.get(), text.data(), text.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address),
@@ -306,9 +306,9 @@ class UdpBytePort : public testing::Test {
 TEST_F(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
   const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = port_});
   ASSERT_TRUE(port->open().has_value());
-  const Talker talker("127.0.0.1");
+  const Sender sender("127.0.0.1");
   const std::string longest(60000, 'x');
-  for (const std::string& text : {std::string("one"), std::string("two"), longest}) talker.say(text, port_);
+  for (const std::string& text : {std::string("one"), std::string("two"), longest}) sender.send(text, port_);
 
   std::vector<std::uint8_t> buffer(kLargestDatagram);
   for (const std::size_t size : {std::size_t{3}, std::size_t{3}, longest.size()}) {
@@ -323,12 +323,12 @@ TEST_F(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
 TEST_F(UdpBytePort, TakesOnlyTheSenderThatItIsTold) {
   const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "", .port = port_, .sender = "127.0.0.2"});
   ASSERT_TRUE(port->open().has_value());
-  const Talker wanted("127.0.0.2");
-  const Talker other("127.0.0.1");
+  const Sender wanted("127.0.0.2");
+  const Sender other("127.0.0.1");
   std::vector<std::uint8_t> buffer(kLargestDatagram);
-  other.say("other", port_);
+  other.send("other", port_);
   EXPECT_EQ(port->read(buffer, kHang).status, ByteStatus::kForeign);
-  wanted.say("wanted", port_);
+  wanted.send("wanted", port_);
   const ByteArrival arrival = port->read(buffer, kHang);
   EXPECT_EQ(arrival.status, ByteStatus::kBytes);
   EXPECT_EQ(arrival.size, 6U);

@@ -140,7 +140,7 @@ TEST(HidFault, Split) {
 }
 
 /// The station says something else than the wind, and says it well: that is for others to judge.
-void expect_said_as_it_is(FaultKind kind, double said_m_s, double tolerance_m_s) {
+void expect_unchanged(FaultKind kind, double sent_m_s, double tolerance_m_s) {
   for (const Patience& patience : kPatience) {
     SCOPED_TRACE(patience.model);
     FaultyBench bench(patience.model, kind);
@@ -153,7 +153,7 @@ void expect_said_as_it_is(FaultKind kind, double said_m_s, double tolerance_m_s)
     bench.run_until(kFaultEnds_s - kOvershoot_s);
     ASSERT_GT(bench.readings(), before + 2U);
     for (std::size_t i = before; i < bench.readings(); ++i) {
-      EXPECT_NEAR(bench.sink.readings[i].speed_m_s, said_m_s, tolerance_m_s);
+      EXPECT_NEAR(bench.sink.readings[i].speed_m_s, sent_m_s, tolerance_m_s);
     }
     EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
     bench.run_until(kFaultEnds_s + 60.0);
@@ -163,11 +163,11 @@ void expect_said_as_it_is(FaultKind kind, double said_m_s, double tolerance_m_s)
 }
 
 TEST(HidFault, Freeze) {
-  expect_said_as_it_is(FaultKind::kFreeze, kSteady_m_s, 0.12);
+  expect_unchanged(FaultKind::kFreeze, kSteady_m_s, 0.12);
 }
 
 TEST(HidFault, Spike) {
-  expect_said_as_it_is(FaultKind::kSpike, 55.0, 0.12);
+  expect_unchanged(FaultKind::kSpike, 55.0, 0.12);
 }
 
 TEST(HidFault, Unplug) {

@@ -78,8 +78,8 @@ class MicrophoneSensorTest : public testing::Test {
   }
   void say(const std::vector<std::uint8_t>& bytes) { port_.next.emplace_back(bytes); }
   void say(ByteStatus status) { port_.next.emplace_back(status); }
-  void say_hello() { say(encode_mic_frame(hello_)); }
-  void say_blocks(std::size_t count) {
+  void send_hello() { say(encode_mic_frame(hello_)); }
+  void send_blocks(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) say(encode_mic_frame(blocks_.at(next_block_++), hello_));
   }
 
@@ -104,8 +104,8 @@ class MicrophoneFault : public MicrophoneSensorTest {};
 
 TEST_F(MicrophoneSensorTest, PublishesAReadingABlockOnceAWindowIsFull) {
   poll();
-  say_hello();
-  say_blocks(12);
+  send_hello();
+  send_blocks(12);
   hear();
   ASSERT_EQ(sink_.readings.size(), 9U);
   for (const WindReading& reading : sink_.readings) {
@@ -122,9 +122,9 @@ TEST_F(MicrophoneSensorTest, PublishesAReadingABlockOnceAWindowIsFull) {
 
 TEST_F(MicrophoneSensorTest, TimesAReadingByTheMiddleOfItsWindow) {
   poll();
-  say_hello();
+  send_hello();
   for (auto& block : blocks_) block.end_mono_ns = (clock_.now().mono - 50ms).time_since_epoch().count();
-  say_blocks(4);
+  send_blocks(4);
   hear();
   ASSERT_EQ(sink_.readings.size(), 1U);
   const double age_s = seconds(clock_.now().mono - sink_.readings[0].time.mono);
@@ -133,7 +133,7 @@ TEST_F(MicrophoneSensorTest, TimesAReadingByTheMiddleOfItsWindow) {
 
   // A stamp of another clock is not believed.
   for (auto& block : blocks_) block.end_mono_ns = 42;
-  say_blocks(1);
+  send_blocks(1);
   hear();
   EXPECT_NEAR(seconds(clock_.now().mono - sink_.readings.back().time.mono), 0.5, 0.02);
 }
@@ -141,8 +141,8 @@ TEST_F(MicrophoneSensorTest, TimesAReadingByTheMiddleOfItsWindow) {
 TEST_F(MicrophoneSensorTest, IsUncertainUntilItIsCalibrated) {
   settings_.is_calibrated = false;
   poll();
-  say_hello();
-  say_blocks(5);
+  send_hello();
+  send_blocks(5);
   hear();
   ASSERT_FALSE(sink_.readings.empty());
   EXPECT_EQ(sink_.readings.back().quality, ReadingQuality::kUncertain);
@@ -152,8 +152,8 @@ TEST_F(MicrophoneSensorTest, IsUncertainUntilItIsCalibrated) {
 TEST_F(MicrophoneSensorTest, IsUncertainWhileItClipsAndSaysSo) {
   for (MicBlock& block : blocks_) block.channels[0].clipped = 0.1F;
   poll();
-  say_hello();
-  say_blocks(5);
+  send_hello();
+  send_blocks(5);
   hear();
   ASSERT_FALSE(sink_.readings.empty());
   EXPECT_EQ(sink_.readings.back().quality, ReadingQuality::kUncertain);
@@ -186,14 +186,14 @@ TEST_F(MicrophoneSensorTest, KillsAWorkerThatNeverBegins) {
 
 TEST_F(MicrophoneSensorTest, KillsAWorkerThatTalksWithoutSayingAnything) {
   poll();
-  say_hello();
-  say_blocks(4);
+  send_hello();
+  send_blocks(4);
   hear();
   const MonoTime last_block = clock_.now().mono;
-  int talked = 0;
-  while (port_.closed == 0 && talked < 100000) {
+  int sent = 0;
+  while (port_.closed == 0 && sent < 100000) {
     say({'b', 'l', 'a'});
-    ++talked;
+    ++sent;
     poll();
   }
   EXPECT_EQ(port_.closed, 1);
@@ -203,22 +203,22 @@ TEST_F(MicrophoneSensorTest, KillsAWorkerThatTalksWithoutSayingAnything) {
 TEST_F(MicrophoneSensorTest, KeepsWhatItKnowsOfTheMicrophoneFromWorkerToWorker) {
   settings_.estimator.window_s = 0.5;
   poll();
-  say_hello();
-  say_blocks(20);
+  send_hello();
+  send_blocks(20);
   hear();
   ASSERT_TRUE(sink_.readings.back().gust_m_s);
   say(ByteStatus::kLost);
   hear();
   poll();
-  say_hello();
-  say_blocks(3);
+  send_hello();
+  send_blocks(3);
   hear();
   EXPECT_TRUE(sink_.readings.back().gust_m_s) << "the gusts of the last minutes are still known";
 }
 
 TEST_F(MicrophoneSensorTest, EndsAtOnceWhenItIsInterrupted) {
   poll();
-  say_hello();
+  send_hello();
   hear();
   sensor().interrupt();
   const MonoTime before = clock_.now().mono;
@@ -228,8 +228,8 @@ TEST_F(MicrophoneSensorTest, EndsAtOnceWhenItIsInterrupted) {
 
 TEST_F(MicrophoneFault, BadChecksum) {
   poll();
-  say_hello();
-  say_blocks(6);
+  send_hello();
+  send_blocks(6);
   hear();
   const auto before = sink_.readings.size();
   for (int i = 0; i < 3; ++i) {
@@ -240,7 +240,7 @@ TEST_F(MicrophoneFault, BadChecksum) {
   hear();
   EXPECT_GE(sink_.count(Refusal::kBadChecksum), 3);
   EXPECT_EQ(sink_.readings.size(), before);
-  say_blocks(2);
+  send_blocks(2);
   hear();
   EXPECT_EQ(sink_.readings.size(), before + 2);
   EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
@@ -248,8 +248,8 @@ TEST_F(MicrophoneFault, BadChecksum) {
 
 TEST_F(MicrophoneFault, Partial) {
   poll();
-  say_hello();
-  say_blocks(6);
+  send_hello();
+  send_blocks(6);
   hear();
   const auto before = sink_.readings.size();
   auto bytes = encode_mic_frame(blocks_.at(next_block_++), hello_);
@@ -262,8 +262,8 @@ TEST_F(MicrophoneFault, Partial) {
   EXPECT_THAT(sink_.last_detail(), HasSubstr("ended without a word"));
 
   poll();
-  say_hello();
-  say_blocks(5);
+  send_hello();
+  send_blocks(5);
   hear();
   EXPECT_EQ(sink_.readings.size(), before + 2) << "half a frame of the old worker is not put before the new one's";
   EXPECT_EQ(sink_.last_state(), LinkState::kConnected);

@@ -43,46 +43,46 @@ class HeldConnection final : public ModbusConnection {
   }
   bool send(const ModbusRequest& request, const ModbusPatience&) override {
     const std::lock_guard lock(mutex_);
-    asked_.push_back(request);
-    asked_at_.push_back(std::chrono::steady_clock::now());
+    requested_.push_back(request);
+    requested_at_.push_back(std::chrono::steady_clock::now());
     changed_.notify_all();
     return true;
   }
   BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
-    if (interruption.wait(may_answer_.get(), WaitFor::kReadable, kHang) != WaitEnd::kReady) {
+    if (interruption.wait(may_reply_.get(), WaitFor::kReadable, kHang) != WaitEnd::kReady) {
       return {BusStatus::kInterrupted};
     }
     eventfd_t one = 0;
-    eventfd_read(may_answer_.get(), &one);
+    eventfd_read(may_reply_.get(), &one);
     const std::lock_guard lock(mutex_);
-    const auto bytes = answer_with(asked_.back(), {86});
+    const auto bytes = reply_with(requested_.back(), {86});
     std::ranges::copy(bytes, buffer.begin());
     return {BusStatus::kMessage, bytes.size()};
   }
 
-  void let_answer(int count) { eventfd_write(may_answer_.get(), static_cast<eventfd_t>(count)); }
+  void let_reply(int count) { eventfd_write(may_reply_.get(), static_cast<eventfd_t>(count)); }
   bool wait_for_questions(std::size_t count) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, kHang, [&] { return asked_.size() >= count; });
+    return changed_.wait_for(lock, kHang, [&] { return requested_.size() >= count; });
   }
-  std::vector<int> asked_units() {
+  std::vector<int> requested_units() {
     const std::lock_guard lock(mutex_);
     std::vector<int> units;
-    for (const ModbusRequest& request : asked_) units.push_back(request.unit);
+    for (const ModbusRequest& request : requested_) units.push_back(request.unit);
     return units;
   }
-  std::vector<std::chrono::steady_clock::time_point> asked_at() {
+  std::vector<std::chrono::steady_clock::time_point> requested_at() {
     const std::lock_guard lock(mutex_);
-    return asked_at_;
+    return requested_at_;
   }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_open_ = false;
-  Descriptor may_answer_{eventfd(0, EFD_CLOEXEC | EFD_SEMAPHORE)};
-  std::vector<ModbusRequest> asked_;
-  std::vector<std::chrono::steady_clock::time_point> asked_at_;
+  Descriptor may_reply_{eventfd(0, EFD_CLOEXEC | EFD_SEMAPHORE)};
+  std::vector<ModbusRequest> requested_;
+  std::vector<std::chrono::steady_clock::time_point> requested_at_;
 };
 
 ModbusLine line_named(const std::string& host) {
@@ -94,10 +94,10 @@ ModbusLine line_named(const std::string& host) {
 /// Sensors as threads, each with its own unit, that ask once.
 class ModbusBusTest : public testing::Test {
  protected:
-  struct Asker {
+  struct Caller {
     Interruption interruption;
     RecordingSink sink;
-    std::optional<ModbusBus::Answer> answer;
+    std::optional<ModbusBus::Reply> reply;
     std::thread thread;
   };
   ModbusBusTest() {
@@ -108,15 +108,16 @@ class ModbusBusTest : public testing::Test {
     EXPECT_TRUE(bus_->open(interruption, clock_));
   }
   ~ModbusBusTest() override {
-    for (const auto& asker : askers_) {
-      if (asker->thread.joinable()) asker->thread.join();
+    for (const auto& caller : callers_) {
+      if (caller->thread.joinable()) caller->thread.join();
     }
   }
-  Asker& ask(std::uint8_t unit) {
-    Asker& asker = *askers_.emplace_back(std::make_unique<Asker>());
-    asker.thread = std::thread(
-        [this, unit, &asker] { asker.answer = bus_->ask({.unit = unit}, {}, asker.interruption, clock_, asker.sink); });
-    return asker;
+  Caller& exchange(std::uint8_t unit) {
+    Caller& caller = *callers_.emplace_back(std::make_unique<Caller>());
+    caller.thread = std::thread([this, unit, &caller] {
+      caller.reply = bus_->exchange({.unit = unit}, {}, caller.interruption, clock_, caller.sink);
+    });
+    return caller;
   }
   /// Until `count` of them stand in the queue, or have the line.
   void wait_until_waiting(std::size_t count) {
@@ -128,68 +129,68 @@ class ModbusBusTest : public testing::Test {
   SystemClock clock_;
   HeldConnection* connection_ = nullptr;
   std::unique_ptr<ModbusBus> bus_;
-  std::vector<std::unique_ptr<Asker>> askers_;
+  std::vector<std::unique_ptr<Caller>> callers_;
 };
 
 TEST_F(ModbusBusTest, ServesInTheOrderOfAsking) {
   std::vector<int> expected;
   for (std::uint8_t unit = 1; unit <= 8; ++unit) {
-    ask(unit);
+    exchange(unit);
     expected.push_back(unit);
     wait_until_waiting(unit);
   }
-  connection_->let_answer(8);
-  for (const auto& asker : askers_) {
-    asker->thread.join();
-    EXPECT_TRUE(asker->answer->has_value());
+  connection_->let_reply(8);
+  for (const auto& caller : callers_) {
+    caller->thread.join();
+    EXPECT_TRUE(caller->reply->has_value());
   }
-  EXPECT_EQ(connection_->asked_units(), expected);
+  EXPECT_EQ(connection_->requested_units(), expected);
 }
 
 TEST_F(ModbusBusTest, KeepsTheLongestGapThatAnySensorAsksFor) {
   bus_->keep_gap(60ms);
   bus_->keep_gap(10ms);
-  connection_->let_answer(3);
-  for (std::uint8_t unit = 1; unit <= 3; ++unit) ask(unit);
-  for (const auto& asker : askers_) asker->thread.join();
-  const auto at = connection_->asked_at();
+  connection_->let_reply(3);
+  for (std::uint8_t unit = 1; unit <= 3; ++unit) exchange(unit);
+  for (const auto& caller : callers_) caller->thread.join();
+  const auto at = connection_->requested_at();
   ASSERT_EQ(at.size(), 3U);
   EXPECT_GE(at[1] - at[0], 60ms);
   EXPECT_GE(at[2] - at[1], 60ms);
 }
 
 TEST_F(ModbusBusTest, EndsTheWaitOfTheOneWhoIsInterruptedAndOfNobodyElse) {
-  Asker& first = ask(1);
+  Caller& first = exchange(1);
   ASSERT_TRUE(connection_->wait_for_questions(1));
-  Asker& second = ask(2);
+  Caller& second = exchange(2);
   wait_until_waiting(2);
-  Asker& third = ask(3);
+  Caller& third = exchange(3);
   wait_until_waiting(3);
 
   second.interruption.set();
   bus_->wake_waiters();
   second.thread.join();
-  EXPECT_EQ(second.answer->error().kind, Kind::kInterrupted);
+  EXPECT_EQ(second.reply->error().kind, Kind::kInterrupted);
 
   first.interruption.set();
   first.thread.join();
-  EXPECT_EQ(first.answer->error().kind, Kind::kInterrupted);
-  connection_->let_answer(1);
+  EXPECT_EQ(first.reply->error().kind, Kind::kInterrupted);
+  connection_->let_reply(1);
   third.thread.join();
-  EXPECT_TRUE(third.answer->has_value());
-  EXPECT_THAT(connection_->asked_units(), testing::ElementsAre(1, 3));
+  EXPECT_TRUE(third.reply->has_value());
+  EXPECT_THAT(connection_->requested_units(), testing::ElementsAre(1, 3));
 }
 
 TEST_F(ModbusBusTest, EndsAWaitForTheGapToo) {
   bus_->keep_gap(1h);
-  connection_->let_answer(1);
-  ask(1).thread.join();
-  Asker& second = ask(2);
+  connection_->let_reply(1);
+  exchange(1).thread.join();
+  Caller& second = exchange(2);
   wait_until_waiting(1);
   second.interruption.set();
   bus_->wake_waiters();
   second.thread.join();
-  EXPECT_EQ(second.answer->error().kind, Kind::kInterrupted);
+  EXPECT_EQ(second.reply->error().kind, Kind::kInterrupted);
 }
 
 /// A bus on a fake line, one thread, time by hand.
@@ -197,7 +198,7 @@ class ModbusBusByHandTest : public testing::Test {
  protected:
   ModbusBusByHandTest() {
     line_.statuses = [this](const ModbusRequest&) { return std::deque{status_}; };
-    line_.message = [](const ModbusRequest& request) { return answer_with(request, {86}); };
+    line_.message = [](const ModbusRequest& request) { return reply_with(request, {86}); };
   }
   void make(ModbusFraming framing) {
     ModbusLine line = line_named("fake");
@@ -206,7 +207,9 @@ class ModbusBusByHandTest : public testing::Test {
     bus_ = std::make_unique<ModbusBus>(line, std::make_unique<FakeConnection>(line_));
     ASSERT_TRUE(bus_->open(interruption_, clock_));
   }
-  ModbusBus::Answer ask(std::uint8_t unit) { return bus_->ask({.unit = unit}, {}, interruption_, clock_, sink_); }
+  ModbusBus::Reply exchange(std::uint8_t unit) {
+    return bus_->exchange({.unit = unit}, {}, interruption_, clock_, sink_);
+  }
 
   FakeLine line_;
   BusStatus status_ = BusStatus::kMessage;
@@ -219,7 +222,7 @@ class ModbusBusByHandTest : public testing::Test {
 TEST_F(ModbusBusByHandTest, LetsASilentSlaveOfASerialLineBeForOneTimeOutMore) {
   make(ModbusFraming::kRtu);
   status_ = BusStatus::kSilence;
-  ask(5);
+  exchange(5);
   EXPECT_EQ(bus_->ready_at(5), clock_.now().mono + 500ms);
   EXPECT_LE(bus_->ready_at(6), clock_.now().mono);
 }
@@ -227,20 +230,20 @@ TEST_F(ModbusBusByHandTest, LetsASilentSlaveOfASerialLineBeForOneTimeOutMore) {
 TEST_F(ModbusBusByHandTest, NeedNotWaitOverTcpWhereALateAnswerIsKnownByItsNumber) {
   make(ModbusFraming::kTcp);
   status_ = BusStatus::kSilence;
-  ask(5);
+  exchange(5);
   EXPECT_LE(bus_->ready_at(5), clock_.now().mono);
 }
 
 TEST_F(ModbusBusByHandTest, LetsTheLineSettleAfterTroubleAndNotAfterAnAnswer) {
   make(ModbusFraming::kTcp);
-  ask(1);
+  exchange(1);
   EXPECT_EQ(line_.settled, 1);  // it had just been opened
-  ask(1);
+  exchange(1);
   EXPECT_EQ(line_.settled, 1);
   status_ = BusStatus::kSilence;
-  ask(1);
+  exchange(1);
   EXPECT_EQ(line_.settled, 1);
-  ask(1);
+  exchange(1);
   EXPECT_EQ(line_.settled, 2);
 }
 
@@ -250,8 +253,8 @@ TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
     return std::deque{request.unit == 1 ? BusStatus::kMessage : BusStatus::kSilence};
   };
   for (int i = 0; i < 10; ++i) {
-    ask(1);
-    ask(9);
+    exchange(1);
+    exchange(9);
   }
   ASSERT_TRUE(bus_->open(interruption_, clock_));
   EXPECT_EQ(line_.opened, 1);
@@ -259,7 +262,7 @@ TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
 
 TEST_F(ModbusBusByHandTest, ShowsEachMessageThatWentOrCame) {
   make(ModbusFraming::kTcp);
-  ask(7);
+  exchange(7);
   ASSERT_EQ(sink_.raws.size(), 2U);
   EXPECT_EQ(sink_.raws[0].direction, RawDirection::kSent);
   EXPECT_THAT(sink_.raws[0].message, testing::ElementsAre(0, 1, 0, 0, 0, 6, 7, 3, 0, 0, 0, 1));

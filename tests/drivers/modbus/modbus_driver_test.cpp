@@ -39,7 +39,7 @@ std::unique_ptr<Sensor> open_tcp(std::uint16_t port, const std::string& profile 
 }
 
 /// What a device with 8.6 m/s and 270 degrees answers.
-Bytes right_answer(const Bytes& request) {
+Bytes right_reply(const Bytes& request) {
   const std::uint16_t value = request[6] == 1 ? 86 : 270;
   return {request[0],
           request[1],
@@ -83,7 +83,7 @@ struct Bench {
 };
 
 TEST(ModbusDriver, ReadsBothSlavesOverTcp) {
-  const ScriptedServer server([](const Bytes& request) { return right_answer(request); });
+  const ScriptedServer server([](const Bytes& request) { return right_reply(request); });
   const auto sensor = open_tcp(server.port());
   Bench bench;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
@@ -94,7 +94,7 @@ TEST(ModbusDriver, ReadsBothSlavesOverTcp) {
 }
 
 TEST(ModbusDriver, ReachesAServerByItsName) {
-  const ScriptedServer server([](const Bytes& request) { return right_answer(request); });
+  const ScriptedServer server([](const Bytes& request) { return right_reply(request); });
   const auto sensor = open_sensor({{"host", std::string("localhost")}, {"port", std::int64_t{server.port()}}});
   Bench bench;
   EXPECT_TRUE(bench.poll_for_reading(*sensor));
@@ -104,7 +104,7 @@ TEST(ModbusDriver, ReachesAServerByItsName) {
 struct Fault {
   const char* name;
   Refusal why;
-  std::function<std::optional<Bytes>(const Bytes& request)> answer;
+  std::function<std::optional<Bytes>(const Bytes& request)> reply;
   double timeout_s = kPatient_s;
   LinkState state = LinkState::kConnecting;
 
@@ -116,7 +116,7 @@ class ModbusFaultTest : public testing::TestWithParam<Fault> {};
 TEST_P(ModbusFaultTest, IsCountedNeverPublishedAndTheReadingReturnsByItself) {
   std::atomic<bool> is_broken = false;
   const ScriptedServer server(
-      [&](const Bytes& request) { return is_broken ? GetParam().answer(request) : right_answer(request); });
+      [&](const Bytes& request) { return is_broken ? GetParam().reply(request) : right_reply(request); });
   const auto sensor = open_tcp(server.port(), "renke-rs-fsjt-n01", GetParam().timeout_s);
   Bench bench;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
@@ -140,30 +140,30 @@ INSTANTIATE_TEST_SUITE_P(Every, ModbusFaultTest,
                                                }},
                                          Fault{"WrongId", Refusal::kNotMine,
                                                [](const Bytes& request) {
-                                                 Bytes answer = right_answer(request);
-                                                 ++answer[6];
-                                                 return answer;
+                                                 Bytes reply = right_reply(request);
+                                                 ++reply[6];
+                                                 return reply;
                                                },
                                                kImpatient_s},
                                          Fault{"WrongTransaction", Refusal::kNotMine,
                                                [](const Bytes& request) {
-                                                 Bytes answer = right_answer(request);
-                                                 --answer[1];
-                                                 return answer;
+                                                 Bytes reply = right_reply(request);
+                                                 --reply[1];
+                                                 return reply;
                                                },
                                                kImpatient_s},
                                          Fault{"CutOff", Refusal::kTooShort,
                                                [](const Bytes& request) {
-                                                 Bytes answer = right_answer(request);
-                                                 answer.pop_back();
-                                                 return answer;
+                                                 Bytes reply = right_reply(request);
+                                                 reply.pop_back();
+                                                 return reply;
                                                },
                                                kImpatient_s},
                                          Fault{"OtherFunction", Refusal::kMalformed,
                                                [](const Bytes& request) {
-                                                 Bytes answer = right_answer(request);
-                                                 answer[7] = 4;
-                                                 return answer;
+                                                 Bytes reply = right_reply(request);
+                                                 reply[7] = 4;
+                                                 return reply;
                                                }},
                                          Fault{"NotModbus", Refusal::kMalformed,
                                                [](const Bytes&) {
@@ -172,9 +172,9 @@ INSTANTIATE_TEST_SUITE_P(Every, ModbusFaultTest,
                                                }},
                                          Fault{"TooFast", Refusal::kImplausible,
                                                [](const Bytes& request) {
-                                                 Bytes answer = right_answer(request);
-                                                 answer[9] = 0x7F;
-                                                 return answer;
+                                                 Bytes reply = right_reply(request);
+                                                 reply[9] = 0x7F;
+                                                 return reply;
                                                },
                                                kPatient_s, LinkState::kConnected}),
                          [](const auto& test) { return test.param.name; });
@@ -184,7 +184,7 @@ TEST(ModbusDriver, NeverTakesTheAnswerToAnEarlierRequestForTheNextOne) {
   Bytes held;
   int number = 0;
   const ScriptedServer server([&](const Bytes& request) {
-    Bytes late = std::exchange(held, right_answer(request));
+    Bytes late = std::exchange(held, right_reply(request));
     held.back() = static_cast<std::uint8_t>(++number);
     return late;
   });
@@ -195,10 +195,10 @@ TEST(ModbusDriver, NeverTakesTheAnswerToAnEarlierRequestForTheNextOne) {
 
 TEST(ModbusDriver, TakesTheRightAnswerBehindALateOne) {
   const ScriptedServer server([](const Bytes& request) {
-    Bytes late = right_answer(request);
+    Bytes late = right_reply(request);
     --late[1];
     late.back() = 0;
-    const Bytes right = right_answer(request);
+    const Bytes right = right_reply(request);
     late.insert(late.end(), right.begin(), right.end());
     return late;
   });
@@ -212,7 +212,7 @@ TEST(ModbusDriver, TakesTheRightAnswerBehindALateOne) {
 TEST(ModbusDriver, ComesBackAfterTheServerDroppedItsConnections) {
   std::atomic<bool> drops = false;
   const ScriptedServer server(
-      [&](const Bytes& request) { return drops ? std::nullopt : std::optional(right_answer(request)); });
+      [&](const Bytes& request) { return drops ? std::nullopt : std::optional(right_reply(request)); });
   const auto sensor = open_tcp(server.port());
   Bench bench;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
@@ -226,7 +226,7 @@ TEST(ModbusDriver, ComesBackAfterTheServerDroppedItsConnections) {
 }
 
 TEST(ModbusDriver, FindsARestartedServerAgainAndSaysSoMeanwhile) {
-  const auto script = [](const Bytes& request) { return right_answer(request); };
+  const auto script = [](const Bytes& request) { return right_reply(request); };
   auto server = std::make_unique<ScriptedServer>(script);
   const std::uint16_t port = server->port();
   const auto sensor = open_tcp(port);
@@ -282,8 +282,8 @@ class ScriptedSerial {
         if (read(line_, &byte, 1) != 1) return;
         request.push_back(byte);
         if (request.size() < 8) continue;
-        const Bytes answer = script_(request);
-        EXPECT_EQ(write(line_, answer.data(), answer.size()), std::ssize(answer));
+        const Bytes reply = script_(request);
+        EXPECT_EQ(write(line_, reply.data(), reply.size()), std::ssize(reply));
         request.clear();
       }
     });
@@ -305,7 +305,7 @@ class ScriptedSerial {
 struct SerialFault {
   const char* name;
   Refusal why;
-  Bytes answer;
+  Bytes reply;
   double timeout_s = kPatient_s;
 
   friend void PrintTo(const SerialFault& fault, std::ostream* out) { *out << fault.name; }
@@ -317,7 +317,7 @@ TEST_P(ModbusSerialFaultTest, IsCountedNeverPublishedAndTheReadingReturnsByItsel
   const SerialPort port;
   std::atomic<bool> is_broken = true;
   const ScriptedSerial device(port.far_end(), [&](const Bytes&) {
-    return is_broken ? GetParam().answer : Bytes{0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};
+    return is_broken ? GetParam().reply : Bytes{0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};
   });
   const auto sensor = open_sensor({{"transport", std::string("rtu")},
                                    {"device", port.device()},
@@ -414,9 +414,9 @@ TEST(ModbusDriver, AsksTheSlavesThatTheOptionsName) {
   std::atomic<int> strangers = 0;
   const ScriptedServer server([&](const Bytes& request) {
     if (request[6] != 7 && request[6] != 9) ++strangers;
-    Bytes answer = right_answer(request);
-    if (request[6] == 7) answer[9] = 0, answer[10] = 42;
-    return answer;
+    Bytes reply = right_reply(request);
+    if (request[6] == 7) reply[9] = 0, reply[10] = 42;
+    return reply;
   });
   const auto sensor = open_sensor(
       {{"port", std::int64_t{server.port()}}, {"speed_slave", std::int64_t{7}}, {"direction_slave", std::int64_t{9}}});
@@ -440,7 +440,7 @@ TEST(ModbusDriver, RefusesTwoSensorsThatWantDifferentSettingsOnOneSerialPort) {
 }
 
 TEST(ModbusDriver, KeepsTheGapThatTheInstallationAsksFor) {
-  const ScriptedServer server([](const Bytes& request) { return right_answer(request); });
+  const ScriptedServer server([](const Bytes& request) { return right_reply(request); });
   const auto sensor = open_sensor({{"port", std::int64_t{server.port()}}, {"min_gap", 0.3}});
   Bench bench;
   for (int i = 0; i < 6; ++i) {

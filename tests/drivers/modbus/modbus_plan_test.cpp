@@ -48,7 +48,7 @@ TEST(ModbusPlan, BringsTheSpeedFirstWhereverItStands) {
   profile.gust->address = 12;
   const auto reads = plan_modbus_reads(profile);
   ASSERT_EQ(reads.size(), 2U);
-  EXPECT_TRUE(reads[0].tells(kSpeed));
+  EXPECT_TRUE(reads[0].contains(kSpeed));
   EXPECT_THAT(reads[1].measures, ElementsAre(kDirection, kGust));
   EXPECT_EQ(reads[1].request.address, 11);
 }

@@ -35,7 +35,7 @@ class ModbusSensorTest : public testing::Test {
   ModbusSensorTest() {
     line_.statuses = [](const ModbusRequest&) { return std::deque{BusStatus::kMessage}; };
     line_.message = [](const ModbusRequest& request) {
-      return answer_with(request, {static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270)});
+      return reply_with(request, {static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270)});
     };
   }
 
@@ -123,7 +123,7 @@ TEST_F(ModbusSensorTest, PassesOverALateAnswerAndTakesTheRightOne) {
       --request.transaction;
       registers = {999};
     }
-    return answer_with(request, registers);
+    return reply_with(request, registers);
   };
   ModbusProfile profile = pair_profile();
   profile.direction.reset();
@@ -139,7 +139,7 @@ TEST_F(ModbusSensorTest, CountsAnAnswerOfAnotherSlaveOnceAndNotItsSilenceBesides
   make(pair_profile());
   line_.message = [](ModbusRequest request) {
     request.unit = 9;
-    return answer_with(request, {86});
+    return reply_with(request, {86});
   };
   poll();
   poll();
@@ -167,7 +167,7 @@ TEST_F(ModbusSensorTest, CountsEachFailureAsWhatItIsAndPublishesNothing) {
 TEST_F(ModbusSensorTest, SaysWhichExceptionAndWhatToDo) {
   make(pair_profile());
   line_.message = [](const ModbusRequest& request) {
-    auto bytes = answer_with(request, {});
+    auto bytes = reply_with(request, {});
     bytes[7] = 0x83;
     bytes[8] = 2;
     return bytes;
@@ -182,7 +182,7 @@ TEST_F(ModbusSensorTest, SaysWhichExceptionAndWhatToDo) {
 
 TEST_F(ModbusSensorTest, RefusesAnImplausibleSpeedAndAsksNoDirectionForIt) {
   make(pair_profile());
-  line_.message = [](const ModbusRequest& request) { return answer_with(request, {9999}); };
+  line_.message = [](const ModbusRequest& request) { return reply_with(request, {9999}); };
   poll();
   poll();
   EXPECT_THAT(sink_.refusals, ElementsAre(Refusal::kImplausible));
@@ -208,12 +208,12 @@ TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhileTheVaneIsSilentAndAsksItLess
 
 TEST_F(ModbusSensorTest, HasTheDirectionAgainWhenTheVaneIsBack) {
   make(pair_profile());
-  bool vane_answers = false;
+  bool vane_replies = false;
   line_.statuses = [&](const ModbusRequest& request) {
-    return request.unit == 1 || vane_answers ? std::deque{BusStatus::kMessage} : std::deque<BusStatus>{};
+    return request.unit == 1 || vane_replies ? std::deque{BusStatus::kMessage} : std::deque<BusStatus>{};
   };
   poll_for(30s);
-  vane_answers = true;
+  vane_replies = true;
   poll_for(11s);
   EXPECT_EQ(sink_.readings.back().direction_deg, 270.0);
   EXPECT_EQ(sink_.last_detail(), "pair at here:502");
@@ -301,7 +301,7 @@ TEST_F(ModbusSensorTest, ReadsAdjoiningRegistersOfOneSlaveAtOnce) {
   ModbusProfile profile = pair_profile();
   profile.direction->slave = 1;
   make(profile);
-  line_.message = [](const ModbusRequest& request) { return answer_with(request, {86, 270}); };
+  line_.message = [](const ModbusRequest& request) { return reply_with(request, {86, 270}); };
   poll();
   poll();
   ASSERT_EQ(line_.requests.size(), 1U);
@@ -319,7 +319,7 @@ TEST_F(ModbusSensorTest, ReadsABlockThatBeginsWithTheDirection) {
   profile.speed.address = 3;
   profile.speed.type = RegisterType::kU32;
   make(profile);
-  line_.message = [](const ModbusRequest& request) { return answer_with(request, {270, 0, 86}); };
+  line_.message = [](const ModbusRequest& request) { return reply_with(request, {270, 0, 86}); };
   poll();
   poll();
   ASSERT_EQ(line_.requests.size(), 1U);
@@ -382,7 +382,7 @@ TEST_F(ModbusSensorTest, PublishesAGustThatComesAlongOrByItself) {
     line_.message = [](const ModbusRequest& request) {
       std::vector<std::uint16_t> registers(request.count, static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270));
       if (request.unit == 1 && (request.count == 2 || request.address == 40)) registers.back() = 121;
-      return answer_with(request, registers);
+      return reply_with(request, registers);
     };
     poll_for(1s);
     ASSERT_FALSE(sink_.readings.empty());
@@ -417,7 +417,7 @@ TEST_F(ModbusSensorTest, AsksADeadSpeedSlaveLessAndLessOften) {
 TEST_F(ModbusSensorTest, KeepsItsPaceThroughNoiseThatCostsNoTime) {
   make(pair_profile());
   line_.message = [](const ModbusRequest& request) {
-    auto bytes = answer_with(request, {86});
+    auto bytes = reply_with(request, {86});
     bytes[7] = 4;  // another function
     return bytes;
   };
@@ -428,7 +428,7 @@ TEST_F(ModbusSensorTest, KeepsItsPaceThroughNoiseThatCostsNoTime) {
 TEST_F(ModbusSensorTest, TellsAGatewaysSilentSlaveFromARefusal) {
   make(pair_profile());
   line_.message = [](const ModbusRequest& request) {
-    auto bytes = answer_with(request, {});
+    auto bytes = reply_with(request, {});
     bytes[7] = 0x83;
     bytes[8] = 11;
     return bytes;

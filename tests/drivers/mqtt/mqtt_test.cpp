@@ -51,7 +51,7 @@ class MqttRun {
   bool is_in(LinkState state) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.last_state() == state; });
   }
-  bool says(const std::string& text) {
+  bool reports(const std::string& text) {
     return sensor_.wait_until(
         [&](const RecordingSink& sink) { return sink.last_detail().find(text) != std::string::npos; });
   }
@@ -133,7 +133,7 @@ TEST(MqttDriver, ReachesABrokerByItsName) {
 
 TEST(MqttDriver, SaysThatThereIsNoSuchHost) {
   MqttRun run(1, {{"host", std::string("no-such-host.invalid")}});
-  EXPECT_TRUE(run.says("no-such-host.invalid"));
+  EXPECT_TRUE(run.reports("no-such-host.invalid"));
 }
 
 TEST(MqttDriver, ForgetsADirectionThatIsOldOrNotKnownAnyMore) {
@@ -211,15 +211,15 @@ TEST(MqttDriver, SpeaksTlsAndChecksWhoTheBrokerIs) {
   EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4", {"--cafile", certificate}); }));
 
   MqttRun stranger(broker, {{"tls", true}});
-  EXPECT_TRUE(stranger.says("do not agree on TLS")) << "this system does not trust it";
+  EXPECT_TRUE(stranger.reports("do not agree on TLS")) << "this system does not trust it";
   MqttRun plain(broker, {});
-  EXPECT_TRUE(plain.says("MQTT broker 127.0.0.1")) << "says something, at least";
+  EXPECT_TRUE(plain.reports("MQTT broker 127.0.0.1")) << "says something, at least";
   EXPECT_EQ(plain.count(), 0U);
 }
 
 TEST(MqttDriver, SaysWhichFileOfCertificatesIsMissing) {
   MqttRun run(1, {{"tls", true}, {"ca_file", std::string("/no/such/file.pem")}});
-  EXPECT_TRUE(run.says("ca_file"));
+  EXPECT_TRUE(run.reports("ca_file"));
 }
 
 TEST(MqttDriver, NoticesABrokerThatHangs) {
@@ -243,7 +243,7 @@ TEST(MqttDriver, IsInterruptedWhateverItWaitsFor) {
 TEST(MqttDriver, GivesUpABrokerThatSaysNothing) {
   const ScriptedServer mute([](const ScriptedServer::Bytes&) { return ScriptedServer::Bytes{}; });
   MqttRun run(mute.port(), {});
-  EXPECT_TRUE(run.says("does not answer"));
+  EXPECT_TRUE(run.reports("does not answer"));
 }
 
 TEST(MqttDriver, ConnectsToABrokerThatIsSlowToTakeUs) {
@@ -276,7 +276,7 @@ TEST(MqttDriver, ConnectsToABrokerThatIsSlowToTakeUs) {
 
 TEST(MqttDriver, SaysThatThereIsNoBroker) {
   MqttRun run(free_port(SOCK_STREAM), {});
-  EXPECT_TRUE(run.says("check its address, the network, and that it runs")) << "refused";
+  EXPECT_TRUE(run.reports("check its address, the network, and that it runs")) << "refused";
 }
 
 TEST(MqttDriver, RefusesWhatCannotWork) {
@@ -301,7 +301,7 @@ TEST(MqttDriver, RefusesWhatCannotWork) {
 TEST(MqttFault, Silence) {
   RunningGarden garden({{"silence", 1.0}});
   EXPECT_TRUE(garden.run.is_in(LinkState::kConnecting));
-  EXPECT_TRUE(garden.run.says("no wind has come on topic garden/speed"));
+  EXPECT_TRUE(garden.run.reports("no wind has come on topic garden/speed"));
   EXPECT_TRUE(garden.run.reads_after([&] { garden.broker.publish("garden/speed", "5"); }));
   EXPECT_EQ(garden.run.last().speed_m_s, 5.0);
 }
@@ -374,7 +374,7 @@ TEST(MqttFault, Exception) {
   run_program({"mosquitto_passwd", "-b", passwords, "garden", "right"});
   MosquittoBroker broker("allow_anonymous false\npassword_file " + passwords + "\n");
   MqttRun run(broker, {{"user", std::string("garden")}, {"password", std::string("wrong")}});
-  EXPECT_TRUE(run.says("check `user` and `password`"));
+  EXPECT_TRUE(run.reports("check `user` and `password`"));
   EXPECT_EQ(run.state(), LinkState::kConnecting);
 
   run_program({"mosquitto_passwd", "-b", passwords, "garden", "wrong"});

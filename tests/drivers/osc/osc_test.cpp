@@ -79,7 +79,7 @@ class OscRun {
     return listens && has_read(before + 1);
   }
   void send_when_it_listens(const std::string& bytes) {
-    ASSERT_TRUE(says("waits for"));
+    ASSERT_TRUE(reports("waits for"));
     send_bytes(bytes);
   }
   bool reads_wind() {
@@ -94,7 +94,7 @@ class OscRun {
   bool is_in(LinkState state) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.last_state() == state; });
   }
-  bool says(const std::string& text) {
+  bool reports(const std::string& text) {
     return sensor_.wait_until(
         [&](const RecordingSink& sink) { return sink.last_detail().find(text) != std::string::npos; });
   }
@@ -303,7 +303,7 @@ TEST(OscFault, Disconnect) {
   // Another program has the port; then it ends.
   auto other = std::make_unique<LoopbackPort>(SOCK_DGRAM);
   OscRun run(other->port(), {});
-  EXPECT_TRUE(run.says("cannot listen at UDP"));
+  EXPECT_TRUE(run.reports("cannot listen at UDP"));
   EXPECT_EQ(run.all().last_state(), LinkState::kConnecting);
   other.reset();
   EXPECT_TRUE(run.reads_wind());

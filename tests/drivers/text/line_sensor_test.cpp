@@ -14,21 +14,21 @@ using testing::HasSubstr;
 class LineSensorTest : public testing::Test, protected ScriptedText {
  protected:
   /// Hears a line after one that it may doubt.
-  void hear_line(const std::string& line) {
-    hear("#\n");
-    hear(line + "\n");
+  void receive_line(const std::string& line) {
+    receive("#\n");
+    receive(line + "\n");
   }
 };
 
 TEST_F(LineSensorTest, ReadsColumnsAndKeys) {
   make_line({{"gust_column", std::int64_t{3}}});
-  hear_line("4.2,270,6.1");
+  receive_line("4.2,270,6.1");
   ASSERT_EQ(sink.readings.size(), 1U);
   EXPECT_DOUBLE_EQ(sink.readings[0].speed_m_s, 4.2);
   EXPECT_EQ(sink.readings[0].direction_deg, 270.0);
   EXPECT_EQ(sink.readings[0].gust_m_s, 6.1);
   make_line();
-  hear_line("speed=4.2 direction=270");
+  receive_line("speed=4.2 direction=270");
   ASSERT_EQ(sink.readings.size(), 2U);
   EXPECT_DOUBLE_EQ(sink.readings[1].speed_m_s, 4.2);
 }
@@ -43,14 +43,14 @@ TEST_F(LineSensorTest, ReadsWhatItsParametersSay) {
              {"direction_scale", 22.5},
              {"north_offset", -90.0},
              {"invalid", std::string("-999")}});
-  hear_line("2;21.5;180");
+  receive_line("2;21.5;180");
   ASSERT_EQ(sink.readings.size(), 1U);
   EXPECT_NEAR(sink.readings[0].speed_m_s, 19.8 / 3.6, 1e-9);
   EXPECT_NEAR(*sink.readings[0].direction_deg, 315.0, 1e-9);
-  hear("-999;21.5;180\n");
+  receive("-999;21.5;180\n");
   ASSERT_EQ(sink.readings.size(), 2U);
   EXPECT_FALSE(sink.readings[1].direction_deg.has_value());
-  hear("2;21.5;-999\n");
+  receive("2;21.5;-999\n");
   EXPECT_EQ(sink.readings.size(), 2U);
   EXPECT_EQ(sink.count(Refusal::kInvalid), 1);
 }
@@ -59,56 +59,56 @@ TEST_F(LineSensorTest, KnowsEachUnit) {
   for (const auto& [unit, speed_m_s] :
        {std::pair("m/s", 10.0), std::pair("km/h", 2.7778), std::pair("kn", 5.1444), std::pair("mph", 4.4704)}) {
     make_line({{"speed_unit", std::string(unit)}});
-    hear_line("10,90");
+    receive_line("10,90");
     EXPECT_NEAR(sink.readings.back().speed_m_s, speed_m_s, 1e-4) << unit;
   }
 }
 
 TEST_F(LineSensorTest, DoubtsTheLineInWhoseMiddleItBegan) {
   make_line();
-  far_end.say("2.5,180\r\n");  // of "12.5,180"
-  hear("12.5,180\r\n");
+  far_end.send("2.5,180\r\n");  // of "12.5,180"
+  receive("12.5,180\r\n");
   ASSERT_EQ(sink.readings.size(), 1U);
   EXPECT_EQ(sink.readings[0].speed_m_s, 12.5);
 
   // A datagram is whole.
   make_line({{"transport", std::string("udp")}});
-  far_end.says.push_back({ByteStatus::kBytes, "12.5,180", true});
+  far_end.incoming.push_back({ByteStatus::kBytes, "12.5,180", true});
   run(1s);
   EXPECT_EQ(sink.readings.size(), 2U);
 }
 
 TEST_F(LineSensorTest, RefusesALineOfAnotherShapeUntilItComesAgain) {
   make_line();
-  hear_line("4.2,270");
-  hear("4.2,274.3,270\n");  // two, run into each other
-  hear("4\n");
+  receive_line("4.2,270");
+  receive("4.2,274.3,270\n");  // two, run into each other
+  receive("4\n");
   EXPECT_EQ(sink.readings.size(), 1U);
   EXPECT_EQ(sink.count(Refusal::kMalformed), 2);
-  hear("4.2,270\n");
+  receive("4.2,270\n");
   EXPECT_EQ(sink.readings.size(), 2U);
 
   // The sketch was changed.
-  hear("4.2,270,21.5\n");
-  hear("4.2,270,21.5\n");
+  receive("4.2,270,21.5\n");
+  receive("4.2,270,21.5\n");
   EXPECT_EQ(sink.readings.size(), 3U);
 }
 
 TEST_F(LineSensorTest, RefusesALineNextToGarbage) {
   make_line();
-  hear_line("4.2,270");
-  hear("\xf3\x91\n7,7\n");
+  receive_line("4.2,270");
+  receive("\xf3\x91\n7,7\n");
   EXPECT_EQ(sink.readings.size(), 1U);
-  hear("4.2,270\n");
+  receive("4.2,270\n");
   EXPECT_EQ(sink.readings.size(), 2U);
 }
 
 TEST_F(LineSensorTest, DropsALineThatPausesInTheMiddle) {
   make_line();
-  hear_line("4.2,270");
-  hear("4.2,2");
+  receive_line("4.2,270");
+  receive("4.2,2");
   run(1s);
-  hear("4.3,271\n");
+  receive("4.3,271\n");
   ASSERT_EQ(sink.readings.size(), 2U);
   EXPECT_EQ(sink.readings[1].speed_m_s, 4.3);
   EXPECT_EQ(sink.readings[1].direction_deg, 271.0);
@@ -116,12 +116,12 @@ TEST_F(LineSensorTest, DropsALineThatPausesInTheMiddle) {
 }
 
 TEST_F(LineSensorTest, ForgetsWhatAnArduinoSaysAsItStarts) {
-  far_end.say("9.9,9\n9.9,9\n");
+  far_end.send("9.9,9\n9.9,9\n");
   make_line({{"delay_after_open", 2.0}});
   run(3s);
   EXPECT_TRUE(sink.readings.empty());
   EXPECT_TRUE(sink.raws.empty());
-  hear_line("4.2,270");
+  receive_line("4.2,270");
   EXPECT_EQ(sink.readings.size(), 1U);
 }
 

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string said(std::string_view body) {
+std::string nmea_line(std::string_view body) {
   return sentence(body) + "\r\n";
 }
 std::string framed(std::string_view body) {
@@ -37,21 +37,21 @@ class NmeaSensorTest : public testing::Test, protected ScriptedText {
 
 TEST_F(NmeaSensorTest, ReadsEachFormatByItsLook) {
   const std::vector<std::string> lines = {
-      said("WIMWV,123.0,R,7.00,M,A"),
-      said("WIMWD,123.0,T,,M,13.61,N,7.00,M"),
-      said("IIVWR,123.0,R,13.61,N,7.00,M,25.20,K"),
-      said("IIVWT,123.0,R,13.61,N,7.00,M,25.20,K"),
-      said("WIMDA,29.9,I,1.013,B,12.5,C,,,55.0,,3.7,C,123.0,T,,M,13.61,N,7.00,M"),
-      said("WIXDR,A,118,D,0,A,123,D,1,A,128,D,2,S,6.1,M,0,S,7.0,M,1,S,8.2,M,2"),
+      nmea_line("WIMWV,123.0,R,7.00,M,A"),
+      nmea_line("WIMWD,123.0,T,,M,13.61,N,7.00,M"),
+      nmea_line("IIVWR,123.0,R,13.61,N,7.00,M,25.20,K"),
+      nmea_line("IIVWT,123.0,R,13.61,N,7.00,M,25.20,K"),
+      nmea_line("WIMDA,29.9,I,1.013,B,12.5,C,,,55.0,,3.7,C,123.0,T,,M,13.61,N,7.00,M"),
+      nmea_line("WIXDR,A,118,D,0,A,123,D,1,A,128,D,2,S,6.1,M,0,S,7.0,M,1,S,8.2,M,2"),
       framed("Q,123,007.00,M,00,"),
       framed("Q,+003.8125,+005.8707,M,00,"),
-      said("WI,WVP=007.0,123,0"),
+      nmea_line("WI,WVP=007.0,123,0"),
   };
   for (const std::string& line : lines) {
     SCOPED_TRACE(line);
     sink = {};
     make_nmea();
-    hear(line);
+    receive(line);
     EXPECT_EQ(sink.readings.size(), 1U);
     expect_last(7.0, 123.0);
     EXPECT_TRUE(sink.refusals.empty());
@@ -62,9 +62,9 @@ TEST_F(NmeaSensorTest, ReadsEachFormatByItsLook) {
 TEST_F(NmeaSensorTest, PublishesOneWindOfABurstOnceAndPrefersNorth) {
   make_nmea();
   for (int second = 0; second < 10; ++second) {
-    far_end.say(said("WIMWV,57.5,R,13.0,N,A"));
-    far_end.say(said("WIMWV,96.6,T,11.2,N,A"));
-    hear(said("WIMWD,328.2,T,326.8,M,11.2,N,5.8,M"));
+    far_end.send(nmea_line("WIMWV,57.5,R,13.0,N,A"));
+    far_end.send(nmea_line("WIMWV,96.6,T,11.2,N,A"));
+    receive(nmea_line("WIMWD,328.2,T,326.8,M,11.2,N,5.8,M"));
     run(750ms);
   }
   EXPECT_EQ(sink.readings.size(), 10U);
@@ -81,9 +81,9 @@ TEST_F(NmeaSensorTest, TakesTheReferenceThatItIsTold) {
     sink = {};
     make_nmea({{"reference", std::string(reference)}});
     for (int second = 0; second < 3; ++second) {
-      far_end.say(said("WIMWD,328.2,T,326.8,M,11.2,N,5.8,M"));
-      far_end.say(said("WIMWV,57.5,R,13.0,N,A"));
-      hear(said("WIMWV,96.6,T,11.2,N,A"));
+      far_end.send(nmea_line("WIMWD,328.2,T,326.8,M,11.2,N,5.8,M"));
+      far_end.send(nmea_line("WIMWV,57.5,R,13.0,N,A"));
+      receive(nmea_line("WIMWV,96.6,T,11.2,N,A"));
     }
     EXPECT_EQ(sink.readings.size(), 3U);
     expect_last(speed_m_s, std::string(reference) == "relative" ? 57.5 : 96.6);
@@ -94,75 +94,75 @@ TEST_F(NmeaSensorTest, TakesTheReferenceThatItIsTold) {
 TEST_F(NmeaSensorTest, NeverMixesFramesOfDirection) {
   make_nmea();
   for (int second = 0; second < 3; ++second) {
-    far_end.say(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
-    hear(said("WIMWV,57.5,R,13.0,N,A"));
+    far_end.send(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+    receive(nmea_line("WIMWV,57.5,R,13.0,N,A"));
     run(750ms);
   }
   sink.readings.clear();
 
   // The compass fails: the wind goes on, but its direction from the bow is none from north.
   for (int second = 0; second < 10; ++second) {
-    hear(said("WIMWV,57.5,R,13.0,N,A"));
+    receive(nmea_line("WIMWV,57.5,R,13.0,N,A"));
     run(750ms);
   }
   EXPECT_GE(sink.readings.size(), 5U);
   for (const WindReading& reading : sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
 
-  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
   run(750ms);
-  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
   expect_last(5.8, 328.2);
 }
 
 TEST_F(NmeaSensorTest, HasNoDirectionInACalmAndNeverAZero) {
   make_nmea();
-  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
-  hear(said("WIMWD,,T,,M,0.0,N,0.0,M"));
+  receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  receive(nmea_line("WIMWD,,T,,M,0.0,N,0.0,M"));
   expect_last(0.0, {});
   make_nmea();
-  hear(framed("Q,229,002.74,M,00,"));
-  hear(framed("Q,,000.04,M,00,"));
+  receive(framed("Q,229,002.74,M,00,"));
+  receive(framed("Q,,000.04,M,00,"));
   expect_last(0.04, {});
 }
 
 TEST_F(NmeaSensorTest, TakesTheTalkersAndSentencesThatItIsTold) {
   make_nmea({{"talker", std::string("24")}});
-  hear(said("02MWV,327.6,R,1.89,N"));
+  receive(nmea_line("02MWV,327.6,R,1.89,N"));
   EXPECT_TRUE(sink.readings.empty());
-  hear(said("24MWV,88.8,R,0.36,N"));
+  receive(nmea_line("24MWV,88.8,R,0.36,N"));
   expect_last(0.1852, 88.8);
   EXPECT_EQ(sink.readings.back().quality, ReadingQuality::kUncertain) << "it says nothing of its status";
 
   sink = {};
   make_nmea({{"sentences", std::string("VWR, MWV")}});
-  hear(said("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
+  receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
   EXPECT_THAT(sink.refusals, ElementsAre(Refusal::kNotMine));
-  hear(said("WIMWV,57.5,R,13.0,N,A"));
+  receive(nmea_line("WIMWV,57.5,R,13.0,N,A"));
   expect_last(6.6878, 57.5);
 
   sink = {};
   make_nmea({{"talker", std::string("Q")}});
-  hear(framed("R,229,002.74,M,00,"));
+  receive(framed("R,229,002.74,M,00,"));
   EXPECT_TRUE(sink.readings.empty());
-  hear(framed("Q,229,002.74,M,00,"));
+  receive(framed("Q,229,002.74,M,00,"));
   expect_last(2.74, 229.0);
 }
 
 TEST_F(NmeaSensorTest, TurnsDirectionsByTheMarkAndTheVariation) {
   make_nmea({{"north_offset", -20.0}, {"variation", 7.5}});
-  hear(said("WIMWV,10.0,R,5.0,M,A"));
+  receive(nmea_line("WIMWV,10.0,R,5.0,M,A"));
   expect_last(5.0, 350.0);
   make_nmea({{"north_offset", -20.0}, {"variation", 7.5}});
-  hear(said("IIMWD,,,355.0,M,10.1,N,5.0,M"));
+  receive(nmea_line("IIMWD,,,355.0,M,10.1,N,5.0,M"));
   expect_last(5.0, 2.5);
   make_nmea({{"north_offset", -20.0}, {"variation", 7.5}});
-  hear(said("IIMWD,10.0,T,355.0,M,10.1,N,5.0,M"));
+  receive(nmea_line("IIMWD,10.0,T,355.0,M,10.1,N,5.0,M"));
   expect_last(5.0, 10.0);
 }
 
 TEST_F(NmeaSensorTest, TakesLinesWithoutAChecksumWhereTheWireHasOneOfItsOwn) {
   make_nmea();
-  for (int i = 0; i < 20; ++i) hear("$WIMWV,214.8,R,0.1,K\r\n");
+  for (int i = 0; i < 20; ++i) receive("$WIMWV,214.8,R,0.1,K\r\n");
   EXPECT_TRUE(sink.readings.empty());
   EXPECT_EQ(sink.count(Refusal::kBadChecksum), 20);
   EXPECT_THAT(sink.last_detail(), HasSubstr("missing_checksum to \"accept\""));
@@ -171,26 +171,26 @@ TEST_F(NmeaSensorTest, TakesLinesWithoutAChecksumWhereTheWireHasOneOfItsOwn) {
                                             ParameterValues::Map{{"transport", std::string("udp")}}}) {
     sink = {};
     make_nmea(given);
-    hear("$WIMWV,214.8,R,0.1,K\r\n");
+    receive("$WIMWV,214.8,R,0.1,K\r\n");
     expect_last(0.1 / 3.6, 214.8);
     EXPECT_EQ(sink.readings.back().quality, ReadingQuality::kUncertain);
-    hear("$WIMWV,214.8,R,0.1,K*00\r\n");
+    receive("$WIMWV,214.8,R,0.1,K*00\r\n");
     EXPECT_EQ(sink.count(Refusal::kBadChecksum), 1) << "a wrong one is wrong everywhere";
   }
 
   sink = {};
   make_nmea({{"missing_status", std::string("refuse")}});
-  hear(said("02MWV,327.6,R,1.89,N"));
+  receive(nmea_line("02MWV,327.6,R,1.89,N"));
   EXPECT_TRUE(sink.readings.empty());
 }
 
 TEST_F(NmeaSensorTest, ReadsOnWhereOthersTalkOnTheSameLine) {
   make_nmea();
   for (int second = 0; second < 20; ++second) {
-    far_end.say("!AIVDM,1,1,,A,13u?etPv2;0n:dDPwUM1U1Cb069D,0*24\r\n");
-    far_end.say("Calypso ready\r\n");
-    far_end.say(said("GPGGA,094736,5251.0094,N,00518.8172,E,1,12,0.60,-4,M,46.8,M,,"));
-    far_end.say(std::string(3, '\0') + said("WIMWV,046.,R,5.0,M,A"));
+    far_end.send("!AIVDM,1,1,,A,13u?etPv2;0n:dDPwUM1U1Cb069D,0*24\r\n");
+    far_end.send("Calypso ready\r\n");
+    far_end.send(nmea_line("GPGGA,094736,5251.0094,N,00518.8172,E,1,12,0.60,-4,M,46.8,M,,"));
+    far_end.send(std::string(3, '\0') + nmea_line("WIMWV,046.,R,5.0,M,A"));
     run(1s);
   }
   EXPECT_GE(sink.readings.size(), 19U);
@@ -201,43 +201,43 @@ TEST_F(NmeaSensorTest, ReadsOnWhereOthersTalkOnTheSameLine) {
 
 TEST_F(NmeaSensorTest, JoinsADirectionAndASpeedThatComeApart) {
   make_nmea({{"format", std::string("umb")}, {"transport", std::string("udp")}});
-  hear("$ 28673 M 00500 32760\r\n");
+  receive("$ 28673 M 00500 32760\r\n");
   EXPECT_TRUE(sink.readings.empty()) << "a direction alone is no reading";
-  hear("$ 28673 M 00400 08736\r\n");
+  receive("$ 28673 M 00400 08736\r\n");
   expect_last(10.0, 179.95);
-  hear("$ 28673 M 00500 32760\r\n");
+  receive("$ 28673 M 00500 32760\r\n");
   run(3s);
-  hear("$ 28673 M 00400 08736\r\n");
+  receive("$ 28673 M 00400 08736\r\n");
   expect_last(10.0, {});
 }
 
 TEST_F(NmeaSensorTest, AsksADeviceThatOnlyAnswers) {
   make_nmea({{"format", std::string("umb")}});
-  far_end.answer = [this](const std::string& request) {
-    far_end.say(request + "\n");  // one pair of wires: everybody hears himself
-    far_end.say(said("WIMWV,230.6,R,003.4,N,A"));
+  far_end.on_request = [this](const std::string& request) {
+    far_end.send(request + "\n");  // one pair of wires: everybody hears himself
+    far_end.send(nmea_line("WIMWV,230.6,R,003.4,N,A"));
   };
   run(10s);
-  ASSERT_GE(far_end.heard.size(), 9U);
-  EXPECT_LE(far_end.heard.size(), 11U);
-  EXPECT_EQ(far_end.heard.front(), "01TR4\r");
+  ASSERT_GE(far_end.written.size(), 9U);
+  EXPECT_LE(far_end.written.size(), 11U);
+  EXPECT_EQ(far_end.written.front(), "01TR4\r");
   EXPECT_GE(sink.readings.size(), 9U);
   expect_last(1.749, 230.6);
   EXPECT_EQ(std::ranges::count(sink.raws, RawDirection::kSent, &RecordingSink::Raw::direction),
-            std::ssize(far_end.heard));
+            std::ssize(far_end.written));
 
   far_end = {};
   make_nmea({{"format", std::string("ft")}, {"poll_interval", 0.5}, {"address", std::string("02")}});
   run(1s);
-  ASSERT_FALSE(far_end.heard.empty());
-  EXPECT_EQ(far_end.heard.front(), sentence("02,WV?") + "\r\n");
+  ASSERT_FALSE(far_end.written.empty());
+  EXPECT_EQ(far_end.written.front(), sentence("02,WV?") + "\r\n");
 }
 
 /// The machine was busy, and nobody read for a while: what is there then is the answer all the same.
 TEST_F(NmeaSensorTest, TakesAnAnswerThatWaitedToBeRead) {
   make_nmea({{"format", std::string("umb")}});
-  far_end.answer = [this](const std::string&) {
-    far_end.say(said("WIMWV,230.6,R,003.4,N,A"));
+  far_end.on_request = [this](const std::string&) {
+    far_end.send(nmea_line("WIMWV,230.6,R,003.4,N,A"));
     clock.advance(800ms);
   };
   run(10s);
@@ -248,14 +248,14 @@ TEST_F(NmeaSensorTest, TakesAnAnswerThatWaitedToBeRead) {
 TEST_F(NmeaSensorTest, AsksADeadDeviceLessOften) {
   make_nmea({{"format", std::string("umb")}, {"poll_interval", 0.2}, {"silence_timeout", 3600.0}});
   run(60s);
-  EXPECT_LE(far_end.heard.size(), 30U);
-  EXPECT_GE(far_end.heard.size(), 20U);
+  EXPECT_LE(far_end.written.size(), 30U);
+  EXPECT_GE(far_end.written.size(), 20U);
   EXPECT_THAT(sink.last_detail(), HasSubstr("does not answer"));
 }
 
 TEST_F(NmeaSensorTest, SaysThatTheDeviceCannotMeasure) {
   make_nmea();
-  for (int i = 0; i < 20; ++i) hear(said("WIMWV,,R,,M,V"));
+  for (int i = 0; i < 20; ++i) receive(nmea_line("WIMWV,,R,,M,V"));
   EXPECT_TRUE(sink.readings.empty());
   EXPECT_EQ(sink.count(Refusal::kInvalid), 20);
   EXPECT_EQ(sink.last_state(), LinkState::kConnected) << "it is there and speaks";

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using Wire = TextFaultBench::Wire;
 
 /// A device that speaks only when it is asked, in this format, and what its driver is told of that.
-struct AskedDevice {
+struct PolledDevice {
   std::string format;
   ParameterValues::Map given;
 };
@@ -50,7 +50,7 @@ struct TextDriver {
   std::vector<std::string> partial_formats;
   std::vector<Wire> partial_wires;
   std::vector<double> partial_rates_hz;
-  std::vector<AskedDevice> asked;
+  std::vector<PolledDevice> polled;
 
   friend void PrintTo(const TextDriver& driver, std::ostream* out) { *out << driver.name; }
 };
@@ -75,7 +75,7 @@ TextDriver line_driver() {
       .partial_formats = {"csv", "key-value"},
       .partial_wires = {Wire::kPty, Wire::kTcp},
       .partial_rates_hz = {1.0, 4.0, 20.0},
-      .asked = {{"csv", {{"request", std::string("?\n")}, {"poll_interval", 0.25}}}},
+      .polled = {{"csv", {{"request", std::string("?\n")}, {"poll_interval", 0.25}}}},
   };
 }
 
@@ -100,8 +100,8 @@ TextDriver nmea_driver() {
       .partial_formats = {"mwv", "gill"},
       .partial_wires = {Wire::kPty, Wire::kTcp, Wire::kUdp},
       .partial_rates_hz = {4.0},
-      .asked = {{"umb", {{"format", std::string("umb")}, {"poll_interval", 0.25}}},
-                {"ft", {{"format", std::string("ft")}, {"poll_interval", 0.25}}}},
+      .polled = {{"umb", {{"format", std::string("umb")}, {"poll_interval", 0.25}}},
+                 {"ft", {{"format", std::string("ft")}, {"poll_interval", 0.25}}}},
   };
 }
 
@@ -239,8 +239,8 @@ TEST_P(Fault, Partial) {
 }
 
 TEST_P(Fault, Late) {
-  for (const AskedDevice& asked : driver_.asked) {
-    put(Wire::kPty, asked.format, 0.0, asked.given);
+  for (const PolledDevice& polled : driver_.polled) {
+    put(Wire::kPty, polled.format, 0.0, polled.given);
     ASSERT_TRUE(is_live());
     bench_.run(15.0, FaultKind::kLate);
     EXPECT_TRUE(bench_.sink.readings.empty()) << "an answer to an earlier question was taken for the one to this";

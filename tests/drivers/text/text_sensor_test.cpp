@@ -35,7 +35,7 @@ TEST_F(TextSensorTest, GivesTheSameReadingsHoweverBytesAreSplit) {
     far_end = {};
     for (std::string_view rest = text; !rest.empty();) {
       const std::size_t size = std::min<std::size_t>(rest.size(), 1 + random() % (round % 2 == 0 ? 7 : 200));
-      far_end.say(rest.substr(0, size));
+      far_end.send(rest.substr(0, size));
       rest.remove_prefix(size);
     }
     run(2s);
@@ -51,24 +51,24 @@ TEST_F(TextSensorTest, GivesTheSameReadingsHoweverBytesAreSplit) {
 
 TEST_F(TextSensorTest, KeepsNothingOfALineWithoutEnd) {
   make_nmea();
-  hear(mwv_line(1.0));
+  receive(mwv_line(1.0));
   const std::size_t before = mallinfo2().uordblks;
   std::size_t most = before;
   const std::string block(std::size_t{64} * 1024, '7');
   for (int i = 0; i < 160; ++i) {
-    far_end.say(block);
-    while (!far_end.says.empty()) clock.advance_to(sensor->poll(clock, sink));
+    far_end.send(block);
+    while (!far_end.incoming.empty()) clock.advance_to(sensor->poll(clock, sink));
     most = std::max<std::size_t>(most, mallinfo2().uordblks);
   }
   EXPECT_LT(most - before, 1024U * 1024U) << "10 MB have passed";
   EXPECT_EQ(sink.count(Refusal::kMalformed), 1) << "refused once, and skipped";
-  hear("\r\n" + mwv_line(2.0));
+  receive("\r\n" + mwv_line(2.0));
   EXPECT_EQ(sink.readings.back().speed_m_s, 2.0);
 }
 
 TEST_F(TextSensorTest, TracesWhateverComes) {
   make_nmea();
-  hear("# comment\r\n" + mwv_line(1.0) + "\xff\xfe\r\n");
+  receive("# comment\r\n" + mwv_line(1.0) + "\xff\xfe\r\n");
   std::vector<std::string> traced;
   for (const auto& raw : sink.raws) traced.emplace_back(raw.message.begin(), raw.message.end());
   EXPECT_THAT(traced, testing::ElementsAre("# comment", sentence("WIMWV,90.0,R,1.000000,M,A"), "\xff\xfe"));
@@ -77,7 +77,7 @@ TEST_F(TextSensorTest, TracesWhateverComes) {
 TEST_F(TextSensorTest, OpensADeviceAgainAfterTenTimesItsUsualSilence) {
   make_nmea();
   for (int i = 0; i < 10; ++i) {
-    hear(mwv_line(1.0));
+    receive(mwv_line(1.0));
     run(1750ms);
   }
   EXPECT_EQ(far_end.opened, 1);
@@ -88,7 +88,7 @@ TEST_F(TextSensorTest, OpensADeviceAgainAfterTenTimesItsUsualSilence) {
   EXPECT_GE(far_end.opened, 2);
   EXPECT_EQ(far_end.closed, far_end.opened - 1);
   EXPECT_GE(sink.count(Refusal::kTimeout), 1);
-  hear(mwv_line(1.0));
+  receive(mwv_line(1.0));
   EXPECT_EQ(sink.last_state(), LinkState::kConnected);
 }
 
@@ -101,11 +101,11 @@ TEST_F(TextSensorTest, WaitsForAnArduinoThatStartsAnewWheneverItIsOpened) {
     if (far_end.opened > started) {
       started = far_end.opened;
       since = clock.now().mono;
-      far_end.say("# Arduino\r\n# wind station\r\n");
+      far_end.send("# Arduino\r\n# wind station\r\n");
     }
     if (clock.now().mono - since >= 60s) {
       since = clock.now().mono;
-      far_end.say(mwv_line(1.0));
+      far_end.send(mwv_line(1.0));
     }
     clock.advance_to(sensor->poll(clock, sink));
   }
@@ -117,7 +117,7 @@ TEST_F(TextSensorTest, WaitsForAnArduinoThatStartsAnewWheneverItIsOpened) {
 TEST_F(TextSensorTest, DoesNotGetUsedToOutages) {
   make_nmea({{"silence_timeout", 3600.0}});
   for (int outage = 0; outage < 20; ++outage) {
-    for (int i = 0; i < 5; ++i) hear(mwv_line(1.0));
+    for (int i = 0; i < 5; ++i) receive(mwv_line(1.0));
     EXPECT_EQ(sink.last_state(), LinkState::kConnected);
     run(3500ms);
     EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
@@ -128,24 +128,24 @@ TEST_F(TextSensorTest, DoesNotGetUsedToOutages) {
 /// A device that was quick and is set to be slow.
 TEST_F(TextSensorTest, GetsUsedToASlowerPace) {
   make_nmea({{"silence_timeout", 3600.0}});
-  for (int i = 0; i < 20; ++i) hear(mwv_line(1.0));
+  for (int i = 0; i < 20; ++i) receive(mwv_line(1.0));
   for (int i = 0; i < 6; ++i) {
     run(20s);
-    hear(mwv_line(1.0));
+    receive(mwv_line(1.0));
   }
-  const std::size_t told = sink.links.size();
+  const std::size_t reported = sink.links.size();
   for (int i = 0; i < 6; ++i) {
     run(20s);
-    hear(mwv_line(1.0));
+    receive(mwv_line(1.0));
   }
-  EXPECT_EQ(sink.links.size(), told);
+  EXPECT_EQ(sink.links.size(), reported);
   EXPECT_EQ(sink.last_state(), LinkState::kConnected);
 }
 
 TEST_F(TextSensorTest, IsPatientWithASlowDevice) {
   make_nmea();
   for (int minute = 0; minute < 20; ++minute) {
-    hear(mwv_line(1.0));
+    receive(mwv_line(1.0));
     run(59'750ms);
   }
   EXPECT_EQ(far_end.opened, 1);
@@ -155,7 +155,7 @@ TEST_F(TextSensorTest, IsPatientWithASlowDevice) {
 
 TEST_F(TextSensorTest, OpensAgainAfterTheSilenceThatItIsTold) {
   make_nmea({{"silence_timeout", 2.0}});
-  hear(mwv_line(1.0));
+  receive(mwv_line(1.0));
   run(60s);
   EXPECT_GE(far_end.opened, 6);
   EXPECT_LE(far_end.opened, 16) << "the waits between grow";
@@ -167,22 +167,22 @@ TEST_F(TextSensorTest, SaysThatBytesComeButNoLine) {
   for (int i = 0; i < 100; ++i) {
     std::string noise(24, '\0');
     for (char& byte : noise) byte = static_cast<char>(0x80U | random());  // as a wrong baud rate makes of text
-    hear(noise);
+    receive(noise);
   }
   EXPECT_THAT(sink.last_detail(), HasSubstr("bytes come from /dev/script at 9600 8N1, but no line: check baud"));
   EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
-  hear("\r\n" + mwv_line(3.0));
+  receive("\r\n" + mwv_line(3.0));
   EXPECT_EQ(sink.last_state(), LinkState::kConnected);
 }
 
 TEST_F(TextSensorTest, SaysWhichLinesItCannotUse) {
   make_nmea();
-  for (int i = 0; i < 20; ++i) hear("$GPGGA,094736,5251.0094,N*00\r\n# hello\r\n");
+  for (int i = 0; i < 20; ++i) receive("$GPGGA,094736,5251.0094,N*00\r\n# hello\r\n");
   EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
   EXPECT_THAT(sink.last_detail(), HasSubstr("wrong checksums"));
   make_nmea();
   sink = {};
-  for (int i = 0; i < 20; ++i) hear("T=21.5 H=40\r\n");
+  for (int i = 0; i < 20; ++i) receive("T=21.5 H=40\r\n");
   EXPECT_THAT(sink.last_detail(), HasSubstr("no wind in them (the first: \"T=21.5 H=40\")"));
   EXPECT_LE(sink.links.size(), 3U) << "what has not changed is not told again";
 }
@@ -198,10 +198,10 @@ TEST_F(TextSensorTest, TriesAgainForEverWhatCannotBeOpenedReadOrWritten) {
   EXPECT_GE(far_end.opened, 2);
   EXPECT_THAT(sink.last_detail(), HasSubstr("takes no request"));
   far_end.can_write = true;
-  far_end.answer = [this](const std::string&) { far_end.say(mwv_line(1.0)); };
+  far_end.on_request = [this](const std::string&) { far_end.send(mwv_line(1.0)); };
   run(15s);
   EXPECT_EQ(sink.last_state(), LinkState::kConnected);
-  far_end.says.push_front({ByteStatus::kLost, "", false});
+  far_end.incoming.push_front({ByteStatus::kLost, "", false});
   run(100ms);
   EXPECT_THAT(sink.last_detail(), HasSubstr("is gone"));
   run(15s);
@@ -210,8 +210,8 @@ TEST_F(TextSensorTest, TriesAgainForEverWhatCannotBeOpenedReadOrWritten) {
 
 TEST_F(TextSensorTest, PlaysAFileAtItsPaceAndFinishes) {
   make_nmea({{"transport", std::string("file")}, {"file", std::string("script")}, {"play_rate", 2.0}});
-  for (int i = 0; i < 20; ++i) far_end.say(mwv_line(i));
-  far_end.says.push_back({ByteStatus::kEnd, "", false});
+  for (int i = 0; i < 20; ++i) far_end.send(mwv_line(i));
+  far_end.incoming.push_back({ByteStatus::kEnd, "", false});
   const MonoTime begin = clock.now().mono;
   run(60s);
   ASSERT_EQ(sink.readings.size(), 19U);
@@ -223,7 +223,7 @@ TEST_F(TextSensorTest, PlaysAFileAtItsPaceAndFinishes) {
 TEST_F(TextSensorTest, SaysThatOnlyOthersSend) {
   make_nmea({{"transport", std::string("udp")}, {"sender", std::string("192.0.2.7")}});
   for (int i = 0; i < 50; ++i) {
-    far_end.says.push_back({ByteStatus::kForeign, "", false});
+    far_end.incoming.push_back({ByteStatus::kForeign, "", false});
     run(200ms);
   }
   EXPECT_THAT(sink.last_detail(), HasSubstr("none from 192.0.2.7: check sender"));
@@ -234,7 +234,7 @@ TEST_F(TextSensorTest, TakesTheEndOfADatagramForTheEndOfALine) {
   make_nmea({{"transport", std::string("udp")}});
   for (const double speed_m_s : {1.0, 2.0}) {
     const std::string line = mwv_line(speed_m_s);
-    far_end.says.push_back({ByteStatus::kBytes, line.substr(0, line.size() - 2), true});
+    far_end.incoming.push_back({ByteStatus::kBytes, line.substr(0, line.size() - 2), true});
   }
   run(1s);
   EXPECT_EQ(sink.readings.size(), 1U) << "the first is overtaken in its burst";
@@ -255,7 +255,7 @@ TEST_F(TextSensorTest, SurvivesWhateverComes) {
       constexpr std::string_view kAlphabet = "0123456789.,-+MNKSRTLAVDWQ$*=:e \x02\x03\r\n\xff";
       for (char& byte : bytes) byte = kAlphabet[random() % kAlphabet.size()];
       const auto status = static_cast<ByteStatus>(random() % 8 == 0 ? random() % 6 : 0);
-      far_end.says.push_back({status, status == ByteStatus::kBytes ? bytes : "", random() % 2 == 0});
+      far_end.incoming.push_back({status, status == ByteStatus::kBytes ? bytes : "", random() % 2 == 0});
     }
     run(120s);
   }

@@ -212,9 +212,9 @@ TEST(HostileBytes, ControlsOutOfBoundsAreRefused) {
   EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent);
 }
 
-TEST(HostileBytes, WishesForPlayersOutOfBoundsAreRefused) {
-  const auto refusal = [](const PlayerWish& wish) {
-    const auto message = decode(samples::body(encode(Control{.scene = "", .player = wish})));
+TEST(HostileBytes, PlayerCommandsOutOfBoundsAreRefused) {
+  const auto refusal = [](const PlayerCommand& command) {
+    const auto message = decode(samples::body(encode(Control{.scene = "", .player = command})));
     return message ? std::optional<WireError>{} : message.error();
   };
   EXPECT_FALSE(refusal({}));
@@ -477,7 +477,7 @@ TEST(OlderServer, AWindWithoutAPlaceIsInTheMiddleAndGustsAreTheRealOnes) {
   for (const WindState& state : {std::get<Frame>(frame.value()).info.wind, std::get<Sensors>(sensors.value()).wind}) {
     EXPECT_EQ(state.upwind_m, 0.0);
     EXPECT_EQ(state.to_middle_s, 0.0);
-    EXPECT_FALSE(state.is_place_told);
+    EXPECT_FALSE(state.is_place_configured);
   }
   EXPECT_EQ(std::get<Sensors>(sensors.value()).shaping.gusts, 1.0);
 }

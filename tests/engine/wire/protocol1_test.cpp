@@ -241,11 +241,11 @@ TEST(Protocol1, ItsStreamIsUnderstoodTodayAsItWasThen) {
   EXPECT_EQ(hash, 0x3fc317f37de23c3aU);  // written by the decoder and the kinematics of then
 }
 
-TEST(Protocol1, ItsClientsWishesAreUnderstoodToday) {
+TEST(Protocol1, ItsClientsRequestsAreUnderstoodToday) {
   flatbuffers::FlatBufferBuilder builder;
   const auto name = builder.CreateString("a wall");
-  const auto wish = p1::CreateSubscribe(builder, 1, true, false, name);
-  builder.FinishSizePrefixed(p1::CreateMessage(builder, p1::Body_Subscribe, wish.Union()), p1::MessageIdentifier());
+  const auto request = p1::CreateSubscribe(builder, 1, true, false, name);
+  builder.FinishSizePrefixed(p1::CreateMessage(builder, p1::Body_Subscribe, request.Union()), p1::MessageIdentifier());
   const Bytes bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
   const auto subscribe = std::get<Subscribe>(decode(samples::body(bytes)).value());
   EXPECT_TRUE(subscribe.poses);

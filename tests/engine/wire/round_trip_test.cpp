@@ -27,13 +27,13 @@ TEST(WireRoundTrip, AHelloThatRefusesNobodySaysSo) {
 }
 
 TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
-  const Subscribe wish = decoded<Subscribe>(encode(samples::subscribe()));
-  EXPECT_EQ(wish.protocol, kProtocol);
-  EXPECT_TRUE(wish.poses);
-  EXPECT_TRUE(wish.sensors);
-  EXPECT_EQ(wish.client, "a wall in Morioka");
-  EXPECT_TRUE(wish.raw);
-  EXPECT_EQ(wish.raw_sensor, "roof");
+  const Subscribe subscribe = decoded<Subscribe>(encode(samples::subscribe()));
+  EXPECT_EQ(subscribe.protocol, kProtocol);
+  EXPECT_TRUE(subscribe.poses);
+  EXPECT_TRUE(subscribe.sensors);
+  EXPECT_EQ(subscribe.client, "a wall in Morioka");
+  EXPECT_TRUE(subscribe.raw);
+  EXPECT_EQ(subscribe.raw_sensor, "roof");
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).raw) << "only where it is asked for";
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.poses = false, .client = ""})).poses);
 }
@@ -77,7 +77,7 @@ TEST(WireRoundTrip, AFrameComesBackWithinHalfAQuantisationStep) {
   EXPECT_EQ(frame.info.wind.reading_age_s, sent.wind.reading_age_s);
   EXPECT_EQ(frame.info.wind.upwind_m, -12.5);
   EXPECT_EQ(frame.info.wind.to_middle_s, 0.75);
-  EXPECT_TRUE(frame.info.wind.is_place_told);
+  EXPECT_TRUE(frame.info.wind.is_place_configured);
 
   ASSERT_EQ(frame.poses.size(), 2u);
   const StrandPose bends = samples::bent(37);
@@ -261,7 +261,7 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
   EXPECT_EQ(sensors.wind.upwind_m, -12.5);
   EXPECT_EQ(sensors.wind.to_middle_s, 0.75);
-  EXPECT_TRUE(sensors.wind.is_place_told);
+  EXPECT_TRUE(sensors.wind.is_place_configured);
   EXPECT_EQ(sensors.late_ticks, 5u);
   EXPECT_EQ(sensors.clients, 2u);
 }

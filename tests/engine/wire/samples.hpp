@@ -172,7 +172,7 @@ inline WindState wind() {
           .reading_age_s = 1.5,
           .upwind_m = -12.5,
           .to_middle_s = 0.75,
-          .is_place_told = true};
+          .is_place_configured = true};
 }
 
 inline wire::Hello hello() {
@@ -238,11 +238,11 @@ inline wire::Control control() {
 
 inline wire::Control player_control() {
   return {.scene = "",
-          .player = wire::PlayerWish{.action = wire::PlayerAction::kSeek,
-                                     .sensor = "roof",
-                                     .count = 7,
-                                     .place = "2018-07-20T14:05:00Z",
-                                     .rate = 2.5}};
+          .player = wire::PlayerCommand{.action = wire::PlayerAction::kSeek,
+                                        .sensor = "roof",
+                                        .count = 7,
+                                        .place = "2018-07-20T14:05:00Z",
+                                        .rate = 2.5}};
 }
 
 inline wire::ControlReply control_reply() {

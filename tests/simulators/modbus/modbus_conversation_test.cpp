@@ -174,14 +174,14 @@ TEST(SimulatorProgram, RefusesACommandLineThatItCannotUse) {
 TEST(MbpollAndSimulator, AgreeOnRegistersAndExceptions) {
   if (!std::filesystem::exists("/usr/bin/mbpoll")) GTEST_SKIP() << "mbpoll is not installed";
   SimulatorProcess simulator({"--speed", "7", "--direction", "123", "--turbulence", "0"});
-  const auto ask = [&](const std::string& slave, const std::string& from, const std::string& count) {
+  const auto exchange = [&](const std::string& slave, const std::string& from, const std::string& count) {
     ChildProcess mbpoll({"/usr/bin/mbpoll", "-m", "tcp", "-p", simulator.port(), "-a", slave, "-r", from, "-c", count,
                          "-t", "4", "-1", "-q", "127.0.0.1"});
     return mbpoll.rest();
   };
-  EXPECT_THAT(ask("1", "1", "1"), testing::ContainsRegex("\\[1\\]:[ \t]+70"));
-  EXPECT_THAT(ask("2", "1", "2"), testing::ContainsRegex("\\[2\\]:[ \t]+123"));
-  EXPECT_THAT(ask("1", "2", "1"), HasSubstr("Illegal data address"));
+  EXPECT_THAT(exchange("1", "1", "1"), testing::ContainsRegex("\\[1\\]:[ \t]+70"));
+  EXPECT_THAT(exchange("2", "1", "2"), testing::ContainsRegex("\\[2\\]:[ \t]+123"));
+  EXPECT_THAT(exchange("1", "2", "1"), HasSubstr("Illegal data address"));
 }
 
 /// A pymodbus server, or why there is none.

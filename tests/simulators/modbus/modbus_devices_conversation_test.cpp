@@ -234,16 +234,16 @@ TEST(MbpollAndSimulator, AgreeOverASerialLine) {
   if (!std::filesystem::exists("/usr/bin/mbpoll")) GTEST_SKIP() << "mbpoll is not installed";
   test::ModbusSimulatorProgram simulator(
       Transport::kRtu, steady({"--device", "renke-rs-fsjt-rs-fxjt-n01", "--device", "thies-clima-sensor-us@9"}));
-  const auto ask = [&](const std::string& slave, const std::string& type, const std::string& from,
-                       const std::string& count) {
+  const auto exchange = [&](const std::string& slave, const std::string& type, const std::string& from,
+                            const std::string& count) {
     ChildProcess mbpoll({"/usr/bin/mbpoll", "-m", "rtu", "-b", "9600", "-P", "none", "-a", slave, "-r", from, "-c",
                          count, "-t", type, "-1", "-q", "-0", simulator.where()});
     return mbpoll.rest();
   };
-  EXPECT_THAT(ask("1", "4", "0", "1"), testing::ContainsRegex("\\[0\\]:[ \t]+70"));
-  EXPECT_THAT(ask("2", "4", "0", "2"), testing::ContainsRegex("\\[1\\]:[ \t]+135"));
-  EXPECT_THAT(ask("9", "3:hex", "30203", "2"), testing::HasSubstr("0x0546"));  // 1350 in its low register
-  EXPECT_THAT(ask("1", "4", "1", "1"), testing::HasSubstr("Illegal data address"));
+  EXPECT_THAT(exchange("1", "4", "0", "1"), testing::ContainsRegex("\\[0\\]:[ \t]+70"));
+  EXPECT_THAT(exchange("2", "4", "0", "2"), testing::ContainsRegex("\\[1\\]:[ \t]+135"));
+  EXPECT_THAT(exchange("9", "3:hex", "30203", "2"), testing::HasSubstr("0x0546"));  // 1350 in its low register
+  EXPECT_THAT(exchange("1", "4", "1", "1"), testing::HasSubstr("Illegal data address"));
 }
 
 }  // namespace

@@ -52,11 +52,11 @@ class ModbusFaultBench {
 
   /// A fault after which nobody can know the wind: within its time the link is down and says why, each of `refusals` is
   /// counted (twice in all), nothing comes out, and all is well again by itself.
-  void expect_loss(const std::string& fault, const std::vector<Refusal>& refusals, const std::string& says) {
+  void expect_loss(const std::string& fault, const std::vector<Refusal>& refusals, const std::string& text) {
     simulator.suffer(fault);
     ASSERT_TRUE(sensor.wait_until([](const RecordingSink& sink) { return sink.last_state() == LinkState::kConnecting; },
                                   std::chrono::seconds(5)));
-    EXPECT_THAT(detail(), HasSubstr(says));
+    EXPECT_THAT(detail(), HasSubstr(text));
     sensor.forget();
     const auto is_counted = [&](const RecordingSink& sink) {
       const auto count = [&](Refusal why) { return sink.count(why); };
@@ -134,7 +134,7 @@ void expect_a_spike_as_it_is(Transport transport) {
 }
 
 /// The right bytes, with pauses: nothing is lost.
-void expect_split_answers_to_be_put_together(Transport transport) {
+void expect_split_replies_to_be_put_together(Transport transport) {
   ModbusFaultBench bench(transport, {"--turbulence", "0"}, kNoTimeout_s);
   bench.simulator.suffer("split");
   EXPECT_THAT(bench.next_speeds(5), testing::Each(testing::DoubleNear(kWindSpeed_m_s, 1e-9)));
@@ -159,7 +159,7 @@ TEST(ModbusFault, Garbage) {
   ModbusFaultBench(Transport::kTcp).expect_loss("garbage", kNoise, "an answer of slave 1 at 127.0.0.1:");
 }
 TEST(ModbusFault, Split) {
-  expect_split_answers_to_be_put_together(Transport::kTcp);
+  expect_split_replies_to_be_put_together(Transport::kTcp);
 }
 TEST(ModbusFault, Partial) {
   ModbusFaultBench(Transport::kTcp).expect_loss("partial", {Refusal::kTooShort}, "is no use (too short)");
@@ -195,7 +195,7 @@ TEST(ModbusRtuFault, Garbage) {
   ModbusFaultBench(Transport::kRtu).expect_loss("garbage", kNoise, "slave 1 at ");
 }
 TEST(ModbusRtuFault, Split) {
-  expect_split_answers_to_be_put_together(Transport::kRtu);
+  expect_split_replies_to_be_put_together(Transport::kRtu);
 }
 TEST(ModbusRtuFault, Partial) {
   ModbusFaultBench(Transport::kRtu).expect_loss("partial", {Refusal::kTooShort}, "is no use (too short)");

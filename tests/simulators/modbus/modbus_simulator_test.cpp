@@ -61,62 +61,65 @@ class ModbusSimulatorTest : public testing::Test {
     return client;
   }
 
-  Bytes heard_by(const Descriptor& client) const {
-    Bytes answer(260);
-    const ssize_t size = recv(client.get(), answer.data(), answer.size(), MSG_DONTWAIT);
-    answer.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-    return answer;
+  Bytes received_by(const Descriptor& client) const {
+    Bytes reply(260);
+    const ssize_t size = recv(client.get(), reply.data(), reply.size(), MSG_DONTWAIT);
+    reply.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    return reply;
   }
-  Bytes ask(const Descriptor& client, const Bytes& request, std::optional<FaultKind> fault = std::nullopt) {
+  Bytes exchange(const Descriptor& client, const Bytes& request, std::optional<FaultKind> fault = std::nullopt) {
     EXPECT_EQ(send(client.get(), request.data(), request.size(), MSG_NOSIGNAL), std::ssize(request));
     serve_all(simulator_, time_s_, fault);
-    return heard_by(client);
+    return received_by(client);
   }
 
-  const Bytes ask_speed_ = {0, 7, 0, 0, 0, 6, 1, 3, 0, 0, 0, 1};
-  const Bytes ask_vane_ = {0, 8, 0, 0, 0, 6, 2, 3, 0, 0, 0, 2};
+  const Bytes read_speed_ = {0, 7, 0, 0, 0, 6, 1, 3, 0, 0, 0, 1};
+  const Bytes read_vane_ = {0, 8, 0, 0, 0, 6, 2, 3, 0, 0, 0, 2};
   double time_s_ = 0.0;
   ModbusSimulator simulator_ = simulate({"renke-rs-fsjt-rs-fxjt-n01"}, make_modbus_tcp_port("127.0.0.1", 0));
 };
 
 TEST_F(ModbusSimulatorTest, PlaysTheWindInTimeOnTheRegistersOfBothDevices) {
   const Descriptor client = connect_client();
-  EXPECT_THAT(ask(client, ask_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
-  EXPECT_THAT(ask(client, ask_vane_), ElementsAre(0, 8, 0, 0, 0, 7, 2, 3, 4, 0, 0, 360 >> 8, 360 & 0xFF));
+  EXPECT_THAT(exchange(client, read_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
+  EXPECT_THAT(exchange(client, read_vane_), ElementsAre(0, 8, 0, 0, 0, 7, 2, 3, 4, 0, 0, 360 >> 8, 360 & 0xFF));
   time_s_ = 1.4;
-  EXPECT_THAT(ask(client, ask_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 100));
+  EXPECT_THAT(exchange(client, read_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 100));
 }
 
 TEST_F(ModbusSimulatorTest, ServesSeveralClients) {
   const Descriptor one = connect_client();
   const Descriptor another = connect_client();
-  EXPECT_EQ(ask(one, ask_speed_).size(), 11U);
-  EXPECT_EQ(ask(another, ask_speed_).size(), 11U);
-  EXPECT_EQ(ask(one, ask_vane_).size(), 13U);
+  EXPECT_EQ(exchange(one, read_speed_).size(), 11U);
+  EXPECT_EQ(exchange(another, read_speed_).size(), 11U);
+  EXPECT_EQ(exchange(one, read_vane_).size(), 13U);
 }
 
 TEST_F(ModbusSimulatorTest, RefusesWhatTheDevicesDoNotHave) {
   const Descriptor client = connect_client();
-  EXPECT_THAT(ask(client, {0, 1, 0, 0, 0, 6, 1, 3, 0, 1, 0, 1}), ElementsAre(0, 1, 0, 0, 0, 3, 1, 0x83, 2));  // address
-  EXPECT_THAT(ask(client, {0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1}),
+  EXPECT_THAT(exchange(client, {0, 1, 0, 0, 0, 6, 1, 3, 0, 1, 0, 1}),
+              ElementsAre(0, 1, 0, 0, 0, 3, 1, 0x83, 2));  // address
+  EXPECT_THAT(exchange(client, {0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1}),
               ElementsAre(0, 1, 0, 0, 0, 3, 1, 0x84, 1));  // function
-  EXPECT_THAT(ask(client, {0, 1, 0, 0, 0, 6, 3, 3, 0, 0, 0, 1}), ElementsAre(0, 1, 0, 0, 0, 3, 3, 0x83, 11));  // device
+  EXPECT_THAT(exchange(client, {0, 1, 0, 0, 0, 6, 3, 3, 0, 0, 0, 1}),
+              ElementsAre(0, 1, 0, 0, 0, 3, 3, 0x83, 11));  // device
 }
 
 TEST_F(ModbusSimulatorTest, FailsInEveryWayItIsToldTo) {
   const Descriptor client = connect_client();
-  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kSilence), ElementsAre());
-  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kException), ElementsAre(0, 7, 0, 0, 0, 3, 1, 0x83, 4));
-  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kWrongId), ElementsAre(0, 7, 0, 0, 0, 5, 2, 3, 2, 0, 86));
-  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kWrongTransaction), ElementsAre(0, 6, 0, 0, 0, 5, 1, 3, 2, 0, 86));
-  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kPartial), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0));
-  EXPECT_EQ(ask(client, ask_speed_, FaultKind::kGarbage).size(), 24U);
-  EXPECT_THAT(ask(client, ask_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
+  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kSilence), ElementsAre());
+  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kException), ElementsAre(0, 7, 0, 0, 0, 3, 1, 0x83, 4));
+  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kWrongId), ElementsAre(0, 7, 0, 0, 0, 5, 2, 3, 2, 0, 86));
+  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kWrongTransaction),
+              ElementsAre(0, 6, 0, 0, 0, 5, 1, 3, 2, 0, 86));
+  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kPartial), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0));
+  EXPECT_EQ(exchange(client, read_speed_, FaultKind::kGarbage).size(), 24U);
+  EXPECT_THAT(exchange(client, read_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
 }
 
 TEST_F(ModbusSimulatorTest, DropsItsClientsRefusesNewOnesAndIsBackOnTheSamePort) {
   const Descriptor client = connect_client();
-  ASSERT_EQ(ask(client, ask_speed_).size(), 11U);
+  ASSERT_EQ(exchange(client, read_speed_).size(), 11U);
   const std::uint16_t port_before = port();
 
   simulator_.serve({}, time_s_, FaultKind::kDisconnect);
@@ -127,104 +130,104 @@ TEST_F(ModbusSimulatorTest, DropsItsClientsRefusesNewOnesAndIsBackOnTheSamePort)
 
   simulator_.serve({}, time_s_, std::nullopt);
   EXPECT_EQ(port(), port_before);
-  EXPECT_EQ(ask(connect_client(), ask_speed_).size(), 11U);
+  EXPECT_EQ(exchange(connect_client(), read_speed_).size(), 11U);
 }
 
 TEST_F(ModbusSimulatorTest, OutlivesAClientThatStopsInTheMiddleOfARequest) {
   const Descriptor lame = connect_client();
-  EXPECT_TRUE(ask(lame, {0, 7, 0, 0, 0, 6, 1}).empty());
-  EXPECT_EQ(ask(connect_client(), ask_speed_).size(), 11U);
+  EXPECT_TRUE(exchange(lame, {0, 7, 0, 0, 0, 6, 1}).empty());
+  EXPECT_EQ(exchange(connect_client(), read_speed_).size(), 11U);
 }
 
 TEST_F(ModbusSimulatorTest, AnswersLateWhenItsTimeHasCome) {
   const Descriptor client = connect_client();
-  EXPECT_TRUE(ask(client, ask_speed_, FaultKind::kLate).empty());
+  EXPECT_TRUE(exchange(client, read_speed_, FaultKind::kLate).empty());
   time_s_ = 0.7;
   serve_all(simulator_, time_s_, std::nullopt);
-  EXPECT_TRUE(heard_by(client).empty());
+  EXPECT_TRUE(received_by(client).empty());
   time_s_ = 0.8;
   serve_all(simulator_, time_s_, std::nullopt);
-  EXPECT_THAT(heard_by(client), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
+  EXPECT_THAT(received_by(client), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
 }
 
 TEST_F(ModbusSimulatorTest, SaysASplitAnswerInThreePieces) {
   const Descriptor client = connect_client();
-  EXPECT_THAT(ask(client, ask_speed_, FaultKind::kSplit), ElementsAre(0));
+  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kSplit), ElementsAre(0));
   time_s_ = 0.03;
   serve_all(simulator_, time_s_, std::nullopt);
-  EXPECT_THAT(heard_by(client), ElementsAre(7, 0, 0, 0, 5));
+  EXPECT_THAT(received_by(client), ElementsAre(7, 0, 0, 0, 5));
   time_s_ = 0.06;
   serve_all(simulator_, time_s_, std::nullopt);
-  EXPECT_THAT(heard_by(client), ElementsAre(1, 3, 2, 0, 86));
+  EXPECT_THAT(received_by(client), ElementsAre(1, 3, 2, 0, 86));
 }
 
 TEST_F(ModbusSimulatorTest, AnswersQuestionsThatComeInPiecesAndTogether) {
   const Descriptor client = connect_client();
-  const Bytes beginning(ask_speed_.begin(), ask_speed_.begin() + 5);
-  EXPECT_TRUE(ask(client, beginning).empty());
-  Bytes rest(ask_speed_.begin() + 5, ask_speed_.end());
-  rest.insert(rest.end(), ask_vane_.begin(), ask_vane_.end());
-  EXPECT_EQ(ask(client, rest).size(), 11U + 13U);
+  const Bytes beginning(read_speed_.begin(), read_speed_.begin() + 5);
+  EXPECT_TRUE(exchange(client, beginning).empty());
+  Bytes rest(read_speed_.begin() + 5, read_speed_.end());
+  rest.insert(rest.end(), read_vane_.begin(), read_vane_.end());
+  EXPECT_EQ(exchange(client, rest).size(), 11U + 13U);
 }
 
 /// A serial line with three devices, of which the one with id 7 can be made to fail alone.
 class ModbusSerialSimulatorTest : public testing::Test {
  protected:
-  Bytes ask(const Bytes& request, std::optional<FaultKind> fault = std::nullopt, double time_s = 0.0) {
+  Bytes exchange(const Bytes& request, std::optional<FaultKind> fault = std::nullopt, double time_s = 0.0) {
     const Descriptor line(open(link_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
     EXPECT_EQ(write(line.get(), request.data(), request.size()), std::ssize(request));
     serve_all(simulator_, time_s, fault);
-    Bytes answer(260);
-    answer.resize(static_cast<std::size_t>(std::max<ssize_t>(read(line.get(), answer.data(), answer.size()), 0)));
-    return answer;
+    Bytes reply(260);
+    reply.resize(static_cast<std::size_t>(std::max<ssize_t>(read(line.get(), reply.data(), reply.size()), 0)));
+    return reply;
   }
 
   test::TemporaryFolder folder_;
   std::string link_ = folder_ / "wind";
   ModbusSimulator simulator_ = simulate({"renke-rs-fsjt-n01", "renke-rs-fsjt-n01@7", "lambrecht-industry@9"},
                                         make_modbus_rtu_port(link_), {.id = std::uint8_t{7}});
-  const Bytes ask_1_ = {0x01, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x0A};
-  const Bytes ask_7_ = {0x07, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x6C};
-  const Bytes answer_1_ = {0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};  // 8.6 m/s, as in angara/ws_espy
+  const Bytes read_1_ = {0x01, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x0A};
+  const Bytes read_7_ = {0x07, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x6C};
+  const Bytes reply_1_ = {0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};  // 8.6 m/s, as in angara/ws_espy
 };
 
 TEST_F(ModbusSerialSimulatorTest, IsFoundByItsLinkAndSaysWhatTheRealTranscriptSays) {
   EXPECT_EQ(simulator_.name(), link_);
-  EXPECT_EQ(ask(ask_1_), answer_1_);
+  EXPECT_EQ(exchange(read_1_), reply_1_);
 }
 
 TEST_F(ModbusSerialSimulatorTest, PassesOverWhatHasNoRightSum) {
   Bytes noisy = {0xFF, 0x01, 0x03};
-  noisy.insert(noisy.end(), ask_1_.begin(), ask_1_.end());
-  EXPECT_EQ(ask(noisy), answer_1_);
-  Bytes damaged = ask_1_;
+  noisy.insert(noisy.end(), read_1_.begin(), read_1_.end());
+  EXPECT_EQ(exchange(noisy), reply_1_);
+  Bytes damaged = read_1_;
   damaged[3] ^= 1U;
-  EXPECT_TRUE(ask(damaged).empty());
+  EXPECT_TRUE(exchange(damaged).empty());
 }
 
 TEST_F(ModbusSerialSimulatorTest, IsSilentForAnIdThatNobodyHas) {
-  EXPECT_TRUE(ask({0x02, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x39}).empty());
+  EXPECT_TRUE(exchange({0x02, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x39}).empty());
 }
 
 TEST_F(ModbusSerialSimulatorTest, LetsOneSlaveAloneSuffer) {
-  EXPECT_TRUE(ask(ask_7_, FaultKind::kSilence).empty());
-  EXPECT_EQ(ask(ask_1_, FaultKind::kSilence), answer_1_);
-  Bytes wrong_sum = ask(ask_7_);
+  EXPECT_TRUE(exchange(read_7_, FaultKind::kSilence).empty());
+  EXPECT_EQ(exchange(read_1_, FaultKind::kSilence), reply_1_);
+  Bytes wrong_sum = exchange(read_7_);
   ASSERT_EQ(wrong_sum.size(), 7U);
   wrong_sum.back() ^= 0xFFU;
-  EXPECT_EQ(ask(ask_7_, FaultKind::kBadChecksum), wrong_sum);
+  EXPECT_EQ(exchange(read_7_, FaultKind::kBadChecksum), wrong_sum);
 }
 
 TEST_F(ModbusSerialSimulatorTest, ClearsExtremesWhenTheirMeanIsReadAsTheMakerSays) {
   // The wind grows by 1 m/s a second. Lambrecht's 30001 is the speed, 30002 the mean that clears, 30004 the least.
   const auto least_at = [this](double time_s) {
-    return ask({0x09, 0x04, 0x75, 0x34, 0x00, 0x01, 0x6B, 0x40}, {}, time_s);
+    return exchange({0x09, 0x04, 0x75, 0x34, 0x00, 0x01, 0x6B, 0x40}, {}, time_s);
   };
   simulator_.serve({}, 0.0, std::nullopt);
   const Bytes least_before = least_at(2.0);
   ASSERT_EQ(least_before.size(), 7U);
   EXPECT_EQ(least_before[4], 86);
-  EXPECT_EQ(ask({0x09, 0x04, 0x75, 0x32, 0x00, 0x01, 0x8B, 0x41}, {}, 2.0).size(), 7U);
+  EXPECT_EQ(exchange({0x09, 0x04, 0x75, 0x32, 0x00, 0x01, 0x8B, 0x41}, {}, 2.0).size(), 7U);
   EXPECT_EQ(least_at(2.0)[4], 106);
 }
 
@@ -232,7 +235,7 @@ TEST_F(ModbusSerialSimulatorTest, IsGoneWhileUnpluggedAndBackUnderItsName) {
   simulator_.serve({}, 0.0, FaultKind::kUnplug);
   EXPECT_LT(open(link_.c_str(), O_RDWR | O_NOCTTY), 0);
   simulator_.serve({}, 0.0, std::nullopt);
-  EXPECT_EQ(ask(ask_1_), answer_1_);
+  EXPECT_EQ(exchange(read_1_), reply_1_);
 }
 
 TEST(ModbusDevices, OfSeveralSlavesHaveIdsInARow) {

@@ -48,7 +48,7 @@ class TextSensorRun : public test::LiveSensor {
   TextSensorRun(std::string_view driver, const ParameterValues::Map& given)
       : LiveSensor(driver_named(driver).open(values_for(driver, given))) {}
 
-  bool hears(std::size_t readings) {
+  bool receives(std::size_t readings) {
     wait_until([] { return true; });
     sink.readings.clear();
     return wait_for_readings(readings);
@@ -77,7 +77,7 @@ TEST(TextConversation, AgreesOnTheWindInEveryFormat) {
     TextSensorRun live("nmea", {{"device", link},
                                 {"format", std::string(format == "umb" ? "umb" : "auto")},
                                 {"poll_interval", format == "umb" ? 0.1 : 0.0}});
-    ASSERT_TRUE(live.hears(3)) << live.sink.last_detail();
+    ASSERT_TRUE(live.receives(3)) << live.sink.last_detail();
     live.expect_the_wind();
     EXPECT_TRUE(live.sink.refusals.empty());
   }
@@ -86,14 +86,14 @@ TEST(TextConversation, AgreesOnTheWindInEveryFormat) {
 TEST(TextConversation, AgreesOverTcpAndUdp) {
   TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--format", "mwd,mwv", "--rate", "20"});
   TextSensorRun client("nmea", tcp_to(server.port()));
-  ASSERT_TRUE(client.hears(5)) << client.sink.last_detail();
+  ASSERT_TRUE(client.receives(5)) << client.sink.last_detail();
   client.expect_the_wind();
   EXPECT_TRUE(client.sink.refusals.empty());
 
   const std::int64_t udp_port = free_port(SOCK_DGRAM);
   TextSimulatorProcess talker("nmea", {"--udp", "127.0.0.1:" + std::to_string(udp_port), "--rate", "20"});
   TextSensorRun listener("nmea", {{"transport", std::string("udp")}, {"port", udp_port}});
-  ASSERT_TRUE(listener.hears(5)) << listener.sink.last_detail();
+  ASSERT_TRUE(listener.receives(5)) << listener.sink.last_detail();
   listener.expect_the_wind();
 }
 
@@ -103,7 +103,7 @@ TEST(TextConversation, AsksOverTcp) {
   given["format"] = std::string("ft");
   given["poll_interval"] = 0.1;
   TextSensorRun client("nmea", given);
-  ASSERT_TRUE(client.hears(5)) << client.sink.last_detail();
+  ASSERT_TRUE(client.receives(5)) << client.sink.last_detail();
   client.expect_the_wind();
 }
 
@@ -111,7 +111,7 @@ TEST(TextConversation, AgreesOnLinesOfNumbers) {
   for (const std::string format : {"csv", "key-value"}) {
     TextSimulatorProcess simulator("line", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "20"});
     TextSensorRun live("line", tcp_to(simulator.port()));
-    ASSERT_TRUE(live.hears(5)) << live.sink.last_detail();
+    ASSERT_TRUE(live.receives(5)) << live.sink.last_detail();
     live.expect_the_wind();
     EXPECT_TRUE(live.sink.refusals.empty());
   }
@@ -122,7 +122,7 @@ TEST(TextConversation, ComesBackFromEveryFault) {
   const std::string link = (folder / "anemometer").string();
   TextSimulatorProcess simulator("nmea", {"--pty", "--link", link, "--rate", "20"});
   TextSensorRun live("nmea", {{"device", link}, {"talker", std::string("WI")}});
-  ASSERT_TRUE(live.hears(10));
+  ASSERT_TRUE(live.receives(10));
 
   const std::vector<std::pair<std::string, std::string>> faults = {
       {"silence", "says nothing"}, {"garbage", "but no line: check baud"},
@@ -140,7 +140,7 @@ TEST(TextConversation, ComesBackFromEveryFault) {
 
     simulator.process().type("clear");
     simulator.process().line_after("no faults");
-    ASSERT_TRUE(live.hears(10)) << live.sink.last_detail();
+    ASSERT_TRUE(live.receives(10)) << live.sink.last_detail();
     live.expect_the_wind();
     EXPECT_EQ(live.sink.last_state(), LinkState::kConnected);
   }
@@ -152,11 +152,11 @@ TEST(TextConversation, FindsASimulatorAgainThatWasKilled) {
   const std::vector<std::string> options = {"--pty", "--link", link, "--rate", "20"};
   auto simulator = std::make_unique<TextSimulatorProcess>("line", options);
   TextSensorRun live("line", {{"device", link}, {"delay_after_open", 0.0}});
-  ASSERT_TRUE(live.hears(3));
+  ASSERT_TRUE(live.receives(3));
   simulator->process().end(SIGKILL);
   EXPECT_TRUE(live.wait_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
   simulator = std::make_unique<TextSimulatorProcess>("line", options);
-  ASSERT_TRUE(live.hears(3)) << live.sink.last_detail();
+  ASSERT_TRUE(live.receives(3)) << live.sink.last_detail();
   live.expect_the_wind();
 }
 
@@ -181,13 +181,14 @@ TEST(TextConversation, CanBeInterruptedWhateverItWaitsFor) {
 }
 
 /// Lets the far end say something, again and again as a device does, until it is heard.
-void expect_heard(TextSensorRun& listener, ChildProcess& far_end, const std::string& line) {
-  const auto is_heard = [&] { return !listener.sink.readings.empty(); };
+void expect_received(TextSensorRun& listener, ChildProcess& far_end, const std::string& line) {
+  const auto is_received = [&] { return !listener.sink.readings.empty(); };
   const MonoTime hang = std::chrono::steady_clock::now() + RunningSensor::kHang;
   do {
     far_end.type(line);
-  } while (!listener.wait_until(is_heard, std::chrono::milliseconds(100)) && std::chrono::steady_clock::now() < hang);
-  ASSERT_TRUE(is_heard());
+  } while (!listener.wait_until(is_received, std::chrono::milliseconds(100)) &&
+           std::chrono::steady_clock::now() < hang);
+  ASSERT_TRUE(is_received());
 }
 
 TEST(TextConversation, ListensToSocat) {
@@ -197,14 +198,14 @@ TEST(TextConversation, ListensToSocat) {
   const std::string link = (folder / "line").string();
   ChildProcess serial({"/usr/bin/socat", "-u", "STDIN", "PTY,rawer,link=" + link});
   TextSensorRun live("nmea", {{"device", link}});
-  expect_heard(live, serial, "$HDMWV,260.1,R,21.5,K,A*07\r");  // a real one, of Sassnitz
+  expect_received(live, serial, "$HDMWV,260.1,R,21.5,K,A*07\r");  // a real one, of Sassnitz
   EXPECT_NEAR(live.sink.readings.back().speed_m_s, 21.5 / 3.6, 1e-9);
   EXPECT_EQ(live.sink.readings.back().direction_deg, 260.1);
 
   const std::int64_t udp_port = free_port(SOCK_DGRAM);
   ChildProcess talker({"/usr/bin/socat", "-u", "STDIN", "UDP4-SENDTO:127.0.0.1:" + std::to_string(udp_port)});
   TextSensorRun listener("line", {{"transport", std::string("udp")}, {"port", udp_port}});
-  expect_heard(listener, talker, "4.2,270");
+  expect_received(listener, talker, "4.2,270");
   EXPECT_DOUBLE_EQ(listener.sink.readings.back().speed_m_s, 4.2);
 }
 

@@ -10,9 +10,9 @@ namespace yuragi::sim {
 
 // What a USB/IP host sends, as bytes.
 
-inline const UsbBytes kUsbipAskList = {0x01, 0x11, 0x80, 0x05, 0, 0, 0, 0};
+inline const UsbBytes kUsbipRequestList = {0x01, 0x11, 0x80, 0x05, 0, 0, 0, 0};
 
-inline UsbBytes usbip_ask_import(const std::string& bus_id) {
+inline UsbBytes usbip_request_import(const std::string& bus_id) {
   UsbBytes bytes(40);
   bytes[0] = 0x01;
   bytes[1] = 0x11;

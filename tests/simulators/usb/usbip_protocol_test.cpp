@@ -23,10 +23,10 @@ Message only_message(UsbipPhase phase, const UsbBytes& bytes) {
 }
 
 TEST(UsbipProtocol, ReadsTheTwoQuestions) {
-  only_message<UsbipListRequest>(UsbipPhase::kQuestions, kUsbipAskList);
-  EXPECT_EQ(only_message<UsbipImportRequest>(UsbipPhase::kQuestions, usbip_ask_import("1-1")).bus_id, "1-1");
+  only_message<UsbipListRequest>(UsbipPhase::kRequests, kUsbipRequestList);
+  EXPECT_EQ(only_message<UsbipImportRequest>(UsbipPhase::kRequests, usbip_request_import("1-1")).bus_id, "1-1");
   const std::string longest(32, 'x');  // no zero behind it
-  EXPECT_EQ(only_message<UsbipImportRequest>(UsbipPhase::kQuestions, usbip_ask_import(longest)).bus_id, longest);
+  EXPECT_EQ(only_message<UsbipImportRequest>(UsbipPhase::kRequests, usbip_request_import(longest)).bus_id, longest);
 }
 
 TEST(UsbipProtocol, ReadsTransfers) {
@@ -61,7 +61,7 @@ TEST(UsbipProtocol, WaitsForTheRestOfAMessageWhereverItIsCut) {
       EXPECT_EQ(taken->size, 0U);
     }
   };
-  check(UsbipPhase::kQuestions, usbip_ask_import("1-1"));
+  check(UsbipPhase::kRequests, usbip_request_import("1-1"));
   check(UsbipPhase::kTransfers, usbip_submit_out(1, 2, UsbBytes(64)));
 }
 
@@ -70,8 +70,8 @@ TEST(UsbipProtocol, RefusesWhatCannotBeServed) {
     bytes.at(at) = value;
     return !take_usbip_message(phase, bytes).has_value();
   };
-  EXPECT_TRUE(refuses(UsbipPhase::kQuestions, kUsbipAskList, 1, 0x06)) << "another version";
-  EXPECT_TRUE(refuses(UsbipPhase::kQuestions, kUsbipAskList, 3, 0x07)) << "another question";
+  EXPECT_TRUE(refuses(UsbipPhase::kRequests, kUsbipRequestList, 1, 0x06)) << "another version";
+  EXPECT_TRUE(refuses(UsbipPhase::kRequests, kUsbipRequestList, 3, 0x07)) << "another question";
   const UsbBytes in = usbip_submit_in(1, 1, 8);
   EXPECT_TRUE(refuses(UsbipPhase::kTransfers, in, 3, 3)) << "another command";
   EXPECT_TRUE(refuses(UsbipPhase::kTransfers, in, 19, 16)) << "an end point above 15";

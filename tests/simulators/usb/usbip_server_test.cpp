@@ -75,7 +75,7 @@ class UsbipServerTest : public testing::Test {
 
   Descriptor attach(const std::string& bus_id = "1-1") {
     Descriptor client = connect_client();
-    EXPECT_EQ(ask(client, usbip_ask_import(bus_id), kImported).size(), kImported);
+    EXPECT_EQ(ask(client, usbip_request_import(bus_id), kImported).size(), kImported);
     return client;
   }
 
@@ -89,7 +89,7 @@ class UsbipServerTest : public testing::Test {
 
 TEST_F(UsbipServerTest, ListsItsDevicesAndEndsTheConnection) {
   const Descriptor client = connect_client();
-  const UsbBytes list = ask(client, kUsbipAskList, 12 + 2 * 320);
+  const UsbBytes list = ask(client, kUsbipRequestList, 12 + 2 * 320);
   ASSERT_EQ(list.size(), 12U + 2U * 320U);
   EXPECT_EQ(list[11], 2);
   EXPECT_TRUE(is_closed(client));
@@ -98,16 +98,16 @@ TEST_F(UsbipServerTest, ListsItsDevicesAndEndsTheConnection) {
 TEST_F(UsbipServerTest, GivesADeviceToOneHostAtATime) {
   Descriptor first = attach("1-1");
   const Descriptor second = connect_client();
-  EXPECT_EQ(ask(second, usbip_ask_import("1-1"), kRefused), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 2}));
+  EXPECT_EQ(ask(second, usbip_request_import("1-1"), kRefused), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 2}));
   const Descriptor other = attach("1-2");
   const Descriptor stranger = connect_client();
-  EXPECT_EQ(ask(stranger, usbip_ask_import("9-9"), kRefused), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
+  EXPECT_EQ(ask(stranger, usbip_request_import("9-9"), kRefused), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
 
   first.reset();
   UsbBytes again;
   for (int i = 0; i < 1000 && again.size() != kImported; ++i) {  // until the server has seen that it is gone
     const Descriptor next = connect_client();
-    again = ask(next, usbip_ask_import("1-1"), kRefused);
+    again = ask(next, usbip_request_import("1-1"), kRefused);
     again.resize(again.at(7) == 0 ? kImported : again.size());
   }
   EXPECT_EQ(again.size(), kImported);
@@ -165,9 +165,11 @@ TEST_F(UsbipServerTest, ADeviceIsUnpluggedAndPluggedInAgain) {
   const Descriptor other = connect_client();
   time_s_ = 1.0;
   EXPECT_TRUE(is_closed(host, FaultKind::kUnplug));
-  EXPECT_EQ(ask(other, usbip_ask_import("1-1"), kRefused, FaultKind::kUnplug), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
-  const Descriptor asking = connect_client();
-  EXPECT_EQ(ask(asking, kUsbipAskList, 12, FaultKind::kUnplug), (UsbBytes{1, 0x11, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(ask(other, usbip_request_import("1-1"), kRefused, FaultKind::kUnplug),
+            (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
+  const Descriptor requesting = connect_client();
+  EXPECT_EQ(ask(requesting, kUsbipRequestList, 12, FaultKind::kUnplug),
+            (UsbBytes{1, 0x11, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0}));
 
   time_s_ = 2.0;
   const Descriptor again = attach();

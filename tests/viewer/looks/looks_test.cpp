@@ -1,4 +1,4 @@
-// Each look, drawn for real by the processor under a virtual X server, and looked at: is something there where it
+// Each renderer, drawn for real by the processor under a virtual X server, and looked at: is something there where it
 // should be, and does it move and fade?
 
 #include <algorithm>

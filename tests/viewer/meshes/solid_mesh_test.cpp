@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/test_models.hpp"
-#include "viewer/looks/flame_look.hpp"
-#include "viewer/looks/water_look.hpp"
+#include "viewer/looks/flame_renderer.hpp"
+#include "viewer/looks/water_renderer.hpp"
 
 namespace yuragi {
 namespace {

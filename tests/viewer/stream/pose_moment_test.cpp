@@ -55,14 +55,14 @@ TEST_F(AllKindsTest, TheWindsPlaceGoesFromOneMomentToTheNext) {
   a.wind.to_middle_s = 1.0;
   b.wind.upwind_m = 8.0;
   b.wind.to_middle_s = 3.0;
-  b.wind.is_place_told = true;
+  b.wind.is_place_configured = true;
   PoseMoment out = rest_moment(garden_);
   blend(a, b, 0.25, out);
   EXPECT_EQ(out.wind.upwind_m, 5.0);
   EXPECT_EQ(out.wind.to_middle_s, 1.5);
-  EXPECT_FALSE(out.wind.is_place_told);
+  EXPECT_FALSE(out.wind.is_place_configured);
   blend(a, b, 0.75, out);
-  EXPECT_TRUE(out.wind.is_place_told);
+  EXPECT_TRUE(out.wind.is_place_configured);
 }
 
 TEST_F(AllKindsTest, AreBlendedNumberByNumber) {

@@ -45,22 +45,22 @@ TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
   EXPECT_EQ(source->description(), "the devices themselves");
   EXPECT_TRUE(source->is_live());
 
-  int told = 0;
+  int received = 0;
   double last_s = 0.0;
-  const Heard heard = source
-                          ->hear({.duration_s = 5.0},
-                                 [&](double elapsed_s, const Heard& so_far) {
-                                   EXPECT_EQ(so_far.size(), 1U);
-                                   EXPECT_GE(elapsed_s, last_s);
-                                   last_s = elapsed_s;
-                                   ++told;
-                                   clock.advance(std::chrono::milliseconds(500));
-                                 })
-                          .value();
+  const CollectedReadings collected = source
+                                          ->collect({.duration_s = 5.0},
+                                                    [&](double elapsed_s, const CollectedReadings& so_far) {
+                                                      EXPECT_EQ(so_far.size(), 1U);
+                                                      EXPECT_GE(elapsed_s, last_s);
+                                                      last_s = elapsed_s;
+                                                      ++received;
+                                                      clock.advance(std::chrono::milliseconds(500));
+                                                    })
+                                          .value();
   EXPECT_GE(last_s, 5.0);
-  EXPECT_GE(told, 10);
-  ASSERT_FALSE(heard[0].readings.empty());
-  for (const TimedReading& one : heard[0].readings) {
+  EXPECT_GE(received, 10);
+  ASSERT_FALSE(collected[0].readings.empty());
+  for (const TimedReading& one : collected[0].readings) {
     EXPECT_EQ(one.reading.speed_m_s, 3.0) << "as the sensor says it, before calibration";
     EXPECT_GE(one.time_s, 0.0);
   }
@@ -71,13 +71,13 @@ TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
   const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
   const SensorConfig mast = default_sensor("mast", kAskedDriver<false>, {});
   const auto source = make_live_source({&roof, &mast}, kNoDaemon, clock).value();
-  const auto heard = source->hear({.duration_s = 5.0}, [&](double elapsed_s, const Heard&) {
+  const auto collected = source->collect({.duration_s = 5.0}, [&](double elapsed_s, const CollectedReadings&) {
     EXPECT_EQ(elapsed_s, 0.0) << "the time runs when both have spoken";
     clock.advance(std::chrono::seconds(10));
   });
-  ASSERT_FALSE(heard);
-  EXPECT_EQ(heard.error().kind, FailureKind::kUnavailable);
-  EXPECT_THAT(heard.error().message, HasSubstr("the sensor \"mast\" has sent nothing for 90 s (no such port)"));
+  ASSERT_FALSE(collected);
+  EXPECT_EQ(collected.error().kind, FailureKind::kUnavailable);
+  EXPECT_THAT(collected.error().message, HasSubstr("the sensor \"mast\" has sent nothing for 90 s (no such port)"));
 }
 
 TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
@@ -105,13 +105,13 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
   const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
   const auto source = make_recorded_source({&roof}, file).value();
   EXPECT_FALSE(source->is_live());
-  const auto hear = [&](const Stretch& stretch) {
-    return source->hear(stretch, [](double, const Heard&) {}).value()[0];
+  const auto collect = [&](const Stretch& stretch) {
+    return source->collect(stretch, [](double, const CollectedReadings&) {}).value()[0];
   };
-  EXPECT_EQ(hear({}).readings.size(), 100U);
-  EXPECT_EQ(hear({}).settings, (std::set<std::string>{"gain = 1.0", "gain = 2.0"}));
+  EXPECT_EQ(collect({}).readings.size(), 100U);
+  EXPECT_EQ(collect({}).settings, (std::set<std::string>{"gain = 1.0", "gain = 2.0"}));
 
-  const HeardSensor part = hear({.from_s = 10.0, .to_s = 20.0});
+  const SensorReadings part = collect({.from_s = 10.0, .to_s = 20.0});
   ASSERT_EQ(part.readings.size(), 10U);
   EXPECT_EQ(part.readings.front().time_s, 10.0);
   EXPECT_EQ(part.settings, std::set<std::string>{"gain = 1.0"});

@@ -76,10 +76,10 @@ TEST(SensorTable, SaysWhereTheWindIsAndWhenItsGustsComeToTheMiddle) {
   EXPECT_THAT(
       sensor_table(sensors),
       HasSubstr("\n  at the windward edge, 5.0 m upwind of the middle of the scenes; a gust reaches it in 0.7 s\n"));
-  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = 42.4, .to_middle_s = 14.1, .is_place_told = true};
+  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = 42.4, .to_middle_s = 14.1, .is_place_configured = true};
   EXPECT_THAT(sensor_table(sensors),
               HasSubstr("\n  at the sensors, 42 m upwind of the middle of the scenes; a gust reaches it in 14 s\n"));
-  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = -12.0, .to_middle_s = 0.0, .is_place_told = true};
+  sensors.wind = {.wind = {3.0, 0.0}, .upwind_m = -12.0, .to_middle_s = 0.0, .is_place_configured = true};
   EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, 12 m downwind of the middle of the scenes\n"));
   sensors.wind.upwind_m = 0.0;
   EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, level with the middle of the scenes\n"));

@@ -179,21 +179,21 @@ TEST(BlendedEstimator, ALossAndAReturnMoveItNoMoreThanItMovesAnyway) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     double gust_m_s = 0.0;  // that lasts for about 8 s
-    const auto speak_for = [&](int readings) {
+    const auto send_for = [&](int readings) {
       for (int i = 0; i < readings; ++i) {
         gust_m_s = 0.88 * gust_m_s + 0.47 * 1.5 * normal(random);
         blend.read(std::max(0.0, 9.0 + gust_m_s), 200.0);
         blend.run_for(1.0);
       }
     };
-    speak_for(10);
+    send_for(10);
     blend.take_largest_step_m_s();
-    speak_for(200);
+    send_for(200);
     usual_m_s += blend.take_largest_step_m_s() / kSeeds;
     blend.run_for(100.0);  // silence
     EXPECT_EQ(blend.estimator().report(0).health, SourceHealth::kStale);
     EXPECT_LT(blend.state().live_weight, 0.9);
-    speak_for(100);
+    send_for(100);
     unusual_m_s += blend.take_largest_step_m_s() / kSeeds;
   }
   EXPECT_LE(unusual_m_s, usual_m_s);
@@ -233,9 +233,9 @@ TEST(BlendedEstimator, FadesIntoTheClimateOverTheMeansMemory) {
 
 TEST(BlendedEstimator, HandsOverToTheNextSourceAndBackWithoutAJump) {
   Blend blend = usual_blend(2, 2);
-  const auto both_for = [&](int readings, bool first_speaks) {
+  const auto both_for = [&](int readings, bool first_sends) {
     for (int i = 0; i < readings; ++i) {
-      if (first_speaks) blend.read(8.0, 180.0, 0);
+      if (first_sends) blend.read(8.0, 180.0, 0);
       blend.read(7.0, 180.0, 1);
       blend.run_for(1.0);
     }
@@ -425,9 +425,9 @@ TEST(BlendedEstimator, LossAndReturnHandOverWithoutAJump) {
 
 TEST(BlendedEstimator, FallsBackToTheNextLiveSourceAndReturnsToTheFirst) {
   Blend blend = calm_blend(2);
-  const auto both_for = [&blend](double duration_s, bool first_speaks) {
+  const auto both_for = [&blend](double duration_s, bool first_sends) {
     for (int half = 0; half < static_cast<int>(2.0 * duration_s); ++half) {
-      if (first_speaks) blend.read(8.0, 90.0, 0);
+      if (first_sends) blend.read(8.0, 90.0, 0);
       blend.read(4.0, 0.0, 1);
       blend.run_for(0.5);
     }

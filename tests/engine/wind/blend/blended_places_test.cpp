@@ -21,12 +21,12 @@ class PlacedBlend {
  public:
   PlacedBlend(const std::vector<BlendSourceSettings>& sources, double turbulence_intensity, std::uint64_t seed = 1)
       : run(sources.size(), settings(sources, turbulence_intensity, seed)) {
-    hear(run.state());
+    take(run.state());
   }
 
   void run_for(double duration_s, const std::function<void(const GroundWind&)>& each = {}) {
     run.run_for(duration_s, [&](const WindState& state) {
-      hear(state);
+      take(state);
       if (each) each(ground);
     });
   }
@@ -53,14 +53,14 @@ class PlacedBlend {
     settings.sources = sources;
     return settings;
   }
-  void hear(const WindState& state) {
+  void take(const WindState& state) {
     ground = written_to(tapes_, {state, run.estimator().ground(), run.estimator().stroke()});
   }
 
   WindTapes tapes_;
 };
 
-BlendSourceSettings told_source(double east_m, double south_m = 0.0, int priority = 1) {
+BlendSourceSettings placed_source(double east_m, double south_m = 0.0, int priority = 1) {
   return {.priority = priority, .has_place = true, .east_m = east_m, .south_m = south_m};
 }
 
@@ -76,7 +76,7 @@ TEST(BlendedPlaces, WhoIsNotToldItsPlaceStandsAtTheWindwardEdge) {
     EXPECT_NEAR(std::hypot(blend.pen(0).east_m, blend.pen(0).south_m), kReach_m, 1e-9);
     EXPECT_NEAR(blend.run.state().upwind_m, kReach_m, 1e-9);
     EXPECT_NEAR(blend.run.state().to_middle_s, kReach_m / 5.0, 0.3);
-    EXPECT_FALSE(blend.run.state().is_place_told);
+    EXPECT_FALSE(blend.run.state().is_place_configured);
   }
 }
 
@@ -94,13 +94,13 @@ TEST(BlendedPlaces, TheEdgeGoesRoundWithoutALeapWhenTheWindTurns) {
 }
 
 TEST(BlendedPlaces, WhoIsToldItsPlaceStandsThereOrUpwindOfItByItsLead) {
-  BlendSourceSettings source = told_source(3.0, -8.0);
+  BlendSourceSettings source = placed_source(3.0, -8.0);
   source.lead_m = 12.0;
   PlacedBlend blend({source}, 0.0);
   blend.read_for(300.0, 4.0, 180.0);
   EXPECT_NEAR(blend.pen(0).east_m, 3.0, 0.1);
   EXPECT_NEAR(blend.pen(0).south_m, -8.0 + 12.0, 0.1);
-  EXPECT_TRUE(blend.run.state().is_place_told);
+  EXPECT_TRUE(blend.run.state().is_place_configured);
   EXPECT_NEAR(blend.run.state().upwind_m, 4.0, 0.1);
   EXPECT_NEAR(blend.run.state().to_middle_s, 1.0, 0.05);
   blend.read_for(300.0, 4.0, 0.0);
@@ -108,15 +108,15 @@ TEST(BlendedPlaces, WhoIsToldItsPlaceStandsThereOrUpwindOfItByItsLead) {
   blend.read_for(1.0, 4.0, 0.0);
   EXPECT_NEAR(blend.run.state().upwind_m, 20.0, 0.1);
 
-  PlacedBlend downwind({told_source(0.0, -8.0)}, 0.0);
+  PlacedBlend downwind({placed_source(0.0, -8.0)}, 0.0);
   downwind.read_for(200.0, 4.0, 180.0);
   EXPECT_NEAR(downwind.run.state().upwind_m, -8.0, 0.1);
   EXPECT_EQ(downwind.run.state().to_middle_s, 0.0) << "a gust has passed the middle when it is measured";
 }
 
 TEST(BlendedPlaces, TheWindThatIsShownIsThatOfTheGroundAtThePen) {
-  for (const bool is_told : {false, true}) {
-    PlacedBlend blend({is_told ? told_source(5.0, 3.0) : BlendSourceSettings{}}, 0.3, 4);
+  for (const bool is_placed : {false, true}) {
+    PlacedBlend blend({is_placed ? placed_source(5.0, 3.0) : BlendSourceSettings{}}, 0.3, 4);
     TestGusts gusts(2);
     for (int second = 0; second < 120; ++second) {
       if (second < 60 || second > 80) blend.run.read(std::max(0.1, 6.0 + 1.5 * gusts.next()), 200.0);
@@ -133,7 +133,7 @@ TEST(BlendedPlaces, TheWindThatIsShownIsThatOfTheGroundAtThePen) {
 
 TEST(BlendedPlaces, AConstantWindIsConstantEverywhere) {
   // The climate is the same wind: it has no turbulence, so that nothing fills anything.
-  PlacedBlend blend({{}, told_source(10.0, 5.0)}, 0.0);
+  PlacedBlend blend({{}, placed_source(10.0, 5.0)}, 0.0);
   double largest_m_s = 0.0;
   for (int second = 0; second < 120; ++second) {
     blend.run.read(4.0, 180.0, 0);
@@ -153,7 +153,7 @@ TEST(BlendedPlaces, CalmStaysCalmExactly) {
   BlendSettings settings = BlendRun::usual(1, 0.2);
   settings.climate.mean_speed_m_s = 0.0;
   settings.reach_m = kReach_m;
-  settings.sources = {{}, told_source(10.0)};
+  settings.sources = {{}, placed_source(10.0)};
   BlendRun run(2, settings);
   WindTapes tapes;
   for (int second = 0; second < 60; ++second) {
@@ -188,9 +188,9 @@ TEST(BlendedPlaces, AReadingThatIsNoNumberDisturbsNoPlace) {
 }
 
 TEST(BlendedPlaces, AMicrophoneWritesWhereTheAnemometerStandsWhoseGustsItFills) {
-  BlendSourceSettings microphone = told_source(-25.0, 0.0, 2);
+  BlendSourceSettings microphone = placed_source(-25.0, 0.0, 2);
   microphone.is_relative = true;
-  PlacedBlend blend({told_source(8.0), microphone}, 0.2);
+  PlacedBlend blend({placed_source(8.0), microphone}, 0.2);
   TestGusts gusts(3);
   double sum_m_s = 0.0;
   for (int second = 0; second < 120; ++second) {
@@ -213,7 +213,7 @@ TEST(BlendedPlaces, AMicrophoneWritesWhereTheAnemometerStandsWhoseGustsItFills) 
 }
 
 TEST(BlendedPlaces, TwoOfOneRankEachHaveTheirOwnGustsWhereTheyStand) {
-  PlacedBlend blend({told_source(-40.0), told_source(40.0)}, 0.0);
+  PlacedBlend blend({placed_source(-40.0), placed_source(40.0)}, 0.0);
   // West a gust of 20 s, east none.
   double west_m_s = 0.0;
   double east_m_s = 0.0;
@@ -266,14 +266,14 @@ bool is_there(int second) {
 }
 
 TEST(BlendedPlaces, OneOfTwoThatComesOrGoesMovesNoPlaceByALeap) {
-  const std::vector<BlendSourceSettings> sources = {told_source(-15.0), told_source(15.0)};
+  const std::vector<BlendSourceSettings> sources = {placed_source(-15.0), placed_source(15.0)};
   const double normal_m_s = largest_step_m_s(sources, [](int) { return true; });
   EXPECT_LT(normal_m_s, 0.02);
   EXPECT_LT(largest_step_m_s(sources, is_there), kLargestChange_m_s + normal_m_s);
 }
 
 TEST(BlendedPlaces, OneThatTakesOverAtAnotherPlaceMovesNoPlaceByALeap) {
-  EXPECT_LT(largest_step_m_s({told_source(-15.0), told_source(15.0, 0.0, 2)}, is_there), 2.0 * kLargestChange_m_s);
+  EXPECT_LT(largest_step_m_s({placed_source(-15.0), placed_source(15.0, 0.0, 2)}, is_there), 2.0 * kLargestChange_m_s);
 }
 
 TEST(BlendedPlaces, AGustComesLaterTheFartherDownwindAPlaceIs) {

@@ -52,16 +52,16 @@ class WithMicrophone {
   explicit WithMicrophone(std::uint64_t seed, double slow_s = 60.0)
       : run(2, settings(seed)), gusts_(seed), slow_s_(slow_s) {}
 
-  void run_for(int seconds, bool slow_speaks = true, bool microphone_speaks = true) {
+  void run_for(int seconds, bool slow_sends = true, bool microphone_sends = true) {
     for (int i = 0; i < seconds; ++i, ++second_) {
       const double true_m_s = std::max(0.0, 8.0 + 1.5 * gusts_.next());
       sum_m_s_ += true_m_s;
       if (second_ % static_cast<int>(slow_s_) == 0) {
-        if (slow_speaks) run.read(sum_m_s_ / std::max(1, second_ - since_), 180.0, 0);
+        if (slow_sends) run.read(sum_m_s_ / std::max(1, second_ - since_), 180.0, 0);
         sum_m_s_ = 0.0;
         since_ = second_;
       }
-      if (microphone_speaks) run.read(0.4 * true_m_s, std::nullopt, 1);
+      if (microphone_sends) run.read(0.4 * true_m_s, std::nullopt, 1);
       run.run_for(1.0, [&](const WindState& state) {
         moments.add(state);
         together_ += (state.wind.v_m_s - 8.0) * (true_m_s - 8.0);
@@ -135,17 +135,17 @@ TEST(BlendedSources, AMicrophoneAloneIsTakenAsItIs) {
 TEST(BlendedSources, AFlappingSensorDoesNotMakeTheWindFlap) {
   // The first speaks for 8 s and is silent for 8 s; both say what the other does not.
   BlendRun run(2, without_noise({{}, {}}));
-  const auto speak_for = [&run](int seconds, bool first) {
+  const auto send_for = [&run](int seconds, bool first) {
     for (int i = 0; i < seconds; ++i) {
       if (first) run.read(9.0, 180.0, 0);
       run.read(5.0, 180.0, 1);
       run.run_for(1.0);
     }
   };
-  speak_for(60, true);
-  speak_for(8, false);
-  speak_for(8, true);
-  speak_for(60, false);
+  send_for(60, true);
+  send_for(8, false);
+  send_for(8, true);
+  send_for(60, false);
   double lowest = 1e9;
   double highest = 0.0;
   for (int flap = 0; flap < 20; ++flap) {
@@ -185,10 +185,10 @@ TEST(BlendedSources, AlongAWallTheWindIsInterpolated) {
 TEST(BlendedSources, AlongAWallASensorFailsAndReturnsWithoutAJump) {
   BlendRun run(2, without_noise({{.priority = 1, .east_m = -10.0}, {.priority = 1, .east_m = 10.0}}));
   double largest_step_m_s = 0.0;
-  const auto speak_for = [&](int seconds, bool second_speaks) {
+  const auto send_for = [&](int seconds, bool second_sends) {
     for (int i = 0; i < seconds; ++i) {
       run.read(4.0, 180.0, 0);
-      if (second_speaks) run.read(8.0, 180.0, 1);
+      if (second_sends) run.read(8.0, 180.0, 1);
       WindVector before = run.estimator().ground().smooth_at(10.0, 0.0);
       run.run_for(1.0, [&](const WindState&) {
         const WindVector now = run.estimator().ground().smooth_at(10.0, 0.0);
@@ -197,12 +197,12 @@ TEST(BlendedSources, AlongAWallASensorFailsAndReturnsWithoutAJump) {
       });
     }
   };
-  speak_for(120, true);
+  send_for(120, true);
   EXPECT_NEAR(run.estimator().ground().smooth_at(10.0, 0.0).v_m_s, 8.0, 0.3);
   largest_step_m_s = 0.0;
-  speak_for(120, false);
+  send_for(120, false);
   EXPECT_NEAR(run.estimator().ground().smooth_at(10.0, 0.0).v_m_s, 4.0, 0.3);
-  speak_for(120, true);
+  send_for(120, true);
   EXPECT_NEAR(run.estimator().ground().smooth_at(10.0, 0.0).v_m_s, 8.0, 0.3);
   EXPECT_LT(largest_step_m_s, 0.1) << "4 m/s within some seconds";
 }

@@ -17,7 +17,7 @@ const WindVector kFromWest = wind_from(1.0, 270.0);
 class Vane {
  public:
   explicit Vane(double step_deg = 0.0) : keeper(step_deg) {}
-  double says(std::optional<double> direction_deg, double speed_m_s = 5.0, bool otherwise_is_live = false) {
+  double direction_after(std::optional<double> direction_deg, double speed_m_s = 5.0, bool otherwise_is_live = false) {
     WindReading reading;
     reading.speed_m_s = speed_m_s;
     reading.direction_deg = direction_deg;
@@ -33,29 +33,29 @@ double coarse(double direction_deg, double step_deg) {
 
 TEST(DirectionKeeper, BelievesAFineVaneAtOnce) {
   Vane vane;
-  for (const double deg : {10.0, 355.0, 183.0, 90.0}) EXPECT_NEAR(vane.says(deg), deg, 1e-9);
+  for (const double deg : {10.0, 355.0, 183.0, 90.0}) EXPECT_NEAR(vane.direction_after(deg), deg, 1e-9);
   EXPECT_TRUE(vane.keeper.has_vane());
   EXPECT_EQ(vane.keeper.memory_s(), 0.0);
 }
 
 TEST(DirectionKeeper, HoldsTheLastDirectionOrTheOneThatIsOffered) {
   Vane vane;
-  EXPECT_NEAR(vane.says(std::nullopt), 270.0, 1e-9) << "it never said any";
-  EXPECT_NEAR(vane.says(30.0), 30.0, 1e-9);
-  EXPECT_NEAR(vane.says(std::nullopt), 30.0, 1e-9);
+  EXPECT_NEAR(vane.direction_after(std::nullopt), 270.0, 1e-9) << "it never said any";
+  EXPECT_NEAR(vane.direction_after(30.0), 30.0, 1e-9);
+  EXPECT_NEAR(vane.direction_after(std::nullopt), 30.0, 1e-9);
   EXPECT_FALSE(vane.keeper.has_vane());
-  EXPECT_NEAR(vane.says(std::nullopt, 5.0, true), 270.0, 1e-9) << "another measures it now";
+  EXPECT_NEAR(vane.direction_after(std::nullopt, 5.0, true), 270.0, 1e-9) << "another measures it now";
 }
 
 TEST(DirectionKeeper, InACalmItHoldsTheDirectionTheMoreTheCalmerItIs) {
   Vane vane;
-  vane.says(100.0);
-  EXPECT_NEAR(vane.says(200.0, 0.0), 100.0, 1e-9);
-  const double in_very_little = vane.says(200.0, 0.1);
+  vane.direction_after(100.0);
+  EXPECT_NEAR(vane.direction_after(200.0, 0.0), 100.0, 1e-9);
+  const double in_very_little = vane.direction_after(200.0, 0.1);
   EXPECT_GT(in_very_little, 100.0);
   EXPECT_LT(in_very_little, 110.0);
-  EXPECT_GT(vane.says(200.0, 0.4), 130.0);
-  EXPECT_NEAR(vane.says(200.0, 0.5), 200.0, 1e-9);
+  EXPECT_GT(vane.direction_after(200.0, 0.4), 130.0);
+  EXPECT_NEAR(vane.direction_after(200.0, 0.5), 200.0, 1e-9);
 }
 
 TEST(DirectionKeeper, TurnsTheShorterWayAndFromTheOppositeToo) {
@@ -70,13 +70,13 @@ TEST(DirectionKeeper, FindsOutHowCoarseAVaneIs) {
   TestGusts gusts(3);
   for (const double step_deg : {45.0, 22.5}) {
     Vane vane;
-    for (int i = 0; i < 100; ++i) vane.says(coarse(200.0 + 20.0 * gusts.normal(), step_deg));
+    for (int i = 0; i < 100; ++i) vane.direction_after(coarse(200.0 + 20.0 * gusts.normal(), step_deg));
     EXPECT_EQ(vane.keeper.step_deg(), step_deg);
     EXPECT_TRUE(vane.keeper.is_coarse());
   }
   Vane fine;
   for (int i = 0; i < 2000; ++i) {
-    fine.says(coarse(200.0 + 20.0 * gusts.normal(), 1.0));
+    fine.direction_after(coarse(200.0 + 20.0 * gusts.normal(), 1.0));
     ASSERT_FALSE(i > 10 && fine.keeper.is_coarse()) << "whole degrees, at reading " << i;
   }
   EXPECT_EQ(Vane(45.0).keeper.step_deg(), 45.0) << "given";
@@ -88,13 +88,13 @@ TEST(DirectionKeeper, ACoarseVaneNeverLeapsAndItsMeanIsRight) {
   EXPECT_GT(vane.keeper.memory_s(), 1.0);
   EXPECT_LT(vane.keeper.memory_s(), 30.0);
   TestGusts gusts(5);
-  double before_deg = vane.says(coarse(200.0, 45.0));
+  double before_deg = vane.direction_after(coarse(200.0, 45.0));
   double largest_turn_deg = 0.0;
   double sum_deg = 0.0;
   constexpr int kReadings = 4000;
   for (int i = 0; i < kReadings; ++i) {
     // True: from 200 degrees, give or take 12.
-    const double deg = vane.says(coarse(200.0 + 12.0 * gusts.next(), 45.0));
+    const double deg = vane.direction_after(coarse(200.0 + 12.0 * gusts.next(), 45.0));
     largest_turn_deg = std::max(largest_turn_deg, std::abs(std::remainder(deg - before_deg, 360.0)));
     before_deg = deg;
     sum_deg += deg;

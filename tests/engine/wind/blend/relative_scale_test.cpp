@@ -10,7 +10,7 @@ namespace yuragi {
 namespace {
 
 /// A relative source that says a third of the gusts and adds 2 m/s to a third of the mean of 6 m/s.
-void hear_for(RelativeScale& scale, int seconds, double gust_scale = 3.0, double independent_after_s = 10.0) {
+void measure_for(RelativeScale& scale, int seconds, double gust_scale = 3.0, double independent_after_s = 10.0) {
   TestGusts gusts(1);
   for (int i = 0; i < seconds; ++i) {
     const double gust_m_s = gusts.next();
@@ -31,14 +31,14 @@ TEST(RelativeScale, IsOneAsLongAsNothingIsKnown) {
 
 TEST(RelativeScale, FindsTheGainOfTheGustsAndThatOfTheMean) {
   RelativeScale scale(600.0);
-  hear_for(scale, 1800);
+  measure_for(scale, 1800);
   EXPECT_NEAR(scale.mean_gain(), 1.5, 0.05);
   EXPECT_NEAR(scale.gust_gain(), 3.0, 0.3) << "not that of the mean: the source has an offset";
 }
 
 TEST(RelativeScale, FollowsTheMeansWhereTheGustsTellNothing) {
   RelativeScale scale(600.0);
-  hear_for(scale, 600, 3.0, 1e6);
+  measure_for(scale, 600, 3.0, 1e6);
   EXPECT_NEAR(scale.gust_gain(), 1.5, 0.05);
 }
 

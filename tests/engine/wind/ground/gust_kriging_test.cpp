@@ -183,7 +183,7 @@ TEST(GustKriging, OneThatIsGoneHasNoWeightAndTheOthersAreAsWithoutIt) {
   }
 }
 
-TEST(GustKriging, NobodyThereIsNobodysWord) {
+TEST(GustKriging, NoWeightWithoutAPresentPen) {
   std::mt19937 random(4);
   Layout layout(random, 4);
   for (WindPen& pen : layout.pens) pen.presence = 0.0;

@@ -77,12 +77,12 @@ TEST(CalibrationFit, TwoVanesInOneWindGiveTheTurnBetweenThem) {
 }
 
 TEST(CalibrationFit, TwoVanesAreComparedWhereBothSpoke) {
-  std::vector<TimedDirection> said;
+  std::vector<TimedDirection> indicated;
   std::vector<TimedDirection> truth;
-  for (int i = 0; i < 200; ++i) said.push_back({0.5 * i, i % 2 == 0 ? 350.0 : 352.0});
+  for (int i = 0; i < 200; ++i) indicated.push_back({0.5 * i, i % 2 == 0 ? 350.0 : 352.0});
   for (int i = 0; i < 3; ++i) truth.push_back({10.0 * i + 5.0, 11.0});
   truth.push_back({500.0, 200.0});
-  const std::vector<double> turns_deg = pair_turns(said, truth, 10.0);
+  const std::vector<double> turns_deg = pair_turns(indicated, truth, 10.0);
   ASSERT_EQ(turns_deg.size(), 3U);
   for (const double turn_deg : turns_deg) EXPECT_NEAR(turn_deg, 20.0, 1e-9);
 }
@@ -163,8 +163,8 @@ TEST(CalibrationFit, OneKnownSpeedTurnsTheLineAboutItsZero) {
 TEST(CalibrationFit, BinsFollowASensorThatIsNotStraight) {
   std::vector<CalibrationPoint> pairs;
   for (int i = 0; i < 200; ++i) {
-    const double said_m_s = 0.5 + 0.05 * i;
-    pairs.push_back({said_m_s, 0.3 + 0.8 * said_m_s + 0.04 * said_m_s * said_m_s});
+    const double indicated_m_s = 0.5 + 0.05 * i;
+    pairs.push_back({indicated_m_s, 0.3 + 0.8 * indicated_m_s + 0.04 * indicated_m_s * indicated_m_s});
   }
   const auto line = fit_line(pairs);
   const auto curve = fit_curve(pairs);
@@ -193,8 +193,8 @@ TEST(CalibrationFit, ACurveRisesWhateverTheScatter) {
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     std::vector<CalibrationPoint> pairs;
     for (int i = 0; i < 40; ++i) {
-      const double said_m_s = 8.0 * uniform(random);
-      pairs.push_back({said_m_s, std::max(0.0, said_m_s + 3.0 * uniform(random) - 1.5)});
+      const double indicated_m_s = 8.0 * uniform(random);
+      pairs.push_back({indicated_m_s, std::max(0.0, indicated_m_s + 3.0 * uniform(random) - 1.5)});
     }
     const auto fit = fit_curve(pairs);
     if (!fit) continue;

@@ -14,7 +14,7 @@ namespace {
 class Assembly {
  public:
   explicit Assembly(std::size_t count) : vote_(count) {
-    for (std::size_t i = 0; i < count; ++i) vote_.seat(i, true);
+    for (std::size_t i = 0; i < count; ++i) vote_.set_comparable(i, true);
   }
 
   /// So many minutes in which they say these means; a negative one says nothing.
@@ -25,7 +25,7 @@ class Assembly {
       std::size_t sensor = 0;
       for (const double mean_m_s : means_m_s) {
         const double gust = 1.0 + 0.3 * std::sin(0.1 * now_s_ + static_cast<double>(sensor));
-        if (mean_m_s >= 0.0) vote_.hear(sensor, now, gust * mean_m_s);
+        if (mean_m_s >= 0.0) vote_.accept(sensor, now, gust * mean_m_s);
         ++sensor;
       }
       vote_.advance(now);
@@ -93,15 +93,15 @@ TEST(SensorVote, ASentenceStandsWhileThereIsNoMajorityToChangeIt) {
   Assembly roofs(3);
   roofs.minutes(30, {5.0, 5.5, 40.0});
   ASSERT_EQ(roofs.on(2), Vote::kOutvoted);
-  roofs.vote().seat(0, false);
+  roofs.vote().set_comparable(0, false);
   roofs.minutes(60, {5.0, 5.5, 40.0});
   EXPECT_EQ(roofs.on(2), Vote::kOutvoted);
-  roofs.vote().seat(1, false);
+  roofs.vote().set_comparable(1, false);
   roofs.minutes(60, {5.0, 5.5, 5.5});
   EXPECT_EQ(roofs.on(2), Vote::kOutvoted) << "nobody can acquit it";
   EXPECT_FALSE(roofs.vote().others_m_s(2).has_value());
-  roofs.vote().seat(0, true);
-  roofs.vote().seat(1, true);
+  roofs.vote().set_comparable(0, true);
+  roofs.vote().set_comparable(1, true);
   roofs.minutes(30, {5.0, 5.5, 5.5});
   EXPECT_EQ(roofs.on(2), Vote::kNone);
 }
@@ -110,7 +110,7 @@ TEST(SensorVote, ADisputeEndsWithTheOtherSensor) {
   Assembly pair(2);
   pair.minutes(30, {2.0, 20.0});
   ASSERT_EQ(pair.on(0), Vote::kDisputed);
-  pair.vote().seat(1, false);
+  pair.vote().set_comparable(1, false);
   pair.minutes(15, {2.0, -1.0});
   EXPECT_EQ(pair.on(0), Vote::kNone);
 }
@@ -132,8 +132,8 @@ TEST(SensorVote, TimesOfAnyKindDoNotConfuseIt) {
     const std::size_t sensor = random() % 3;
     const double ten_years_s = 3.2e8;
     const double time_s = random() % 97 == 0 ? ten_years_s * static_cast<double>(random() % 3) : 1e4 + 0.5 * i;
-    vote.seat(sensor, random() % 50 != 0);
-    vote.hear(sensor, MonoTime(from_seconds(time_s)), static_cast<double>(random() % 1200) / 10.0);
+    vote.set_comparable(sensor, random() % 50 != 0);
+    vote.accept(sensor, MonoTime(from_seconds(time_s)), static_cast<double>(random() % 1200) / 10.0);
     vote.advance(MonoTime(from_seconds(random() % 89 == 0 ? time_s : 1e4 + 0.5 * i)));
     ASSERT_TRUE(vote.mean_m_s(sensor) >= 0.0 && vote.mean_m_s(sensor) <= 120.0) << i;
     const double others_m_s = vote.others_m_s(sensor).value_or(0.0);

@@ -89,11 +89,11 @@ TEST(SiteSpectrum, IsTheSameFromAFile) {
 }
 
 /// An hour of gusts from a quick source beside a slow one, each as it may.
-std::shared_ptr<SiteSpectrum> taught(bool may_teach, double interval_s) {
+std::shared_ptr<SiteSpectrum> fitted(bool may_fit, double interval_s) {
   auto site = std::make_shared<SiteSpectrum>();
   BlendSettings settings = BlendRun::usual();
   settings.site = site;
-  settings.sources = {{.teaches_site = may_teach}};
+  settings.sources = {{.fits_site = may_fit}};
   BlendRun blend(1, settings);
   TestGusts gusts(7);
   for (double time_s = 0.0; time_s < 1200.0; time_s += interval_s) {
@@ -103,13 +103,13 @@ std::shared_ptr<SiteSpectrum> taught(bool may_teach, double interval_s) {
   return site;
 }
 
-TEST(SiteSpectrum, IsTaughtByQuickSourcesThatMay) {
-  const auto site = taught(true, 1.0);
+TEST(SiteSpectrum, IsFittedFromFastSourcesThatMay) {
+  const auto site = fitted(true, 1.0);
   EXPECT_GT(site->known_s()[0], 600.0);
   EXPECT_GT(site->known_s()[3], 600.0);
   EXPECT_EQ(site->known_s()[4], 0.0) << "no reading a second tells of that";
-  EXPECT_EQ(taught(false, 1.0)->known_s()[0], 0.0);
-  EXPECT_EQ(taught(true, 2.0)->known_s()[0], 0.0);
+  EXPECT_EQ(fitted(false, 1.0)->known_s()[0], 0.0);
+  EXPECT_EQ(fitted(true, 2.0)->known_s()[0], 0.0);
 }
 
 TEST(SiteSpectrum, WhatItLearnsMovesTheWindNoMoreThanItMovesAnyway) {

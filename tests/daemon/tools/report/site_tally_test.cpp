@@ -1,4 +1,4 @@
-#include "daemon/tools/report/site_lesson.hpp"
+#include "daemon/tools/report/site_tally.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace {
 
 /// Half an hour of a wind of 5 m/s with gusts that last for some seconds, and a gap.
 std::optional<SiteNumbers> learnt_from(double interval_s) {
-  SiteLesson lesson({.intensity = 0.2, .length_m = 25.0}, interval_s);
+  SiteTally lesson({.intensity = 0.2, .length_m = 25.0}, interval_s);
   const RandomStream random(1, 1);
   const double kept = std::exp(-interval_s / 8.0);
   double gust_m_s = 0.0;
@@ -26,7 +26,7 @@ std::optional<SiteNumbers> learnt_from(double interval_s) {
   return lesson.numbers();
 }
 
-TEST(SiteLesson, LearnsTheOctavesThatASensorIsQuickEnoughFor) {
+TEST(SiteTally, LearnsTheOctavesThatASensorIsQuickEnoughFor) {
   const auto quick = learnt_from(0.1);
   ASSERT_TRUE(quick);
   EXPECT_EQ(quick->octaves_db.size(), 7U);

@@ -9,12 +9,12 @@ namespace yuragi {
 
 /// The renderer of a scene view. Owns its GPU objects; needs a current context; on its thread. Allocates nothing from
 /// picture to picture after the first few.
-class Look {
+class SceneRenderer {
  public:
-  Look() = default;
-  virtual ~Look() = default;
-  Look(const Look&) = delete;
-  Look& operator=(const Look&) = delete;
+  SceneRenderer() = default;
+  virtual ~SceneRenderer() = default;
+  SceneRenderer(const SceneRenderer&) = delete;
+  SceneRenderer& operator=(const SceneRenderer&) = delete;
 
   /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn.
   virtual void move_to(const Pose& pose) = 0;
@@ -38,6 +38,6 @@ class Look {
 
 /// The renderer for the scene's kind of skeleton, and for the scene's own kind where there are several. `scene` must
 /// outlive it.
-std::unique_ptr<Look> make_look(const wire::SceneModel& scene);
+std::unique_ptr<SceneRenderer> make_scene_renderer(const wire::SceneModel& scene);
 
 }  // namespace yuragi

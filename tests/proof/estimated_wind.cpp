@@ -1,4 +1,4 @@
-#include "tests/proof/heard_wind.hpp"
+#include "tests/proof/estimated_wind.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 namespace yuragi::proof {
 namespace {
 
-constexpr double kHeardTick_s = 1.0 / 60.0;
+constexpr double kEstimateTick_s = 1.0 / 60.0;
 
 }  // namespace
 
@@ -15,17 +15,17 @@ std::shared_ptr<const GustNoise> shared_noise() {
   return noise;
 }
 
-std::vector<WindVector> wind_of(HeardWind& heard, const std::vector<WindReading>& readings, double from_s,
+std::vector<WindVector> wind_of(EstimatedWind& estimated, const std::vector<WindReading>& readings, double from_s,
                                 double to_s) {
   std::vector<WindVector> winds;
   const MonoTime from(from_seconds(from_s));
   auto next =
       std::ranges::lower_bound(readings, from, {}, [](const WindReading& reading) { return reading.time.mono; });
-  const auto ticks = static_cast<int>(std::lround((to_s - from_s) / kHeardTick_s));
+  const auto ticks = static_cast<int>(std::lround((to_s - from_s) / kEstimateTick_s));
   for (int tick = 0; tick < ticks; ++tick) {
-    const MonoTime now = from + from_seconds(tick * kHeardTick_s);
-    for (; next != readings.end() && next->time.mono <= now; ++next) heard.tell(*next);
-    winds.push_back(heard.advance(now));
+    const MonoTime now = from + from_seconds(tick * kEstimateTick_s);
+    for (; next != readings.end() && next->time.mono <= now; ++next) estimated.take(*next);
+    winds.push_back(estimated.advance(now));
   }
   return winds;
 }

@@ -11,17 +11,17 @@ namespace yuragi {
 /// same mast, and the power of the fast readings at each octave (Haar's differences) is compared with that fit. Both
 /// components count together, where there is a vane. Allocates at construction only. Thread-safe: no. Realtime-safe:
 /// yes; a fit every 14 s.
-class SiteTeacher {
+class SiteSpectrumFit {
  public:
   /// `prior` and `fit_memory_s`: of the slow source that is to be corrected.
-  SiteTeacher(const TurbulencePrior& prior, double fit_memory_s);
+  SiteSpectrumFit(const TurbulencePrior& prior, double fit_memory_s);
 
   struct Observation {
     WindVector wind;         ///< a reading: the mean over `interval_s`, which began `interval_s` ago
     WindVector ahead;        ///< unit vector downwind
     double speed_m_s = 0.0;  ///< slow mean
     double interval_s = 0.0;
-    bool tells_across = false;
+    bool has_across = false;
   };
   /// Takes a reading of the source, and the turbulence of its own readings (`quick`, which has taken the reading).
   /// Sources slower than SiteSpectrum::kQuick_s and winds below 1 m/s change nothing.
@@ -30,7 +30,7 @@ class SiteTeacher {
   void break_off() noexcept;
 
  private:
-  void teach(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) const noexcept;
+  void update(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) const noexcept;
 
   WindTurbulence slow_;
   WindVector sum_{};

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "viewer/looks/look.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/strand_ribbons.hpp"
 
 namespace yuragi {
 
 /// Draws strands as a meadow of lit blades.
-class GrassLook : public Look {
+class GrassRenderer : public SceneRenderer {
  public:
   /// `strands` must outlive this.
-  explicit GrassLook(const StrandSkeleton& strands);
+  explicit GrassRenderer(const StrandSkeleton& strands);
 
   void move_to(const Pose& pose) override;
   void draw(const View& view) override;

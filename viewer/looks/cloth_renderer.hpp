@@ -4,17 +4,17 @@
 
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/looks/grid_sheet.hpp"
-#include "viewer/looks/look.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
 #include "viewer/meshes/cloth_measure.hpp"
 
 namespace yuragi {
 
 /// Draws a cloth and what holds it: a curtain of linen that light shines through, a flag, a nobori banner.
-class ClothLook : public Look {
+class ClothRenderer : public SceneRenderer {
  public:
   /// `cloth` must outlive this.
-  ClothLook(const GridSkeleton& cloth, std::string_view kind);
+  ClothRenderer(const GridSkeleton& cloth, std::string_view kind);
 
   void move_to(const Pose& pose) override;
   void draw(const View& view) override;

@@ -1,4 +1,4 @@
-#include "viewer/looks/fur_look.hpp"
+#include "viewer/looks/fur_renderer.hpp"
 
 #include <cmath>
 
@@ -33,7 +33,7 @@ void set_body(const GlProgram& program, const StrandSkeleton& strands) {
 
 }  // namespace
 
-FurLook::FurLook(const StrandSkeleton& strands)
+FurRenderer::FurRenderer(const StrandSkeleton& strands)
     : ribbons_(strands, BladeStyle::kFur),
       hair_(link_program("hair", shaders::kHairVert, shaders::kShadeFrag)),
       undercoat_(link_program("undercoat", shaders::kUndercoatVert, shaders::kShadeFrag)) {
@@ -42,11 +42,11 @@ FurLook::FurLook(const StrandSkeleton& strands)
   set_body(undercoat_, strands);
 }
 
-void FurLook::move_to(const Pose& pose) {
+void FurRenderer::move_to(const Pose& pose) {
   if (const auto* const bends = std::get_if<StrandPose>(&pose)) ribbons_.move_to(*bends);
 }
 
-void FurLook::draw(const View& view) {
+void FurRenderer::draw(const View& view) {
   ribbons_.draw(hair_, view);
   ribbons_.draw_fans(undercoat_, kDiscCorners);
 }

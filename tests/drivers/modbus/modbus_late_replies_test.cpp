@@ -37,7 +37,7 @@ class ModbusLateAnswerTest : public testing::Test {
   void say(const Bytes& bytes) { EXPECT_EQ(write(port_.far_end(), bytes.data(), bytes.size()), std::ssize(bytes)); }
 
   /// Waits for a request, so many bytes; false if none comes.
-  bool hear_request() {
+  bool receive_request() {
     std::array<std::uint8_t, 8> request{};
     for (std::size_t size = 0; size < request.size();) {
       pollfd wait{port_.far_end(), POLLIN, 0};
@@ -49,17 +49,17 @@ class ModbusLateAnswerTest : public testing::Test {
     return true;
   }
 
-  ModbusBus::Answer ask(Nanoseconds timeout) {
-    return bus_->ask({.unit = 1}, {.response_timeout = timeout, .byte_timeout = byte_timeout_}, interruption_, clock_,
-                     sink_);
+  ModbusBus::Reply exchange(Nanoseconds timeout) {
+    return bus_->exchange({.unit = 1}, {.response_timeout = timeout, .byte_timeout = byte_timeout_}, interruption_,
+                          clock_, sink_);
   }
 
   /// Asks once in vain, which leaves an answer outstanding.
   void time_out() {
-    const auto answer = ask(20ms);
-    ASSERT_FALSE(answer);
-    EXPECT_EQ(answer.error().kind, Kind::kSilence);
-    ASSERT_TRUE(hear_request());
+    const auto reply = exchange(20ms);
+    ASSERT_FALSE(reply);
+    EXPECT_EQ(reply.error().kind, Kind::kSilence);
+    ASSERT_TRUE(receive_request());
   }
 
   Nanoseconds byte_timeout_ = 100ms;
@@ -74,13 +74,13 @@ TEST_F(ModbusLateAnswerTest, ThatIsThereBeforeTheNextRequestIsDroppedAndCounted)
   time_out();
   say(kLate);
   std::thread device([this] {
-    EXPECT_TRUE(hear_request());
+    EXPECT_TRUE(receive_request());
     say(kRight);
   });
-  const auto answer = ask(60s);
+  const auto reply = exchange(60s);
   device.join();
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->values[0], 86);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->values[0], 86);
   EXPECT_THAT(sink_.refusals, testing::ElementsAre(Refusal::kTimeout, Refusal::kNotMine));
 }
 
@@ -96,13 +96,13 @@ TEST_F(ModbusLateAnswerTest, ThatComesWhileTheNextRequestIsAboutToBeSentIsWaited
       EXPECT_EQ(poll(&wait, 1, 30), 0) << "a request was sent into an answer";
       say({*byte});
     }
-    EXPECT_TRUE(hear_request());
+    EXPECT_TRUE(receive_request());
     say(kRight);
   });
-  const auto answer = ask(60s);
+  const auto reply = exchange(60s);
   device.join();
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->values[0], 86);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->values[0], 86);
   EXPECT_EQ(sink_.count(Refusal::kNotMine), 1);
 }
 
@@ -113,14 +113,14 @@ TEST_F(ModbusLateAnswerTest, FallsIntoTheTimeForWhichItsSlaveIsLetBe) {
 
 TEST_F(ModbusLateAnswerTest, OfAnotherSlaveIsKnownByItsIdAndPassedOver) {
   std::thread device([this] {
-    EXPECT_TRUE(hear_request());
+    EXPECT_TRUE(receive_request());
     say({0x02, 0x03, 0x02, 0x00, 0x25, 0x3D, 0x9F});
     say(kRight);
   });
-  const auto answer = ask(60s);
+  const auto reply = exchange(60s);
   device.join();
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->values[0], 86);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->values[0], 86);
   EXPECT_THAT(sink_.refusals, testing::ElementsAre(Refusal::kNotMine));
 }
 
@@ -135,17 +135,17 @@ TEST_F(ModbusLateAnswerTest, DoesNotHoldUpALineThatNeverGetsQuietForLongerThanAT
       EXPECT_EQ(write(port_.far_end(), &noise, 1), 1);
     }
   });
-  const auto answer = ask(300ms);  // comes back, though the line is never quiet
+  const auto reply = exchange(300ms);  // comes back, though the line is never quiet
   stop = true;
   chatter.join();
-  EXPECT_FALSE(answer);
+  EXPECT_FALSE(reply);
 }
 
 TEST_F(ModbusLateAnswerTest, CannotKeepAnInterruptedSensorWaiting) {
   interruption_.set();
-  const auto answer = ask(60s);
-  ASSERT_FALSE(answer);
-  EXPECT_EQ(answer.error().kind, Kind::kInterrupted);
+  const auto reply = exchange(60s);
+  ASSERT_FALSE(reply);
+  EXPECT_EQ(reply.error().kind, Kind::kInterrupted);
 }
 
 }  // namespace

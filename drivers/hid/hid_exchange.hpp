@@ -14,14 +14,14 @@ namespace yuragi {
 /// The result of a read.
 struct HidMessage {
   HidStatus status = HidStatus::kSilence;
-  ByteSpan bytes;  ///< for kReport; until the talk's next message
+  ByteSpan bytes;  ///< for kReport; valid until the next message
 };
 
-/// A station's device, clock and sink, for the time of one poll(): every message is shown to the sink.
-/// Owns nothing. Thread-safe: no.
-class HidTalk {
+/// The exchange with a station during one poll(): device, clock and sink. Shows every message to the sink. Owns
+/// nothing. Thread-safe: no.
+class HidExchange {
  public:
-  HidTalk(HidDevice& device, const Clock& clock, SensorSink& sink) : device_(device), clock_(clock), sink_(sink) {}
+  HidExchange(HidDevice& device, const Clock& clock, SensorSink& sink) : device_(device), clock_(clock), sink_(sink) {}
 
   MonoTime now() const noexcept { return clock_.now().mono; }
 
@@ -30,11 +30,11 @@ class HidTalk {
   bool send(std::span<const std::uint8_t> bytes);
   HidMessage get_input_report(std::uint8_t id, std::size_t size);
 
-  /// Discards reports that came before the request: late answers. False: the device is gone.
+  /// Discards reports that came before the request: late replies. False: the device is gone.
   bool discard_waiting();
 
   void refuse(Refusal why) { sink_.refused(why); }
-  /// Publishes the wind as of now. One without a speed is refused instead: false.
+  /// Publishes the wind as of now. Returns false, and counts a refusal, where it has no speed.
   bool publish(const DecodedWind& wind);
 
  private:

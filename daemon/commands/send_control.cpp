@@ -1,4 +1,4 @@
-#include "daemon/commands/ask_daemon.hpp"
+#include "daemon/commands/send_control.hpp"
 
 #include "daemon/commands/exit.hpp"
 #include "daemon/stream/stream_client.hpp"
@@ -11,10 +11,10 @@ constexpr auto kReplyTimeout = std::chrono::seconds(5);
 
 }  // namespace
 
-wire::ControlReply ask_daemon(const std::string& address, const std::string& client, const wire::Control& control) {
+wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control) {
   auto stream = StreamClient::connect(address, kControlConnectTimeout);
   if (!stream) throw ExitError(kExitUnavailable, stream.error().message + ". Is `yuragi run` running?");
-  // What cannot be sent any more was refused: the daemon's greeting, which is still to be read, says why.
+  // The daemon has closed the connection: its Hello, which is still to be read, says why.
   if (stream->subscribe({.poses = false, .client = client})) stream->send(control);
   while (true) {
     const auto message = stream->receive(kReplyTimeout);

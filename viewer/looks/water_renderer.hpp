@@ -2,16 +2,16 @@
 
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/looks/grid_sheet.hpp"
-#include "viewer/looks/look.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
 
 namespace yuragi {
 
 /// Draws a surface as water in a stone basin, with the evening sky in it.
-class WaterLook : public Look {
+class WaterRenderer : public SceneRenderer {
  public:
   /// `surface` must outlive this.
-  explicit WaterLook(const SurfaceSkeleton& surface);
+  explicit WaterRenderer(const SurfaceSkeleton& surface);
 
   void move_to(const Pose& pose) override;
   void draw(const View& view) override;

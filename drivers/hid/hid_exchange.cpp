@@ -1,16 +1,16 @@
-#include "drivers/hid/hid_talk.hpp"
+#include "drivers/hid/hid_exchange.hpp"
 
 #include <algorithm>
 
 namespace yuragi {
 namespace {
 
-// More than the kernel keeps for a reader (64): a device that floods cannot hold us.
+// More than the kernel keeps for a reader (64), so that a device that never stops sending cannot block this.
 constexpr int kMostWaiting = 128;
 
 }  // namespace
 
-HidMessage HidTalk::read(Nanoseconds timeout) {
+HidMessage HidExchange::read(Nanoseconds timeout) {
   const HidArrival arrival = device_.read(std::span(buffer_).first(kLongestReport), timeout);
   if (arrival.status != HidStatus::kReport) return {arrival.status, {}};
   const ByteSpan bytes = ByteSpan(buffer_).first(arrival.size);
@@ -18,7 +18,7 @@ HidMessage HidTalk::read(Nanoseconds timeout) {
   return {arrival.status, bytes};
 }
 
-bool HidTalk::send(std::span<const std::uint8_t> bytes) {
+bool HidExchange::send(std::span<const std::uint8_t> bytes) {
   if (bytes.size() > kLongestReport) return false;
   std::array<std::uint8_t, kLongestReport + 1> numbered{};
   std::ranges::copy(bytes, numbered.begin() + 1);
@@ -26,7 +26,7 @@ bool HidTalk::send(std::span<const std::uint8_t> bytes) {
   return device_.write(std::span(numbered).first(bytes.size() + 1));
 }
 
-HidMessage HidTalk::get_input_report(std::uint8_t id, std::size_t size) {
+HidMessage HidExchange::get_input_report(std::uint8_t id, std::size_t size) {
   const HidArrival arrival = device_.get_input_report(id, std::span(buffer_).first(std::min(size, kLongestReport)));
   if (arrival.status != HidStatus::kReport) return {arrival.status, {}};
   const ByteSpan bytes = ByteSpan(buffer_).first(arrival.size);
@@ -34,7 +34,7 @@ HidMessage HidTalk::get_input_report(std::uint8_t id, std::size_t size) {
   return {arrival.status, bytes};
 }
 
-bool HidTalk::discard_waiting() {
+bool HidExchange::discard_waiting() {
   for (int i = 0; i < kMostWaiting; ++i) {
     const HidMessage message = read(Nanoseconds::zero());
     if (message.status != HidStatus::kReport) return message.status != HidStatus::kLost;
@@ -43,7 +43,7 @@ bool HidTalk::discard_waiting() {
   return true;
 }
 
-bool HidTalk::publish(const DecodedWind& wind) {
+bool HidExchange::publish(const DecodedWind& wind) {
   if (!wind.speed_m_s) {
     refuse(Refusal::kInvalid);
     return false;

@@ -15,11 +15,11 @@ std::shared_ptr<const GustNoise> shared_noise();
 
 /// A sensor's readings on their way to the wind, as in the daemon: what is no wind at all is refused, what its judge
 /// does not believe is held back, and the estimator hears the rest.
-class HeardWind {
+class EstimatedWind {
  public:
-  explicit HeardWind(std::uint64_t seed) : estimator_(1, {.climate = {.seed = seed}}, shared_noise()) {}
+  explicit EstimatedWind(std::uint64_t seed) : estimator_(1, {.climate = {.seed = seed}}, shared_noise()) {}
 
-  void tell(const WindReading& reading) {
+  void take(const WindReading& reading) {
     if (is_plausible(reading) && judge_.judge(reading)) estimator_.accept(0, reading);
   }
 
@@ -36,6 +36,7 @@ class HeardWind {
 
 /// The states of a run: from `from_s` on and before `to_s`, 60 a second, the readings told at their own times. Those
 /// before `from_s` are not told.
-std::vector<WindVector> wind_of(HeardWind& heard, const std::vector<WindReading>& readings, double from_s, double to_s);
+std::vector<WindVector> wind_of(EstimatedWind& estimated, const std::vector<WindReading>& readings, double from_s,
+                                double to_s);
 
 }  // namespace yuragi::proof

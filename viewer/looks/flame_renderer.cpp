@@ -1,4 +1,4 @@
-#include "viewer/looks/flame_look.hpp"
+#include "viewer/looks/flame_renderer.hpp"
 
 #include <algorithm>
 
@@ -47,7 +47,7 @@ SolidMesh flame_bowl(const SurfaceSkeleton& surface) {
   return bowl;
 }
 
-FlameLook::FlameLook(const SurfaceSkeleton& surface)
+FlameRenderer::FlameRenderer(const SurfaceSkeleton& surface)
     : surface_(&surface),
       points_(surface),
       sheet_(layout_of(surface)),
@@ -76,7 +76,7 @@ FlameLook::FlameLook(const SurfaceSkeleton& surface)
   glow_strength_place_ = glGetUniformLocation(glow_program_.name(), "strength");
 }
 
-void FlameLook::move_to(const Pose& pose) {
+void FlameRenderer::move_to(const Pose& pose) {
   const auto* const burning = std::get_if<SurfacePose>(&pose);
   const SurfaceKinematicsJob job{.skeleton = surface_, .pose = burning, .points = &points_};
   if (job.run() != SurfaceKinematicsJob::Problem::kNone || burning->heat.size() != points_.size()) return;
@@ -95,11 +95,11 @@ void FlameLook::move_to(const Pose& pose) {
   if (heat > 0.0F) glow_middle_m_ = sum_m / heat;
 }
 
-void FlameLook::draw(const View&) {
+void FlameRenderer::draw(const View&) {
   bowl_.draw();
 }
 
-void FlameLook::draw_light() {
+void FlameRenderer::draw_light() {
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);
 

@@ -1,4 +1,4 @@
-#include "engine/wind/blend/wall_plane.hpp"
+#include "engine/wind/blend/mean_wind_plane.hpp"
 
 #include <cmath>
 #include <random>
@@ -10,7 +10,7 @@ namespace yuragi {
 namespace {
 
 /// What the plane says at a place, as the wind over the ground reads it, of sources that say `values`.
-double plane_at(const WallPlane& plane, const std::vector<double>& shares, const std::vector<double>& values,
+double plane_at(const MeanWindPlane& plane, const std::vector<double>& shares, const std::vector<double>& values,
                 double east_m, double south_m, double part = 1.0) {
   std::vector<PlaceWeights> weights(shares.size());
   plane.weigh(shares, part, weights);
@@ -24,15 +24,15 @@ double plane_at(const WallPlane& plane, const std::vector<double>& shares, const
   return middle + slope.at(east_m, south_m).u_m_s;
 }
 
-TEST(WallPlane, AllAtOnePlaceShareWithoutASlope) {
-  const WallPlane plane(std::vector<BlendSourceSettings>{{.east_m = 3.0}, {.east_m = 3.0}});
+TEST(MeanWindPlane, AllAtOnePlaceShareWithoutASlope) {
+  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = 3.0}, {.east_m = 3.0}});
   EXPECT_TRUE(plane.is_point());
   EXPECT_NEAR(plane_at(plane, {0.25, 0.75}, {4.0, 8.0}, 0.0, 0.0), 7.0, 1e-12);
   EXPECT_NEAR(plane_at(plane, {0.25, 0.75}, {4.0, 8.0}, 50.0, 9.0), 7.0, 1e-12);
 }
 
-TEST(WallPlane, GoesFromOneSensorToTheOtherAndOnLevel) {
-  const WallPlane plane(std::vector<BlendSourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
+TEST(MeanWindPlane, GoesFromOneSensorToTheOtherAndOnLevel) {
+  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, -10.0, 0.0), 4.0, 0.05);
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 10.0, 0.0), 8.0, 0.05);
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 0.0, 0.0), 6.0, 1e-9);
@@ -41,22 +41,22 @@ TEST(WallPlane, GoesFromOneSensorToTheOtherAndOnLevel) {
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 10.0, 0.0, 0.0), 6.0, 1e-9) << "no slope is wanted";
 }
 
-TEST(WallPlane, ASceneBesideTheWallHasWhatTheNearerEndHas) {
-  const WallPlane plane(std::vector<BlendSourceSettings>{{.east_m = 20.0}, {.east_m = 40.0}});
+TEST(MeanWindPlane, ASceneBesideTheWallHasWhatTheNearerEndHas) {
+  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = 20.0}, {.east_m = 40.0}});
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 0.0, 0.0), 4.0, 0.05);
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 40.0, 0.0), 8.0, 0.05);
 }
 
-TEST(WallPlane, AWallMayRunAnyWay) {
-  const WallPlane plane(std::vector<BlendSourceSettings>{
+TEST(MeanWindPlane, AWallMayRunAnyWay) {
+  const MeanWindPlane plane(std::vector<BlendSourceSettings>{
       {.east_m = -6.0, .south_m = -8.0}, {.east_m = 0.0, .south_m = 0.0}, {.east_m = 6.0, .south_m = 8.0}});
   const std::vector<double> shares(3, 1.0 / 3.0);
   EXPECT_NEAR(plane_at(plane, shares, {2.0, 5.0, 8.0}, 6.0, 8.0), 8.0, 0.1);
   EXPECT_NEAR(plane_at(plane, shares, {2.0, 5.0, 8.0}, -3.0, -4.0), 3.5, 0.1);
 }
 
-TEST(WallPlane, ASensorThatFailsFadesOutOfItSteadily) {
-  const WallPlane plane(std::vector<BlendSourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
+TEST(MeanWindPlane, ASensorThatFailsFadesOutOfItSteadily) {
+  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
   double before = plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 10.0, 0.0);
   for (double share = 0.5; share > 1e-12; share *= 0.9) {
     // Normalised, as the blend's are.
@@ -69,7 +69,7 @@ TEST(WallPlane, ASensorThatFailsFadesOutOfItSteadily) {
   EXPECT_NEAR(plane_at(plane, {1.0, 0.0}, {4.0, 8.0}, 10.0, 0.0), 4.0, 1e-9);
 }
 
-TEST(WallPlane, TheSumOfTheWeightsIsThatOfTheSharesAndAllIsFinite) {
+TEST(MeanWindPlane, TheSumOfTheWeightsIsThatOfTheSharesAndAllIsFinite) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int round = 0; round < 200; ++round) {
@@ -82,7 +82,7 @@ TEST(WallPlane, TheSumOfTheWeightsIsThatOfTheSharesAndAllIsFinite) {
       shares.push_back(random() % 4 == 0 ? 0.0 : std::pow(unit(random), 8.0));
       sum += shares.back();
     }
-    const WallPlane plane(sources);
+    const MeanWindPlane plane(sources);
     std::vector<PlaceWeights> weights(shares.size());
     plane.weigh(shares, 1.0, weights);
     double middle = 0.0;

@@ -1,4 +1,4 @@
-#include "viewer/looks/tree_look.hpp"
+#include "viewer/looks/tree_renderer.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -68,7 +68,7 @@ void set_int(const GlProgram& program, const char* name, std::size_t value) {
 
 }  // namespace
 
-TreeLook::TreeLook(const TreeSkeleton& tree)
+TreeRenderer::TreeRenderer(const TreeSkeleton& tree)
     : tree_(&tree),
       bounds_(bounds_of(tree)),
       joints_(tree),
@@ -92,7 +92,7 @@ TreeLook::TreeLook(const TreeSkeleton& tree)
   glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // creates the buffer, even if no pose is ever taken
 }
 
-void TreeLook::move_to(const Pose& pose) {
+void TreeRenderer::move_to(const Pose& pose) {
   const auto* const bends = std::get_if<TreePose>(&pose);
   const TreeKinematicsJob job{.skeleton = tree_, .pose = bends, .row = {}, .joints = &joints_};
   if (job.run() != TreeKinematicsJob::Problem::kNone) return;
@@ -108,7 +108,7 @@ void TreeLook::move_to(const Pose& pose) {
   }
 }
 
-void TreeLook::draw(const View& view) {
+void TreeRenderer::draw(const View& view) {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_BUFFER, joint_texture_.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, joint_buffer_.name());
@@ -121,7 +121,7 @@ void TreeLook::draw(const View& view) {
   }
 }
 
-void TreeLook::draw_branches(std::size_t level, std::size_t rings) {
+void TreeRenderer::draw_branches(std::size_t level, std::size_t rings) {
   const StrandSkeleton& strands = tree_->levels[level].strands;
   glUseProgram(bark_.name());
   set_int(bark_, "first", first_joint_at(*tree_, level));
@@ -133,7 +133,7 @@ void TreeLook::draw_branches(std::size_t level, std::size_t rings) {
   glDrawElementsInstanced(GL_TRIANGLES, indices, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(strands.strand_count));
 }
 
-void TreeLook::draw_leaves(std::size_t level) {
+void TreeRenderer::draw_leaves(std::size_t level) {
   const StrandSkeleton& strands = tree_->levels[level].strands;
   glUseProgram(leaf_.name());
   set_int(leaf_, "first", first_joint_at(*tree_, level));

@@ -1,4 +1,4 @@
-#include "viewer/looks/water_look.hpp"
+#include "viewer/looks/water_renderer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -61,7 +61,7 @@ SolidMesh water_hole(const SurfaceSkeleton& surface) {
   return hole;
 }
 
-WaterLook::WaterLook(const SurfaceSkeleton& surface)
+WaterRenderer::WaterRenderer(const SurfaceSkeleton& surface)
     : surface_(&surface),
       points_(surface),
       sheet_(layout_of(surface)),
@@ -69,19 +69,19 @@ WaterLook::WaterLook(const SurfaceSkeleton& surface)
       hole_(water_hole(surface)),
       program_(link_program("water", shaders::kWaterVert, shaders::kWaterFrag)) {}
 
-void WaterLook::move_to(const Pose& pose) {
+void WaterRenderer::move_to(const Pose& pose) {
   const auto* const waves = std::get_if<SurfacePose>(&pose);
   const SurfaceKinematicsJob job{.skeleton = surface_, .pose = waves, .points = &points_};
   if (job.run() == SurfaceKinematicsJob::Problem::kNone) sheet_.move_to(std::as_const(points_).data());
 }
 
-void WaterLook::draw(const View&) {
+void WaterRenderer::draw(const View&) {
   glUseProgram(program_.name());
   sheet_.draw();
   basin_.draw();
 }
 
-void WaterLook::draw_hole() {
+void WaterRenderer::draw_hole() {
   hole_.draw();
 }
 

@@ -12,14 +12,14 @@ struct PlaceWeights {
   double middle = 0.0, per_m_east = 0.0, per_m_south = 0.0;
 };
 
-/// The plane through the values of several absolute sources at their places, by weighted least squares. It is given as
-/// the weights of their values, which may be vectors, and follows a source as its share fades and returns.
+/// The plane through the mean winds of several absolute sources at their places, by weighted least squares. It is given
+/// as the weights of their values, which may be vectors, and follows a source as its share fades and returns.
 ///
 /// A small ridge makes the slope fade where one place alone is left, and bounds it where those that are left stand
 /// close together. Thread-safe: reading, yes. Realtime-safe: yes.
-class WallPlane {
+class MeanWindPlane {
  public:
-  explicit WallPlane(std::span<const BlendSourceSettings> sources);
+  explicit MeanWindPlane(std::span<const BlendSourceSettings> sources);
 
   /// Do all stand at one place?
   bool is_point() const noexcept { return length_m_ <= 0.0; }

@@ -1,4 +1,4 @@
-#include "daemon/tools/report/site_lesson.hpp"
+#include "daemon/tools/report/site_tally.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,47 +9,47 @@ namespace yuragi {
 namespace {
 
 constexpr double kGapOfIntervals = 3.0;
-/// As BlendSource has them: the means by which a difference is divided, and along which it is taken.
+/// As in BlendSource: memories of the mean speed by which differences are divided, and of the mean direction.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kDirectionMemory_s = 100.0;
 
 }  // namespace
 
-SiteLesson::SiteLesson(const TurbulencePrior& prior, double interval_s)
+SiteTally::SiteTally(const TurbulencePrior& prior, double interval_s)
     : interval_s_(interval_s),
       length_m_(prior.length_m),
       quick_(prior, BlendSettings{}.fit_memory_s),
-      teacher_(prior, BlendSettings{}.fit_memory_s) {}
+      site_fit_(prior, BlendSettings{}.fit_memory_s) {}
 
-void SiteLesson::add(double time_s, double speed_m_s, const std::optional<WindVector>& wind) {
+void SiteTally::add(double time_s, double speed_m_s, const std::optional<WindVector>& wind) {
   if (!(interval_s_ > 0.0) || interval_s_ > SiteSpectrum::kQuick_s) return;
   if (last_s_ && time_s - *last_s_ > kGapOfIntervals * interval_s_) {
     quick_.break_off();
-    teacher_.break_off();
+    site_fit_.break_off();
   }
   last_s_ = time_s;
-  heard_s_ += interval_s_;
+  measured_s_ += interval_s_;
   // A wind without a direction has the speed alone.
-  const WindVector heard = wind.value_or(WindVector{0.0, speed_m_s});
-  const auto part = [this](double memory_s) { return -std::expm1(-interval_s_ / std::min(memory_s, heard_s_)); };
-  const bool is_first = heard_s_ == interval_s_;
-  mean_ = mean_ + (is_first ? 1.0 : part(kDirectionMemory_s)) * (heard - mean_);
+  const WindVector measured = wind.value_or(WindVector{0.0, speed_m_s});
+  const auto part = [this](double memory_s) { return -std::expm1(-interval_s_ / std::min(memory_s, measured_s_)); };
+  const bool is_first = measured_s_ == interval_s_;
+  mean_ = mean_ + (is_first ? 1.0 : part(kDirectionMemory_s)) * (measured - mean_);
   speed_m_s_ += (is_first ? 1.0 : part(kSpeedMemory_s)) * (speed_m_s - speed_m_s_);
 
   const double mean_m_s = speed_of(mean_);
   const WindVector ahead = mean_m_s > 0.0 ? (1.0 / mean_m_s) * mean_ : WindVector{0.0, 1.0};
   const double divisor_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   quick_.forget(interval_s_);
-  quick_.take(heard, ahead, divisor_m_s, wind.has_value());
-  teacher_.observe({.wind = heard,
-                    .ahead = ahead,
-                    .speed_m_s = divisor_m_s,
-                    .interval_s = interval_s_,
-                    .tells_across = wind.has_value()},
-                   quick_, site_);
+  quick_.take(measured, ahead, divisor_m_s, wind.has_value());
+  site_fit_.observe({.wind = measured,
+                     .ahead = ahead,
+                     .speed_m_s = divisor_m_s,
+                     .interval_s = interval_s_,
+                     .has_across = wind.has_value()},
+                    quick_, site_);
 }
 
-std::optional<SiteNumbers> SiteLesson::numbers() const {
+std::optional<SiteNumbers> SiteTally::numbers() const {
   SiteNumbers numbers{.length_m = length_m_, .known_s = 0.0, .octaves_db = {}};
   const SiteSpectrum::Decibels octaves_db = site_.octaves_db();
   for (std::size_t octave = 0; octave < SiteSpectrum::kOctaves && site_.known_s()[octave] > 0.0; ++octave) {

@@ -1,4 +1,4 @@
-#include "engine/wind/blend/wall_plane.hpp"
+#include "engine/wind/blend/mean_wind_plane.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@ namespace {
 /// The ridge, over the square of the sensors' extent: two sensors at its ends, whose own spread is 0.25, lose 1 % of
 /// the slope.
 constexpr double kRidge = 0.0025;
-constexpr double kLeastWallShare = 1e-9;
+constexpr double kLeastShareSum = 1e-9;
 
 }  // namespace
 
-WallPlane::WallPlane(std::span<const BlendSourceSettings> sources) {
+MeanWindPlane::MeanWindPlane(std::span<const BlendSourceSettings> sources) {
   bool is_first = true;
   for (const BlendSourceSettings& source : sources) {
     places_.push_back({source.east_m, source.south_m});
@@ -28,7 +28,7 @@ WallPlane::WallPlane(std::span<const BlendSourceSettings> sources) {
   length_m_ = std::hypot(ends_.east_m - ends_.west_m, ends_.south_m - ends_.north_m);
 }
 
-void WallPlane::weigh(std::span<const double> shares, double part, std::span<PlaceWeights> weights) const noexcept {
+void MeanWindPlane::weigh(std::span<const double> shares, double part, std::span<PlaceWeights> weights) const noexcept {
   double sum = 0.0;
   Place centre;
   for (std::size_t i = 0; i < shares.size(); ++i) {
@@ -37,7 +37,7 @@ void WallPlane::weigh(std::span<const double> shares, double part, std::span<Pla
     centre.east_m += shares[i] * places_[i].east_m;
     centre.south_m += shares[i] * places_[i].south_m;
   }
-  if (is_point() || sum < kLeastWallShare) return;
+  if (is_point() || sum < kLeastShareSum) return;
   centre = {centre.east_m / sum, centre.south_m / sum};
 
   // How far they are spread about their centre, in both directions; with the ridge the matrix has an inverse.

@@ -1,4 +1,4 @@
-#include "viewer/looks/cloth_look.hpp"
+#include "viewer/looks/cloth_renderer.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -17,7 +17,7 @@ glm::vec2 arm_m(const GridSkeleton& cloth, const GridPose* pose) {
 
 }  // namespace
 
-ClothLook::ClothLook(const GridSkeleton& cloth, std::string_view kind)
+ClothRenderer::ClothRenderer(const GridSkeleton& cloth, std::string_view kind)
     : cloth_(&cloth),
       is_vane_(cloth_style(kind, cloth) == ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
       points_(cloth),
@@ -35,7 +35,7 @@ ClothLook::ClothLook(const GridSkeleton& cloth, std::string_view kind)
   glUniform1i(place("style"), static_cast<GLint>(cloth_style(kind, cloth)));
 }
 
-void ClothLook::move_to(const Pose& pose) {
+void ClothRenderer::move_to(const Pose& pose) {
   const auto* const offsets = std::get_if<GridPose>(&pose);
   const GridKinematicsJob job{.skeleton = cloth_, .pose = offsets, .points = &points_};
   if (job.run() != GridKinematicsJob::Problem::kNone) return;
@@ -49,7 +49,7 @@ void ClothLook::move_to(const Pose& pose) {
                glm::dot(rest_m, now_m) / square_m2);
 }
 
-void ClothLook::draw(const View&) {
+void ClothRenderer::draw(const View&) {
   glUseProgram(program_.name());
   sheet_.draw();
   holder_.draw();

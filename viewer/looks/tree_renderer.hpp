@@ -4,17 +4,17 @@
 
 #include "engine/pose/tree_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
-#include "viewer/looks/look.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/tree_parts.hpp"
 
 namespace yuragi {
 
 /// Draws a tree: tapering branches with bark, and leaves that the low sun shines through.
-class TreeLook : public Look {
+class TreeRenderer : public SceneRenderer {
  public:
   /// `tree` must outlive this.
-  explicit TreeLook(const TreeSkeleton& tree);
+  explicit TreeRenderer(const TreeSkeleton& tree);
 
   void move_to(const Pose& pose) override;
   void draw(const View& view) override;

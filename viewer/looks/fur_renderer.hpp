@@ -1,15 +1,15 @@
 #pragma once
 
-#include "viewer/looks/look.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/strand_ribbons.hpp"
 
 namespace yuragi {
 
 /// Draws strands as the coat of an animal: fine hairs over a dark undercoat that hides the body's inside.
-class FurLook : public Look {
+class FurRenderer : public SceneRenderer {
  public:
   /// `strands` must outlive this.
-  explicit FurLook(const StrandSkeleton& strands);
+  explicit FurRenderer(const StrandSkeleton& strands);
 
   void move_to(const Pose& pose) override;
   void draw(const View& view) override;

@@ -4,17 +4,17 @@
 
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/looks/grid_sheet.hpp"
-#include "viewer/looks/look.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
 
 namespace yuragi {
 
 /// Draws a surface that burns: each point's heat through the skeleton's ramp, blended over everything else, in a glow,
 /// over an iron bowl.
-class FlameLook : public Look {
+class FlameRenderer : public SceneRenderer {
  public:
   /// `surface` must outlive this.
-  explicit FlameLook(const SurfaceSkeleton& surface);
+  explicit FlameRenderer(const SurfaceSkeleton& surface);
 
   void move_to(const Pose& pose) override;
   void draw(const View& view) override;

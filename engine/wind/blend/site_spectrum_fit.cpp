@@ -1,4 +1,4 @@
-#include "engine/wind/blend/site_teacher.hpp"
+#include "engine/wind/blend/site_spectrum_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@ namespace {
 
 /// The interval of the simulated slow sensor: it resolves no waves above 0.37 over this, 0.026 Hz.
 constexpr double kPlayedInterval_s = 14.0;
-constexpr double kLeastTaught_m_s = 1.0;
+constexpr double kLeastFitted_m_s = 1.0;
 /// The fit must have seen so many differences of neighbouring means.
 constexpr double kEnough = 15.0;
 /// Haar's differences of means over tau respond most to waves of 0.37 / tau.
@@ -18,15 +18,16 @@ constexpr double kBeyond_octaves = 0.5;
 
 }  // namespace
 
-SiteTeacher::SiteTeacher(const TurbulencePrior& prior, double fit_memory_s) : slow_(prior, fit_memory_s) {}
+SiteSpectrumFit::SiteSpectrumFit(const TurbulencePrior& prior, double fit_memory_s) : slow_(prior, fit_memory_s) {}
 
-void SiteTeacher::break_off() noexcept {
+void SiteSpectrumFit::break_off() noexcept {
   slow_.break_off();
   sum_ = {};
   count_ = 0;
 }
 
-void SiteTeacher::observe(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) noexcept {
+void SiteSpectrumFit::observe(const Observation& observation, const WindTurbulence& quick,
+                              SiteSpectrum& site) noexcept {
   if (observation.interval_s > SiteSpectrum::kQuick_s || !(observation.interval_s > 0.0) ||
       !(observation.speed_m_s > 0.0))
     return;
@@ -36,18 +37,18 @@ void SiteTeacher::observe(const Observation& observation, const WindTurbulence& 
   if (played_s < kPlayedInterval_s - 0.5 * observation.interval_s) return;
   slow_.forget(played_s);
   slow_.take((1.0 / static_cast<double>(count_)) * sum_, observation.ahead, observation.speed_m_s,
-             observation.tells_across);
+             observation.has_across);
   slow_.fit(kPlayedInterval_s, observation.speed_m_s);
   sum_ = {};
   count_ = 0;
-  if (observation.speed_m_s >= kLeastTaught_m_s && slow_.along().observations(0) >= kEnough)
-    teach(observation, quick, site);
+  if (observation.speed_m_s >= kLeastFitted_m_s && slow_.along().observations(0) >= kEnough)
+    update(observation, quick, site);
 }
 
-void SiteTeacher::teach(const Observation& observation, const WindTurbulence& quick,
-                        SiteSpectrum& site) const noexcept {
+void SiteSpectrumFit::update(const Observation& observation, const WindTurbulence& quick,
+                             SiteSpectrum& site) const noexcept {
   const auto of_both = [&observation](const WindTurbulence& turbulence, const auto& power_of) {
-    return power_of(turbulence.along()) + (observation.tells_across ? power_of(turbulence.across()) : 0.0);
+    return power_of(turbulence.along()) + (observation.has_across ? power_of(turbulence.across()) : 0.0);
   };
   for (std::size_t octave = 0; octave < SiteSpectrum::kOctaves; ++octave) {
     // Where among the quick source's scales, means over interval * 2^scale, it is.
