@@ -123,8 +123,10 @@ void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
         }
         // Where nothing is measured yet: that of its own frequency, so that the first readings count at the pen at
         // once.
-        const double own = std::exp(-2.0 * distance_of(row) * static_cast<double>(octave_loss_per_m_[i]));
-        const double kept = all > kNothing ? std::norm(response.weighted(left)) / all : own;
+        const auto own = [&] {
+          return std::exp(-2.0 * distance_of(row) * static_cast<double>(octave_loss_per_m_[i]));
+        };
+        const double kept = all > kNothing ? std::norm(response.weighted(left)) / all : own();
         here.octaves[i] = static_cast<float>(std::clamp(kept, 0.0, 1.0));
       }
     }

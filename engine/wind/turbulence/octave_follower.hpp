@@ -22,7 +22,7 @@ class OctaveFollower {
   static constexpr double kLowest_hz = 1.0 / (2.0 * std::numbers::pi * 100.0);
 
   /// Where band `band` begins, and the band before it ends.
-  static double edge_hz(std::size_t band) noexcept { return std::ldexp(kLowest_hz, static_cast<int>(band)); }
+  static double edge_hz(std::size_t band) noexcept { return kLowest_hz * static_cast<double>(1U << band); }
   static double centre_hz(std::size_t band) noexcept { return std::numbers::sqrt2 * edge_hz(band); }
 
   /// Begins with this value, settled.
