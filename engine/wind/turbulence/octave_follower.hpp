@@ -48,16 +48,19 @@ class OctaveFollower {
   struct Response {
     std::array<double, kBands + 1> real, imaginary;
     explicit Response(double frequency_hz) noexcept {
-      double before_real = 0.0;
-      double before_imaginary = 0.0;
+      const double lowest_ratio = frequency_hz / kLowest_hz;
+      std::array<double, kBands + 1> low_pass_real;
+      std::array<double, kBands + 1> low_pass_imaginary;
       for (std::size_t i = 0; i <= kBands; ++i) {
-        const double ratio = frequency_hz / edge_hz(i);
-        const double low_pass_real = 1.0 / (1.0 + ratio * ratio);
-        const double low_pass_imaginary = -ratio * low_pass_real;
-        real[i] = low_pass_real - before_real;
-        imaginary[i] = low_pass_imaginary - before_imaginary;
-        before_real = low_pass_real;
-        before_imaginary = low_pass_imaginary;
+        const double ratio = lowest_ratio * (1.0 / static_cast<double>(1U << i));
+        low_pass_real[i] = 1.0 / (1.0 + ratio * ratio);
+        low_pass_imaginary[i] = -ratio * low_pass_real[i];
+      }
+      real[0] = low_pass_real[0];
+      imaginary[0] = low_pass_imaginary[0];
+      for (std::size_t i = 1; i <= kBands; ++i) {
+        real[i] = low_pass_real[i] - low_pass_real[i - 1];
+        imaginary[i] = low_pass_imaginary[i] - low_pass_imaginary[i - 1];
       }
     }
     /// The sum, each with its weight.
