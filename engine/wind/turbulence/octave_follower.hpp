@@ -44,6 +44,13 @@ class OctaveFollower {
   WindVector mean() const noexcept { return passed_[0]; }
   WindVector band(std::size_t band) const noexcept { return passed_[band + 1] - passed_[band]; }
 
+  /// kLowest_hz over each edge.
+  static constexpr std::array<double, kBands + 1> kLowestPerEdge = [] {
+    std::array<double, kBands + 1> ratios{};
+    for (std::size_t i = 0; i <= kBands; ++i) ratios[i] = 1.0 / static_cast<double>(1U << i);
+    return ratios;
+  }();
+
   /// What the mean (0) and each band (1 + band) pass of a wave of one frequency: magnitude and phase.
   struct Response {
     std::array<double, kBands + 1> real, imaginary;
@@ -52,7 +59,7 @@ class OctaveFollower {
       std::array<double, kBands + 1> low_pass_real;
       std::array<double, kBands + 1> low_pass_imaginary;
       for (std::size_t i = 0; i <= kBands; ++i) {
-        const double ratio = lowest_ratio * (1.0 / static_cast<double>(1U << i));
+        const double ratio = lowest_ratio * kLowestPerEdge[i];
         low_pass_real[i] = 1.0 / (1.0 + ratio * ratio);
         low_pass_imaginary[i] = -ratio * low_pass_real[i];
       }
