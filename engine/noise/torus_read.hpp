@@ -26,16 +26,31 @@ struct TorusCell {
   return first + fraction * (second - first);
 }
 
-/// `values` holds 2^log2_size rows (along x) of 2^log2_size values.
-[[gnu::always_inline]] inline float read_bilinear(const float* values, unsigned log2_size, std::uint32_t phase_x,
-                                                  std::uint32_t phase_z) noexcept {
+/// The four samples around a place on a torus of 2^log2_size rows (along x) of 2^log2_size samples, and where between
+/// them it is.
+struct TorusCorners {
+  std::uint32_t north_west, north_east, south_west, south_east;
+  float fraction_x, fraction_z;
+};
+
+[[gnu::always_inline]] inline TorusCorners torus_corners(unsigned log2_size, std::uint32_t phase_x,
+                                                         std::uint32_t phase_z) noexcept {
   const TorusCell x = torus_cell(phase_x, log2_size);
   const TorusCell z = torus_cell(phase_z, log2_size);
   const std::uint32_t row = z.first << log2_size;
   const std::uint32_t next_row = z.second << log2_size;
-  const float north = between(values[row + x.first], values[row + x.second], x.fraction);
-  const float south = between(values[next_row + x.first], values[next_row + x.second], x.fraction);
-  return between(north, south, z.fraction);
+  return {row + x.first, row + x.second, next_row + x.first, next_row + x.second, x.fraction, z.fraction};
+}
+
+[[gnu::always_inline]] inline float read_corners(const float* values, const TorusCorners& at) noexcept {
+  const float north = between(values[at.north_west], values[at.north_east], at.fraction_x);
+  const float south = between(values[at.south_west], values[at.south_east], at.fraction_x);
+  return between(north, south, at.fraction_z);
+}
+
+[[gnu::always_inline]] inline float read_bilinear(const float* values, unsigned log2_size, std::uint32_t phase_x,
+                                                  std::uint32_t phase_z) noexcept {
+  return read_corners(values, torus_corners(log2_size, phase_x, phase_z));
 }
 
 }  // namespace yuragi

@@ -32,6 +32,7 @@ BEHIND_M, BESIDE_M, BEFORE_M = (2, 4, 7, 20, 60), (1, 3, 7), (2, 7, 20)
 OCTAVES_HZ = (0.05, 0.1, 0.2, 0.4, 0.8)
 LENGTH_M = 57.0
 SILENCES_S = tuple((begin, begin + 100) for begin in (320, 1250, 1600))  # while neither record turns
+SILENCE_INTERVAL_S = 1
 SILENCE_SEEDS = 3  # for each of the others: what noise does in 100 s scatters
 
 # The figures are those of gusts as the climate has them, and of no site.
@@ -142,6 +143,8 @@ def meadow_figures(bench, name, interval, size, seed):
     for i, numbers in enumerate(spans):
         window = steady[i]
         figures["span", i] = gw.span_variance((winds[numbers] @ window.ahead)[:, window.begin : window.end])
+    if interval == SILENCE_INTERVAL_S:
+        figures["at silences"] = silence_variances(bench, name, size, sensor, winds[ground])
     return figures
 
 
@@ -172,24 +175,29 @@ def told_places():
     yield from ((f"{d} m beside", 0.0, (0.0, d)) for d in BESIDE_M)
 
 
-def silence_figures(bench, name, size, seed):
+def silence_figures(bench, name, size, seed, more):
     """Variance in silences of 100 s and of the same times without: of the sensor's wind and of the meadow's."""
     places = meadow_places(size)
     gaps = [word for begin, end in SILENCES_S for word in ("--gap", f"{begin},{end}")]
-    options = ("--sensor-interval", 1, "--scene-size", size, "--seed", seed)
-    figures = {}
-    for key, with_gaps in (("silent", gaps), ("usual", [])):
-        sensor, winds = bench.wind(name, places, *options, *with_gaps)
-        totals = np.zeros(1 + len(places))
-        for begin, end in SILENCES_S:
-            mean = np.mean(bench.record[name][(begin - 100) * gw.RATE_HZ : begin * gw.RATE_HZ], axis=0)
-            speed = np.hypot(*mean)
-            for i, wind in enumerate((sensor, *winds)):
-                way = 0.0 if i == 0 else reach_of(size) + np.dot(places[i - 1], mean * (1, -1)) / speed
-                delay = round(way / speed * gw.RATE_HZ)
-                totals[i] += gw.variance(wind[begin * gw.RATE_HZ + delay : end * gw.RATE_HZ + delay])
-        figures[key] = totals
+    options = ("--sensor-interval", SILENCE_INTERVAL_S, "--scene-size", size, "--seed", seed + 1000 * more)
+    figures = {"silent": silence_variances(bench, name, size, *bench.wind(name, places, *options, *gaps))}
+    if more > 0:  # else it is the run of meadow_figures()
+        figures["usual"] = silence_variances(bench, name, size, *bench.wind(name, places, *options))
     return figures
+
+
+def silence_variances(bench, name, size, sensor, winds):
+    """The variance of the sensor's wind and of a meadow's at the times of the silences, added up."""
+    places = meadow_places(size)
+    totals = np.zeros(1 + len(places))
+    for begin, end in SILENCES_S:
+        mean = np.mean(bench.record[name][(begin - 100) * gw.RATE_HZ : begin * gw.RATE_HZ], axis=0)
+        speed = np.hypot(*mean)
+        for i, wind in enumerate((sensor, *winds)):
+            way = 0.0 if i == 0 else reach_of(size) + np.dot(places[i - 1], mean * (1, -1)) / speed
+            delay = round(way / speed * gw.RATE_HZ)
+            totals[i] += gw.variance(wind[begin * gw.RATE_HZ + delay : end * gw.RATE_HZ + delay])
+    return totals
 
 
 def direction_of(wind):
@@ -327,7 +335,8 @@ def work(job):
 
 
 def mean_of(results):
-    return {key: np.mean([result[key] for result in results], axis=0) for key in results[0]}
+    keys = {key for result in results for key in result}
+    return {key: np.mean([result[key] for result in results if key in result], axis=0) for key in keys}
 
 
 def all_figures(bench, seeds):
@@ -337,13 +346,15 @@ def all_figures(bench, seeds):
         for name in RECORDS:
             for size in reversed(MEADOWS_M):
                 jobs += [(meadow_figures, (name, t, size), (bench, name, t, size, seed)) for t in INTERVALS_S]
-                jobs += [(silence_figures, (name, size), (bench, name, size, seed + 1000 * more))
-                         for more in range(SILENCE_SEEDS)]
+                jobs += [(silence_figures, (name, size), (bench, name, size, seed, more)) for more in range(SILENCE_SEEDS)]
         jobs += [(told_figures, t, (bench, t, seed)) for t in INTERVALS_S]
     found = {}
     with multiprocessing.Pool() as pool:
         for function, key, figures in pool.imap_unordered(work, jobs):
             found.setdefault(function, {}).setdefault(key, []).append(figures)
+    for (name, size), results in found[silence_figures].items():
+        for figures in found[meadow_figures][name, SILENCE_INTERVAL_S, size]:
+            results.append({"usual": figures.pop("at silences")})
     return {function: {key: mean_of(results) for key, results in by_key.items()} for function, by_key in found.items()}
 
 

@@ -39,6 +39,12 @@ constexpr double kReachRate = 0.2;
 /// machine: the wind goes on from where it was, and only the readings' ages are what they are.
 constexpr double kLongestStep_ticks = 2.0;
 
+/// How many octaves above 1 a ratio is, but 0 to 1.
+double part_of_octave(double ratio) noexcept {
+  if (ratio <= 1.0) return 0.0;
+  return ratio >= 2.0 ? 1.0 : std::log2(ratio);
+}
+
 double dot(WindVector a, WindVector b) noexcept {
   return a.u_m_s * b.u_m_s + a.v_m_s * b.v_m_s;
 }
@@ -339,7 +345,7 @@ void BlendedEstimator::write_gusts() noexcept {
   is_fading_ = false;
   for (std::size_t band = 0; band < kBands; ++band) {
     const double wave_m = advection_m_s_ / OctaveFollower::centre_hz(band);
-    fade_[1 + band] = std::clamp(std::log2(wave_m / (kLeastSamplesAWave * WindTape::kStep_m)), 0.0, 1.0);
+    fade_[1 + band] = part_of_octave(wave_m / (kLeastSamplesAWave * WindTape::kStep_m));
   }
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     WindPen& pen = stroke_.pens[p];
@@ -392,7 +398,7 @@ void BlendedEstimator::weigh_gusts(const MeasuredMean& measured, double dt_s) no
 void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept {
   const double frequency_hz = centre_hz(noise_->octaves()[octave], advection_m_s_);
   // What would jitter from frame to frame is faded out over the octave before.
-  const double shown = std::clamp(std::log2(0.5 * settings_.rate_hz / frequency_hz), 0.0, 1.0);
+  const double shown = part_of_octave(0.5 * settings_.rate_hz / frequency_hz);
   double variance_along = (1.0 - measured.weight) * climate_along_[octave];
   double variance_across = (1.0 - measured.weight) * climate_across_[octave];
   for (std::size_t index = 0; index < sources_.size(); ++index) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <type_traits>
 
@@ -42,6 +41,37 @@ void weaken(std::array<std::array<float, lanes>, most>& weights, const std::arra
     for (std::size_t i = 0; i < lanes; ++i) weights[tape][i] *= left[tape][i];
   }
 }
+
+/// OctaveFollower::Response at the frequency of each octave, band by band, so that all octaves are summed at once.
+class OctaveResponses {
+ public:
+  explicit OctaveResponses(const OctaveLanes& octave_hz) noexcept {
+    for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+      const OctaveFollower::Response response(static_cast<double>(octave_hz[i]));
+      for (std::size_t band = 0; band < response.real.size(); ++band) {
+        real_[band][i] = response.real[band];
+        imaginary_[band][i] = response.imaginary[band];
+      }
+    }
+  }
+
+  /// Of each octave what the bands pass together, each with its weight, as a part of its power.
+  using Octaves = std::array<double, kTileOctaveCount>;
+  Octaves power(const std::array<double, OctaveFollower::kBands + 1>& weights) const noexcept {
+    Octaves real{};
+    Octaves imaginary{};
+    for (std::size_t band = 0; band < weights.size(); ++band) {
+      for (std::size_t i = 0; i < kTileOctaveCount; ++i) real[i] += weights[band] * real_[band][i];
+      for (std::size_t i = 0; i < kTileOctaveCount; ++i) imaginary[i] += weights[band] * imaginary_[band][i];
+    }
+    Octaves power;
+    for (std::size_t i = 0; i < kTileOctaveCount; ++i) power[i] = real[i] * real[i] + imaginary[i] * imaginary[i];
+    return power;
+  }
+
+ private:
+  std::array<Octaves, OctaveFollower::kBands + 1> real_, imaginary_;
+};
 
 double dot_product(double east, double north, WindVector unit) noexcept {
   return east * unit.u_m_s + north * unit.v_m_s;
@@ -102,29 +132,28 @@ void WindTapes::renew_rows(bool all) noexcept {
 
 /// The part that is left at some distances, of each band and of each octave of the noise, which is in several bands.
 void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
+  const OctaveResponses responses(stroke_.octave_hz);
+  std::array<std::array<double, kTileOctaveCount>, WindStroke::kMostPens> all;
+  for (std::size_t tape = 0; tape < pen_count_; ++tape) all[tape] = responses.power(stroke_.pens[tape].weights);
   for (std::size_t row = first_row; row < first_row + count; ++row) {
     const double distance_m = distance_of(row);
     BandLanes bands{};
     for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
       bands[band] = static_cast<float>(std::exp(-distance_m * static_cast<double>(band_loss_per_m_[band])));
     }
-    for (std::size_t tape = 0; tape < pen_count_; ++tape) kept_[tape][row].bands = bands;
-  }
-  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
-    const OctaveFollower::Response response(static_cast<double>(stroke_.octave_hz[i]));
     for (std::size_t tape = 0; tape < pen_count_; ++tape) {
-      const auto& written = stroke_.pens[tape].weights;
-      const double all = std::norm(response.weighted(written));
-      for (std::size_t row = first_row; row < first_row + count; ++row) {
-        Kept& here = kept_[tape][row];
-        auto left = written;
-        for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-          left[1 + band] *= static_cast<double>(here.bands[band]);
-        }
+      Kept& here = kept_[tape][row];
+      here.bands = bands;
+      auto left = stroke_.pens[tape].weights;
+      for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
+        left[1 + band] *= static_cast<double>(bands[band]);
+      }
+      const auto power = responses.power(left);
+      for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
         // Where nothing is measured yet: that of its own frequency, so that the first readings count at the pen at
         // once.
-        const double own = std::exp(-2.0 * distance_of(row) * static_cast<double>(octave_loss_per_m_[i]));
-        const double kept = all > kNothing ? std::norm(response.weighted(left)) / all : own;
+        const auto own = [&] { return std::exp(-2.0 * distance_m * static_cast<double>(octave_loss_per_m_[i])); };
+        const double kept = all[tape][i] > kNothing ? power[i] / all[tape][i] : own();
         here.octaves[i] = static_cast<float>(std::clamp(kept, 0.0, 1.0));
       }
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include "engine/math/philox.hpp"
 #include "engine/noise/spectral_noise.hpp"
+#include "engine/noise/torus_read.hpp"
 #include "engine/noise/turning_noise.hpp"
 #include "engine/noise/unit_reading.hpp"
 
@@ -210,18 +212,30 @@ std::size_t GustNoise::layers(const Moment& moment, Component component,
 
 WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
   std::array<TorusPhase, kTori> places;
-  for (std::size_t i = 0; i < kTori; ++i) places[i] = place_on(i, east_m, south_m);
+  for (std::size_t i = 0; i < kTori; ++i) {
+    places[i] = place_on(i, east_m, south_m) - moment.carried.tiles[i].phase();
+  }
+  // What layers() lists, octave by octave: its tiles are equally large, and are read at the same place.
+  float along = 0.0F;
+  float across = 0.0F;
+  for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
+    const float along_m_s = moment.along_m_s[2 * kWayOctaves + i];
+    const float across_m_s = moment.across_m_s[2 * kWayOctaves + i];
+    const TorusPhase place = places[torus_of(i)];
+    const auto log2_size = static_cast<unsigned>(std::countr_zero(along_.tiles[i].size));
+    const TorusCorners corners = torus_corners(log2_size, place.x, place.z);
+    const float cosine = moment.carried.eddies.cosine[i];
+    const float sine = moment.carried.eddies.sine[i];
+    const auto add = [&](const Octaves& octaves, float weight_m_s, float& sum) {
+      if (weight_m_s < kNothing_m_s) return;
+      sum += cosine * weight_m_s * read_corners(octaves.tiles[i].values.data(), corners);
+      if (evolves_) sum += sine * weight_m_s * read_corners(octaves.quarters[i].values.data(), corners);
+    };
+    add(along_, along_m_s, along);
+    add(across_, across_m_s, across);
+  }
   const float strength = envelope(moment, east_m, south_m);
-  const auto sum_of = [&](Component component) {
-    std::array<Layer, kMaxLayers> all;
-    const std::size_t count = layers(moment, component, all);
-    float sum = 0.0F;
-    for (const Layer& layer : std::span(all).first(count)) {
-      sum += layer.weight_m_s * read_noise(*layer.tile, places[torus_of(layer.octave)] - layer.offset);
-    }
-    return static_cast<double>(strength * sum);
-  };
-  return turned(moment.ahead, sum_of(Component::kAlong), sum_of(Component::kAcross));
+  return turned(moment.ahead, static_cast<double>(strength * along), static_cast<double>(strength * across));
 }
 
 float GustNoise::envelope(const Moment& moment, double east_m, double south_m) const noexcept {

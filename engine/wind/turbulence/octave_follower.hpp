@@ -22,7 +22,7 @@ class OctaveFollower {
   static constexpr double kLowest_hz = 1.0 / (2.0 * std::numbers::pi * 100.0);
 
   /// Where band `band` begins, and the band before it ends.
-  static double edge_hz(std::size_t band) noexcept { return std::ldexp(kLowest_hz, static_cast<int>(band)); }
+  static double edge_hz(std::size_t band) noexcept { return kLowest_hz * static_cast<double>(1U << band); }
   static double centre_hz(std::size_t band) noexcept { return std::numbers::sqrt2 * edge_hz(band); }
 
   /// Begins with this value, settled.
@@ -44,20 +44,30 @@ class OctaveFollower {
   WindVector mean() const noexcept { return passed_[0]; }
   WindVector band(std::size_t band) const noexcept { return passed_[band + 1] - passed_[band]; }
 
+  /// kLowest_hz over each edge.
+  static constexpr std::array<double, kBands + 1> kLowestPerEdge = [] {
+    std::array<double, kBands + 1> ratios{};
+    for (std::size_t i = 0; i <= kBands; ++i) ratios[i] = 1.0 / static_cast<double>(1U << i);
+    return ratios;
+  }();
+
   /// What the mean (0) and each band (1 + band) pass of a wave of one frequency: magnitude and phase.
   struct Response {
     std::array<double, kBands + 1> real, imaginary;
     explicit Response(double frequency_hz) noexcept {
-      double before_real = 0.0;
-      double before_imaginary = 0.0;
+      const double lowest_ratio = frequency_hz / kLowest_hz;
+      std::array<double, kBands + 1> low_pass_real;
+      std::array<double, kBands + 1> low_pass_imaginary;
       for (std::size_t i = 0; i <= kBands; ++i) {
-        const double ratio = frequency_hz / edge_hz(i);
-        const double low_pass_real = 1.0 / (1.0 + ratio * ratio);
-        const double low_pass_imaginary = -ratio * low_pass_real;
-        real[i] = low_pass_real - before_real;
-        imaginary[i] = low_pass_imaginary - before_imaginary;
-        before_real = low_pass_real;
-        before_imaginary = low_pass_imaginary;
+        const double ratio = lowest_ratio * kLowestPerEdge[i];
+        low_pass_real[i] = 1.0 / (1.0 + ratio * ratio);
+        low_pass_imaginary[i] = -ratio * low_pass_real[i];
+      }
+      real[0] = low_pass_real[0];
+      imaginary[0] = low_pass_imaginary[0];
+      for (std::size_t i = 1; i <= kBands; ++i) {
+        real[i] = low_pass_real[i] - low_pass_real[i - 1];
+        imaginary[i] = low_pass_imaginary[i] - low_pass_imaginary[i - 1];
       }
     }
     /// The sum, each with its weight.
