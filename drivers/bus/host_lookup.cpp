@@ -71,7 +71,7 @@ LookupResult HostLookup::find(Nanoseconds timeout) {
   state_->changed.wait_for(lock, timeout, [this] { return state_->result || state_->is_interrupted; });
   if (state_->is_interrupted) return Failure{"interrupted"};
   if (!state_->result) {
-    return Failure{"no name server tells the address of \"" + state_->host +
+    return Failure{"no name server knows the address of \"" + state_->host +
                    "\": check the network; an address in place of the name needs none"};
   }
   LookupResult result = std::move(*state_->result);

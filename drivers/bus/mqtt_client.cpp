@@ -104,7 +104,7 @@ class MosquittoClient final : public MqttClient {
     while (agreed_topics_ < wanted_.topics.size()) {
       const Nanoseconds remaining = deadline - MqttClock::now();
       if (remaining <= Nanoseconds::zero()) {
-        return Failure{describe(wanted_) + " does not answer: check its address, the network, and that it runs"};
+        return Failure{describe(wanted_) + " does not reply: check its address, the network, and that it is running"};
       }
       const int error = turn(std::min(remaining, kHousekeeping));
       if (interruption_.is_set()) return Failure{"interrupted"};
@@ -187,21 +187,23 @@ class MosquittoClient final : public MqttClient {
     const std::string broker = describe(wanted_);
     switch (error) {
       case MOSQ_ERR_ERRNO:
-        return fmt::format("cannot reach {} ({}): check its address, the network, and that it runs", broker,
+        return fmt::format("cannot reach {} ({}): check its address, the network, and that it is running", broker,
                            std::generic_category().message(errno));
       case MOSQ_ERR_CONN_LOST:
-        return fmt::format("{} has closed the connection: check that it runs, and that this port is its own", broker);
+        return fmt::format("{} has closed the connection: check that it is running, and that the port is right",
+                           broker);
       case MOSQ_ERR_EAI:
         return fmt::format("cannot find {}: check its name, and this machine's name server", broker);
       case MOSQ_ERR_TLS:
         return fmt::format(
-            "{} and this machine do not agree on TLS: check `ca_file` ({}), the broker's certificate, and that "
+            "the TLS connection to {} failed: check `ca_file` ({}), the broker's certificate, and that "
             "this port speaks TLS",
             broker, wanted_.ca_file.empty() ? kTrustedBySystem : wanted_.ca_file);
       case MOSQ_ERR_INVAL:
-        return fmt::format("cannot use the settings for {}: check that `ca_file` is there and can be read", broker);
+        return fmt::format("cannot use the settings for {}: check that `ca_file` exists and is readable", broker);
       default:
-        return fmt::format("lost {} ({}): check the network, and that it runs", broker, mosquitto_strerror(error));
+        return fmt::format("lost {} ({}): check the network, and that it is running", broker,
+                           mosquitto_strerror(error));
     }
   }
 

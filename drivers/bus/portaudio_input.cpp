@@ -53,7 +53,7 @@ class PortaudioInput final : public AudioInput {
     if (!index) return index.error();
     AudioDevice device = describe(*index);
     if (device.channels < choice.channels) {
-      return Failure{fmt::format("{} has {} channels, not {}: set channels to what it has", device.name,
+      return Failure{fmt::format("{} has {} channels, not {}: set channels to that number", device.name,
                                  device.channels, choice.channels)};
     }
     device.channels = choice.channels;
@@ -70,10 +70,9 @@ class PortaudioInput final : public AudioInput {
                                   paClipOff | paDitherOff, &PortaudioInput::call_back, this);
     if (error == paNoError) error = Pa_StartStream(stream_);
     if (error != paNoError) {
-      return Failure{
-          fmt::format("cannot open {} with {} channels at {:g} Hz ({}): does another program hold it, or the "
-                      "sound system itself?",
-                      device.name, channels_, rate_hz_, reason(error))};
+      return Failure{fmt::format(
+          "cannot open {} with {} channels at {:g} Hz ({}): check whether another program or the sound system uses it",
+          device.name, channels_, rate_hz_, reason(error))};
     }
     return device;
   }
@@ -86,7 +85,7 @@ class PortaudioInput final : public AudioInput {
   Result<void, Failure> begin() {
     if (is_begun_) return {};
     const PaError error = Pa_Initialize();
-    if (error != paNoError) return Failure{fmt::format("the sound system does not begin ({})", reason(error))};
+    if (error != paNoError) return Failure{fmt::format("the sound system cannot start ({})", reason(error))};
     is_begun_ = true;
     return {};
   }
@@ -124,8 +123,8 @@ class PortaudioInput final : public AudioInput {
     }
     const std::string wanted =
         choice.device.empty() ? "default input" : fmt::format("input called \"{}\"", choice.device);
-    return Failure{fmt::format("there is no {}{}: plug it in, or set device to a part of a name that there is ({})",
-                               wanted, choice.host_api.empty() ? "" : " of " + choice.host_api,
+    return Failure{fmt::format("there is no {}{}: plug it in, or set device to a part of an existing name ({})", wanted,
+                               choice.host_api.empty() ? "" : " of " + choice.host_api,
                                there.empty() ? "there is no input at all" : there)};
   }
 

@@ -66,7 +66,7 @@ class ProcessPort final : public BytePort {
       const int error = errno;
       close_if_open(output[0]);
       close_if_open(output[1]);
-      return Failure{fmt::format("no pipe to {} ({}): is the limit of open files too low?", command_[0],
+      return Failure{fmt::format("no pipe to {} ({}): check the limit of open files", command_[0],
                                  std::generic_category().message(error))};
     }
 
@@ -87,7 +87,7 @@ class ProcessPort final : public BytePort {
     close_if_open(failure[0]);
     if (error == 0) return {};
     close();
-    return Failure{fmt::format("cannot start {} ({}): is it installed, and executable?", command_[0],
+    return Failure{fmt::format("cannot start {} ({}): check that it is installed and executable", command_[0],
                                std::generic_category().message(error))};
   }
 

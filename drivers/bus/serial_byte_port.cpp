@@ -35,15 +35,15 @@ std::string remedy_of(int error) {
       return "check that it is plugged in, and its name (ls -l /dev/serial/by-id)";
     case EACCES:
     case EPERM:
-      return "add the user that Yuragi runs as to the group that owns it, mostly dialout (sudo usermod -aG dialout "
+      return "add the user that Yuragi runs as to the group that owns it, usually dialout (sudo usermod -aG dialout "
              "USER)";
     case EBUSY:
     case EWOULDBLOCK:
       return "another program has it open; find that with \"fuser -v\", it is often gpsd, ModemManager or a terminal";
     case ENOTTY:
-      return "that is no serial port";
+      return "it is not a serial port";
     case EINVAL:
-      return "it does not know this rate or these bits";
+      return "it does not support this rate or these bits";
     default:
       return "check its name and cable, and plug it in again";
   }

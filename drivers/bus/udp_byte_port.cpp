@@ -20,10 +20,10 @@ ip::address plain(const ip::address& address) {
 }
 
 std::string udp_remedy_of(int error) {
-  if (error == EADDRINUSE) return "another program listens there; end it, or choose another port";
+  if (error == EADDRINUSE) return "another program uses this port; end it, or choose another port";
   if (error == EADDRNOTAVAIL)
-    return "this machine does not have that address; leave host empty to listen at all of them";
-  if (error == EACCES) return "ports below 1024 need a permission; choose a higher one";
+    return "this machine does not have that address; leave host empty to listen on all of them";
+  if (error == EACCES) return "ports below 1024 need a privilege; choose a higher one";
   return "check host and port";
 }
 
@@ -37,7 +37,8 @@ class UdpBytePort final : public DescriptorPort {
     boost::system::error_code error;
     const auto local =
         address().host.empty() ? ip::address(ip::address_v4::any()) : ip::make_address(address().host, error);
-    if (error) return Failure{"host: \"" + address().host + "\" is no address of this machine; leave it empty for all"};
+    if (error)
+      return Failure{"host: \"" + address().host + "\" is not an address of this machine; leave it empty for all"};
     sender_ = address().sender.empty() ? ip::address() : plain(ip::make_address(address().sender, error));
     if (error) return Failure{"sender: \"" + address().sender + "\" is no address"};
 

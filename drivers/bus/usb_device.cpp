@@ -207,7 +207,8 @@ class LibusbDevice final : public UsbDevice {
     libusb_device** list = nullptr;
     const ssize_t count = libusb_get_device_list(context_, &list);
     if (count < 0) {
-      return Failure{fmt::format("cannot list the USB devices ({})", libusb_error_name(static_cast<int>(count)))};
+      return Failure{fmt::format("cannot list the USB devices ({}): check /dev/bus/usb",
+                                 libusb_error_name(static_cast<int>(count)))};
     }
     const DeviceList owner(list);
     for (libusb_device* const device : std::span(list, static_cast<std::size_t>(count))) {
@@ -270,7 +271,7 @@ class LibusbDevice final : public UsbDevice {
       case LIBUSB_ERROR_NOT_FOUND:
         return fmt::format("{} was unplugged: plug it in again", what);
       default:
-        return fmt::format("cannot open {} ({}): plug it in again, at another port if need be", what,
+        return fmt::format("cannot open {} ({}): plug it in again, at another port if necessary", what,
                            libusb_error_name(error));
     }
   }

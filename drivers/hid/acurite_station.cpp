@@ -29,10 +29,10 @@ class AcuriteStation final : public HidStation {
     if (!request(exchange, first)) return station_is_gone();
     if (first.size != 0 && !request(exchange, second)) return station_is_gone();
     if (first.size == 0 || second.size == 0) {
-      return fail(exchange, Refusal::kTimeout, "does not answer: set the console's USB mode to 3 or 4");
+      return fail(exchange, Refusal::kTimeout, "does not reply: set the console's USB mode to 3 or 4");
     }
     if (first != second) {
-      return fail(exchange, Refusal::kMalformed, "says something else each time: unplug it and plug it in again");
+      return fail(exchange, Refusal::kMalformed, "replies differently each time: unplug it and plug it in again");
     }
 
     const MonoTime next = begin + timing_.interval_or(kAcuriteEvery);
@@ -46,13 +46,13 @@ class AcuriteStation final : public HidStation {
     }
     const Refusal why = wind ? Refusal::kInvalid : wind.error();
     if (why != Refusal::kInvalid) {
-      return fail(exchange, why, "sends reports that make no sense: unplug it and plug it in again");
+      return fail(exchange, why, "sends invalid reports: unplug it and plug it in again");
     }
     // The console works, but has no sensor, or old values of one.
     failures_ = 0;
     exchange.refuse(Refusal::kInvalid);
     return StationStep::unwell(next,
-                               "does not hear its sensors: check their batteries and their distance to the console");
+                               "does not receive its sensors: check their batteries and their distance to the console");
   }
 
  private:
@@ -77,7 +77,7 @@ class AcuriteStation final : public HidStation {
   StationStep wait_for_news(MonoTime next, MonoTime now) {
     failures_ = 0;
     if (now - last_new_ < timing_.paced(kAcuriteNothingNew)) return StationStep::same(next);
-    return StationStep::unwell(next, "says the same again and again: unplug it and plug it in again");
+    return StationStep::unwell(next, "repeats the same report: unplug it and plug it in again");
   }
 
   Result<StationStep, Failure> fail(HidExchange& exchange, Refusal why, const std::string& trouble) {

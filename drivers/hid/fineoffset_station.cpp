@@ -56,7 +56,7 @@ class FineOffsetStation final : public HidStation {
     if (status == BlockStatus::kLost) return station_is_gone();
     if (status != BlockStatus::kRead) {
       return fail(exchange, status == BlockStatus::kNone ? Refusal::kTimeout : Refusal::kTooShort,
-                  "does not answer; one that has locked up needs its batteries and its cable taken out");
+                  "does not reply; if it has locked up, take out its batteries and its cable");
     }
     if (!last_block_) {
       last_block_ = block;
@@ -112,7 +112,8 @@ class FineOffsetStation final : public HidStation {
     auto fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh1080);
     if (!fixed) fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh3080);
     if (!fixed) {
-      return fail(exchange, fixed.error(), "is no Fine Offset console, or has locked up: take out batteries and cable");
+      return fail(exchange, fixed.error(),
+                  "is not a Fine Offset console, or has locked up: take out its batteries and its cable");
     }
     // Blocks are read where the memory's own begin; a long record can reach into the next.
     position_ = fixed->current_position;
@@ -127,7 +128,7 @@ class FineOffsetStation final : public HidStation {
 
   Result<StationStep, Failure> take_record(HidExchange& exchange) {
     if (blocks_.back() == blocks_.front()) {
-      return fail(exchange, Refusal::kNotMine, "answers another question than the one asked: check its cable");
+      return fail(exchange, Refusal::kNotMine, "replies to another request: check its cable");
     }
     if (blocks_.size() < addresses_.size()) return StationStep::same(exchange.now());
 
@@ -187,8 +188,8 @@ class FineOffsetStation final : public HidStation {
     const MonoTime next = next_read(now);
     if (now - last_news_ >= timing_.paced(kFineOffsetStalled)) {
       exchange.refuse(Refusal::kInvalid);
-      return StationStep::unwell(
-          next, "does not measure any more; one that has locked up needs its batteries and its cable taken out");
+      return StationStep::unwell(next,
+                                 "has stopped measuring; if it has locked up, take out its batteries and its cable");
     }
     if (was_for_clock) return StationStep::same(next);
     published_ = now;

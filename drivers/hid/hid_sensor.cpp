@@ -45,7 +45,7 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
 std::string HidSensor::why_useless(HidExchange& exchange) {
   if (exchange.read(Nanoseconds::zero()).status == HidStatus::kLost) return "is gone: plug it in again";
   exchange.refuse(Refusal::kTimeout);
-  return "takes nothing that is sent to it: take out its cable and its batteries, and put them in again";
+  return "accepts no requests: take out its cable and its batteries, and put them in again";
 }
 
 /// Nothing is due: checks that the device is still there.

@@ -26,8 +26,7 @@ class Te923Station final : public HidStation {
     if (!read_block(exchange)) return station_is_gone();
     if (size_ > 0 && !exchange.send(encode_te923_acknowledgement(kTe923Readings))) return station_is_gone();
 
-    if (size_ == 0)
-      return fail(exchange, Refusal::kTimeout, "does not answer: check the console's power and its cable");
+    if (size_ == 0) return fail(exchange, Refusal::kTimeout, "does not reply: check the console's power and its cable");
     const auto wind = decode_te923(ByteSpan(block_).first(size_));
     if (wind && exchange.publish(*wind)) {
       failures_ = 0;
@@ -35,7 +34,7 @@ class Te923Station final : public HidStation {
     }
     const Refusal why = wind ? Refusal::kInvalid : wind.error();
     if (why != Refusal::kInvalid) {
-      return fail(exchange, why, "sends blocks that make no sense: check its cable");
+      return fail(exchange, why, "sends invalid blocks: check its cable");
     }
     // The console works, but has no wind.
     failures_ = 0;

@@ -58,13 +58,13 @@ class Wmr100Station final : public HidStation {
     const MonoTime now = exchange.now();
     const Nanoseconds silent = now - received_at_;
     if (silent < timing_.paced(kWmr100Silent)) return StationStep::same(now);
-    if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"says nothing, so it is opened again"};
+    if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"is silent and is opened again"};
     if (now - started_ >= timing_.paced(kWmr100Restart)) {
       started_ = now;
       exchange.refuse(Refusal::kTimeout);
       if (!exchange.send(kWmr100Start)) return station_is_gone();
     }
-    return StationStep::unwell(now, "says nothing: check the console's power");
+    return StationStep::unwell(now, "is silent: check the console's power");
   }
 
   StationTiming timing_;

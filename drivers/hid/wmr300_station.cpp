@@ -64,12 +64,12 @@ class Wmr300Station final : public HidStation {
   Result<StationStep, Failure> miss_the_wind(HidExchange& exchange, StationStep step) {
     if (step.next - received_at_ > timing_.paced(kWmr300GiveUp)) {
       exchange.refuse(Refusal::kTimeout);
-      return Failure{"says nothing that makes sense, so it is opened again"};
+      return Failure{"sends no valid packets and is opened again"};
     }
     if (step.next - wind_ > timing_.paced(kWmr300NoWind)) {
       step.health = StationHealth::kUnwell;
       step.trouble = step.next - received_at_ > timing_.paced(kWmr300NoWind)
-                         ? "says nothing that makes sense: check the console's power and the cable"
+                         ? "sends no valid packets: check the console's power and the cable"
                          : "sends no wind: check the anemometer's battery and its distance to the console";
     }
     return step;

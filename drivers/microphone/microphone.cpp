@@ -167,7 +167,7 @@ MicrophoneSettings settings_of(const ParameterValues& values) {
   estimator.faces_deg = parse_faces(values.text("faces"));
   if (!estimator.faces_deg.empty()) {
     if (estimator.faces_deg.size() != static_cast<std::size_t>(values.integer("channels"))) {
-      throw std::runtime_error("faces and channels must be as many");
+      throw std::runtime_error("faces must have as many directions as there are channels");
     }
     try {
       MicDirection(estimator.faces_deg, estimator.direction_smoothing_s);
@@ -176,7 +176,7 @@ MicrophoneSettings settings_of(const ParameterValues& values) {
     }
   }
   if (level.band_high_hz < 1.5 * level.band_low_hz) {
-    throw std::runtime_error("band_high must be half as much again as band_low, at least");
+    throw std::runtime_error("band_high must be at least 1.5 times band_low");
   }
   return settings;
 }

@@ -49,13 +49,13 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const Clock& clock, SensorSink&
     case ByteStatus::kLost:
       if (!trouble_.empty()) return Failure{trouble_};
       return Failure{
-          "the microphone's worker ended without a word: starting it again; `yuragi mic-worker --list --verbose` may "
-          "say why"};
+          "the microphone's worker ended without a message: starting it again; `yuragi mic-worker --list --verbose` "
+          "may show why"};
   }
   sink.refused(Refusal::kTimeout);
-  return Failure{hello_ ? fmt::format("{} has said nothing for {:g} s: starting it again", hello_->device,
+  return Failure{hello_ ? fmt::format("{} has been silent for {:g} s: starting it again", hello_->device,
                                       seconds(settings_.sound_timeout))
-                        : fmt::format("the microphone's worker has not begun within {:g} s: starting it again",
+                        : fmt::format("the microphone's worker has not started within {:g} s: starting it again",
                                       seconds(settings_.start_timeout))};
 }
 
@@ -100,9 +100,10 @@ void MicrophoneSensor::take(const MicBlock& block, const Instant& now, SensorSin
   sink.refused(estimate.error());
   report_unusable(sink, fmt::format("{}: {}", hello_->device,
                                     estimate.error() == Refusal::kImplausible
-                                        ? "noise at full scale that no wind makes: check cable, plug and sample format"
-                                    : block.invalid_samples > 0 ? "samples that are no sound: check the sample format"
-                                                                : "digital silence: is it muted, or its plug loose?"));
+                                        ? "noise at full scale, which is not wind: check cable, plug and sample format"
+                                    : block.invalid_samples > 0
+                                        ? "invalid samples: check the sample format"
+                                        : "digital silence: check whether it is muted, or its plug is loose"));
 }
 
 void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now,

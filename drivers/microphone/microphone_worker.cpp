@@ -106,9 +106,9 @@ bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, c
       });
     }
     if (!is_read) return true;
-    if (!input.is_running()) return fail(name + " stopped: was it unplugged?");
+    if (!input.is_running()) return fail(name + " stopped: check whether it was unplugged");
     if (clock.now().mono - last_sound > kSoundTimeout) {
-      return fail(fmt::format("{} has said nothing for {:g} s: was it unplugged, or does it hang?", name,
+      return fail(fmt::format("{} has been silent for {:g} s: check whether it was unplugged, or hangs", name,
                               seconds(kSoundTimeout)));
     }
     std::this_thread::sleep_for(kTurn);

@@ -97,7 +97,7 @@ Result<MonoTime, Failure> ModbusSensor::read_first(const Clock& clock, SensorSin
   if (!speed_m_s) {
     sink.refused(speed_m_s.error());
     report_connected(sink,
-                     fmt::format("slave {} at {} answers, but its speed is {}: check that the profile fits the device",
+                     fmt::format("slave {} at {} replies, but its speed is {}: check that the profile fits the device",
                                  read.what.request.unit, bus_->where(), name_of(speed_m_s.error())));
     return next_round(now.mono);
   }
@@ -192,10 +192,11 @@ std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble
   const std::string slave = fmt::format("slave {} at {}", read.what.request.unit, read.bus->where());
   switch (trouble.kind) {
     case ModbusTrouble::Kind::kSilence:
-      return fmt::format("{} does not answer within {:g} s: check its power, its wiring and its id", slave,
+      return fmt::format("{} does not reply within {:g} s: check its power, its wiring and its id", slave,
                          seconds(profile_.response_timeout));
     case ModbusTrouble::Kind::kOthersOnly:
-      return slave + " is not heard, but others are: check its id, and that nobody else asks on its line";
+      return slave +
+             " does not reply, but other slaves do: check its id, and that there is no other master on its line";
     case ModbusTrouble::Kind::kLost:
       return "the connection to " + read.bus->where() + " broke off: opening it again";
     case ModbusTrouble::Kind::kInterrupted:
@@ -206,7 +207,7 @@ std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble
   const ModbusRefusal& refusal = trouble.refusal;
   if (is_silence_by_proxy(trouble)) {
     return fmt::format(
-        "the gateway says that {} does not answer (exception {}, {}): check its power, its wiring and its "
+        "the gateway reports that {} does not reply (exception {}, {}): check its power, its wiring and its "
         "id",
         slave, refusal.exception, modbus_exception_name(refusal.exception));
   }
@@ -215,7 +216,7 @@ std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble
                        refusal.exception, modbus_exception_name(refusal.exception));
   }
   return fmt::format(
-      "an answer of {} is no use ({}): check wiring and termination, baud rate, parity, and that no other device has "
+      "a reply of {} is invalid ({}): check wiring and termination, baud rate, parity, and that no other device has "
       "its id",
       slave, name_of(refusal.why));
 }

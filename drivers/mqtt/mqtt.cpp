@@ -158,7 +158,7 @@ class MqttSensor final : public ReopeningSensor {
   }
 
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
-    if (!has_received_) report_unusable(sink, "waits for wind on " + where_ + ": a retained message is none");
+    if (!has_received_) report_unusable(sink, "waits for wind on " + where_ + ": retained messages do not count");
     MqttMessage message;
     const MqttStatus status = client_->receive(message, kMqttWait);
     const Instant now = clock.now();
@@ -167,8 +167,9 @@ class MqttSensor final : public ReopeningSensor {
     if (status == MqttStatus::kMessage) take(message, now, sink);
     if (now.mono - received_at_ >= settings_.silence) {
       has_received_ = true;  // the status now reports more than waiting
-      report_unusable(sink, fmt::format("no wind has come on {} for {:g} s: check that whoever publishes it runs",
-                                        where_, seconds(settings_.silence)));
+      report_unusable(
+          sink, fmt::format("no wind has been received on {} for {:g} s: check that its publisher is running", where_,
+                            seconds(settings_.silence)));
     }
     return now.mono;
   }
@@ -232,12 +233,13 @@ class MqttSensor final : public ReopeningSensor {
 /// Throws, naming the setting, for what can be neither subscribed to nor found.
 void check_source(std::string_view name, const MqttSource& source) {
   if (!source.topic.empty() && !is_mqtt_filter(source.topic)) {
-    throw std::runtime_error(fmt::format(
-        "{}topic: \"{}\" is no topic; # may stand at the end only, and + for a whole level", name, source.topic));
+    throw std::runtime_error(
+        fmt::format("{}topic: \"{}\" is not a topic; # is allowed at the end only, and + in place of a whole level",
+                    name, source.topic));
   }
   if (!is_json_pointer(source.place.pointer)) {
     throw std::runtime_error(
-        fmt::format("{}path: \"{}\" is no JSON pointer; it begins with a slash, as in /TX23/Speed/Act",
+        fmt::format("{}path: \"{}\" is not a JSON pointer, which begins with a slash, as in /TX23/Speed/Act",
                     name.empty() ? "speed_" : name, source.place.pointer));
   }
 }

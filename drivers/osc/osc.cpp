@@ -133,11 +133,10 @@ class OscSensor final : public ReopeningSensor {
     if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
     if (now.mono - received_at_ >= settings_.silence) {
       has_received_ = true;  // the status now reports more than waiting
-      report_unusable(
-          sink,
-          fmt::format("no wind has come to {} for {:g} s: check that the sender runs, that it sends {} there, and "
-                      "that no firewall stops it",
-                      where_, seconds(settings_.silence), settings_.address));
+      report_unusable(sink, fmt::format("no wind has been received on {} for {:g} s: check that the sender is running, "
+                                        "that it sends {} there, and "
+                                        "that no firewall stops it",
+                                        where_, seconds(settings_.silence), settings_.address));
     }
     return now.mono;
   }

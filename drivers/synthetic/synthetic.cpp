@@ -43,7 +43,7 @@ class SyntheticSensor final : public Sensor {
     const Instant now = clock.now();
     if (count_ == 0) {
       begun_ = now.mono;
-      sink.link(LinkState::kConnected, "made up: no hardware is read");
+      sink.link(LinkState::kConnected, "synthetic: no hardware is read");
     }
     const MonoTime due = begun_ + count_ * interval_;
     if (now.mono < due) return due;

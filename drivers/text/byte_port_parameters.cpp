@@ -149,7 +149,7 @@ BytePortAddress byte_port_address_of(const ParameterValues& values) {
 
   const bool can_be_polled = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
   if (values.number("poll_interval") > 0.0 && !can_be_polled) {
-    throw std::runtime_error("poll_interval: transport " + transport + " goes one way; a request needs serial or tcp");
+    throw std::runtime_error("poll_interval: transport " + transport + " cannot send; a request needs serial or tcp");
   }
   return address;
 }

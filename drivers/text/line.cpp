@@ -95,7 +95,7 @@ std::optional<double> invalid_number_of(const std::string& text) {
   if (text.empty()) return {};
   const auto number = parse_number(text);
   if (!number || !*number)
-    throw std::runtime_error("invalid: \"" + text + "\" is no number; allowed: one as in \"-999\"");
+    throw std::runtime_error("invalid: \"" + text + "\" is not a number; allowed: a number such as \"-999\"");
   return *number;
 }
 
@@ -127,7 +127,7 @@ LineOptions line_options_of(const ParameterValues& values) {
     throw std::runtime_error("speed_column: neither it nor speed_key is set; a sensor needs a speed");
   }
   if (line.speed.column && (line.speed.column == line.direction.column || line.speed.column == line.gust.column)) {
-    throw std::runtime_error("speed_column: another quantity stands in the same column");
+    throw std::runtime_error("speed_column: another quantity has the same column");
   }
   return line;
 }
@@ -145,7 +145,7 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   const bool is_polled = settings.text.poll_interval > Nanoseconds::zero();
   settings.text.doubts_first_line = flows && !is_polled;
   if (is_polled && settings.text.request.empty()) {
-    throw std::runtime_error("request: is missing; poll_interval needs something to ask with");
+    throw std::runtime_error("request: is missing; poll_interval needs a request to send");
   }
   return settings;
 }

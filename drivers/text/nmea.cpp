@@ -132,7 +132,7 @@ void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
     throw std::runtime_error("address: is \"" + device + "\"; allowed: two characters, as in \"01\"");
   text.request = request_of(settings.format, device);
   if (text.request.empty()) {
-    throw std::runtime_error("request: is missing; only formats ft and umb know by themselves what to ask for");
+    throw std::runtime_error("request: is missing; only formats ft and umb have a default request");
   }
 }
 

@@ -162,7 +162,7 @@ std::string NmeaSensor::advice(Refusal why, std::string_view line) const {
   const std::string where = describe(settings().address);
   const bool has_checksum = line.find('*') != std::string_view::npos || line.find('\x03') != std::string_view::npos;
   if (why == Refusal::kBadChecksum && !has_checksum) {
-    return "lines come from " + where +
+    return "lines arrive from " + where +
            " without a checksum: set the device to send one, or missing_checksum to \"accept\"";
   }
   if (why == Refusal::kMalformed && settings_.status == WhenMissing::kRefuse) {

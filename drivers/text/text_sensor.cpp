@@ -108,7 +108,7 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
     }
   }
   if (is_polled() && !request_if_due(clock.now().mono, sink))
-    return Failure{where_ + " takes no request: opened again"};
+    return Failure{where_ + " accepts no request: opened again"};
 
   // Read the next bytes, unless some of a played file are left.
   ByteArrival arrival{ByteStatus::kBytes};
@@ -153,7 +153,7 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
   if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
     sink.refused(Refusal::kTimeout);
     vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
-    return Failure{fmt::format("{} has said nothing for {:.0f} s: opened again; check the device's power and cable",
+    return Failure{fmt::format("{} has been silent for {:.0f} s: opened again; check the device's power and cable",
                                where_, seconds(now.mono - last_bytes_))};
   }
   judge_device(now.mono, sink);
@@ -310,7 +310,7 @@ Refusal TextSensor::main_refusal() const {
 
 std::string TextSensor::silence_trouble() const {
   const bool is_serial = settings_.address.kind == BytePortKind::kSerial;
-  return fmt::format("{} {}: check {}", where_, is_polled() ? "does not answer" : "is open, but says nothing",
+  return fmt::format("{} {}: check {}", where_, is_polled() ? "does not reply" : "is open, but silent",
                      is_serial ? "the device's power, its wires (TX and RX crossed?) and baud"
                                : "the device's power and network settings");
 }
@@ -318,32 +318,31 @@ std::string TextSensor::silence_trouble() const {
 /// Bytes arrive, but no lines.
 std::string TextSensor::trouble_without_lines() const {
   if (late_lines_ > 0) {
-    return fmt::format("{} answers, but not within {:g} s: raise response_timeout", where_,
+    return fmt::format("{} replies, but not within {:g} s: increase response_timeout", where_,
                        seconds(settings_.response_timeout));
   }
   if (foreign_datagrams_ > 0 && bytes_ == 0) {
-    return fmt::format("datagrams come to {}, but none from {}: check sender", where_, settings_.address.sender);
+    return fmt::format("datagrams arrive at {}, but none from {}: check sender", where_, settings_.address.sender);
   }
   const bool is_serial = settings_.address.kind == BytePortKind::kSerial;
-  return fmt::format("bytes come from {}, but no line: check {}", where_,
-                     is_serial ? "baud, data_bits and parity" : "that this is the device, and that it says text");
+  return fmt::format("bytes arrive from {}, but no lines: check {}", where_,
+                     is_serial ? "baud, data_bits and parity" : "that this is the device, and that it sends text");
 }
 
 std::string TextSensor::advice(Refusal why, std::string_view line) const {
   switch (why) {
     case Refusal::kInvalid:
-      return fmt::format("{} says that it cannot measure (\"{}\"): look at the device", where_, shown(line));
+      return fmt::format("{} reports that it cannot measure (\"{}\"): check the device", where_, shown(line));
     case Refusal::kImplausible:
-      return fmt::format("{} says a wind that cannot be (\"{}\"): check its unit and its settings", where_,
-                         shown(line));
+      return fmt::format("{} sends an impossible wind (\"{}\"): check its unit and its settings", where_, shown(line));
     case Refusal::kBadChecksum:
-      return fmt::format("lines come from {} with wrong checksums: check its cable and baud", where_);
+      return fmt::format("lines arrive from {} with wrong checksums: check its cable and baud", where_);
     case Refusal::kTooShort:
       return fmt::format("lines from {} end too early (\"{}\"): check its cable", where_, shown(line));
     case Refusal::kTimeout:
-      return fmt::format("{} does not answer: check its address, and request", where_);
+      return fmt::format("{} does not reply: check its address, and request", where_);
     default:
-      return fmt::format("lines come from {}, but no wind in them (the first: \"{}\"): check that the settings fit",
+      return fmt::format("lines arrive from {}, but without wind (the first: \"{}\"): check that the settings match",
                          where_, shown(line));
   }
 }

@@ -159,7 +159,8 @@ void check_together(const UsbSettings& settings) {
     throw std::runtime_error("vane_lowest: must be below vane_highest");
   }
   if (settings.wiring.reference_channel && settings.wiring.reference_channel == settings.wiring.vane_channel) {
-    throw std::runtime_error("reference_channel: is the vane's own; give the input that is connected to its track");
+    throw std::runtime_error(
+        "reference_channel: is vane_channel; give the input that is connected to the vane's track");
   }
   // With "auto" it is enough that one of the models can do it: which it is shows when one is plugged in.
   std::string wrong;

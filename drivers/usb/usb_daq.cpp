@@ -28,14 +28,14 @@ DaqTrouble trouble_of(UsbStatus status, SensorSink& sink) {
   switch (status) {
     case UsbStatus::kTimeout:
       sink.refused(Refusal::kTimeout);
-      return {"does not answer: check its cable, and plug it in again if this lasts"};
+      return {"does not reply: check its cable, and plug it in again if this lasts"};
     case UsbStatus::kStalled:
       sink.refused(Refusal::kException);
-      return {"refuses the request: plug it in again, and check that it is what it says it is"};
+      return {"refuses the request: plug it in again, and check that it is the configured kind of device"};
     case UsbStatus::kDone:  // but with the wrong number of bytes
     case UsbStatus::kOverflow:
       sink.refused(Refusal::kMalformed);
-      return {"says more than it was asked for: check its cable"};
+      return {"sends more than was requested: check its cable"};
     case UsbStatus::kInterrupted:
       return {"was interrupted", true};
     case UsbStatus::kGone:
@@ -46,8 +46,7 @@ DaqTrouble trouble_of(UsbStatus status, SensorSink& sink) {
 
 DaqTrouble trouble_of(Refusal why, SensorSink& sink) {
   sink.refused(why);
-  return {fmt::format("gives an answer that is refused ({}): check its cable, and that no other program uses it",
-                      name_of(why))};
+  return {fmt::format("sends an invalid reply ({}): check its cable, and that no other program uses it", name_of(why))};
 }
 
 }  // namespace yuragi

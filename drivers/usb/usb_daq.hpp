@@ -36,7 +36,7 @@ struct DaqSample {
 
 /// Why a round failed. Refusals have been counted.
 struct DaqTrouble {
-  std::string message;   ///< after the device's name: "does not answer"
+  std::string message;   ///< after the device's name: "does not reply"
   bool is_lost = false;  ///< the device has to be opened again; otherwise the next round may succeed
 };
 

@@ -70,7 +70,8 @@ class LabjackDaq final : public UsbDaq {
     if (sent.status != UsbStatus::kDone) return trouble_of(sent.status, sink);
     for (int message = 0; message < kMostStrangers; ++message) {
       const UsbTransfer got = device.read(kLabjackReplies, buffer_, timeout_);
-      if (got.status == UsbStatus::kTimeout && message > 0) return DaqTrouble{"answers other questions, not this one"};
+      if (got.status == UsbStatus::kTimeout && message > 0)
+        return DaqTrouble{"replies to other requests, not to this one"};
       if (got.status != UsbStatus::kDone) return trouble_of(got.status, sink);
       const ByteSpan reply = ByteSpan(buffer_).first(std::min(got.size, buffer_.size()));
       sink.raw(RawDirection::kReceived, reply);
@@ -87,13 +88,13 @@ class LabjackDaq final : public UsbDaq {
       if (refusal.why != Refusal::kNotMine) return trouble_of(refusal.why, sink);
       sink.refused(Refusal::kNotMine);
     }
-    return DaqTrouble{"answers other questions, not this one"};
+    return DaqTrouble{"replies to other requests, not to this one"};
   }
 
   static DaqTrouble exception(std::uint8_t error, SensorSink& sink) {
     sink.refused(Refusal::kException);
-    if (error == 0) return {"finds a command damaged: check its cable"};
-    return {fmt::format("refuses the command (its error {}): was it set up by another program meanwhile?", error)};
+    if (error == 0) return {"reports a damaged command: check its cable"};
+    return {fmt::format("refuses the command (error {}): check that no other program has configured it", error)};
   }
 
   Nanoseconds timeout_;

@@ -43,7 +43,7 @@ Result<MonoTime, Failure> UsbSensor::open(const Clock& clock) {
   if (!plugged) return plugged.error();
   std::erase_if(*plugged, [this](const PluggedUsbDevice& device) { return !is_wanted(device); });
   if (plugged->empty()) {
-    return Failure{fmt::format("{} is not plugged in: plug it in, and look for it with `yuragi sensors` or lsusb",
+    return Failure{fmt::format("{} is not plugged in: plug it in, and check with `yuragi sensors list` or lsusb",
                                name_of_wanted())};
   }
 
@@ -109,7 +109,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now
     is_jumpy_ = true;
     return report_unusable(
         sink, name_ +
-                  " counts as no wind does: it was reset, or the cup's contact bounces, or metres_per_pulse "
+                  " has an impossible count: it was reset, or the cup's contact bounces, or metres_per_pulse "
                   "is too large");
   }
   if (sample.wiper_v) {

@@ -11,7 +11,7 @@ namespace yuragi {
 namespace {
 
 constexpr std::string_view kHelp =
-    R"(; give seconds from the beginning (90) or a moment (2018-07-20T14:05:00Z; UTC where it names no zone))";
+    R"(; give seconds from the beginning (90) or a moment (2018-07-20T14:05:00Z; UTC if it has no zone))";
 
 }  // namespace
 

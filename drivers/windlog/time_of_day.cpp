@@ -33,8 +33,9 @@ Result<UtcOffset, Failure> parse_utc_offset(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), offset_h);
   if (error != std::errc{} || end != text.data() + text.size() ||
       !(offset_h >= -kLargestOffset_h && offset_h <= kLargestOffset_h)) {
-    return Failure{"\"" + std::string(text) +
-                   "\" is no offset from UTC; give hours from -14 to 14 (1, -3.5), or nothing for this machine's zone"};
+    return Failure{
+        "\"" + std::string(text) +
+        "\" is not an offset from UTC; give hours from -14 to 14 (1, -3.5), or nothing for this machine's zone"};
   }
   return UtcOffset([offset = from_seconds(3600.0 * offset_h)](UtcTime) { return offset; });
 }

@@ -126,7 +126,7 @@ Result<void, Failure> WindlogReader::check_format() {
   if (!application) {
     if (database_.error_code() == SQLITE_CANTOPEN && !is_absent_or_empty(wal_of(database_.file()))) {
       return Failure{name + ": its newest readings are still in " + wal_of(database_.file()).string() +
-                     ", which can be read only in a folder that can be written to; copy both files to one"};
+                     ", which needs a writable folder; copy both files to one"};
     }
     return application.error();
   }

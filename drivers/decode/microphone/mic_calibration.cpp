@@ -48,11 +48,11 @@ std::optional<Failure> too_little(Pairs pairs) {
   const auto finite = [](const MicLevelAndSpeed& pair) {
     return std::isfinite(pair.level_db) && std::isfinite(pair.speed_m_s);
   };
-  if (!std::ranges::all_of(pairs, finite)) return Failure{"a level or a speed is no number"};
+  if (!std::ranges::all_of(pairs, finite)) return Failure{"a level or a speed is not a number"};
   const auto [softest, loudest] = std::ranges::minmax(pairs, {}, &MicLevelAndSpeed::level_db);
   const auto [slowest, fastest] = std::ranges::minmax(pairs, {}, &MicLevelAndSpeed::speed_m_s);
   if (fastest.speed_m_s - slowest.speed_m_s < kLeastSpan_m_s || loudest.level_db - softest.level_db < kLeastSpan_db) {
-    return Failure{"the wind was too even to calibrate by: calm and wind are both needed"};
+    return Failure{"the wind varied too little for a calibration: both calm and wind are needed"};
   }
   return std::nullopt;
 }
@@ -163,7 +163,7 @@ Result<MicCurve, Failure> parse_mic_curve(std::string_view text) {
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const MicLevelAndSpeed& point = curve.points[i];
     if (point.speed_m_s < 0.0 || point.speed_m_s > kMaxPlausibleSpeed_m_s) {
-      return Failure{"a microphone's curve has a speed that no wind has"};
+      return Failure{"a microphone's curve has an impossible speed"};
     }
     if (i > 0 && (point.level_db <= curve.points[i - 1].level_db || point.speed_m_s < curve.points[i - 1].speed_m_s)) {
       return Failure{"the levels of a microphone's curve must rise, and its speeds must not fall"};
@@ -207,7 +207,7 @@ Result<MicPowerLaw, Failure> fit_mic_power_law(Pairs pairs, double noise_power) 
       least_squares = error;
     }
   }
-  if (!best) return Failure{"no pair is louder than the noise of a calm"};
+  if (!best) return Failure{"no pair is louder than the noise in a calm"};
   return *best;
 }
 
@@ -242,12 +242,15 @@ Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft,
                        loud.level_db - soft.level_db >= kLeastSpan_db && soft_power > 0.0;
   if (!is_wide) {
     return Failure{
-        "the two winds are too much alike: they must differ by 1 m/s and 3 dB, and the slower must be heard"};
+        "the two winds are too similar: they must differ by 1 m/s and 3 dB, and the slower one must be louder than a "
+        "calm"};
   }
   // U1 / U2 = (P1 / P2)^(1 / 2n), and the gain from the faster.
   const double exponent = 0.5 * std::log(loud_power / soft_power) / std::log(loud.speed_m_s / soft.speed_m_s);
   if (!(exponent >= kLowestExponent && exponent <= kHighestExponent)) {
-    return Failure{"no microphone's sound grows so with the wind: were both winds steady, and is nothing else heard?"};
+    return Failure{
+        "the sound grows with the wind as it cannot: check that both winds were steady, and that there was no other "
+        "sound"};
   }
   return MicPowerLaw{loud.speed_m_s / std::pow(loud_power, 0.5 / exponent), exponent};
 }
@@ -285,7 +288,7 @@ Result<MicFit, Failure> fit_mic_calibration(Pairs pairs, double noise_power, Mic
                              : mean_error(*whole, noise_power, pairs);
     if (!best || error < kClearlyBetter * best->mean_error_m_s) best = MicFit{*whole, error};
   }
-  if (!best) return Failure{"neither a power law nor a curve fits: is the microphone in the wind?"};
+  if (!best) return Failure{"neither a power law nor a curve fits: check that the microphone is in the wind"};
   return *best;
 }
 

@@ -53,7 +53,7 @@ MicDirection::MicDirection(const std::vector<double>& faces_deg, double smoothin
   }
   // 6.75 for three faces at thirds of the circle; near 0 where two of three face the same way.
   if (determinant(normal) < 0.5) {
-    throw std::invalid_argument("the microphones' faces are too much alike to tell a direction: spread them out");
+    throw std::invalid_argument("the microphones' faces are too similar for a direction: spread them out");
   }
   for (const auto& row : basis) {
     const auto weights = solve_three(normal, row);

@@ -132,7 +132,7 @@ TEST_F(SerialBytePortTest, RefusesBitsThatThePortDoesNotHave) {
   address_.parity = 'E';
   const auto opened = make_byte_port(address_)->open();
   ASSERT_FALSE(opened.has_value());
-  EXPECT_THAT(opened.error().message, HasSubstr("at 9600 7E1 (Invalid argument): it does not know this rate"));
+  EXPECT_THAT(opened.error().message, HasSubstr("at 9600 7E1 (Invalid argument): it does not support this rate"));
 }
 
 TEST_F(SerialBytePortTest, ForgetsWhatCameBeforeItWasOpened) {
@@ -208,7 +208,7 @@ TEST(SerialBytePortTrouble, SaysWhatIsWrongAndWhatToDo) {
   address.path = "/dev/null";
   const auto other = make_byte_port(address)->open();
   ASSERT_FALSE(other.has_value());
-  EXPECT_THAT(other.error().message, HasSubstr("that is no serial port"));
+  EXPECT_THAT(other.error().message, HasSubstr("it is not a serial port"));
 }
 
 TEST(TcpBytePort, CarriesBytesAndIsLostWithItsServer) {
@@ -342,9 +342,9 @@ TEST_F(UdpBytePort, SaysWhatIsWrongAndWhatToDo) {
     const auto opened = make_byte_port(address)->open();
     return opened ? std::string("opened") : opened.error().message;
   };
-  EXPECT_THAT(open({.host = "127.0.0.1", .port = port_}), HasSubstr("another program listens there"));
+  EXPECT_THAT(open({.host = "127.0.0.1", .port = port_}), HasSubstr("another program uses this port"));
   EXPECT_THAT(open({.host = "192.0.2.7", .port = port_}), HasSubstr("this machine does not have that address"));
-  EXPECT_THAT(open({.host = "nowhere", .port = port_}), HasSubstr("is no address of this machine"));
+  EXPECT_THAT(open({.host = "nowhere", .port = port_}), HasSubstr("is not an address of this machine"));
   EXPECT_THAT(open({.port = port_, .sender = "nobody"}), HasSubstr("is no address"));
 }
 

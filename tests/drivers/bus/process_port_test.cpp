@@ -188,18 +188,18 @@ class MicrophoneWatchdog : public ProcessPortTest {
 };
 
 TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatSpins) {
-  EXPECT_THAT(detail_after(count() + "while :; do :; done"), HasSubstr("has not begun within 0.3 s"));
+  EXPECT_THAT(detail_after(count() + "while :; do :; done"), HasSubstr("has not started within 0.3 s"));
   EXPECT_TRUE(is_gone(script_pid()));
   EXPECT_TRUE(sink_.readings.empty());
 }
 
 TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatCrashes) {
-  EXPECT_THAT(detail_after(count() + "kill -SEGV $$"), HasSubstr("ended without a word"));
+  EXPECT_THAT(detail_after(count() + "kill -SEGV $$"), HasSubstr("ended without a message"));
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "no zombie is left";
 }
 
 TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatBabbles) {
-  EXPECT_THAT(detail_after(count() + "yes YMIC | head -c 100000; exec sleep 1000"), HasSubstr("has not begun"));
+  EXPECT_THAT(detail_after(count() + "yes YMIC | head -c 100000; exec sleep 1000"), HasSubstr("has not started"));
   EXPECT_GT(sink_.count(Refusal::kMalformed), 0);
   EXPECT_TRUE(sink_.readings.empty());
 }

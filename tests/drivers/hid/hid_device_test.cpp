@@ -81,7 +81,7 @@ TEST_F(HidDeviceTest, ListsWhatIsPluggedInByPort) {
 TEST_F(HidDeviceTest, TellsTwoAlikeApartByPortOrNode) {
   const auto bus = plug_in({"wmr100", "wmr100"});
   const std::string failure = failure_of({});
-  EXPECT_THAT(failure, HasSubstr("2 devices fit"));
+  EXPECT_THAT(failure, HasSubstr("2 devices match"));
   EXPECT_THAT(failure, HasSubstr("1-1 (/dev/hidraw0), 1-2 (/dev/hidraw1)"));
   for (const std::string path : {"1-2", "/dev/hidraw1"}) {
     const auto opened = device_->open(kIds, {.serial = "", .path = path});

@@ -149,7 +149,7 @@ TEST(Wmr100Station, AsksAgainWhereTheStartReportWasNotHeard) {
   bench.bus.fault = [](double time_s) { return time_s < 100.0 ? std::optional(FaultKind::kSilence) : std::nullopt; };
   bench.run_for(99.0);
   EXPECT_EQ(bench.readings(), 0U);
-  EXPECT_THAT(bench.sink.last_detail(), HasSubstr("says nothing"));
+  EXPECT_THAT(bench.sink.last_detail(), HasSubstr("is silent"));
   bench.run_for(30.0);
   EXPECT_GT(bench.readings(), 0U);
 }

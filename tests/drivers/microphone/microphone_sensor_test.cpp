@@ -181,7 +181,7 @@ TEST_F(MicrophoneSensorTest, KillsAWorkerThatNeverBegins) {
   EXPECT_GE(seconds(clock_.now().mono - begun), 15.0);
   EXPECT_EQ(port_.closed, 1);
   EXPECT_EQ(sink_.count(Refusal::kTimeout), 1);
-  EXPECT_THAT(sink_.last_detail(), HasSubstr("has not begun"));
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("has not started"));
 }
 
 TEST_F(MicrophoneSensorTest, KillsAWorkerThatTalksWithoutSayingAnything) {
@@ -259,7 +259,7 @@ TEST_F(MicrophoneFault, Partial) {
   hear();
   EXPECT_EQ(sink_.readings.size(), before);
   EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
-  EXPECT_THAT(sink_.last_detail(), HasSubstr("ended without a word"));
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("ended without a message"));
 
   poll();
   send_hello();

@@ -126,7 +126,7 @@ TEST(MicrophoneWorker, GivesUpADeviceThatHangs) {
   input.stops_at_end = false;
   const Said said = work(input, {});
   EXPECT_FALSE(said.was_told);
-  EXPECT_THAT(std::get<MicTrouble>(said.frames.back()).message, HasSubstr("has said nothing for 1.5 s"));
+  EXPECT_THAT(std::get<MicTrouble>(said.frames.back()).message, HasSubstr("has been silent for 1.5 s"));
 }
 
 TEST(MicrophoneWorker, SaysWhyADeviceCannotBeOpened) {

@@ -203,7 +203,7 @@ TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhileTheVaneIsSilentAndAsksItLess
   EXPECT_GE(vane_requests, 6);
   EXPECT_LE(vane_requests, 15);
   EXPECT_EQ(line_.opened, 1);
-  EXPECT_THAT(sink_.last_detail(), HasSubstr("without direction: slave 2 at here:502 does not answer"));
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("without direction: slave 2 at here:502 does not reply"));
 }
 
 TEST_F(ModbusSensorTest, HasTheDirectionAgainWhenTheVaneIsBack) {
@@ -434,7 +434,7 @@ TEST_F(ModbusSensorTest, TellsAGatewaysSilentSlaveFromARefusal) {
     return bytes;
   };
   poll_for(60s);
-  EXPECT_THAT(sink_.last_detail(), HasSubstr("the gateway says that slave 1 at here:502 does not answer"));
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("the gateway reports that slave 1 at here:502 does not reply"));
   EXPECT_LE(line_.requests.size(), 15U);
 }
 

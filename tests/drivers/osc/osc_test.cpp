@@ -72,7 +72,7 @@ class OscRun {
     const bool listens = sensor_.wait_until([](const RecordingSink& sink) {
       const std::string detail = sink.last_detail();
       return sink.last_state() == LinkState::kConnected || detail.find("waits for") != std::string::npos ||
-             detail.find("no wind has come") != std::string::npos;
+             detail.find("no wind has been received") != std::string::npos;
     });
     const std::size_t before = count();
     send();
@@ -253,7 +253,7 @@ TEST(OscFault, Silence) {
   OscRun run({{"silence", 1.0}});
   ASSERT_TRUE(run.reads_wind());
   EXPECT_TRUE(run.is_in(LinkState::kConnecting));
-  EXPECT_THAT(run.all().last_detail(), HasSubstr("no wind has come to UDP"));
+  EXPECT_THAT(run.all().last_detail(), HasSubstr("no wind has been received on UDP"));
   EXPECT_TRUE(run.reads_wind());
   EXPECT_TRUE(run.is_in(LinkState::kConnected));
 }

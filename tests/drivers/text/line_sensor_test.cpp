@@ -137,8 +137,8 @@ TEST(LineSettings, RefuseWhatCannotWork) {
   };
   EXPECT_EQ(refusal({}), "accepted");
   EXPECT_THAT(refusal({{"speed_column", std::int64_t{0}}, {"speed_key", std::string("")}}), HasSubstr("needs a speed"));
-  EXPECT_THAT(refusal({{"direction_column", std::int64_t{1}}}), HasSubstr("in the same column"));
-  EXPECT_THAT(refusal({{"invalid", std::string("none")}}), HasSubstr("is no number"));
+  EXPECT_THAT(refusal({{"direction_column", std::int64_t{1}}}), HasSubstr("has the same column"));
+  EXPECT_THAT(refusal({{"invalid", std::string("none")}}), HasSubstr("is not a number"));
   EXPECT_THAT(refusal({{"poll_interval", 1.0}}), HasSubstr("request: is missing"));
 }
 

@@ -250,7 +250,7 @@ TEST_F(NmeaSensorTest, AsksADeadDeviceLessOften) {
   run(60s);
   EXPECT_LE(far_end.written.size(), 30U);
   EXPECT_GE(far_end.written.size(), 20U);
-  EXPECT_THAT(sink.last_detail(), HasSubstr("does not answer"));
+  EXPECT_THAT(sink.last_detail(), HasSubstr("does not reply"));
 }
 
 TEST_F(NmeaSensorTest, SaysThatTheDeviceCannotMeasure) {
@@ -259,7 +259,7 @@ TEST_F(NmeaSensorTest, SaysThatTheDeviceCannotMeasure) {
   EXPECT_TRUE(sink.readings.empty());
   EXPECT_EQ(sink.count(Refusal::kInvalid), 20);
   EXPECT_EQ(sink.last_state(), LinkState::kConnected) << "it is there and speaks";
-  EXPECT_THAT(sink.last_detail(), HasSubstr("says that it cannot measure"));
+  EXPECT_THAT(sink.last_detail(), HasSubstr("reports that it cannot measure"));
 }
 
 TEST(NmeaSettings, RefuseWhatCannotWork) {
@@ -278,7 +278,7 @@ TEST(NmeaSettings, RefuseWhatCannotWork) {
   EXPECT_THAT(refusal({{"device", std::string("x")}, {"sentences", std::string("MWV,GGA")}}),
               HasSubstr("no wind in \"GGA\""));
   EXPECT_THAT(refusal({{"device", std::string("x")}, {"poll_interval", 1.0}}), HasSubstr("request: is missing"));
-  EXPECT_THAT(refusal({{"transport", std::string("udp")}, {"poll_interval", 1.0}}), HasSubstr("goes one way"));
+  EXPECT_THAT(refusal({{"transport", std::string("udp")}, {"poll_interval", 1.0}}), HasSubstr("cannot send"));
   EXPECT_THAT(refusal({{"device", std::string("x")}, {"format", std::string("umb")}, {"address", std::string("1")}}),
               HasSubstr("two characters"));
   EXPECT_EQ(refusal({{"transport", std::string("udp")}}), "accepted");

@@ -144,7 +144,7 @@ TEST_P(Fault, Silence) {
     bench_.run(3.5, FaultKind::kSilence);
     EXPECT_LE(bench_.sink.readings.size(), 1U) << "one may have been on its way";
     EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("is open, but says nothing"));
+    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("is open, but silent"));
 
     // At some time the port itself is doubted, and opened again.
     bench_.run(5.0, FaultKind::kSilence);
@@ -188,7 +188,7 @@ TEST_P(Fault, Garbage) {
       EXPECT_TRUE(bench_.sink.readings.empty()) << "among random bytes there are numbers, but no reading";
       EXPECT_FALSE(bench_.sink.refusals.empty());
       EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
-      EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("but no line: check"));
+      EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("but no lines: check"));
       if (wire == Wire::kPty) {
         EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("baud"));
       }
@@ -247,7 +247,7 @@ TEST_P(Fault, Late) {
     EXPECT_GE(bench_.sink.count(Refusal::kTimeout), 2);
     EXPECT_GE(bench_.sink.count(Refusal::kNotMine), 2);
     EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("raise response_timeout"));
+    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("increase response_timeout"));
     ASSERT_TRUE(is_live());
     expect_return();
   }

@@ -169,7 +169,7 @@ TEST_F(TextSensorTest, SaysThatBytesComeButNoLine) {
     for (char& byte : noise) byte = static_cast<char>(0x80U | random());  // as a wrong baud rate makes of text
     receive(noise);
   }
-  EXPECT_THAT(sink.last_detail(), HasSubstr("bytes come from /dev/script at 9600 8N1, but no line: check baud"));
+  EXPECT_THAT(sink.last_detail(), HasSubstr("bytes arrive from /dev/script at 9600 8N1, but no lines: check baud"));
   EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
   receive("\r\n" + mwv_line(3.0));
   EXPECT_EQ(sink.last_state(), LinkState::kConnected);
@@ -183,7 +183,7 @@ TEST_F(TextSensorTest, SaysWhichLinesItCannotUse) {
   make_nmea();
   sink = {};
   for (int i = 0; i < 20; ++i) receive("T=21.5 H=40\r\n");
-  EXPECT_THAT(sink.last_detail(), HasSubstr("no wind in them (the first: \"T=21.5 H=40\")"));
+  EXPECT_THAT(sink.last_detail(), HasSubstr("without wind (the first: \"T=21.5 H=40\")"));
   EXPECT_LE(sink.links.size(), 3U) << "what has not changed is not told again";
 }
 
@@ -196,7 +196,7 @@ TEST_F(TextSensorTest, TriesAgainForEverWhatCannotBeOpenedReadOrWritten) {
   far_end.can_write = false;
   run(30s);
   EXPECT_GE(far_end.opened, 2);
-  EXPECT_THAT(sink.last_detail(), HasSubstr("takes no request"));
+  EXPECT_THAT(sink.last_detail(), HasSubstr("accepts no request"));
   far_end.can_write = true;
   far_end.on_request = [this](const std::string&) { far_end.send(mwv_line(1.0)); };
   run(15s);

@@ -147,7 +147,7 @@ void expect_split_replies_to_be_put_together(Transport transport) {
 const std::vector<Refusal> kNoise = {Refusal::kMalformed, Refusal::kTooShort, Refusal::kBadChecksum, Refusal::kNotMine};
 
 TEST(ModbusFault, Silence) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("silence", {Refusal::kTimeout}, "does not answer within 0.2 s");
+  ModbusFaultBench(Transport::kTcp).expect_loss("silence", {Refusal::kTimeout}, "does not reply within 0.2 s");
 }
 TEST(ModbusFault, Freeze) {
   expect_frozen_values_as_they_are(Transport::kTcp);
@@ -156,23 +156,23 @@ TEST(ModbusFault, Spike) {
   expect_a_spike_as_it_is(Transport::kTcp);
 }
 TEST(ModbusFault, Garbage) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("garbage", kNoise, "an answer of slave 1 at 127.0.0.1:");
+  ModbusFaultBench(Transport::kTcp).expect_loss("garbage", kNoise, "a reply of slave 1 at 127.0.0.1:");
 }
 TEST(ModbusFault, Split) {
   expect_split_replies_to_be_put_together(Transport::kTcp);
 }
 TEST(ModbusFault, Partial) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("partial", {Refusal::kTooShort}, "is no use (too short)");
+  ModbusFaultBench(Transport::kTcp).expect_loss("partial", {Refusal::kTooShort}, "is invalid (too short)");
 }
 TEST(ModbusFault, WrongId) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("wrong-id", {Refusal::kNotMine}, "is not heard, but others are");
+  ModbusFaultBench(Transport::kTcp).expect_loss("wrong-id", {Refusal::kNotMine}, "does not reply, but other slaves do");
 }
 TEST(ModbusFault, WrongTransaction) {
   ModbusFaultBench(Transport::kTcp)
-      .expect_loss("wrong-transaction", {Refusal::kNotMine}, "is not heard, but others are");
+      .expect_loss("wrong-transaction", {Refusal::kNotMine}, "does not reply, but other slaves do");
 }
 TEST(ModbusFault, Late) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("late", {Refusal::kTimeout, Refusal::kNotMine}, "does not answer");
+  ModbusFaultBench(Transport::kTcp).expect_loss("late", {Refusal::kTimeout, Refusal::kNotMine}, "does not reply");
 }
 TEST(ModbusFault, Exception) {
   ModbusFaultBench(Transport::kTcp)
@@ -183,7 +183,7 @@ TEST(ModbusFault, Disconnect) {
 }
 
 TEST(ModbusRtuFault, Silence) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("silence", {Refusal::kTimeout}, "does not answer within 0.2 s");
+  ModbusFaultBench(Transport::kRtu).expect_loss("silence", {Refusal::kTimeout}, "does not reply within 0.2 s");
 }
 TEST(ModbusRtuFault, Freeze) {
   expect_frozen_values_as_they_are(Transport::kRtu);
@@ -198,18 +198,18 @@ TEST(ModbusRtuFault, Split) {
   expect_split_replies_to_be_put_together(Transport::kRtu);
 }
 TEST(ModbusRtuFault, Partial) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("partial", {Refusal::kTooShort}, "is no use (too short)");
+  ModbusFaultBench(Transport::kRtu).expect_loss("partial", {Refusal::kTooShort}, "is invalid (too short)");
 }
 TEST(ModbusRtuFault, BadChecksum) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("bad-checksum", {Refusal::kBadChecksum}, "is no use (bad checksum)");
+  ModbusFaultBench(Transport::kRtu).expect_loss("bad-checksum", {Refusal::kBadChecksum}, "is invalid (bad checksum)");
 }
 TEST(ModbusRtuFault, WrongId) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("wrong-id", {Refusal::kNotMine}, "is not heard, but others are");
+  ModbusFaultBench(Transport::kRtu).expect_loss("wrong-id", {Refusal::kNotMine}, "does not reply, but other slaves do");
 }
 TEST(ModbusRtuFault, Late) {
   // Late by less than two time-outs: the driver lets the slave be for so long, and drops what it says then.
   ModbusFaultBench bench(Transport::kRtu, {"--turbulence", "0", "--late-by", "0.3"});
-  bench.expect_loss("late", {Refusal::kTimeout}, "does not answer");
+  bench.expect_loss("late", {Refusal::kTimeout}, "does not reply");
 }
 TEST(ModbusRtuFault, Exception) {
   ModbusFaultBench(Transport::kRtu)

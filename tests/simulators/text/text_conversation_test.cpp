@@ -125,9 +125,9 @@ TEST(TextConversation, ComesBackFromEveryFault) {
   ASSERT_TRUE(live.receives(10));
 
   const std::vector<std::pair<std::string, std::string>> faults = {
-      {"silence", "says nothing"}, {"garbage", "but no line: check baud"},
-      {"partial", "check"},        {"bad-checksum", "checksums"},
-      {"wrong-id", "talker"},      {"unplug", "check that it is plugged in"},
+      {"silence", "but silent"}, {"garbage", "but no lines: check baud"},
+      {"partial", "check"},      {"bad-checksum", "checksums"},
+      {"wrong-id", "talker"},    {"unplug", "check that it is plugged in"},
   };
   for (const auto& [fault, detail] : faults) {
     SCOPED_TRACE(fault);

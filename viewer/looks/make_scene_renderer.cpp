@@ -1,9 +1,8 @@
-#include "viewer/looks/scene_renderer.hpp"
-
 #include "viewer/looks/cloth_renderer.hpp"
 #include "viewer/looks/flame_renderer.hpp"
 #include "viewer/looks/fur_renderer.hpp"
 #include "viewer/looks/grass_renderer.hpp"
+#include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/tree_renderer.hpp"
 #include "viewer/looks/water_renderer.hpp"
 
