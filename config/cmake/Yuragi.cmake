@@ -114,10 +114,12 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
   target_sources(${target} PRIVATE ${file})
 endfunction()
 
-# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...]): one GoogleTest program, each of its cases a CTest test. Those of the
-# engine but for its base and its workers, in which there are no threads, are labelled `threadless`.
+# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...] [LONG ...]): one GoogleTest program, each of its cases a CTest test. Those
+# of the engine but for its base and its workers, in which there are no threads, are labelled `threadless`. LONG names cases
+# that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses there, and leaves
+# the long ones out.
 function(yuragi_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS;LONG" ${ARGN})
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
     list(APPEND ARG_LABELS threadless)
   endif()
@@ -133,7 +135,12 @@ function(yuragi_test name)
   if(ARG_LABELS)
     list(APPEND properties LABELS ${ARG_LABELS})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
+  set(cases)
+  if(YURAGI_SANITIZE AND ARG_LONG)
+    list(JOIN ARG_LONG ":" long)
+    set(cases TEST_FILTER "-${long}")
+  endif()
+  gtest_discover_tests(${name} ${cases} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
 endfunction()
 
 # yuragi_unity_groups(): to be called last. Where a unity build compiles a target as one file, sources whose unnamed namespaces

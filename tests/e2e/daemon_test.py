@@ -174,6 +174,12 @@ class DaemonTest(unittest.TestCase):
     def start_daemon(self, *arguments):
         return self.start(YURAGI, "run", "--listen", "127.0.0.1:0", *arguments)
 
+    def simulated_recording(self, duration_s):
+        log = self.file("storm.windlog")
+        subprocess.run([SIMULATOR, "recording", "-o", log, "--interval", "0.25", "--duration", str(duration_s)], check=True,
+                       capture_output=True, timeout=HANG_S)
+        return log
+
     # ---- run ----
 
     def test_it_needs_nothing_and_shows_a_late_joiner_the_picture_of_the_moment(self):
@@ -398,16 +404,17 @@ port = {port}
 
     def test_a_clean_end_leaves_one_file_with_every_reading_and_the_configuration(self):
         log = self.file("storm.windlog")
-        done = run("record", log, "--listen", "127.0.0.1:0", "--duration", "2")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        daemon = self.start(YURAGI, "record", log, "--listen", "127.0.0.1:0")
+        with Stream(daemon.address(), poses=False) as stream:
+            told = stream.wait_for_sensor(lambda sensor: sensor.Readings() >= 7).Readings()
+        self.assertEqual(daemon.end(), 0, daemon.text())
         self.assertEqual(os.listdir(self.folder), ["storm.windlog"])
-        self.assertIn("lost 0", done.stderr)
+        self.assertIn("lost 0", daemon.text())
         csv = run("export", log, "-o", "-").stdout.splitlines()
-        self.assertGreaterEqual(len(csv) - 1, 7)  # 4 Hz
+        self.assertGreaterEqual(len(csv) - 1, told)
 
     def test_a_replay_gives_the_same_poses_bit_for_bit_on_every_run(self):
-        log = self.file("storm.windlog")
-        run("record", log, "--listen", "127.0.0.1:0", "--duration", "3")
+        log = self.simulated_recording(duration_s=3)
         runs = [run("replay", log, "--rate", "max") for _ in range(2)]
         self.assertEqual(runs[0].returncode, 0, runs[0].stderr)
         self.assertRegex(runs[0].stdout, r"pose hash  [0-9a-f]{16}")
@@ -428,8 +435,7 @@ port = {port}
         self.assertAlmostEqual(float(replayed.group(2)), 11.27, delta=0.8)
 
     def test_a_replay_at_a_pace_ends_with_its_recording(self):
-        log = self.file("storm.windlog")
-        run("record", log, "--listen", "127.0.0.1:0", "--duration", "3")
+        log = self.simulated_recording(duration_s=3)
         done = run("replay", log, "--rate", "4", "--listen", "127.0.0.1:0")
         self.assertEqual(done.returncode, 0, done.stderr)
         ticks = int(re.search(r"(\d+) ticks", done.stderr).group(1))
@@ -748,10 +754,13 @@ turbulence = 0
 
     def test_a_log_at_the_end_accounts_for_every_sensor(self):
         config = self.modbus_config(self.start_simulator().address())
-        done = run("run", "--listen", "127.0.0.1:0", "--config", config, "--duration", "2")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        told = re.search(r"sensor roof: (\d+) readings from (\d+) frames, 0 reconnects; refused: nothing", done.stderr)
-        self.assertTrue(told, done.stderr)
+        daemon = self.start_daemon("--config", config)
+        with Stream(daemon.address(), poses=False) as stream:
+            stream.wait_for_sensor(lambda sensor: sensor.Readings() >= 5)
+        self.assertEqual(daemon.end(), 0, daemon.text())
+        told = re.search(r"sensor roof: (\d+) readings from (\d+) frames, 0 reconnects; refused: nothing", daemon.text())
+        self.assertTrue(told, daemon.text())
+        self.assertGreaterEqual(int(told.group(1)), 5)
         self.assertGreaterEqual(int(told.group(2)), 2 * int(told.group(1)) - 1, "a speed and a direction make a reading")
 
     # What USB devices are decoded with, and what the driver calls them: (simulator, device, format, options).
@@ -774,19 +783,24 @@ turbulence = 0
             config = self.file(device + ".toml", f'[[sensor]]\nname = "roof"\ndriver = "{driver}"\n{key} = "{device}"\n'
                                + ("pace = 20\n" if pace else ""))
             watch = self.start(SIMULATOR, driver, "--device", device, *pace, "--speed", "6", "--umockdev", "--", YURAGI,
-                               "sensors", "watch", "--raw", "roof", "--hex", "--duration", "6", "--config", config,
+                               "sensors", "watch", "--raw", "roof", "--hex", "--config", config,
                                "--connect", self.free_address())
             watched.append((device, kind, options, watch))
         for device, kind, options, watch in watched:
             with self.subTest(device=device):
-                self.assertEqual(watch.process.wait(60), 0, watch.text())
-                lines = [line for line in watch.text().splitlines() if re.fullmatch(r"[0-9a-f |]+", line)]
-                decoded = run("decode", kind, self.file(device + ".hex", "\n".join(lines) + "\n"), "--hex", *options)
+                def decoded_so_far(text):
+                    lines = re.findall(r"(?m)^([0-9a-f |]+)\n", text)
+                    decoded = run("decode", kind, self.file(device + ".hex", "\n".join(lines) + "\n"), "--hex", *options)
+                    readings = [json.loads(line) for line in decoded.stdout.splitlines()] if lines else []
+                    speeds = [reading["speed_m_s"] for reading in readings if reading["speed_m_s"] is not None]
+                    directions = [reading["direction_deg"] for reading in readings if reading["direction_deg"] is not None]
+                    return speeds and directions and (decoded, speeds, directions)
+
+                found = watch.wait_until(decoded_so_far)
+                self.assertTrue(found, watch.text())
+                decoded, speeds, directions = found
                 self.assertEqual(decoded.returncode, 0, decoded.stderr)
-                readings = [json.loads(line) for line in decoded.stdout.splitlines()]
-                speeds = [reading["speed_m_s"] for reading in readings if reading["speed_m_s"] is not None]
-                directions = [reading["direction_deg"] for reading in readings if reading["direction_deg"] is not None]
-                self.assertTrue(speeds and directions, watch.text() + decoded.stderr)
+                watch.end(signal.SIGINT)
                 self.assertTrue(all(0.0 < speed < 20.0 for speed in speeds), speeds)
                 self.assertTrue(all(200.0 < direction < 280.0 for direction in directions), directions)
 

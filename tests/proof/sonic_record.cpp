@@ -5,9 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 
-#include "engine/wind/turbulence/synthetic_wind.hpp"
+#include "engine/wind/blend/blended_estimator.hpp"
 #include "tests/support/places.hpp"
 
 namespace yuragi::proof {
@@ -40,12 +41,21 @@ std::optional<SonicRecord> load_sonic(int number) {
 
 SonicRecord sonic_or_synthetic(int number) {
   if (auto record = load_sonic(number)) return *record;
-  const SyntheticWind wind({.mean_speed_m_s = 7.0,
-                            .mean_direction_deg = 270.0,
-                            .turbulence_intensity = 0.2,
-                            .seed = static_cast<std::uint64_t>(number) + 1});
+  constexpr int kTicksASample = 6;
+  constexpr int kSamples = 18'000;
+  // Gusts of another seed than those of the runs that hear them.
+  const auto seed = static_cast<std::uint64_t>(number) + 1;
+  const auto gusts = std::make_shared<const GustNoise>(GustNoiseSettings{.seed = 999 + seed});
+  BlendedEstimator climate(
+      0,
+      {.climate = {.mean_speed_m_s = 7.0, .mean_direction_deg = 270.0, .turbulence_intensity = 0.3, .seed = seed},
+       .gustiness = 0.5},
+      gusts);
   SonicRecord record{.name = "synthetic", .samples = {}};
-  for (int i = 0; i < 18'000; ++i) record.samples.push_back(wind.at(i / record.rate_hz));
+  for (int i = 0; i < kTicksASample * kSamples; ++i) {
+    const WindVector wind = climate.advance(MonoTime(from_seconds(i / (kTicksASample * record.rate_hz)))).wind;
+    if (i % kTicksASample == 0) record.samples.push_back(wind);
+  }
   return record;
 }
 

@@ -22,8 +22,10 @@ struct SonicRecord {
 /// CSAT3, 10 Hz). Empty where the folder is not there. Throws std::runtime_error for a file that cannot be read.
 std::optional<SonicRecord> load_sonic(int number);
 
-/// load_sonic(number), or where it is not there half an hour of SyntheticWind with the same mean and turbulence: for
-/// what has to hold in any wind.
+/// load_sonic(number), or where it is not there half an hour of the wind model's own: what BlendedEstimator blows
+/// without a sensor, at 7 m/s with a turbulence intensity of 0.3 and gusts as unequal as gustiness 0.5 makes them. For
+/// what has to hold in any wind that is as gusty as a real one; SyntheticWind, which ends at 2 Hz, is too smooth to
+/// compare the effect of a fault with.
 SonicRecord sonic_or_synthetic(int number);
 
 /// What a slower sensor would have said: vector means over blocks of `interval_s`, each heard at the end of its block.
