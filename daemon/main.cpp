@@ -11,6 +11,7 @@
 
 int main(int argc, char** argv) {
   using namespace yuragi;
+  namespace commands = daemon::commands;
   try {
     CLI::App app{
         "Yuragi: real wind moves grass, cloth, trees and flames.\nStart with `yuragi run`, which needs neither sensor "
@@ -18,28 +19,28 @@ int main(int argc, char** argv) {
         "yuragi"};
     app.set_version_flag("--version", with_version("yuragi"));
     app.require_subcommand(1);
-    for (const Command* command : command_table()) command->add(app);
+    for (const commands::Command* command : commands::command_table()) command->add(app);
     try {
       app.parse(argc, argv);
       return 0;
     } catch (const CLI::ParseError& error) {
       if (const std::string text = unexpected_arguments_of(app); error.get_exit_code() != 0 && !text.empty()) {
         std::fprintf(stderr, "yuragi: %s\nRun with --help for more information.\n", text.c_str());
-        return kExitUsage;
+        return commands::kExitUsage;
       }
-      return app.exit(error) == 0 ? 0 : kExitUsage;
+      return app.exit(error) == 0 ? 0 : commands::kExitUsage;
     }
-  } catch (const ConfigError& error) {
+  } catch (const daemon::settings::ConfigError& error) {
     std::fprintf(stderr, "%s\n", error.what());  // its lines begin with the place, as a compiler's do
-    return kExitConfig;
-  } catch (const ExitError& error) {
+    return commands::kExitConfig;
+  } catch (const commands::ExitError& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());
     return error.code();
   } catch (const FailureError& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());
-    return exit_code_of(error.kind());
+    return commands::exit_code_of(error.kind());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());
-    return kExitSoftware;
+    return commands::kExitSoftware;
   }
 }

@@ -2,17 +2,27 @@
 
 #include <CLI/CLI.hpp>
 
-namespace yuragi::sim {
+// Each adds one kind of simulator as a subcommand, from a file of the room that its namespace names. main() reports the
+// exceptions of the callbacks.
 
-// Each adds one kind of simulator as a subcommand, from a file of its own. main() reports the exceptions of the
-// callbacks.
+namespace yuragi::simulators {
+void add_recording_command(CLI::App& app);
+}
 
+namespace yuragi::simulators::microphone {
 void add_microphone_command(CLI::App& app);
+}
+
+namespace yuragi::simulators::modbus {
 void add_modbus_command(CLI::App& app);
-void add_nmea_command(CLI::App& app);
+}
+
+namespace yuragi::simulators::text {
 void add_line_command(CLI::App& app);
+void add_nmea_command(CLI::App& app);
+}  // namespace yuragi::simulators::text
+
+namespace yuragi::simulators::usb {
 void add_hid_command(CLI::App& app);
 void add_usb_command(CLI::App& app);
-void add_recording_command(CLI::App& app);
-
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,7 +4,7 @@
 
 #include "engine/base/duration.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 
 void CommonOptions::add_to(CLI::App& command) {
   command.add_option("--wind", wind, "synthetic, or a recording FILE.windlog, played in a loop")->capture_default_str();
@@ -55,7 +55,7 @@ Faults CommonOptions::make_faults(std::span<const FaultKind> known) const {
 }
 
 void CommonOptions::run_simulator(Simulator& simulator) const {
-  sim::run(simulator, make_faults(simulator.known_faults()), run);
+  simulators::run(simulator, make_faults(simulator.known_faults()), run);
 }
 
 Address address_option(const std::string& option, const std::string& text) {
@@ -64,4 +64,4 @@ Address address_option(const std::string& option, const std::string& text) {
   return *address;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -11,12 +11,12 @@
 #include "simulators/played_wind.hpp"
 #include "simulators/simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 
 /// The options that every simulator has: the wind that it plays, the faults, and for how long it runs.
 struct CommonOptions {
   std::string wind = "synthetic";
-  SyntheticWindSettings synthetic;
+  wind::turbulence::SyntheticWindSettings synthetic;
   std::vector<std::string> faults;
   std::optional<double> random_faults_every_s;
   double random_fault_s = 5.0;
@@ -37,4 +37,4 @@ struct CommonOptions {
 /// The value of an option that takes HOST:PORT. Throws CLI::ValidationError, naming `option`.
 Address address_option(const std::string& option, const std::string& text);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -9,7 +9,7 @@
 
 #include "engine/math/philox.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 namespace {
 
 constexpr double kDefaultDuration_s = 3.0;
@@ -47,7 +47,7 @@ std::optional<Fault> Faults::random_at(double time_s) const {
   // Two random numbers for each interval: one for the beginning of its fault, one for the kind.
   const double stretch = std::floor(time_s / random_->every_s);
   const auto [when, what] =
-      RandomStream(random_->seed, stream_id("faults")).uniform_pair(static_cast<std::uint64_t>(stretch));
+      math::RandomStream(random_->seed, math::stream_id("faults")).uniform_pair(static_cast<std::uint64_t>(stretch));
   const double slack_s = random_->every_s - random_->duration_s;
   const Fault fault{.kind = known_[static_cast<std::size_t>(what * static_cast<double>(known_.size()))],
                     .start_s = stretch * random_->every_s + when * slack_s,
@@ -98,4 +98,4 @@ std::string Faults::kinds() const {
   return all;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -10,7 +10,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 
 /// The faults that can be played. No simulator can play all of them: each lists its own (Simulator::known_faults).
 enum class FaultKind : std::uint8_t {
@@ -78,4 +78,4 @@ class Faults {
   std::optional<RandomFaults> random_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

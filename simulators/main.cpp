@@ -17,13 +17,13 @@ int run(int argc, char** argv) {
   CLI::App app{"Simulated wind sensors, with the protocols of real ones and with faults on demand.", "yuragi-sim"};
   app.set_version_flag("--version", yuragi::with_version("yuragi-sim"));
   app.require_subcommand(1);
-  yuragi::sim::add_microphone_command(app);
-  yuragi::sim::add_modbus_command(app);
-  yuragi::sim::add_nmea_command(app);
-  yuragi::sim::add_line_command(app);
-  yuragi::sim::add_hid_command(app);
-  yuragi::sim::add_usb_command(app);
-  yuragi::sim::add_recording_command(app);
+  yuragi::simulators::microphone::add_microphone_command(app);
+  yuragi::simulators::modbus::add_modbus_command(app);
+  yuragi::simulators::text::add_nmea_command(app);
+  yuragi::simulators::text::add_line_command(app);
+  yuragi::simulators::usb::add_hid_command(app);
+  yuragi::simulators::usb::add_usb_command(app);
+  yuragi::simulators::add_recording_command(app);
   try {
     app.parse(argc, argv);
     return 0;

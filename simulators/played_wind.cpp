@@ -4,32 +4,32 @@
 
 #include "drivers/windlog/windlog_playback.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 namespace {
 
 constexpr double kSpike_m_s = 55.0;
 
 class SyntheticPlayedWind final : public PlayedWind {
  public:
-  explicit SyntheticPlayedWind(const SyntheticWindSettings& settings) : wind_(settings) {}
+  explicit SyntheticPlayedWind(const wind::turbulence::SyntheticWindSettings& settings) : wind_(settings) {}
 
   PlayedMoment at(double time_s) override {
-    const WindVector wind = wind_.at(time_s);
-    return {speed_of(wind), direction_from_deg(wind)};
+    const wind::WindVector wind = wind_.at(time_s);
+    return {speed_of(wind), wind::direction_from_deg(wind)};
   }
 
  private:
-  SyntheticWind wind_;
+  wind::turbulence::SyntheticWind wind_;
 };
 
 class RecordedPlayedWind final : public PlayedWind {
  public:
-  explicit RecordedPlayedWind(WindlogPlayback playback)
+  explicit RecordedPlayedWind(drivers::windlog::WindlogPlayback playback)
       : playback_(std::move(playback)), next_(playback_.next().value()) {}
 
   PlayedMoment at(double time_s) override {
     while (next_ && next_->log_time_s <= time_s) {
-      const WindReading& reading = next_->reading;
+      const wind::WindReading& reading = next_->reading;
       moment_ = {reading.speed_m_s, reading.direction_deg.value_or(moment_.direction_deg)};
       next_ = playback_.next().value();
     }
@@ -37,20 +37,20 @@ class RecordedPlayedWind final : public PlayedWind {
   }
 
  private:
-  WindlogPlayback playback_;
-  std::optional<PlayedReading> next_;
+  drivers::windlog::WindlogPlayback playback_;
+  std::optional<drivers::windlog::PlayedReading> next_;
   PlayedMoment moment_;
 };
 
 }  // namespace
 
-std::unique_ptr<PlayedWind> play_synthetic_wind(const SyntheticWindSettings& settings) {
+std::unique_ptr<PlayedWind> play_synthetic_wind(const wind::turbulence::SyntheticWindSettings& settings) {
   return std::make_unique<SyntheticPlayedWind>(settings);
 }
 
 std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file) {
   return std::make_unique<RecordedPlayedWind>(
-      WindlogPlayback::open(file, {.start = "", .loop = true, .sensor = ""}).value());
+      drivers::windlog::WindlogPlayback::open(file, {.start = "", .loop = true, .sensor = ""}).value());
 }
 
 PlayedMoment MeasuredWind::at(double time_s, std::optional<FaultKind> fault) {
@@ -61,4 +61,4 @@ PlayedMoment MeasuredWind::at(double time_s, std::optional<FaultKind> fault) {
   return moment;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -7,7 +7,7 @@
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 #include "simulators/faults.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 
 /// The wind at a simulated sensor, at one moment.
 struct PlayedMoment {
@@ -24,7 +24,7 @@ class PlayedWind {
 };
 
 /// Synthetic wind, without end.
-std::unique_ptr<PlayedWind> play_synthetic_wind(const SyntheticWindSettings& settings);
+std::unique_ptr<PlayedWind> play_synthetic_wind(const wind::turbulence::SyntheticWindSettings& settings);
 
 /// A recording (.windlog), at the pace at which it was recorded, in a loop. Each reading holds until the next. Throws
 /// std::runtime_error where the file cannot be played.
@@ -44,4 +44,4 @@ class MeasuredWind {
   PlayedMoment last_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

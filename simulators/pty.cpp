@@ -10,7 +10,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 
 Pty::Pty(std::string link) : link_(std::move(link)) {
   plug_in();
@@ -72,4 +72,4 @@ void Pty::write(std::span<const std::uint8_t> bytes) noexcept {
   }
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

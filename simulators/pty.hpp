@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 
 /// A pseudo terminal as a serial port: bytes written here are read by the program that opens path(), and the other way
 /// round. It has no baud rate: bytes arrive at once. It can be unplugged and plugged in again under the same link.
@@ -43,4 +43,4 @@ class Pty {
   int kept_slave_ = -1;  // kept open, or reading would fail while no program has the port open
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

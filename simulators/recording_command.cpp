@@ -12,7 +12,7 @@
 #include "simulators/commands.hpp"
 #include "simulators/common_options.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 namespace {
 
 constexpr FaultKind kRecordingFaults[] = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike};
@@ -54,8 +54,8 @@ RecordedSensor parse_sensor(const std::string& text) {
   return sensor;
 }
 
-void write_readings(WindlogWriter& writer, std::vector<RecordedSensor>& sensors, MeasuredWind& wind, Faults& faults,
-                    const RecordingOptions& options) {
+void write_readings(drivers::windlog::WindlogWriter& writer, std::vector<RecordedSensor>& sensors, MeasuredWind& wind,
+                    Faults& faults, const RecordingOptions& options) {
   constexpr std::size_t kStepsPerCommit = 100'000;
   constexpr double kHour_s = 3600.0;
   const Instant start{MonoTime(std::chrono::hours(1)),
@@ -71,11 +71,11 @@ void write_readings(WindlogWriter& writer, std::vector<RecordedSensor>& sensors,
     const PlayedMoment moment = wind.at(time_s, fault);
     if (fault == FaultKind::kSilence) continue;
     for (const RecordedSensor& sensor : sensors) {
-      WindReading reading;
+      wind::WindReading reading;
       reading.time = {start.mono + from_seconds(time_s), start.utc + from_seconds(time_s)};
       reading.speed_m_s = sensor.gain * moment.speed_m_s;
       reading.direction_deg = moment.direction_deg;
-      reading.quality = ReadingQuality::kSimulated;
+      reading.quality = wind::ReadingQuality::kSimulated;
       writer.append(sensor.id, reading).value();
     }
     if (step % kStepsPerCommit == kStepsPerCommit - 1) writer.commit().value();
@@ -97,7 +97,7 @@ void make_recording(const RecordingOptions& options) {
   working += ".part";
   std::filesystem::remove(working);
   try {
-    auto writer = WindlogWriter::open(working).value();
+    auto writer = drivers::windlog::WindlogWriter::open(working).value();
     write_readings(writer, sensors, wind, faults, options);
     writer.close().value();
     std::filesystem::rename(working, file);
@@ -125,4 +125,4 @@ void add_recording_command(CLI::App& app) {
   command->callback([options] { make_recording(*options); });
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -12,7 +12,7 @@
 
 #include "simulators/simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 namespace {
 
 constexpr int kTurn_ms = 20;
@@ -126,4 +126,4 @@ void run(Simulator& simulator, Faults faults, const RunOptions& options) {
   }
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

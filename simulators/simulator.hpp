@@ -7,7 +7,7 @@
 
 #include "simulators/faults.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 
 /// A simulated sensor. It names the descriptors that it waits for, and is served when one of them can be read, or at a
 /// regular pace. It never reads a clock. Thread-safe: no.
@@ -42,4 +42,4 @@ struct RunOptions {
 /// standard error. Throws std::system_error where waiting itself fails.
 void run(Simulator& simulator, Faults faults, const RunOptions& options);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -15,9 +15,9 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 int run(int argc, char** argv) {
   using namespace yuragi;
   CLI::App app{"Shows the scenes that a Yuragi daemon streams.", "yuragi-viewer"};
-  app.set_version_flag("--version", yuragi::with_version("yuragi-viewer"));
-  ViewerOptions options;
-  add_options(app, options);
+  app.set_version_flag("--version", with_version("yuragi-viewer"));
+  viewer::ViewerOptions options;
+  viewer::add_options(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -30,7 +30,7 @@ int run(int argc, char** argv) {
 
   std::signal(SIGINT, [](int) { is_stopping = true; });
   std::signal(SIGTERM, [](int) { is_stopping = true; });
-  Viewer(options, is_stopping).run();
+  viewer::Viewer(options, is_stopping).run();
   return 0;
 }
 
@@ -39,7 +39,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
-  } catch (const yuragi::ViewerExit& error) {
+  } catch (const yuragi::viewer::ViewerExit& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
     return error.code();
   } catch (const std::exception& error) {

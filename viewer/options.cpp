@@ -5,7 +5,7 @@
 #include "engine/base/duration.hpp"
 #include "viewer/picture_file.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 constexpr int kMaxSide_px = 16384;
@@ -94,4 +94,4 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       "written.");
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

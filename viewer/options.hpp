@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// The command line's options.
 struct ViewerOptions {
@@ -30,4 +30,4 @@ struct ViewerOptions {
 /// Declares the options; app.parse() fills `options`, which must outlive it.
 void add_options(CLI::App& app, ViewerOptions& options);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

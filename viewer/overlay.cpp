@@ -14,7 +14,7 @@
 #include "engine/base/units.hpp"
 #include "viewer/wind_place_text.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 constexpr ImU32 kInk = IM_COL32(250, 248, 240, 255);
@@ -56,7 +56,7 @@ void write(const ImVec4& color, const std::string& text) {
 }
 
 /// A rose that turns with the camera, and an arrow the way the wind blows.
-void draw_compass(const WindState& wind, double heading_deg, float radius) {
+void draw_compass(const wind::WindState& wind, double heading_deg, float radius) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 center(corner.x + radius, corner.y + radius);
@@ -81,7 +81,7 @@ void draw_compass(const WindState& wind, double heading_deg, float radius) {
 
   // The arrow's length is the speed.
   const double speed_m_s = speed_of(wind.wind);
-  const double toward_deg = direction_from_deg(wind.wind) + 180.0;
+  const double toward_deg = wind::direction_from_deg(wind.wind) + 180.0;
   const float reach = radius * static_cast<float>(0.16 + 0.68 * std::min(1.0, speed_m_s / kArrowFullSpeed_m_s));
   if (speed_m_s < 0.05) {
     list->AddCircleFilled(center, radius * 0.06F, kArrow);
@@ -110,14 +110,14 @@ void write_wind(const OverlayFacts& facts, float scale) {
   draw_compass(facts.wind, facts.heading_deg, 44.0F * scale);
   ImGui::SameLine(0.0F, 14.0F * scale);
   ImGui::BeginGroup();
-  const double direction_deg = direction_from_deg(facts.wind.wind);
+  const double direction_deg = wind::direction_from_deg(facts.wind.wind);
   ImGui::SetWindowFontScale(1.5F);
   write(fmt::format("{:.1f} m/s", speed_of(facts.wind.wind)));
   ImGui::SetWindowFontScale(1.0F);
   write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, nearest_compass_point(direction_deg)));
   if (const std::string place = wind_place_text(facts.wind); !place.empty()) write(kQuiet, place);
   switch (facts.wind.source) {
-    case WindSource::kLive:
+    case wind::WindSource::kLive:
       if (is_true_of_all_that_speak(facts.sensors, &wire::SensorStatus::replayed)) {
         write(kWarn, "REPLAY of a recording");
       } else {
@@ -125,10 +125,10 @@ void write_wind(const OverlayFacts& facts, float scale) {
         write(kGood, is_simulated ? "live, simulated sensor" : "live sensor");
       }
       break;
-    case WindSource::kHandover:
+    case wind::WindSource::kHandover:
       write(kWarn, fmt::format("handing over, {:.0f} % live", 100.0 * facts.wind.live_weight));
       break;
-    case WindSource::kDefault:
+    case wind::WindSource::kDefault:
       write(kQuiet, "default wind, no sensor");
       break;
   }
@@ -141,8 +141,8 @@ void write_sensor(const wire::SensorStatus& sensor) {
   std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, name_of(sensor.state));
   if (sensor.speed_m_s) text += fmt::format(", {:.1f} m/s", *sensor.speed_m_s);
   if (sensor.direction_deg) text += fmt::format(" from {:.0f}\u00b0", *sensor.direction_deg);
-  if (sensor.replayed && sensor.state != SensorState::kReplayed) text += ", REPLAY";
-  write(sensor.state == SensorState::kReplayed || !is_well ? kWarn : kGood, text);
+  if (sensor.replayed && sensor.state != wind::judging::SensorState::kReplayed) text += ", REPLAY";
+  write(sensor.state == wind::judging::SensorState::kReplayed || !is_well ? kWarn : kGood, text);
   if (is_well || sensor.state_reason.empty()) return;
   ImGui::PushTextWrapPos(kReasonWidthInLetters * ImGui::GetFontSize());
   write(kQuiet, sensor.state_reason);
@@ -162,19 +162,19 @@ void write_shaping(const OverlayFacts& facts) {
 
 void write_stream(const OverlayFacts& facts) {
   switch (facts.playback) {
-    case Playback::kReplaying:
+    case stream::Playback::kReplaying:
       write(kWarn, "stream lost: replaying its last seconds");
       break;
-    case Playback::kReturning:
+    case stream::Playback::kReturning:
       write(kGood, "stream is back");
       break;
-    case Playback::kNothing:
+    case stream::Playback::kNothing:
       write(kQuiet, "no picture yet");
       break;
-    case Playback::kLive:
+    case stream::Playback::kLive:
       break;
   }
-  write(facts.stream.state == StreamState::kConnected ? kQuiet : kWarn, facts.stream.text);
+  write(facts.stream.state == stream::StreamState::kConnected ? kQuiet : kWarn, facts.stream.text);
   write(kQuiet, fmt::format("{} nodes, {:.0f} pictures/s", facts.nodes, facts.pictures_per_s));
 }
 
@@ -242,4 +242,4 @@ void Overlay::draw(const OverlayFacts& facts) {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

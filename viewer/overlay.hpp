@@ -8,13 +8,13 @@
 
 struct GLFWwindow;
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// What the overlay shows.
 struct OverlayFacts {
-  WindState wind;
-  Playback playback = Playback::kNothing;
-  StreamStatus stream;
+  wind::WindState wind;
+  stream::Playback playback = stream::Playback::kNothing;
+  stream::StreamStatus stream;
   const wire::Sensors* sensors = nullptr;  ///< null: none has come yet
   double pictures_per_s = 0.0;
   std::size_t nodes = 0;
@@ -36,4 +36,4 @@ class Overlay {
   void draw(const OverlayFacts& facts);
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -10,7 +10,7 @@
 
 #include "viewer/viewer_exit.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 std::optional<PictureFormat> picture_format(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -45,4 +45,4 @@ void write_picture(const std::filesystem::path& file, int width_px, int height_p
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 enum class PictureFormat : std::uint8_t { kPng, kJpeg };
 
@@ -17,4 +17,4 @@ std::optional<PictureFormat> picture_format(const std::filesystem::path& file);
 /// ViewerExit (EX_CANTCREAT).
 void write_picture(const std::filesystem::path& file, int width_px, int height_px, std::span<const std::uint8_t> rgb);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

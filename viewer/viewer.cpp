@@ -13,7 +13,7 @@
 #include "viewer/viewer_exit.hpp"
 #include "viewer/window.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
@@ -25,7 +25,7 @@ double now_s() {
   return seconds(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-StreamOptions address_of(const ViewerOptions& options) {
+stream::StreamOptions address_of(const ViewerOptions& options) {
   const auto address = parse_address(options.connect, wire::kDefaultPort);
   if (!address) throw ViewerExit(EX_USAGE, "--connect: " + address.error().message);
   if (address->port == 0) throw ViewerExit(EX_USAGE, "--connect: port 0 cannot be connected to");
@@ -49,9 +49,9 @@ class Viewer::Show {
         last_s_(began_s_),
         has_overlay_(options.overlay.value_or(options.screenshot.empty())) {
 #ifdef YURAGI_GL_DEBUG
-    report_gl_errors();
+    gl::report_gl_errors();
 #endif
-    const bool is_slow = is_software_renderer() && options.screenshot.empty();
+    const bool is_slow = gl::is_software_renderer() && options.screenshot.empty();
     samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
     stage_.emplace();
     if (!options.scene.empty()) stage_->show_only(options.scene);
@@ -85,7 +85,7 @@ class Viewer::Show {
     while (!is_stopping_) {
       connection_.wait_for_news(from_seconds(kIdleWait_s));
       advance();
-      if (timeline_.playback() == Playback::kNothing) {
+      if (timeline_.playback() == stream::Playback::kNothing) {
         if (last_s_ - began_s_ > options_.wait_s) throw_no_daemon();
         continue;
       }
@@ -120,7 +120,7 @@ class Viewer::Show {
   }
 
   void frame_camera() {
-    CameraPlace place = stage_->home(static_cast<double>(options_.width_px) / options_.height_px);
+    meshes::CameraPlace place = stage_->home(static_cast<double>(options_.width_px) / options_.height_px);
     if (options_.camera.size() == 3) {
       place.heading_deg = options_.camera[0];
       place.pitch_deg = options_.camera[1];
@@ -145,7 +145,7 @@ class Viewer::Show {
 
   /// Takes what has arrived, and advances to now.
   void advance() {
-    Inbox inbox = connection_.take();
+    stream::Inbox inbox = connection_.take();
     if (inbox.scenes) {
       timeline_.set_scenes(inbox.scenes->scenes);
       stage_->set_scenes(std::move(inbox.scenes->scenes));
@@ -155,7 +155,8 @@ class Viewer::Show {
       }
       has_framed_ = true;
     }
-    for (TimedFrame& timed : inbox.frames) timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
+    for (stream::TimedFrame& timed : inbox.frames)
+      timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
     if (inbox.sensors) sensors_ = std::move(inbox.sensors);
 
     const double now = now_s();
@@ -191,16 +192,16 @@ class Viewer::Show {
 
   const ViewerOptions options_;
   const std::atomic<bool>& is_stopping_;
-  StreamConnection connection_;
+  stream::StreamConnection connection_;
   Window window_;  // the members below need its context
-  std::optional<Stage> stage_;
+  std::optional<looks::Stage> stage_;
   std::optional<Overlay> overlay_;
-  std::optional<RenderTarget> target_;
+  std::optional<gl::RenderTarget> target_;
 
-  OrbitCamera camera_;
+  meshes::OrbitCamera camera_;
   bool has_framed_ = false;
-  PoseTimeline timeline_;
-  const PoseMoment* moment_ = nullptr;
+  stream::PoseTimeline timeline_;
+  const stream::PoseMoment* moment_ = nullptr;
   std::optional<wire::Sensors> sensors_;
   double began_s_;
   double last_s_;
@@ -219,4 +220,4 @@ void Viewer::run() {
   is_picture_ ? show_->run_screenshot() : show_->run_window();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

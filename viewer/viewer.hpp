@@ -5,7 +5,7 @@
 
 #include "viewer/options.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// The viewer's main loop: a window, or a picture in a file, of what a daemon streams. On the main thread; throws
 /// ViewerExit.
@@ -26,4 +26,4 @@ class Viewer {
   bool is_picture_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

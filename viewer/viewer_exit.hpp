@@ -5,7 +5,7 @@
 
 #include <sysexits.h>
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// A failure that ends the program, with a text for a person and an exit code of sysexits.h. Caught once, in main.
 class ViewerExit : public std::runtime_error {
@@ -17,4 +17,4 @@ class ViewerExit : public std::runtime_error {
   int code_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

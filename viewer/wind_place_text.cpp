@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::viewer {
 
-std::string wind_place_text(const WindState& wind) {
+std::string wind_place_text(const wind::WindState& wind) {
   if (!wind.is_place_configured && wind.upwind_m == 0.0) return {};
   const std::string where = wind.is_place_configured ? "at the sensors" : "at the edge";
   const auto number = [](double value) { return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0); };
@@ -13,4 +13,4 @@ std::string wind_place_text(const WindState& wind) {
   return where;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -4,10 +4,10 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// Where the wind that the overlay shows is measured: "at the edge, 0.7 s to the middle", "at the sensors, 12 m
 /// downwind". Empty where it is in the middle.
-std::string wind_place_text(const WindState& wind);
+std::string wind_place_text(const wind::WindState& wind);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -9,7 +9,7 @@
 
 #include "viewer/viewer_exit.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 std::string& last_glfw_error() {
@@ -184,4 +184,4 @@ void Window::swap() {
   glfwSwapBuffers(state_->window);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -6,7 +6,7 @@
 
 struct GLFWwindow;
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 struct WindowOptions {
   int width_px = 1280;
@@ -69,4 +69,4 @@ class Window {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

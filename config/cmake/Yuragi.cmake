@@ -86,18 +86,21 @@ function(yuragi_kernel target source)
   endforeach()
 endfunction()
 
-# yuragi_table(yuragi_drivers HEADER drivers/sensor/driver.hpp TYPE DriverDescription TABLE driver_table ENTRIES modbus_driver ...)
-# Writes the function `std::span<const TYPE* const> TABLE()` over constants `extern const TYPE k<Entry>` of namespace
-# yuragi, one an entry. Static registration would be dropped by the linker; this cannot be.
+# yuragi_table(yuragi_drivers HEADER drivers/sensor/driver.hpp TYPE drivers::sensor::DriverDescription
+#              TABLE drivers::sensor::driver_table ENTRIES drivers::modbus::kModbusDriver ...)
+# Writes the function `std::span<const TYPE* const> TABLE()` over constants `extern const TYPE ENTRY`; all names as seen
+# from namespace yuragi. Static registration would be dropped by the linker; this cannot be.
 function(yuragi_table target)
   cmake_parse_arguments(ARG "" "HEADER;TYPE;TABLE" "ENTRIES" ${ARGN})
   set(declarations "")
   set(pointers "")
   foreach(entry IN LISTS ARG_ENTRIES)
-    string(APPEND declarations "extern const ${ARG_TYPE} ${entry};\n")
+    string(REGEX MATCH "^(.+)::([^:]+)$" matched ${entry})
+    string(APPEND declarations "namespace ${CMAKE_MATCH_1} { extern const ${ARG_TYPE} ${CMAKE_MATCH_2}; }\n")
     string(APPEND pointers "  static_cast<const ${ARG_TYPE}*>(&${entry}),\n")
   endforeach()
-  set(file ${CMAKE_CURRENT_BINARY_DIR}/${ARG_TABLE}.cpp)
+  string(REGEX REPLACE "^.*::" "" table ${ARG_TABLE})
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/${table}.cpp)
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT
 "// Generated from ${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt: add an entry there.
 #include <array>

@@ -4,19 +4,19 @@
 
 #include "engine/pose/pose_arrays.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 namespace {
 
 /// Enough places for every sensor, and no more: a tape takes half a megabyte.
-std::size_t most_pens(const Config& config) {
-  return std::min(WindStroke::kMostPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
+std::size_t most_pens(const settings::Config& config) {
+  return std::min(wind::ground::WindStroke::kMostPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
 }
 
 }  // namespace
 
-Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts)
+Animation::Animation(const settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts)
     : pool_(config.animation.threads), tapes_(most_pens(config)) {
-  for (const SceneConfig& scene : config.scenes) {
+  for (const settings::SceneConfig& scene : config.scenes) {
     names_.push_back(scene.name);
     kinds_.emplace_back(scene.kind->name);
     scenes_.push_back(scene.kind->make(
@@ -31,13 +31,13 @@ Animation::Animation(const Config& config, const std::shared_ptr<const GustNoise
   largest_frame_bytes_ = encoder_.encode({}, skeletons_, poses_).size();
 }
 
-void Animation::step(const DrivingWind& wind, double dt_s) noexcept {
-  const GroundWind ground = written_to(tapes_, wind);
+void Animation::step(const wind::ground::DrivingWind& wind, double dt_s) noexcept {
+  const wind::ground::GroundWind ground = written_to(tapes_, wind);
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     fades_[i].advance(dt_s);
     opacities_[i] = fades_[i].opacity();
     if (opacities_[i] == 0.0F) continue;
-    Scene& scene = *scenes_[i];
+    scenes::Scene& scene = *scenes_[i];
     scene.shift(gains_[i] * ground, dt_s);
     pool_.run([&scene](Part part) { scene.sample_part(part); });
     pool_.run([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
@@ -62,8 +62,8 @@ wire::Scenes Animation::describe() const {
 
 std::size_t Animation::node_count() const {
   std::size_t nodes = 0;
-  for (const Skeleton* skeleton : skeletons_) nodes += yuragi::node_count(*skeleton);
+  for (const pose::Skeleton* skeleton : skeletons_) nodes += pose::node_count(*skeleton);
   return nodes;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -12,7 +12,7 @@
 #include "engine/wire/wire.hpp"
 #include "engine/workers/worker_pool.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 
 /// An order to show or hide a scene.
 struct SceneCue {
@@ -31,10 +31,10 @@ struct SceneCue {
 class Animation {
  public:
   /// `gusts`: of the wind that step() will be given.
-  Animation(const Config& config, const std::shared_ptr<const GustNoise>& gusts);
+  Animation(const settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts);
 
   /// Writes the wind onto the tapes, and advances every visible scene and every fade by dt_s.
-  void step(const DrivingWind& wind, double dt_s) noexcept;
+  void step(const wind::ground::DrivingWind& wind, double dt_s) noexcept;
 
   /// Begins a fade. Ignored for a scene that does not exist.
   void cue(const SceneCue& cue) noexcept;
@@ -50,25 +50,25 @@ class Animation {
   /// The skeletons, for clients that join.
   wire::Scenes describe() const;
 
-  std::span<const Skeleton* const> skeletons() const noexcept { return skeletons_; }
-  std::span<const Pose* const> poses() const noexcept { return poses_; }
+  std::span<const pose::Skeleton* const> skeletons() const noexcept { return skeletons_; }
+  std::span<const pose::Pose* const> poses() const noexcept { return poses_; }
   std::span<const float> opacities() const noexcept { return opacities_; }
   std::size_t node_count() const;
   /// From the middle of the scenes to the farthest place of any of them, hidden or not.
-  double reach_m() const noexcept { return scenes_reach_m(skeletons_); }
+  double reach_m() const noexcept { return pose::scenes_reach_m(skeletons_); }
 
  private:
   std::vector<std::string> names_, kinds_;
-  std::vector<std::unique_ptr<Scene>> scenes_;
-  WorkerPool pool_;
-  WindTapes tapes_;
+  std::vector<std::unique_ptr<scenes::Scene>> scenes_;
+  workers::WorkerPool pool_;
+  wind::ground::WindTapes tapes_;
   std::vector<double> gains_;
   std::vector<Fade> fades_;
-  std::vector<const Skeleton*> skeletons_;
-  std::vector<const Pose*> poses_;
+  std::vector<const pose::Skeleton*> skeletons_;
+  std::vector<const pose::Pose*> poses_;
   std::vector<float> opacities_;
   wire::FrameEncoder encoder_;
   std::size_t largest_frame_bytes_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

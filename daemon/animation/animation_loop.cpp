@@ -9,7 +9,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 namespace {
 
 // A frame may grow by a few bytes when a field differs from its default; the buffers have room for that.
@@ -31,7 +31,8 @@ constexpr std::size_t kWaitingCues = 64;
 
 }  // namespace
 
-AnimationLoop::AnimationLoop(Animation& animation, Latest<DrivingWind>& wind, const Clock& clock, double rate_hz)
+AnimationLoop::AnimationLoop(Animation& animation, Latest<wind::ground::DrivingWind>& wind,
+                             const drivers::sensor::Clock& clock, double rate_hz)
     : animation_(animation),
       wind_(wind),
       clock_(clock),
@@ -75,7 +76,7 @@ void AnimationLoop::run(const std::stop_token& stop) {
 void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   // Skipped ticks are made up for by one longer step, so that motion keeps its speed, up to a limit.
   wind_.refresh();
-  const DrivingWind& wind = wind_.value();
+  const wind::ground::DrivingWind& wind = wind_.value();
   const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
   cues_.drain([this](const SceneCue& cue) { animation_.cue(cue); });
   animation_.step(wind, dt_s);
@@ -94,4 +95,4 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   [[maybe_unused]] const auto written = write(frame_ready_fd_, &one, sizeof one);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -12,7 +12,7 @@
 #include "engine/base/latest.hpp"
 #include "engine/base/spsc_ring.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 
 /// The timing of the loop. May be read by other threads at any time.
 struct LoopCounters {
@@ -29,7 +29,8 @@ class AnimationLoop {
  public:
   /// `wind` must outlive the loop and is written by the I/O thread. The clock must be the system's: the loop sleeps on
   /// CLOCK_MONOTONIC.
-  AnimationLoop(Animation& animation, Latest<DrivingWind>& wind, const Clock& clock, double rate_hz);
+  AnimationLoop(Animation& animation, Latest<wind::ground::DrivingWind>& wind, const drivers::sensor::Clock& clock,
+                double rate_hz);
   ~AnimationLoop();
 
   AnimationLoop(const AnimationLoop&) = delete;
@@ -54,8 +55,8 @@ class AnimationLoop {
   void tick(const TickSchedule::Tick& tick);
 
   Animation& animation_;
-  Latest<DrivingWind>& wind_;
-  const Clock& clock_;
+  Latest<wind::ground::DrivingWind>& wind_;
+  const drivers::sensor::Clock& clock_;
   double rate_hz_;
   std::uint64_t sequence_ = 0;
   Latest<wire::Bytes> frames_;
@@ -65,4 +66,4 @@ class AnimationLoop {
   std::jthread thread_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -7,7 +7,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 
 /// A histogram of durations with eight classes to the octave, from 1 us to over an hour: percentiles in constant
 /// memory. A percentile is the upper end of its class, at most an eighth too large.
@@ -55,4 +55,4 @@ class DurationHistogram {
   std::array<std::atomic<std::uint64_t>, kClasses> counts_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 
 /// The opacity of a scene, from 0 (hidden) to 1, and its fade between them: the smooth step 3 s^2 - 2 s^3, whose rate
 /// is 0 at both ends. A fade that is reversed midway continues from its present opacity.
@@ -35,4 +35,4 @@ class Fade {
   double over_s_ = 0.0, since_s_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

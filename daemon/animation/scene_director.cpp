@@ -6,11 +6,11 @@
 
 #include "daemon/settings/control_permission.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 
-SceneDirector::SceneDirector(const Config& config, SendCue send_cue)
+SceneDirector::SceneDirector(const settings::Config& config, SendCue send_cue)
     : allowed_(config.stream.control), send_cue_(std::move(send_cue)) {
-  for (const SceneConfig& scene : config.scenes)
+  for (const settings::SceneConfig& scene : config.scenes)
     scenes_.push_back({scene.name, std::string(scene.kind->name), scene.is_shown});
 }
 
@@ -23,7 +23,8 @@ wire::ControlReply SceneDirector::handle(const wire::Control& control, bool is_l
     for (const wire::SceneState& scene : scenes_) known.append(known.empty() ? "" : ", ").append(scene.name);
     return refuse(fmt::format("there is no scene \"{}\"; there are: {}", control.scene, known));
   }
-  if (const auto refusal = control_refusal(allowed_, is_local, "scenes cannot be switched")) return refuse(*refusal);
+  if (const auto refusal = settings::control_refusal(allowed_, is_local, "scenes cannot be switched"))
+    return refuse(*refusal);
 
   const auto index = static_cast<std::size_t>(found - scenes_.begin());
   if (!send_cue_({index, control.shown, control.hide_others, control.over_s}))
@@ -42,4 +43,4 @@ wire::ControlReply SceneDirector::refuse(std::string why) const {
   return {.done = false, .message = std::move(why), .scenes = scenes_};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -6,7 +6,7 @@
 #include "daemon/animation/animation.hpp"
 #include "daemon/settings/config.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 
 /// Handles clients' requests to show and hide scenes, on the I/O thread: checks the permission ([stream] control),
 /// sends cues to the animation, and replies with the scenes that are shown. A scene counts as shown or hidden from the
@@ -18,7 +18,7 @@ class SceneDirector {
   /// Sends a cue to the animation; false where its queue is full.
   using SendCue = std::function<bool(const SceneCue&)>;
 
-  SceneDirector(const Config& config, SendCue send_cue);
+  SceneDirector(const settings::Config& config, SendCue send_cue);
 
   /// Carries out a client's request; the reply says why not. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::Control& control, bool is_local);
@@ -26,9 +26,9 @@ class SceneDirector {
  private:
   wire::ControlReply refuse(std::string why) const;
 
-  ControlPermission allowed_;
+  settings::ControlPermission allowed_;
   std::vector<wire::SceneState> scenes_;
   SendCue send_cue_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -4,7 +4,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 
 /// The schedule of the animation's ticks: at begin + n * period. A loop that is late skips the ticks that it missed and
 /// counts them; it never catches up.
@@ -41,4 +41,4 @@ class TickSchedule {
   std::uint64_t next_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

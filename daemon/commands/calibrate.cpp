@@ -4,7 +4,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/run_options.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kCalibrateCommand;
 
@@ -43,7 +43,8 @@ void add_calibrate(CLI::App& app) {
 
 }  // namespace
 
-void add_calibration_request(CLI::App& command, CalibrationRequest& request, const std::string& default_duration) {
+void add_calibration_request(CLI::App& command, tools::calibration::CalibrationRequest& request,
+                             const std::string& default_duration) {
   command.add_option("--config,-c", request.config_file, "the configuration file, which is read and written")
       ->required()
       ->type_name("FILE");
@@ -67,4 +68,4 @@ void add_calibration_request(CLI::App& command, CalibrationRequest& request, con
 
 const Command kCalibrateCommand{add_calibrate};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

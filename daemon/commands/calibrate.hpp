@@ -4,7 +4,7 @@
 
 #include "daemon/tools/calibration/calibration_session.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 // One of these a file; each adds itself to `yuragi calibrate`.
 void add_calibrate_zero(CLI::App& calibrate);
@@ -13,6 +13,7 @@ void add_calibrate_span(CLI::App& calibrate);
 void add_calibrate_microphone(CLI::App& calibrate);
 
 /// Adds the options that all of them have; `default_duration` is for the help.
-void add_calibration_request(CLI::App& command, CalibrationRequest& request, const std::string& default_duration);
+void add_calibration_request(CLI::App& command, tools::calibration::CalibrationRequest& request,
+                             const std::string& default_duration);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -13,7 +13,7 @@
 #include "drivers/microphone/microphone_calibration.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 constexpr double kMicBlock_s = 5.0;
@@ -22,86 +22,93 @@ constexpr double kMicBlock_s = 5.0;
 constexpr double kLeastMeasuredPart = 0.5;
 
 struct MicrophoneOptions {
-  CalibrationRequest request;
+  tools::calibration::CalibrationRequest request;
   std::vector<double> speeds_m_s;
 };
 
 /// How readings were computed from levels: needed to compute the levels from readings.
 struct LevelConversion {
-  MicCalibration calibration;
+  drivers::decode::microphone::MicCalibration calibration;
   double noise_power = 0.0;  ///< of a fixed noise floor; 0: it was estimated while running
-  MicFitKind kind = MicFitKind::kPowerLaw;
+  drivers::decode::microphone::MicFitKind kind = drivers::decode::microphone::MicFitKind::kPowerLaw;
 
   bool operator==(const LevelConversion&) const = default;
 };
 
-LevelConversion level_conversion(const MicLevelSettings& settings) {
+LevelConversion level_conversion(const drivers::microphone::MicLevelSettings& settings) {
   LevelConversion conversion{.calibration = settings.calibration};
   if (settings.noise_floor_db) {
     conversion.noise_power = std::pow(10.0, 0.1 * *settings.noise_floor_db);
-    conversion.kind = MicFitKind::kPowerLawOrCurve;
-  } else if (std::holds_alternative<MicCurve>(conversion.calibration)) {
-    conversion.kind = MicFitKind::kCurve;
+    conversion.kind = drivers::decode::microphone::MicFitKind::kPowerLawOrCurve;
+  } else if (std::holds_alternative<drivers::decode::microphone::MicCurve>(conversion.calibration)) {
+    conversion.kind = drivers::decode::microphone::MicFitKind::kCurve;
   }
   return conversion;
 }
 
 void refuse_another_band(std::string_view key, double then_hz, double now_hz) {
   if (then_hz == now_hz) return;
-  refuse(
+  tools::calibration::refuse(
       {fmt::format("the recording was made with {} = {:g} Hz, but the configuration has {:g}: levels of "
                    "different bands cannot be compared",
                    key, then_hz, now_hz)});
 }
 
 /// For a recording, the settings that it was made with; else those of the configuration.
-LevelConversion level_conversion(const CalibrationSession& session, const SensorReadings& collected) {
-  const MicLevelSettings now = mic_level_settings_of(session.sensor().values);
+LevelConversion level_conversion(const tools::calibration::CalibrationSession& session,
+                                 const tools::calibration::SensorReadings& collected) {
+  const drivers::microphone::MicLevelSettings now = drivers::microphone::mic_level_settings_of(session.sensor().values);
   std::vector<LevelConversion> all;
   for (const std::string& text : collected.settings) {
-    const auto values = parse_values(text, session.sensor().driver->parameters);
+    const auto values = settings::parse_values(text, session.sensor().driver->parameters);
     if (!values) {
-      refuse({"this version does not understand the settings of this microphone in the recording: " +
-              values.error().message});
+      tools::calibration::refuse(
+          {"this version does not understand the settings of this microphone in the recording: " +
+           values.error().message});
     }
-    const MicLevelSettings then = mic_level_settings_of(*values);
+    const drivers::microphone::MicLevelSettings then = drivers::microphone::mic_level_settings_of(*values);
     refuse_another_band("band_low", then.band_low_hz, now.band_low_hz);
     refuse_another_band("band_high", then.band_high_hz, now.band_high_hz);
     all.push_back(level_conversion(then));
   }
   if (all.empty()) return level_conversion(now);
   if (std::ranges::any_of(all, [&all](const LevelConversion& one) { return !(one == all.front()); })) {
-    refuse(
+    tools::calibration::refuse(
         {"the calibration of the microphone was changed during this recording: choose a time before or after with "
          "--part"});
   }
   return all.front();
 }
 
-std::vector<TimedSpeed> levels_of(const SensorReadings& collected, const LevelConversion& conversion) {
-  std::vector<TimedSpeed> levels_db;
-  for (const TimedReading& one : collected.readings) {
-    const auto level_db = mic_level_db(conversion.calibration, one.reading.speed_m_s, conversion.noise_power);
+std::vector<wind::judging::TimedSpeed> levels_of(const tools::calibration::SensorReadings& collected,
+                                                 const LevelConversion& conversion) {
+  std::vector<wind::judging::TimedSpeed> levels_db;
+  for (const tools::calibration::TimedReading& one : collected.readings) {
+    const auto level_db = drivers::decode::microphone::mic_level_db(conversion.calibration, one.reading.speed_m_s,
+                                                                    conversion.noise_power);
     if (level_db) levels_db.push_back({one.time_s, *level_db});
   }
   return levels_db;
 }
 
 /// Pairs of mean level and mean true speed, block by block.
-std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, LevelConversion& conversion) {
-  const CollectedReadings collected = session.collect(
+std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs_beside(tools::calibration::CalibrationSession& session,
+                                                                        LevelConversion& conversion) {
+  const tools::calibration::CollectedReadings collected = session.collect(
       "The microphone and the reference must be in the same wind, as close together as possible. Both calm and wind "
       "are\nneeded: the more the wind varies meanwhile, the better.");
   conversion = level_conversion(session, collected[0]);
-  const ReferencePairs beside = pair_with_reference(session, collected, kMicBlock_s);
+  const tools::calibration::ReferencePairs beside =
+      tools::calibration::pair_with_reference(session, collected, kMicBlock_s);
   std::map<double, std::size_t> all_in_block;
   std::map<double, std::vector<double>> levels_in_block;
-  for (const TimedReading& one : collected[0].readings) ++all_in_block[std::floor(one.time_s / beside.block_s)];
-  for (const TimedSpeed& one : levels_of(collected[0], conversion)) {
+  for (const tools::calibration::TimedReading& one : collected[0].readings)
+    ++all_in_block[std::floor(one.time_s / beside.block_s)];
+  for (const wind::judging::TimedSpeed& one : levels_of(collected[0], conversion)) {
     levels_in_block[std::floor(one.time_s / beside.block_s)].push_back(one.speed_m_s);
   }
   std::map<double, std::vector<double>> truth_in_block;
-  for (const TimedSpeed& one : beside.truth) {
+  for (const wind::judging::TimedSpeed& one : beside.truth) {
     truth_in_block[std::floor(one.time_s / beside.block_s)].push_back(one.speed_m_s);
   }
   const auto mean_of = [](const std::vector<double>& values) {
@@ -109,7 +116,7 @@ std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, LevelCon
     for (const double value : values) sum += value;
     return sum / static_cast<double>(values.size());
   };
-  std::vector<MicLevelAndSpeed> pairs;
+  std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs;
   for (const auto& [block, levels_db] : levels_in_block) {
     const auto truth = truth_in_block.find(block);
     const bool is_measured =
@@ -122,62 +129,73 @@ std::vector<MicLevelAndSpeed> pairs_beside(CalibrationSession& session, LevelCon
 }
 
 /// The mean level in a wind of this speed.
-MicLevelAndSpeed measure_level(CalibrationSession& session, double speed_m_s, LevelConversion& conversion) {
-  const CollectedReadings collected = session.collect(
+drivers::decode::microphone::MicLevelAndSpeed measure_level(tools::calibration::CalibrationSession& session,
+                                                            double speed_m_s, LevelConversion& conversion) {
+  const tools::calibration::CollectedReadings collected = session.collect(
       fmt::format("Set the wind at the microphone to a steady {:g} m/s, with no other sound.", speed_m_s));
   conversion = level_conversion(session, collected[0]);
   double sum_db = 0.0;
-  const std::vector<TimedSpeed> levels_db = levels_of(collected[0], conversion);
-  for (const TimedSpeed& one : levels_db) sum_db += one.speed_m_s;
-  if (levels_db.empty()) refuse({"the microphone receives no wind noise: is it in the wind, and is it switched on?"});
+  const std::vector<wind::judging::TimedSpeed> levels_db = levels_of(collected[0], conversion);
+  for (const wind::judging::TimedSpeed& one : levels_db) sum_db += one.speed_m_s;
+  if (levels_db.empty())
+    tools::calibration::refuse({"the microphone receives no wind noise: is it in the wind, and is it switched on?"});
   const double level_db = sum_db / static_cast<double>(levels_db.size());
   session.dialog().print(fmt::format("At {:g} m/s the level is {:.1f} dB, over {}.", speed_m_s, level_db,
                                      count_text(levels_db.size(), "reading")));
   return {level_db, speed_m_s};
 }
 
-MicCalibration calibration_by_two_winds(CalibrationSession& session, std::vector<double> speeds_m_s,
-                                        LevelConversion& conversion, std::vector<MicLevelAndSpeed>& pairs) {
+drivers::decode::microphone::MicCalibration calibration_by_two_winds(
+    tools::calibration::CalibrationSession& session, std::vector<double> speeds_m_s, LevelConversion& conversion,
+    std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   for (const double speed_m_s : speeds_m_s) pairs.push_back(measure_level(session, speed_m_s, conversion));
-  if (conversion.kind == MicFitKind::kCurve) {
-    refuse(
+  if (conversion.kind == drivers::decode::microphone::MicFitKind::kCurve) {
+    tools::calibration::refuse(
         {"a curve cannot be fitted to two winds, and this microphone uses a curve: set its curve to \"\", or set its "
          "noise_floor"});
   }
-  std::ranges::sort(pairs, {}, &MicLevelAndSpeed::speed_m_s);
-  const MicPowerLaw law = value_or_refuse(mic_power_law_through(pairs[0], pairs[1], conversion.noise_power));
+  std::ranges::sort(pairs, {}, &drivers::decode::microphone::MicLevelAndSpeed::speed_m_s);
+  const drivers::decode::microphone::MicPowerLaw law = tools::calibration::value_or_refuse(
+      drivers::decode::microphone::mic_power_law_through(pairs[0], pairs[1], conversion.noise_power));
   session.dialog().print("Fitted a power law through both winds.");
   return law;
 }
 
-MicCalibration calibration_beside(CalibrationSession& session, LevelConversion& conversion,
-                                  std::vector<MicLevelAndSpeed>& pairs) {
+drivers::decode::microphone::MicCalibration calibration_beside(
+    tools::calibration::CalibrationSession& session, LevelConversion& conversion,
+    std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   pairs = pairs_beside(session, conversion);
-  const MicFit fit = value_or_refuse(fit_mic_calibration(pairs, conversion.noise_power, conversion.kind));
-  session.dialog().print(fmt::format("Fitted a {}: mean error {:.2f} m/s on pairs that were not used for the fit.",
-                                     std::holds_alternative<MicCurve>(fit.calibration) ? "curve" : "power law",
-                                     fit.mean_error_m_s));
-  if (conversion.kind == MicFitKind::kPowerLaw) {
+  const drivers::decode::microphone::MicFit fit = tools::calibration::value_or_refuse(
+      drivers::decode::microphone::fit_mic_calibration(pairs, conversion.noise_power, conversion.kind));
+  session.dialog().print(fmt::format(
+      "Fitted a {}: mean error {:.2f} m/s on pairs that were not used for the fit.",
+      std::holds_alternative<drivers::decode::microphone::MicCurve>(fit.calibration) ? "curve" : "power law",
+      fit.mean_error_m_s));
+  if (conversion.kind == drivers::decode::microphone::MicFitKind::kPowerLaw) {
     session.dialog().print("(Only a power law was tried: a curve needs a known noise_floor.)");
   }
   return fit.calibration;
 }
 
 /// The speeds at some levels with the present and the new calibration: the lines of a table.
-std::vector<std::string> level_effect(const CalibrationSession& session, const MicCalibration& then, double noise_power,
-                                      const std::vector<MicLevelAndSpeed>& pairs) {
-  const MicCalibration now = mic_calibration_of(session.sensor().values);
-  Calibration after = session.calibration();
+std::vector<std::string> level_effect(const tools::calibration::CalibrationSession& session,
+                                      const drivers::decode::microphone::MicCalibration& then, double noise_power,
+                                      const std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
+  const drivers::decode::microphone::MicCalibration now =
+      drivers::microphone::mic_calibration_of(session.sensor().values);
+  wind::judging::Calibration after = session.calibration();
   after.height_factor = 1.0;
-  const auto [softest, loudest] = std::ranges::minmax(pairs, {}, &MicLevelAndSpeed::level_db);
+  const auto [softest, loudest] =
+      std::ranges::minmax(pairs, {}, &drivers::decode::microphone::MicLevelAndSpeed::level_db);
   std::vector<std::string> lines = {"    level        speed now        speed then"};
   for (int step = 0; step <= 3; ++step) {
     const double level_db = softest.level_db + (loudest.level_db - softest.level_db) * step / 3.0;
     const double power = std::pow(10.0, 0.1 * level_db);
-    WindReading reading;
-    reading.speed_m_s = mic_speed_m_s(now, power, noise_power);
+    wind::WindReading reading;
+    reading.speed_m_s = drivers::decode::microphone::mic_speed_m_s(now, power, noise_power);
     lines.push_back(fmt::format("{:8.1f} dB        {:8.2f} m/s   {:6.2f} m/s", level_db,
-                                after.applied_to(reading).speed_m_s, mic_speed_m_s(then, power, noise_power)));
+                                after.applied_to(reading).speed_m_s,
+                                drivers::decode::microphone::mic_speed_m_s(then, power, noise_power)));
   }
   return lines;
 }
@@ -192,20 +210,21 @@ void calibrate_microphone(const MicrophoneOptions& options) {
   if (!options.request.recording.empty() && (has_reference ? parts > 1 : parts != 2)) {
     throw ExitError(kExitUsage, "--part: give one with --reference, or one for each --speed, in the same order");
   }
-  CalibrationSession session(options.request, has_reference ? 900.0 : 60.0);
+  tools::calibration::CalibrationSession session(options.request, has_reference ? 900.0 : 60.0);
   if (session.sensor().driver->name != std::string_view("microphone")) {
     throw ExitError(kExitUsage,
                     fmt::format("\"{}\" is not a microphone; use `yuragi calibrate span`", session.sensor().name));
   }
 
   LevelConversion conversion;
-  std::vector<MicLevelAndSpeed> pairs;
-  const MicCalibration found = has_reference ? calibration_beside(session, conversion, pairs)
-                                             : calibration_by_two_winds(session, options.speeds_m_s, conversion, pairs);
+  std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs;
+  const drivers::decode::microphone::MicCalibration found =
+      has_reference ? calibration_beside(session, conversion, pairs)
+                    : calibration_by_two_winds(session, options.speeds_m_s, conversion, pairs);
 
   // The whole calibration is now in the driver's own parameters: [sensor.calibration] must not apply it twice.
-  std::vector<ConfigChange> wanted;
-  for (const auto& [key, value] : parameters_of(found)) wanted.push_back({"", key, value});
+  std::vector<settings::ConfigChange> wanted;
+  for (const auto& [key, value] : drivers::microphone::parameters_of(found)) wanted.push_back({"", key, value});
   wanted.push_back({"calibration", "unit", std::string("m/s")});
   wanted.push_back({"calibration", "gain", 1.0});
   wanted.push_back({"calibration", "offset", 0.0});
@@ -241,4 +260,4 @@ void add_calibrate_microphone(CLI::App& calibrate) {
   command->callback([options] { calibrate_microphone(*options); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -8,38 +8,40 @@
 #include "daemon/commands/exit.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 constexpr double kLeastVaneSpeed_m_s = 1.0;  // below it a vane does not turn
 constexpr double kTurnBlock_s = 10.0;
 
 struct NorthOptions {
-  CalibrationRequest request;
+  tools::calibration::CalibrationRequest request;
   std::optional<double> bearing_deg;
 };
 
 /// The offset of the vane, by pointing it at a landmark of known bearing.
-double turn_by_landmark(CalibrationSession& session, double bearing_deg) {
-  const CollectedReadings collected = session.collect(
+double turn_by_landmark(tools::calibration::CalibrationSession& session, double bearing_deg) {
+  const tools::calibration::CollectedReadings collected = session.collect(
       fmt::format("Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind "
                   "came from there, and hold it\nstill.",
                   bearing_deg));
   std::vector<double> indicated_deg;
-  for (const TimedReading& one : collected[0].readings) {
+  for (const tools::calibration::TimedReading& one : collected[0].readings) {
     if (one.reading.direction_deg) indicated_deg.push_back(*one.reading.direction_deg);
   }
-  const DirectionMean mean = value_or_refuse(measure_held_vane(indicated_deg));
+  const wind::judging::DirectionMean mean =
+      tools::calibration::value_or_refuse(wind::judging::measure_held_vane(indicated_deg));
   session.dialog().print(
       fmt::format("\nThe vane reads {:.1f} deg, standard deviation {:.1f} deg, over {}; the true bearing is {:g}.",
                   mean.mean_deg, mean.spread_deg, count_text(mean.count, "reading"), bearing_deg));
   return bearing_deg - mean.mean_deg;
 }
 
-std::vector<TimedDirection> directions_of(const SensorReadings& collected, const Calibration& calibration) {
-  std::vector<TimedDirection> directions;
-  for (const TimedReading& one : collected.readings) {
-    const WindReading reading = calibration.applied_to(one.reading);
+std::vector<wind::judging::TimedDirection> directions_of(const tools::calibration::SensorReadings& collected,
+                                                         const wind::judging::Calibration& calibration) {
+  std::vector<wind::judging::TimedDirection> directions;
+  for (const tools::calibration::TimedReading& one : collected.readings) {
+    const wind::WindReading reading = calibration.applied_to(one.reading);
     if (reading.direction_deg && reading.speed_m_s >= kLeastVaneSpeed_m_s) {
       directions.push_back({one.time_s, *reading.direction_deg});
     }
@@ -48,24 +50,25 @@ std::vector<TimedDirection> directions_of(const SensorReadings& collected, const
 }
 
 /// The offset, by comparison with another vane in the same wind.
-double turn_by_reference(CalibrationSession& session) {
-  const CollectedReadings collected = session.collect("Both vanes must be in the same wind, of more than 1 m/s.");
-  Calibration without_north = session.calibration();
+double turn_by_reference(tools::calibration::CalibrationSession& session) {
+  const tools::calibration::CollectedReadings collected =
+      session.collect("Both vanes must be in the same wind, of more than 1 m/s.");
+  wind::judging::Calibration without_north = session.calibration();
   without_north.north_offset_deg = 0.0;
   const std::vector<double> turns_deg =
-      pair_turns(directions_of(collected[0], without_north),
-                 directions_of(collected[1], session.reference()->calibration), kTurnBlock_s);
-  const DirectionMean turn = value_or_refuse(measure_turn(turns_deg));
+      wind::judging::pair_turns(directions_of(collected[0], without_north),
+                                directions_of(collected[1], session.reference()->calibration), kTurnBlock_s);
+  const wind::judging::DirectionMean turn = tools::calibration::value_or_refuse(wind::judging::measure_turn(turns_deg));
   session.dialog().print(
       fmt::format("\nThe difference is {:+.1f} deg, standard deviation {:.1f} deg, over {} means of {:g} s.",
-                  signed_degrees(turn.mean_deg), turn.spread_deg, turn.count, kTurnBlock_s));
+                  wind::judging::signed_degrees(turn.mean_deg), turn.spread_deg, turn.count, kTurnBlock_s));
   return turn.mean_deg;
 }
 
 void calibrate_north(NorthOptions options) {
   const bool has_reference = !options.request.reference.empty();
   if (has_reference && options.bearing_deg) throw ExitError(kExitUsage, "give --bearing or --reference, not both");
-  CalibrationSession session(options.request, has_reference ? 900.0 : 20.0);
+  tools::calibration::CalibrationSession session(options.request, has_reference ? 900.0 : 20.0);
   if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
   if (!has_reference && !options.bearing_deg) {
     if (!session.dialog().has_person()) throw ExitError(kExitUsage, "give --bearing DEG or --reference NAME");
@@ -77,13 +80,13 @@ void calibrate_north(NorthOptions options) {
   }
 
   const double turn_deg = has_reference ? turn_by_reference(session) : turn_by_landmark(session, *options.bearing_deg);
-  const double north_offset_deg = rounded(signed_degrees(turn_deg), 0.1);
-  Calibration now = session.calibration();
-  Calibration then = now;
+  const double north_offset_deg = tools::calibration::rounded(wind::judging::signed_degrees(turn_deg), 0.1);
+  wind::judging::Calibration now = session.calibration();
+  wind::judging::Calibration then = now;
   then.north_offset_deg = north_offset_deg;
   std::vector<std::string> effect = {"   reading     direction now   direction then"};
   for (const double indicated_deg : {0.0, 90.0, 180.0, 270.0}) {
-    WindReading reading;
+    wind::WindReading reading;
     reading.direction_deg = indicated_deg;
     effect.push_back(fmt::format("{:7.0f} deg        {:7.1f} deg     {:7.1f} deg", indicated_deg,
                                  *now.applied_to(reading).direction_deg, *then.applied_to(reading).direction_deg));
@@ -113,4 +116,4 @@ void add_calibrate_north(CLI::App& calibrate) {
   command->callback([options] { calibrate_north(*options); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -12,26 +12,27 @@
 #include "drivers/sensor/speed_unit.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 constexpr double kSpanBlock_s = 10.0;
 constexpr double kMostUnsteadiness = 0.3;  // standard deviation over mean of a steady wind
 
 struct SpanOptions {
-  CalibrationRequest request;
+  tools::calibration::CalibrationRequest request;
   std::vector<double> speeds_m_s;
   std::string points;
   bool wants_curve = false;
 };
 
 /// The indicated speed in a wind of this true speed.
-CalibrationPoint measure_known_speed(CalibrationSession& session, double speed_m_s) {
-  const CollectedReadings collected = session.collect(fmt::format(
+wind::judging::CalibrationPoint measure_known_speed(tools::calibration::CalibrationSession& session, double speed_m_s) {
+  const tools::calibration::CollectedReadings collected = session.collect(fmt::format(
       "Set the wind at the sensor to a steady {:g} m/s: with a fan or a wind tunnel, and an accurate meter next to it.",
       speed_m_s));
-  const std::vector<double> indicated_m_s = indicated_speeds_m_s(collected[0], session.calibration());
-  if (indicated_m_s.empty()) refuse({"that part of the recording has no readings: check --part"});
+  const std::vector<double> indicated_m_s =
+      tools::calibration::indicated_speeds_m_s(collected[0], session.calibration());
+  if (indicated_m_s.empty()) tools::calibration::refuse({"that part of the recording has no readings: check --part"});
   const auto count = static_cast<double>(indicated_m_s.size());
   double mean_m_s = 0.0;
   for (const double indicated : indicated_m_s) mean_m_s += indicated / count;
@@ -41,33 +42,38 @@ CalibrationPoint measure_known_speed(CalibrationSession& session, double speed_m
                                      speed_m_s, mean_m_s, std::sqrt(variance),
                                      count_text(indicated_m_s.size(), "reading")));
   if (std::sqrt(variance) > kMostUnsteadiness * mean_m_s && mean_m_s > 0.0) {
-    refuse({fmt::format("that wind is not steady: its standard deviation is {:.0f} %, allowed: up to {:.0f} %",
-                        100.0 * std::sqrt(variance) / mean_m_s, 100.0 * kMostUnsteadiness)});
+    tools::calibration::refuse(
+        {fmt::format("that wind is not steady: its standard deviation is {:.0f} %, allowed: up to {:.0f} %",
+                     100.0 * std::sqrt(variance) / mean_m_s, 100.0 * kMostUnsteadiness)});
   }
   return {mean_m_s, speed_m_s};
 }
 
 /// The pairs of indicated and true speed, as the options say.
-std::vector<CalibrationPoint> known_pairs(CalibrationSession& session, const SpanOptions& options) {
-  if (!options.points.empty()) return value_or_refuse(parse_calibration_curve(options.points));
-  std::vector<CalibrationPoint> pairs;
+std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::CalibrationSession& session,
+                                                         const SpanOptions& options) {
+  if (!options.points.empty())
+    return tools::calibration::value_or_refuse(wind::judging::parse_calibration_curve(options.points));
+  std::vector<wind::judging::CalibrationPoint> pairs;
   if (session.reference() == nullptr) {
     for (const double speed_m_s : options.speeds_m_s) pairs.push_back(measure_known_speed(session, speed_m_s));
     return pairs;
   }
-  const CollectedReadings collected = session.collect(
+  const tools::calibration::CollectedReadings collected = session.collect(
       "Both sensors must be in the same wind, as close together as possible without sheltering each other; the more "
       "the\nwind varies meanwhile, the better.");
-  const ReferencePairs beside = pair_with_reference(session, collected, kSpanBlock_s);
+  const tools::calibration::ReferencePairs beside =
+      tools::calibration::pair_with_reference(session, collected, kSpanBlock_s);
   session.dialog().print(fmt::format("\nCompared with \"{}\": {} pairs of means over {:.0f} s.",
                                      session.reference()->name, beside.pairs.size(), beside.block_s));
   return beside.pairs;
 }
 
 /// Hints at a wrong unit, where the gain is close to a conversion factor.
-void hint_at_unit(const CalibrationSession& session, CalibrationDialog& dialog, double gain) {
+void hint_at_unit(const tools::calibration::CalibrationSession& session, tools::calibration::CalibrationDialog& dialog,
+                  double gain) {
   if (session.calibration().unit_m_s != 1.0) return;
-  for (const SpeedUnit& unit : kSpeedUnitTable) {
+  for (const drivers::sensor::SpeedUnit& unit : drivers::sensor::kSpeedUnitTable) {
     if (unit.metres_per_second == 1.0 || std::abs(gain / unit.metres_per_second - 1.0) > 0.05) continue;
     dialog.print(
         fmt::format("A gain of {:.3f} is typical of numbers in {}: if the sensor reports that unit, set unit = \"{}\" "
@@ -77,9 +83,9 @@ void hint_at_unit(const CalibrationSession& session, CalibrationDialog& dialog, 
   }
 }
 
-std::string curve_text(const std::vector<CalibrationPoint>& curve) {
+std::string curve_text(const std::vector<wind::judging::CalibrationPoint>& curve) {
   std::string text;
-  for (const CalibrationPoint& point : curve) {
+  for (const wind::judging::CalibrationPoint& point : curve) {
     text += fmt::format("{}{:.3f}:{:.3f}", text.empty() ? "" : " ", point.measured_m_s, point.true_m_s);
   }
   return text;
@@ -103,25 +109,25 @@ void check_options(const SpanOptions& options) {
 }
 
 /// Indicated speeds at which the effect is shown: some within the measured range, and one of a storm.
-std::vector<double> shown_speeds(const std::vector<CalibrationPoint>& pairs) {
-  const auto [low, high] = std::ranges::minmax(pairs, {}, &CalibrationPoint::measured_m_s);
+std::vector<double> shown_speeds(const std::vector<wind::judging::CalibrationPoint>& pairs) {
+  const auto [low, high] = std::ranges::minmax(pairs, {}, &wind::judging::CalibrationPoint::measured_m_s);
   if (pairs.size() == 1) return {0.5 * low.measured_m_s, low.measured_m_s, 2.0 * low.measured_m_s};
   return {low.measured_m_s, 0.5 * (low.measured_m_s + high.measured_m_s), high.measured_m_s, 15.0};
 }
 
 void calibrate_span(const SpanOptions& options) {
   check_options(options);
-  CalibrationSession session(options.request, options.request.reference.empty() ? 60.0 : 900.0);
+  tools::calibration::CalibrationSession session(options.request, options.request.reference.empty() ? 60.0 : 900.0);
   if (session.sensor().driver->name == std::string_view("microphone")) {
     throw ExitError(kExitUsage, "a microphone is calibrated with `yuragi calibrate microphone`");
   }
-  const std::vector<CalibrationPoint> pairs = known_pairs(session, options);
+  const std::vector<wind::judging::CalibrationPoint> pairs = known_pairs(session, options);
 
-  std::vector<ConfigChange> wanted;
+  std::vector<settings::ConfigChange> wanted;
   if (options.wants_curve) {
-    std::vector<CalibrationPoint> curve = pairs;
+    std::vector<wind::judging::CalibrationPoint> curve = pairs;
     if (options.points.empty()) {
-      CurveFit fit = value_or_refuse(fit_curve(pairs));
+      wind::judging::CurveFit fit = tools::calibration::value_or_refuse(wind::judging::fit_curve(pairs));
       session.dialog().print(fmt::format("Fitted a curve of {} points: R^2 = {:.4f}, residual {:.3f} m/s.",
                                          fit.curve.size(), fit.r_squared, fit.residual_m_s));
       curve = std::move(fit.curve);
@@ -130,15 +136,16 @@ void calibrate_span(const SpanOptions& options) {
         {"calibration", "gain", 1.0}, {"calibration", "offset", 0.0}, {"calibration", "curve", curve_text(curve)}};
   } else {
     const bool is_single = pairs.size() == 1 && options.speeds_m_s.size() == 1;
-    const LineFit fit = value_or_refuse(is_single ? fit_line_from_zero(zero_point_m_s(session.calibration()), pairs[0])
-                                                  : fit_line(pairs));
+    const wind::judging::LineFit fit = tools::calibration::value_or_refuse(
+        is_single ? wind::judging::fit_line_from_zero(wind::judging::zero_point_m_s(session.calibration()), pairs[0])
+                  : wind::judging::fit_line(pairs));
     session.dialog().print(
         fit.count <= 2 ? fmt::format("Fitted a line through {}.", is_single ? "its zero and this wind" : "both winds")
                        : fmt::format("Fitted a line through {} pairs with wind: R^2 = {:.4f}, residual {:.3f} m/s.",
                                      fit.count, fit.r_squared, fit.residual_m_s));
     hint_at_unit(session, session.dialog(), fit.gain);
-    wanted = {{"calibration", "gain", rounded(fit.gain, 0.0001)},
-              {"calibration", "offset", rounded(fit.offset_m_s, 0.001)},
+    wanted = {{"calibration", "gain", tools::calibration::rounded(fit.gain, 0.0001)},
+              {"calibration", "offset", tools::calibration::rounded(fit.offset_m_s, 0.001)},
               {"calibration", "curve", std::string()}};
   }
   session.finish(wanted, session.speed_effect(wanted, shown_speeds(pairs)));
@@ -178,4 +185,4 @@ void add_calibrate_span(CLI::App& calibrate) {
   command->callback([options] { calibrate_span(*options); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -7,21 +7,22 @@
 #include "daemon/commands/exit.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
-void calibrate_zero(const CalibrationRequest& request) {
-  CalibrationSession session(request, 30.0);
+void calibrate_zero(const tools::calibration::CalibrationRequest& request) {
+  tools::calibration::CalibrationSession session(request, 30.0);
   if (session.sensor().driver->name == std::string_view("microphone")) {
     throw ExitError(kExitUsage,
                     "a microphone has no zero: its noise in a calm is found while it runs, or set as its noise_floor");
   }
   if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
-  const CollectedReadings collected = session.collect(
+  const tools::calibration::CollectedReadings collected = session.collect(
       "The air at the sensor must not move: put a box or a bag over it, close windows, switch off fans, and keep "
       "your\nhands away. Cups must be free to turn.");
-  const Calibration calibration = session.calibration();
-  const StillAir air = value_or_refuse(measure_still_air(indicated_speeds_m_s(collected[0], calibration)));
+  const wind::judging::Calibration calibration = session.calibration();
+  const wind::judging::StillAir air = tools::calibration::value_or_refuse(
+      wind::judging::measure_still_air(tools::calibration::indicated_speeds_m_s(collected[0], calibration)));
   session.dialog().print(
       fmt::format("\nIn still air the sensor reads {:.3f} m/s, standard deviation {:.3f} m/s, over {}.", air.mean_m_s,
                   air.noise_m_s, count_text(air.count, "reading")));
@@ -29,8 +30,9 @@ void calibrate_zero(const CalibrationRequest& request) {
     session.dialog().print("The sensor reads 0 in still air already: nothing to write.");
     return;
   }
-  const double offset_m_s = rounded(offset_for_zero_m_s(calibration, air.mean_m_s), 0.001);
-  const std::vector<ConfigChange> wanted = {{"calibration", "offset", offset_m_s}};
+  const double offset_m_s =
+      tools::calibration::rounded(wind::judging::offset_for_zero_m_s(calibration, air.mean_m_s), 0.001);
+  const std::vector<settings::ConfigChange> wanted = {{"calibration", "offset", offset_m_s}};
   session.finish(wanted, session.speed_effect(wanted, std::vector{air.mean_m_s, 2.0, 5.0, 10.0}));
 }
 
@@ -44,9 +46,9 @@ void add_calibrate_zero(CLI::App& calibrate) {
       "4-20 mA input may read some tenths.\n"
       "  yuragi calibrate zero --config wall.toml --sensor roof --for 60\n"
       "  yuragi calibrate zero --config wall.toml --sensor roof --recording night.windlog --part 120,300 --dry-run");
-  auto request = std::make_shared<CalibrationRequest>();
+  auto request = std::make_shared<tools::calibration::CalibrationRequest>();
   add_calibration_request(*command, *request, "30");
   command->callback([request] { calibrate_zero(*request); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -10,10 +10,10 @@
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
-std::string length_reason(const WindConfig& wind, const SensorConfig& sensor) {
+std::string length_reason(const settings::WindConfig& wind, const settings::SensorConfig& sensor) {
   if (wind.default_length_m) return " (default_length)";
   const auto [height_m, scene_height_m] = sensor.heights;
   if (!height_m) return " (no height in its calibration)";
@@ -31,33 +31,35 @@ void add_check_config(CLI::App& app) {
   command->add_option("file", *file, "the configuration")->required()->type_name("FILE.toml");
   command->add_flag("--full", *full, "print every value, including defaults, as TOML");
   command->callback([file, full] {
-    const Config config = load_config(*file);
-    for (const SensorConfig& sensor : config.sensors) open_sensor(sensor);
-    if (config.wind.fallback) check_fallback(*config.wind.fallback);
+    const settings::Config config = settings::load_config(*file);
+    for (const settings::SensorConfig& sensor : config.sensors) settings::open_sensor(sensor);
+    if (config.wind.fallback) sensing::check_fallback(*config.wind.fallback);
     if (*full) {
-      fmt::print("{}", to_toml(config));
+      fmt::print("{}", settings::to_toml(config));
       return;
     }
     fmt::print("{}: no errors\n", file->string());
-    for (const SensorConfig& sensor : config.sensors) {
+    for (const settings::SensorConfig& sensor : config.sensors) {
       fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
-                 place_text(sensor.blend), gust_length_m(config.wind, sensor), length_reason(config.wind, sensor));
+                 settings::place_text(sensor.blend), settings::gust_length_m(config.wind, sensor),
+                 length_reason(config.wind, sensor));
     }
-    for (const SceneConfig& scene : config.scenes) fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
+    for (const settings::SceneConfig& scene : config.scenes)
+      fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
   });
 }
 
 void print_parameters(std::span<const Parameter> parameters) {
-  fmt::print("{}", parameter_text(parameters));
+  fmt::print("{}", tools::sensors::parameter_text(parameters));
 }
 
 void describe_everything() {
   fmt::print("# A configuration is a TOML file. Everything has a default; an empty file is allowed.\n");
-  for (const ConfigTable& table : config_tables()) {
+  for (const settings::ConfigTable& table : settings::config_tables()) {
     fmt::print("\n{}  # {}\n", table.name.empty() ? std::string() : fmt::format("[{}]", table.name), table.summary);
     print_parameters(table.parameters);
   }
-  for (const DriverDescription* driver : driver_table()) {
+  for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
     fmt::print("\n[[sensor]]  # driver = \"{}\": {}\n", driver->name, driver->summary);
     print_parameters(driver->parameters);
   }
@@ -65,20 +67,20 @@ void describe_everything() {
       "\n"
       "[sensor.calibration]  # below a [[sensor]] of any kind: from its readings to the wind; recordings hold "
       "uncalibrated readings\n");
-  print_parameters(calibration_parameters());
+  print_parameters(settings::calibration_parameters());
   fmt::print(
       "\n"
       "[sensor.blend]  # below a [[sensor]] of any kind: how it is combined with other sensors\n");
-  print_parameters(sensor_blend_parameters());
+  print_parameters(settings::sensor_blend_parameters());
   fmt::print(
       "\n"
       "[sensor.judge]  # below a [[sensor]] of any kind: which of its readings are accepted\n");
-  print_parameters(judge_parameters());
+  print_parameters(settings::judge_parameters());
   fmt::print(
       "\n"
       "[[scene]]  # of any kind: its place and visibility\n");
-  print_parameters(common_scene_parameters());
-  for (const SceneDescription* scene : scene_table()) {
+  print_parameters(settings::common_scene_parameters());
+  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
     fmt::print("\n[[scene]]  # kind = \"{}\": {}\n", scene->name, scene->summary);
     print_parameters(scene->parameters);
   }
@@ -97,4 +99,4 @@ const Command kCheckConfigCommand{add_check_config};
 extern const Command kDescribeCommand;
 const Command kDescribeCommand{add_describe};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

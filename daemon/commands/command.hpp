@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 /// One subcommand of `yuragi`: a constant `kXCommand` in its own file, listed in daemon/CMakeLists.txt.
 struct Command {
@@ -16,4 +16,4 @@ struct Command {
 /// Every subcommand, in the order of the help (generated).
 std::span<const Command* const> command_table();
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

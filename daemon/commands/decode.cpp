@@ -19,7 +19,7 @@
 #include "daemon/tools/decode/unit_reader.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -38,10 +38,10 @@ class Input {
   Input& operator=(const Input&) = delete;
 
   /// The next block, waiting until there is one. Empty: the end.
-  ByteSpan read_some() {
+  drivers::decode::ByteSpan read_some() {
     while (true) {
       const ssize_t size = read(fd_, block_.data(), block_.size());
-      if (size >= 0) return ByteSpan(block_).first(static_cast<std::size_t>(size));
+      if (size >= 0) return drivers::decode::ByteSpan(block_).first(static_cast<std::size_t>(size));
       if (errno != EINTR) refuse();
     }
   }
@@ -78,12 +78,12 @@ Json number_or_null(std::optional<double> value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json json_of(const UnitReading& reading) {
-  const DecodedWind& wind = reading.wind;
+Json json_of(const tools::decode::UnitReading& reading) {
+  const drivers::decode::DecodedWind& wind = reading.wind;
   Json json = {{"speed_m_s", number_or_null(wind.speed_m_s)},
                {"direction_deg", number_or_null(wind.direction_deg)},
                {"gust_m_s", number_or_null(wind.gust_m_s)}};
-  if (wind.reference != WindReference::kUnknown) json["reference"] = name_of(wind.reference);
+  if (wind.reference != drivers::decode::WindReference::kUnknown) json["reference"] = name_of(wind.reference);
   json["status"] = name_of(wind.status);
   if (reading.count) json["count"] = *reading.count;
   if (reading.volts) json["volts"] = *reading.volts;
@@ -95,12 +95,12 @@ class Output {
  public:
   explicit Output(bool shows_refused) : shows_refused_(shows_refused) {}
 
-  void reading(const UnitReading& reading) {
+  void reading(const tools::decode::UnitReading& reading) {
     ++readings_;
     write(json_of(reading));
   }
 
-  void refusal(Refusal why, std::string_view detail, std::string_view input) {
+  void refusal(drivers::decode::Refusal why, std::string_view detail, std::string_view input) {
     ++refused_[name_of(why)];
     if (!shows_refused_) return;
     Json json = {{"refused", name_of(why)}};
@@ -121,7 +121,7 @@ class Output {
 
  private:
   static void write(const Json& json) {
-    write_at_once(json.dump(-1, ' ', true) + "\n");  // ASCII only: safe in any terminal
+    settings::write_at_once(json.dump(-1, ' ', true) + "\n");  // ASCII only: safe in any terminal
   }
 
   bool shows_refused_;
@@ -129,11 +129,12 @@ class Output {
   std::map<std::string_view, std::uint64_t> refused_;
 };
 
-const UnitFormat& format_of(DecodeCommandOptions& options) {
-  const UnitFormat* format = find_unit_format(options.format);
+const tools::decode::UnitFormat& format_of(DecodeCommandOptions& options) {
+  const tools::decode::UnitFormat* format = tools::decode::find_unit_format(options.format);
   if (format == nullptr) {
     std::string known;
-    for (const UnitFormat& each : unit_formats()) known += fmt::format("{}{}", known.empty() ? "" : ", ", each.name);
+    for (const tools::decode::UnitFormat& each : tools::decode::unit_formats())
+      known += fmt::format("{}{}", known.empty() ? "" : ", ", each.name);
     throw ExitError(kExitUsage, fmt::format("'{}' is not a format; allowed: {}", options.format, known));
   }
   if (!format->is_text && !options.is_hex) {
@@ -147,7 +148,8 @@ const UnitFormat& format_of(DecodeCommandOptions& options) {
   return *format;
 }
 
-std::unique_ptr<UnitDecoder> make_decoder(const UnitFormat& format, const UnitDecoderOptions& options) {
+std::unique_ptr<tools::decode::UnitDecoder> make_decoder(const tools::decode::UnitFormat& format,
+                                                         const tools::decode::UnitDecoderOptions& options) {
   try {
     return format.make(options);
   } catch (const std::runtime_error& error) {
@@ -156,29 +158,30 @@ std::unique_ptr<UnitDecoder> make_decoder(const UnitFormat& format, const UnitDe
 }
 
 void decode_input(DecodeCommandOptions& options) {
-  const UnitFormat& format = format_of(options);
+  const tools::decode::UnitFormat& format = format_of(options);
   const auto decoder = make_decoder(format, options.decoder);
   Input input(options.file);
   Output output(options.shows_refused);
 
   std::string_view text;  // of the present message
-  const auto outcome = [&](const UnitDecoder::Outcome& decoded) {
+  const auto outcome = [&](const tools::decode::UnitDecoder::Outcome& decoded) {
     if (decoded) {
       output.reading(*decoded);
     } else {
       output.refusal(decoded.error().why, decoded.error().detail, text);
     }
   };
-  const auto message = [&](const ReadUnit& unit) {
+  const auto message = [&](const tools::decode::ReadUnit& unit) {
     if (unit.why) return output.refusal(*unit.why, unit.detail, unit.text);
     text = unit.text;
     decoder->take({unit.bytes, unit.request}, outcome);
   };
 
-  using Form = UnitReader::Form;
+  using Form = tools::decode::UnitReader::Form;
   const Form form = !options.is_hex ? Form::kLines : format.is_text ? Form::kHexLines : Form::kHexFrames;
-  UnitReader reader(form, format.ending);
-  for (ByteSpan bytes = input.read_some(); !bytes.empty(); bytes = input.read_some()) reader.feed(bytes, message);
+  tools::decode::UnitReader reader(form, format.ending);
+  for (drivers::decode::ByteSpan bytes = input.read_some(); !bytes.empty(); bytes = input.read_some())
+    reader.feed(bytes, message);
   reader.finish(message);
   text = {};
   decoder->finish(outcome);
@@ -196,7 +199,7 @@ std::string footer() {
       "detail and input.\n"
       "\n"
       "Formats, and an example of each:\n";
-  for (const UnitFormat& format : unit_formats()) {
+  for (const tools::decode::UnitFormat& format : tools::decode::unit_formats()) {
     text += fmt::format("  {:<15} {}\n{:18}{}: {}\n{:18}yuragi decode {}\n", format.name, format.devices, "",
                         format.is_text ? "text" : "bytes", format.unit, "", format.example);
   }
@@ -225,4 +228,4 @@ void add_decode(CLI::App& app) {
 extern const Command kDecodeCommand;
 const Command kDecodeCommand{add_decode};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

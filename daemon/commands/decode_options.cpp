@@ -11,7 +11,7 @@
 #include "daemon/commands/exit.hpp"
 #include "drivers/text/line_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 /// An option that takes one of several names, each for a value.
@@ -49,9 +49,10 @@ void DecodeCommandOptions::add_to(CLI::App& command) {
 void DecodeCommandOptions::check() {
   const std::string name = format.substr(0, format.find(':'));
   for (const auto& [option, formats] : limited_) {
-    const TextFields words = split_fields(formats, ',');
+    const drivers::decode::TextFields words = drivers::decode::split_fields(formats, ',');
     const auto* const end = words.values.data() + words.count;
-    const bool is_read = std::any_of(words.values.data(), end, [&](auto word) { return trimmed(word) == name; });
+    const bool is_read =
+        std::any_of(words.values.data(), end, [&](auto word) { return drivers::decode::trimmed(word) == name; });
     if (option->count() > 0 && !is_read) {
       throw ExitError(kExitUsage,
                       fmt::format("{} does not apply to {}; it is for {}", option->get_name(), name, formats));
@@ -68,12 +69,12 @@ CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string&
 
 /// The driver's own parameters, checked by the driver: logs are decoded with the settings of the device.
 void DecodeCommandOptions::set_line() {
-  const auto values = ParameterValues::resolve(line_reading_parameters(), given_for_line_);
+  const auto values = ParameterValues::resolve(drivers::text::line_reading_parameters(), given_for_line_);
   if (!values) {
     throw ExitError(kExitUsage, fmt::format("{}: {}", option_of(values.error().name), values.error().message));
   }
   try {
-    decoder.line = line_options_of(*values);
+    decoder.line = drivers::text::line_options_of(*values);
   } catch (const std::runtime_error& error) {
     const std::string text = error.what();
     const std::size_t colon = std::min(text.find(':'), text.size());
@@ -82,9 +83,9 @@ void DecodeCommandOptions::set_line() {
 }
 
 void DecodeCommandOptions::add_policies(CLI::App& command) {
-  const std::map<std::string, WhenMissing> missing = {{"refuse", WhenMissing::kRefuse},
-                                                      {"accept", WhenMissing::kAccept}};
-  const auto add_missing = [&](const char* name, WhenMissing& value, const char* help) {
+  const std::map<std::string, drivers::decode::WhenMissing> missing = {
+      {"refuse", drivers::decode::WhenMissing::kRefuse}, {"accept", drivers::decode::WhenMissing::kAccept}};
+  const auto add_missing = [&](const char* name, drivers::decode::WhenMissing& value, const char* help) {
     limit(add_choice(command, name, value, missing, help)->option_text("refuse|accept"), "nmea, gill, umb, ft");
   };
   add_missing("--checksum", decoder.checksum,
@@ -109,7 +110,7 @@ void DecodeCommandOptions::add_policies(CLI::App& command) {
 }
 
 void DecodeCommandOptions::add_line_options(CLI::App& command) {
-  for (const Parameter& parameter : line_reading_parameters()) {
+  for (const Parameter& parameter : drivers::text::line_reading_parameters()) {
     const std::string name(parameter.name);
     const std::string help = fmt::format("{} ({})", parameter.help, describe_allowed(parameter));
     std::visit(
@@ -154,12 +155,13 @@ void DecodeCommandOptions::add_counter_options(CLI::App& command) {
       "voltage over the vane's potentiometer; with it, volts give a direction", "VOLTS")
       ->check(CLI::PositiveNumber);
 
-  const std::map<std::string, LabjackInput> inputs = {{"low-voltage", LabjackInput::kLowVoltage},
-                                                      {"high-voltage", LabjackInput::kHighVoltage}};
+  const std::map<std::string, drivers::decode::usb::LabjackInput> inputs = {
+      {"low-voltage", drivers::decode::usb::LabjackInput::kLowVoltage},
+      {"high-voltage", drivers::decode::usb::LabjackInput::kHighVoltage}};
   limit(add_choice(command, "--input", decoder.input, inputs,
                    "low-voltage: 0 to 2.44 V (the default); high-voltage: AIN0 to AIN3 of a U3-HV")
             ->option_text("INPUT"),
         "labjack");
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -8,7 +8,7 @@
 #include "daemon/tools/decode/decode_formats.hpp"
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 /// The options of `yuragi decode`.
 class DecodeCommandOptions {
@@ -17,7 +17,7 @@ class DecodeCommandOptions {
   std::string file = "-";
   bool is_hex = false;
   bool shows_refused = false;
-  UnitDecoderOptions decoder;
+  tools::decode::UnitDecoderOptions decoder;
 
   /// Adds them to the command; this object must outlive it.
   void add_to(CLI::App& command);
@@ -45,4 +45,4 @@ class DecodeCommandOptions {
   std::vector<Limited> limited_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -5,7 +5,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 // How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong.
 inline constexpr int kExitUsage = 64;         ///< the command line
@@ -47,4 +47,4 @@ class ExitError : public std::runtime_error {
   int code_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

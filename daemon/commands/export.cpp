@@ -16,7 +16,7 @@
 #include "drivers/windlog/log_moment.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kExportCommand;
 
@@ -42,23 +42,24 @@ struct ExportOptions {
 };
 
 /// The log time of --from or --to; nothing if it is after the end.
-std::optional<Nanoseconds> resolve(WindlogReader& reader, const std::string& option, const std::string& text) {
-  const auto moment = parse_log_moment(text);
+std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, const std::string& option,
+                                   const std::string& text) {
+  const auto moment = drivers::windlog::parse_log_moment(text);
   if (!moment) throw ExitError(kExitUsage, option + ": " + moment.error().message);
-  const auto log_time = log_time_of(reader, *moment);
+  const auto log_time = drivers::windlog::log_time_of(reader, *moment);
   if (!log_time) throw ExitError(kExitDataError, log_time.error().message);
   return *log_time;
 }
 
-void export_as_csv(WindlogReader& reader, const ExportOptions& options, std::FILE* out) {
-  CsvExportRange range;
+void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions& options, std::FILE* out) {
+  tools::csv::CsvExportRange range;
   if (!options.from.empty()) range.from = resolve(reader, "--from", options.from).value_or(Nanoseconds::max());
   if (!options.to.empty()) range.to = resolve(reader, "--to", options.to).value_or(Nanoseconds::max());
 
   const bool is_watched = isatty(STDERR_FILENO) != 0 && isatty(fileno(out)) == 0;
   const auto began = std::chrono::steady_clock::now();
   bool has_shown = false;
-  const auto report = export_csv(reader, range, out, [&](std::size_t written) {
+  const auto report = tools::csv::export_csv(reader, range, out, [&](std::size_t written) {
     if (!is_watched || std::chrono::steady_clock::now() - began < std::chrono::seconds(1)) return;
     fmt::print(stderr, "\r{} readings", written);
     has_shown = true;
@@ -72,14 +73,14 @@ void export_as_csv(WindlogReader& reader, const ExportOptions& options, std::FIL
 }
 
 void run_export(const ExportOptions& options) {
-  auto reader = WindlogReader::open(options.input);
+  auto reader = drivers::windlog::WindlogReader::open(options.input);
   if (!reader) {
     const bool is_there = std::filesystem::exists(options.input);
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
   }
   if (options.output == "-") return export_as_csv(*reader, options, stdout);
 
-  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
+  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   if (std::filesystem::path(options.output).extension() == ".windlog") {
     if (!options.from.empty() || !options.to.empty()) {
       throw ExitError(kExitUsage, "--from and --to are for CSV output; a copy is always of the whole recording");
@@ -116,4 +117,4 @@ void add_export(CLI::App& app) {
 
 const Command kExportCommand{add_export};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -25,7 +25,7 @@
 #include "drivers/windlog/format.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kFieldCommand;
 
@@ -62,16 +62,16 @@ constexpr const char* kFieldFooter =
 constexpr double kStressNearTheGround = -0.3;
 
 struct FieldOptions {
-  WindFieldSettings wind;
+  wind::field::WindFieldSettings wind;
   std::vector<std::string> size;
   std::optional<std::size_t> tile;
   std::optional<double> stress;
-  FieldFrames frames;
+  tools::offline::FieldFrames frames;
   bool is_frozen = false;
   bool is_evolving = false;  ///< by default not, unless a configuration says otherwise
   std::optional<std::uint64_t> seed;
   std::optional<std::filesystem::path> recording;
-  PlaybackOptions playback;
+  drivers::windlog::PlaybackOptions playback;
   std::optional<std::filesystem::path> config_file;
   std::filesystem::path output;
   std::string plot;
@@ -95,8 +95,8 @@ std::size_t parse_edge(const std::string& text, double spacing_m) {
   return static_cast<std::size_t>(samples);
 }
 
-FieldGrid grid_of(const FieldOptions& options) {
-  FieldGrid grid;
+wind::field::FieldGrid grid_of(const FieldOptions& options) {
+  wind::field::FieldGrid grid;
   grid.spacing_m = options.wind.spacing_m;
   std::vector<std::size_t> edges;
   for (const std::string& edge : options.size) edges.push_back(parse_edge(edge, grid.spacing_m));
@@ -115,14 +115,14 @@ FieldGrid grid_of(const FieldOptions& options) {
 }
 
 /// The tile size given by an option, or one that is large enough for the grid.
-std::size_t tile_of(const FieldOptions& options, const FieldGrid& grid) {
+std::size_t tile_of(const FieldOptions& options, const wind::field::FieldGrid& grid) {
   const bool is_space = options.wind.dims == 3;
-  const std::size_t largest = is_space ? kMaxNoiseSize3 : kMaxNoiseSize2;
+  const std::size_t largest = is_space ? noise::kMaxNoiseSize3 : noise::kMaxNoiseSize2;
   const std::size_t edge = std::max({grid.count_x, grid.count_y, grid.count_z});
   if (options.tile) {
-    if (!std::has_single_bit(*options.tile) || *options.tile < kMinNoiseSize || *options.tile > largest) {
+    if (!std::has_single_bit(*options.tile) || *options.tile < noise::kMinNoiseSize || *options.tile > largest) {
       throw ExitError(kExitUsage, fmt::format("--tile: is {}; allowed with --dims {}: a power of two from {} to {}",
-                                              *options.tile, options.wind.dims, kMinNoiseSize, largest));
+                                              *options.tile, options.wind.dims, noise::kMinNoiseSize, largest));
     }
     return *options.tile;
   }
@@ -140,7 +140,7 @@ class FieldFile {
   FieldFile(std::string name, const std::filesystem::path& path, const std::vector<std::size_t>& shape)
       : name_(std::move(name)), file_(std::fopen(path.c_str(), "wbe")) {
     if (!file_) throw ExitError(kExitCannotCreate, name_ + ": cannot be created; is its folder writable?");
-    const std::string header = npy_header(shape);
+    const std::string header = tools::offline::npy_header(shape);
     check(std::fwrite(header.data(), 1, header.size(), file_.get()) == header.size());
   }
   void add(std::span<const float> values) {
@@ -160,12 +160,12 @@ class FieldFile {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-nlohmann::ordered_json description_of(const FieldOptions& options, const FieldGrid& grid,
+nlohmann::ordered_json description_of(const FieldOptions& options, const wind::field::FieldGrid& grid,
                                       const std::vector<std::size_t>& shape) {
   const auto axis = [&](const char* toward, double first_m) {
     return nlohmann::ordered_json{{"toward", toward}, {"first_m", first_m}, {"step_m", grid.spacing_m}};
   };
-  const WindPlace first = grid.place(0, 0, 0);
+  const wind::field::WindPlace first = grid.place(0, 0, 0);
   nlohmann::ordered_json text;
   text["file"] = options.output.filename().string();
   text["unit"] = "m/s";
@@ -181,7 +181,8 @@ nlohmann::ordered_json description_of(const FieldOptions& options, const FieldGr
 }
 
 /// The speed of a frame's lowest level, seen from above, and the wind at some places.
-PlotMap map_of(std::span<const float> frame, const FieldGrid& grid, const std::string& title) {
+tools::plot::PlotMap map_of(std::span<const float> frame, const wind::field::FieldGrid& grid,
+                            const std::string& title) {
   constexpr std::size_t kMostSamples = 500;
   constexpr std::size_t kArrows = 24;
   const std::size_t longest = std::max(grid.count_x, grid.count_z);
@@ -194,18 +195,18 @@ PlotMap map_of(std::span<const float> frame, const FieldGrid& grid, const std::s
     return static_cast<double>(frame[grid.size() + k * grid.count_y * grid.count_x + i]);
   };
 
-  const WindPlace first = grid.place(0, 0, 0);
-  PlotMap map{.title = title,
-              .x_label = "east of the middle, m",
-              .y_label = "north of the middle, m",
-              .value_label = "wind speed, m/s",
-              .columns = (grid.count_x + thin - 1) / thin,
-              .first_x = first.x_m,
-              .step_x = grid.spacing_m * static_cast<double>(thin),
-              .first_y = -first.z_m,
-              .step_y = -grid.spacing_m * static_cast<double>(thin),
-              .values = {},
-              .arrows = {}};
+  const wind::field::WindPlace first = grid.place(0, 0, 0);
+  tools::plot::PlotMap map{.title = title,
+                           .x_label = "east of the middle, m",
+                           .y_label = "north of the middle, m",
+                           .value_label = "wind speed, m/s",
+                           .columns = (grid.count_x + thin - 1) / thin,
+                           .first_x = first.x_m,
+                           .step_x = grid.spacing_m * static_cast<double>(thin),
+                           .first_y = -first.z_m,
+                           .step_y = -grid.spacing_m * static_cast<double>(thin),
+                           .values = {},
+                           .arrows = {}};
   double strongest_m_s = 1e-9;
   for (std::size_t k = 0; k < grid.count_z; k += thin) {
     for (std::size_t i = 0; i < grid.count_x; i += thin) {
@@ -217,7 +218,7 @@ PlotMap map_of(std::span<const float> frame, const FieldGrid& grid, const std::s
   const double metres_per_m_s = static_cast<double>(apart) * grid.spacing_m / strongest_m_s;
   for (std::size_t k = apart / 2; k < grid.count_z; k += apart) {
     for (std::size_t i = apart / 2; i < grid.count_x; i += apart) {
-      const WindPlace place = grid.place(i, 0, k);
+      const wind::field::WindPlace place = grid.place(i, 0, k);
       map.arrows.push_back({place.x_m, -place.z_m, metres_per_m_s * u_at(i, k), metres_per_m_s * v_at(i, k)});
     }
   }
@@ -225,7 +226,7 @@ PlotMap map_of(std::span<const float> frame, const FieldGrid& grid, const std::s
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text, bool force) {
-  OutputFile output(file, force, windlog::kSideSuffixes);
+  settings::OutputFile output(file, force, drivers::windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(output.working_path().c_str(), "we"),
                                                             &std::fclose);
   if (!out || std::fputs(text.c_str(), out.get()) < 0 || std::fflush(out.get()) != 0) {
@@ -235,14 +236,14 @@ void write_text(const std::filesystem::path& file, const std::string& text, bool
 }
 
 void run_field(FieldOptions options) {
-  if (!options.plot.empty()) check_plot_name(options.plot).value();
+  if (!options.plot.empty()) tools::plot::check_plot_name(options.plot).value();
   options.wind.evolves = !options.is_frozen;
   if (options.stress && options.wind.dims != 3) {
     throw ExitError(kExitUsage,
                     "--stress: needs the vertical wind, which a field of 2 dimensions does not have; add --dims 3");
   }
   if (options.wind.dims == 3) options.wind.stress = options.stress.value_or(kStressNearTheGround);
-  const FieldGrid grid = grid_of(options);
+  const wind::field::FieldGrid grid = grid_of(options);
   const std::vector<std::size_t> shape = {options.frames.count, static_cast<std::size_t>(options.wind.dims),
                                           grid.count_z, grid.count_y, grid.count_x};
   double bytes = sizeof(float);
@@ -260,7 +261,7 @@ void run_field(FieldOptions options) {
   }
 
   nlohmann::ordered_json description = description_of(options, grid, shape);
-  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
+  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   if (!options.force && std::filesystem::exists(beside)) {
     throw ExitError(kExitCannotCreate, beside.string() + ": exists already; --force overwrites it");
   }
@@ -270,7 +271,7 @@ void run_field(FieldOptions options) {
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   std::vector<float> first;
   std::size_t written = 0;
-  const UseField use = [&](std::span<const float> values) {
+  const tools::offline::UseField use = [&](std::span<const float> values) {
     if (written == 0 && !options.plot.empty()) first.assign(values.begin(), values.end());
     file.add(values);
     ++written;
@@ -278,7 +279,8 @@ void run_field(FieldOptions options) {
   };
   std::string title;
   if (options.recording) {
-    Config config = options.config_file ? load_config(*options.config_file) : default_config();
+    settings::Config config =
+        options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
     config.sensors.resize(1);
     if (options.seed) config.seed = *options.seed;
     if (options.is_frozen || options.is_evolving) config.wind.is_evolving = options.is_evolving;
@@ -287,13 +289,14 @@ void run_field(FieldOptions options) {
                            {"seed", config.seed}};
     title = fmt::format("Wind over the ground, {:g} s after the start of {}", options.frames.first_s,
                         options.recording->filename().string());
-    make_recorded_frames(*options.recording, options.playback, config, grid, options.frames, use).value();
+    tools::offline::make_recorded_frames(*options.recording, options.playback, config, grid, options.frames, use)
+        .value();
   } else {
     options.wind.samples = tile_of(options, grid);
     options.wind.seed = options.seed.value_or(options.wind.seed);
     if (is_watched) fmt::print(stderr, "making a tile of {} samples per edge", options.wind.samples);
-    SpectralWindField field(options.wind);
-    const WindFieldSettings& wind = options.wind;
+    wind::field::SpectralWindField field(options.wind);
+    const wind::field::WindFieldSettings& wind = options.wind;
     description["wind"] = {{"speed_m_s", wind.speed_m_s},
                            {"direction_deg", wind.direction_deg},
                            {"turbulence_intensity", wind.turbulence_intensity},
@@ -302,16 +305,16 @@ void run_field(FieldOptions options) {
                            {"seed", wind.seed},
                            {"period_m", field.period_m()},
                            {"variance_m2_s2",
-                            {{"along", field.variance_m2_s2(WindComponent::kAlong)},
-                             {"across", field.variance_m2_s2(WindComponent::kAcross)},
-                             {"up", field.variance_m2_s2(WindComponent::kUpward)}}}};
+                            {{"along", field.variance_m2_s2(wind::turbulence::WindComponent::kAlong)},
+                             {"across", field.variance_m2_s2(wind::turbulence::WindComponent::kAcross)},
+                             {"up", field.variance_m2_s2(wind::turbulence::WindComponent::kUpward)}}}};
     if (wind.dims == 3) {
       description["wind"]["stress"] = wind.stress;
       description["wind"]["covariance_m2_s2"] = {{"along_up", field.along_up_covariance_m2_s2()}};
     }
     title = fmt::format("Wind of {:g} m/s from {:g} degrees, TI {:g}, L {:g} m, at {:g} s", wind.speed_m_s,
                         wind.direction_deg, wind.turbulence_intensity, wind.length_m, options.frames.first_s);
-    make_spectral_frames(field, grid, options.frames, use);
+    tools::offline::make_spectral_frames(field, grid, options.frames, use);
   }
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
 
@@ -321,7 +324,7 @@ void run_field(FieldOptions options) {
   fmt::print("{}: float32 [frame {}, component {}, z {}, y {}, x {}], m/s; described in {}\n", options.output.string(),
              shape[0], shape[1], shape[2], shape[3], shape[4], beside.string());
   if (options.plot.empty()) return;
-  draw_map(options.plot, map_of(first, grid, title)).value();
+  tools::plot::draw_map(options.plot, map_of(first, grid, title)).value();
   fmt::print("{}: speed and wind time of the first frame, seen from above\n", options.plot);
 }
 
@@ -329,7 +332,7 @@ void add_field(CLI::App& app) {
   CLI::App* command = app.add_subcommand("field", "Write the wind over a scene as a float32 NumPy file");
   command->footer(kFieldFooter);
   auto options = std::make_shared<FieldOptions>();
-  WindFieldSettings& wind = options->wind;
+  wind::field::WindFieldSettings& wind = options->wind;
   std::vector<CLI::Option*> of_statistics;  // which a recording makes superfluous
   of_statistics.push_back(command->add_option("--speed", wind.speed_m_s, "mean speed, m/s")
                               ->check(CLI::Range(0.0, 100.0))
@@ -353,7 +356,7 @@ void add_field(CLI::App& app) {
                               ->add_option("--stress", options->stress,
                                            "with --dims 3: cov(u, w) / (sigma_u sigma_w), u along the wind; 0 is none "
                                            "[-0.3, as near the ground]")
-                              ->check(CLI::Range(-kLargestStress, kLargestStress)));
+                              ->check(CLI::Range(-wind::field::kLargestStress, wind::field::kLargestStress)));
   of_statistics.push_back(command->add_option("--tile", options->tile, "samples per edge of the tile: a power of two"));
   command
       ->add_option("--size", options->size, "N or X,Z (2-D), N or X,Y,Z (3-D): samples, or metres such as 50m; 256, 64")
@@ -400,4 +403,4 @@ void add_field(CLI::App& app) {
 
 const Command kFieldCommand{add_field};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -19,7 +19,7 @@
 #include "engine/base/count_text.hpp"
 #include "engine/base/version.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kImportCommand;
 
@@ -41,7 +41,7 @@ constexpr const char* kImportFooter =
 struct ImportOptions {
   std::string input;
   std::string output;
-  CsvImportOptions csv;
+  tools::csv::CsvImportOptions csv;
   std::string unit;
   std::string delimiter;
   std::string comment = "#";
@@ -55,12 +55,12 @@ char delimiter_named(const std::string& text) {
   throw ExitError(kExitUsage, "--delimiter: is \"" + text + "\"; allowed: , or ; or tab");
 }
 
-CsvImportOptions csv_options(const ImportOptions& options) {
-  CsvImportOptions csv = options.csv;
+tools::csv::CsvImportOptions csv_options(const ImportOptions& options) {
+  tools::csv::CsvImportOptions csv = options.csv;
   csv.delimiter = delimiter_named(options.delimiter);
   if (options.comment.size() > 1) throw ExitError(kExitUsage, "--comment: give one character, or \"\" for none");
   csv.comment = options.comment.empty() ? '\0' : options.comment[0];
-  if (!options.unit.empty()) csv.unit = find_speed_unit(options.unit);
+  if (!options.unit.empty()) csv.unit = tools::csv::find_speed_unit(options.unit);
   return csv;
 }
 
@@ -70,7 +70,7 @@ class Target {
   Target(const std::filesystem::path& file, std::string configuration)
       : writer_(open(file)), configuration_(std::move(configuration)), is_watched_(isatty(STDERR_FILENO) != 0) {}
 
-  void take(std::string_view sensor, const WindReading& reading) {
+  void take(std::string_view sensor, const wind::WindReading& reading) {
     if (count_ == 0) must(writer_.begin_session({reading.time, with_version("yuragi"), configuration_}));
     auto known = sensors_.find(sensor);
     if (known == sensors_.end()) {
@@ -96,8 +96,8 @@ class Target {
   }
 
  private:
-  static WindlogWriter open(const std::filesystem::path& file) {
-    auto writer = WindlogWriter::open(file);
+  static drivers::windlog::WindlogWriter open(const std::filesystem::path& file) {
+    auto writer = drivers::windlog::WindlogWriter::open(file);
     if (!writer) throw ExitError(kExitCannotCreate, writer.error().message);
     return std::move(*writer);
   }
@@ -106,7 +106,7 @@ class Target {
     if (!done) throw ExitError(kExitCannotCreate, done.error().message);
   }
 
-  WindlogWriter writer_;
+  drivers::windlog::WindlogWriter writer_;
   std::string configuration_;
   bool is_watched_;
   bool has_shown_ = false;
@@ -115,7 +115,7 @@ class Target {
   std::map<std::string, std::int64_t, std::less<>> sensors_;
 };
 
-void print_report(const ImportOptions& options, const CsvImportReport& report) {
+void print_report(const ImportOptions& options, const tools::csv::CsvImportReport& report) {
   for (const std::string& line : report.columns) fmt::print("  {}\n", line);
   for (const std::string& line : report.first_refusals) fmt::print(stderr, "left out: {}\n", line);
   if (report.refused() > report.first_refusals.size()) {
@@ -126,7 +126,7 @@ void print_report(const ImportOptions& options, const CsvImportReport& report) {
 }
 
 void run_import(const ImportOptions& options) {
-  const CsvImportOptions csv = csv_options(options);
+  const tools::csv::CsvImportOptions csv = csv_options(options);
   std::ifstream file;
   const bool is_standard_input = options.input == "-";
   if (!is_standard_input) {
@@ -135,11 +135,11 @@ void run_import(const ImportOptions& options) {
     if (!file) throw ExitError(kExitNoInput, options.input + ": cannot be read; does it exist?");
   }
 
-  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
+  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   Target target(output.working_path(), fmt::format("# imported from {}\n", options.input));
-  const auto report =
-      import_csv(is_standard_input ? std::cin : file, options.input, csv,
-                 [&target](std::string_view sensor, const WindReading& reading) { target.take(sensor, reading); });
+  const auto report = tools::csv::import_csv(
+      is_standard_input ? std::cin : file, options.input, csv,
+      [&target](std::string_view sensor, const wind::WindReading& reading) { target.take(sensor, reading); });
   if (!report) throw ExitError(kExitDataError, report.error().message);
   if (!is_standard_input && file.bad()) throw ExitError(kExitNoInput, options.input + ": could not be read completely");
   target.close();
@@ -159,22 +159,23 @@ void add_import(CLI::App& app) {
   command->add_option("-o,--output", options->output, "the recording to write (.windlog)")->required();
   command->add_flag("--force", options->force, "overwrite it");
 
-  const auto add_column = [&](const char* flag, CsvRole role, const char* help) {
+  const auto add_column = [&](const char* flag, tools::csv::CsvRole role, const char* help) {
     command->add_option(flag, options->csv.columns[static_cast<std::size_t>(role)], help)->type_name("COLUMN");
   };
-  add_column("--time", CsvRole::kTime, "the column of times");
-  add_column("--speed", CsvRole::kSpeed, "the column of wind speeds");
-  add_column("--direction", CsvRole::kDirection, "the column of directions");
-  add_column("--gust", CsvRole::kGust, "the column of gusts");
-  add_column("--u", CsvRole::kU, "the column of the eastward component");
-  add_column("--v", CsvRole::kV, "the column of the northward component");
+  add_column("--time", tools::csv::CsvRole::kTime, "the column of times");
+  add_column("--speed", tools::csv::CsvRole::kSpeed, "the column of wind speeds");
+  add_column("--direction", tools::csv::CsvRole::kDirection, "the column of directions");
+  add_column("--gust", tools::csv::CsvRole::kGust, "the column of gusts");
+  add_column("--u", tools::csv::CsvRole::kU, "the column of the eastward component");
+  add_column("--v", tools::csv::CsvRole::kV, "the column of the northward component");
   command->add_flag("--uv-from", options->csv.components_are_from, "u and v point toward where the wind comes from");
 
-  static const std::map<std::string, CsvTimeFormat> kTimeFormats = {{"auto", CsvTimeFormat::kAuto},
-                                                                    {"iso", CsvTimeFormat::kIso},
-                                                                    {"unix", CsvTimeFormat::kUnix},
-                                                                    {"unix-ms", CsvTimeFormat::kUnixMs},
-                                                                    {"seconds", CsvTimeFormat::kSeconds}};
+  static const std::map<std::string, tools::csv::CsvTimeFormat> kTimeFormats = {
+      {"auto", tools::csv::CsvTimeFormat::kAuto},
+      {"iso", tools::csv::CsvTimeFormat::kIso},
+      {"unix", tools::csv::CsvTimeFormat::kUnix},
+      {"unix-ms", tools::csv::CsvTimeFormat::kUnixMs},
+      {"seconds", tools::csv::CsvTimeFormat::kSeconds}};
   command->add_option("--time-format", options->csv.time_format, "format of the times; auto: by the first row")
       ->transform(CLI::CheckedTransformer(kTimeFormats))
       ->option_text("auto|iso|unix|unix-ms|seconds");
@@ -188,9 +189,10 @@ void add_import(CLI::App& app) {
                    "whether directions are where the wind comes from, or blows to")
       ->transform(CLI::CheckedTransformer(kConventions))
       ->option_text("from|toward");
-  static const std::map<std::string, CsvDirectionUnit> kDirectionUnits = {{"deg", CsvDirectionUnit::kDegrees},
-                                                                          {"rad", CsvDirectionUnit::kRadians},
-                                                                          {"point16", CsvDirectionUnit::kPoint16}};
+  static const std::map<std::string, tools::csv::CsvDirectionUnit> kDirectionUnits = {
+      {"deg", tools::csv::CsvDirectionUnit::kDegrees},
+      {"rad", tools::csv::CsvDirectionUnit::kRadians},
+      {"point16", tools::csv::CsvDirectionUnit::kPoint16}};
   command->add_option("--direction-unit", options->csv.direction_unit, "point16: 0 to 15, clockwise from north")
       ->transform(CLI::CheckedTransformer(kDirectionUnits))
       ->option_text("deg|rad|point16");
@@ -205,4 +207,4 @@ void add_import(CLI::App& app) {
 
 const Command kImportCommand{add_import};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

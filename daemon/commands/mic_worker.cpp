@@ -12,11 +12,11 @@
 #include "daemon/sensing/system_clock.hpp"
 #include "drivers/microphone/microphone_worker.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 struct WorkerOptions {
-  MicWorkerOptions worker;
+  drivers::microphone::MicWorkerOptions worker;
   bool list = false;
   bool verbose = false;
 };
@@ -42,9 +42,9 @@ int take_output(bool verbose) {
   return output;
 }
 
-void list_devices(AudioInput& input, int output) {
+void list_devices(drivers::bus::AudioInput& input, int output) {
   const auto devices = input.list();
-  const std::string text = devices ? list_of_microphones(*devices) : "";
+  const std::string text = devices ? drivers::microphone::list_of_microphones(*devices) : "";
   if (write(output, text.data(), text.size()) < 0 || !devices) _exit(kExitUnavailable);
 }
 
@@ -60,12 +60,13 @@ void work(const WorkerOptions& options) {
   setenv("JACK_NO_START_SERVER", "1", 0);  // NOLINT(concurrency-mt-unsafe)
 
   const int output = take_output(options.verbose);
-  auto input = make_portaudio_input();
+  auto input = drivers::bus::make_portaudio_input();
   if (options.list) {
     list_devices(*input, output);
   } else {
-    static const SystemClock clock;  // outlives the sound system's thread
-    const bool was_told = run_microphone_worker(options.worker, *input, clock, output, is_worker_over);
+    static const sensing::SystemClock clock;  // outlives the sound system's thread
+    const bool was_told =
+        drivers::microphone::run_microphone_worker(options.worker, *input, clock, output, is_worker_over);
     // Closing a device that is gone can hang the library: exit without closing it.
     if (!was_told) _exit(kExitUnavailable);
   }
@@ -75,13 +76,13 @@ void add_mic_worker(CLI::App& app) {
   CLI::App* command = app.add_subcommand("mic-worker", "the process of the microphone driver; --list shows the inputs");
   command->group("");  // not in the main help
   auto options = std::make_shared<WorkerOptions>();
-  MicWorkerOptions& worker = options->worker;
+  drivers::microphone::MicWorkerOptions& worker = options->worker;
   command->add_flag("--list", options->list,
                     "print the inputs: sound system, channels, preferred rate in Hz, \"default\" or \"-\", name");
   command->add_option("--device", worker.choice.device, "a part of the input's name; empty: the default");
   command->add_option("--host-api", worker.choice.host_api, "a part of the sound system's name");
   command->add_option("--channels", worker.choice.channels, "channels")
-      ->check(CLI::Range(1, static_cast<int>(kAudioMaxChannels)));
+      ->check(CLI::Range(1, static_cast<int>(drivers::bus::kAudioMaxChannels)));
   command->add_option("--rate", worker.choice.rate_hz, "sample rate, Hz; 0: what the device prefers")
       ->check(CLI::Range(0.0, 1e6));
   command->add_option("--band-low", worker.low_hz, "lower edge of the wind band, Hz")->check(CLI::Range(2.0, 1000.0));
@@ -96,4 +97,4 @@ void add_mic_worker(CLI::App& app) {
 extern const Command kMicWorkerCommand;
 const Command kMicWorkerCommand{add_mic_worker};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

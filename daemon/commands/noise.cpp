@@ -14,7 +14,7 @@
 #include "daemon/tools/offline/npy.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kNoiseCommand;
 
@@ -50,7 +50,7 @@ constexpr const char* kNoiseFooter =
 
 struct NoiseOptions {
   int dims = 2;
-  NoiseSpec spec{.size = 512};
+  noise::NoiseSpec spec{.size = 512};
   std::string meaning = "transect";
   std::string out;
 };
@@ -65,17 +65,17 @@ std::string check_whole_number(const std::string& text) {
 }
 
 /// The options that an error is about, as given.
-std::string blamed_option(int dims, const NoiseSpec& spec, NoiseError error) {
+std::string blamed_option(int dims, const noise::NoiseSpec& spec, noise::NoiseError error) {
   switch (error) {
-    case NoiseError::kSizeNotAllowed:
+    case noise::NoiseError::kSizeNotAllowed:
       return fmt::format("--size {}", spec.size);
-    case NoiseError::kBetaOutOfRange:
+    case noise::NoiseError::kBetaOutOfRange:
       return fmt::format("--beta {}", spec.beta);
-    case NoiseError::kTransectTooFlat:
+    case noise::NoiseError::kTransectTooFlat:
       return fmt::format("--dims {} --meaning transect --beta {}", dims, spec.beta);
-    case NoiseError::kIntegralScaleOutOfRange:
+    case noise::NoiseError::kIntegralScaleOutOfRange:
       return fmt::format("--integral-scale {}", spec.integral_scale);
-    case NoiseError::kBandOutOfRange:
+    case noise::NoiseError::kBandOutOfRange:
       break;  // no option sets it
   }
   return "?";
@@ -83,7 +83,7 @@ std::string blamed_option(int dims, const NoiseSpec& spec, NoiseError error) {
 
 /// The values of the tile. Throws ExitError, which names the wrong options and what is allowed.
 std::vector<float> make_values(const NoiseOptions& options) {
-  const auto refuse = [&](NoiseError error) {
+  const auto refuse = [&](noise::NoiseError error) {
     return ExitError(kExitUsage,
                      fmt::format("{}: {}", blamed_option(options.dims, options.spec, error), explain(error)));
   };
@@ -91,18 +91,18 @@ std::vector<float> make_values(const NoiseOptions& options) {
     if (!tile) throw refuse(tile.error());
     return std::move(tile->values);
   };
-  if (options.dims == 1) return values_of(make_noise_1d(options.spec));
-  if (options.dims == 2) return values_of(make_noise_2d(options.spec));
-  return values_of(make_noise_3d(options.spec));
+  if (options.dims == 1) return values_of(noise::make_noise_1d(options.spec));
+  if (options.dims == 2) return values_of(noise::make_noise_2d(options.spec));
+  return values_of(noise::make_noise_3d(options.spec));
 }
 
 void run_noise(NoiseOptions options) {
-  options.spec.meaning = options.meaning == "radial" ? BetaMeaning::kRadial : BetaMeaning::kTransect;
+  options.spec.meaning = options.meaning == "radial" ? noise::BetaMeaning::kRadial : noise::BetaMeaning::kTransect;
   const std::vector<float> values = make_values(options);
 
   std::array<std::size_t, 3> shape{};
   shape.fill(options.spec.size);
-  write_npy(options.out, std::span(shape).first(static_cast<std::size_t>(options.dims)), values);
+  tools::offline::write_npy(options.out, std::span(shape).first(static_cast<std::size_t>(options.dims)), values);
 
   double sum = 0.0;
   double squares = 0.0;
@@ -116,7 +116,8 @@ void run_noise(NoiseOptions options) {
   std::string extent = fmt::format("{}", size);
   for (int axis = 1; axis < options.dims; ++axis) extent += fmt::format(" x {}", size);
   fmt::print("{}: {} float32, mean {:.1e}, variance {:.6f}; mode power ~ |k|^-{:.4g}, seed {}\n", options.out, extent,
-             mean, variance, mode_exponent(options.dims, options.spec.beta, options.spec.meaning), options.spec.seed);
+             mean, variance, noise::mode_exponent(options.dims, options.spec.beta, options.spec.meaning),
+             options.spec.seed);
 }
 
 void add_noise(CLI::App& app) {
@@ -154,4 +155,4 @@ void add_noise(CLI::App& app) {
 
 const Command kNoiseCommand{add_noise};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -13,7 +13,7 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/send_control.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 /// An order is carried out by the sensor's next poll, which follows at once unless its disk hangs.
@@ -151,4 +151,4 @@ void add_player(CLI::App& app) {
 extern const Command kPlayerCommand;
 const Command kPlayerCommand{add_player};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

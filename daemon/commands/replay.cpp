@@ -12,15 +12,15 @@
 #include "daemon/tools/offline/lockstep_replay.hpp"
 #include "drivers/windlog/windlog_playback.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 struct ReplayOptions {
   RunOptions run;
   std::filesystem::path file;
   std::string rate = "1";
-  PlaybackOptions playback;
-  double seam_s = PlayerOptions{}.seam_s;
+  drivers::windlog::PlaybackOptions playback;
+  double seam_s = drivers::windlog::PlayerOptions{}.seam_s;
   bool at_time_of_day = false;
   std::string utc_offset;
   bool is_paused = false;
@@ -40,8 +40,8 @@ double parse_rate(const std::string& text) {
 }
 
 /// The one sensor of a replay: the windlog driver on this file.
-SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
-  for (const DriverDescription* driver : driver_table()) {
+settings::SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
+  for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
     if (driver->name != "windlog") continue;
     const ParameterValues::Map given{{"file", options.file.string()},    {"rate", rate},
                                      {"loop", options.playback.loop},    {"start", options.playback.start},
@@ -50,7 +50,7 @@ SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
                                      {"sensor", options.playback.sensor}};
     auto values = ParameterValues::resolve(driver->parameters, given);
     if (!values) throw ExitError(kExitUsage, values.error().name + ": " + values.error().message);
-    return default_sensor(options.file.stem().string(), *driver, *values);
+    return settings::default_sensor(options.file.stem().string(), *driver, *values);
   }
   throw std::logic_error("no windlog driver");
 }
@@ -67,9 +67,10 @@ void replay_at_full_speed(const ReplayOptions& options) {
   const auto progress = [is_watched](double log_time_s) {
     if (is_watched) fmt::print(stderr, "\rreplayed {:.0f} s", log_time_s);
   };
-  const LockstepResult result =
-      replay_in_lockstep(options.run.config(), options.file, {.playback = options.playback, .seam_s = options.seam_s},
-                         options.run.duration_s.value_or(0.0), progress)
+  const tools::offline::LockstepResult result =
+      tools::offline::replay_in_lockstep(options.run.config(), options.file,
+                                         {.playback = options.playback, .seam_s = options.seam_s},
+                                         options.run.duration_s.value_or(0.0), progress)
           .value();
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(
@@ -84,13 +85,14 @@ void replay_at_full_speed(const ReplayOptions& options) {
 
 void replay(const ReplayOptions& options) {
   options.run.set_up_log();
-  WindlogPlayback::open(options.file, options.playback).value();  // fails now; the daemon would wait for the file
+  drivers::windlog::WindlogPlayback::open(options.file, options.playback)
+      .value();  // fails now; the daemon would wait for the file
   if (options.rate == "max") return replay_at_full_speed(options);
 
-  Config config = options.run.config();
+  settings::Config config = options.run.config();
   config.sensors = {replay_sensor(options, parse_rate(options.rate))};
   config.wind.fallback.reset();
-  Service(config, {.record = {}, .duration_s = options.run.duration_s, .end_with_recordings = true}).run();
+  service::Service(config, {.record = {}, .duration_s = options.run.duration_s, .end_with_recordings = true}).run();
 }
 
 void add_replay(CLI::App& app) {
@@ -138,4 +140,4 @@ void add_replay(CLI::App& app) {
 extern const Command kReplayCommand;
 const Command kReplayCommand{add_replay};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

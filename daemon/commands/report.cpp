@@ -26,7 +26,7 @@
 #include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kReportCommand;
 
@@ -61,15 +61,15 @@ struct ReportOptions {
 };
 
 /// The log time of --from or --to; the end if it is after that.
-Nanoseconds moment_of(WindlogReader& reader, const std::string& option, const std::string& text) {
-  const auto moment = parse_log_moment(text);
+Nanoseconds moment_of(drivers::windlog::WindlogReader& reader, const std::string& option, const std::string& text) {
+  const auto moment = drivers::windlog::parse_log_moment(text);
   if (!moment) throw ExitError(kExitUsage, option + ": " + moment.error().message);
-  const auto log_time = log_time_of(reader, *moment);
+  const auto log_time = drivers::windlog::log_time_of(reader, *moment);
   if (!log_time) throw ExitError(kExitDataError, log_time.error().message);
   return log_time->value_or(Nanoseconds::max());
 }
 
-void write_text(const OutputFile& output, const std::string& name, const std::string& text) {
+void write_text(const settings::OutputFile& output, const std::string& name, const std::string& text) {
   std::ofstream file(output.working_path(), std::ios::binary);
   file << text;
   file.close();
@@ -96,32 +96,34 @@ class ProgressLine {
 };
 
 /// The prior of a sensor's gusts: from --height, or from the calibration of the sensor of this name.
-TurbulencePrior prior_of(const Config& config, double height_m, const std::string& name) {
-  BlendSourceSettings source;
+wind::turbulence::TurbulencePrior prior_of(const settings::Config& config, double height_m, const std::string& name) {
+  wind::blend::BlendSourceSettings source;
   if (height_m == 0.0 && !config.wind.default_length_m) {
-    for (const SensorConfig& sensor : config.sensors) {
+    for (const settings::SensorConfig& sensor : config.sensors) {
       if (sensor.name == name) height_m = sensor.heights.sensor_m.value_or(0.0);
     }
   }
   // As recorded: not scaled to another height.
-  if (height_m > 0.0) source.length_m = iec_length_scale_m(WindComponent::kAlong, height_m);
-  return turbulence_prior({.climate = {.turbulence_intensity = config.wind.default_turbulence_intensity},
-                           .length_m = config.wind.gust_length_m()},
-                          source);
+  if (height_m > 0.0)
+    source.length_m = wind::turbulence::iec_length_scale_m(wind::turbulence::WindComponent::kAlong, height_m);
+  return wind::blend::turbulence_prior({.climate = {.turbulence_intensity = config.wind.default_turbulence_intensity},
+                                        .length_m = config.wind.gust_length_m()},
+                                       source);
 }
 
 /// Prints the lines for the configuration on the terminal, too.
-void print_site(const SensorNumbers& sensor) {
+void print_site(const tools::report::SensorNumbers& sensor) {
   if (!sensor.site) return;
   fmt::print(
       "# {}: correction of gusts at this site, for gusts of {:.0f} m\n"
       "[wind]\n"
       "site_octaves = \"{}\"\n",
-      page_text(sensor.name), sensor.site->length_m, site_octaves_text(sensor.site->octaves_db));
+      tools::report::page_text(sensor.name), sensor.site->length_m,
+      settings::site_octaves_text(sensor.site->octaves_db));
 }
 
 void run_report(const ReportOptions& options) {
-  auto reader = WindlogReader::open(options.input);
+  auto reader = drivers::windlog::WindlogReader::open(options.input);
   if (!reader) {
     const bool is_there = std::filesystem::exists(options.input);
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
@@ -130,40 +132,41 @@ void run_report(const ReportOptions& options) {
     throw ExitError(kExitUsage, "--json: is the name of the page; choose another file");
   }
   // Checked before hours of work.
-  OutputFile page_file(options.output, options.force, windlog::kSideSuffixes);
-  std::optional<OutputFile> json_file;
-  if (!options.json.empty()) json_file.emplace(options.json, options.force, windlog::kSideSuffixes);
+  settings::OutputFile page_file(options.output, options.force, drivers::windlog::kSideSuffixes);
+  std::optional<settings::OutputFile> json_file;
+  if (!options.json.empty()) json_file.emplace(options.json, options.force, drivers::windlog::kSideSuffixes);
 
-  const Config config = options.config_file ? load_config(*options.config_file) : default_config();
-  ReportSettings settings;
+  const settings::Config config =
+      options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
+  tools::report::ReportSettings settings;
   settings.sensors = options.sensors;
   settings.stale_intervals = config.wind.stale_intervals;
-  settings.utc_offset = local_offset;
+  settings.utc_offset = tools::report::local_offset;
   settings.prior = [&](const std::string& sensor) { return prior_of(config, options.height_m, sensor); };
   if (!options.from.empty()) settings.range.from = moment_of(*reader, "--from", options.from);
   if (!options.to.empty()) settings.range.to = moment_of(*reader, "--to", options.to);
 
   // The numbers, the figures, the page.
   ProgressLine progress;
-  const auto numbers = measure_recording(*reader, settings, [&progress](std::uint64_t readings) {
+  const auto numbers = tools::report::measure_recording(*reader, settings, [&progress](std::uint64_t readings) {
     progress.show(fmt::format("{} readings (each is read twice)", readings));
   });
   if (!numbers) throw ExitError(kExitDataError, options.input + ": " + numbers.error().message);
   const std::string source = std::filesystem::path(options.input).filename();
-  std::vector<SensorFigures> figures;
-  for (const SensorNumbers& sensor : numbers->sensors) {
+  std::vector<tools::report::SensorFigures> figures;
+  for (const tools::report::SensorNumbers& sensor : numbers->sensors) {
     progress.show(fmt::format("figures {} of {}", figures.size() + 1, numbers->sensors.size()));
-    figures.push_back(draw_figures(*numbers, sensor, page_file.working_path()).value());
+    figures.push_back(tools::report::draw_figures(*numbers, sensor, page_file.working_path()).value());
   }
-  write_text(page_file, options.output, report_page(*numbers, figures, source));
+  write_text(page_file, options.output, tools::report::report_page(*numbers, figures, source));
   if (json_file) {
-    write_text(*json_file, options.json, report_json(*numbers, source));
+    write_text(*json_file, options.json, tools::report::report_json(*numbers, source));
     json_file->commit().value();
   }
   page_file.commit().value();
   fmt::print(stderr, "{}: {} of {}\n", options.output, count_text(numbers->readings, "reading"),
              count_text(numbers->sensors.size(), "sensor"));
-  for (const SensorNumbers& sensor : numbers->sensors) print_site(sensor);
+  for (const tools::report::SensorNumbers& sensor : numbers->sensors) print_site(sensor);
 }
 
 void add_report(CLI::App& app) {
@@ -194,4 +197,4 @@ void add_report(CLI::App& app) {
 
 const Command kReportCommand{add_report};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -5,7 +5,7 @@
 #include "daemon/commands/run_options.hpp"
 #include "daemon/service/service.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 void add_run(CLI::App& app) {
@@ -22,7 +22,7 @@ void add_run(CLI::App& app) {
   command->add_option("--record", *record, "also write every reading to this recording")->type_name("FILE.windlog");
   command->callback([options, record] {
     options->set_up_log();
-    Service(options->config(), {.record = *record, .duration_s = options->duration_s}).run();
+    service::Service(options->config(), {.record = *record, .duration_s = options->duration_s}).run();
   });
 }
 
@@ -38,7 +38,8 @@ void add_record(CLI::App& app) {
   options->add_to(*command);
   command->callback([options, file] {
     options->set_up_log();
-    Service(options->config(), {.record = *file, .duration_s = options->duration_s, .with_scenes = false}).run();
+    service::Service(options->config(), {.record = *file, .duration_s = options->duration_s, .with_scenes = false})
+        .run();
   });
 }
 
@@ -50,4 +51,4 @@ const Command kRunCommand{add_run};
 extern const Command kRecordCommand;
 const Command kRecordCommand{add_record};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -6,7 +6,7 @@
 
 #include "engine/base/duration.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 void RunOptions::add_to(CLI::App& command) {
   command.add_option("--listen", address, "where the daemon listens, instead of the configured address")
@@ -47,9 +47,9 @@ CLI::Validator duration_in_seconds() {
   return CLI::Validator(duration_to_seconds, "");
 }
 
-Config RunOptions::config() const {
-  Config config = config_file ? load_config(*config_file) : default_config();
-  return address ? listening_at(std::move(config), *address) : config;
+settings::Config RunOptions::config() const {
+  settings::Config config = config_file ? settings::load_config(*config_file) : settings::default_config();
+  return address ? settings::listening_at(std::move(config), *address) : config;
 }
 
 void RunOptions::set_up_log() const {
@@ -59,4 +59,4 @@ void RunOptions::set_up_log() const {
   spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::info);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

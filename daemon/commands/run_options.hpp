@@ -8,7 +8,7 @@
 
 #include "daemon/settings/config.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 /// The options that `run`, `record`, `replay` and `sensors watch` share.
 struct RunOptions {
@@ -24,7 +24,7 @@ struct RunOptions {
   void add_to_client(CLI::App& command);
 
   /// The configuration given by them, or the default one. Throws ConfigError.
-  Config config() const;
+  settings::Config config() const;
 
   /// Directs the log to standard error, in the format for a journal or a terminal.
   void set_up_log() const;
@@ -39,4 +39,4 @@ void add_connect(CLI::App& command, std::optional<std::string>& address);
 /// The CLI transform that reads a duration in seconds: 90, 90s, 5min, 2h.
 CLI::Validator duration_in_seconds();
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

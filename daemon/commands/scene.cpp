@@ -9,7 +9,7 @@
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/send_control.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 struct SceneOptions {
@@ -75,4 +75,4 @@ void add_scene(CLI::App& app) {
 extern const Command kSceneCommand;
 const Command kSceneCommand{add_scene};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -3,7 +3,7 @@
 
 #include "daemon/commands/command.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 void add_sensors(CLI::App& app) {
@@ -20,4 +20,4 @@ void add_sensors(CLI::App& app) {
 extern const Command kSensorsCommand;
 const Command kSensorsCommand{add_sensors};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

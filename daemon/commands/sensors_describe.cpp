@@ -8,7 +8,7 @@
 #include "daemon/commands/sensors.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 struct DescribeOptions {
@@ -17,22 +17,22 @@ struct DescribeOptions {
 };
 
 void describe(const DescribeOptions& options) {
-  const auto drivers = driver_table();
+  const auto drivers = drivers::sensor::driver_table();
   if (options.all) {
-    fmt::print("{}", driver_reference(drivers));
+    fmt::print("{}", tools::sensors::driver_reference(drivers));
   } else if (options.driver.empty()) {
     fmt::print(
         "{}\n"
         "`yuragi sensors describe DRIVER` lists the keys of each.\n",
-        driver_names(drivers));
+        tools::sensors::driver_names(drivers));
   } else {
-    const auto found =
-        std::ranges::find_if(drivers, [&](const DriverDescription* driver) { return driver->name == options.driver; });
+    const auto found = std::ranges::find_if(
+        drivers, [&](const drivers::sensor::DriverDescription* driver) { return driver->name == options.driver; });
     if (found == drivers.end()) {
-      throw ExitError(kExitUsage,
-                      fmt::format("there is no driver \"{}\"; there are:\n{}", options.driver, driver_names(drivers)));
+      throw ExitError(kExitUsage, fmt::format("there is no driver \"{}\"; there are:\n{}", options.driver,
+                                              tools::sensors::driver_names(drivers)));
     }
-    fmt::print("{}", describe_driver(**found));
+    fmt::print("{}", tools::sensors::describe_driver(**found));
   }
 }
 
@@ -48,4 +48,4 @@ void add_sensors_describe(CLI::App& sensors) {
   command->callback([options] { describe(*options); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

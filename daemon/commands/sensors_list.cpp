@@ -4,7 +4,7 @@
 #include "daemon/commands/sensors.hpp"
 #include "daemon/tools/sensors/device_list.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 void add_sensors_list(CLI::App& sensors) {
   CLI::App* command =
@@ -14,8 +14,9 @@ void add_sensors_list(CLI::App& sensors) {
       "not\ndisturbed. If a permission is missing, the udev rule or group that grants it is shown.");
   command->callback([] {
     fmt::print("{}Devices on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n",
-               device_list(find_devices(driver_table()), driver_table()));
+               tools::sensors::device_list(tools::sensors::find_devices(drivers::sensor::driver_table()),
+                                           drivers::sensor::driver_table()));
   });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

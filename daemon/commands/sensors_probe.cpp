@@ -14,7 +14,7 @@
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_probe.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 constexpr int kHighestModbusId = 247;
@@ -35,7 +35,7 @@ class WakeOnInterrupt {
   WakeOnInterrupt() {
     target_ = &interruption_;
     before_ = std::signal(SIGINT, [](int) {
-      if (Interruption* const interruption = target_.load())
+      if (drivers::bus::Interruption* const interruption = target_.load())
         interruption->set();  // a write(), which a signal handler may do
     });
   }
@@ -46,11 +46,11 @@ class WakeOnInterrupt {
   WakeOnInterrupt(const WakeOnInterrupt&) = delete;
   WakeOnInterrupt& operator=(const WakeOnInterrupt&) = delete;
 
-  const Interruption& interruption() const { return interruption_; }
+  const drivers::bus::Interruption& interruption() const { return interruption_; }
 
  private:
-  static inline std::atomic<Interruption*> target_ = nullptr;
-  Interruption interruption_;
+  static inline std::atomic<drivers::bus::Interruption*> target_ = nullptr;
+  drivers::bus::Interruption interruption_;
   void (*before_)(int) = nullptr;
 };
 
@@ -80,16 +80,16 @@ std::vector<std::uint8_t> ids_of(const std::string& text) {
 }
 
 /// "9600 8N1", or nothing over TCP.
-std::string settings_of(const ModbusLine& line) {
-  if (line.framing == ModbusFraming::kTcp) return "";
+std::string settings_of(const drivers::bus::ModbusLine& line) {
+  if (line.framing == drivers::decode::modbus::ModbusFraming::kTcp) return "";
   return fmt::format(", {} 8{}{}", line.baud, line.parity, line.stop_bits);
 }
 
 /// HOST:PORT, or nothing if it is not an address.
-std::optional<ModbusLine> tcp_line_of(const std::string& where) {
+std::optional<drivers::bus::ModbusLine> tcp_line_of(const std::string& where) {
   const std::size_t colon = where.rfind(':');
   if (where.starts_with('/') || colon == std::string::npos || colon == 0) return std::nullopt;
-  ModbusLine line;
+  drivers::bus::ModbusLine line;
   line.host = where.substr(0, colon);
   if (line.host.starts_with('[') && line.host.ends_with(']')) line.host = line.host.substr(1, line.host.size() - 2);
   const std::string_view digits = std::string_view(where).substr(colon + 1);
@@ -101,15 +101,15 @@ std::optional<ModbusLine> tcp_line_of(const std::string& where) {
 /// The persistent name of a serial port, where the system has one.
 std::string stable_name(const std::string& device) {
   std::error_code ignored;
-  for (const SerialPortInfo& port : find_serial_ports()) {
+  for (const drivers::bus::SerialPortInfo& port : drivers::bus::find_serial_ports()) {
     if (std::filesystem::equivalent(port.node, device, ignored)) return port.name;
   }
   return device;
 }
 
-ModbusProbePlan plan_of(const ProbeOptions& options) {
-  ModbusProbePlan plan;
-  plan.profiles = shipped_modbus_profiles(options.profile_dir);
+drivers::modbus::ModbusProbePlan plan_of(const ProbeOptions& options) {
+  drivers::modbus::ModbusProbePlan plan;
+  plan.profiles = drivers::modbus::shipped_modbus_profiles(options.profile_dir);
   plan.ids = ids_of(options.ids);
   plan.response_timeout = from_seconds(options.timeout_s);
   plan.tries_all_lines = options.tries_all;
@@ -121,11 +121,11 @@ ModbusProbePlan plan_of(const ProbeOptions& options) {
   for (const std::string& parity : options.parities) {
     parities.push_back(parity == "none" ? 'N' : parity == "even" ? 'E' : 'O');
   }
-  plan.lines = likely_modbus_lines(options.where, plan.profiles, options.bauds, parities);
+  plan.lines = drivers::modbus::likely_modbus_lines(options.where, plan.profiles, options.bauds, parities);
   return plan;
 }
 
-void show_progress(const ModbusLine& line, std::uint8_t id, double done) {
+void show_progress(const drivers::bus::ModbusLine& line, std::uint8_t id, double done) {
   // Overwritten in place on a terminal; elsewhere a line for each setting of the port.
   static std::string last;
   const std::string trying = fmt::format("trying {}{}", describe(line), settings_of(line));
@@ -142,7 +142,7 @@ void end_progress() {
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\x1b[K");
 }
 
-void show_fit(const ModbusHit& hit, const ModbusFit& fit) {
+void show_fit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::ModbusFit& fit) {
   if (!fit.speed_m_s) {
     fmt::print("  may be the vane of {} ({:.0f} degrees): in its table, set direction_slave = {}\n", fit.profile,
                fit.direction_deg.value_or(0.0), hit.id);
@@ -154,29 +154,32 @@ void show_fit(const ModbusHit& hit, const ModbusFit& fit) {
   fmt::print("{}\n", fit.is_at_home ? "" : " (its settings are not the factory settings)");
 }
 
-void show_hit(const ModbusHit& hit, const ModbusProbePlan& plan) {
+void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::ModbusProbePlan& plan) {
   end_progress();
   fmt::print("slave {} at {}{}\n", hit.id, describe(hit.line), settings_of(hit.line));
   if (hit.fits.empty()) fmt::print("  no profile fits; drivers/modbus/profiles/README.md describes how to write one\n");
-  for (const ModbusFit& fit : hit.fits) show_fit(hit, fit);
+  for (const drivers::modbus::ModbusFit& fit : hit.fits) show_fit(hit, fit);
   if (hit.fits.size() > 1) {
     fmt::print("  Several devices have these registers: choose the one with the name of your device.\n");
   }
-  const auto best = std::ranges::find_if(hit.fits, [](const ModbusFit& fit) { return fit.speed_m_s.has_value(); });
+  const auto best =
+      std::ranges::find_if(hit.fits, [](const drivers::modbus::ModbusFit& fit) { return fit.speed_m_s.has_value(); });
   if (best != hit.fits.end()) {
-    const auto named = std::ranges::find(plan.profiles, best->profile, &NamedModbusProfile::name);
-    fmt::print("\n{}", sensor_table_for(hit.line, *best, named->profile, stable_name(hit.line.device)));
+    const auto named = std::ranges::find(plan.profiles, best->profile, &drivers::modbus::NamedModbusProfile::name);
+    fmt::print("\n{}",
+               drivers::modbus::sensor_table_for(hit.line, *best, named->profile, stable_name(hit.line.device)));
   }
   fmt::print("\n");
   std::fflush(stdout);
 }
 
 void probe(const ProbeOptions& options) {
-  const ModbusProbePlan plan = plan_of(options);
+  const drivers::modbus::ModbusProbePlan plan = plan_of(options);
   if (plan.lines.empty()) throw ExitError(kExitUsage, "--baud and --parity leave nothing to try");
   const WakeOnInterrupt interrupt;
-  const auto hits = probe_modbus(
-      plan, show_progress, [&plan](const ModbusHit& hit) { show_hit(hit, plan); }, interrupt.interruption());
+  const auto hits = drivers::modbus::probe_modbus(
+      plan, show_progress, [&plan](const drivers::modbus::ModbusHit& hit) { show_hit(hit, plan); },
+      interrupt.interruption());
   end_progress();
   if (interrupt.interruption().is_set()) fmt::print(stderr, "interrupted\n");
   if (!hits) throw ExitError(kExitUnavailable, hits.error().message);
@@ -220,4 +223,4 @@ void add_sensors_probe(CLI::App& sensors) {
   command->callback([options] { probe(*options); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

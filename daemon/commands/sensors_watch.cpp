@@ -19,7 +19,7 @@
 #include "daemon/tools/decode/raw_text.hpp"
 #include "daemon/tools/sensors/sensor_table.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 constexpr auto kConnectTimeout = std::chrono::seconds(2);
@@ -43,7 +43,7 @@ class Deadline {
   bool is_over() const { return duration_s_ && seconds(clock_.now().mono - begun_) >= *duration_s_; }
 
  private:
-  SystemClock clock_;
+  sensing::SystemClock clock_;
   std::optional<double> duration_s_;
   MonoTime begun_;
 };
@@ -68,10 +68,11 @@ class TableScreen final : public Screen {
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
     const bool in_place = isatty(STDOUT_FILENO) != 0 && !once_;
-    write_at_once(fmt::format("{}{}\n{}{}", in_place ? kHomeAndClear : "", source, sensor_table(sensors),
-                              in_place ? "\n"
-                                         "Ctrl-C ends this display; the daemon keeps running.\n"
-                                       : "\n"));
+    settings::write_at_once(fmt::format("{}{}\n{}{}", in_place ? kHomeAndClear : "", source,
+                                        tools::sensors::sensor_table(sensors),
+                                        in_place ? "\n"
+                                                   "Ctrl-C ends this display; the daemon keeps running.\n"
+                                                 : "\n"));
     return !once_;
   }
 
@@ -106,24 +107,24 @@ class RawScreen final : public Screen {
   }
 
   bool show_message(const wire::RawTrace& trace) override {
-    const std::string text = options_.hex ? hex_lines_.line_of(trace) : raw_text(trace);
-    write_at_once(text);
+    const std::string text = options_.hex ? hex_lines_.line_of(trace) : tools::decode::raw_text(trace);
+    settings::write_at_once(text);
     return !options_.once || text.empty();
   }
 
  private:
   const WatchOptions& options_;
-  RawHexLines hex_lines_;
+  tools::decode::RawHexLines hex_lines_;
   bool is_begun_ = false;
 };
 
-void watch_daemon(StreamClient client, const std::string& address, const Deadline& deadline, Screen& screen) {
+void watch_daemon(stream::StreamClient client, const std::string& address, const Deadline& deadline, Screen& screen) {
   const std::string source = "daemon at " + address;
   client.subscribe(screen.subscription());
   while (!deadline.is_over()) {
     const auto message = client.receive(kSilenceTimeout);
-    if (!message) throw FailureError(connection_lost(address, message.error()));
-    if (const auto refusal = refusal_in(*message, address)) throw FailureError(*refusal);
+    if (!message) throw FailureError(stream::connection_lost(address, message.error()));
+    if (const auto refusal = stream::refusal_in(*message, address)) throw FailureError(*refusal);
     const auto* sensors = std::get_if<wire::Sensors>(&*message);
     if (sensors != nullptr && !screen.show_sensors(*sensors, source)) return;
     const auto* trace = std::get_if<wire::RawTrace>(&*message);
@@ -131,11 +132,11 @@ void watch_daemon(StreamClient client, const std::string& address, const Deadlin
   }
 }
 
-void watch_devices(const Config& config, const std::string& why, const Deadline& deadline, Screen& screen) {
-  const SystemClock clock;
-  const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
-  SensorHub hub(config, clock, gusts);
-  WindShaper shaper(config, gusts);
+void watch_devices(const settings::Config& config, const std::string& why, const Deadline& deadline, Screen& screen) {
+  const sensing::SystemClock clock;
+  const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
+  sensing::SensorHub hub(config, clock, gusts);
+  shaping::WindShaper shaper(config, gusts);
   const wire::Subscribe subscription = screen.subscription();
   hub.trace([&](std::string_view sensor) {
     return subscription.raw && (subscription.raw_sensor.empty() || subscription.raw_sensor == sensor);
@@ -147,7 +148,7 @@ void watch_devices(const Config& config, const std::string& why, const Deadline&
   while (!deadline.is_over()) {
     wire::Sensors sensors;
     sensors.wind = hub.advance();
-    DrivingWind wind{sensors.wind, hub.ground(), hub.stroke()};
+    wind::ground::DrivingWind wind{sensors.wind, hub.ground(), hub.stroke()};
     shaper.shape(wind, clock.now().utc, hub.is_any_live());
     if (clock.now().mono >= next_status) {
       next_status += kTableInterval;
@@ -168,7 +169,7 @@ void watch(const WatchOptions& options) {
   }
   options.run.set_up_log();
   if (!options.run.verbose) spdlog::set_level(spdlog::level::warn);  // the table shows the rest
-  const Config config = options.run.config();
+  const settings::Config config = options.run.config();
   const std::string& address = config.stream.listen;
   std::unique_ptr<Screen> screen;
   if (options.raw) {
@@ -177,7 +178,7 @@ void watch(const WatchOptions& options) {
     screen = std::make_unique<TableScreen>(options.once);
   }
   const Deadline deadline(options.run.duration_s);
-  auto client = StreamClient::connect(address, kConnectTimeout);
+  auto client = stream::StreamClient::connect(address, kConnectTimeout);
   if (client) {
     watch_daemon(std::move(*client), address, deadline, *screen);
   } else {
@@ -215,4 +216,4 @@ void add_sensors_watch(CLI::App& sensors) {
   command->callback([options] { watch(*options); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -13,7 +13,7 @@
 #include "daemon/tools/plot/plot_script.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kSpectrumCommand;
 
@@ -39,7 +39,7 @@ constexpr const char* kSpectrumFooter =
 struct SpectrumOptions {
   std::string model = "von-karman";
   std::string component = "u";
-  SpectrumSettings settings;
+  wind::turbulence::SpectrumSettings settings;
   std::vector<double> frequencies_hz;
   std::string plot;
 };
@@ -54,9 +54,10 @@ std::vector<std::string> words(const std::array<std::string_view, N>& names) {
   return {names.begin(), names.end()};
 }
 
-void draw_spectrum(const SpectrumOptions& options, const WindSpectrum& spectrum) {
-  PlotCurve curve{.title = options.model + " " + options.component, .style = PlotStyle::kLine, .x = {}, .y = {}};
-  PlotCurve asked{.title = "asked for", .style = PlotStyle::kPoints, .x = {}, .y = {}};
+void draw_spectrum(const SpectrumOptions& options, const wind::turbulence::WindSpectrum& spectrum) {
+  tools::plot::PlotCurve curve{
+      .title = options.model + " " + options.component, .style = tools::plot::PlotStyle::kLine, .x = {}, .y = {}};
+  tools::plot::PlotCurve asked{.title = "asked for", .style = tools::plot::PlotStyle::kPoints, .x = {}, .y = {}};
   double from_hz = 1e-3;
   double to_hz = 10.0;
   for (const double f : options.frequencies_hz) {
@@ -72,22 +73,24 @@ void draw_spectrum(const SpectrumOptions& options, const WindSpectrum& spectrum)
     curve.x.push_back(f);
     curve.y.push_back(f * spectrum.density_m2_s2_hz(f));
   }
-  const PlotPanel panel{.title = fmt::format("{} spectrum of {}, {:g} m/s at {:g} m: variance {:.3g} m^2/s^2",
-                                             options.model, options.component, options.settings.speed_m_s,
-                                             options.settings.height_m, spectrum.variance_m2_s2()),
-                        .x_label = "frequency f, Hz",
-                        .y_label = "f S(f), m^2/s^2",
-                        .is_x_log = true,
-                        .is_y_log = true,
-                        .curves = asked.x.empty() ? std::vector{curve} : std::vector{curve, asked}};
-  draw_plot(options.plot, std::span(&panel, 1)).value();
+  const tools::plot::PlotPanel panel{
+      .title = fmt::format("{} spectrum of {}, {:g} m/s at {:g} m: variance {:.3g} m^2/s^2", options.model,
+                           options.component, options.settings.speed_m_s, options.settings.height_m,
+                           spectrum.variance_m2_s2()),
+      .x_label = "frequency f, Hz",
+      .y_label = "f S(f), m^2/s^2",
+      .is_x_log = true,
+      .is_y_log = true,
+      .curves = asked.x.empty() ? std::vector{curve} : std::vector{curve, asked}};
+  tools::plot::draw_plot(options.plot, std::span(&panel, 1)).value();
 }
 
 void run_spectrum(SpectrumOptions options) {
-  if (!options.plot.empty()) check_plot_name(options.plot).value();
-  options.settings.model = named<SpectrumModel>(kSpectrumModelNames, options.model);
-  options.settings.component = named<WindComponent>(kWindComponentNames, options.component);
-  const auto spectrum = WindSpectrum::make(options.settings);
+  if (!options.plot.empty()) tools::plot::check_plot_name(options.plot).value();
+  options.settings.model = named<wind::turbulence::SpectrumModel>(wind::turbulence::kSpectrumModelNames, options.model);
+  options.settings.component =
+      named<wind::turbulence::WindComponent>(wind::turbulence::kWindComponentNames, options.component);
+  const auto spectrum = wind::turbulence::WindSpectrum::make(options.settings);
   if (!spectrum) {
     throw ExitError(kExitUsage, fmt::format("--model {}: {}", options.model, explain(spectrum.error())));
   }
@@ -103,12 +106,12 @@ void add_spectrum(CLI::App& app) {
   command->footer(kSpectrumFooter);
   auto options = std::make_shared<SpectrumOptions>();
   command->add_option("--model", options->model, "Which spectrum")
-      ->check(CLI::IsMember(words(kSpectrumModelNames)))
+      ->check(CLI::IsMember(words(wind::turbulence::kSpectrumModelNames)))
       ->capture_default_str();
   command->add_option("--speed", options->settings.speed_m_s, "Mean speed U, m/s")->capture_default_str();
   command->add_option("--height", options->settings.height_m, "Height z above the ground, m")->capture_default_str();
   command->add_option("--component", options->component, "u along the wind, v across it, w upward")
-      ->check(CLI::IsMember(words(kWindComponentNames)))
+      ->check(CLI::IsMember(words(wind::turbulence::kWindComponentNames)))
       ->capture_default_str();
   auto* const sigma = command->add_option("--sigma", options->settings.sigma_m_s, "Standard deviation, m/s");
   command->add_option("--ustar", options->settings.friction_velocity_m_s, "Friction velocity u*, m/s")->excludes(sigma);
@@ -129,4 +132,4 @@ void add_spectrum(CLI::App& app) {
 
 const Command kSpectrumCommand{add_spectrum};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

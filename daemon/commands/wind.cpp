@@ -25,7 +25,7 @@
 #include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kWindCommand;
 
@@ -64,14 +64,14 @@ struct GroundPlace {
 struct WindOptions {
   std::filesystem::path file;
   std::string output;
-  OfflineWindOptions offline;
+  tools::offline::OfflineWindOptions offline;
   std::vector<std::string> gaps;
   double scene_size_m = 0.0;
   std::vector<std::string> places;
   std::optional<std::string> sensor_place;
   double lead_m = 0.0;
   std::vector<std::string> also;
-  PlaybackOptions playback;
+  drivers::windlog::PlaybackOptions playback;
   std::optional<std::filesystem::path> config_file;
   std::optional<std::uint64_t> seed;
   bool shaped = false;
@@ -89,7 +89,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
 }
 
 /// "FROM,TO" in seconds.
-OfflineGap parse_gap(const std::string& text) {
+tools::offline::OfflineGap parse_gap(const std::string& text) {
   const auto gap = two_numbers(text);
   if (!gap || !(gap->first >= 0.0) || !(gap->second > gap->first)) {
     throw ExitError(kExitUsage, "--gap: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
@@ -114,13 +114,13 @@ const std::filesystem::path& existing(const std::filesystem::path& file) {
   return file;
 }
 
-std::string_view name_of(WindSource source) {
+std::string_view name_of(wind::WindSource source) {
   switch (source) {
-    case WindSource::kDefault:
+    case wind::WindSource::kDefault:
       return "default";
-    case WindSource::kHandover:
+    case wind::WindSource::kHandover:
       return "handover";
-    case WindSource::kLive:
+    case wind::WindSource::kLive:
       return "live";
   }
   return "?";
@@ -142,12 +142,12 @@ class Table {
     text_ += '\n';
   }
 
-  void add(double time_s, const WindState& state, std::span<const WindVector> at_places) {
+  void add(double time_s, const wind::WindState& state, std::span<const wind::WindVector> at_places) {
     // Just west of north is rounded to 0, not to 360.
-    const double direction_deg = std::fmod(std::round(direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
+    const double direction_deg = std::fmod(std::round(wind::direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
     fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}", time_s, state.wind.u_m_s,
                    state.wind.v_m_s, speed_of(state.wind), direction_deg, state.live_weight, name_of(state.source));
-    for (const WindVector wind : at_places) {
+    for (const wind::WindVector wind : at_places) {
       fmt::format_to(std::back_inserter(text_), ",{:.6f},{:.6f}", wind.u_m_s, wind.v_m_s);
     }
     text_ += '\n';
@@ -174,23 +174,23 @@ class Table {
 /// The wind over the ground at a given place.
 class WindAtPlaces {
  public:
-  WindAtPlaces(std::shared_ptr<const GustNoise> gusts, std::vector<GroundPlace> places)
+  WindAtPlaces(std::shared_ptr<const wind::turbulence::GustNoise> gusts, std::vector<GroundPlace> places)
       : gusts_(std::move(gusts)), places_(std::move(places)), winds_(places_.size()) {}
 
   std::span<const GroundPlace> places() const { return places_; }
 
-  std::span<const WindVector> read(const DrivingWind& wind) {
-    const GroundWind ground = written_to(tapes_, wind);
+  std::span<const wind::WindVector> read(const wind::ground::DrivingWind& wind) {
+    const wind::ground::GroundWind ground = written_to(tapes_, wind);
     std::ranges::transform(places_, winds_.begin(),
                            [&](const GroundPlace& place) { return ground.at(*gusts_, place.east_m, place.south_m); });
     return winds_;
   }
 
  private:
-  std::shared_ptr<const GustNoise> gusts_;
+  std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   std::vector<GroundPlace> places_;
-  std::vector<WindVector> winds_;
-  WindTapes tapes_;
+  std::vector<wind::WindVector> winds_;
+  wind::ground::WindTapes tapes_;
 };
 
 /// "FILE.windlog@X,Z": a recording, and where its anemometer stood.
@@ -207,47 +207,48 @@ PlacedRecording parse_also(const std::string& text) {
   return {text.substr(0, at), parse_place("--also", text.substr(at + 1))};
 }
 
-void stand_at(BlendSourceSettings& source, const GroundPlace& place, double lead_m) {
+void stand_at(wind::blend::BlendSourceSettings& source, const GroundPlace& place, double lead_m) {
   source.has_place = true;
   source.east_m = place.east_m;
   source.south_m = place.south_m;
   source.lead_m = lead_m;
 }
 
-void write_wind(const WindOptions& options, const Config& config, std::FILE* out) {
-  BlendSettings settings = blend_settings_of(config);
+void write_wind(const WindOptions& options, const settings::Config& config, std::FILE* out) {
+  wind::blend::BlendSettings settings = sensing::blend_settings_of(config);
   settings.sources.resize(1);
   settings.reach_m = options.scene_size_m / std::numbers::sqrt2;
   settings.rate_hz = options.offline.rate_hz;
   if (options.sensor_place) {
     stand_at(settings.sources[0], parse_place("--sensor-place", *options.sensor_place), options.lead_m);
   }
-  std::vector<WindlogPlayback> playbacks;
-  playbacks.push_back(WindlogPlayback::open(options.file, options.playback).value());
+  std::vector<drivers::windlog::WindlogPlayback> playbacks;
+  playbacks.push_back(drivers::windlog::WindlogPlayback::open(options.file, options.playback).value());
   if (!options.also.empty()) settings.sources[0].priority = 1;  // they are used together
   for (const std::string& text : options.also) {
     const PlacedRecording other = parse_also(text);
     stand_at(settings.sources.emplace_back(settings.sources[0]), other.place, options.lead_m);
-    playbacks.push_back(WindlogPlayback::open(other.file, options.playback).value());
+    playbacks.push_back(drivers::windlog::WindlogPlayback::open(other.file, options.playback).value());
   }
   std::vector<GroundPlace> places;
   for (const std::string& text : options.places) places.push_back(parse_place("--place", text));
 
-  const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
-  BlendedEstimator estimator(settings.sources.size(), settings, gusts);
-  WindShaping shaping(config.shaping.settings, gusts);
+  const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
+  wind::blend::BlendedEstimator estimator(settings.sources.size(), settings, gusts);
+  wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
   WindAtPlaces at_places(gusts, std::move(places));
   Table table(out, at_places.places());
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto shown_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
-  const auto run = run_offline(playbacks, estimator, options.offline, [&](double time_s, const WindState& state) {
-    DrivingWind wind{state, estimator.ground(), estimator.stroke()};
-    if (options.shaped) shaping.shape(wind, true);
-    table.add(time_s, wind.state, at_places.read(wind));
-    if (is_watched && ++states % shown_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
-  });
-  const OfflineWindResult& result = run.value();
+  const auto run = tools::offline::run_offline(
+      playbacks, estimator, options.offline, [&](double time_s, const wind::WindState& state) {
+        wind::ground::DrivingWind wind{state, estimator.ground(), estimator.stroke()};
+        if (options.shaped) shaping.shape(wind, true);
+        table.add(time_s, wind.state, at_places.read(wind));
+        if (is_watched && ++states % shown_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
+      });
+  const tools::offline::OfflineWindResult& result = run.value();
   table.end(options.output);
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(stderr, "{}: {} states of {:.1f} s, from {}{}\n",
@@ -259,13 +260,14 @@ void write_wind(const WindOptions& options, const Config& config, std::FILE* out
 void run_wind(WindOptions options) {
   existing(options.file);
   for (const std::string& gap : options.gaps) options.offline.gaps.push_back(parse_gap(gap));
-  Config config = options.config_file ? load_config(*options.config_file) : default_config();
+  settings::Config config =
+      options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
   config.sensors.resize(1);
   if (options.seed) config.seed = *options.seed;
   options.offline.judge = config.sensors[0].judge;
 
   if (options.output == "-") return write_wind(options, config, stdout);
-  OutputFile output(options.output, options.force, windlog::kSideSuffixes);
+  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
                                                              &std::fclose);
   if (!file) {
@@ -329,4 +331,4 @@ void add_wind(CLI::App& app) {
 
 const Command kWindCommand{add_wind};
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -6,7 +6,7 @@
 
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::recording {
 namespace {
 
 // Room for the readings between two commits, at tens of thousands a second.
@@ -34,8 +34,9 @@ void Recorder::close() {
   thread_.join();
 }
 
-bool Recorder::push(std::size_t sensor, const WindReading& reading) noexcept {
-  const bool taken = sensor < info_.sensors.size() && is_recordable(reading) && ring_.push({sensor, reading});
+bool Recorder::push(std::size_t sensor, const wind::WindReading& reading) noexcept {
+  const bool taken =
+      sensor < info_.sensors.size() && drivers::windlog::is_recordable(reading) && ring_.push({sensor, reading});
   if (!taken) lost_.fetch_add(1, std::memory_order_relaxed);
   return taken;
 }
@@ -111,7 +112,7 @@ Result<void, Failure> Recorder::write_pending() {
 }
 
 Result<void, Failure> Recorder::open_session(Instant started) {
-  auto opened = WindlogWriter::open(file_);
+  auto opened = drivers::windlog::WindlogWriter::open(file_);
   if (!opened) return opened.error();
   writer_.emplace(std::move(*opened));
   if (auto begun = writer_->begin_session({started, info_.software, info_.configuration}); !begun) return begun;
@@ -141,4 +142,4 @@ void Recorder::set_status(const std::string& error) {
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::recording

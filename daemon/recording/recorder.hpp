@@ -19,7 +19,7 @@
 #include "engine/base/time.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::recording {
 
 struct RecordedSensor {
   std::string name;
@@ -64,7 +64,7 @@ class Recorder {
   /// Takes a reading of `info.sensors[sensor]`; false if it is dropped (and counted) because it cannot be recorded (no
   /// such sensor, values that are not finite) or too many wait. To be called by one thread. Realtime-safe: yes;
   /// wait-free.
-  bool push(std::size_t sensor, const WindReading& reading) noexcept;
+  bool push(std::size_t sensor, const wind::WindReading& reading) noexcept;
 
   /// Writes what is pending, closes the file without side files, and waits for that: well under a second on a working
   /// disk. Nothing may be pushed after it; a second call does nothing.
@@ -80,7 +80,7 @@ class Recorder {
  private:
   struct Entry {
     std::size_t sensor = 0;
-    WindReading reading;
+    wind::WindReading reading;
   };
 
   void run(const std::stop_token& stop);
@@ -102,7 +102,7 @@ class Recorder {
 
   // The recorder's thread alone, once it runs.
   std::vector<Entry> pending_;
-  std::optional<WindlogWriter> writer_;
+  std::optional<drivers::windlog::WindlogWriter> writer_;
   std::vector<std::int64_t> sensor_ids_;
   Nanoseconds back_off_{0};
   std::chrono::steady_clock::time_point retry_at_{};
@@ -112,4 +112,4 @@ class Recorder {
   std::jthread thread_;  // last: it is joined before what it uses is destroyed
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::recording

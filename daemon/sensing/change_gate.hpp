@@ -6,7 +6,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// Decides which changes of a value are logged: a new value must have lasted for a minimum time. The first change is
 /// reported at once, the second after 1 s; each report doubles the minimum for the next, up to 10 min, and each hour
@@ -58,4 +58,4 @@ class ChangeGate {
   std::uint64_t reported_passed_over_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

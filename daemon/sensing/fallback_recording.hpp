@@ -11,7 +11,7 @@
 #include "engine/wind/source_report.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// Plays a recording while every sensor has been silent for [wind] fallback_after, until one is live again. It loops,
 /// and begins at the present time of day where the recording contains it. For the estimator it is one more source, of
@@ -23,28 +23,29 @@ namespace yuragi {
 /// Belongs to the I/O thread; the file is read on a thread of its own.
 class FallbackRecording {
  public:
-  using Use = std::function<void(const WindReading&)>;
+  using Use = std::function<void(const wind::WindReading&)>;
 
   /// Checks the recording, if one is configured. Throws ConfigError where it cannot be played.
-  FallbackRecording(const Config& config, const Clock& clock);
+  FallbackRecording(const settings::Config& config, const drivers::sensor::Clock& clock);
 
   /// Starts or stops playing, and passes readings that are due to `use`.
   void advance(bool is_any_sensor_live, const Use& use);
 
   /// Its status for the stream; nothing while it does not play. `report`: of its source.
-  std::optional<wire::SensorStatus> status(const SourceReport& report) const;
+  std::optional<wire::SensorStatus> status(const wind::SourceReport& report) const;
 
  private:
   void start(MonoTime now);
   void stop();
   void log_changes();
 
-  const Clock& clock_;
-  std::optional<SensorConfig> sensor_;  ///< none: no recording is configured
+  const drivers::sensor::Clock& clock_;
+  std::optional<settings::SensorConfig> sensor_;  ///< none: no recording is configured
   std::string file_;
-  Calibration calibration_;
-  std::optional<JudgeSettings> judged_by_{JudgeSettings{}};  ///< none: every reading is believed
-  ReadingJudge judge_;
+  wind::judging::Calibration calibration_;
+  std::optional<wind::judging::JudgeSettings> judged_by_{
+      wind::judging::JudgeSettings{}};  ///< none: every reading is believed
+  wind::judging::ReadingJudge judge_;
   Nanoseconds after_{0};
 
   std::unique_ptr<SensorRunner> runner_;  ///< while it plays
@@ -56,6 +57,6 @@ class FallbackRecording {
 };
 
 /// Returns the name of the recorded sensor. Throws ConfigError, with the place in the file, where it cannot be played.
-std::string check_fallback(const FallbackConfig& fallback);
+std::string check_fallback(const settings::FallbackConfig& fallback);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

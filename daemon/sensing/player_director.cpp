@@ -8,24 +8,24 @@
 #include "daemon/settings/control_permission.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
-PlayerOrder order_of(const wire::PlayerCommand& command) {
+drivers::recording::PlayerOrder order_of(const wire::PlayerCommand& command) {
   switch (command.action) {
     case wire::PlayerAction::kReport:
     case wire::PlayerAction::kPause:
       break;
     case wire::PlayerAction::kResume:
-      return {.kind = PlayerOrder::Kind::kResume};
+      return {.kind = drivers::recording::PlayerOrder::Kind::kResume};
     case wire::PlayerAction::kStep:
-      return {.kind = PlayerOrder::Kind::kStep, .count = command.count};
+      return {.kind = drivers::recording::PlayerOrder::Kind::kStep, .count = command.count};
     case wire::PlayerAction::kSeek:
-      return {.kind = PlayerOrder::Kind::kSeek, .place = command.place};
+      return {.kind = drivers::recording::PlayerOrder::Kind::kSeek, .place = command.place};
     case wire::PlayerAction::kRate:
-      return {.kind = PlayerOrder::Kind::kRate, .rate = command.rate};
+      return {.kind = drivers::recording::PlayerOrder::Kind::kRate, .rate = command.rate};
   }
-  return {.kind = PlayerOrder::Kind::kPause};
+  return {.kind = drivers::recording::PlayerOrder::Kind::kPause};
 }
 
 /// The order in words, for the log and for a person.
@@ -49,7 +49,7 @@ std::string text_of(const wire::PlayerCommand& command) {
 
 }  // namespace
 
-PlayerDirector::PlayerDirector(ControlPermission allowed, std::vector<NamedPlayer> players)
+PlayerDirector::PlayerDirector(settings::ControlPermission allowed, std::vector<NamedPlayer> players)
     : allowed_(allowed), players_(std::move(players)) {}
 
 wire::ControlReply PlayerDirector::handle(const wire::PlayerCommand& command, bool is_local) {
@@ -73,7 +73,7 @@ wire::ControlReply PlayerDirector::handle(const wire::PlayerCommand& command, bo
     reply.message = "nothing was changed";
     return reply;
   }
-  if (const auto refusal = control_refusal(allowed_, is_local, "recordings cannot be controlled")) {
+  if (const auto refusal = settings::control_refusal(allowed_, is_local, "recordings cannot be controlled")) {
     reply.message = *refusal;
     return reply;
   }
@@ -91,7 +91,7 @@ wire::ControlReply PlayerDirector::handle(const wire::PlayerCommand& command, bo
 }
 
 wire::PlayerState PlayerDirector::state_of(const NamedPlayer& named) const {
-  const PlayerReport report = named.player->report();
+  const drivers::recording::PlayerReport report = named.player->report();
   wire::PlayerState state;
   state.sensor = named.sensor;
   state.file = report.file;
@@ -99,7 +99,7 @@ wire::PlayerState PlayerDirector::state_of(const NamedPlayer& named) const {
   state.refusal = report.refusal;
   if (!report.position) return state;
 
-  const PlayerPosition& position = *report.position;
+  const drivers::windlog::PlayerPosition& position = *report.position;
   state.is_open = true;
   state.position_s = seconds(position.log_time);
   state.length_s = seconds(position.length);
@@ -112,4 +112,4 @@ wire::PlayerState PlayerDirector::state_of(const NamedPlayer& named) const {
   return state;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -9,13 +9,13 @@
 #include "drivers/recording/recording_player.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// A sensor that plays a recording.
 struct NamedPlayer {
   std::string sensor;
-  RecordingPlayer* player = nullptr;  ///< must outlive the director
-  std::function<void()> wake;         ///< makes its thread read orders at once
+  drivers::recording::RecordingPlayer* player = nullptr;  ///< must outlive the director
+  std::function<void()> wake;                             ///< makes its thread read orders at once
 };
 
 /// Handles clients' requests about recordings that play, on the I/O thread: checks the permission ([stream] control),
@@ -25,7 +25,7 @@ struct NamedPlayer {
 class PlayerDirector {
  public:
   /// `allowed`: [stream] control.
-  PlayerDirector(ControlPermission allowed, std::vector<NamedPlayer> players);
+  PlayerDirector(settings::ControlPermission allowed, std::vector<NamedPlayer> players);
 
   /// Carries out a client's command; the reply says why not. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
@@ -33,8 +33,8 @@ class PlayerDirector {
  private:
   wire::PlayerState state_of(const NamedPlayer& named) const;
 
-  ControlPermission allowed_;
+  settings::ControlPermission allowed_;
   std::vector<NamedPlayer> players_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

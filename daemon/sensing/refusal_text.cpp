@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 std::string refusal_text(const wire::SensorStatus& sensor) {
   std::string text;
@@ -10,4 +10,4 @@ std::string refusal_text(const wire::SensorStatus& sensor) {
   return text.empty() ? "nothing" : text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -4,9 +4,9 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// "timeout 3, exception 1"; "nothing" where nothing was refused.
 std::string refusal_text(const wire::SensorStatus& sensor);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

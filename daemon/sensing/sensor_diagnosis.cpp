@@ -4,11 +4,11 @@
 
 #include "daemon/settings/duration_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 std::string connecting_text(const SensorEvidence& evidence) {
-  if (evidence.link == LinkState::kConnected) {
+  if (evidence.link == wind::LinkState::kConnected) {
     return "the device is connected, but has sent no reading yet: " + std::string(evidence.link_detail);
   }
   return evidence.link_detail.empty() ? "looking for the device" : std::string(evidence.link_detail);
@@ -16,9 +16,9 @@ std::string connecting_text(const SensorEvidence& evidence) {
 
 std::string live_text(const SensorEvidence& evidence) {
   std::string text = evidence.report.interval_s > 0.0
-                         ? fmt::format("a reading every {}", duration_text(evidence.report.interval_s))
+                         ? fmt::format("a reading every {}", settings::duration_text(evidence.report.interval_s))
                          : std::string("first reading received");
-  if (evidence.vote == Vote::kDisputed && evidence.others_m_s) {
+  if (evidence.vote == wind::judging::Vote::kDisputed && evidence.others_m_s) {
     text += fmt::format(
         "; but its mean of 5 min is {:.1f} m/s, that of the other sensors {:.1f} m/s. Check each sensor, and correct "
         "[sensor.calibration] of the wrong one",
@@ -28,10 +28,10 @@ std::string live_text(const SensorEvidence& evidence) {
 }
 
 std::string stale_text(const SensorEvidence& evidence) {
-  std::string silence = "no reading for " + duration_text(evidence.report.age_s);
+  std::string silence = "no reading for " + settings::duration_text(evidence.report.age_s);
   if (evidence.report.interval_s <= 0.0) return silence;
   return fmt::format("{}; its usual interval is {}. Is the station switched on, and within range of its sensor?",
-                     silence, duration_text(evidence.report.interval_s));
+                     silence, settings::duration_text(evidence.report.interval_s));
 }
 
 std::string frozen_text(const SensorEvidence& evidence) {
@@ -39,7 +39,7 @@ std::string frozen_text(const SensorEvidence& evidence) {
       "the same reading, {:.2f} m/s, {} times in {}. Its electronics may hang, or it may be iced: inspect it, and "
       "switch it off and on",
       evidence.report.last ? evidence.report.last->speed_m_s : 0.0, evidence.same_count,
-      duration_text(evidence.same_for_s));
+      settings::duration_text(evidence.same_for_s));
 }
 
 std::string seized_text(const SensorEvidence& evidence) {
@@ -47,11 +47,11 @@ std::string seized_text(const SensorEvidence& evidence) {
                                  ? fmt::format("while the other sensors measure {:.1f} m/s", *evidence.others_m_s)
                                  : "after a windy day";
   return fmt::format("no wind for {}, {}. Check that it turns freely: ice, dirt or a worn bearing may block it",
-                     duration_text(evidence.still_for_s), others);
+                     settings::duration_text(evidence.still_for_s), others);
 }
 
 std::string implausible_text(const SensorEvidence& evidence) {
-  if (evidence.fault == ReadingFault::kImplausible) {
+  if (evidence.fault == wind::judging::ReadingFault::kImplausible) {
     return fmt::format(
         "{:.0f} % of its last readings were spikes or out of range. Check its cable, its power supply, its unit, and "
         "sources of interference",
@@ -66,49 +66,51 @@ std::string implausible_text(const SensorEvidence& evidence) {
 
 }  // namespace
 
-SensorState state_of(const SensorEvidence& evidence) {
-  const bool is_connected = evidence.link == LinkState::kConnected;
-  const bool makes_no_sense = evidence.fault == ReadingFault::kImplausible;
+wind::judging::SensorState state_of(const SensorEvidence& evidence) {
+  const bool is_connected = evidence.link == wind::LinkState::kConnected;
+  const bool makes_no_sense = evidence.fault == wind::judging::ReadingFault::kImplausible;
   switch (evidence.report.health) {
-    case SourceHealth::kSilent:
-      if (evidence.link == LinkState::kFinished) return SensorState::kDisconnected;
-      return is_connected && makes_no_sense ? SensorState::kImplausible : SensorState::kConnecting;
-    case SourceHealth::kStale:
-      if (!is_connected) return SensorState::kDisconnected;
-      return makes_no_sense ? SensorState::kImplausible : SensorState::kStale;
-    case SourceHealth::kLive:
+    case wind::SourceHealth::kSilent:
+      if (evidence.link == wind::LinkState::kFinished) return wind::judging::SensorState::kDisconnected;
+      return is_connected && makes_no_sense ? wind::judging::SensorState::kImplausible
+                                            : wind::judging::SensorState::kConnecting;
+    case wind::SourceHealth::kStale:
+      if (!is_connected) return wind::judging::SensorState::kDisconnected;
+      return makes_no_sense ? wind::judging::SensorState::kImplausible : wind::judging::SensorState::kStale;
+    case wind::SourceHealth::kLive:
       break;
   }
-  if (evidence.fault == ReadingFault::kFrozen) return SensorState::kFrozen;
-  if (evidence.fault == ReadingFault::kSeized) return SensorState::kSeized;
-  if (makes_no_sense || evidence.vote == Vote::kOutvoted) return SensorState::kImplausible;
-  if (evidence.is_replay) return SensorState::kReplayed;
-  const bool is_simulated = evidence.report.last && evidence.report.last->quality == ReadingQuality::kSimulated;
-  return is_simulated ? SensorState::kSimulated : SensorState::kLive;
+  if (evidence.fault == wind::judging::ReadingFault::kFrozen) return wind::judging::SensorState::kFrozen;
+  if (evidence.fault == wind::judging::ReadingFault::kSeized) return wind::judging::SensorState::kSeized;
+  if (makes_no_sense || evidence.vote == wind::judging::Vote::kOutvoted)
+    return wind::judging::SensorState::kImplausible;
+  if (evidence.is_replay) return wind::judging::SensorState::kReplayed;
+  const bool is_simulated = evidence.report.last && evidence.report.last->quality == wind::ReadingQuality::kSimulated;
+  return is_simulated ? wind::judging::SensorState::kSimulated : wind::judging::SensorState::kLive;
 }
 
-std::string reason_of(SensorState state, const SensorEvidence& evidence) {
+std::string reason_of(wind::judging::SensorState state, const SensorEvidence& evidence) {
   switch (state) {
-    case SensorState::kConnecting:
+    case wind::judging::SensorState::kConnecting:
       return connecting_text(evidence);
-    case SensorState::kLive:
+    case wind::judging::SensorState::kLive:
       return live_text(evidence);
-    case SensorState::kStale:
+    case wind::judging::SensorState::kStale:
       return stale_text(evidence);
-    case SensorState::kFrozen:
+    case wind::judging::SensorState::kFrozen:
       return frozen_text(evidence);
-    case SensorState::kSeized:
+    case wind::judging::SensorState::kSeized:
       return seized_text(evidence);
-    case SensorState::kImplausible:
+    case wind::judging::SensorState::kImplausible:
       return implausible_text(evidence);
-    case SensorState::kDisconnected:
+    case wind::judging::SensorState::kDisconnected:
       return evidence.link_detail.empty() ? "the device was disconnected" : std::string(evidence.link_detail);
-    case SensorState::kSimulated:
+    case wind::judging::SensorState::kSimulated:
       return "synthetic values, not measured";
-    case SensorState::kReplayed:
+    case wind::judging::SensorState::kReplayed:
       return "a recording, not the present wind";
   }
   return {};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -10,16 +10,16 @@
 #include "engine/wind/judging/sensor_vote.hpp"
 #include "engine/wind/source_report.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// From what a sensor's state is derived, at one moment.
 struct SensorEvidence {
-  LinkState link = LinkState::kConnecting;
-  std::string_view link_detail;              ///< the last event of the link
-  SourceReport report;                       ///< of all its readings, believed or not
-  bool is_replay = false;                    ///< its driver plays recordings
-  ReadingFault fault = ReadingFault::kNone;  ///< the judge's finding
-  Vote vote = Vote::kNone;                   ///< the result of comparing it with other sensors
+  wind::LinkState link = wind::LinkState::kConnecting;
+  std::string_view link_detail;                                            ///< the last event of the link
+  wind::SourceReport report;                                               ///< of all its readings, believed or not
+  bool is_replay = false;                                                  ///< its driver plays recordings
+  wind::judging::ReadingFault fault = wind::judging::ReadingFault::kNone;  ///< the judge's finding
+  wind::judging::Vote vote = wind::judging::Vote::kNone;  ///< the result of comparing it with other sensors
 
   // Figures for reason_of().
   std::size_t same_count = 0;
@@ -32,9 +32,9 @@ struct SensorEvidence {
 
 /// The state. While readings arrive, a fault takes precedence over the kind of source (simulated, replayed). Once they
 /// are stale, a lost link takes precedence over faults, and only implausible readings count as one. Pure.
-SensorState state_of(const SensorEvidence& evidence);
+wind::judging::SensorState state_of(const SensorEvidence& evidence);
 
 /// Why it is in this state and what to do about it, for a person. Pure.
-std::string reason_of(SensorState state, const SensorEvidence& evidence);
+std::string reason_of(wind::judging::SensorState state, const SensorEvidence& evidence);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -11,25 +11,25 @@
 #include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 /// Is it used although others differ?
-bool is_disputed(SensorState state, Vote vote) {
-  return is_believed(state) && vote == Vote::kDisputed;
+bool is_disputed(wind::judging::SensorState state, wind::judging::Vote vote) {
+  return is_believed(state) && vote == wind::judging::Vote::kDisputed;
 }
 
 /// The key of a state for the ChangeGate: the state, and whether others differ.
-std::uint32_t key_of(SensorState state, Vote vote) {
+std::uint32_t key_of(wind::judging::SensorState state, wind::judging::Vote vote) {
   constexpr std::uint32_t kDisputedBit = 1U << 8U;
   return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
 }
-SensorState state_in(std::uint32_t key) {
-  return static_cast<SensorState>(key & 0xFFU);
+wind::judging::SensorState state_in(std::uint32_t key) {
+  return static_cast<wind::judging::SensorState>(key & 0xFFU);
 }
 
-bool is_trouble(SensorState state) {
-  return !is_believed(state) && state != SensorState::kConnecting;
+bool is_trouble(wind::judging::SensorState state) {
+  return !is_believed(state) && state != wind::judging::SensorState::kConnecting;
 }
 
 std::string passed_over_text(const ChangeGate& gate) {
@@ -38,51 +38,52 @@ std::string passed_over_text(const ChangeGate& gate) {
 }
 
 /// The SiteSpectrum that a configuration expects, before any readings.
-std::shared_ptr<SiteSpectrum> make_site_spectrum(const WindConfig& wind) {
-  auto site = std::make_shared<SiteSpectrum>();
+std::shared_ptr<wind::turbulence::SiteSpectrum> make_site_spectrum(const settings::WindConfig& wind) {
+  auto site = std::make_shared<wind::turbulence::SiteSpectrum>();
   site->expect(wind.site_octaves_db);
   return site;
 }
 
 }  // namespace
 
-std::shared_ptr<const GustNoise> make_gust_noise(const Config& config) {
-  auto noise =
-      std::make_shared<const GustNoise>(GustNoiseSettings{.seed = config.seed, .evolves = config.wind.is_evolving});
+std::shared_ptr<const wind::turbulence::GustNoise> make_gust_noise(const settings::Config& config) {
+  auto noise = std::make_shared<const wind::turbulence::GustNoise>(
+      wind::turbulence::GustNoiseSettings{.seed = config.seed, .evolves = config.wind.is_evolving});
   malloc_trim(0);  // returns 9 MB of temporary memory to the system
   return noise;
 }
 
-BlendSettings blend_settings_of(const Config& config) {
-  const WindConfig& wind = config.wind;
-  BlendSettings settings{.climate = {.mean_speed_m_s = wind.default_speed_m_s,
-                                     .mean_direction_deg = wind.default_direction_deg,
-                                     .turbulence_intensity = wind.default_turbulence_intensity,
-                                     .seed = config.seed},
-                         .length_m = wind.gust_length_m(),
-                         .gustiness = wind.gustiness,
-                         .handover_s = wind.handover_s,
-                         .stale_intervals = wind.stale_intervals,
-                         .return_after_s = wind.return_after_s,
-                         .rate_hz = config.animation.rate_hz,
-                         .site = make_site_spectrum(wind)};
-  for (const SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
+wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
+  const settings::WindConfig& wind = config.wind;
+  wind::blend::BlendSettings settings{.climate = {.mean_speed_m_s = wind.default_speed_m_s,
+                                                  .mean_direction_deg = wind.default_direction_deg,
+                                                  .turbulence_intensity = wind.default_turbulence_intensity,
+                                                  .seed = config.seed},
+                                      .length_m = wind.gust_length_m(),
+                                      .gustiness = wind.gustiness,
+                                      .handover_s = wind.handover_s,
+                                      .stale_intervals = wind.stale_intervals,
+                                      .return_after_s = wind.return_after_s,
+                                      .rate_hz = config.animation.rate_hz,
+                                      .site = make_site_spectrum(wind)};
+  for (const settings::SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
   // After all sensors, whatever their priorities.
   if (wind.fallback) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
   return settings;
 }
 
-BlendedEstimator make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise, double reach_m,
-                                std::shared_ptr<SiteSpectrum> site) {
-  BlendSettings settings = blend_settings_of(config);
+wind::blend::BlendedEstimator make_estimator(const settings::Config& config,
+                                             std::shared_ptr<const wind::turbulence::GustNoise> noise, double reach_m,
+                                             std::shared_ptr<wind::turbulence::SiteSpectrum> site) {
+  wind::blend::BlendSettings settings = blend_settings_of(config);
   settings.reach_m = reach_m;
   if (site) settings.site = std::move(site);
   const std::size_t source_count = settings.sources.size();
   return {source_count, settings, std::move(noise)};
 }
 
-SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise,
-                     Listener listener, double reach_m)
+SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Clock& clock,
+                     std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener, double reach_m)
     : clock_(clock),
       listener_(std::move(listener)),
       site_(make_site_spectrum(config.wind)),
@@ -91,13 +92,13 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
       vote_(config.sensors.size()),
       fallback_(config, clock) {
   // Construct all before starting any, so that an error in the last one stops no running thread.
-  std::vector<std::unique_ptr<Sensor>> sensors;
-  for (const SensorConfig& sensor : config.sensors) sensors.push_back(open_sensor(sensor));
+  std::vector<std::unique_ptr<drivers::sensor::Sensor>> sensors;
+  for (const settings::SensorConfig& sensor : config.sensors) sensors.push_back(settings::open_sensor(sensor));
   for (std::size_t index = 0; index < sensors.size(); ++index) {
     Channel channel;
     channel.config = config.sensors[index];
-    const std::optional<JudgeSettings>& judged_by = channel.config.judge;
-    channel.judge = ReadingJudge(judged_by.value_or(JudgeSettings{}));
+    const std::optional<wind::judging::JudgeSettings>& judged_by = channel.config.judge;
+    channel.judge = wind::judging::ReadingJudge(judged_by.value_or(wind::judging::JudgeSettings{}));
     // A sensor whose scale is unknown is not compared.
     channel.is_compared = judged_by && channel.config.is_compared && !channel.config.blend.is_relative;
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
@@ -105,10 +106,10 @@ SensorHub::SensorHub(const Config& config, const Clock& clock, std::shared_ptr<c
   }
 }
 
-const WindState& SensorHub::advance() {
+const wind::WindState& SensorHub::advance() {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     Channel& channel = channels_[index];
-    channel.runner->drain([&](const WindReading& reading) {
+    channel.runner->drain([&](const wind::WindReading& reading) {
       if (!reading.is_held) {
         ++channel.readings;
         channel.last_raw = reading;
@@ -121,7 +122,7 @@ const WindState& SensorHub::advance() {
   const MonoTime now = clock_.now().mono;
   compare(now);
   fallback_.advance(is_any_live(),
-                    [this](const WindReading& reading) { estimator_.accept(channels_.size(), reading); });
+                    [this](const wind::WindReading& reading) { estimator_.accept(channels_.size(), reading); });
   wind_ = estimator_.advance(now);
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     log_link(channels_[index], now);
@@ -131,12 +132,12 @@ const WindState& SensorHub::advance() {
 }
 
 /// Calibrates a raw reading, judges it, and passes it to the estimator where it is believed.
-void SensorHub::take(std::size_t index, const WindReading& raw) {
+void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
   Channel& channel = channels_[index];
-  WindReading reading = channel.config.calibration.applied_to(raw);
+  wind::WindReading reading = channel.config.calibration.applied_to(raw);
   // A time in the future would make all readings that follow late ones.
   reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
-  if (!is_plausible(reading)) {
+  if (!wind::is_plausible(reading)) {
     if (channel.config.judge) channel.judge.count_impossible(1);
     return;
   }
@@ -149,10 +150,10 @@ void SensorHub::take(std::size_t index, const WindReading& raw) {
   channel.record.take(reading);
 
   // Simulated readings are not judged: they may be constant.
-  const bool is_judged = channel.config.judge && reading.quality != ReadingQuality::kSimulated;
+  const bool is_judged = channel.config.judge && reading.quality != wind::ReadingQuality::kSimulated;
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
   if (makes_sense) vote_.accept(index, reading.time.mono, reading.speed_m_s);
-  if (makes_sense && vote_.vote_on(index) != Vote::kOutvoted) {
+  if (makes_sense && vote_.vote_on(index) != wind::judging::Vote::kOutvoted) {
     estimator_.accept(index, reading);
   } else {
     ++channel.not_believed;
@@ -161,7 +162,7 @@ void SensorHub::take(std::size_t index, const WindReading& raw) {
 
 /// Readings that the driver refused as implausible count as faults, too.
 void SensorHub::judge_refusals(Channel& channel) const {
-  const std::uint64_t impossible = channel.runner->refused_count(Refusal::kImplausible);
+  const std::uint64_t impossible = channel.runner->refused_count(drivers::decode::Refusal::kImplausible);
   if (channel.config.judge) channel.judge.count_impossible(impossible - channel.impossible);
   channel.impossible = impossible;
 }
@@ -170,10 +171,11 @@ void SensorHub::judge_refusals(Channel& channel) const {
 void SensorHub::compare(MonoTime now) {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     const Channel& channel = channels_[index];
-    const SourceReport report = channel.record.report(now, stale_intervals_);
-    const bool is_measured =
-        !channel.config.driver->plays_recordings && report.last && report.last->quality != ReadingQuality::kSimulated;
-    const bool is_well = report.health == SourceHealth::kLive && channel.judge.fault() <= ReadingFault::kSpike;
+    const wind::SourceReport report = channel.record.report(now, stale_intervals_);
+    const bool is_measured = !channel.config.driver->plays_recordings && report.last &&
+                             report.last->quality != wind::ReadingQuality::kSimulated;
+    const bool is_well =
+        report.health == wind::SourceHealth::kLive && channel.judge.fault() <= wind::judging::ReadingFault::kSpike;
     vote_.set_comparable(index, channel.is_compared && is_measured && is_well);
   }
   vote_.advance(now);
@@ -211,8 +213,8 @@ void SensorHub::log_link(Channel& channel, MonoTime now) const {
 void SensorHub::log_state(std::size_t index, MonoTime now) {
   Channel& channel = channels_[index];
   const SensorEvidence evidence = evidence_of(index, now);
-  const SensorState state = state_of(evidence);
-  const SensorState before = state_in(channel.state_gate.reported());
+  const wind::judging::SensorState state = state_of(evidence);
+  const wind::judging::SensorState before = state_in(channel.state_gate.reported());
   if (!channel.state_gate.offer(key_of(state, evidence.vote), now)) return;
   const bool is_warning = is_trouble(state) || is_disputed(state, evidence.vote);
   const auto level = is_warning ? spdlog::level::warn : spdlog::level::info;
@@ -248,15 +250,15 @@ SensorCounts SensorHub::counts_of(const Channel& channel) {
                       .lost = runner.lost_count(),
                       .frames = runner.frame_count(),
                       .reconnects = runner.reconnect_count()};
-  for (std::size_t why = 0; why < kRefusalCount; ++why) {
-    counts.refused[why] = runner.refused_count(static_cast<Refusal>(why));
+  for (std::size_t why = 0; why < drivers::decode::kRefusalCount; ++why) {
+    counts.refused[why] = runner.refused_count(static_cast<drivers::decode::Refusal>(why));
   }
   return counts;
 }
 
 bool SensorHub::is_any_live() const {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
-    if (estimator_.report(index).health == SourceHealth::kLive) return true;
+    if (estimator_.report(index).health == wind::SourceHealth::kLive) return true;
   }
   return false;
 }
@@ -265,7 +267,7 @@ std::vector<NamedPlayer> SensorHub::players() {
   std::vector<NamedPlayer> players;
   for (const Channel& channel : channels_) {
     SensorRunner& runner = *channel.runner;
-    RecordingPlayer* const player = runner.player();
+    drivers::recording::RecordingPlayer* const player = runner.player();
     if (player != nullptr) players.push_back({channel.config.name, player, [&runner] { runner.wake(); }});
   }
   return players;
@@ -283,7 +285,7 @@ void SensorHub::drain_traces(const std::function<void(const wire::RawTrace&)>& u
       use({.sensor = channel.config.name,
            .mono_ns = nanoseconds(message.time.mono),
            .utc_ns = nanoseconds(message.time.utc),
-           .received = message.direction == RawDirection::kReceived,
+           .received = message.direction == drivers::sensor::RawDirection::kReceived,
            .bytes = {kept.begin(), kept.end()},
            .length = message.length,
            .lost = message.lost});
@@ -300,7 +302,7 @@ void SensorHub::log_summary() const {
 
 bool SensorHub::is_finished() const {
   return std::ranges::all_of(
-      channels_, [](const Channel& channel) { return channel.runner->link().state == LinkState::kFinished; });
+      channels_, [](const Channel& channel) { return channel.runner->link().state == wind::LinkState::kFinished; });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

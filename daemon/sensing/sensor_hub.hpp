@@ -21,7 +21,7 @@
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// All sensors of an installation, and the estimator that makes one wind of their readings. Belongs to the I/O thread;
 /// each sensor runs on a thread of its own.
@@ -32,26 +32,26 @@ namespace yuragi {
 class SensorHub {
  public:
   /// Gets each plausible reading, before calibration; for the recorder.
-  using Listener = std::function<void(std::size_t sensor, const WindReading&)>;
+  using Listener = std::function<void(std::size_t sensor, const wind::WindReading&)>;
 
   /// Opens and starts every sensor. `noise`: of the gusts; `reach_m`: as make_estimator() takes it. Throws ConfigError
   /// where a sensor cannot be constructed from its values.
-  SensorHub(const Config& config, const Clock& clock, std::shared_ptr<const GustNoise> noise, Listener listener = {},
-            double reach_m = 0.0);
+  SensorHub(const settings::Config& config, const drivers::sensor::Clock& clock,
+            std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener = {}, double reach_m = 0.0);
 
   /// Takes the readings that have arrived, and returns the wind now. Logs each change of a sensor's state once.
-  const WindState& advance();
+  const wind::WindState& advance();
 
   /// Is any sensor live and believed? The fall-back recording does not count. As of the last advance().
   bool is_any_live() const;
 
   /// The wind as of the last advance().
-  const WindState& wind() const noexcept { return wind_; }
-  const GroundWind& ground() const noexcept { return estimator_.ground(); }
-  const WindStroke& stroke() const noexcept { return estimator_.stroke(); }
+  const wind::WindState& wind() const noexcept { return wind_; }
+  const wind::ground::GroundWind& ground() const noexcept { return estimator_.ground(); }
+  const wind::ground::WindStroke& stroke() const noexcept { return estimator_.stroke(); }
 
   /// What is known of the site's gusts; updated while a fast sensor of the site is live. Belongs to this thread.
-  const std::shared_ptr<SiteSpectrum>& site() const noexcept { return site_; }
+  const std::shared_ptr<wind::turbulence::SiteSpectrum>& site() const noexcept { return site_; }
 
   /// The status of each sensor, and of the fall-back while it plays.
   std::vector<wire::SensorStatus> status() const;
@@ -75,22 +75,22 @@ class SensorHub {
   static constexpr std::uint32_t kNothingReported = ~0U;
 
   struct Channel {
-    SensorConfig config;
-    ReadingJudge judge;
+    settings::SensorConfig config;
+    wind::judging::ReadingJudge judge;
     bool is_compared = false;
     std::unique_ptr<SensorRunner> runner;
-    SourceRecord record;  ///< calibrated, believed or not
+    wind::blend::SourceRecord record;  ///< calibrated, believed or not
     std::uint64_t readings = 0;
     std::uint64_t not_believed = 0;  ///< plausible readings that were left out of the wind
     std::uint64_t impossible = 0;    ///< readings that were refused as implausible
     LinkReport link;                 ///< as of its last report
     std::uint64_t link_reports = 0;
     ChangeGate link_gate{kNothingReported};
-    ChangeGate state_gate{static_cast<std::uint32_t>(SensorState::kConnecting)};
-    std::optional<WindReading> last_raw;  ///< before calibration
+    ChangeGate state_gate{static_cast<std::uint32_t>(wind::judging::SensorState::kConnecting)};
+    std::optional<wind::WindReading> last_raw;  ///< before calibration
   };
 
-  void take(std::size_t index, const WindReading& reading);
+  void take(std::size_t index, const wind::WindReading& reading);
   static SensorCounts counts_of(const Channel& channel);
   void judge_refusals(Channel& channel) const;
   void compare(MonoTime now);
@@ -98,27 +98,28 @@ class SensorHub {
   void log_link(Channel& channel, MonoTime now) const;
   void log_state(std::size_t index, MonoTime now);
 
-  const Clock& clock_;
+  const drivers::sensor::Clock& clock_;
   Listener listener_;
-  std::shared_ptr<SiteSpectrum> site_;
-  BlendedEstimator estimator_;
+  std::shared_ptr<wind::turbulence::SiteSpectrum> site_;
+  wind::blend::BlendedEstimator estimator_;
   double stale_intervals_;
-  SensorVote vote_;
+  wind::judging::SensorVote vote_;
   std::vector<Channel> channels_;
   FallbackRecording fallback_;  ///< the estimator's source behind those of the channels
-  WindState wind_;
+  wind::WindState wind_;
 };
 
 /// The pattern of gusts of an installation: the estimator and the scenes share it. Set-up work of about 0.1 s.
-std::shared_ptr<const GustNoise> make_gust_noise(const Config& config);
+std::shared_ptr<const wind::turbulence::GustNoise> make_gust_noise(const settings::Config& config);
 
 /// The settings of the blend, with one source for each sensor, and one for the fall-back.
-BlendSettings blend_settings_of(const Config& config);
+wind::blend::BlendSettings blend_settings_of(const settings::Config& config);
 
 /// The estimator of a configuration, with one source for each sensor, and one for the fall-back. `reach_m`: from the
 /// middle of the scenes to the farthest place of any of them. `site`: the site's gusts, which the estimator updates;
 /// null: as the configuration expects them.
-BlendedEstimator make_estimator(const Config& config, std::shared_ptr<const GustNoise> noise, double reach_m,
-                                std::shared_ptr<SiteSpectrum> site = {});
+wind::blend::BlendedEstimator make_estimator(const settings::Config& config,
+                                             std::shared_ptr<const wind::turbulence::GustNoise> noise, double reach_m,
+                                             std::shared_ptr<wind::turbulence::SiteSpectrum> site = {});
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

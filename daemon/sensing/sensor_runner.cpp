@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
-SensorRunner::SensorRunner(std::unique_ptr<Sensor> sensor, const Clock& clock)
+SensorRunner::SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock)
     : sensor_(std::move(sensor)), clock_(clock), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 SensorRunner::~SensorRunner() {
@@ -30,21 +30,21 @@ void SensorRunner::wake() {
   wake_.notify_one();
 }
 
-void SensorRunner::reading(const WindReading& reading) {
-  if (!is_plausible(reading)) {
-    refused(Refusal::kImplausible);
+void SensorRunner::reading(const wind::WindReading& reading) {
+  if (!wind::is_plausible(reading)) {
+    refused(drivers::decode::Refusal::kImplausible);
   } else if (!readings_.push(reading)) {
     lost_.fetch_add(1, std::memory_order_relaxed);
   }
 }
 
-void SensorRunner::refused(Refusal why) {
+void SensorRunner::refused(drivers::decode::Refusal why) {
   refused_[static_cast<std::size_t>(why)].fetch_add(1, std::memory_order_relaxed);
 }
 
-void SensorRunner::link(LinkState state, std::string_view detail) {
+void SensorRunner::link(wind::LinkState state, std::string_view detail) {
   const std::lock_guard lock(link_mutex_);
-  const bool connects = state == LinkState::kConnected && link_.state != LinkState::kConnected;
+  const bool connects = state == wind::LinkState::kConnected && link_.state != wind::LinkState::kConnected;
   if (connects && has_been_connected_) reconnects_.fetch_add(1, std::memory_order_relaxed);
   has_been_connected_ = has_been_connected_ || connects;
   link_.state = state;
@@ -52,8 +52,8 @@ void SensorRunner::link(LinkState state, std::string_view detail) {
   link_reports_.fetch_add(1, std::memory_order_release);
 }
 
-void SensorRunner::raw(RawDirection direction, std::span<const std::uint8_t> message) {
-  if (direction == RawDirection::kReceived) frames_.fetch_add(1, std::memory_order_relaxed);
+void SensorRunner::raw(drivers::sensor::RawDirection direction, std::span<const std::uint8_t> message) {
+  if (direction == drivers::sensor::RawDirection::kReceived) frames_.fetch_add(1, std::memory_order_relaxed);
   if (!is_trace_wanted_.load(std::memory_order_acquire)) {
     lost_of_trace_ = 0;
     return;
@@ -79,4 +79,4 @@ LinkReport SensorRunner::link() const {
   return link_;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

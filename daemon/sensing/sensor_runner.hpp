@@ -16,18 +16,18 @@
 #include "engine/base/spsc_ring.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// The last change of a sensor's link, for a person.
 struct LinkReport {
-  LinkState state = LinkState::kConnecting;
+  wind::LinkState state = wind::LinkState::kConnecting;
   std::string detail;
 };
 
 /// A message to or from a device, as passed to SensorSink::raw(), and its time.
 struct RawMessage {
   Instant time{};
-  RawDirection direction = RawDirection::kReceived;
+  drivers::sensor::RawDirection direction = drivers::sensor::RawDirection::kReceived;
   std::uint32_t length = 0;  ///< of the whole message
   std::array<std::uint8_t, wire::kMaxRawBytes> bytes{};
   std::uint64_t lost = 0;  ///< messages dropped just before this one, for lack of room
@@ -41,9 +41,9 @@ struct RawMessage {
 /// them, so that no device delays that thread.
 ///
 /// Thread-safe: the public functions may be called from one other thread.
-class SensorRunner final : private SensorSink {
+class SensorRunner final : private drivers::sensor::SensorSink {
  public:
-  SensorRunner(std::unique_ptr<Sensor> sensor, const Clock& clock);
+  SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock);
   ~SensorRunner() override;  ///< ends the thread, interrupting a poll that waits
 
   SensorRunner(const SensorRunner&) = delete;
@@ -69,12 +69,14 @@ class SensorRunner final : private SensorSink {
   void wake();
 
   /// The sensor's controls, if it plays a recording; nullptr otherwise. They live as long as the runner.
-  RecordingPlayer* player() noexcept { return dynamic_cast<RecordingPlayer*>(sensor_.get()); }
+  drivers::recording::RecordingPlayer* player() noexcept {
+    return dynamic_cast<drivers::recording::RecordingPlayer*>(sensor_.get());
+  }
 
   LinkReport link() const;
   /// The number of reports of the link: a cheap check whether link() has changed.
   std::uint64_t link_reports() const noexcept { return link_reports_.load(std::memory_order_acquire); }
-  std::uint64_t refused_count(Refusal why) const noexcept {
+  std::uint64_t refused_count(drivers::decode::Refusal why) const noexcept {
     return refused_[static_cast<std::size_t>(why)].load(std::memory_order_relaxed);
   }
   /// Messages from the device, used or refused.
@@ -89,15 +91,15 @@ class SensorRunner final : private SensorSink {
   static constexpr std::size_t kTraceCapacity = 256;
 
   void run(const std::stop_token& stop);
-  void reading(const WindReading& reading) override;
-  void refused(Refusal why) override;
-  void link(LinkState state, std::string_view detail) override;
-  void raw(RawDirection direction, std::span<const std::uint8_t> message) override;
+  void reading(const wind::WindReading& reading) override;
+  void refused(drivers::decode::Refusal why) override;
+  void link(wind::LinkState state, std::string_view detail) override;
+  void raw(drivers::sensor::RawDirection direction, std::span<const std::uint8_t> message) override;
 
-  std::unique_ptr<Sensor> sensor_;
-  const Clock& clock_;
-  SpscRing<WindReading> readings_{kRingCapacity};
-  std::array<std::atomic<std::uint64_t>, kRefusalCount> refused_{};
+  std::unique_ptr<drivers::sensor::Sensor> sensor_;
+  const drivers::sensor::Clock& clock_;
+  SpscRing<wind::WindReading> readings_{kRingCapacity};
+  std::array<std::atomic<std::uint64_t>, drivers::decode::kRefusalCount> refused_{};
   std::atomic<std::uint64_t> lost_{0};
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> reconnects_{0};
@@ -117,4 +119,4 @@ class SensorRunner final : private SensorSink {
   std::jthread thread_;  // last: it uses all of the above
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -2,12 +2,12 @@
 
 #include <cstddef>
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 /// The part of a status that sensors and the fall-back share.
-wire::SensorStatus status_of_source(std::string_view name, std::string_view driver, LinkState link,
-                                    const SourceReport& report) {
+wire::SensorStatus status_of_source(std::string_view name, std::string_view driver, wind::LinkState link,
+                                    const wind::SourceReport& report) {
   wire::SensorStatus status;
   status.name = name;
   status.driver = driver;
@@ -17,7 +17,7 @@ wire::SensorStatus status_of_source(std::string_view name, std::string_view driv
     status.speed_m_s = report.last->speed_m_s;
     status.direction_deg = report.last->direction_deg;
     status.gust_m_s = report.last->gust_m_s;
-    status.simulated = report.last->quality == ReadingQuality::kSimulated;
+    status.simulated = report.last->quality == wind::ReadingQuality::kSimulated;
   }
   status.age_s = report.age_s;
   status.interval_s = report.interval_s;
@@ -39,8 +39,8 @@ wire::SensorStatus sensor_status(const SensorFacts& facts) {
   const auto add_refused = [&status](std::string_view why, std::uint64_t count) {
     if (count > 0) status.refused.emplace_back(why, count);
   };
-  for (std::size_t why = 0; why < kRefusalCount; ++why) {
-    add_refused(name_of(static_cast<Refusal>(why)), counts.refused[why]);
+  for (std::size_t why = 0; why < drivers::decode::kRefusalCount; ++why) {
+    add_refused(name_of(static_cast<drivers::decode::Refusal>(why)), counts.refused[why]);
   }
   add_refused("rejected", counts.not_believed);
   add_refused("lost", counts.lost);
@@ -53,14 +53,15 @@ wire::SensorStatus sensor_status(const SensorFacts& facts) {
 }
 
 wire::SensorStatus fallback_status(std::string_view name, std::string_view driver, const LinkReport& link,
-                                   const SourceReport& report, std::uint64_t readings) {
+                                   const wind::SourceReport& report, std::uint64_t readings) {
   wire::SensorStatus status = status_of_source(name, driver, link.state, report);
   status.detail = "all sensors are silent: " + link.detail;
   status.readings = readings;
   status.replayed = true;
-  status.state = report.health == SourceHealth::kLive ? SensorState::kReplayed : SensorState::kConnecting;
+  status.state = report.health == wind::SourceHealth::kLive ? wind::judging::SensorState::kReplayed
+                                                            : wind::judging::SensorState::kConnecting;
   status.state_reason = status.detail;
   return status;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -11,15 +11,15 @@
 #include "engine/wind/wind_reading.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// The counts of a sensor since the start.
 struct SensorCounts {
   std::uint64_t readings = 0;
-  std::array<std::uint64_t, kRefusalCount> refused{};  ///< by Refusal
-  std::uint64_t not_believed = 0;                      ///< plausible readings that were left out of the wind
-  std::uint64_t lost = 0;                              ///< readings dropped for lack of room
-  std::uint64_t frames = 0;                            ///< messages from the device
+  std::array<std::uint64_t, drivers::decode::kRefusalCount> refused{};  ///< by Refusal
+  std::uint64_t not_believed = 0;  ///< plausible readings that were left out of the wind
+  std::uint64_t lost = 0;          ///< readings dropped for lack of room
+  std::uint64_t frames = 0;        ///< messages from the device
   std::uint64_t reconnects = 0;
 };
 
@@ -28,7 +28,7 @@ struct SensorFacts {
   std::string_view name;
   std::string_view driver;
   SensorEvidence evidence;
-  std::optional<WindReading> last_raw{};  ///< before calibration
+  std::optional<wind::WindReading> last_raw{};  ///< before calibration
   SensorCounts counts{};
 };
 
@@ -38,6 +38,6 @@ wire::SensorStatus sensor_status(const SensorFacts& facts);
 /// The status of the fall-back recording: replayed once it is live, connecting before. `report`: of its source;
 /// `readings`: since it began. Pure.
 wire::SensorStatus fallback_status(std::string_view name, std::string_view driver, const LinkReport& link,
-                                   const SourceReport& report, std::uint64_t readings);
+                                   const wind::SourceReport& report, std::uint64_t readings);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -2,10 +2,10 @@
 
 #include "drivers/sensor/clock.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 
 /// The machine's own clocks. Thread-safe and realtime-safe.
-class SystemClock final : public Clock {
+class SystemClock final : public drivers::sensor::Clock {
  public:
   Instant now() const noexcept override {
     return {.mono = std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()),
@@ -13,4 +13,4 @@ class SystemClock final : public Clock {
   }
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

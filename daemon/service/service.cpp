@@ -23,7 +23,7 @@
 #include "engine/base/latest.hpp"
 #include "engine/base/version.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::service {
 namespace {
 
 namespace asio = boost::asio;
@@ -34,12 +34,12 @@ constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 
 class Service::Io {
  public:
-  Io(const Config& config, const ServiceOptions& options)
+  Io(const settings::Config& config, const ServiceOptions& options)
       : options_(options),
         rate_hz_(config.animation.rate_hz),
-        gusts_(make_gust_noise(config)),
-        animation_(options.with_scenes ? std::make_unique<Animation>(config, gusts_) : nullptr),
-        director_(config, [this](const SceneCue& cue) { return loop_ && loop_->cue(cue); }),
+        gusts_(sensing::make_gust_noise(config)),
+        animation_(options.with_scenes ? std::make_unique<animation::Animation>(config, gusts_) : nullptr),
+        director_(config, [this](const animation::SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.listen, stream_settings(config)),
         recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0),
@@ -47,7 +47,7 @@ class Service::Io {
         players_(config.stream.control, hub_.players()) {
     if (animation_) {
       shaper_.keep_site_file(hub_.site());
-      loop_ = std::make_unique<AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
+      loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
     }
   }
@@ -87,14 +87,14 @@ class Service::Io {
   static void refuse_what_no_client_takes(const wire::Scenes& scenes) {
     const wire::Bytes message = wire::encode(scenes);
     if (wire::decode(std::span(message).subspan(wire::kSizePrefixBytes))) return;
-    throw ConfigError(
+    throw settings::ConfigError(
         fmt::format("[[scene]]: the scenes are larger than the stream allows; allowed in total: {} scenes, {} strands, "
                     "joints of cloth and points of surfaces",
                     wire::kMaxScenes, wire::kMaxStrands));
   }
 
-  TcpStreamSettings stream_settings(const Config& config) {
-    TcpStreamSettings settings;
+  stream::TcpStreamSettings stream_settings(const settings::Config& config) {
+    stream::TcpStreamSettings settings;
     settings.hello.software = with_version("yuragi");
     settings.hello.tick_rate_hz = rate_hz_;
     if (animation_) {
@@ -112,16 +112,17 @@ class Service::Io {
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
   }
 
-  std::unique_ptr<Recorder> make_recorder(const Config& config, const std::filesystem::path& file) const;
+  std::unique_ptr<recording::Recorder> make_recorder(const settings::Config& config,
+                                                     const std::filesystem::path& file) const;
 
-  SensorHub::Listener listener() {
+  sensing::SensorHub::Listener listener() {
     if (!recorder_) return {};
-    return [this](std::size_t sensor, const WindReading& reading) { recorder_->push(sensor, reading); };
+    return [this](std::size_t sensor, const wind::WindReading& reading) { recorder_->push(sensor, reading); };
   }
 
   /// Takes readings and advances the wind, at the rate of the animation.
   void step_wind() {
-    DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
+    wind::ground::DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
     shaper_.shape(wind, clock_.now().utc, hub_.is_any_live());
     wind_.publish(wind);
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
@@ -179,7 +180,7 @@ class Service::Io {
 
   ServiceOptions options_;
   double rate_hz_;
-  SystemClock clock_;
+  sensing::SystemClock clock_;
   asio::io_context io_{1};
   asio::signal_set signals_{io_, SIGINT, SIGTERM};
   asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_};
@@ -188,46 +189,50 @@ class Service::Io {
   std::uint64_t frames_made_ = 0;
 
   // In this order, so that a second daemon fails at the address in use before it touches the recording or a sensor.
-  std::shared_ptr<const GustNoise> gusts_;
-  std::unique_ptr<Animation> animation_;
-  SceneDirector director_;
-  TcpStream stream_;
-  std::unique_ptr<Recorder> recorder_;
-  SensorHub hub_;
-  WindShaper shaper_;
-  PlayerDirector players_;
-  Latest<DrivingWind> wind_;
-  std::unique_ptr<AnimationLoop> loop_;
+  std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
+  std::unique_ptr<animation::Animation> animation_;
+  animation::SceneDirector director_;
+  stream::TcpStream stream_;
+  std::unique_ptr<recording::Recorder> recorder_;
+  sensing::SensorHub hub_;
+  shaping::WindShaper shaper_;
+  sensing::PlayerDirector players_;
+  Latest<wind::ground::DrivingWind> wind_;
+  std::unique_ptr<animation::AnimationLoop> loop_;
 };
 
-std::unique_ptr<Recorder> Service::Io::make_recorder(const Config& config, const std::filesystem::path& file) const {
-  RecordingInfo info{
-      .started = clock_.now(), .software = with_version("yuragi"), .configuration = to_toml(config), .sensors = {}};
-  for (const SensorConfig& sensor : config.sensors) {
-    info.sensors.push_back({sensor.name, std::string(sensor.driver->name), to_toml(sensor.values)});
+std::unique_ptr<recording::Recorder> Service::Io::make_recorder(const settings::Config& config,
+                                                                const std::filesystem::path& file) const {
+  recording::RecordingInfo info{.started = clock_.now(),
+                                .software = with_version("yuragi"),
+                                .configuration = settings::to_toml(config),
+                                .sensors = {}};
+  for (const settings::SensorConfig& sensor : config.sensors) {
+    info.sensors.push_back({sensor.name, std::string(sensor.driver->name), settings::to_toml(sensor.values)});
   }
-  return std::make_unique<Recorder>(file, std::move(info),
-                                    [](std::string_view news) { spdlog::warn("recording: {}", news); });
+  return std::make_unique<recording::Recorder>(file, std::move(info),
+                                               [](std::string_view news) { spdlog::warn("recording: {}", news); });
 }
 
 void Service::Io::log_summary() const {
   hub_.log_summary();
   if (recorder_) {
-    const RecorderStatus status = recorder_->status();
+    const recording::RecorderStatus status = recorder_->status();
     spdlog::info("recorded {}, lost {}", count_text(status.written, "reading"), status.lost);
   }
   if (!loop_) return;
-  const LoopCounters& counters = loop_->counters();
+  const animation::LoopCounters& counters = loop_->counters();
   spdlog::info("{} ticks, {} skipped; lateness p50 {:.3f} ms, p99 {:.3f} ms; work p50 {:.3f} ms, p99 {:.3f} ms",
                counters.ticks.load(), counters.skipped_ticks.load(), 1e3 * counters.lateness.percentile_s(0.5),
                1e3 * counters.lateness.percentile_s(0.99), 1e3 * counters.work.percentile_s(0.5),
                1e3 * counters.work.percentile_s(0.99));
 }
 
-Service::Service(const Config& config, const ServiceOptions& options) : io_(std::make_unique<Io>(config, options)) {}
+Service::Service(const settings::Config& config, const ServiceOptions& options)
+    : io_(std::make_unique<Io>(config, options)) {}
 Service::~Service() = default;
 void Service::run() {
   io_->run();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::service

@@ -6,7 +6,7 @@
 
 #include "daemon/settings/config.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::service {
 
 struct ServiceOptions {
   std::optional<std::filesystem::path> record;  ///< record the readings into this file
@@ -25,7 +25,7 @@ struct ServiceOptions {
 class Service {
  public:
   /// Opens the sensors, the listening socket and the recording. Throws ConfigError or FailureError.
-  Service(const Config& config, const ServiceOptions& options);
+  Service(const settings::Config& config, const ServiceOptions& options);
   ~Service();
 
   /// Runs until SIGINT or SIGTERM, or until the options end it. Returns in under a second after that.
@@ -36,4 +36,4 @@ class Service {
   std::unique_ptr<Io> io_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::service

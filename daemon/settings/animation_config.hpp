@@ -4,7 +4,7 @@
 
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// [animation]: tick rate and threads.
 struct AnimationConfig {
@@ -15,4 +15,4 @@ struct AnimationConfig {
 /// From the values of animation_parameters().
 AnimationConfig animation_config_of(const ParameterValues& values);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -11,7 +11,7 @@
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 constexpr std::string_view kNameKey = "name";
@@ -20,11 +20,11 @@ constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
 
 /// All keys of a [[sensor]] or a [[scene]] of this kind.
-std::vector<Parameter> parameters_of(const DriverDescription& driver) {
+std::vector<Parameter> parameters_of(const drivers::sensor::DriverDescription& driver) {
   return {driver.parameters.begin(), driver.parameters.end()};
 }
 
-std::vector<Parameter> parameters_of(const SceneDescription& scene) {
+std::vector<Parameter> parameters_of(const scenes::SceneDescription& scene) {
   std::vector<Parameter> all(scene.parameters.begin(), scene.parameters.end());
   const std::span<const Parameter> common = common_scene_parameters();
   all.insert(all.end(), common.begin(), common.end());
@@ -32,10 +32,10 @@ std::vector<Parameter> parameters_of(const SceneDescription& scene) {
 }
 
 /// Its retired keys.
-std::span<const RetiredParameter> retired_of(const DriverDescription&) {
+std::span<const scenes::RetiredParameter> retired_of(const drivers::sensor::DriverDescription&) {
   return {};
 }
-std::span<const RetiredParameter> retired_of(const SceneDescription& scene) {
+std::span<const scenes::RetiredParameter> retired_of(const scenes::SceneDescription& scene) {
   return scene.retired;
 }
 
@@ -68,14 +68,14 @@ class ConfigReader {
     config.by_name.shaping = read_table(root, "", "shaping", shaping_parameters());
     config.shaping = typed(root, "", "shaping", shaping_config_of(config.by_name.shaping, config.wind));
 
-    for_each_entry(root, "sensor", "driver", driver_table(),
-                   [&](const std::string& name, const DriverDescription& driver, const ParameterValues& values,
-                       const toml::table& entry) {
+    for_each_entry(root, "sensor", "driver", drivers::sensor::driver_table(),
+                   [&](const std::string& name, const drivers::sensor::DriverDescription& driver,
+                       const ParameterValues& values, const toml::table& entry) {
                      config.sensors.push_back(read_sensor(entry, name, driver, values, config.wind));
                      config.sensors.back().origin = place(entry.source());
                    });
-    for_each_entry(root, "scene", "kind", scene_table(),
-                   [&](const std::string& name, const SceneDescription& kind, const ParameterValues& values,
+    for_each_entry(root, "scene", "kind", scenes::scene_table(),
+                   [&](const std::string& name, const scenes::SceneDescription& kind, const ParameterValues& values,
                        const toml::table&) { config.scenes.push_back(scene_config_of(name, kind, values)); });
 
     if (!mistakes_.empty()) throw ConfigError(mistakes_);
@@ -83,7 +83,7 @@ class ConfigReader {
   }
 
   /// The tables of every sensor.
-  SensorConfig read_sensor(const toml::table& entry, std::string name, const DriverDescription& driver,
+  SensorConfig read_sensor(const toml::table& entry, std::string name, const drivers::sensor::DriverDescription& driver,
                            ParameterValues values, const WindConfig& wind) {
     SensorConfig sensor{.name = std::move(name), .driver = &driver, .values = std::move(values)};
     SensorTables& tables = sensor.by_name;
@@ -186,7 +186,7 @@ class ConfigReader {
   /// The values of one table, except the keys in `aside`.
   ParameterValues read_values(const toml::table& table, const std::string& prefix,
                               std::span<const Parameter> parameters, const std::set<std::string_view>& aside,
-                              std::span<const RetiredParameter> retired = {}) {
+                              std::span<const scenes::RetiredParameter> retired = {}) {
     // One key at a time, so that each error is reported at its own place.
     ParameterValues::Map good;
     for (const auto& [key, node] : table) {
@@ -196,7 +196,7 @@ class ConfigReader {
         mistake(node.source(), prefix + std::string(key.str()), "takes one value: true, a number or a text");
         continue;
       }
-      const auto gone = std::ranges::find(retired, key.str(), &RetiredParameter::name);
+      const auto gone = std::ranges::find(retired, key.str(), &scenes::RetiredParameter::name);
       if (gone != retired.end()) {
         mistake(node.source(), prefix + std::string(key.str()), std::string(gone->now));
         continue;
@@ -284,11 +284,11 @@ ParameterValues defaults_of(const Description& description) {
 
 // The sensor and the scene of a file without any.
 SensorConfig synthetic_sensor() {
-  const DriverDescription& synthetic = description_named(driver_table(), "synthetic");
+  const drivers::sensor::DriverDescription& synthetic = description_named(drivers::sensor::driver_table(), "synthetic");
   return default_sensor(std::string(synthetic.name), synthetic, defaults_of(synthetic));
 }
 SceneConfig grass_scene() {
-  const SceneDescription& grass = description_named(scene_table(), "grass");
+  const scenes::SceneDescription& grass = description_named(scenes::scene_table(), "grass");
   return scene_config_of(std::string(grass.name), grass, defaults_of(grass));
 }
 
@@ -306,7 +306,7 @@ Config default_config() {
   return parse_config("", "");
 }
 
-SensorConfig default_sensor(std::string name, const DriverDescription& driver, ParameterValues values,
+SensorConfig default_sensor(std::string name, const drivers::sensor::DriverDescription& driver, ParameterValues values,
                             std::string origin) {
   SensorConfig sensor = ConfigReader("").read_sensor({}, std::move(name), driver, std::move(values), {});
   sensor.origin = std::move(origin);
@@ -347,7 +347,7 @@ Config load_config(const std::filesystem::path& file) {
   return parse_config(read_config_text(file), file.string());
 }
 
-std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor) {
+std::unique_ptr<drivers::sensor::Sensor> open_sensor(const SensorConfig& sensor) {
   try {
     return sensor.driver->open(sensor.values);
   } catch (const std::exception& error) {
@@ -406,4 +406,4 @@ Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::s
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -19,7 +19,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// The configuration of an installation, parsed from TOML. Every value is within its range; what the file leaves out
 /// has its default. The keys are described in config_tables.hpp, shaping_parameters.hpp and sensor_blend.hpp.
@@ -49,7 +49,7 @@ class ConfigError : public std::runtime_error {
 Config default_config();
 
 /// A sensor that is in no file, with the defaults of the tables that every sensor has.
-SensorConfig default_sensor(std::string name, const DriverDescription& driver, ParameterValues values,
+SensorConfig default_sensor(std::string name, const drivers::sensor::DriverDescription& driver, ParameterValues values,
                             std::string origin = {});
 
 /// The same configuration with another listening address, which is not checked.
@@ -65,7 +65,7 @@ std::string read_config_text(const std::filesystem::path& file);
 Config load_config(const std::filesystem::path& file);
 
 /// Makes the sensor, without touching its device. Throws ConfigError where its values contradict each other.
-std::unique_ptr<Sensor> open_sensor(const SensorConfig& sensor);
+std::unique_ptr<drivers::sensor::Sensor> open_sensor(const SensorConfig& sensor);
 
 /// The configuration as TOML with every value written out, except keys without a default that are not set. Stored in
 /// recordings and printed by `check-config`. Written from `seed`, `by_name` and the tables of sensors and scenes: a
@@ -76,4 +76,4 @@ std::string to_toml(const ParameterValues& values);
 /// The reverse for one table, such as a recording stores for each sensor. Fails with the first error.
 Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

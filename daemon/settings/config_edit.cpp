@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -256,4 +256,4 @@ Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -7,7 +7,7 @@
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// A value to set in a sensor's entry.
 struct ConfigChange {
@@ -28,4 +28,4 @@ Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string
 /// A value as TOML; numbers with the fewest digits that read back as the same number.
 std::string toml_value(const ParameterValue& value);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -9,7 +9,7 @@
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/output_file.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 Failure not_written(const std::string& message) {
@@ -81,4 +81,4 @@ Result<std::filesystem::path, Failure> replace_config(const std::filesystem::pat
   return {boost::system::in_place_value, kept};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -6,7 +6,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// Replaces the text of a configuration file, as a whole or not at all. The new text is checked first: it must parse,
 /// and every sensor that could be constructed from the old text can be constructed from it. The old text is kept as
@@ -17,4 +17,4 @@ namespace yuragi {
 Result<std::filesystem::path, Failure> replace_config(const std::filesystem::path& file, std::string_view old_text,
                                                       std::string_view new_text);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -9,7 +9,7 @@
 #include "drivers/sensor/speed_unit.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 const std::array kGeneralParameters = {
@@ -131,7 +131,7 @@ const std::array kCalibrationParameters = {
               .unit = "",
               .default_value = std::string("m/s"),
               .help = "unit of the sensor's speeds, where its driver assumes m/s",
-              .choices = kSpeedUnitNames},
+              .choices = drivers::sensor::kSpeedUnitNames},
     Parameter{.name = "gain",
               .unit = "",
               .default_value = 1.0,
@@ -183,9 +183,9 @@ const std::array kJudgeParameters = {
                       "simulated ones always are"},
     Parameter{.name = "max_speed",
               .unit = "m/s",
-              .default_value = kMaxPlausibleSpeed_m_s,
+              .default_value = wind::kMaxPlausibleSpeed_m_s,
               .min = 1.0,
-              .max = kMaxPlausibleSpeed_m_s,
+              .max = wind::kMaxPlausibleSpeed_m_s,
               .help = "a speed above this is out of the sensor's range"},
     Parameter{.name = "spike",
               .unit = "m/s",
@@ -301,4 +301,4 @@ std::span<const Parameter> common_scene_parameters() {
   return kCommonSceneParameters;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -5,7 +5,7 @@
 
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 // The keys of a configuration, except those of drivers and scenes, each with unit, range, default and help.
 
@@ -29,4 +29,4 @@ std::span<const Parameter> judge_parameters();
 /// The keys that scenes of every kind have: place, gain, whether it is shown.
 std::span<const Parameter> common_scene_parameters();
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// Where clients may control scenes and recordings from: [stream] control.
 enum class ControlPermission : std::uint8_t { kLoopback, kAnywhere, kNobody };
@@ -31,4 +31,4 @@ inline std::optional<std::string> control_refusal(ControlPermission allowed, boo
   return std::nullopt;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 std::string duration_text(double duration_s) {
   if (duration_s < 59.95) return fmt::format("{:.3g} s", duration_s);
@@ -21,4 +21,4 @@ std::string duration_text(double duration_s) {
   return two(whole_s / 86400, whole_s / 86400 < 2 ? "day" : "days", whole_s % 86400 / 3600, "h");
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

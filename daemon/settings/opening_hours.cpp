@@ -10,7 +10,7 @@
 #include <date/tz.h>
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 constexpr std::size_t kMinutesPerDay = std::size_t{24} * 60;
@@ -158,4 +158,4 @@ std::string OpeningHours::until_text(UtcTime now) const {
   return {};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

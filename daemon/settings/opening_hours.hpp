@@ -13,7 +13,7 @@ namespace date {
 class time_zone;
 }
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// Weekly opening hours in the local time of a time zone, to the minute.
 ///
@@ -51,4 +51,4 @@ class OpeningHours {
   const date::time_zone* zone_ = nullptr;  ///< null: UTC; lives as long as the program
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -7,7 +7,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 namespace {
 
@@ -62,4 +62,4 @@ Result<void, Failure> OutputFile::commit() {
   return {};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -6,7 +6,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// A file that is created as a whole or not at all: it is written under a temporary name in the same folder, and
 /// renamed by commit(). Without a commit() it is removed.
@@ -34,4 +34,4 @@ class OutputFile {
   std::span<const std::string_view> side_suffixes_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
-SceneConfig scene_config_of(std::string name, const SceneDescription& kind, ParameterValues values) {
+SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values) {
   SceneConfig scene{.name = std::move(name), .kind = &kind, .values = std::move(values)};
   scene.placement = {.x_m = scene.values.number("x"),
                      .y_m = scene.values.number("y"),
@@ -15,4 +15,4 @@ SceneConfig scene_config_of(std::string name, const SceneDescription& kind, Para
   return scene;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 constexpr std::string_view kOfDriver = "auto";
@@ -77,7 +77,7 @@ std::span<const Parameter> sensor_blend_parameters() {
   return kSensorBlendParameters;
 }
 
-std::string place_text(const BlendSourceSettings& source) {
+std::string place_text(const wind::blend::BlendSourceSettings& source) {
   if (!source.has_place) return "at the windward edge of the scenes";
   const auto way = [](double way_m, const char* to, const char* back) {
     return way_m == 0.0 ? std::string() : fmt::format("{:g} m {}", std::abs(way_m), way_m > 0.0 ? to : back);
@@ -90,8 +90,8 @@ std::string place_text(const BlendSourceSettings& source) {
   return text;
 }
 
-Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
-                                                            const DriverDescription& driver) {
+Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(
+    const ParameterValues& values, const drivers::sensor::DriverDescription& driver) {
   const std::string& role = values.text("role");
   const bool is_relative = role == kRelative || (role == kOfDriver && driver.is_relative);
   const bool has_place = values.has("x") || values.has("z");
@@ -100,16 +100,16 @@ Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValue
     return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
   }
   const auto number_or_0 = [&values](std::string_view name) { return values.has(name) ? values.number(name) : 0.0; };
-  return BlendSourceSettings{.is_relative = is_relative,
-                             .priority = static_cast<int>(values.integer("priority")),
-                             .weight = values.number("weight"),
-                             .has_place = has_place,
-                             .east_m = number_or_0("x"),
-                             .south_m = number_or_0("z"),
-                             .lead_m = lead_m,
-                             .fits_site = !is_relative && !driver.plays_recordings,
-                             .averaging_s = values.number("averaging"),
-                             .direction_step_deg = values.number("direction_step")};
+  return wind::blend::BlendSourceSettings{.is_relative = is_relative,
+                                          .priority = static_cast<int>(values.integer("priority")),
+                                          .weight = values.number("weight"),
+                                          .has_place = has_place,
+                                          .east_m = number_or_0("x"),
+                                          .south_m = number_or_0("z"),
+                                          .lead_m = lead_m,
+                                          .fits_site = !is_relative && !driver.plays_recordings,
+                                          .averaging_s = values.number("averaging"),
+                                          .direction_step_deg = values.number("direction_step")};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -8,18 +8,18 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// The keys of [sensor.blend]: the sensor's share among several.
 std::span<const Parameter> sensor_blend_parameters();
 
 /// From the values of sensor_blend_parameters(), with the driver's defaults where they are "auto"; length_m is not set.
 /// An error (values that contradict each other) names the key.
-Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
-                                                            const DriverDescription& driver);
+Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(
+    const ParameterValues& values, const drivers::sensor::DriverDescription& driver);
 
 /// Where the sensor stands, for a person: "at the windward edge of the scenes", "12 m east and 3 m north of the
 /// middle of the scenes, taken 20 m upwind of there".
-std::string place_text(const BlendSourceSettings& source);
+std::string place_text(const wind::blend::BlendSourceSettings& source);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -11,7 +11,7 @@
 #include "engine/wind/judging/calibration.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// Heights above the ground.
 struct SensorHeights {
@@ -29,15 +29,15 @@ struct SensorTables {
 /// A sensor of an installation, as parse_config() or default_sensor() makes it.
 struct SensorConfig {
   std::string name;
-  const DriverDescription* driver = nullptr;
+  const drivers::sensor::DriverDescription* driver = nullptr;
   ParameterValues values{};  ///< the driver's own parameters
   std::string origin{};      ///< `file:line:column` of its entry; empty: it is in no file
 
-  Calibration calibration{};             ///< [sensor.calibration], with the height factor
-  SensorHeights heights{};               ///< from which the height factor was computed
-  std::optional<JudgeSettings> judge{};  ///< [sensor.judge]; none: every reading is believed
-  bool is_compared = false;              ///< [sensor.judge] with the other sensors
-  BlendSourceSettings blend{};           ///< [sensor.blend]; length_m from the height, 0 if that is unknown
+  wind::judging::Calibration calibration{};             ///< [sensor.calibration], with the height factor
+  SensorHeights heights{};                              ///< from which the height factor was computed
+  std::optional<wind::judging::JudgeSettings> judge{};  ///< [sensor.judge]; none: every reading is believed
+  bool is_compared = false;                             ///< [sensor.judge] with the other sensors
+  wind::blend::BlendSourceSettings blend{};  ///< [sensor.blend]; length_m from the height, 0 if that is unknown
 
   SensorTables by_name{};  ///< from which the members above were made
 };
@@ -49,15 +49,15 @@ double gust_length_m(const WindConfig& wind, const SensorConfig& sensor) noexcep
 /// The integral length at a sensor's height, m: 8.1 * 0.7 times the height, up to 60 m (IEC 61400-1), at least
 /// kShortestGusts_m. Where the calibration scales speeds to another height, the length is scaled by the same factor, so
 /// that the time scale is unchanged. Pure.
-double gust_length_at_height_m(double height_m, const Calibration& calibration) noexcept;
+double gust_length_at_height_m(double height_m, const wind::judging::Calibration& calibration) noexcept;
 
 /// From the values of calibration_parameters(). An error names the key.
-Result<Calibration, ParameterError> calibration_of(const ParameterValues& values);
+Result<wind::judging::Calibration, ParameterError> calibration_of(const ParameterValues& values);
 SensorHeights sensor_heights_of(const ParameterValues& values);
 
 /// From the values of judge_parameters(): the settings of the sensor's judge, none where its readings are not judged;
 /// and whether the sensor is compared with others.
-std::optional<JudgeSettings> judge_settings_of(const ParameterValues& values);
+std::optional<wind::judging::JudgeSettings> judge_settings_of(const ParameterValues& values);
 bool is_compared(const ParameterValues& values);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -4,13 +4,14 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 constexpr double kSecondsPerDay = 86400.0;
 
 /// The contradictions among the speeds of site gain and ceiling.
-std::vector<ParameterError> speed_mistakes(const SiteRange& site, double ceiling_m_s, double ceiling_most_m_s) {
+std::vector<ParameterError> speed_mistakes(const wind::shaping::SiteRange& site, double ceiling_m_s,
+                                           double ceiling_most_m_s) {
   std::vector<ParameterError> mistakes;
   if (site.strong_m_s > 0.0 && !(site.median_m_s > 0.0 && site.strong_m_s > site.median_m_s)) {
     mistakes.push_back({"site_strong", fmt::format("is {}, with site_median {}; allowed: 0, or more than a "
@@ -28,9 +29,9 @@ std::vector<ParameterError> speed_mistakes(const SiteRange& site, double ceiling
 
 Result<ShapingConfig, std::vector<ParameterError>> shaping_config_of(const ParameterValues& values,
                                                                      const WindConfig& wind) {
-  const SiteRange site{.median_m_s = values.number("site_median"),
-                       .strong_m_s = values.number("site_strong"),
-                       .most_gain = values.number("site_most_gain")};
+  const wind::shaping::SiteRange site{.median_m_s = values.number("site_median"),
+                                      .strong_m_s = values.number("site_strong"),
+                                      .most_gain = values.number("site_most_gain")};
   const double ceiling_m_s = values.number("ceiling");
   const double ceiling_most_m_s = values.number("ceiling_most");
   std::vector<ParameterError> mistakes = speed_mistakes(site, ceiling_m_s, ceiling_most_m_s);
@@ -54,4 +55,4 @@ Result<ShapingConfig, std::vector<ParameterError>> shaping_config_of(const Param
   return shaping;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -9,11 +9,11 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/shaping/wind_shaping.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// [shaping]: how the real wind is changed for the scenes.
 struct ShapingConfig {
-  WindShapingSettings settings;
+  wind::shaping::WindShapingSettings settings;
   OpeningHours hours;
   std::filesystem::path site_file{};  ///< keeps what was learnt of the site over a restart; empty: not kept
 };
@@ -23,4 +23,4 @@ struct ShapingConfig {
 Result<ShapingConfig, std::vector<ParameterError>> shaping_config_of(const ParameterValues& values,
                                                                      const WindConfig& wind);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

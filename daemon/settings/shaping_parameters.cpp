@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 const std::array kShapingParameters = {
@@ -98,4 +98,4 @@ std::span<const Parameter> shaping_parameters() {
   return kShapingParameters;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

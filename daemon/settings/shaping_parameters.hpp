@@ -4,9 +4,9 @@
 
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// What the table [shaping] may hold.
 std::span<const Parameter> shaping_parameters();
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

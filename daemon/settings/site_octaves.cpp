@@ -7,13 +7,14 @@
 
 #include "engine/wind/turbulence/site_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 Result<std::vector<double>, Failure> parse_site_octaves(std::string_view text) {
   const Failure failure{
       fmt::format("\"{}\" is no row of octaves; allowed: up to {} numbers from {:g} to {:g} dB, such as "
                   "\"+1.2 +0.8 -0.5 -1.1\"",
-                  text, SiteSpectrum::kOctaves, -SiteSpectrum::kMost_db, SiteSpectrum::kMost_db)};
+                  text, wind::turbulence::SiteSpectrum::kOctaves, -wind::turbulence::SiteSpectrum::kMost_db,
+                  wind::turbulence::SiteSpectrum::kMost_db)};
   std::vector<double> octaves_db;
   for (;;) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
@@ -24,8 +25,8 @@ Result<std::vector<double>, Failure> parse_site_octaves(std::string_view text) {
     double level_db = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), level_db);
     const bool is_number = error == std::errc{} && end == word.data() + word.size();
-    if (!is_number || !(std::abs(level_db) <= SiteSpectrum::kMost_db)) return failure;
-    if (octaves_db.size() == SiteSpectrum::kOctaves) return failure;
+    if (!is_number || !(std::abs(level_db) <= wind::turbulence::SiteSpectrum::kMost_db)) return failure;
+    if (octaves_db.size() == wind::turbulence::SiteSpectrum::kOctaves) return failure;
     octaves_db.push_back(level_db);
   }
 }
@@ -36,4 +37,4 @@ std::string site_octaves_text(std::span<const double> octaves_db) {
   return text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -8,7 +8,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 void write_at_once(std::string_view text) {
   const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
@@ -17,4 +17,4 @@ void write_at_once(std::string_view text) {
                       FailureKind::kCannotCreate});
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

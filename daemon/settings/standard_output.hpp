@@ -2,9 +2,9 @@
 
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// Writes `text` to standard output and flushes it. Throws FailureError (kCannotCreate) where that fails (a full disk).
 void write_at_once(std::string_view text);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -2,7 +2,7 @@
 
 #include "engine/base/address.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 Result<StreamConfig, ParameterError> stream_config_of(const ParameterValues& values) {
   const std::string& listen = values.text("listen");
@@ -12,4 +12,4 @@ Result<StreamConfig, ParameterError> stream_config_of(const ParameterValues& val
                       .control = control_permission_named(values.text("control"))};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

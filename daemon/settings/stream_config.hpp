@@ -7,7 +7,7 @@
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// [stream]: where clients connect, and what they may do.
 struct StreamConfig {
@@ -19,4 +19,4 @@ struct StreamConfig {
 /// From the values of stream_parameters(). An error names the key.
 Result<StreamConfig, ParameterError> stream_config_of(const ParameterValues& values);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -6,10 +6,10 @@
 #include "daemon/settings/site_octaves.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 double WindConfig::gust_length_m() const noexcept {
-  return default_length_m.value_or(BlendSettings{}.length_m);
+  return default_length_m.value_or(wind::blend::BlendSettings{}.length_m);
 }
 
 Result<WindConfig, ParameterError> wind_config_of(const ParameterValues& values) {
@@ -34,4 +34,4 @@ Result<WindConfig, ParameterError> wind_config_of(const ParameterValues& values)
   return wind;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

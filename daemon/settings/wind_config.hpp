@@ -8,7 +8,7 @@
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 
 /// [wind] fallback: a recording that is played while every sensor is silent.
 struct FallbackConfig {
@@ -41,4 +41,4 @@ struct WindConfig {
 /// From the values of wind_parameters(). An error names the key.
 Result<WindConfig, ParameterError> wind_config_of(const ParameterValues& values);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -6,21 +6,21 @@
 
 #include "daemon/settings/duration_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::shaping {
 
-bool is_raised(const WindShapingReport& report, double share) {
+bool is_raised(const wind::shaping::WindShapingReport& report, double share) {
   return report.shaped_mean_m_s - report.site_gain * report.mean_m_s > share * report.shaped_mean_m_s;
 }
 
-std::string shaping_text(const WindShapingReport& report, const WindShapingSettings& settings,
-                         const OpeningNews& opening) {
+std::string shaping_text(const wind::shaping::WindShapingReport& report,
+                         const wind::shaping::WindShapingSettings& settings, const OpeningNews& opening) {
   std::string text;
   const auto add = [&text](const std::string& part) { text.append(text.empty() ? "" : "; ").append(part); };
 
   if (settings.site.median_m_s > 0.0) {
     add(report.known_s > 0.0
             ? fmt::format("site gain {:.2f} (in {} median {:.1f}, strong {:.1f} m/s)", report.site_gain,
-                          duration_text(report.known_s), report.median_m_s, report.strong_m_s)
+                          settings::duration_text(report.known_s), report.median_m_s, report.strong_m_s)
             : fmt::format("site gain {:.2f} (nothing is known of the site yet)", report.site_gain));
   }
   if (settings.floor_m_s > 0.0 && is_raised(report)) {
@@ -44,4 +44,4 @@ std::string shaping_text(const WindShapingReport& report, const WindShapingSetti
   return text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::shaping

@@ -4,7 +4,7 @@
 
 #include "engine/wind/shaping/wind_shaping.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::shaping {
 
 /// The state of the opening hours.
 struct OpeningNews {
@@ -14,12 +14,12 @@ struct OpeningNews {
 };
 
 /// Does the floor raise the mean by more than this share of the result?
-bool is_raised(const WindShapingReport& report, double share = 0.02);
+bool is_raised(const wind::shaping::WindShapingReport& report, double share = 0.02);
 
 /// What is shaping the wind at present, in one line: "site gain 1.80 (in 5 days 3 h
 /// median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; gusts 2.00 times the real ones; closed until 10:00".
 /// Empty where nothing is.
-std::string shaping_text(const WindShapingReport& report, const WindShapingSettings& settings,
-                         const OpeningNews& opening);
+std::string shaping_text(const wind::shaping::WindShapingReport& report,
+                         const wind::shaping::WindShapingSettings& settings, const OpeningNews& opening);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::shaping

@@ -8,7 +8,7 @@
 
 #include "daemon/settings/output_file.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::shaping {
 namespace {
 
 constexpr const char* kTimesKey = "seconds_at_each_speed";
@@ -20,7 +20,7 @@ constexpr std::streamsize kLongestSiteFile = 64 * 1024;
 /// The failure has an empty text where there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
-    OutputFile output(file, true);
+    settings::OutputFile output(file, true);
     std::ofstream out(output.working_path());
     out << nlohmann::json{{kTimesKey, memory.times_s},
                           {kOctavesKnownKey, memory.octaves_known_s},
@@ -82,4 +82,4 @@ Failure SiteFile::wait() {
   return writing_.valid() ? writing_.get() : Failure{};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::shaping

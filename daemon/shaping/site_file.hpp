@@ -6,7 +6,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::shaping {
 
 /// What has been learnt of a site.
 struct SiteMemory {
@@ -37,4 +37,4 @@ class SiteFile {
   std::future<Failure> writing_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::shaping

@@ -7,7 +7,7 @@
 
 #include "daemon/settings/duration_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::shaping {
 namespace {
 
 /// The interval at which opening hours are checked and changes are logged.
@@ -23,10 +23,10 @@ constexpr double kSiteGainNews = 1.2;
 
 }  // namespace
 
-WindShaper::WindShaper(const Config& config, std::shared_ptr<const GustNoise> noise)
+WindShaper::WindShaper(const settings::Config& config, std::shared_ptr<const wind::turbulence::GustNoise> noise)
     : shaping_(config.shaping.settings, std::move(noise)), hours_(config.shaping.hours) {
-  const bool is_of_this_site =
-      std::ranges::none_of(config.sensors, [](const SensorConfig& sensor) { return sensor.driver->plays_recordings; });
+  const bool is_of_this_site = std::ranges::none_of(
+      config.sensors, [](const settings::SensorConfig& sensor) { return sensor.driver->plays_recordings; });
   if (is_of_this_site) site_path_ = config.shaping.site_file;
   if (const double gusts = shaping_.settings().gusts; gusts != 1.0) {
     spdlog::info("shaping: gusts {:.2f} times the real ones", gusts);
@@ -40,7 +40,7 @@ WindShaper::~WindShaper() {
   log_site_file();
 }
 
-void WindShaper::keep_site_file(std::shared_ptr<SiteSpectrum> gusts) {
+void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts) {
   gusts_ = std::move(gusts);
   const bool has_gain = shaping_.settings().site.median_m_s > 0.0;
   if (site_path_.empty()) {
@@ -62,15 +62,15 @@ void WindShaper::keep_site_file(std::shared_ptr<SiteSpectrum> gusts) {
   }
   const double known_s = shaping_.memory().known_s();
   if (has_gain || known_s > 0.0) {
-    spdlog::info("shaping: {} holds {} of the site's wind", site_path_.string(), duration_text(known_s));
+    spdlog::info("shaping: {} holds {} of the site's wind", site_path_.string(), settings::duration_text(known_s));
   }
   if (gusts_ && gusts_->restore(memory->octaves_known_s, memory->octaves_db)) {
     spdlog::info("shaping: {} holds {} of the site's gusts", site_path_.string(),
-                 duration_text(std::ranges::max(gusts_->known_s())));
+                 settings::duration_text(std::ranges::max(gusts_->known_s())));
   }
 }
 
-void WindShaper::shape(DrivingWind& wind, UtcTime utc, bool is_any_live) {
+void WindShaper::shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live) {
   const MonoTime now = wind.state.time;
   const bool is_time_to_look = !has_looked_ || now - looked_ >= kLookAtHoursEvery;
   if (is_time_to_look) look_at_hours(now, utc);
@@ -93,8 +93,8 @@ void WindShaper::look_at_hours(MonoTime now, UtcTime utc) {
 }
 
 void WindShaper::log_changes() {
-  const WindShapingReport report = shaping_.report();
-  const WindShapingSettings& settings = shaping_.settings();
+  const wind::shaping::WindShapingReport report = shaping_.report();
+  const wind::shaping::WindShapingSettings& settings = shaping_.settings();
   if (is_open_ != logged_open_) {
     logged_open_ = is_open_;
     spdlog::info("shaping: {} {}; the wind fades {} over {:.0f} s", is_open_ ? "open" : "closed",
@@ -117,7 +117,7 @@ void WindShaper::log_changes() {
 }
 
 /// A storm is logged once, however many gusts it has.
-void WindShaper::log_ceiling(const WindShapingReport& report, MonoTime now) {
+void WindShaper::log_ceiling(const wind::shaping::WindShapingReport& report, MonoTime now) {
   if (report.ceiling_gain < 1.0 - kCeilingBegins) {
     held_back_ = now;
     strongest_m_s_ = std::max(strongest_m_s_, report.speed_m_s);
@@ -155,7 +155,7 @@ OpeningNews WindShaper::opening() const {
 }
 
 wire::Shaping WindShaper::status() const {
-  const WindShapingReport report = shaping_.report();
+  const wind::shaping::WindShapingReport report = shaping_.report();
   return {.site_gain = report.site_gain,
           .floor_gain = report.floor_gain,
           .breeze_m_s = report.breeze_m_s,
@@ -170,4 +170,4 @@ wire::Shaping WindShaper::status() const {
           .gusts = report.gusts};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::shaping

@@ -11,14 +11,14 @@
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::shaping {
 
 /// WindShaping with opening hours, a site file that keeps what was learnt over a restart, and a log line where an
 /// effect begins or ends. Belongs to the I/O thread.
 class WindShaper {
  public:
   /// `noise`: of the gusts, as the estimator has it.
-  WindShaper(const Config& config, std::shared_ptr<const GustNoise> noise);
+  WindShaper(const settings::Config& config, std::shared_ptr<const wind::turbulence::GustNoise> noise);
   ~WindShaper();
   WindShaper(const WindShaper&) = delete;
   WindShaper& operator=(const WindShaper&) = delete;
@@ -26,11 +26,11 @@ class WindShaper {
   /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. To be called before the first
   /// shape(). Does nothing where no file is configured, or where a sensor plays a recording, which may be of another
   /// site. `gusts`: the spectrum that is kept in the file too; null: not kept.
-  void keep_site_file(std::shared_ptr<SiteSpectrum> gusts = {});
+  void keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts = {});
 
   /// Changes the real wind into the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
   /// `is_any_live`: a sensor is live. Otherwise (the fall-back recording plays) nothing is learnt of the site.
-  void shape(DrivingWind& wind, UtcTime utc, bool is_any_live);
+  void shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live);
 
   /// The effects at present, as of the last shape().
   wire::Shaping status() const;
@@ -38,15 +38,15 @@ class WindShaper {
  private:
   void look_at_hours(MonoTime now, UtcTime utc);
   void log_changes();
-  void log_ceiling(const WindShapingReport& report, MonoTime now);
+  void log_ceiling(const wind::shaping::WindShapingReport& report, MonoTime now);
   void save_site();
   void log_site_file();
   OpeningNews opening() const;
 
-  WindShaping shaping_;
-  OpeningHours hours_;
+  wind::shaping::WindShaping shaping_;
+  settings::OpeningHours hours_;
   std::optional<SiteFile> site_file_;
-  std::shared_ptr<SiteSpectrum> gusts_;
+  std::shared_ptr<wind::turbulence::SiteSpectrum> gusts_;
   std::filesystem::path site_path_;  ///< of the site file; empty: none
 
   bool is_open_ = true;
@@ -61,4 +61,4 @@ class WindShaper {
   MonoTime held_back_{};        ///< when the ceiling last reduced a speed
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::shaping

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 
 std::string_view name_of(Overdue why) {
   switch (why) {
@@ -94,4 +94,4 @@ std::optional<Overdue> ClientQueue::overdue(MonoTime now) const {
   return std::nullopt;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

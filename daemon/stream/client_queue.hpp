@@ -10,7 +10,7 @@
 #include "daemon/stream/transport.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 
 struct ClientLimits {
   Nanoseconds subscribe_within = std::chrono::seconds(5);
@@ -84,4 +84,4 @@ class ClientQueue {
   std::uint64_t frames_skipped_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

@@ -11,7 +11,7 @@
 #include "engine/base/address.hpp"
 #include "engine/wire/message_reader.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 namespace {
 
 namespace asio = boost::asio;
@@ -146,4 +146,4 @@ Result<wire::Message, StreamEnd> StreamClient::receive(Nanoseconds timeout) {
   return connection_->receive(timeout);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

@@ -10,7 +10,7 @@
 #include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 
 /// Why there is no message.
 enum class StreamEnd : std::uint8_t {
@@ -61,4 +61,4 @@ class StreamClient {
   std::unique_ptr<Connection> connection_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

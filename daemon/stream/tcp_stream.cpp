@@ -15,7 +15,7 @@
 #include "engine/base/address.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 namespace {
 
 namespace asio = boost::asio;
@@ -391,4 +391,4 @@ std::uint64_t TcpStream::stuck_clients() const {
   return server_->stuck_clients();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

@@ -10,7 +10,7 @@ namespace boost::asio {
 class io_context;
 }
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 
 struct TcpStreamSettings {
   wire::Hello hello;             ///< the first message to every client
@@ -64,4 +64,4 @@ class TcpStream final : public Transport {
   std::shared_ptr<Server> server_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

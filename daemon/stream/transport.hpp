@@ -6,7 +6,7 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 
 /// An encoded message, shared by all clients that it is sent to; immutable.
 using SharedBytes = std::shared_ptr<const wire::Bytes>;
@@ -37,4 +37,4 @@ class Transport {
   virtual void close() = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

@@ -11,7 +11,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// An input of the machine's sound system.
 struct AudioDevice {
@@ -63,4 +63,4 @@ class AudioInput {
 /// The real one, by PortAudio (19).
 std::unique_ptr<AudioInput> make_portaudio_input();
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

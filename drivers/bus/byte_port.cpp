@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 std::string host_and_port(const std::string& host, std::uint16_t port) {
@@ -28,4 +28,4 @@ std::string describe(const BytePortAddress& address) {
   return "?";
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

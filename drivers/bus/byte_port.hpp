@@ -9,7 +9,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// The kinds of byte ports.
 enum class BytePortKind : std::uint8_t {
@@ -87,4 +87,4 @@ class BytePort {
   virtual void interrupt() noexcept = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

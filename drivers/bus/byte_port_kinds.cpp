@@ -2,7 +2,7 @@
 
 #include "drivers/bus/descriptor_port.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address) {
   switch (address.kind) {
@@ -18,4 +18,4 @@ std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address) {
   return make_file_port(address);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -4,7 +4,7 @@
 
 #include "drivers/bus/byte_port.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// The real one. Serial ports and sockets are Boost.Asio's. Throws std::system_error where the process has no
 /// descriptors left.
@@ -13,4 +13,4 @@ namespace yuragi {
 /// for locks). Opening it raises DTR and closing it lowers DTR again, which restarts most Arduinos.
 std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 /// A device that takes nothing for so long will not take it later either.
@@ -42,4 +42,4 @@ bool DescriptorPort::write(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -5,7 +5,7 @@
 #include "drivers/bus/byte_port.hpp"
 #include "drivers/bus/interruption.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// What byte ports with a file descriptor have in common: reading, writing and being interrupted. What a kind of port
 /// adds is how to open it.
@@ -35,4 +35,4 @@ std::unique_ptr<BytePort> make_tcp_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_udp_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_file_port(const BytePortAddress& address);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -11,7 +11,7 @@
 
 #include "drivers/bus/descriptor_port.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 /// How often a file is checked for new lines: change notification does not work on every file system.
@@ -110,4 +110,4 @@ std::unique_ptr<BytePort> make_file_port(const BytePortAddress& address) {
   return std::make_unique<FileBytePort>(address);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

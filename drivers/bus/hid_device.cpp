@@ -22,7 +22,7 @@
 #include <hidapi/hidapi.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 const char* const kHidPermissionRemedy =
     "install config/udev/70-yuragi.rules, join the group plugdev, and plug the device in again";
@@ -239,4 +239,4 @@ std::vector<HidListing> list_hid_devices(std::span<const HidId> ids) {
   return listings;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

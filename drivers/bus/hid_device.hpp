@@ -10,7 +10,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// Vendor and product id of a USB device.
 struct HidId {
@@ -97,4 +97,4 @@ std::unique_ptr<HidDevice> make_hid_device();
 /// The plugged-in devices with one of these ids. Opens each briefly, to check the permission.
 std::vector<HidListing> list_hid_devices(std::span<const HidId> ids);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -8,7 +8,7 @@
 
 #include <boost/asio/io_context.hpp>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
@@ -90,4 +90,4 @@ void HostLookup::interrupt() noexcept {
   state_->changed.notify_all();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -10,7 +10,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// Looks up the addresses of a host name. The system's own look-up cannot be interrupted, and may wait for a name
 /// server for a long time: here it runs on a thread of its own, which is abandoned when it takes too long.
@@ -35,4 +35,4 @@ class HostLookup {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -9,7 +9,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 Interruption::Interruption() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (event_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
@@ -39,4 +39,4 @@ WaitEnd Interruption::wait(int descriptor, WaitFor what, Nanoseconds timeout) co
   return waits[0].revents != 0 ? WaitEnd::kInterrupted : WaitEnd::kReady;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

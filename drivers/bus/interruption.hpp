@@ -4,7 +4,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// What came of waiting for a descriptor.
 enum class WaitEnd : std::uint8_t {
@@ -36,4 +36,4 @@ class Interruption {
   int event_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -14,7 +14,7 @@
 
 #include "drivers/bus/tcp_connect.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
@@ -91,29 +91,30 @@ class LibmodbusConnection final : public ModbusConnection {
     context_.reset();
   }
 
-  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage> buffer, const ModbusPatience& patience,
+  std::size_t settle(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer, const ModbusPatience& patience,
                      const Interruption& interruption) override {
     if (!context_ || is_tcp()) return 0;
     const Nanoseconds quiet = std::max(patience.byte_timeout, frame_gap(line_));
     return read_until_quiet(buffer, quiet, SteadyClock::now() + patience.response_timeout, interruption);
   }
 
-  bool send(const ModbusRequest& request, const ModbusPatience& patience) override {
+  bool send(const decode::modbus::ModbusRequest& request, const ModbusPatience& patience) override {
     if (!context_) return false;
     patience_ = patience;
     deadline_ = SteadyClock::now() + patience.response_timeout;
     if (is_tcp()) {
-      const auto message = encode_tcp(request);
+      const auto message = decode::modbus::encode_tcp(request);
       return ::send(modbus_get_socket(context_.get()), message.data(), message.size(), MSG_NOSIGNAL) ==
              static_cast<ssize_t>(message.size());
     }
-    const auto message = encode_rtu_without_crc(request);
+    const auto message = decode::modbus::encode_rtu_without_crc(request);
     modbus_flush(context_.get());
     return modbus_set_slave(context_.get(), request.unit) == 0 &&
            modbus_send_raw_request(context_.get(), message.data(), static_cast<int>(message.size())) >= 0;
   }
 
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
+  BusMessage receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
+                     const Interruption& interruption) override {
     // Wait for the first byte here, where `interruption` can end it and where silence differs from a message cut off.
     if (!context_) return {BusStatus::kLost};
     const Nanoseconds remaining = deadline_ - SteadyClock::now();
@@ -130,7 +131,7 @@ class LibmodbusConnection final : public ModbusConnection {
       // A whole message of another slave stands for itself. One that is damaged, perhaps by a stray byte in front, is
       // not cut where it should be: the decoder shall see all that the line brings.
       const std::size_t framed = std::min(refused_length(buffer), buffer.size());
-      const bool is_whole = modbus_crc(buffer.first(framed)) == 0;
+      const bool is_whole = decode::modbus::modbus_crc(buffer.first(framed)) == 0;
       const Nanoseconds quiet = std::max(patience_.byte_timeout, frame_gap(line_));
       const std::size_t more = is_whole ? 0 : read_until_quiet(buffer.subspan(framed), quiet, deadline_, interruption);
       return {BusStatus::kMessage, framed + more};
@@ -141,7 +142,7 @@ class LibmodbusConnection final : public ModbusConnection {
   }
 
  private:
-  bool is_tcp() const { return line_.framing == ModbusFraming::kTcp; }
+  bool is_tcp() const { return line_.framing == decode::modbus::ModbusFraming::kTcp; }
 
   /// libmodbus takes no time-out of zero.
   static void set_response_timeout(modbus_t* context, Nanoseconds timeout) {
@@ -160,7 +161,7 @@ class LibmodbusConnection final : public ModbusConnection {
                                const Interruption& interruption) const {
     std::size_t size = 0;
     while (SteadyClock::now() < deadline && wait_for_bytes(quiet, interruption)) {
-      std::array<std::uint8_t, kModbusMaxMessage> bytes{};
+      std::array<std::uint8_t, decode::modbus::kModbusMaxMessage> bytes{};
       const ssize_t got = ::read(modbus_get_socket(context_.get()), bytes.data(), bytes.size());
       if (got <= 0) break;
       const std::size_t kept = std::min(static_cast<std::size_t>(got), buffer.size() - size);
@@ -189,7 +190,7 @@ class LibmodbusConnection final : public ModbusConnection {
 }  // namespace
 
 std::string describe(const ModbusLine& line) {
-  if (line.framing == ModbusFraming::kRtu) return line.device;
+  if (line.framing == decode::modbus::ModbusFraming::kRtu) return line.device;
   const bool is_ipv6 = line.host.find(':') != std::string::npos;
   return (is_ipv6 ? "[" + line.host + "]" : line.host) + ":" + std::to_string(line.port);
 }
@@ -197,7 +198,7 @@ std::string describe(const ModbusLine& line) {
 Nanoseconds frame_gap(const ModbusLine& line) noexcept {
   constexpr int kFastest = 19200;
   constexpr int kBits = 39;  // 3.5 characters of 11 bits
-  if (line.framing == ModbusFraming::kTcp) return Nanoseconds::zero();
+  if (line.framing == decode::modbus::ModbusFraming::kTcp) return Nanoseconds::zero();
   if (line.baud > kFastest) return std::chrono::microseconds(1750);
   return std::chrono::nanoseconds(std::chrono::seconds(1)) * kBits / line.baud;
 }
@@ -206,4 +207,4 @@ std::unique_ptr<ModbusConnection> make_modbus_connection(const ModbusLine& line)
   return std::make_unique<LibmodbusConnection>(line);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -11,11 +11,11 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// Where Modbus devices are reached.
 struct ModbusLine {
-  ModbusFraming framing = ModbusFraming::kTcp;
+  decode::modbus::ModbusFraming framing = decode::modbus::ModbusFraming::kTcp;
 
   std::string host;  ///< TCP: a name, an IPv4 or an IPv6 address
   std::uint16_t port = 502;
@@ -73,19 +73,20 @@ class ModbusConnection {
 
   /// Reads from the line until it has been quiet for the byte time-out, or chattering for the response time-out,
   /// and returns how much of it is in `buffer` (the rest is dropped). Over TCP there is nothing to wait for: 0.
-  virtual std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage> buffer, const ModbusPatience& patience,
-                             const Interruption& interruption) = 0;
+  virtual std::size_t settle(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
+                             const ModbusPatience& patience, const Interruption& interruption) = 0;
 
   /// Sends a request and starts its response time-out. On a serial line, unrequested bytes are discarded first. False:
   /// the connection is gone.
-  virtual bool send(const ModbusRequest& request, const ModbusPatience& patience) = 0;
+  virtual bool send(const decode::modbus::ModbusRequest& request, const ModbusPatience& patience) = 0;
 
   /// The next message since, waiting until the response time-out that send() began. Can be called again after a message
   /// that was another slave's.
-  virtual BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) = 0;
+  virtual BusMessage receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
+                             const Interruption& interruption) = 0;
 };
 
 /// The real one, by libmodbus.
 std::unique_ptr<ModbusConnection> make_modbus_connection(const ModbusLine& line);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -15,7 +15,7 @@
 #include "drivers/bus/host_lookup.hpp"
 #include "drivers/bus/interruption.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using MqttClock = std::chrono::steady_clock;
@@ -233,4 +233,4 @@ bool mqtt_topic_matches(const std::string& topic, const std::string& filter) {
   return mosquitto_topic_matches_sub(filter.c_str(), topic.c_str(), &matches) == MOSQ_ERR_SUCCESS && matches;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

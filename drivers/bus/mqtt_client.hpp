@@ -8,7 +8,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// A broker, the credentials for it, and the topics to subscribe to.
 struct MqttSubscription {
@@ -69,4 +69,4 @@ bool is_mqtt_filter(const std::string& topic);
 /// Does `topic` match `filter`?
 bool mqtt_topic_matches(const std::string& topic, const std::string& filter);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

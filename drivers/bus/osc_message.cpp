@@ -11,7 +11,7 @@
 
 #include <lo/lo.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using OscBytes = std::span<const std::uint8_t>;
@@ -92,10 +92,10 @@ bool take_element(OscBytes bytes, int depth, std::vector<OscMessage>& messages) 
 
 }  // namespace
 
-Result<std::vector<OscMessage>, Refusal> decode_osc(OscBytes datagram) {
-  if (datagram.empty()) return Refusal::kTooShort;
+Result<std::vector<OscMessage>, decode::Refusal> decode_osc(OscBytes datagram) {
+  if (datagram.empty()) return decode::Refusal::kTooShort;
   std::vector<OscMessage> messages;
-  if (!take_element(datagram, 0, messages)) return Refusal::kMalformed;
+  if (!take_element(datagram, 0, messages)) return decode::Refusal::kMalformed;
   return messages;
 }
 
@@ -103,4 +103,4 @@ bool osc_address_matches(const std::string& address, const std::string& pattern)
   return lo_pattern_match(address.c_str(), pattern.c_str()) != 0;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

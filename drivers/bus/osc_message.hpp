@@ -9,7 +9,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// One message of Open Sound Control (M. Wright, "The Open Sound Control 1.0 specification", 2002).
 struct OscMessage {
@@ -20,9 +20,9 @@ struct OscMessage {
 /// The messages in one datagram, taken apart by liblo: one, or those of a bundle and of the bundles in it, whatever
 /// time they are meant for. kMalformed where any of it is not OSC, kTooShort for an empty one. Opens nothing, and never
 /// throws for any bytes. Thread-safe: yes.
-Result<std::vector<OscMessage>, Refusal> decode_osc(std::span<const std::uint8_t> datagram);
+Result<std::vector<OscMessage>, decode::Refusal> decode_osc(std::span<const std::uint8_t> datagram);
 
 /// Is `address` one of those that `pattern` stands for? OSC's own patterns: ? * [a-z] {this,that}.
 bool osc_address_matches(const std::string& address, const std::string& pattern);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -12,7 +12,7 @@
 #include "drivers/bus/audio_input.hpp"
 #include "engine/base/spsc_ring.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 /// A second and more at 48 kHz: what the worker may be late.
@@ -188,4 +188,4 @@ std::unique_ptr<AudioInput> make_portaudio_input() {
   return std::make_unique<PortaudioInput>();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -16,7 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 constexpr int kReapTurns = 200;
@@ -142,4 +142,4 @@ std::unique_ptr<BytePort> make_process_port(std::vector<std::string> command) {
   return std::make_unique<ProcessPort>(std::move(command));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

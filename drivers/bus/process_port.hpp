@@ -6,7 +6,7 @@
 
 #include "drivers/bus/byte_port.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// A program of ours whose standard output is the port: what wraps a library that can hang must be a process, since a
 /// thread that spins cannot be ended. `command`: the program's path and its arguments.
@@ -16,4 +16,4 @@ namespace yuragi {
 /// kLost when the program has ended, after the last of its bytes. write() is refused.
 std::unique_ptr<BytePort> make_process_port(std::vector<std::string> command);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

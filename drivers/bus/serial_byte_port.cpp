@@ -11,7 +11,7 @@
 
 #include "drivers/bus/descriptor_port.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using boost::asio::serial_port;
@@ -118,4 +118,4 @@ std::unique_ptr<BytePort> make_serial_port(const BytePortAddress& address) {
   return std::make_unique<SerialBytePort>(address);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

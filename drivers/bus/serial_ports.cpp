@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,4 +111,4 @@ std::vector<SerialPortInfo> find_serial_ports(const SerialPortPlaces& places) {
   return ports;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// A serial port that this machine has.
 struct SerialPortInfo {
@@ -33,4 +33,4 @@ struct AccessTrouble {
 };
 AccessTrouble access_trouble(const std::filesystem::path& node);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

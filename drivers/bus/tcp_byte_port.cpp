@@ -9,7 +9,7 @@
 #include "drivers/bus/descriptor_port.hpp"
 #include "drivers/bus/host_lookup.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using boost::asio::ip::tcp;
@@ -91,4 +91,4 @@ std::unique_ptr<BytePort> make_tcp_port(const BytePortAddress& address) {
   return std::make_unique<TcpBytePort>(address);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -12,7 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using TcpEndpoint = boost::asio::ip::tcp::endpoint;
@@ -88,4 +88,4 @@ Result<int, Failure> connect_tcp(HostLookup& host, Nanoseconds timeout, const In
   return Failure{std::generic_category().message(last_error)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -5,7 +5,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// Connects to one of a host's addresses and returns the socket, which is the caller's to close: blocking, small
 /// messages at once, and noticing after about 25 s a peer that vanished silently. Looking up the name and
@@ -13,4 +13,4 @@ namespace yuragi {
 /// refused".
 Result<int, Failure> connect_tcp(HostLookup& host, Nanoseconds timeout, const Interruption& interruption);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

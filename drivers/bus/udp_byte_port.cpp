@@ -7,7 +7,7 @@
 
 #include "drivers/bus/descriptor_port.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using boost::asio::ip::udp;
@@ -107,4 +107,4 @@ std::unique_ptr<BytePort> make_udp_port(const BytePortAddress& address) {
   return std::make_unique<UdpBytePort>(address);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

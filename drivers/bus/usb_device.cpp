@@ -12,7 +12,7 @@
 #include <libusb.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using UsbClock = std::chrono::steady_clock;
@@ -293,4 +293,4 @@ std::unique_ptr<UsbDevice> make_usb_device(std::vector<UsbId> kinds) {
   return std::make_unique<LibusbDevice>(std::move(kinds));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

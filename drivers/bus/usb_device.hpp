@@ -10,7 +10,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 
 /// Vendor and product id.
 struct UsbId {
@@ -87,4 +87,4 @@ class UsbDevice {
 /// The real one, by libusb, with a libusb context of its own.
 std::unique_ptr<UsbDevice> make_usb_device(std::vector<UsbId> kinds);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

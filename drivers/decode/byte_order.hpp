@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 
 // Numbers and sums of bytes. The caller has checked that the bytes are there. Thread-safe and realtime-safe: yes.
 
@@ -36,4 +36,4 @@ constexpr std::uint8_t xor_8(ByteSpan bytes) noexcept {
   return static_cast<std::uint8_t>(all);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

@@ -5,7 +5,7 @@
 
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 namespace {
 
 constexpr double kTurn_deg = 360.0;
@@ -32,11 +32,11 @@ std::optional<double> wrapped_direction_deg(double direction_deg) noexcept {
 
 Result<DecodedWind, Refusal> checked(const DecodedWind& wind) noexcept {
   if (!wind.speed_m_s && !wind.direction_deg && !wind.gust_m_s) return Refusal::kInvalid;
-  const bool is_physical = is_within(wind.speed_m_s, 0.0, kMaxPlausibleSpeed_m_s) &&
-                           is_within(wind.gust_m_s, 0.0, kMaxPlausibleSpeed_m_s) &&
+  const bool is_physical = is_within(wind.speed_m_s, 0.0, wind::kMaxPlausibleSpeed_m_s) &&
+                           is_within(wind.gust_m_s, 0.0, wind::kMaxPlausibleSpeed_m_s) &&
                            is_within(wind.direction_deg, 0.0, kTurn_deg) && wind.direction_deg != kTurn_deg;
   if (!is_physical) return Refusal::kImplausible;
   return wind;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

@@ -8,7 +8,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 
 /// The frame of a direction, clockwise, as far as the message itself states it.
 enum class WindReference : std::uint8_t {
@@ -51,4 +51,4 @@ std::optional<double> wrapped_direction_deg(double direction_deg) noexcept;
 /// kInvalid where none is there, kImplausible where one is out of its range. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> checked(const DecodedWind& wind) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

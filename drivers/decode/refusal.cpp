@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 
 std::string_view name_of(Refusal refusal) {
   static constexpr std::array<std::string_view, kRefusalCount> kNames = {
@@ -10,4 +10,4 @@ std::string_view name_of(Refusal refusal) {
   return kNames.at(static_cast<std::size_t>(refusal));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

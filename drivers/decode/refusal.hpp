@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 
 /// Why something that arrived, or did not, was not published. Each is counted for each sensor.
 enum class Refusal : std::uint8_t {
@@ -21,4 +21,4 @@ inline constexpr std::size_t kRefusalCount = 8;
 
 std::string_view name_of(Refusal refusal);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

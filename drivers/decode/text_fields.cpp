@@ -7,7 +7,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 namespace {
 
 constexpr std::string_view kBlanks(" \t\r\n\0", 5);
@@ -114,4 +114,4 @@ bool is_good_status(std::string_view status) noexcept {
   return status == "A" || status == "00" || status == "60";
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

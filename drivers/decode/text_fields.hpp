@@ -9,7 +9,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 
 // What the decoders of lines share: fields, numbers, checksums, units. Nothing here allocates, throws or keeps state;
 // views point into the line that was given. Thread-safe and realtime-safe: yes.
@@ -61,4 +61,4 @@ std::optional<double> metres_per_second_of(std::string_view letter) noexcept;
 /// Is it a status that means "all is well"? A (NMEA), 00 and 60 (Gill).
 bool is_good_status(std::string_view status) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

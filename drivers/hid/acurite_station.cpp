@@ -7,7 +7,7 @@
 #include "drivers/decode/hid/acurite.hpp"
 #include "drivers/hid/hid_station.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 using namespace std::chrono_literals;
@@ -29,45 +29,46 @@ class AcuriteStation final : public HidStation {
     if (!request(exchange, first)) return station_is_gone();
     if (first.size != 0 && !request(exchange, second)) return station_is_gone();
     if (first.size == 0 || second.size == 0) {
-      return fail(exchange, Refusal::kTimeout, "does not reply: set the console's USB mode to 3 or 4");
+      return fail(exchange, decode::Refusal::kTimeout, "does not reply: set the console's USB mode to 3 or 4");
     }
     if (first != second) {
-      return fail(exchange, Refusal::kMalformed, "replies differently each time: unplug it and plug it in again");
+      return fail(exchange, decode::Refusal::kMalformed,
+                  "replies differently each time: unplug it and plug it in again");
     }
 
     const MonoTime next = begin + timing_.interval_or(kAcuriteEvery);
     if (first == last_) return wait_for_news(next, begin);
-    const auto wind = decode_acurite(first.span());
+    const auto wind = decode::hid::decode_acurite(first.span());
     if (wind && exchange.publish(*wind)) {
       failures_ = 0;
       last_ = first;
       last_new_ = begin;
       return StationStep::well(next);
     }
-    const Refusal why = wind ? Refusal::kInvalid : wind.error();
-    if (why != Refusal::kInvalid) {
+    const decode::Refusal why = wind ? decode::Refusal::kInvalid : wind.error();
+    if (why != decode::Refusal::kInvalid) {
       return fail(exchange, why, "sends invalid reports: unplug it and plug it in again");
     }
     // The console works, but has no sensor, or old values of one.
     failures_ = 0;
-    exchange.refuse(Refusal::kInvalid);
+    exchange.refuse(decode::Refusal::kInvalid);
     return StationStep::unwell(next,
                                "does not receive its sensors: check their batteries and their distance to the console");
   }
 
  private:
   struct Report {
-    std::array<std::uint8_t, kAcuriteReport1> bytes{};
+    std::array<std::uint8_t, decode::hid::kAcuriteReport1> bytes{};
     std::size_t size = 0;
 
-    ByteSpan span() const { return ByteSpan(bytes).first(size); }
+    decode::ByteSpan span() const { return decode::ByteSpan(bytes).first(size); }
     bool operator==(const Report&) const = default;
   };
 
   /// Report 1; empty if it was refused. False: the device is gone.
   static bool request(HidExchange& exchange, Report& report) {
-    const HidMessage message = exchange.get_input_report(1, kAcuriteReport1);
-    if (message.status == HidStatus::kLost) return false;
+    const HidMessage message = exchange.get_input_report(1, decode::hid::kAcuriteReport1);
+    if (message.status == bus::HidStatus::kLost) return false;
     report.size = message.bytes.size();
     std::ranges::copy(message.bytes, report.bytes.begin());
     return true;
@@ -80,7 +81,7 @@ class AcuriteStation final : public HidStation {
     return StationStep::unwell(next, "repeats the same report: unplug it and plug it in again");
   }
 
-  Result<StationStep, Failure> fail(HidExchange& exchange, Refusal why, const std::string& trouble) {
+  Result<StationStep, Failure> fail(HidExchange& exchange, decode::Refusal why, const std::string& trouble) {
     exchange.refuse(why);
     if (++failures_ >= kAcuriteGiveUp) return Failure{trouble};
     return StationStep::unwell(exchange.now() + timing_.paced(kAcuriteRetry), trouble);
@@ -98,4 +99,4 @@ std::unique_ptr<HidStation> make_acurite_station(const StationTiming& timing) {
   return std::make_unique<AcuriteStation>(timing);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

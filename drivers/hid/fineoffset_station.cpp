@@ -15,7 +15,7 @@
 #include "drivers/hid/hid_station.hpp"
 #include "drivers/hid/write_clock.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 using namespace std::chrono_literals;
@@ -35,7 +35,7 @@ constexpr Nanoseconds kFineOffsetStalled = 240s;  // without any change: at the 
 constexpr int kFineOffsetGiveUp = 4;              // failures in a row; then it is opened again
 constexpr std::size_t kFineOffsetRecord = 16;     // the common part of both models' records
 
-using FineOffsetBytes = std::array<std::uint8_t, kFineOffsetBlock>;
+using FineOffsetBytes = std::array<std::uint8_t, decode::hid::kFineOffsetBlock>;
 
 class FineOffsetStation final : public HidStation {
  public:
@@ -55,7 +55,7 @@ class FineOffsetStation final : public HidStation {
     const BlockStatus status = read_block(exchange, addresses_[blocks_.size()], block);
     if (status == BlockStatus::kLost) return station_is_gone();
     if (status != BlockStatus::kRead) {
-      return fail(exchange, status == BlockStatus::kNone ? Refusal::kTimeout : Refusal::kTooShort,
+      return fail(exchange, status == BlockStatus::kNone ? decode::Refusal::kTimeout : decode::Refusal::kTooShort,
                   "does not reply; if it has locked up, take out its batteries and its cable");
     }
     if (!last_block_) {
@@ -86,11 +86,12 @@ class FineOffsetStation final : public HidStation {
   }
 
   static BlockStatus read_block(HidExchange& exchange, std::uint16_t address, FineOffsetBytes& block) {
-    if (!exchange.discard_waiting() || !exchange.send(encode_fineoffset_read(address))) return BlockStatus::kLost;
+    if (!exchange.discard_waiting() || !exchange.send(decode::hid::encode_fineoffset_read(address)))
+      return BlockStatus::kLost;
     for (std::size_t size = 0; size < block.size();) {
       const HidMessage message = exchange.read(kFineOffsetReport);
-      if (message.status == HidStatus::kLost) return BlockStatus::kLost;
-      if (message.status != HidStatus::kReport) return size == 0 ? BlockStatus::kNone : BlockStatus::kCutOff;
+      if (message.status == bus::HidStatus::kLost) return BlockStatus::kLost;
+      if (message.status != bus::HidStatus::kReport) return size == 0 ? BlockStatus::kNone : BlockStatus::kCutOff;
       if (message.bytes.size() != 8) return BlockStatus::kCutOff;
       std::ranges::copy(message.bytes, block.begin() + static_cast<std::ptrdiff_t>(size));
       size += 8;
@@ -102,42 +103,43 @@ class FineOffsetStation final : public HidStation {
   Result<StationStep, Failure> wait_for_writing(HidExchange& exchange) {
     last_block_.reset();
     if (++unstable_ >= kFineOffsetUnstable) {
-      return fail(exchange, Refusal::kMalformed, "reads differently each time: check its cable");
+      return fail(exchange, decode::Refusal::kMalformed, "reads differently each time: check its cable");
     }
     return StationStep::same(exchange.now() + timing_.paced(kFineOffsetWriting));
   }
 
   /// Reads the address of the current record, which is in the memory of either model.
   Result<StationStep, Failure> take_fixed_block(HidExchange& exchange) {
-    auto fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh1080);
-    if (!fixed) fixed = decode_fineoffset_fixed_block(blocks_[0], FineOffsetModel::kWh3080);
+    auto fixed = decode::hid::decode_fineoffset_fixed_block(blocks_[0], decode::hid::FineOffsetModel::kWh1080);
+    if (!fixed) fixed = decode::hid::decode_fineoffset_fixed_block(blocks_[0], decode::hid::FineOffsetModel::kWh3080);
     if (!fixed) {
       return fail(exchange, fixed.error(),
                   "is not a Fine Offset console, or has locked up: take out its batteries and its cable");
     }
     // Blocks are read where the memory's own begin; a long record can reach into the next.
     position_ = fixed->current_position;
-    const std::size_t offset = position_ % kFineOffsetBlock;
+    const std::size_t offset = position_ % decode::hid::kFineOffsetBlock;
     const auto first = static_cast<std::uint16_t>(position_ - offset);
     addresses_.push_back(first);
-    if (offset + kFineOffsetRecord > kFineOffsetBlock) {
-      addresses_.push_back(static_cast<std::uint16_t>(first + kFineOffsetBlock));
+    if (offset + kFineOffsetRecord > decode::hid::kFineOffsetBlock) {
+      addresses_.push_back(static_cast<std::uint16_t>(first + decode::hid::kFineOffsetBlock));
     }
     return StationStep::same(exchange.now());
   }
 
   Result<StationStep, Failure> take_record(HidExchange& exchange) {
     if (blocks_.back() == blocks_.front()) {
-      return fail(exchange, Refusal::kNotMine, "replies to another request: check its cable");
+      return fail(exchange, decode::Refusal::kNotMine, "replies to another request: check its cable");
     }
     if (blocks_.size() < addresses_.size()) return StationStep::same(exchange.now());
 
     Record record{};
-    std::array<std::uint8_t, 2 * kFineOffsetBlock> joined{};
+    std::array<std::uint8_t, 2 * decode::hid::kFineOffsetBlock> joined{};
     for (std::size_t i = 1; i < blocks_.size(); ++i) {
-      std::ranges::copy(blocks_[i], joined.begin() + static_cast<std::ptrdiff_t>((i - 1) * kFineOffsetBlock));
+      std::ranges::copy(blocks_[i],
+                        joined.begin() + static_cast<std::ptrdiff_t>((i - 1) * decode::hid::kFineOffsetBlock));
     }
-    std::copy_n(joined.begin() + position_ % kFineOffsetBlock, record.size(), record.begin());
+    std::copy_n(joined.begin() + position_ % decode::hid::kFineOffsetBlock, record.size(), record.begin());
     begin_round();
     failures_ = 0;
     return judge(record, exchange);
@@ -187,7 +189,7 @@ class FineOffsetStation final : public HidStation {
 
     const MonoTime next = next_read(now);
     if (now - last_news_ >= timing_.paced(kFineOffsetStalled)) {
-      exchange.refuse(Refusal::kInvalid);
+      exchange.refuse(decode::Refusal::kInvalid);
       return StationStep::unwell(next,
                                  "has stopped measuring; if it has locked up, take out its batteries and its cable");
     }
@@ -197,7 +199,7 @@ class FineOffsetStation final : public HidStation {
   }
 
   static StationStep publish(const Record& record, HidExchange& exchange, MonoTime next) {
-    const auto wind = decode_fineoffset_record(record);
+    const auto wind = decode::hid::decode_fineoffset_record(record);
     if (wind && exchange.publish(*wind)) return StationStep::well(next);
     if (!wind) exchange.refuse(wind.error());
     return StationStep::unwell(next,
@@ -230,7 +232,7 @@ class FineOffsetStation final : public HidStation {
     return due_;
   }
 
-  Result<StationStep, Failure> fail(HidExchange& exchange, Refusal why, const std::string& trouble) {
+  Result<StationStep, Failure> fail(HidExchange& exchange, decode::Refusal why, const std::string& trouble) {
     begin_round();
     exchange.refuse(why);
     if (++failures_ >= kFineOffsetGiveUp) return Failure{trouble};
@@ -267,4 +269,4 @@ std::unique_ptr<HidStation> make_fineoffset_station(const StationTiming& timing)
   return std::make_unique<FineOffsetStation>(timing);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

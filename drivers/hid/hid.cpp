@@ -18,7 +18,7 @@
 #include "drivers/hid/hid_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 constexpr std::array<std::string_view, 6> kStationChoices = {"auto",       "wmr100",  "wmr300",
@@ -62,41 +62,41 @@ std::span<const StationKind> kinds_named(std::string_view name) {
   return std::span(kind, kind == all.end() ? 0U : 1U);
 }
 
-std::unique_ptr<Sensor> open_hid(const ParameterValues& values) {
-  const HidPlace place = {.serial = values.text("serial"), .path = values.text("path")};
+std::unique_ptr<sensor::Sensor> open_hid(const ParameterValues& values) {
+  const bus::HidPlace place = {.serial = values.text("serial"), .path = values.text("path")};
   const StationTiming timing = {.pace = values.number("pace"),
                                 .poll_interval = from_seconds(values.number("poll_interval"))};
   const std::string& station = values.text("station");
-  return std::make_unique<HidSensor>(kinds_named(station), place, timing, seed_of(station + place.path + place.serial),
-                                     make_hid_device());
+  return std::make_unique<HidSensor>(kinds_named(station), place, timing,
+                                     sensor::seed_of(station + place.path + place.serial), bus::make_hid_device());
 }
 
-std::vector<FoundDevice> find_hid() {
-  std::vector<HidId> ids;
+std::vector<sensor::FoundDevice> find_hid() {
+  std::vector<bus::HidId> ids;
   for (const StationKind& kind : station_kinds()) ids.push_back(kind.id);
-  std::vector<FoundDevice> found;
-  for (const HidListing& listing : list_hid_devices(ids)) {
+  std::vector<sensor::FoundDevice> found;
+  for (const bus::HidListing& listing : bus::list_hid_devices(ids)) {
     const auto kind = std::ranges::find(station_kinds(), listing.info.id, &StationKind::id);
     const std::string& path = listing.info.port.empty() ? listing.info.node : listing.info.port;
-    found.push_back({.what = fmt::format("{} ({}) at {}", kind->title, describe(kind->id), where_is(listing.info)),
+    found.push_back({.what = fmt::format("{} ({}) at {}", kind->title, describe(kind->id), bus::where_is(listing.info)),
                      .settings = fmt::format("station = \"{}\"\npath = \"{}\"", kind->name, path),
                      .trouble = listing.trouble.empty()
                                     ? ""
                                     : fmt::format("cannot open {}: {}", listing.info.node, listing.trouble),
-                     .remedy = listing.trouble.empty() ? "" : kHidPermissionRemedy});
+                     .remedy = listing.trouble.empty() ? "" : bus::kHidPermissionRemedy});
   }
   return found;
 }
 
 }  // namespace
 
-extern const DriverDescription kHidDriver;
-const DriverDescription kHidDriver{.name = "hid",
-                                   .summary =
-                                       "USB weather stations: Oregon Scientific WMR100 and WMR300, Fine Offset "
-                                       "WH1080 and WH3080, AcuRite, Hideki TE923",
-                                   .parameters = kHidParameters,
-                                   .open = open_hid,
-                                   .find = find_hid};
+extern const sensor::DriverDescription kHidDriver;
+const sensor::DriverDescription kHidDriver{.name = "hid",
+                                           .summary =
+                                               "USB weather stations: Oregon Scientific WMR100 and WMR300, Fine Offset "
+                                               "WH1080 and WH3080, AcuRite, Hideki TE923",
+                                           .parameters = kHidParameters,
+                                           .open = open_hid,
+                                           .find = find_hid};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

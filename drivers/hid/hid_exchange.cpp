@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 // More than the kernel keeps for a reader (64), so that a device that never stops sending cannot block this.
@@ -11,10 +11,10 @@ constexpr int kMostWaiting = 128;
 }  // namespace
 
 HidMessage HidExchange::read(Nanoseconds timeout) {
-  const HidArrival arrival = device_.read(std::span(buffer_).first(kLongestReport), timeout);
-  if (arrival.status != HidStatus::kReport) return {arrival.status, {}};
-  const ByteSpan bytes = ByteSpan(buffer_).first(arrival.size);
-  sink_.raw(RawDirection::kReceived, bytes);
+  const bus::HidArrival arrival = device_.read(std::span(buffer_).first(kLongestReport), timeout);
+  if (arrival.status != bus::HidStatus::kReport) return {arrival.status, {}};
+  const decode::ByteSpan bytes = decode::ByteSpan(buffer_).first(arrival.size);
+  sink_.raw(sensor::RawDirection::kReceived, bytes);
   return {arrival.status, bytes};
 }
 
@@ -22,39 +22,40 @@ bool HidExchange::send(std::span<const std::uint8_t> bytes) {
   if (bytes.size() > kLongestReport) return false;
   std::array<std::uint8_t, kLongestReport + 1> numbered{};
   std::ranges::copy(bytes, numbered.begin() + 1);
-  sink_.raw(RawDirection::kSent, bytes);
+  sink_.raw(sensor::RawDirection::kSent, bytes);
   return device_.write(std::span(numbered).first(bytes.size() + 1));
 }
 
 HidMessage HidExchange::get_input_report(std::uint8_t id, std::size_t size) {
-  const HidArrival arrival = device_.get_input_report(id, std::span(buffer_).first(std::min(size, kLongestReport)));
-  if (arrival.status != HidStatus::kReport) return {arrival.status, {}};
-  const ByteSpan bytes = ByteSpan(buffer_).first(arrival.size);
-  sink_.raw(RawDirection::kReceived, bytes);
+  const bus::HidArrival arrival =
+      device_.get_input_report(id, std::span(buffer_).first(std::min(size, kLongestReport)));
+  if (arrival.status != bus::HidStatus::kReport) return {arrival.status, {}};
+  const decode::ByteSpan bytes = decode::ByteSpan(buffer_).first(arrival.size);
+  sink_.raw(sensor::RawDirection::kReceived, bytes);
   return {arrival.status, bytes};
 }
 
 bool HidExchange::discard_waiting() {
   for (int i = 0; i < kMostWaiting; ++i) {
     const HidMessage message = read(Nanoseconds::zero());
-    if (message.status != HidStatus::kReport) return message.status != HidStatus::kLost;
-    refuse(Refusal::kNotMine);
+    if (message.status != bus::HidStatus::kReport) return message.status != bus::HidStatus::kLost;
+    refuse(decode::Refusal::kNotMine);
   }
   return true;
 }
 
-bool HidExchange::publish(const DecodedWind& wind) {
+bool HidExchange::publish(const decode::DecodedWind& wind) {
   if (!wind.speed_m_s) {
-    refuse(Refusal::kInvalid);
+    refuse(decode::Refusal::kInvalid);
     return false;
   }
-  const bool is_good = wind.status == DecodedStatus::kGood;
+  const bool is_good = wind.status == decode::DecodedStatus::kGood;
   sink_.reading({.time = clock_.now(),
                  .speed_m_s = *wind.speed_m_s,
                  .direction_deg = wind.direction_deg,
                  .gust_m_s = wind.gust_m_s,
-                 .quality = is_good ? ReadingQuality::kGood : ReadingQuality::kUncertain});
+                 .quality = is_good ? wind::ReadingQuality::kGood : wind::ReadingQuality::kUncertain});
   return true;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

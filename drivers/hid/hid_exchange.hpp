@@ -9,19 +9,20 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/sensor/sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 
 /// The result of a read.
 struct HidMessage {
-  HidStatus status = HidStatus::kSilence;
-  ByteSpan bytes;  ///< for kReport; valid until the next message
+  bus::HidStatus status = bus::HidStatus::kSilence;
+  decode::ByteSpan bytes;  ///< for kReport; valid until the next message
 };
 
 /// The exchange with a station during one poll(): device, clock and sink. Shows every message to the sink. Owns
 /// nothing. Thread-safe: no.
 class HidExchange {
  public:
-  HidExchange(HidDevice& device, const Clock& clock, SensorSink& sink) : device_(device), clock_(clock), sink_(sink) {}
+  HidExchange(bus::HidDevice& device, const sensor::Clock& clock, sensor::SensorSink& sink)
+      : device_(device), clock_(clock), sink_(sink) {}
 
   MonoTime now() const noexcept { return clock_.now().mono; }
 
@@ -33,17 +34,17 @@ class HidExchange {
   /// Discards reports that came before the request: late replies. False: the device is gone.
   bool discard_waiting();
 
-  void refuse(Refusal why) { sink_.refused(why); }
+  void refuse(decode::Refusal why) { sink_.refused(why); }
   /// Publishes the wind as of now. Returns false, and counts a refusal, where it has no speed.
-  bool publish(const DecodedWind& wind);
+  bool publish(const decode::DecodedWind& wind);
 
  private:
   static constexpr std::size_t kLongestReport = 64;
 
-  HidDevice& device_;
-  const Clock& clock_;
-  SensorSink& sink_;
+  bus::HidDevice& device_;
+  const sensor::Clock& clock_;
+  sensor::SensorSink& sink_;
   std::array<std::uint8_t, kLongestReport + 1> buffer_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

@@ -4,30 +4,34 @@
 #include <utility>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 constexpr Nanoseconds kLookAfterEvery = std::chrono::seconds(1);
 
 }  // namespace
 
-HidSensor::HidSensor(std::span<const StationKind> kinds, HidPlace place, const StationTiming& timing,
-                     std::uint32_t seed, std::unique_ptr<HidDevice> device)
-    : ReopeningSensor(seed), kinds_(kinds), place_(std::move(place)), timing_(timing), device_(std::move(device)) {}
+HidSensor::HidSensor(std::span<const StationKind> kinds, bus::HidPlace place, const StationTiming& timing,
+                     std::uint32_t seed, std::unique_ptr<bus::HidDevice> device)
+    : sensor::ReopeningSensor(seed),
+      kinds_(kinds),
+      place_(std::move(place)),
+      timing_(timing),
+      device_(std::move(device)) {}
 
-Result<MonoTime, Failure> HidSensor::open(const Clock& clock) {
-  std::vector<HidId> ids;
+Result<MonoTime, Failure> HidSensor::open(const sensor::Clock& clock) {
+  std::vector<bus::HidId> ids;
   for (const StationKind& kind : kinds_) ids.push_back(kind.id);
-  const Result<HidInfo, Failure> opened = device_->open(ids, place_);
+  const Result<bus::HidInfo, Failure> opened = device_->open(ids, place_);
   if (!opened) return opened.error();
   const auto kind = std::ranges::find(kinds_, opened->id, &StationKind::id);
   station_ = kind->make(timing_);
-  name_ = std::string(kind->title) + " at " + where_is(*opened);
+  name_ = std::string(kind->title) + " at " + bus::where_is(*opened);
   next_step_ = clock.now().mono;
   return next_step_;
 }
 
-Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) {
+Result<MonoTime, Failure> HidSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
   HidExchange exchange(*device_, clock, sink);
   if (exchange.now() < next_step_) return look_after(exchange);
 
@@ -43,16 +47,16 @@ Result<MonoTime, Failure> HidSensor::work(const Clock& clock, SensorSink& sink) 
 
 /// The reason why the device could not be used: gone, or not accepting reports.
 std::string HidSensor::why_useless(HidExchange& exchange) {
-  if (exchange.read(Nanoseconds::zero()).status == HidStatus::kLost) return "is gone: plug it in again";
-  exchange.refuse(Refusal::kTimeout);
+  if (exchange.read(Nanoseconds::zero()).status == bus::HidStatus::kLost) return "is gone: plug it in again";
+  exchange.refuse(decode::Refusal::kTimeout);
   return "accepts no requests: take out its cable and its batteries, and put them in again";
 }
 
 /// Nothing is due: checks that the device is still there.
 Result<MonoTime, Failure> HidSensor::look_after(HidExchange& exchange) {
   const HidMessage message = exchange.read(Nanoseconds::zero());
-  if (message.status == HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};
-  if (message.status == HidStatus::kReport) exchange.refuse(Refusal::kNotMine);
+  if (message.status == bus::HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};
+  if (message.status == bus::HidStatus::kReport) exchange.refuse(decode::Refusal::kNotMine);
   return std::min(next_step_, exchange.now() + kLookAfterEvery);
 }
 
@@ -66,4 +70,4 @@ void HidSensor::close() noexcept {
   device_->close();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

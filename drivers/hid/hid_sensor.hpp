@@ -10,21 +10,21 @@
 #include "drivers/hid/hid_station.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 
 /// A USB HID weather station of one of several families, whichever is found at the place. Between two requests to a
 /// station that sends nothing unrequested, its presence is checked once a second, so that an unplugged one is noticed.
-class HidSensor final : public ReopeningSensor {
+class HidSensor final : public sensor::ReopeningSensor {
  public:
   /// `kinds` must outlive this. `seed` makes the waits of several sensors differ.
-  HidSensor(std::span<const StationKind> kinds, HidPlace place, const StationTiming& timing, std::uint32_t seed,
-            std::unique_ptr<HidDevice> device);
+  HidSensor(std::span<const StationKind> kinds, bus::HidPlace place, const StationTiming& timing, std::uint32_t seed,
+            std::unique_ptr<bus::HidDevice> device);
 
   void interrupt() noexcept override;
 
  protected:
-  Result<MonoTime, Failure> open(const Clock& clock) override;
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
   void close() noexcept override;
 
  private:
@@ -32,13 +32,13 @@ class HidSensor final : public ReopeningSensor {
   static std::string why_useless(HidExchange& exchange);
 
   std::span<const StationKind> kinds_;
-  HidPlace place_;
+  bus::HidPlace place_;
   StationTiming timing_;
-  std::unique_ptr<HidDevice> device_;
+  std::unique_ptr<bus::HidDevice> device_;
   std::unique_ptr<HidStation> station_;  ///< while the device is open
   std::string name_;                     ///< of the open station and its place
   MonoTime next_step_{};
   std::atomic<bool> is_interrupted_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

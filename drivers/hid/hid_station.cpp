@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 
 std::span<const StationKind> station_kinds() {
   static constexpr std::array<StationKind, 5> kKinds = {
@@ -14,4 +14,4 @@ std::span<const StationKind> station_kinds() {
   return kKinds;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

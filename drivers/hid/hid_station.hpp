@@ -11,7 +11,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 
 /// The state of a station after one step.
 enum class StationHealth : std::uint8_t {
@@ -59,7 +59,7 @@ struct StationTiming {
 struct StationKind {
   std::string_view name;   ///< in a configuration
   std::string_view title;  ///< for people
-  HidId id;
+  bus::HidId id;
   std::unique_ptr<HidStation> (*make)(const StationTiming& timing);
 };
 
@@ -78,4 +78,4 @@ inline Failure station_is_gone() {
   return {""};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

@@ -5,7 +5,7 @@
 #include "drivers/decode/hid/te923.hpp"
 #include "drivers/hid/hid_station.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 using namespace std::chrono_literals;
@@ -22,23 +22,26 @@ class Te923Station final : public HidStation {
 
   Result<StationStep, Failure> step(HidExchange& exchange) override {
     const MonoTime begin = exchange.now();
-    if (!exchange.discard_waiting() || !exchange.send(encode_te923_request(kTe923Readings))) return station_is_gone();
+    if (!exchange.discard_waiting() || !exchange.send(decode::hid::encode_te923_request(decode::hid::kTe923Readings)))
+      return station_is_gone();
     if (!read_block(exchange)) return station_is_gone();
-    if (size_ > 0 && !exchange.send(encode_te923_acknowledgement(kTe923Readings))) return station_is_gone();
+    if (size_ > 0 && !exchange.send(decode::hid::encode_te923_acknowledgement(decode::hid::kTe923Readings)))
+      return station_is_gone();
 
-    if (size_ == 0) return fail(exchange, Refusal::kTimeout, "does not reply: check the console's power and its cable");
-    const auto wind = decode_te923(ByteSpan(block_).first(size_));
+    if (size_ == 0)
+      return fail(exchange, decode::Refusal::kTimeout, "does not reply: check the console's power and its cable");
+    const auto wind = decode::hid::decode_te923(decode::ByteSpan(block_).first(size_));
     if (wind && exchange.publish(*wind)) {
       failures_ = 0;
       return StationStep::well(begin + timing_.interval_or(kTe923Every));
     }
-    const Refusal why = wind ? Refusal::kInvalid : wind.error();
-    if (why != Refusal::kInvalid) {
+    const decode::Refusal why = wind ? decode::Refusal::kInvalid : wind.error();
+    if (why != decode::Refusal::kInvalid) {
       return fail(exchange, why, "sends invalid blocks: check its cable");
     }
     // The console works, but has no wind.
     failures_ = 0;
-    exchange.refuse(Refusal::kInvalid);
+    exchange.refuse(decode::Refusal::kInvalid);
     return StationStep::unwell(begin + timing_.interval_or(kTe923Every),
                                "has lost its anemometer: check its battery and its distance to the console");
   }
@@ -48,28 +51,28 @@ class Te923Station final : public HidStation {
   bool read_block(HidExchange& exchange) {
     size_ = 0;
     const MonoTime deadline = exchange.now() + kTe923Reply;
-    while (size_ < kTe923Block && exchange.now() < deadline) {
+    while (size_ < decode::hid::kTe923Block && exchange.now() < deadline) {
       const HidMessage message = exchange.read(kTe923Report);
-      if (message.status == HidStatus::kLost) return false;
-      if (message.status != HidStatus::kReport) break;
+      if (message.status == bus::HidStatus::kLost) return false;
+      if (message.status != bus::HidStatus::kReport) break;
       // The number of valid bytes, then these. An impossible number invalidates the block.
       const std::size_t count = message.bytes[0];
       const bool is_sound = count <= 7 && count < message.bytes.size();
-      const ByteSpan valid = is_sound ? message.bytes.subspan(1, count) : message.bytes;
+      const decode::ByteSpan valid = is_sound ? message.bytes.subspan(1, count) : message.bytes;
       for (const std::uint8_t byte : valid) block_[size_++] = byte;
       if (!is_sound) break;
     }
     return true;
   }
 
-  Result<StationStep, Failure> fail(HidExchange& exchange, Refusal why, const std::string& trouble) {
+  Result<StationStep, Failure> fail(HidExchange& exchange, decode::Refusal why, const std::string& trouble) {
     exchange.refuse(why);
     if (++failures_ >= kTe923GiveUp) return Failure{trouble};
     return StationStep::unwell(exchange.now() + timing_.paced(kTe923Retry), trouble);
   }
 
   StationTiming timing_;
-  std::array<std::uint8_t, kTe923Block + 64> block_{};  ///< and one report more
+  std::array<std::uint8_t, decode::hid::kTe923Block + 64> block_{};  ///< and one report more
   std::size_t size_ = 0;
   int failures_ = 0;  ///< in a row
 };
@@ -80,4 +83,4 @@ std::unique_ptr<HidStation> make_te923_station(const StationTiming& timing) {
   return std::make_unique<Te923Station>(timing);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

@@ -3,7 +3,7 @@
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/hid/hid_station.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 using namespace std::chrono_literals;
@@ -20,16 +20,16 @@ class Wmr100Station final : public HidStation {
 
   Result<StationStep, Failure> step(HidExchange& exchange) override {
     if (started_ == MonoTime{}) {
-      if (!exchange.send(kWmr100Start)) return station_is_gone();
+      if (!exchange.send(decode::hid::kWmr100Start)) return station_is_gone();
       started_ = received_at_ = wind_ = exchange.now();
     }
     const HidMessage message = exchange.read(kWmr100Listen);
-    if (message.status == HidStatus::kLost) return station_is_gone();
-    if (message.status != HidStatus::kReport) return bear_silence(exchange);
+    if (message.status == bus::HidStatus::kLost) return station_is_gone();
+    if (message.status != bus::HidStatus::kReport) return bear_silence(exchange);
 
     StationStep step = StationStep::same(exchange.now());
-    for (const std::uint8_t byte : wmr100_report_bytes(message.bytes)) {
-      if (const auto frame = take_wmr100_byte(stream_, byte)) judge(*frame, exchange, step);
+    for (const std::uint8_t byte : decode::hid::wmr100_report_bytes(message.bytes)) {
+      if (const auto frame = decode::hid::take_wmr100_byte(stream_, byte)) judge(*frame, exchange, step);
     }
     if (step.health == StationHealth::kSame) miss_the_wind(step);
     return step;
@@ -37,8 +37,8 @@ class Wmr100Station final : public HidStation {
 
  private:
   /// A frame ended.
-  void judge(const Result<DecodedWind, Refusal>& frame, HidExchange& exchange, StationStep& step) {
-    if (frame || frame.error() == Refusal::kNotMine) received_at_ = step.next;
+  void judge(const Result<decode::DecodedWind, decode::Refusal>& frame, HidExchange& exchange, StationStep& step) {
+    if (frame || frame.error() == decode::Refusal::kNotMine) received_at_ = step.next;
     if (!frame) {
       exchange.refuse(frame.error());
     } else if (exchange.publish(*frame)) {
@@ -61,14 +61,14 @@ class Wmr100Station final : public HidStation {
     if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"is silent and is opened again"};
     if (now - started_ >= timing_.paced(kWmr100Restart)) {
       started_ = now;
-      exchange.refuse(Refusal::kTimeout);
-      if (!exchange.send(kWmr100Start)) return station_is_gone();
+      exchange.refuse(decode::Refusal::kTimeout);
+      if (!exchange.send(decode::hid::kWmr100Start)) return station_is_gone();
     }
     return StationStep::unwell(now, "is silent: check the console's power");
   }
 
   StationTiming timing_;
-  Wmr100Stream stream_;
+  decode::hid::Wmr100Stream stream_;
   MonoTime started_{};      ///< when the last start report went
   MonoTime received_at_{};  ///< the last valid frame
   MonoTime wind_{};         ///< the last wind
@@ -80,4 +80,4 @@ std::unique_ptr<HidStation> make_wmr100_station(const StationTiming& timing) {
   return std::make_unique<Wmr100Station>(timing);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

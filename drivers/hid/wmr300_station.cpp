@@ -5,7 +5,7 @@
 #include "drivers/decode/hid/wmr300.hpp"
 #include "drivers/hid/hid_station.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,34 +23,35 @@ class Wmr300Station final : public HidStation {
     // The heartbeat.
     const MonoTime begin = exchange.now();
     if (begin >= next_heartbeat_) {
-      if (!exchange.send(kWmr300Heartbeat)) return station_is_gone();
+      if (!exchange.send(decode::hid::kWmr300Heartbeat)) return station_is_gone();
       if (next_heartbeat_ == MonoTime{}) received_at_ = wind_ = begin;
       next_heartbeat_ = begin + timing_.paced(kWmr300HeartbeatEvery);
     }
 
     const Nanoseconds until_heartbeat = next_heartbeat_ - begin;
     const HidMessage message = exchange.read(std::min(kWmr300Listen, until_heartbeat));
-    if (message.status == HidStatus::kLost) return station_is_gone();
+    if (message.status == bus::HidStatus::kLost) return station_is_gone();
     StationStep step = StationStep::same(exchange.now());
-    if (message.status == HidStatus::kReport && !take(message.bytes, exchange, step)) return station_is_gone();
+    if (message.status == bus::HidStatus::kReport && !take(message.bytes, exchange, step)) return station_is_gone();
     if (step.health == StationHealth::kSame) return miss_the_wind(exchange, step);
     return step;
   }
 
  private:
   /// Handles a packet. False: the device was gone when it was acknowledged.
-  bool take(ByteSpan packet, HidExchange& exchange, StationStep& step) {
-    const bool is_sound = is_sound_wmr300(packet);
+  bool take(decode::ByteSpan packet, HidExchange& exchange, StationStep& step) {
+    const bool is_sound = decode::hid::is_sound_wmr300(packet);
     if (is_sound) received_at_ = step.next;
-    if (!wants_wmr300_acknowledgement(packet)) {
-      if (!is_sound) exchange.refuse(Refusal::kMalformed);
+    if (!decode::hid::wants_wmr300_acknowledgement(packet)) {
+      if (!is_sound) exchange.refuse(decode::Refusal::kMalformed);
       // It identifies itself. If no data came since the heartbeat before, it must be told to start sending.
       const bool is_idle = step.next - data_ > timing_.paced(kWmr300HeartbeatEvery) / 2;
-      return !is_wmr300_identity(packet) || !is_idle || exchange.send(encode_wmr300_begin(packet));
+      return !decode::hid::is_wmr300_identity(packet) || !is_idle ||
+             exchange.send(decode::hid::encode_wmr300_begin(packet));
     }
 
-    const auto acknowledgement = encode_wmr300_acknowledgement(packet);
-    const auto wind = decode_wmr300(packet);
+    const auto acknowledgement = decode::hid::encode_wmr300_acknowledgement(packet);
+    const auto wind = decode::hid::decode_wmr300(packet);
     if (is_sound) data_ = step.next;
     if (!wind) {
       exchange.refuse(wind.error());
@@ -63,7 +64,7 @@ class Wmr300Station final : public HidStation {
 
   Result<StationStep, Failure> miss_the_wind(HidExchange& exchange, StationStep step) {
     if (step.next - received_at_ > timing_.paced(kWmr300GiveUp)) {
-      exchange.refuse(Refusal::kTimeout);
+      exchange.refuse(decode::Refusal::kTimeout);
       return Failure{"sends no valid packets and is opened again"};
     }
     if (step.next - wind_ > timing_.paced(kWmr300NoWind)) {
@@ -88,4 +89,4 @@ std::unique_ptr<HidStation> make_wmr300_station(const StationTiming& timing) {
   return std::make_unique<Wmr300Station>(timing);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 
 bool WriteClock::happened_between(MonoTime from, MonoTime to) {
   if (to <= from || to - from >= period_) return false;
@@ -43,4 +43,4 @@ MonoTime WriteClock::behind(MonoTime time) const {
   return clear >= time ? clear : clear + period_;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

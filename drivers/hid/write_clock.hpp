@@ -4,7 +4,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 
 /// When a console does something that it does at regular intervals, learned from outside: by reads that find that it
 /// has happened since the read before. The result is an interval of time, narrowed by every further read. Two clocks
@@ -41,4 +41,4 @@ class WriteClock {
   std::optional<Window> window_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

@@ -20,7 +20,7 @@
 #include "drivers/microphone/microphone_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 const std::array kMicrophoneParameters = {
@@ -37,7 +37,7 @@ const std::array kMicrophoneParameters = {
               .unit = "",
               .default_value = std::int64_t{1},
               .min = 1,
-              .max = static_cast<double>(kMicMaxChannels),
+              .max = static_cast<double>(decode::microphone::kMicMaxChannels),
               .help = "number of microphones; with two or more, sound that reaches all alike does not count as wind"},
     Parameter{.name = "rate",
               .unit = "Hz",
@@ -152,7 +152,7 @@ std::vector<double> parse_faces(const std::string& text) {
 
 MicrophoneSettings settings_of(const ParameterValues& values) {
   MicrophoneSettings settings;
-  MicEstimatorOptions& estimator = settings.estimator;
+  decode::microphone::MicEstimatorOptions& estimator = settings.estimator;
   settings.is_calibrated = values.number("gain") > 0.0 || !values.text("curve").empty();
   const MicLevelSettings level = mic_level_settings_of(values);
   estimator.calibration = level.calibration;
@@ -170,7 +170,7 @@ MicrophoneSettings settings_of(const ParameterValues& values) {
       throw std::runtime_error("faces must have as many directions as there are channels");
     }
     try {
-      MicDirection(estimator.faces_deg, estimator.direction_smoothing_s);
+      decode::microphone::MicDirection(estimator.faces_deg, estimator.direction_smoothing_s);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(std::string("faces: ") + error.what());
     }
@@ -181,7 +181,7 @@ MicrophoneSettings settings_of(const ParameterValues& values) {
   return settings;
 }
 
-std::unique_ptr<Sensor> open_microphone(const ParameterValues& values) {
+std::unique_ptr<sensor::Sensor> open_microphone(const ParameterValues& values) {
   const std::string& worker = values.text("worker");
   const std::string& device = values.text("device");
   std::vector<std::string> command = {worker.empty() ? microphone_worker_program() : worker,
@@ -192,22 +192,22 @@ std::unique_ptr<Sensor> open_microphone(const ParameterValues& values) {
                                       fmt::format("--band-high={}", values.number("band_high"))};
   if (!device.empty()) command.push_back("--device=" + device);
   if (!values.text("host_api").empty()) command.push_back("--host-api=" + values.text("host_api"));
-  return std::make_unique<MicrophoneSensor>(settings_of(values), seed_of(device),
-                                            make_process_port(std::move(command)));
+  return std::make_unique<MicrophoneSensor>(settings_of(values), sensor::seed_of(device),
+                                            bus::make_process_port(std::move(command)));
 }
 
-std::vector<FoundDevice> find_plugged_microphones() {
+std::vector<sensor::FoundDevice> find_plugged_microphones() {
   return find_microphones(microphone_worker_program());
 }
 
 }  // namespace
 
-extern const DriverDescription kMicrophoneDriver;
-const DriverDescription kMicrophoneDriver{.name = "microphone",
-                                          .summary = "one to four bare microphones, by PortAudio",
-                                          .parameters = kMicrophoneParameters,
-                                          .open = open_microphone,
-                                          .find = find_plugged_microphones,
-                                          .is_relative = true};
+extern const sensor::DriverDescription kMicrophoneDriver;
+const sensor::DriverDescription kMicrophoneDriver{.name = "microphone",
+                                                  .summary = "one to four bare microphones, by PortAudio",
+                                                  .parameters = kMicrophoneParameters,
+                                                  .open = open_microphone,
+                                                  .find = find_plugged_microphones,
+                                                  .is_relative = true};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

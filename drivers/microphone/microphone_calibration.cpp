@@ -4,25 +4,25 @@
 #include <stdexcept>
 #include <string>
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 
-MicCalibration mic_calibration_of(const ParameterValues& values) {
+decode::microphone::MicCalibration mic_calibration_of(const ParameterValues& values) {
   if (const std::string& curve = values.text("curve"); !curve.empty()) {
-    auto parsed = parse_mic_curve(curve);
+    auto parsed = decode::microphone::parse_mic_curve(curve);
     if (!parsed) throw std::runtime_error("curve = \"" + curve + "\": " + parsed.error().message);
     return *parsed;
   }
-  MicPowerLaw law{.exponent = values.number("exponent")};
+  decode::microphone::MicPowerLaw law{.exponent = values.number("exponent")};
   if (const double gain_m_s = values.number("gain"); gain_m_s > 0.0) law.gain_m_s = gain_m_s;
   return law;
 }
 
-ParameterValues::Map parameters_of(const MicCalibration& calibration) {
-  if (const auto* law = std::get_if<MicPowerLaw>(&calibration)) {
+ParameterValues::Map parameters_of(const decode::microphone::MicCalibration& calibration) {
+  if (const auto* law = std::get_if<decode::microphone::MicPowerLaw>(&calibration)) {
     const auto rounded = [](double value) { return std::round(1000.0 * value) / 1000.0; };
     return {{"gain", rounded(law->gain_m_s)}, {"exponent", rounded(law->exponent)}, {"curve", std::string()}};
   }
-  return {{"curve", format_mic_curve(std::get<MicCurve>(calibration))}};
+  return {{"curve", decode::microphone::format_mic_curve(std::get<decode::microphone::MicCurve>(calibration))}};
 }
 
 MicLevelSettings mic_level_settings_of(const ParameterValues& values) {
@@ -33,4 +33,4 @@ MicLevelSettings mic_level_settings_of(const ParameterValues& values) {
   return settings;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

@@ -5,18 +5,18 @@
 #include "drivers/decode/microphone/mic_calibration.hpp"
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 
 /// The calibration by the microphone driver's parameters: a curve where one is given, else the power law; a
 /// gain of 0 (not calibrated) is taken for MicPowerLaw's own. Throws std::runtime_error for a curve that is none.
-MicCalibration mic_calibration_of(const ParameterValues& values);
+decode::microphone::MicCalibration mic_calibration_of(const ParameterValues& values);
 
 /// The inverse: the parameters gain, exponent and curve, with as many digits as a microphone's accuracy justifies.
-ParameterValues::Map parameters_of(const MicCalibration& calibration);
+ParameterValues::Map parameters_of(const decode::microphone::MicCalibration& calibration);
 
 /// What a microphone's level is measured in, and which speed it stands for.
 struct MicLevelSettings {
-  MicCalibration calibration{};
+  decode::microphone::MicCalibration calibration{};
   std::optional<double> noise_floor_db{};  ///< level of a calm, below 0; none: it is estimated while running
   double band_low_hz = 0.0;                ///< the band whose power is the level
   double band_high_hz = 0.0;
@@ -25,4 +25,4 @@ struct MicLevelSettings {
 /// The same by the microphone driver's parameters. Throws std::runtime_error for a curve that is none.
 MicLevelSettings mic_level_settings_of(const ParameterValues& values);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

@@ -15,7 +15,7 @@
 #include "drivers/bus/process_port.hpp"
 #include "drivers/microphone/microphone_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,13 +25,13 @@ constexpr auto kListTimeout = std::chrono::seconds(10);
 constexpr std::size_t kMostText = 1U << 16U;
 
 /// The output of a program until it ends, or until it takes too long.
-std::string output_of(BytePort& port) {
+std::string output_of(bus::BytePort& port) {
   std::string text;
   if (!port.open()) return text;
   std::array<std::uint8_t, 4096> buffer{};
   while (text.size() < kMostText) {
-    const ByteArrival arrival = port.read(buffer, kListTimeout);
-    if (arrival.status != ByteStatus::kBytes) break;
+    const bus::ByteArrival arrival = port.read(buffer, kListTimeout);
+    if (arrival.status != bus::ByteStatus::kBytes) break;
     text.append(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(arrival.size));
   }
   port.close();
@@ -62,7 +62,7 @@ std::string quoted(std::string_view text) {
 }
 
 /// Inputs that the system has and this user may not open: PortAudio omits them silently.
-void add_forbidden(std::vector<FoundDevice>& found) {
+void add_forbidden(std::vector<sensor::FoundDevice>& found) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator("/dev/snd", none)) {
     const std::string name = entry.path().filename().string();
@@ -91,9 +91,9 @@ std::string microphone_worker_program() {
   return beside;
 }
 
-std::vector<FoundDevice> find_microphones(const std::string& worker) {
-  std::vector<FoundDevice> found;
-  const auto port = make_process_port({worker, "mic-worker", "--list"});
+std::vector<sensor::FoundDevice> find_microphones(const std::string& worker) {
+  std::vector<sensor::FoundDevice> found;
+  const auto port = bus::make_process_port({worker, "mic-worker", "--list"});
   const std::string text = output_of(*port);
   for (std::string_view rest = text; !rest.empty();) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
@@ -113,4 +113,4 @@ std::vector<FoundDevice> find_microphones(const std::string& worker) {
   return found;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 /// A time stamp farther than this from now is of another clock, or wrong.
@@ -13,10 +13,10 @@ constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
 }  // namespace
 
-MicrophoneSensor::MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<BytePort> port)
-    : ReopeningSensor(seed), settings_(std::move(settings)), port_(std::move(port)) {}
+MicrophoneSensor::MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<bus::BytePort> port)
+    : sensor::ReopeningSensor(seed), settings_(std::move(settings)), port_(std::move(port)) {}
 
-Result<MonoTime, Failure> MicrophoneSensor::open(const Clock& clock) {
+Result<MonoTime, Failure> MicrophoneSensor::open(const sensor::Clock& clock) {
   reader_.clear();
   hello_.reset();
   trouble_.clear();
@@ -30,53 +30,54 @@ void MicrophoneSensor::close() noexcept {
   port_->close();
 }
 
-Result<MonoTime, Failure> MicrophoneSensor::work(const Clock& clock, SensorSink& sink) {
-  const ByteArrival arrival = port_->read(buffer_, std::max(Nanoseconds::zero(), deadline_ - clock.now().mono));
+Result<MonoTime, Failure> MicrophoneSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+  const bus::ByteArrival arrival = port_->read(buffer_, std::max(Nanoseconds::zero(), deadline_ - clock.now().mono));
   reader_.push(std::span(buffer_).first(arrival.size));
   while (const auto item = reader_.next()) take(*item, clock, sink);
 
   const MonoTime now = clock.now().mono;
   switch (arrival.status) {
-    case ByteStatus::kBytes:
+    case bus::ByteStatus::kBytes:
       if (now < deadline_) return now;
       break;
-    case ByteStatus::kSilence:
-    case ByteStatus::kForeign:
+    case bus::ByteStatus::kSilence:
+    case bus::ByteStatus::kForeign:
       break;
-    case ByteStatus::kInterrupted:
+    case bus::ByteStatus::kInterrupted:
       return Failure{"interrupted"};
-    case ByteStatus::kEnd:
-    case ByteStatus::kLost:
+    case bus::ByteStatus::kEnd:
+    case bus::ByteStatus::kLost:
       if (!trouble_.empty()) return Failure{trouble_};
       return Failure{
           "the microphone's worker ended without a message: starting it again; `yuragi mic-worker --list --verbose` "
           "may show why"};
   }
-  sink.refused(Refusal::kTimeout);
+  sink.refused(decode::Refusal::kTimeout);
   return Failure{hello_ ? fmt::format("{} has been silent for {:g} s: starting it again", hello_->device,
                                       seconds(settings_.sound_timeout))
                         : fmt::format("the microphone's worker has not started within {:g} s: starting it again",
                                       seconds(settings_.start_timeout))};
 }
 
-void MicrophoneSensor::take(const MicFrameReader::Item& item, const Clock& clock, SensorSink& sink) {
-  if (!item.bytes.empty()) sink.raw(RawDirection::kReceived, item.bytes);
+void MicrophoneSensor::take(const decode::microphone::MicFrameReader::Item& item, const sensor::Clock& clock,
+                            sensor::SensorSink& sink) {
+  if (!item.bytes.empty()) sink.raw(sensor::RawDirection::kReceived, item.bytes);
   if (!item.frame) return sink.refused(item.frame.error());
   const Instant now = clock.now();
-  if (const auto* trouble = std::get_if<MicTrouble>(&*item.frame)) {
+  if (const auto* trouble = std::get_if<decode::microphone::MicTrouble>(&*item.frame)) {
     trouble_ = trouble->message;
-  } else if (const auto* hello = std::get_if<MicHello>(&*item.frame)) {
+  } else if (const auto* hello = std::get_if<decode::microphone::MicHello>(&*item.frame)) {
     take(*hello);
     deadline_ = now.mono + settings_.sound_timeout;
   } else {
     deadline_ = now.mono + settings_.sound_timeout;
-    take(std::get<MicBlock>(*item.frame), now, sink);
+    take(std::get<decode::microphone::MicBlock>(*item.frame), now, sink);
   }
 }
 
 /// A stream begins. What was estimated from an earlier one (the noise of a calm, automatic gain, gusts) is kept if its
 /// format is the same.
-void MicrophoneSensor::take(const MicHello& hello) {
+void MicrophoneSensor::take(const decode::microphone::MicHello& hello) {
   if (estimator_ && estimator_->hello() == hello) {
     estimator_->restart();
   } else {
@@ -90,7 +91,7 @@ void MicrophoneSensor::take(const MicHello& hello) {
   hello_ = hello;
 }
 
-void MicrophoneSensor::take(const MicBlock& block, const Instant& now, SensorSink& sink) {
+void MicrophoneSensor::take(const decode::microphone::MicBlock& block, const Instant& now, sensor::SensorSink& sink) {
   if (!estimator_) return report_unusable(sink, trouble_);
   const auto estimate = estimator_->add(block);
   if (estimate) {
@@ -99,15 +100,16 @@ void MicrophoneSensor::take(const MicBlock& block, const Instant& now, SensorSin
   }
   sink.refused(estimate.error());
   report_unusable(sink, fmt::format("{}: {}", hello_->device,
-                                    estimate.error() == Refusal::kImplausible
+                                    estimate.error() == decode::Refusal::kImplausible
                                         ? "noise at full scale, which is not wind: check cable, plug and sample format"
                                     : block.invalid_samples > 0
                                         ? "invalid samples: check the sample format"
                                         : "digital silence: check whether it is muted, or its plug is loose"));
 }
 
-void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now,
-                               SensorSink& sink) {
+void MicrophoneSensor::publish(const decode::microphone::MicEstimate& estimate,
+                               const decode::microphone::MicBlock& block, const Instant& now,
+                               sensor::SensorSink& sink) {
   // The block's stamp is of the system's monotonic clock; it is only used where that can be ours.
   const MonoTime end{Nanoseconds(block.end_mono_ns)};
   const bool is_ours = end <= now.mono && now.mono - end < kBelievableAge;
@@ -121,11 +123,11 @@ void MicrophoneSensor::publish(const MicEstimate& estimate, const MicBlock& bloc
                 .speed_m_s = estimate.speed_m_s,
                 .direction_deg = estimate.direction_deg,
                 .gust_m_s = estimate.gust_m_s,
-                .quality = is_uncertain ? ReadingQuality::kUncertain : ReadingQuality::kGood});
+                .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood});
 }
 
 /// For people; changes only with what is to be done.
-std::string MicrophoneSensor::detail(const MicEstimate& estimate) const {
+std::string MicrophoneSensor::detail(const decode::microphone::MicEstimate& estimate) const {
   std::string text = hello_->device;
   if (!settings_.is_calibrated) text += "; not calibrated: set gain and exponent, or curve";
   if (estimate.suspects_automatic_gain) text += "; its level hardly follows the wind: switch automatic gain off";
@@ -136,4 +138,4 @@ std::string MicrophoneSensor::detail(const MicEstimate& estimate) const {
   return text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

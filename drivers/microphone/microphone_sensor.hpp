@@ -12,10 +12,10 @@
 #include "drivers/sensor/found_device.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 
 struct MicrophoneSettings {
-  MicEstimatorOptions estimator{};
+  decode::microphone::MicEstimatorOptions estimator{};
   bool is_calibrated = false;                            ///< if not, every reading is uncertain
   Nanoseconds start_timeout = std::chrono::seconds(15);  ///< for the worker's first frame: sound systems start slowly
   Nanoseconds sound_timeout = std::chrono::seconds(3);   ///< from block to block, of which there are four a second
@@ -24,29 +24,30 @@ struct MicrophoneSettings {
 /// Wind by microphone. The sound library runs in another process, the worker, whose frames come through `port`; this is
 /// its watchdog: a worker that ends, sends no valid frame in time, or reports a failure is killed and started again,
 /// without limit. One reading per block, with the time of the middle of the window that it is the mean of.
-class MicrophoneSensor final : public ReopeningSensor {
+class MicrophoneSensor final : public sensor::ReopeningSensor {
  public:
-  MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<BytePort> port);
+  MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<bus::BytePort> port);
 
   void interrupt() noexcept override { port_->interrupt(); }
 
  protected:
-  Result<MonoTime, Failure> open(const Clock& clock) override;
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
   void close() noexcept override;
 
  private:
-  void take(const MicFrameReader::Item& item, const Clock& clock, SensorSink& sink);
-  void take(const MicHello& hello);
-  void take(const MicBlock& block, const Instant& now, SensorSink& sink);
-  void publish(const MicEstimate& estimate, const MicBlock& block, const Instant& now, SensorSink& sink);
-  std::string detail(const MicEstimate& estimate) const;
+  void take(const decode::microphone::MicFrameReader::Item& item, const sensor::Clock& clock, sensor::SensorSink& sink);
+  void take(const decode::microphone::MicHello& hello);
+  void take(const decode::microphone::MicBlock& block, const Instant& now, sensor::SensorSink& sink);
+  void publish(const decode::microphone::MicEstimate& estimate, const decode::microphone::MicBlock& block,
+               const Instant& now, sensor::SensorSink& sink);
+  std::string detail(const decode::microphone::MicEstimate& estimate) const;
 
   MicrophoneSettings settings_;
-  std::unique_ptr<BytePort> port_;
-  MicFrameReader reader_;
-  std::optional<MicHello> hello_;
-  std::optional<MicEstimator> estimator_;
+  std::unique_ptr<bus::BytePort> port_;
+  decode::microphone::MicFrameReader reader_;
+  std::optional<decode::microphone::MicHello> hello_;
+  std::optional<decode::microphone::MicEstimator> estimator_;
   std::string trouble_;  ///< the worker's last message
   MonoTime deadline_{};
   std::array<std::uint8_t, 8192> buffer_{};
@@ -57,6 +58,6 @@ std::string microphone_worker_program();
 
 /// The inputs that the worker lists, and what stands in the way of those that the system has. Waits for ten seconds at
 /// most.
-std::vector<FoundDevice> find_microphones(const std::string& worker);
+std::vector<sensor::FoundDevice> find_microphones(const std::string& worker);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

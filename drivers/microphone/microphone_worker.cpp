@@ -16,7 +16,7 @@
 #include "drivers/decode/microphone/mic_frame.hpp"
 #include "drivers/decode/microphone/sample_clock.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 /// A running sound system delivers samples many times a second.
@@ -37,16 +37,16 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
 /// Makes blocks of the pieces of a stream, with the time at which they were recorded.
 class Listener {
  public:
-  Listener(const MicAnalyserOptions& options, std::string device)
+  Listener(const decode::microphone::MicAnalyserOptions& options, std::string device)
       : analyser_(options), hello_(analyser_.hello()), clock_(options.rate_hz), sample_s_(1.0 / options.rate_hz) {
     hello_.device = std::move(device);
   }
 
-  const MicHello& hello() const { return hello_; }
+  const decode::microphone::MicHello& hello() const { return hello_; }
 
   /// Calls `use` with each block that the piece completes.
   template <class Use>
-  void take(const AudioBlock& piece, Use&& use) {
+  void take(const bus::AudioBlock& piece, Use&& use) {
     if (piece.lost_frames > 0) {
       lost_ += piece.lost_frames;
       analyser_.restart();
@@ -63,19 +63,19 @@ class Listener {
   }
 
  private:
-  MicAnalyser analyser_;
-  MicHello hello_;
-  SampleClock clock_;
+  decode::microphone::MicAnalyser analyser_;
+  decode::microphone::MicHello hello_;
+  decode::microphone::SampleClock clock_;
   double sample_s_;
   std::uint32_t lost_ = 0;
 };
 
 }  // namespace
 
-bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, const Clock& clock, int output,
-                           const std::atomic<bool>& is_over) {
+bool run_microphone_worker(const MicWorkerOptions& options, bus::AudioInput& input, const sensor::Clock& clock,
+                           int output, const std::atomic<bool>& is_over) {
   const auto fail = [&](const std::string& message) {
-    write_all(output, encode_mic_frame(MicTrouble{message}));
+    write_all(output, decode::microphone::encode_mic_frame(decode::microphone::MicTrouble{message}));
     return false;
   };
 
@@ -85,24 +85,24 @@ bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, c
       fmt::format("{} ({}), {} channels at {:g} Hz", device->name, device->host_api, device->channels, device->rate_hz);
   std::optional<Listener> listener;
   try {
-    listener.emplace(MicAnalyserOptions{.rate_hz = device->rate_hz,
-                                        .channels = device->channels,
-                                        .low_hz = options.low_hz,
-                                        .high_hz = options.high_hz},
+    listener.emplace(decode::microphone::MicAnalyserOptions{.rate_hz = device->rate_hz,
+                                                            .channels = device->channels,
+                                                            .low_hz = options.low_hz,
+                                                            .high_hz = options.high_hz},
                      name);
   } catch (const std::invalid_argument& error) {
     return fail(fmt::format("{}: {}", name, error.what()));
   }
-  if (!write_all(output, encode_mic_frame(listener->hello()))) return true;
+  if (!write_all(output, decode::microphone::encode_mic_frame(listener->hello()))) return true;
 
-  AudioBlock piece;
+  bus::AudioBlock piece;
   MonoTime last_sound = clock.now().mono;
   while (!is_over) {
     bool is_read = true;
     while (input.take(piece)) {
       last_sound = clock.now().mono;
-      listener->take(piece, [&](const MicBlock& block) {
-        is_read = is_read && write_all(output, encode_mic_frame(block, listener->hello()));
+      listener->take(piece, [&](const decode::microphone::MicBlock& block) {
+        is_read = is_read && write_all(output, decode::microphone::encode_mic_frame(block, listener->hello()));
       });
     }
     if (!is_read) return true;
@@ -116,9 +116,9 @@ bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, c
   return true;
 }
 
-std::string list_of_microphones(const std::vector<AudioDevice>& devices) {
+std::string list_of_microphones(const std::vector<bus::AudioDevice>& devices) {
   std::string lines;
-  for (const AudioDevice& device : devices) {
+  for (const bus::AudioDevice& device : devices) {
     std::string name = device.name;
     std::ranges::replace_if(
         name, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
@@ -128,4 +128,4 @@ std::string list_of_microphones(const std::vector<AudioDevice>& devices) {
   return lines;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

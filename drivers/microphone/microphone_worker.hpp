@@ -7,11 +7,11 @@
 #include "drivers/bus/audio_input.hpp"
 #include "drivers/sensor/clock.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 
 /// The options of a microphone's worker process.
 struct MicWorkerOptions {
-  AudioChoice choice{};
+  bus::AudioChoice choice{};
   double low_hz = 20.0;  ///< the wind's band
   double high_hz = 200.0;
 };
@@ -22,11 +22,11 @@ struct MicWorkerOptions {
 ///
 /// Blocks. Returns true if it was told to end, false if the microphone failed (a trouble frame has the reason). The
 /// caller then ends the process without destroying `input`, whose library may hang.
-bool run_microphone_worker(const MicWorkerOptions& options, AudioInput& input, const Clock& clock, int output,
-                           const std::atomic<bool>& is_over);
+bool run_microphone_worker(const MicWorkerOptions& options, bus::AudioInput& input, const sensor::Clock& clock,
+                           int output, const std::atomic<bool>& is_over);
 
 /// The inputs of this machine, a line each: host API, channels, preferred rate in Hz, "default" or "-", and name, with
 /// tabs between. What find_microphones() reads.
-std::string list_of_microphones(const std::vector<AudioDevice>& devices);
+std::string list_of_microphones(const std::vector<bus::AudioDevice>& devices);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

@@ -10,7 +10,7 @@
 #include "drivers/modbus/modbus_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 constexpr std::array<std::string_view, 2> kTransports = {"tcp", "rtu"};
@@ -123,9 +123,10 @@ ModbusProfile profile_of(const ParameterValues& values) {
   return profile;
 }
 
-ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) {
-  ModbusLine line;
-  line.framing = values.text("transport") == "tcp" ? ModbusFraming::kTcp : ModbusFraming::kRtu;
+bus::ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) {
+  bus::ModbusLine line;
+  line.framing =
+      values.text("transport") == "tcp" ? decode::modbus::ModbusFraming::kTcp : decode::modbus::ModbusFraming::kRtu;
   line.host = values.text("host");
   line.port = static_cast<std::uint16_t>(values.integer("port"));
   line.device = values.text("device");
@@ -134,7 +135,7 @@ ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) 
   line.stop_bits = profile.stop_bits;
   line.connect_timeout = std::max(profile.response_timeout, line.connect_timeout);
 
-  if (line.framing == ModbusFraming::kTcp) {
+  if (line.framing == decode::modbus::ModbusFraming::kTcp) {
     if (line.host.empty())
       throw std::runtime_error("host: is empty; give the name or address of the device or gateway");
     return line;
@@ -154,32 +155,32 @@ ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) 
 
 /// The separate line of the vane; nullptr where it has none.
 std::shared_ptr<ModbusBus> direction_bus_of(const ParameterValues& values, const ModbusProfile& profile,
-                                            const ModbusLine& line) {
+                                            const bus::ModbusLine& line) {
   const std::string& device = values.text("direction_device");
   if (device.empty()) return nullptr;
-  if (line.framing != ModbusFraming::kRtu) {
+  if (line.framing != decode::modbus::ModbusFraming::kRtu) {
     throw std::runtime_error("direction_device: is for transport rtu; over tcp both slaves are behind one host");
   }
   if (!profile.direction) {
     throw std::runtime_error("direction_device: profile \"" + profile.name + "\" has no direction");
   }
-  ModbusLine own = line;
+  bus::ModbusLine own = line;
   own.device = device;
   return shared_modbus_bus(own);
 }
 
-std::unique_ptr<Sensor> open_modbus(const ParameterValues& values) {
+std::unique_ptr<sensor::Sensor> open_modbus(const ParameterValues& values) {
   ModbusProfile profile = profile_of(values);
-  const ModbusLine line = line_of(values, profile);
-  const std::uint32_t seed = seed_of(describe(line) + profile.name + std::to_string(profile.speed.slave));
+  const bus::ModbusLine line = line_of(values, profile);
+  const std::uint32_t seed = sensor::seed_of(describe(line) + profile.name + std::to_string(profile.speed.slave));
   const auto direction_bus = direction_bus_of(values, profile, line);
   return std::make_unique<ModbusSensor>(std::move(profile), shared_modbus_bus(line), direction_bus, seed);
 }
 
 /// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.
-std::vector<FoundDevice> find_modbus() {
-  std::vector<FoundDevice> found;
-  for (const SerialPortInfo& port : find_serial_ports()) {
+std::vector<sensor::FoundDevice> find_modbus() {
+  std::vector<sensor::FoundDevice> found;
+  for (const bus::SerialPortInfo& port : bus::find_serial_ports()) {
     found.push_back({.what = "serial port " + port.node,
                      .settings = "transport = \"rtu\"\ndevice = \"" + port.name + "\"",
                      .trouble = port.trouble,
@@ -190,11 +191,12 @@ std::vector<FoundDevice> find_modbus() {
 
 }  // namespace
 
-extern const DriverDescription kModbusDriver;
-const DriverDescription kModbusDriver{.name = "modbus",
-                                      .summary = "anemometers and vanes on Modbus TCP or RTU, by device profiles",
-                                      .parameters = kModbusParameters,
-                                      .open = open_modbus,
-                                      .find = find_modbus};
+extern const sensor::DriverDescription kModbusDriver;
+const sensor::DriverDescription kModbusDriver{
+    .name = "modbus",
+    .summary = "anemometers and vanes on Modbus TCP or RTU, by device profiles",
+    .parameters = kModbusParameters,
+    .open = open_modbus,
+    .find = find_modbus};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 /// A connection that was dropped silently looks like a slow device: after so many requests in a row without a reply it
@@ -19,22 +19,23 @@ ModbusTrouble trouble(ModbusTrouble::Kind kind) {
   return {kind, {}};
 }
 
-void show_sent(ModbusFraming framing, const ModbusRequest& request, SensorSink& sink) {
-  if (framing == ModbusFraming::kTcp) {
-    sink.raw(RawDirection::kSent, encode_tcp(request));
+void show_sent(decode::modbus::ModbusFraming framing, const decode::modbus::ModbusRequest& request,
+               sensor::SensorSink& sink) {
+  if (framing == decode::modbus::ModbusFraming::kTcp) {
+    sink.raw(sensor::RawDirection::kSent, decode::modbus::encode_tcp(request));
   } else {
-    sink.raw(RawDirection::kSent, encode_rtu(request));
+    sink.raw(sensor::RawDirection::kSent, decode::modbus::encode_rtu(request));
   }
 }
 
 /// "9600 8N1".
-std::string settings_of(const ModbusLine& line) {
+std::string settings_of(const bus::ModbusLine& line) {
   return fmt::format("{} 8{}{}", line.baud, line.parity, line.stop_bits);
 }
 
 /// The key of a line: the same for all its names.
-std::string address_of(const ModbusLine& line) {
-  if (line.framing == ModbusFraming::kTcp) return describe(line);
+std::string address_of(const bus::ModbusLine& line) {
+  if (line.framing == decode::modbus::ModbusFraming::kTcp) return describe(line);
   std::error_code ignored;
   const auto port = std::filesystem::canonical(line.device, ignored);
   return ignored ? line.device : port.string();
@@ -45,7 +46,7 @@ std::string address_of(const ModbusLine& line) {
 /// A place in the queue: taken at its end, and left when this object is destroyed. The first in the queue has the line.
 class ModbusBus::Turn {
  public:
-  Turn(ModbusBus& bus, const Interruption& interruption) : bus_(bus) {
+  Turn(ModbusBus& bus, const bus::Interruption& interruption) : bus_(bus) {
     std::unique_lock lock(bus_.mutex_);
     ticket_ = ++bus_.last_ticket_;
     bus_.waiting_.push_back(ticket_);
@@ -64,7 +65,7 @@ class ModbusBus::Turn {
   bool has_line() const noexcept { return has_line_; }
 
   /// Waits for what is left of the gap; false: `interruption` was set first.
-  bool wait_for_gap(const Interruption& interruption, MonoTime now) {
+  bool wait_for_gap(const bus::Interruption& interruption, MonoTime now) {
     std::unique_lock lock(bus_.mutex_);
     if (now >= bus_.free_at_) return true;
     return !bus_.turn_ended_.wait_for(lock, bus_.free_at_ - now, [&interruption] { return interruption.is_set(); });
@@ -90,12 +91,12 @@ class ModbusBus::Turn {
   bool has_line_ = false;
 };
 
-ModbusBus::ModbusBus(const ModbusLine& line, std::unique_ptr<ModbusConnection> connection)
-    : line_(line), where_(describe(line)), min_gap_(frame_gap(line)), connection_(std::move(connection)) {}
+ModbusBus::ModbusBus(const bus::ModbusLine& line, std::unique_ptr<bus::ModbusConnection> connection)
+    : line_(line), where_(describe(line)), min_gap_(bus::frame_gap(line)), connection_(std::move(connection)) {}
 
-Result<void, Failure> ModbusBus::suits(const ModbusLine& line) const {
+Result<void, Failure> ModbusBus::suits(const bus::ModbusLine& line) const {
   const bool is_same = line.baud == line_.baud && line.parity == line_.parity && line.stop_bits == line_.stop_bits;
-  if (line.framing == ModbusFraming::kTcp || is_same) return {};
+  if (line.framing == decode::modbus::ModbusFraming::kTcp || is_same) return {};
   return Failure{
       fmt::format("{} is used with {} by another sensor, and cannot have {} at the same time: give both the "
                   "same baud, parity and stop_bits",
@@ -107,7 +108,7 @@ void ModbusBus::keep_gap(Nanoseconds min_gap) {
   min_gap_ = std::max(min_gap_, min_gap);
 }
 
-Result<MonoTime, Failure> ModbusBus::open(const Interruption& interruption, const Clock& clock) {
+Result<MonoTime, Failure> ModbusBus::open(const bus::Interruption& interruption, const sensor::Clock& clock) {
   // Usually it is open, and this returns without waiting for the line.
   const auto open_since = [this] {
     const std::lock_guard lock(mutex_);
@@ -131,8 +132,9 @@ MonoTime ModbusBus::ready_at(std::uint8_t unit) const {
   return unit_ready_at_[unit];
 }
 
-ModbusBus::Reply ModbusBus::exchange(ModbusRequest request, const ModbusPatience& patience,
-                                     const Interruption& interruption, const Clock& clock, SensorSink& sink) {
+ModbusBus::Reply ModbusBus::exchange(decode::modbus::ModbusRequest request, const bus::ModbusPatience& patience,
+                                     const bus::Interruption& interruption, const sensor::Clock& clock,
+                                     sensor::SensorSink& sink) {
   using enum ModbusTrouble::Kind;
   Turn turn(*this, interruption);
   if (!turn.has_line() || !turn.wait_for_gap(interruption, clock.now().mono)) return trouble(kInterrupted);
@@ -144,8 +146,8 @@ ModbusBus::Reply ModbusBus::exchange(ModbusRequest request, const ModbusPatience
   const MonoTime now = clock.now().mono;
   turn.begin_gap(now);
   const bool may_come_late = !reply && (reply.error().kind == kSilence || reply.error().kind == kOthersOnly ||
-                                        reply.error().refusal.why == Refusal::kTooShort);
-  if (may_come_late && line_.framing == ModbusFraming::kRtu) {
+                                        reply.error().refusal.why == decode::Refusal::kTooShort);
+  if (may_come_late && line_.framing == decode::modbus::ModbusFraming::kRtu) {
     turn.expect_late_reply(request.unit, now + patience.response_timeout);
   }
   return reply;
@@ -167,56 +169,56 @@ void ModbusBus::close_line() noexcept {
   open_since_.reset();
 }
 
-ModbusBus::Reply ModbusBus::transact(const ModbusRequest& request, const ModbusPatience& patience,
-                                     const Interruption& interruption, SensorSink& sink) {
+ModbusBus::Reply ModbusBus::transact(const decode::modbus::ModbusRequest& request, const bus::ModbusPatience& patience,
+                                     const bus::Interruption& interruption, sensor::SensorSink& sink) {
   if (is_unsettled_) {
     const std::size_t leftover = connection_->settle(buffer_, patience, interruption);
     const auto bytes = std::span(buffer_).first(leftover);
-    if (leftover > 0) sink.raw(RawDirection::kReceived, bytes);
+    if (leftover > 0) sink.raw(sensor::RawDirection::kReceived, bytes);
     // Usually a late reply; noise has been counted when it was taken for a reply.
-    if (leftover > 0 && modbus_crc(bytes) == 0) sink.refused(Refusal::kNotMine);
+    if (leftover > 0 && decode::modbus::modbus_crc(bytes) == 0) sink.refused(decode::Refusal::kNotMine);
   }
   is_unsettled_ = true;
-  if (!connection_->send(request, patience)) return fail(BusStatus::kLost, false, sink);
+  if (!connection_->send(request, patience)) return fail(bus::BusStatus::kLost, false, sink);
   show_sent(line_.framing, request, sink);
 
   // Messages of others, such as the late reply to an earlier request, are skipped until the time-out.
   bool received_others = false;
   for (;;) {
-    const BusMessage message = connection_->receive(buffer_, interruption);
-    if (message.status != BusStatus::kMessage) return fail(message.status, received_others, sink);
+    const bus::BusMessage message = connection_->receive(buffer_, interruption);
+    if (message.status != bus::BusStatus::kMessage) return fail(message.status, received_others, sink);
     const auto bytes = std::span(buffer_).first(message.size);
-    sink.raw(RawDirection::kReceived, bytes);
+    sink.raw(sensor::RawDirection::kReceived, bytes);
 
-    const auto registers = decode_modbus(line_.framing, request, bytes);
-    if (registers || registers.error().why == Refusal::kException) {
+    const auto registers = decode::modbus::decode_modbus(line_.framing, request, bytes);
+    if (registers || registers.error().why == decode::Refusal::kException) {
       silent_requests_ = 0;
       is_unsettled_ = received_others;
     }
     if (registers) return *registers;
-    if (registers.error().why != Refusal::kNotMine) return refuse(registers.error(), sink);
-    sink.refused(Refusal::kNotMine);
+    if (registers.error().why != decode::Refusal::kNotMine) return refuse(registers.error(), sink);
+    sink.refused(decode::Refusal::kNotMine);
     received_others = true;
   }
 }
 
 /// No message came.
-ModbusTrouble ModbusBus::fail(BusStatus status, bool received_others, SensorSink& sink) {
+ModbusTrouble ModbusBus::fail(bus::BusStatus status, bool received_others, sensor::SensorSink& sink) {
   using enum ModbusTrouble::Kind;
   switch (status) {
-    case BusStatus::kSilence:
+    case bus::BusStatus::kSilence:
       if (++silent_requests_ >= kSilentRequestsBeforeReopen) close_line();
       if (received_others) return trouble(kOthersOnly);
-      sink.refused(Refusal::kTimeout);
+      sink.refused(decode::Refusal::kTimeout);
       return trouble(kSilence);
-    case BusStatus::kCutOff:
-      return refuse({Refusal::kTooShort}, sink);
-    case BusStatus::kGarbled:
-      return refuse({Refusal::kMalformed}, sink);
-    case BusStatus::kInterrupted:
+    case bus::BusStatus::kCutOff:
+      return refuse({decode::Refusal::kTooShort}, sink);
+    case bus::BusStatus::kGarbled:
+      return refuse({decode::Refusal::kMalformed}, sink);
+    case bus::BusStatus::kInterrupted:
       return trouble(kInterrupted);
-    case BusStatus::kMessage:
-    case BusStatus::kLost:
+    case bus::BusStatus::kMessage:
+    case bus::BusStatus::kLost:
       break;
   }
   close_line();
@@ -224,13 +226,13 @@ ModbusTrouble ModbusBus::fail(BusStatus status, bool received_others, SensorSink
 }
 
 /// A message came and was refused. Where one TCP message ends and the next begins is not known any more.
-ModbusTrouble ModbusBus::refuse(const ModbusRefusal& refusal, SensorSink& sink) {
+ModbusTrouble ModbusBus::refuse(const decode::modbus::ModbusRefusal& refusal, sensor::SensorSink& sink) {
   sink.refused(refusal.why);
-  if (refusal.why != Refusal::kException && line_.framing == ModbusFraming::kTcp) close_line();
+  if (refusal.why != decode::Refusal::kException && line_.framing == decode::modbus::ModbusFraming::kTcp) close_line();
   return {ModbusTrouble::Kind::kRefused, refusal};
 }
 
-std::shared_ptr<ModbusBus> shared_modbus_bus(const ModbusLine& line) {
+std::shared_ptr<ModbusBus> shared_modbus_bus(const bus::ModbusLine& line) {
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<ModbusBus>> buses;
 
@@ -242,9 +244,9 @@ std::shared_ptr<ModbusBus> shared_modbus_bus(const ModbusLine& line) {
     if (const auto suits = bus->suits(line); !suits) throw std::runtime_error(suits.error().message);
     return bus;
   }
-  bus = std::make_shared<ModbusBus>(line, make_modbus_connection(line));
+  bus = std::make_shared<ModbusBus>(line, bus::make_modbus_connection(line));
   known = bus;
   return bus;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -12,7 +12,7 @@
 #include "drivers/bus/modbus_connection.hpp"
 #include "drivers/sensor/sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 
 /// Why a request gave no registers. Refusals have been counted.
 struct ModbusTrouble {
@@ -24,7 +24,7 @@ struct ModbusTrouble {
     kInterrupted,  ///< the interruption was set
   };
   Kind kind = Kind::kSilence;
-  ModbusRefusal refusal;  ///< for kRefused
+  decode::modbus::ModbusRefusal refusal;  ///< for kRefused
 };
 
 /// One line with Modbus devices: a serial port, or a host and port. All sensors on that line share it, each from a
@@ -39,30 +39,30 @@ struct ModbusTrouble {
 /// ends that.
 class ModbusBus {
  public:
-  using Reply = Result<ModbusRegisters, ModbusTrouble>;
+  using Reply = Result<decode::modbus::ModbusRegisters, ModbusTrouble>;
 
-  ModbusBus(const ModbusLine& line, std::unique_ptr<ModbusConnection> connection);
+  ModbusBus(const bus::ModbusLine& line, std::unique_ptr<bus::ModbusConnection> connection);
 
   /// The line, for people.
   const std::string& where() const noexcept { return where_; }
-  ModbusFraming framing() const noexcept { return line_.framing; }
+  decode::modbus::ModbusFraming framing() const noexcept { return line_.framing; }
 
   /// Can sensors with these settings share it? The failure's text says what differs.
-  Result<void, Failure> suits(const ModbusLine& line) const;
+  Result<void, Failure> suits(const bus::ModbusLine& line) const;
 
   /// Sets the least time from a reply to the next request of any sensor; the longest of all calls holds.
   void keep_gap(Nanoseconds min_gap);
 
   /// Opens the line if it is not open. Returns when that was; the failure's text: why, and what to do.
-  Result<MonoTime, Failure> open(const Interruption& interruption, const Clock& clock);
+  Result<MonoTime, Failure> open(const bus::Interruption& interruption, const sensor::Clock& clock);
 
   /// From when on a slave may get a request; usually a time in the past.
   MonoTime ready_at(std::uint8_t unit) const;
 
   /// Sends a request and waits for the reply. Sets the request's transaction id. Counts refusals in `sink`, and shows
   /// it each message.
-  Reply exchange(ModbusRequest request, const ModbusPatience& patience, const Interruption& interruption,
-                 const Clock& clock, SensorSink& sink);
+  Reply exchange(decode::modbus::ModbusRequest request, const bus::ModbusPatience& patience,
+                 const bus::Interruption& interruption, const sensor::Clock& clock, sensor::SensorSink& sink);
 
   /// How many exchanges are waiting or in progress.
   std::size_t waiting_count() const;
@@ -74,12 +74,12 @@ class ModbusBus {
   class Turn;
 
   void close_line() noexcept;
-  Reply transact(const ModbusRequest& request, const ModbusPatience& patience, const Interruption& interruption,
-                 SensorSink& sink);
-  ModbusTrouble fail(BusStatus status, bool received_others, SensorSink& sink);
-  ModbusTrouble refuse(const ModbusRefusal& refusal, SensorSink& sink);
+  Reply transact(const decode::modbus::ModbusRequest& request, const bus::ModbusPatience& patience,
+                 const bus::Interruption& interruption, sensor::SensorSink& sink);
+  ModbusTrouble fail(bus::BusStatus status, bool received_others, sensor::SensorSink& sink);
+  ModbusTrouble refuse(const decode::modbus::ModbusRefusal& refusal, sensor::SensorSink& sink);
 
-  const ModbusLine line_;
+  const bus::ModbusLine line_;
   const std::string where_;
 
   mutable std::mutex mutex_;
@@ -92,16 +92,16 @@ class ModbusBus {
   std::optional<MonoTime> open_since_;         ///< empty: the line is not open
 
   // Of the caller that has the line.
-  std::unique_ptr<ModbusConnection> connection_;
+  std::unique_ptr<bus::ModbusConnection> connection_;
   bool is_unsettled_ = true;  ///< a message may still be on the line
   int silent_requests_ = 0;   ///< in a row, to any slave
   std::uint16_t transaction_ = 0;
-  std::array<std::uint8_t, kModbusMaxMessage> buffer_{};
+  std::array<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer_{};
 };
 
 /// The bus of that line: the existing one, if another sensor has it, or a new one. A serial port is identified by the
 /// device that its name links to. Throws std::runtime_error where it is in use with another baud rate, parity or number
 /// of stop bits. Thread-safe: yes.
-std::shared_ptr<ModbusBus> shared_modbus_bus(const ModbusLine& line);
+std::shared_ptr<ModbusBus> shared_modbus_bus(const bus::ModbusLine& line);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

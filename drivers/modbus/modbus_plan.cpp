@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <optional>
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 ModbusRead read_of(const ModbusProfile& profile, ModbusMeasure measure) {
-  const ModbusQuantity& quantity = quantity_of(profile, measure);
+  const decode::modbus::ModbusQuantity& quantity = quantity_of(profile, measure);
   return {.request = {.transaction = 0,
                       .unit = quantity.slave,
                       .function = quantity.function,
                       .address = quantity.address,
-                      .count = static_cast<std::uint16_t>(register_count(quantity.type))},
+                      .count = static_cast<std::uint16_t>(decode::modbus::register_count(quantity.type))},
           .measures = {measure}};
 }
 
@@ -31,7 +31,7 @@ std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead&
   const int end = std::max(one.request.address + one.request.count, other.request.address + other.request.count);
   const int count = end - begin;
   const int between = count - one.request.count - other.request.count;
-  if (between > profile.block_gap || count > static_cast<int>(kModbusMaxRegisters)) return std::nullopt;
+  if (between > profile.block_gap || count > static_cast<int>(decode::modbus::kModbusMaxRegisters)) return std::nullopt;
 
   ModbusRead read = one;
   read.request.address = static_cast<std::uint16_t>(begin);
@@ -70,7 +70,7 @@ std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_
   return reads;
 }
 
-const ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure) {
+const decode::modbus::ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure) {
   switch (measure) {
     case ModbusMeasure::kDirection:
       return *profile.direction;
@@ -82,10 +82,11 @@ const ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure me
   return profile.speed;
 }
 
-std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
-                                            const ModbusRegisters& registers) {
+std::span<const std::uint16_t> registers_of(const decode::modbus::ModbusQuantity& quantity,
+                                            const decode::modbus::ModbusRequest& request,
+                                            const decode::modbus::ModbusRegisters& registers) {
   const auto from = static_cast<std::size_t>(quantity.address - request.address);
-  return registers.span().subspan(from, register_count(quantity.type));
+  return registers.span().subspan(from, decode::modbus::register_count(quantity.type));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -7,13 +7,13 @@
 #include "drivers/decode/modbus/modbus.hpp"
 #include "drivers/modbus/modbus_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 
 enum class ModbusMeasure : std::uint8_t { kSpeed, kDirection, kGust };
 
 /// One request, and the quantities in its reply.
 struct ModbusRead {
-  ModbusRequest request;
+  decode::modbus::ModbusRequest request;
   std::vector<ModbusMeasure> measures;
 
   bool contains(ModbusMeasure measure) const;
@@ -25,10 +25,11 @@ struct ModbusRead {
 std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_direction_apart = false);
 
 /// The quantity of `measure` in the profile, which must have it.
-const ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure);
+const decode::modbus::ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure);
 
 /// The part of a reply to `request` that belongs to `quantity`.
-std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
-                                            const ModbusRegisters& registers);
+std::span<const std::uint16_t> registers_of(const decode::modbus::ModbusQuantity& quantity,
+                                            const decode::modbus::ModbusRequest& request,
+                                            const decode::modbus::ModbusRegisters& registers);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -9,17 +9,17 @@
 
 #include "drivers/modbus/modbus_plan.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
-using Registers = Result<ModbusRegisters, ModbusRefusal>;
+using Registers = Result<decode::modbus::ModbusRegisters, decode::modbus::ModbusRefusal>;
 
 /// How long a line must be quiet between two requests: shorter than in service, since most get no reply.
 constexpr Nanoseconds kProbeQuiet = std::chrono::milliseconds(20);
 
 /// Requests that nearly every device replies to: the first register of either kind.
-constexpr std::array kKnocks = {ModbusRequest{.function = 3, .address = 0, .count = 1},
-                                ModbusRequest{.function = 4, .address = 0, .count = 1}};
+constexpr std::array kKnocks = {decode::modbus::ModbusRequest{.function = 3, .address = 0, .count = 1},
+                                decode::modbus::ModbusRequest{.function = 4, .address = 0, .count = 1}};
 
 bool has_side_effects(const ModbusProfile& profile) {
   return profile.speed.read_has_side_effect || (profile.direction && profile.direction->read_has_side_effect) ||
@@ -30,24 +30,24 @@ bool has_one_slave(const ModbusProfile& profile) {
   return !profile.direction || profile.direction->slave == profile.speed.slave;
 }
 
-bool is_home_of(const ModbusLine& line, const ModbusProfile& profile) {
-  return line.framing == ModbusFraming::kTcp ||
+bool is_home_of(const bus::ModbusLine& line, const ModbusProfile& profile) {
+  return line.framing == decode::modbus::ModbusFraming::kTcp ||
          (line.baud == profile.baud && line.parity == profile.parity && line.stop_bits == profile.stop_bits);
 }
 
 /// One open line. Replies are cached, so that nothing is requested twice.
 class ProbedLine {
  public:
-  ProbedLine(const ModbusLine& line, Nanoseconds response_timeout, const Interruption& interruption)
+  ProbedLine(const bus::ModbusLine& line, Nanoseconds response_timeout, const bus::Interruption& interruption)
       : line_(line),
         patience_{.response_timeout = response_timeout, .byte_timeout = kProbeQuiet},
         interruption_(interruption),
-        connection_(make_modbus_connection(line)) {}
+        connection_(bus::make_modbus_connection(line)) {}
 
   Result<void, Failure> open() { return connection_->open(interruption_); }
 
   /// The registers, or what was wrong with the reply; kTimeout where there was none.
-  Registers cached_exchange(const ModbusRequest& request) {
+  Registers cached_exchange(const decode::modbus::ModbusRequest& request) {
     const auto key = std::tuple(request.unit, request.function, request.address, request.count);
     if (const auto known = replies_.find(key); known != replies_.end()) return known->second;
     const Registers reply = exchange(request);
@@ -56,9 +56,9 @@ class ProbedLine {
   }
 
  private:
-  Registers exchange(ModbusRequest request) {
-    constexpr ModbusRefusal kSilence{Refusal::kTimeout};
-    std::array<std::uint8_t, kModbusMaxMessage> buffer{};
+  Registers exchange(decode::modbus::ModbusRequest request) {
+    constexpr decode::modbus::ModbusRefusal kSilence{decode::Refusal::kTimeout};
+    std::array<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer{};
     request.transaction = ++transaction_;
     // A TCP peer that is not a Modbus server may close the connection.
     if (!connection_->is_open() && !connection_->open(interruption_)) return kSilence;
@@ -68,36 +68,39 @@ class ProbedLine {
       return kSilence;
     }
     for (;;) {
-      const BusMessage message = connection_->receive(buffer, interruption_);
-      if (message.status == BusStatus::kLost) connection_->close();
-      if (message.status != BusStatus::kMessage) return kSilence;
-      const auto registers = decode_modbus(line_.framing, request, std::span(buffer).first(message.size));
-      if (registers || registers.error().why != Refusal::kNotMine) return registers;
+      const bus::BusMessage message = connection_->receive(buffer, interruption_);
+      if (message.status == bus::BusStatus::kLost) connection_->close();
+      if (message.status != bus::BusStatus::kMessage) return kSilence;
+      const auto registers =
+          decode::modbus::decode_modbus(line_.framing, request, std::span(buffer).first(message.size));
+      if (registers || registers.error().why != decode::Refusal::kNotMine) return registers;
     }
   }
 
-  const ModbusLine line_;
-  const ModbusPatience patience_;
-  const Interruption& interruption_;
-  std::unique_ptr<ModbusConnection> connection_;
+  const bus::ModbusLine line_;
+  const bus::ModbusPatience patience_;
+  const bus::Interruption& interruption_;
+  std::unique_ptr<bus::ModbusConnection> connection_;
   std::map<std::tuple<std::uint8_t, std::uint8_t, std::uint16_t, std::uint16_t>, Registers> replies_;
   std::uint16_t transaction_ = 0;
 };
 
 /// Does this reply come from a slave? A gateway's exception that none is there does not count.
 bool is_sign_of_life(const Registers& reply) {
-  return reply || (reply.error().why == Refusal::kException && !is_gateway_silence(reply.error().exception));
+  return reply || (reply.error().why == decode::Refusal::kException &&
+                   !decode::modbus::is_gateway_silence(reply.error().exception));
 }
 
 /// Enters the value of one reply into `fit`. False: it is not plausible. A mark for "no value" does, but not in place
 /// of the speed.
-bool take(const ModbusProfile& profile, const ModbusRead& read, const ModbusRegisters& registers, ModbusFit& fit) {
+bool take(const ModbusProfile& profile, const ModbusRead& read, const decode::modbus::ModbusRegisters& registers,
+          ModbusFit& fit) {
   for (const ModbusMeasure measure : read.measures) {
-    const ModbusQuantity& quantity = quantity_of(profile, measure);
+    const decode::modbus::ModbusQuantity& quantity = quantity_of(profile, measure);
     const auto part = registers_of(quantity, read.request, registers);
-    const auto value =
-        measure == ModbusMeasure::kDirection ? decode_direction_deg(quantity, part) : decode_speed_m_s(quantity, part);
-    if (!value && (measure == ModbusMeasure::kSpeed || value.error() != Refusal::kInvalid)) return false;
+    const auto value = measure == ModbusMeasure::kDirection ? decode::modbus::decode_direction_deg(quantity, part)
+                                                            : decode::modbus::decode_speed_m_s(quantity, part);
+    if (!value && (measure == ModbusMeasure::kSpeed || value.error() != decode::Refusal::kInvalid)) return false;
     if (!value) continue;
     if (measure == ModbusMeasure::kSpeed) fit.speed_m_s = *value;
     if (measure == ModbusMeasure::kDirection) fit.direction_deg = *value;
@@ -136,8 +139,8 @@ std::optional<ModbusFit> vane_fit_of(const NamedModbusProfile& named, std::uint8
 
 /// Does a slave of this id reply? For devices that ignore requests for registers that they do not have, those of their
 /// own profile are read, with its line settings.
-bool replies_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
-  for (ModbusRequest knock : kKnocks) {
+bool replies_at_all(std::uint8_t id, const bus::ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
+  for (decode::modbus::ModbusRequest knock : kKnocks) {
     knock.unit = id;
     if (is_sign_of_life(line.cached_exchange(knock))) return true;
   }
@@ -150,8 +153,8 @@ bool replies_at_all(std::uint8_t id, const ModbusLine& settings, const ModbusPro
   });
 }
 
-std::vector<ModbusFit> fits_of(std::uint8_t id, const ModbusLine& settings, const ModbusProbePlan& plan,
-                               ProbedLine& line, const Interruption& interruption) {
+std::vector<ModbusFit> fits_of(std::uint8_t id, const bus::ModbusLine& settings, const ModbusProbePlan& plan,
+                               ProbedLine& line, const bus::Interruption& interruption) {
   std::vector<ModbusFit> fits;
   for (const NamedModbusProfile& named : plan.profiles) {
     if (interruption.is_set() || has_side_effects(named.profile)) continue;
@@ -183,11 +186,11 @@ std::vector<ModbusFit> fits_of(std::uint8_t id, const ModbusLine& settings, cons
 }  // namespace
 
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
-                                  const ModbusProbeFound& found, const Interruption& interruption) {
+                                  const ModbusProbeFound& found, const bus::Interruption& interruption) {
   int hits = 0;
   const double all = static_cast<double>(plan.lines.size() * plan.ids.size());
   double done = 0.0;
-  for (const ModbusLine& settings : plan.lines) {
+  for (const bus::ModbusLine& settings : plan.lines) {
     ProbedLine line(settings, plan.response_timeout, interruption);
     if (const auto opened = line.open(); !opened) return opened.error();
     for (const std::uint8_t id : plan.ids) {
@@ -202,8 +205,9 @@ Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbe
   return hits;
 }
 
-std::vector<ModbusLine> likely_modbus_lines(const std::string& device, const std::vector<NamedModbusProfile>& profiles,
-                                            const std::vector<int>& bauds, const std::vector<char>& parities) {
+std::vector<bus::ModbusLine> likely_modbus_lines(const std::string& device,
+                                                 const std::vector<NamedModbusProfile>& profiles,
+                                                 const std::vector<int>& bauds, const std::vector<char>& parities) {
   // How many profiles have these settings from the factory?
   using Settings = std::pair<int, char>;
   std::map<Settings, int> counts;
@@ -225,10 +229,10 @@ std::vector<ModbusLine> likely_modbus_lines(const std::string& device, const std
   }
   std::ranges::sort(order);
 
-  std::vector<ModbusLine> lines;
+  std::vector<bus::ModbusLine> lines;
   for (const auto& [count, settings] : order) {
-    ModbusLine line;
-    line.framing = ModbusFraming::kRtu;
+    bus::ModbusLine line;
+    line.framing = decode::modbus::ModbusFraming::kRtu;
     line.device = device;
     line.baud = settings.first;
     line.parity = settings.second;
@@ -245,10 +249,10 @@ std::vector<NamedModbusProfile> shipped_modbus_profiles(const std::string& direc
   return profiles;
 }
 
-std::string sensor_table_for(const ModbusLine& line, const ModbusFit& fit, const ModbusProfile& profile,
+std::string sensor_table_for(const bus::ModbusLine& line, const ModbusFit& fit, const ModbusProfile& profile,
                              const std::string& device) {
   std::string table = fmt::format("[[sensor]]\nname = \"wind\"\ndriver = \"modbus\"\nprofile = \"{}\"\n", fit.profile);
-  if (line.framing == ModbusFraming::kTcp) {
+  if (line.framing == decode::modbus::ModbusFraming::kTcp) {
     table += fmt::format("transport = \"tcp\"\nhost = \"{}\"\nport = {}\n", line.host, line.port);
   } else {
     table += fmt::format("transport = \"rtu\"\ndevice = \"{}\"\n", device);
@@ -262,4 +266,4 @@ std::string sensor_table_for(const ModbusLine& line, const ModbusFit& fit, const
   return table;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

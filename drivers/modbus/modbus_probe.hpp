@@ -9,7 +9,7 @@
 #include "drivers/bus/modbus_connection.hpp"
 #include "drivers/modbus/modbus_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 
 /// A profile and its name in a configuration.
 struct NamedModbusProfile {
@@ -19,7 +19,8 @@ struct NamedModbusProfile {
 
 /// Where to look for Modbus devices.
 struct ModbusProbePlan {
-  std::vector<ModbusLine> lines;  ///< the same port or host with each of its possible settings, the likeliest first
+  /// The same port or host with each of its possible settings, the likeliest first.
+  std::vector<bus::ModbusLine> lines;
   std::vector<std::uint8_t> ids;  ///< slave ids to try
   std::vector<NamedModbusProfile> profiles;
   Nanoseconds response_timeout = std::chrono::milliseconds(200);
@@ -40,14 +41,14 @@ struct ModbusFit {
 
 /// A slave that replied.
 struct ModbusHit {
-  ModbusLine line;
+  bus::ModbusLine line;
   std::uint8_t id = 0;
   std::vector<ModbusFit>
       fits;  ///< the best first; none: a device that no profile knows. Vanes only where nothing else fits
 };
 
 /// Called with the progress: what is about to be tried, and the part of all that is done, 0 to 1.
-using ModbusProbeProgress = std::function<void(const ModbusLine& line, std::uint8_t id, double done)>;
+using ModbusProbeProgress = std::function<void(const bus::ModbusLine& line, std::uint8_t id, double done)>;
 /// Called with each slave that is found, at once.
 using ModbusProbeFound = std::function<void(const ModbusHit& hit)>;
 
@@ -55,19 +56,20 @@ using ModbusProbeFound = std::function<void(const ModbusHit& hit)>;
 /// only, and leaves out every profile in which a reading has side effects. Returns how many slaves were found, or why a
 /// line cannot be opened. Ends soon after `interruption` was set.
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
-                                  const ModbusProbeFound& found, const Interruption& interruption);
+                                  const ModbusProbeFound& found, const bus::Interruption& interruption);
 
 /// The line settings of a serial port that are worth trying, the likeliest first: those of the profiles, and then the
 /// others that devices can be set to. `bauds` and `parities` narrow them; empty: all.
-std::vector<ModbusLine> likely_modbus_lines(const std::string& device, const std::vector<NamedModbusProfile>& profiles,
-                                            const std::vector<int>& bauds, const std::vector<char>& parities);
+std::vector<bus::ModbusLine> likely_modbus_lines(const std::string& device,
+                                                 const std::vector<NamedModbusProfile>& profiles,
+                                                 const std::vector<int>& bauds, const std::vector<char>& parities);
 
 /// Every profile that is shipped, in the order of their names. `directory` is searched first.
 std::vector<NamedModbusProfile> shipped_modbus_profiles(const std::string& directory);
 
 /// The [[sensor]] table for a configuration, for a fit that has a speed. `device` is the name of the serial port to
 /// write, where there is one.
-std::string sensor_table_for(const ModbusLine& line, const ModbusFit& fit, const ModbusProfile& profile,
+std::string sensor_table_for(const bus::ModbusLine& line, const ModbusFit& fit, const ModbusProfile& profile,
                              const std::string& device);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

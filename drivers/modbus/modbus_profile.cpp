@@ -11,7 +11,7 @@
 
 #include <toml++/toml.h>
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -156,16 +156,16 @@ class TableReader {
 };
 
 /// The whole numbers that a type can hold; for f32 its bits.
-std::pair<std::int64_t, std::int64_t> range_of(RegisterType type) {
+std::pair<std::int64_t, std::int64_t> range_of(decode::modbus::RegisterType type) {
   switch (type) {
-    case RegisterType::kU16:
+    case decode::modbus::RegisterType::kU16:
       return {0, 0xFFFF};
-    case RegisterType::kI16:
+    case decode::modbus::RegisterType::kI16:
       return {-0x8000, 0x7FFF};
-    case RegisterType::kI32:
+    case decode::modbus::RegisterType::kI32:
       return {-0x80000000LL, 0x7FFFFFFF};
-    case RegisterType::kU32:
-    case RegisterType::kF32:
+    case decode::modbus::RegisterType::kU32:
+    case decode::modbus::RegisterType::kF32:
       break;
   }
   return {0, 0xFFFFFFFFLL};
@@ -177,13 +177,14 @@ std::optional<double> optional_number(TableReader& reader, std::string_view key)
 }
 
 /// What a speed and a direction have in common. `address_base` is what the maker's numbering starts from.
-ModbusQuantity read_quantity(TableReader& reader, std::int64_t address_base) {
-  ModbusQuantity quantity;
+decode::modbus::ModbusQuantity read_quantity(TableReader& reader, std::int64_t address_base) {
+  decode::modbus::ModbusQuantity quantity;
   quantity.slave = static_cast<std::uint8_t>(reader.whole("slave", 1, 247));
   quantity.function = static_cast<std::uint8_t>(reader.whole("function", 3, 4, 3));
-  quantity.type = static_cast<RegisterType>(reader.choice("type", kRegisterTypeNames));
-  quantity.order = static_cast<ByteOrder>(reader.choice("order", kByteOrderNames, "ABCD"));
-  const auto last = 0x10000 - static_cast<std::int64_t>(register_count(quantity.type));
+  quantity.type = static_cast<decode::modbus::RegisterType>(reader.choice("type", decode::modbus::kRegisterTypeNames));
+  quantity.order =
+      static_cast<decode::modbus::ByteOrder>(reader.choice("order", decode::modbus::kByteOrderNames, "ABCD"));
+  const auto last = 0x10000 - static_cast<std::int64_t>(decode::modbus::register_count(quantity.type));
   const std::int64_t address = reader.whole("address", address_base, address_base + last);
   quantity.address = static_cast<std::uint16_t>(address - address_base);
 
@@ -202,19 +203,21 @@ ModbusQuantity read_quantity(TableReader& reader, std::int64_t address_base) {
 }
 
 /// A speed, or a gust.
-ModbusQuantity read_speed(TableReader reader, std::int64_t address_base) {
-  ModbusQuantity speed = read_quantity(reader, address_base);
+decode::modbus::ModbusQuantity read_speed(TableReader reader, std::int64_t address_base) {
+  decode::modbus::ModbusQuantity speed = read_quantity(reader, address_base);
   // Every unit but the last is one of speed.
-  speed.unit = static_cast<QuantityUnit>(reader.choice("unit", std::span(kQuantityUnitNames).first(4)));
+  speed.unit = static_cast<decode::modbus::QuantityUnit>(
+      reader.choice("unit", std::span(decode::modbus::kQuantityUnitNames).first(4)));
   reader.finish();
   return speed;
 }
 
-ModbusQuantity read_direction(TableReader reader, std::int64_t address_base) {
-  ModbusQuantity direction = read_quantity(reader, address_base);
-  direction.unit = QuantityUnit::kDegrees;
-  reader.choice("unit", std::span(kQuantityUnitNames).last(1), "deg");
-  direction.map = static_cast<DirectionMap>(reader.choice("map", kDirectionMapNames, "degrees"));
+decode::modbus::ModbusQuantity read_direction(TableReader reader, std::int64_t address_base) {
+  decode::modbus::ModbusQuantity direction = read_quantity(reader, address_base);
+  direction.unit = decode::modbus::QuantityUnit::kDegrees;
+  reader.choice("unit", std::span(decode::modbus::kQuantityUnitNames).last(1), "deg");
+  direction.map =
+      static_cast<decode::modbus::DirectionMap>(reader.choice("map", decode::modbus::kDirectionMapNames, "degrees"));
   reader.finish();
   return direction;
 }
@@ -285,4 +288,4 @@ void set_slave(ModbusProfile& profile, std::uint8_t id) {
   if (profile.gust && profile.gust->slave == before) profile.gust->slave = id;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

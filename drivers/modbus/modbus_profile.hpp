@@ -10,7 +10,7 @@
 #include "drivers/decode/modbus/modbus_quantity.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 
 /// The rates that a serial line may have, bit/s.
 inline constexpr std::array<std::int64_t, 8> kModbusBauds = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
@@ -38,9 +38,9 @@ struct ModbusProfile {
   int block_gap = 0;              ///< so many registers between two quantities may be read along with them
   double north_offset_deg = 0.0;  ///< added to the direction: the device's mark points there instead of to north
 
-  ModbusQuantity speed;
-  std::optional<ModbusQuantity> direction;
-  std::optional<ModbusQuantity> gust;  ///< the device's own gust: its strongest recent speed
+  decode::modbus::ModbusQuantity speed;
+  std::optional<decode::modbus::ModbusQuantity> direction;
+  std::optional<decode::modbus::ModbusQuantity> gust;  ///< the device's own gust: its strongest recent speed
 };
 
 /// Reads a profile's text. Throws std::runtime_error "file:line:column: key: what is wrong, what is allowed"; `file` is
@@ -58,4 +58,4 @@ ModbusProfile load_modbus_profile(const std::string& name, const std::string& di
 /// The names of all profiles that can be found so, in alphabetical order.
 std::vector<std::string> modbus_profile_names(const std::string& directory);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -9,7 +9,7 @@
 
 #include "drivers/modbus/modbus_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,4 +77,4 @@ ModbusProfile load_modbus_profile(const std::string& name, const std::string& di
                            "; or give the path of a .toml file");
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

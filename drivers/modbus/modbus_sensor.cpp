@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
@@ -14,8 +14,8 @@ constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
 
 /// Does a gateway report that a slave does not reply?
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
-  return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == Refusal::kException &&
-         is_gateway_silence(trouble.refusal.exception);
+  return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == decode::Refusal::kException &&
+         decode::modbus::is_gateway_silence(trouble.refusal.exception);
 }
 
 /// "without direction and gust", for the quantities of this read.
@@ -29,14 +29,14 @@ std::string without(const ModbusRead& read) {
 /// Did the request take its whole time-out, or a gateway's?
 bool has_cost_time(const ModbusTrouble& trouble) {
   return trouble.kind == ModbusTrouble::Kind::kSilence || trouble.kind == ModbusTrouble::Kind::kOthersOnly ||
-         trouble.refusal.why == Refusal::kTooShort || is_silence_by_proxy(trouble);
+         trouble.refusal.why == decode::Refusal::kTooShort || is_silence_by_proxy(trouble);
 }
 
 }  // namespace
 
 ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus,
                            const std::shared_ptr<ModbusBus>& direction_bus, std::uint32_t seed)
-    : ReopeningSensor(seed),
+    : sensor::ReopeningSensor(seed),
       profile_(std::move(profile)),
       bus_(std::move(bus)),
       direction_bus_(direction_bus ? direction_bus : bus_) {
@@ -44,8 +44,10 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
   for (const ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
     ModbusBus* const line =
         is_direction_apart && what.contains(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
-    reads_.push_back(
-        {.what = what, .bus = line, .backoff = Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed), .trouble = {}});
+    reads_.push_back({.what = what,
+                      .bus = line,
+                      .backoff = bus::Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed),
+                      .trouble = {}});
   }
   bus_->keep_gap(profile_.min_gap);
   direction_bus_->keep_gap(profile_.min_gap);
@@ -57,7 +59,7 @@ void ModbusSensor::interrupt() noexcept {
   direction_bus_->wake_waiters();
 }
 
-Result<MonoTime, Failure> ModbusSensor::open(const Clock& clock) {
+Result<MonoTime, Failure> ModbusSensor::open(const sensor::Clock& clock) {
   const auto opened = bus_->open(interruption_, clock);
   if (!opened) return opened.error();
   opened_at_ = *opened;
@@ -65,7 +67,7 @@ Result<MonoTime, Failure> ModbusSensor::open(const Clock& clock) {
   return std::max(clock.now().mono, opened_at_ + profile_.delay_after_open);
 }
 
-Result<MonoTime, Failure> ModbusSensor::work(const Clock& clock, SensorSink& sink) {
+Result<MonoTime, Failure> ModbusSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
   if (step_ > 0) {
     read_more(reads_[step_], clock, sink);
     return go_on(clock.now().mono, sink);
@@ -77,7 +79,7 @@ Result<MonoTime, Failure> ModbusSensor::work(const Clock& clock, SensorSink& sin
   return read_first(clock, sink);
 }
 
-Result<MonoTime, Failure> ModbusSensor::read_first(const Clock& clock, SensorSink& sink) {
+Result<MonoTime, Failure> ModbusSensor::read_first(const sensor::Clock& clock, sensor::SensorSink& sink) {
   Read& read = reads_.front();
   const MonoTime ready_at = bus_->ready_at(read.what.request.unit);
   round_start_ = clock.now().mono;
@@ -93,7 +95,8 @@ Result<MonoTime, Failure> ModbusSensor::read_first(const Clock& clock, SensorSin
   }
   read.backoff.reset();
 
-  const auto speed_m_s = decode_speed_m_s(profile_.speed, registers_of(profile_.speed, read.what.request, *reply));
+  const auto speed_m_s =
+      decode::modbus::decode_speed_m_s(profile_.speed, registers_of(profile_.speed, read.what.request, *reply));
   if (!speed_m_s) {
     sink.refused(speed_m_s.error());
     report_connected(sink,
@@ -101,13 +104,16 @@ Result<MonoTime, Failure> ModbusSensor::read_first(const Clock& clock, SensorSin
                                  read.what.request.unit, bus_->where(), name_of(speed_m_s.error())));
     return next_round(now.mono);
   }
-  reading_ = {
-      .time = now, .speed_m_s = *speed_m_s, .direction_deg = {}, .gust_m_s = {}, .quality = ReadingQuality::kGood};
+  reading_ = {.time = now,
+              .speed_m_s = *speed_m_s,
+              .direction_deg = {},
+              .gust_m_s = {},
+              .quality = wind::ReadingQuality::kGood};
   take(read, *reply, sink);
   return go_on(now.mono, sink);
 }
 
-void ModbusSensor::read_more(Read& read, const Clock& clock, SensorSink& sink) {
+void ModbusSensor::read_more(Read& read, const sensor::Clock& clock, sensor::SensorSink& sink) {
   // The vane's own line, where it has one, is opened here; without it there is no direction.
   if (const auto opened = read.bus->open(interruption_, clock); !opened) {
     read.trouble = without(read.what) + ": " + opened.error().message;
@@ -124,12 +130,13 @@ void ModbusSensor::read_more(Read& read, const Clock& clock, SensorSink& sink) {
   read.not_before = clock.now().mono + read.backoff.next();
 }
 
-ModbusBus::Reply ModbusSensor::exchange(const Read& read, const Clock& clock, SensorSink& sink) {
-  const ModbusPatience patience{.response_timeout = profile_.response_timeout, .byte_timeout = profile_.byte_timeout};
+ModbusBus::Reply ModbusSensor::exchange(const Read& read, const sensor::Clock& clock, sensor::SensorSink& sink) {
+  const bus::ModbusPatience patience{.response_timeout = profile_.response_timeout,
+                                     .byte_timeout = profile_.byte_timeout};
   return read.bus->exchange(read.what.request, patience, interruption_, clock, sink);
 }
 
-MonoTime ModbusSensor::go_on(MonoTime now, SensorSink& sink) {
+MonoTime ModbusSensor::go_on(MonoTime now, sensor::SensorSink& sink) {
   // The reads that are due and have not been made in this round.
   while (++step_ < reads_.size()) {
     const Read& read = reads_[step_];
@@ -156,17 +163,17 @@ MonoTime ModbusSensor::next_round(MonoTime now) const {
   return std::max(round_start_ + profile_.poll_interval, now + profile_.min_gap);
 }
 
-void ModbusSensor::take(Read& read, const ModbusRegisters& registers, SensorSink& sink) {
+void ModbusSensor::take(Read& read, const decode::modbus::ModbusRegisters& registers, sensor::SensorSink& sink) {
   read.trouble.clear();
-  const auto part = [&](const ModbusQuantity& quantity) {
+  const auto part = [&](const decode::modbus::ModbusQuantity& quantity) {
     return registers_of(quantity, read.what.request, registers);
   };
   if (read.what.contains(ModbusMeasure::kDirection)) take_direction(read, part(*profile_.direction), sink);
   if (read.what.contains(ModbusMeasure::kGust)) take_gust(read, part(*profile_.gust), sink);
 }
 
-void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink) {
-  const auto direction_deg = decode_direction_deg(*profile_.direction, registers);
+void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink) {
+  const auto direction_deg = decode::modbus::decode_direction_deg(*profile_.direction, registers);
   if (!direction_deg) {
     sink.refused(direction_deg.error());
     read.trouble = fmt::format("without direction: it is {}", name_of(direction_deg.error()));
@@ -177,8 +184,8 @@ void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> reg
   reading_.direction_deg = turned_deg < 360.0 ? turned_deg : 0.0;
 }
 
-void ModbusSensor::take_gust(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink) {
-  const auto gust_m_s = decode_speed_m_s(*profile_.gust, registers);
+void ModbusSensor::take_gust(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink) {
+  const auto gust_m_s = decode::modbus::decode_speed_m_s(*profile_.gust, registers);
   if (!gust_m_s) {
     sink.refused(gust_m_s.error());
     read.trouble +=
@@ -204,16 +211,16 @@ std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble
     case ModbusTrouble::Kind::kRefused:
       break;
   }
-  const ModbusRefusal& refusal = trouble.refusal;
+  const decode::modbus::ModbusRefusal& refusal = trouble.refusal;
   if (is_silence_by_proxy(trouble)) {
     return fmt::format(
         "the gateway reports that {} does not reply (exception {}, {}): check its power, its wiring and its "
         "id",
-        slave, refusal.exception, modbus_exception_name(refusal.exception));
+        slave, refusal.exception, decode::modbus::modbus_exception_name(refusal.exception));
   }
-  if (refusal.why == Refusal::kException) {
+  if (refusal.why == decode::Refusal::kException) {
     return fmt::format("{} refuses the request (exception {}, {}): check that the profile fits the device", slave,
-                       refusal.exception, modbus_exception_name(refusal.exception));
+                       refusal.exception, decode::modbus::modbus_exception_name(refusal.exception));
   }
   return fmt::format(
       "a reply of {} is invalid ({}): check wiring and termination, baud rate, parity, and that no other device has "
@@ -221,4 +228,4 @@ std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble
       slave, name_of(refusal.why));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -10,7 +10,7 @@
 #include "drivers/modbus/modbus_profile.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 
 /// A wind sensor of one or two Modbus slaves, read in rounds, one exchange per poll(): the speed, then what did not
 /// come along with it (direction, gust).
@@ -18,7 +18,7 @@ namespace yuragi {
 /// Each round publishes one reading at most, timed when the speed arrived. Without a speed there is none; without a
 /// direction or gust it goes without. A slave that does not reply gets fewer requests, so that it does
 /// not slow the others down: after waits that double from 0.25 s up to 10 s.
-class ModbusSensor final : public ReopeningSensor {
+class ModbusSensor final : public sensor::ReopeningSensor {
  public:
   /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
   /// differ.
@@ -28,8 +28,8 @@ class ModbusSensor final : public ReopeningSensor {
   void interrupt() noexcept override;
 
  protected:
-  Result<MonoTime, Failure> open(const Clock& clock) override;
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
   /// The line may be shared: the bus itself closes it when it has failed.
   void close() noexcept override {}
 
@@ -38,33 +38,33 @@ class ModbusSensor final : public ReopeningSensor {
   struct Read {
     ModbusRead what;
     ModbusBus* bus;
-    Backoff backoff;
+    bus::Backoff backoff;
     MonoTime not_before{};  ///< after a missing reply: no request before this
     std::string trouble;    ///< why the readings come without it; empty if they do not
   };
 
-  Result<MonoTime, Failure> read_first(const Clock& clock, SensorSink& sink);
-  void read_more(Read& read, const Clock& clock, SensorSink& sink);
-  ModbusBus::Reply exchange(const Read& read, const Clock& clock, SensorSink& sink);
+  Result<MonoTime, Failure> read_first(const sensor::Clock& clock, sensor::SensorSink& sink);
+  void read_more(Read& read, const sensor::Clock& clock, sensor::SensorSink& sink);
+  ModbusBus::Reply exchange(const Read& read, const sensor::Clock& clock, sensor::SensorSink& sink);
   /// The next read of this round that is due, or the end of the round.
-  MonoTime go_on(MonoTime now, SensorSink& sink);
+  MonoTime go_on(MonoTime now, sensor::SensorSink& sink);
   MonoTime next_round(MonoTime now) const;
 
-  void take(Read& read, const ModbusRegisters& registers, SensorSink& sink);
-  void take_direction(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink);
-  void take_gust(Read& read, std::span<const std::uint16_t> registers, SensorSink& sink);
+  void take(Read& read, const decode::modbus::ModbusRegisters& registers, sensor::SensorSink& sink);
+  void take_direction(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink);
+  void take_gust(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink);
   std::string explain(const Read& read, const ModbusTrouble& trouble) const;
 
   const ModbusProfile profile_;
   const std::shared_ptr<ModbusBus> bus_;
   const std::shared_ptr<ModbusBus> direction_bus_;
-  Interruption interruption_;
+  bus::Interruption interruption_;
   std::vector<Read> reads_;  ///< the first one reads the speed
 
   MonoTime opened_at_{};
   MonoTime round_start_{};
-  std::size_t step_ = 0;  ///< which of the reads is next
-  WindReading reading_;   ///< of the present round
+  std::size_t step_ = 0;       ///< which of the reads is next
+  wind::WindReading reading_;  ///< of the present round
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

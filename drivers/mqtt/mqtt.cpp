@@ -27,7 +27,7 @@
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::mqtt {
 namespace {
 
 /// A look at the clock at least so often.
@@ -121,7 +121,7 @@ struct MqttSource {
 };
 
 struct MqttSettings {
-  MqttSubscription subscription;
+  bus::MqttSubscription subscription;
   MqttSource speed;
   MqttSource direction;
   MqttSource gust;
@@ -136,19 +136,19 @@ struct HeldValue {
   MonoTime since{};
 };
 
-class MqttSensor final : public ReopeningSensor {
+class MqttSensor final : public sensor::ReopeningSensor {
  public:
   explicit MqttSensor(MqttSettings settings)
-      : ReopeningSensor(seed_of(settings.subscription.host + settings.speed.topic)),
+      : sensor::ReopeningSensor(sensor::seed_of(settings.subscription.host + settings.speed.topic)),
         settings_(std::move(settings)),
         where_(fmt::format("topic {} of MQTT broker {}:{}", settings_.speed.topic, settings_.subscription.host,
                            settings_.subscription.port)),
-        client_(make_mqtt_client(settings_.subscription)) {}
+        client_(bus::make_mqtt_client(settings_.subscription)) {}
 
   void interrupt() noexcept override { client_->interrupt(); }
 
  protected:
-  Result<MonoTime, Failure> open(const Clock& clock) override {
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
     if (const auto connected = client_->connect(); !connected) return connected.error();
     direction_ = {};
     gust_ = {};
@@ -157,14 +157,14 @@ class MqttSensor final : public ReopeningSensor {
     return received_at_;
   }
 
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     if (!has_received_) report_unusable(sink, "waits for wind on " + where_ + ": retained messages do not count");
-    MqttMessage message;
-    const MqttStatus status = client_->receive(message, kMqttWait);
+    bus::MqttMessage message;
+    const bus::MqttStatus status = client_->receive(message, kMqttWait);
     const Instant now = clock.now();
-    if (status == MqttStatus::kInterrupted) return Failure{"interrupted"};
-    if (status == MqttStatus::kLost) return Failure{client_->trouble()};
-    if (status == MqttStatus::kMessage) take(message, now, sink);
+    if (status == bus::MqttStatus::kInterrupted) return Failure{"interrupted"};
+    if (status == bus::MqttStatus::kLost) return Failure{client_->trouble()};
+    if (status == bus::MqttStatus::kMessage) take(message, now, sink);
     if (now.mono - received_at_ >= settings_.silence) {
       has_received_ = true;  // the status now reports more than waiting
       report_unusable(
@@ -177,34 +177,34 @@ class MqttSensor final : public ReopeningSensor {
   void close() noexcept override { client_->disconnect(); }
 
  private:
-  void take(const MqttMessage& message, Instant now, SensorSink& sink) {
-    sink.raw(RawDirection::kReceived, message.payload);
-    if (message.is_too_long) return sink.refused(Refusal::kMalformed);
-    if (message.is_retained) return sink.refused(Refusal::kInvalid);
+  void take(const bus::MqttMessage& message, Instant now, sensor::SensorSink& sink) {
+    sink.raw(sensor::RawDirection::kReceived, message.payload);
+    if (message.is_too_long) return sink.refused(decode::Refusal::kMalformed);
+    if (message.is_retained) return sink.refused(decode::Refusal::kInvalid);
     const std::string_view payload(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
 
     // A direction and a gust are kept until the next speed; one that cannot be read still replaces the last one.
     for (const auto& [source, held] : {std::pair{&settings_.direction, &direction_}, {&settings_.gust, &gust_}}) {
-      if (!mqtt_topic_matches(message.topic, source->topic)) continue;
+      if (!bus::mqtt_topic_matches(message.topic, source->topic)) continue;
       const auto number = number_in(payload, source->place);
       *held = {number ? *number : std::nullopt, now.mono};
       if (!number && source->topic != settings_.speed.topic) sink.refused(number.error());
     }
-    if (mqtt_topic_matches(message.topic, settings_.speed.topic)) take_speed(payload, now, sink);
+    if (bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) take_speed(payload, now, sink);
   }
 
-  void take_speed(std::string_view payload, Instant now, SensorSink& sink) {
+  void take_speed(std::string_view payload, Instant now, sensor::SensorSink& sink) {
     const auto speed = number_in(payload, settings_.speed.place);
     if (!speed) return sink.refused(speed.error());
-    if (!*speed) return sink.refused(Refusal::kNotMine);
-    DecodedWind wind;
+    if (!*speed) return sink.refused(decode::Refusal::kNotMine);
+    decode::DecodedWind wind;
     wind.speed_m_s = **speed * settings_.metres_per_second;
     if (const auto gust = still_held(gust_, now)) wind.gust_m_s = *gust * settings_.metres_per_second;
     if (const auto direction_deg = still_held(direction_, now)) {
-      wind.direction_deg = wrapped_direction_deg(*direction_deg);
-      if (!wind.direction_deg) return sink.refused(Refusal::kImplausible);
+      wind.direction_deg = decode::wrapped_direction_deg(*direction_deg);
+      if (!wind.direction_deg) return sink.refused(decode::Refusal::kImplausible);
     }
-    const auto plausible = checked(wind);
+    const auto plausible = decode::checked(wind);
     if (!plausible) return sink.refused(plausible.error());
 
     has_received_ = true;
@@ -214,7 +214,7 @@ class MqttSensor final : public ReopeningSensor {
                   .speed_m_s = *plausible->speed_m_s,
                   .direction_deg = plausible->direction_deg,
                   .gust_m_s = plausible->gust_m_s,
-                  .quality = ReadingQuality::kGood});
+                  .quality = wind::ReadingQuality::kGood});
   }
 
   std::optional<double> still_held(const HeldValue& held, Instant now) const {
@@ -223,7 +223,7 @@ class MqttSensor final : public ReopeningSensor {
 
   MqttSettings settings_;
   std::string where_;
-  std::unique_ptr<MqttClient> client_;
+  std::unique_ptr<bus::MqttClient> client_;
   HeldValue direction_;
   HeldValue gust_;
   bool has_received_ = false;  // of the wind, since it connected
@@ -232,7 +232,7 @@ class MqttSensor final : public ReopeningSensor {
 
 /// Throws, naming the setting, for what can be neither subscribed to nor found.
 void check_source(std::string_view name, const MqttSource& source) {
-  if (!source.topic.empty() && !is_mqtt_filter(source.topic)) {
+  if (!source.topic.empty() && !bus::is_mqtt_filter(source.topic)) {
     throw std::runtime_error(
         fmt::format("{}topic: \"{}\" is not a topic; # is allowed at the end only, and + in place of a whole level",
                     name, source.topic));
@@ -263,11 +263,11 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   settings.direction = source_of("direction_topic", "direction_path", preset->direction);
   settings.gust = source_of("gust_topic", "gust_path", preset->gust);
   const std::string& unit = values.text("speed_unit");
-  settings.metres_per_second = metres_per_second_in(unit == "preset" ? preset->unit : unit);
+  settings.metres_per_second = sensor::metres_per_second_in(unit == "preset" ? preset->unit : unit);
   settings.hold = from_seconds(values.number("hold"));
   settings.silence = from_seconds(values.number("silence"));
 
-  MqttSubscription& subscription = settings.subscription;
+  bus::MqttSubscription& subscription = settings.subscription;
   subscription.host = values.text("host");
   subscription.uses_tls = values.flag("tls");
   const std::int64_t port = values.integer("port");
@@ -283,7 +283,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   return settings;
 }
 
-std::unique_ptr<Sensor> open_mqtt(const ParameterValues& values) {
+std::unique_ptr<sensor::Sensor> open_mqtt(const ParameterValues& values) {
   MqttSettings settings = mqtt_settings_of(values);
   check_source("", settings.speed);
   check_source("direction_", settings.direction);
@@ -294,10 +294,11 @@ std::unique_ptr<Sensor> open_mqtt(const ParameterValues& values) {
 
 }  // namespace
 
-extern const DriverDescription kMqttDriver;
-const DriverDescription kMqttDriver{.name = "mqtt",
-                                    .summary = "wind that is published on an MQTT broker, as a number or in JSON",
-                                    .parameters = kMqttParameters,
-                                    .open = open_mqtt};
+extern const sensor::DriverDescription kMqttDriver;
+const sensor::DriverDescription kMqttDriver{
+    .name = "mqtt",
+    .summary = "wind that is published on an MQTT broker, as a number or in JSON",
+    .parameters = kMqttParameters,
+    .open = open_mqtt};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::mqtt

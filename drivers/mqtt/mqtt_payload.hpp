@@ -7,7 +7,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::mqtt {
 
 /// Where in a message's payload a number stands.
 struct PayloadPlace {
@@ -23,6 +23,6 @@ bool is_json_pointer(const std::string& text);
 /// as a number counts as one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends it
 /// (unavailable, unknown, none, an empty payload). kMalformed: not JSON, or something else there. Never throws for any
 /// payload. Thread-safe: yes.
-Result<std::optional<double>, Refusal> number_in(std::string_view payload, const PayloadPlace& place);
+Result<std::optional<double>, decode::Refusal> number_in(std::string_view payload, const PayloadPlace& place);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::mqtt

@@ -17,7 +17,7 @@
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::osc {
 namespace {
 
 /// A look at the clock at least so often.
@@ -64,7 +64,7 @@ const std::array kOscParameters = {
               .unit = "",
               .default_value = std::string("m/s"),
               .help = "the unit of speed and gust",
-              .choices = kSpeedUnitNames},
+              .choices = sensor::kSpeedUnitNames},
     Parameter{.name = "silence",
               .unit = "s",
               .default_value = 5.0,
@@ -74,7 +74,7 @@ const std::array kOscParameters = {
 };
 
 struct OscSettings {
-  BytePortAddress port{.kind = BytePortKind::kUdp};
+  bus::BytePortAddress port{.kind = bus::BytePortKind::kUdp};
   std::string address;
   std::int64_t speed_argument = 0;
   std::int64_t direction_argument = 1;
@@ -83,54 +83,55 @@ struct OscSettings {
   Nanoseconds silence = std::chrono::seconds(5);
 };
 
-std::optional<double> argument_of(const OscMessage& message, std::int64_t which) {
+std::optional<double> argument_of(const bus::OscMessage& message, std::int64_t which) {
   const bool is_there = which >= 0 && which < std::ssize(message.numbers);
   return is_there ? message.numbers[static_cast<std::size_t>(which)] : std::nullopt;
 }
 
 /// The wind in one message: kTooShort (it ends before the speed), kInvalid (the speed is no number), kImplausible.
-Result<DecodedWind, Refusal> wind_of(const OscMessage& message, const OscSettings& settings) {
-  if (settings.speed_argument >= std::ssize(message.numbers)) return Refusal::kTooShort;
-  DecodedWind wind;
+Result<decode::DecodedWind, decode::Refusal> wind_of(const bus::OscMessage& message, const OscSettings& settings) {
+  if (settings.speed_argument >= std::ssize(message.numbers)) return decode::Refusal::kTooShort;
+  decode::DecodedWind wind;
   wind.speed_m_s = argument_of(message, settings.speed_argument);
-  if (!wind.speed_m_s) return Refusal::kInvalid;
+  if (!wind.speed_m_s) return decode::Refusal::kInvalid;
   *wind.speed_m_s *= settings.metres_per_second;
   if (const auto gust = argument_of(message, settings.gust_argument))
     wind.gust_m_s = *gust * settings.metres_per_second;
   if (const auto direction_deg = argument_of(message, settings.direction_argument)) {
-    wind.direction_deg = wrapped_direction_deg(*direction_deg);
-    if (!wind.direction_deg) return Refusal::kImplausible;
+    wind.direction_deg = decode::wrapped_direction_deg(*direction_deg);
+    if (!wind.direction_deg) return decode::Refusal::kImplausible;
   }
-  return checked(wind);
+  return decode::checked(wind);
 }
 
-class OscSensor final : public ReopeningSensor {
+class OscSensor final : public sensor::ReopeningSensor {
  public:
   explicit OscSensor(OscSettings settings)
-      : ReopeningSensor(seed_of("osc" + std::to_string(settings.port.port))),
+      : sensor::ReopeningSensor(sensor::seed_of("osc" + std::to_string(settings.port.port))),
         settings_(std::move(settings)),
         where_(describe(settings_.port)),
-        port_(make_byte_port(settings_.port)) {}
+        port_(bus::make_byte_port(settings_.port)) {}
 
   void interrupt() noexcept override { port_->interrupt(); }
 
  protected:
-  Result<MonoTime, Failure> open(const Clock& clock) override {
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
     if (const auto opened = port_->open(); !opened) return opened.error();
     has_received_ = false;
     received_at_ = clock.now().mono;
     return received_at_;
   }
 
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     if (!has_received_)
       report_unusable(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
-    const ByteArrival arrival = port_->read(buffer_, kOscWait);
+    const bus::ByteArrival arrival = port_->read(buffer_, kOscWait);
     const Instant now = clock.now();
-    if (arrival.status == ByteStatus::kInterrupted) return Failure{"interrupted"};
-    if (arrival.status == ByteStatus::kLost || arrival.status == ByteStatus::kEnd) return Failure{"lost " + where_};
-    if (arrival.status == ByteStatus::kForeign) sink.refused(Refusal::kNotMine);
-    if (arrival.status == ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
+    if (arrival.status == bus::ByteStatus::kInterrupted) return Failure{"interrupted"};
+    if (arrival.status == bus::ByteStatus::kLost || arrival.status == bus::ByteStatus::kEnd)
+      return Failure{"lost " + where_};
+    if (arrival.status == bus::ByteStatus::kForeign) sink.refused(decode::Refusal::kNotMine);
+    if (arrival.status == bus::ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
     if (now.mono - received_at_ >= settings_.silence) {
       has_received_ = true;  // the status now reports more than waiting
       report_unusable(sink, fmt::format("no wind has been received on {} for {:g} s: check that the sender is running, "
@@ -144,15 +145,15 @@ class OscSensor final : public ReopeningSensor {
   void close() noexcept override { port_->close(); }
 
  private:
-  void take_datagram(std::span<const std::uint8_t> datagram, Instant now, SensorSink& sink) {
-    sink.raw(RawDirection::kReceived, datagram);
-    const auto messages = decode_osc(datagram);
+  void take_datagram(std::span<const std::uint8_t> datagram, Instant now, sensor::SensorSink& sink) {
+    sink.raw(sensor::RawDirection::kReceived, datagram);
+    const auto messages = bus::decode_osc(datagram);
     if (!messages) return sink.refused(messages.error());
-    for (const OscMessage& message : *messages) take(message, now, sink);
+    for (const bus::OscMessage& message : *messages) take(message, now, sink);
   }
 
-  void take(const OscMessage& message, Instant now, SensorSink& sink) {
-    if (!osc_address_matches(message.address, settings_.address)) return sink.refused(Refusal::kNotMine);
+  void take(const bus::OscMessage& message, Instant now, sensor::SensorSink& sink) {
+    if (!bus::osc_address_matches(message.address, settings_.address)) return sink.refused(decode::Refusal::kNotMine);
     const auto wind = wind_of(message, settings_);
     if (!wind) return sink.refused(wind.error());
     has_received_ = true;
@@ -162,18 +163,18 @@ class OscSensor final : public ReopeningSensor {
                   .speed_m_s = *wind->speed_m_s,
                   .direction_deg = wind->direction_deg,
                   .gust_m_s = wind->gust_m_s,
-                  .quality = ReadingQuality::kGood});
+                  .quality = wind::ReadingQuality::kGood});
   }
 
   OscSettings settings_;
   std::string where_;
-  std::unique_ptr<BytePort> port_;
-  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(kLargestDatagram);
+  std::unique_ptr<bus::BytePort> port_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
   bool has_received_ = false;  // of the wind, since it has the port
   MonoTime received_at_{};     // or since when it could have
 };
 
-std::unique_ptr<Sensor> open_osc(const ParameterValues& values) {
+std::unique_ptr<sensor::Sensor> open_osc(const ParameterValues& values) {
   OscSettings settings;
   settings.port.port = static_cast<std::uint16_t>(values.integer("port"));
   settings.port.host = values.text("host");
@@ -182,7 +183,7 @@ std::unique_ptr<Sensor> open_osc(const ParameterValues& values) {
   settings.speed_argument = values.integer("speed_argument");
   settings.direction_argument = values.integer("direction_argument");
   settings.gust_argument = values.integer("gust_argument");
-  settings.metres_per_second = metres_per_second_in(values.text("speed_unit"));
+  settings.metres_per_second = sensor::metres_per_second_in(values.text("speed_unit"));
   settings.silence = from_seconds(values.number("silence"));
   if (!settings.address.starts_with('/')) throw std::runtime_error("address: must begin with a slash, as in /wind");
   return std::make_unique<OscSensor>(std::move(settings));
@@ -190,10 +191,10 @@ std::unique_ptr<Sensor> open_osc(const ParameterValues& values) {
 
 }  // namespace
 
-extern const DriverDescription kOscDriver;
-const DriverDescription kOscDriver{.name = "osc",
-                                   .summary = "wind that another program sends as Open Sound Control messages",
-                                   .parameters = kOscParameters,
-                                   .open = open_osc};
+extern const sensor::DriverDescription kOscDriver;
+const sensor::DriverDescription kOscDriver{.name = "osc",
+                                           .summary = "wind that another program sends as Open Sound Control messages",
+                                           .parameters = kOscParameters,
+                                           .open = open_osc};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::osc

@@ -6,7 +6,7 @@
 
 #include "drivers/windlog/windlog_player.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::recording {
 
 /// A request to a recording that plays.
 struct PlayerOrder {
@@ -20,13 +20,13 @@ struct PlayerOrder {
 /// The status of a recording that plays.
 struct PlayerReport {
   std::string file;
-  std::optional<PlayerPosition> position;  ///< nothing while it cannot be read
-  std::uint64_t orders_done = 0;           ///< carried out or refused
-  std::string refusal;                     ///< why the last order was not carried out; empty: it was
+  std::optional<windlog::PlayerPosition> position;  ///< nothing while it cannot be read
+  std::uint64_t orders_done = 0;                    ///< carried out or refused
+  std::string refusal;                              ///< why the last order was not carried out; empty: it was
 };
 
-/// The controls of a sensor that plays a recording: such a Sensor is one of these, too. Thread-safe: yes; orders are carried out on the sensor's thread, by
-/// its next poll().
+/// The controls of a sensor that plays a recording: such a Sensor is one of these, too. Thread-safe: yes; orders are
+/// carried out on the sensor's thread, by its next poll().
 class RecordingPlayer {
  public:
   virtual ~RecordingPlayer() = default;
@@ -38,4 +38,4 @@ class RecordingPlayer {
   virtual PlayerReport report() const = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::recording

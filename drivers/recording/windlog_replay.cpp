@@ -14,7 +14,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::recording {
 namespace {
 
 constexpr Nanoseconds kFirstBackOff = std::chrono::seconds(1);
@@ -60,14 +60,14 @@ const std::array<Parameter, 9> kWindlogParameters = {
               .help = "name of the recorded sensor; empty: the one with the first reading; *: all, as one"},
 };
 
-class WindlogReplay final : public Sensor, public RecordingPlayer {
+class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
  public:
-  WindlogReplay(std::filesystem::path file, PlayerOptions options)
+  WindlogReplay(std::filesystem::path file, windlog::PlayerOptions options)
       : file_(std::move(file)), options_(std::move(options)) {
     report_.file = file_.string();
   }
 
-  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+  MonoTime poll(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     const Instant now = clock.now();
     auto next = play(now, sink);
     if (next) {
@@ -75,7 +75,7 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
       report(sink);
     } else {
       // The player, if there is one, keeps its place.
-      sink.link(LinkState::kConnecting, next.error().message);
+      sink.link(wind::LinkState::kConnecting, next.error().message);
       reported_.reset();
       back_off_ = back_off_ == Nanoseconds{0} ? kFirstBackOff : std::min(2 * back_off_, kMaxBackOff);
       next = now.mono + back_off_;
@@ -83,7 +83,6 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
     publish_report(now.mono);
     return *next;
   }
-
 
   std::optional<std::uint64_t> order(const PlayerOrder& order) override {
     const std::lock_guard lock(mutex_);
@@ -102,14 +101,14 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
   /// Plays what is due; returns when the next reading is due.
-  Result<MonoTime, Failure> play(const Instant& now, SensorSink& sink) {
+  Result<MonoTime, Failure> play(const Instant& now, sensor::SensorSink& sink) {
     if (!player_) {
-      auto opened = WindlogPlayer::open(file_, options_, now);
+      auto opened = windlog::WindlogPlayer::open(file_, options_, now);
       if (!opened) return opened.error();
       player_.emplace(std::move(*opened));
     }
     carry_out_orders(now);
-    return player_->play(now, [&sink](const WindReading& reading) { sink.reading(reading); });
+    return player_->play(now, [&sink](const wind::WindReading& reading) { sink.reading(reading); });
   }
 
   void carry_out_orders(const Instant& now) {
@@ -146,7 +145,7 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   }
 
   /// Reports the link state when it has changed.
-  void report(SensorSink& sink) {
+  void report(sensor::SensorSink& sink) {
     const Doing doing = player_->is_finished() ? Doing::kFinished
                         : player_->is_paused() ? Doing::kPaused
                                                : Doing::kPlaying;
@@ -154,11 +153,11 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
     reported_ = doing;
     switch (doing) {
       case Doing::kPlaying:
-        return sink.link(LinkState::kConnected, "playing " + file_.string());
+        return sink.link(wind::LinkState::kConnected, "playing " + file_.string());
       case Doing::kPaused:
-        return sink.link(LinkState::kConnected, "paused: " + file_.string() + " is paused, and its wind is held");
+        return sink.link(wind::LinkState::kConnected, "paused: " + file_.string() + " is paused, and its wind is held");
       case Doing::kFinished:
-        return sink.link(LinkState::kFinished, file_.string() + " has ended; `loop = true` would repeat it");
+        return sink.link(wind::LinkState::kFinished, file_.string() + " has ended; `loop = true` would repeat it");
     }
   }
 
@@ -169,10 +168,10 @@ class WindlogReplay final : public Sensor, public RecordingPlayer {
   }
 
   std::filesystem::path file_;
-  PlayerOptions options_;
+  windlog::PlayerOptions options_;
 
   // Of the sensor's thread.
-  std::optional<WindlogPlayer> player_;
+  std::optional<windlog::WindlogPlayer> player_;
   Nanoseconds back_off_{0};
   std::optional<Doing> reported_;
 
@@ -189,31 +188,31 @@ T value_of(const char* parameter, Result<T, Failure> parsed) {
   if constexpr (!std::is_void_v<T>) return std::move(*parsed);
 }
 
-std::unique_ptr<Sensor> open_windlog(const ParameterValues& values) {
+std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
   const std::filesystem::path file = values.text("file");
   if (file.empty()) throw std::runtime_error("windlog: file: name the recording to play");
   if (!std::filesystem::exists(file)) {
     throw std::runtime_error("windlog: file: " + file.string() +
                              ": there is no such recording; `yuragi run --record FILE` or `yuragi import` makes one");
   }
-  PlayerOptions options;
+  windlog::PlayerOptions options;
   options.playback = {values.text("start"), values.flag("loop"), values.text("sensor")};
-  value_of("start", check_playback_start(options.playback.start));
+  value_of("start", windlog::check_playback_start(options.playback.start));
   options.rate = values.number("rate");
   options.seam_s = values.number("seam");
   options.is_paused = values.flag("paused");
   options.at_time_of_day = values.flag("same_time_of_day");
-  options.recorded_offset = value_of("utc_offset", parse_utc_offset(values.text("utc_offset")));
+  options.recorded_offset = value_of("utc_offset", windlog::parse_utc_offset(values.text("utc_offset")));
   return std::make_unique<WindlogReplay>(file, std::move(options));
 }
 
 }  // namespace
 
-extern const DriverDescription kWindlogDriver;
-const DriverDescription kWindlogDriver{.name = "windlog",
-                                       .summary = "plays a recording",
-                                       .parameters = kWindlogParameters,
-                                       .open = open_windlog,
-                                       .plays_recordings = true};
+extern const sensor::DriverDescription kWindlogDriver;
+const sensor::DriverDescription kWindlogDriver{.name = "windlog",
+                                               .summary = "plays a recording",
+                                               .parameters = kWindlogParameters,
+                                               .open = open_windlog,
+                                               .plays_recordings = true};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::recording

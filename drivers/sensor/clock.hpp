@@ -8,7 +8,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 
 /// The time, and waiting until a time; tests substitute another. Thread-safe.
 class Clock {
@@ -26,4 +26,4 @@ class Clock {
   }
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

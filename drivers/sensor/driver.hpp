@@ -9,7 +9,7 @@
 #include "drivers/sensor/sensor.hpp"
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 
 /// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
 struct DriverDescription {
@@ -33,4 +33,4 @@ struct DriverDescription {
 /// Every driver (generated).
 std::span<const DriverDescription* const> driver_table();
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

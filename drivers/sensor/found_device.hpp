@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 
 /// A device that is plugged in and that a driver could read.
 struct FoundDevice {
@@ -13,4 +13,4 @@ struct FoundDevice {
   std::string remedy;    ///< what to do about that: the udev rule to install, the group to join
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 namespace {
 
 constexpr Nanoseconds kFirstWait = std::chrono::milliseconds(250);
@@ -26,25 +26,25 @@ MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
   }
   if (is_open_) close();
   is_open_ = false;
-  report(sink, LinkState::kConnecting, next.error().message);
+  report(sink, wind::LinkState::kConnecting, next.error().message);
   next_poll_ = clock.now().mono + backoff_.next();
   return next_poll_;
 }
 
 void ReopeningSensor::report_connected(SensorSink& sink, const std::string& detail) {
   backoff_.reset();
-  report(sink, LinkState::kConnected, detail);
+  report(sink, wind::LinkState::kConnected, detail);
 }
 
 void ReopeningSensor::report_unusable(SensorSink& sink, const std::string& detail) {
-  report(sink, LinkState::kConnecting, detail);
+  report(sink, wind::LinkState::kConnecting, detail);
 }
 
 void ReopeningSensor::report_finished(SensorSink& sink, const std::string& detail) {
-  report(sink, LinkState::kFinished, detail);
+  report(sink, wind::LinkState::kFinished, detail);
 }
 
-void ReopeningSensor::report(SensorSink& sink, LinkState state, const std::string& detail) {
+void ReopeningSensor::report(SensorSink& sink, wind::LinkState state, const std::string& detail) {
   if (state == reported_state_ && detail == reported_detail_) return;
   reported_state_ = state;
   reported_detail_ = detail;
@@ -55,4 +55,4 @@ std::uint32_t seed_of(std::string_view name) noexcept {
   return static_cast<std::uint32_t>(std::hash<std::string_view>{}(name));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

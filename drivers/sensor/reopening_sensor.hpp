@@ -7,7 +7,7 @@
 #include "drivers/sensor/sensor.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 
 /// A sensor whose device may come and go: finds and opens it, works with it until it fails, and opens it again, without
 /// limit, after waits that double from 0.25 s up to 10 s, each a little shorter at random. A driver implements the
@@ -45,16 +45,16 @@ class ReopeningSensor : public Sensor {
   void report_finished(SensorSink& sink, const std::string& detail);
 
  private:
-  void report(SensorSink& sink, LinkState state, const std::string& detail);
+  void report(SensorSink& sink, wind::LinkState state, const std::string& detail);
 
-  Backoff backoff_;
+  bus::Backoff backoff_;
   bool is_open_ = false;
   MonoTime next_poll_{};
-  LinkState reported_state_ = LinkState::kConnecting;
+  wind::LinkState reported_state_ = wind::LinkState::kConnecting;
   std::string reported_detail_;
 };
 
 /// A seed for a sensor of this name: numbers that differ among the sensors of an installation.
 std::uint32_t seed_of(std::string_view name) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

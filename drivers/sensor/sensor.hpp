@@ -9,7 +9,7 @@
 #include "engine/wind/link_state.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 
 /// The direction of a message.
 enum class RawDirection : std::uint8_t { kReceived, kSent };
@@ -19,10 +19,10 @@ enum class RawDirection : std::uint8_t { kReceived, kSent };
 class SensorSink {
  public:
   virtual ~SensorSink() = default;
-  virtual void reading(const WindReading& reading) = 0;
-  virtual void refused(Refusal why) = 0;
+  virtual void reading(const wind::WindReading& reading) = 0;
+  virtual void refused(decode::Refusal why) = 0;
   /// Called at each change, and for each failed attempt: what happened, and what to do about it.
-  virtual void link(LinkState state, std::string_view detail) = 0;
+  virtual void link(wind::LinkState state, std::string_view detail) = 0;
   /// Each message from or to the device, before it is decoded: a line, a report, a request. Received ones count as
   /// frames; a trace shows the bytes.
   virtual void raw(RawDirection direction, std::span<const std::uint8_t> message) = 0;
@@ -42,4 +42,4 @@ class Sensor {
   virtual void interrupt() noexcept {}
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

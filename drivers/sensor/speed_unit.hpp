@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 
 /// A unit of speed that a message may come in.
 struct SpeedUnit {
@@ -22,4 +22,4 @@ constexpr double metres_per_second_in(std::string_view unit) noexcept {
   return 1.0;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

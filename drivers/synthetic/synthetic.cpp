@@ -4,7 +4,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::synthetic {
 namespace {
 
 const std::array kSyntheticParameters = {
@@ -30,7 +30,7 @@ const std::array kSyntheticParameters = {
               .help = "the same seed gives the same wind"},
 };
 
-class SyntheticSensor final : public Sensor {
+class SyntheticSensor final : public sensor::Sensor {
  public:
   explicit SyntheticSensor(const ParameterValues& values)
       : wind_({.mean_speed_m_s = values.number("speed"),
@@ -39,21 +39,21 @@ class SyntheticSensor final : public Sensor {
                .seed = static_cast<std::uint64_t>(values.integer("seed"))}),
         interval_(from_seconds(1.0 / values.number("rate"))) {}
 
-  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+  MonoTime poll(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     const Instant now = clock.now();
     if (count_ == 0) {
       begun_ = now.mono;
-      sink.link(LinkState::kConnected, "synthetic: no hardware is read");
+      sink.link(wind::LinkState::kConnected, "synthetic: no hardware is read");
     }
     const MonoTime due = begun_ + count_ * interval_;
     if (now.mono < due) return due;
 
-    const WindVector wind = wind_.at(seconds(now.mono - begun_));
+    const wind::WindVector wind = wind_.at(seconds(now.mono - begun_));
     sink.reading({.time = now,
                   .speed_m_s = speed_of(wind),
-                  .direction_deg = direction_from_deg(wind),
+                  .direction_deg = wind::direction_from_deg(wind),
                   .gust_m_s = std::nullopt,
-                  .quality = ReadingQuality::kSimulated});
+                  .quality = wind::ReadingQuality::kSimulated});
 
     // Readings stay on their own grid; those that a halted machine missed are not made up for.
     count_ = (now.mono - begun_) / interval_ + 1;
@@ -61,7 +61,7 @@ class SyntheticSensor final : public Sensor {
   }
 
  private:
-  SyntheticWind wind_;
+  wind::turbulence::SyntheticWind wind_;
   Nanoseconds interval_;
   MonoTime begun_{};
   std::int64_t count_ = 0;
@@ -69,12 +69,13 @@ class SyntheticSensor final : public Sensor {
 
 }  // namespace
 
-extern const DriverDescription kSyntheticDriver;
-const DriverDescription kSyntheticDriver{.name = "synthetic",
-                                         .summary = "seeded synthetic wind; no hardware",
-                                         .parameters = kSyntheticParameters,
-                                         .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
-                                           return std::make_unique<SyntheticSensor>(values);
-                                         }};
+extern const sensor::DriverDescription kSyntheticDriver;
+const sensor::DriverDescription kSyntheticDriver{
+    .name = "synthetic",
+    .summary = "seeded synthetic wind; no hardware",
+    .parameters = kSyntheticParameters,
+    .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
+      return std::make_unique<SyntheticSensor>(values);
+    }};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::synthetic

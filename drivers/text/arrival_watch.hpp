@@ -6,7 +6,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 
 /// Measures the usual pause between messages from the last arrivals, and the time since the last one. An outage is left
 /// out of it, unless it repeats: then it is the usual pause.
@@ -56,4 +56,4 @@ class ArrivalWatch {
   bool has_come_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -8,7 +8,7 @@
 
 #include "drivers/bus/serial_ports.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 constexpr std::array<std::string_view, 4> kByteTransports = {"serial", "tcp", "udp", "file"};
@@ -29,8 +29,8 @@ const std::vector<Parameter>& parameters_of_every_port() {
       {.name = "baud",
        .unit = "bit/s",
        .default_value = std::int64_t{9600},
-       .min = kBytePortBauds.front(),
-       .max = kBytePortBauds.back(),
+       .min = bus::kBytePortBauds.front(),
+       .max = bus::kBytePortBauds.back(),
        .help = "serial: as set in the device; NMEA 0183 has 4800, most anemometers 9600 or 19200"},
       {.name = "data_bits",
        .unit = "",
@@ -115,8 +115,8 @@ std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, dou
   return all;
 }
 
-BytePortAddress byte_port_address_of(const ParameterValues& values) {
-  BytePortAddress address;
+bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
+  bus::BytePortAddress address;
   const std::string& transport = values.text("transport");
   address.baud = static_cast<int>(values.integer("baud"));
   address.data_bits = static_cast<int>(values.integer("data_bits"));
@@ -128,35 +128,37 @@ BytePortAddress byte_port_address_of(const ParameterValues& values) {
   address.is_played = values.number("play_rate") > 0.0;
 
   if (transport == "serial") {
-    address.kind = BytePortKind::kSerial;
+    address.kind = bus::BytePortKind::kSerial;
     address.path = values.text("device");
     if (address.path.empty()) {
       throw std::runtime_error("device: is missing; transport serial needs a port, such as /dev/ttyUSB0");
     }
-    if (std::ranges::find(kBytePortBauds, address.baud) == kBytePortBauds.end()) {
-      throw std::runtime_error(fmt::format("baud: is {}; allowed: {}", address.baud, fmt::join(kBytePortBauds, ", ")));
+    if (std::ranges::find(bus::kBytePortBauds, address.baud) == bus::kBytePortBauds.end()) {
+      throw std::runtime_error(
+          fmt::format("baud: is {}; allowed: {}", address.baud, fmt::join(bus::kBytePortBauds, ", ")));
     }
   } else if (transport == "tcp") {
-    address.kind = BytePortKind::kTcpClient;
+    address.kind = bus::BytePortKind::kTcpClient;
     if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
   } else if (transport == "udp") {
-    address.kind = BytePortKind::kUdp;
+    address.kind = bus::BytePortKind::kUdp;
   } else {
-    address.kind = BytePortKind::kFile;
+    address.kind = bus::BytePortKind::kFile;
     address.path = values.text("file");
     if (address.path.empty()) throw std::runtime_error("file: is missing; transport file needs its path");
   }
 
-  const bool can_be_polled = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
+  const bool can_be_polled =
+      address.kind == bus::BytePortKind::kSerial || address.kind == bus::BytePortKind::kTcpClient;
   if (values.number("poll_interval") > 0.0 && !can_be_polled) {
     throw std::runtime_error("poll_interval: transport " + transport + " cannot send; a request needs serial or tcp");
   }
   return address;
 }
 
-std::vector<FoundDevice> find_behind_serial_ports(const std::string& settings) {
-  std::vector<FoundDevice> found;
-  for (const SerialPortInfo& port : find_serial_ports()) {
+std::vector<sensor::FoundDevice> find_behind_serial_ports(const std::string& settings) {
+  std::vector<sensor::FoundDevice> found;
+  for (const bus::SerialPortInfo& port : bus::find_serial_ports()) {
     found.push_back({.what = "serial port " + port.node,
                      .settings = fmt::format("transport = \"serial\"\ndevice = \"{}\"\n{}", port.name, settings),
                      .trouble = port.trouble,
@@ -165,4 +167,4 @@ std::vector<FoundDevice> find_behind_serial_ports(const std::string& settings) {
   return found;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -6,17 +6,17 @@
 #include "drivers/sensor/found_device.hpp"
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 
 /// The parameters of drivers that read text from a byte port: its source, the request for it, and when a
 /// silent device is opened again. `own` are the driver's, which come first; `delay_after_open_s` is a default.
 std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s);
 
 /// The address in such values. Throws std::runtime_error, saying what to do, where they cannot work together.
-BytePortAddress byte_port_address_of(const ParameterValues& values);
+bus::BytePortAddress byte_port_address_of(const ParameterValues& values);
 
 /// The serial ports that are plugged in. Whether an anemometer is behind one, and which, is not known before it is
 /// opened; `settings` are what else stands in its [[sensor]] table.
-std::vector<FoundDevice> find_behind_serial_ports(const std::string& settings);
+std::vector<sensor::FoundDevice> find_behind_serial_ports(const std::string& settings);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -12,7 +12,7 @@
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/line_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 constexpr std::array<std::string_view, 3> kLineFormats = {"auto", "columns", "keys"};
@@ -35,19 +35,19 @@ const std::array kLineReading = {
               .unit = "",
               .default_value = std::int64_t{1},
               .min = 0,
-              .max = static_cast<double>(kMaxTextFields),
+              .max = static_cast<double>(decode::kMaxTextFields),
               .help = "number of the column, from 1; 0: none"},
     Parameter{.name = "direction_column",
               .unit = "",
               .default_value = std::int64_t{2},
               .min = 0,
-              .max = static_cast<double>(kMaxTextFields),
+              .max = static_cast<double>(decode::kMaxTextFields),
               .help = "0: none"},
     Parameter{.name = "gust_column",
               .unit = "",
               .default_value = std::int64_t{0},
               .min = 0,
-              .max = static_cast<double>(kMaxTextFields),
+              .max = static_cast<double>(decode::kMaxTextFields),
               .help = "0: none"},
     Parameter{.name = "speed_key", .unit = "", .default_value = std::string("speed"), .help = "exact; empty: none"},
     Parameter{
@@ -57,7 +57,7 @@ const std::array kLineReading = {
               .unit = "",
               .default_value = std::string("m/s"),
               .help = "of speed and gust, after scale and offset",
-              .choices = kSpeedUnitNames},
+              .choices = sensor::kSpeedUnitNames},
     Parameter{.name = "speed_scale",
               .unit = "",
               .default_value = 1.0,
@@ -93,7 +93,7 @@ std::optional<std::size_t> column_of(std::int64_t number) {
 
 std::optional<double> invalid_number_of(const std::string& text) {
   if (text.empty()) return {};
-  const auto number = parse_number(text);
+  const auto number = decode::parse_number(text);
   if (!number || !*number)
     throw std::runtime_error("invalid: \"" + text + "\" is not a number; allowed: a number such as \"-999\"");
   return *number;
@@ -105,14 +105,15 @@ std::span<const Parameter> line_reading_parameters() {
   return kLineReading;
 }
 
-LineOptions line_options_of(const ParameterValues& values) {
-  LineOptions line;
-  line.format = static_cast<LineFormat>(std::ranges::find(kLineFormats, values.text("format")) - kLineFormats.begin());
+decode::text::LineOptions line_options_of(const ParameterValues& values) {
+  decode::text::LineOptions line;
+  line.format = static_cast<decode::text::LineFormat>(std::ranges::find(kLineFormats, values.text("format")) -
+                                                      kLineFormats.begin());
   const auto separator = std::ranges::find(kLineSeparators, values.text("separator")) - kLineSeparators.begin();
   line.separator = kLineSeparatorBytes[static_cast<std::size_t>(separator)];
   line.invalid = invalid_number_of(values.text("invalid"));
 
-  const double m_s_per_unit = metres_per_second_in(values.text("speed_unit"));
+  const double m_s_per_unit = sensor::metres_per_second_in(values.text("speed_unit"));
   line.speed = {.column = column_of(values.integer("speed_column")),
                 .key = values.text("speed_key"),
                 .scale = values.number("speed_scale") * m_s_per_unit,
@@ -135,13 +136,13 @@ LineOptions line_options_of(const ParameterValues& values) {
 LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   LineSensorSettings settings;
   settings.text = text_sensor_settings_of(values);
-  settings.text.ending = LineEnding::kEtx;
+  settings.text.ending = decode::text::LineEnding::kEtx;
   settings.line = line_options_of(values);
   settings.north_offset_deg = values.number("north_offset");
 
   // Only the end of the line before it proves that a line is complete from its beginning on.
-  const bool flows =
-      settings.text.address.kind == BytePortKind::kSerial || settings.text.address.kind == BytePortKind::kTcpClient;
+  const bool flows = settings.text.address.kind == bus::BytePortKind::kSerial ||
+                     settings.text.address.kind == bus::BytePortKind::kTcpClient;
   const bool is_polled = settings.text.poll_interval > Nanoseconds::zero();
   settings.text.doubts_first_line = flows && !is_polled;
   if (is_polled && settings.text.request.empty()) {
@@ -150,15 +151,15 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   return settings;
 }
 
-extern const DriverDescription kLineDriver;
-const DriverDescription kLineDriver{
+extern const sensor::DriverDescription kLineDriver;
+const sensor::DriverDescription kLineDriver{
     .name = "line",
     .summary = "microcontrollers that print numbers, one reading per line",
     .parameters = kLineParameters,
-    .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
+    .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       const LineSensorSettings settings = line_sensor_settings_of(values);
-      return std::make_unique<LineSensor>(settings, make_byte_port(settings.text.address));
+      return std::make_unique<LineSensor>(settings, bus::make_byte_port(settings.text.address));
     },
     .find = [] { return find_behind_serial_ports("baud = 9600  # as Serial.begin() of the sketch says"); }};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 /// How many separators a line has. Two lines that ran into each other have more, and one that was cut has fewer.
@@ -27,7 +27,7 @@ std::size_t shape_of(std::string_view line, char separator) {
 
 }  // namespace
 
-LineSensor::LineSensor(LineSensorSettings settings, std::unique_ptr<BytePort> port)
+LineSensor::LineSensor(LineSensorSettings settings, std::unique_ptr<bus::BytePort> port)
     : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)) {}
 
 void LineSensor::begin() {
@@ -38,27 +38,28 @@ void LineSensor::begin() {
 TextSensor::Judgement LineSensor::judge(std::string_view line, const Instant& now) {
   if (!is_text(line)) {
     follows_garbage_ = true;
-    return Refusal::kMalformed;
+    return decode::Refusal::kMalformed;
   }
   const bool is_doubtful = std::exchange(follows_garbage_, false);
-  const auto wind = decode_line(settings_.line, line);
+  const auto wind = decode::text::decode_line(settings_.line, line);
   if (!wind) return wind.error();
 
   // The shape of the lines is the one that comes twice in a row; what differs from it is refused.
-  const std::size_t shape = shape_of(trimmed(line), settings_.line.separator);
+  const std::size_t shape = shape_of(decode::trimmed(line), settings_.line.separator);
   const bool comes_again = std::exchange(last_shape_, shape) == shape;
   if (!shape_ || comes_again) shape_ = shape;
-  if (is_doubtful || shape != *shape_) return Refusal::kMalformed;
+  if (is_doubtful || shape != *shape_) return decode::Refusal::kMalformed;
 
-  if (!wind->speed_m_s) return Refusal::kInvalid;
+  if (!wind->speed_m_s) return decode::Refusal::kInvalid;
   std::optional<double> direction_deg = wind->direction_deg;
   if (direction_deg)
-    direction_deg = wrapped_direction_deg(*direction_deg + std::fmod(settings_.north_offset_deg + 360.0, 360.0));
-  return std::optional(WindReading{.time = now,
-                                   .speed_m_s = *wind->speed_m_s,
-                                   .direction_deg = direction_deg,
-                                   .gust_m_s = wind->gust_m_s,
-                                   .quality = ReadingQuality::kGood});
+    direction_deg =
+        decode::wrapped_direction_deg(*direction_deg + std::fmod(settings_.north_offset_deg + 360.0, 360.0));
+  return std::optional(wind::WindReading{.time = now,
+                                         .speed_m_s = *wind->speed_m_s,
+                                         .direction_deg = direction_deg,
+                                         .gust_m_s = wind->gust_m_s,
+                                         .quality = wind::ReadingQuality::kGood});
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

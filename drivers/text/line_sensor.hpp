@@ -11,11 +11,11 @@
 #include "drivers/text/text_sensor.hpp"
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 
 struct LineSensorSettings {
   TextSensorSettings text;
-  LineOptions line;
+  decode::text::LineOptions line;
   double north_offset_deg = 0.0;  ///< what to add to each direction
 };
 
@@ -23,7 +23,7 @@ struct LineSensorSettings {
 std::span<const Parameter> line_reading_parameters();
 
 /// Their values. Throws std::runtime_error, `name: what is wrong`, where they cannot work together.
-LineOptions line_options_of(const ParameterValues& values);
+decode::text::LineOptions line_options_of(const ParameterValues& values);
 
 /// The values of kLineDriver's parameters. Throws std::runtime_error where they cannot work together.
 LineSensorSettings line_sensor_settings_of(const ParameterValues& values);
@@ -33,7 +33,7 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values);
 /// text, is refused.
 class LineSensor final : public TextSensor {
  public:
-  LineSensor(LineSensorSettings settings, std::unique_ptr<BytePort> port);
+  LineSensor(LineSensorSettings settings, std::unique_ptr<bus::BytePort> port);
 
  private:
   Judgement judge(std::string_view line, const Instant& now) override;
@@ -46,4 +46,4 @@ class LineSensor final : public TextSensor {
   bool follows_garbage_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

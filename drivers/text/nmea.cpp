@@ -16,7 +16,7 @@
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/nmea_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 constexpr std::array<std::string_view, 5> kNmeaFormats = {"auto", "nmea", "gill", "ft", "umb"};
@@ -98,7 +98,7 @@ NmeaFormat nmea_format_of(std::string_view name) {
 
 std::vector<std::string> sentences_of(const std::string& list) {
   std::vector<std::string> sentences;
-  const TextFields fields = split_fields(list, ',');
+  const decode::TextFields fields = decode::split_fields(list, ',');
   for (std::size_t i = 0; i < fields.count; ++i) {
     if (fields[i].empty()) continue;
     if (std::ranges::find(kSentences, fields[i]) == kSentences.end()) {
@@ -113,7 +113,8 @@ std::vector<std::string> sentences_of(const std::string& list) {
 /// The request of the format's devices; empty where there is none.
 std::string request_of(NmeaFormat format, const std::string& device) {
   if (format == NmeaFormat::kUmb) return device + "TR4\r";
-  if (format == NmeaFormat::kFt) return fmt::format("${0},WV?*{1:02X}\r\n", device, xor_checksum(device + ",WV?"));
+  if (format == NmeaFormat::kFt)
+    return fmt::format("${0},WV?*{1:02X}\r\n", device, decode::xor_checksum(device + ",WV?"));
   return "";
 }
 
@@ -121,7 +122,7 @@ std::string request_of(NmeaFormat format, const std::string& device) {
 void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
   TextSensorSettings& text = settings.text;
   const bool can_be_polled =
-      text.address.kind == BytePortKind::kSerial || text.address.kind == BytePortKind::kTcpClient;
+      text.address.kind == bus::BytePortKind::kSerial || text.address.kind == bus::BytePortKind::kTcpClient;
   // A Lufft sends nothing without a request.
   if (settings.format == NmeaFormat::kUmb && text.poll_interval == Nanoseconds::zero() && can_be_polled) {
     text.poll_interval = kUmbInterval;
@@ -152,26 +153,27 @@ NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
   settings.variation_deg = values.number("variation");
 
   const std::string& checksum = values.text("missing_checksum");
-  const bool is_serial = settings.text.address.kind == BytePortKind::kSerial;
+  const bool is_serial = settings.text.address.kind == bus::BytePortKind::kSerial;
   const bool accepts = checksum == "accept" || (checksum == "auto" && !is_serial);
-  settings.checksum = accepts ? WhenMissing::kAccept : WhenMissing::kRefuse;
-  settings.makers_checksum = checksum == "accept" ? WhenMissing::kAccept : WhenMissing::kRefuse;
-  settings.status = values.text("missing_status") == "accept" ? WhenMissing::kAccept : WhenMissing::kRefuse;
+  settings.checksum = accepts ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
+  settings.makers_checksum = checksum == "accept" ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
+  settings.status =
+      values.text("missing_status") == "accept" ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
   settings.xdr_first_id = static_cast<int>(values.integer("xdr_id"));
   settings.speed_range_m_s = values.number("speed_range");
   set_request(settings, values);
   return settings;
 }
 
-extern const DriverDescription kNmeaDriver;
-const DriverDescription kNmeaDriver{
+extern const sensor::DriverDescription kNmeaDriver;
+const sensor::DriverDescription kNmeaDriver{
     .name = "nmea",
     .summary = "anemometers that send NMEA 0183, or the text of Gill, FT Technologies or Lufft",
     .parameters = kNmeaParameters,
-    .open = [](const ParameterValues& values) -> std::unique_ptr<Sensor> {
+    .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       const NmeaSensorSettings settings = nmea_sensor_settings_of(values);
-      return std::make_unique<NmeaSensor>(settings, make_byte_port(settings.text.address));
+      return std::make_unique<NmeaSensor>(settings, bus::make_byte_port(settings.text.address));
     },
     .find = [] { return find_behind_serial_ports("baud = 4800  # or 9600, 19200: as the anemometer is set"); }};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -11,7 +11,7 @@
 #include "drivers/decode/text/nmea.hpp"
 #include "drivers/decode/text/umb.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 /// A direction and a speed that come in two messages belong together if they come so close.
@@ -19,7 +19,7 @@ constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
 
 /// The format of a line. Gill's begin with one letter, and have an ETX before the checksum.
 NmeaFormat format_by_look(std::string_view line) {
-  const std::string_view text = trimmed(line);
+  const std::string_view text = decode::trimmed(line);
   const std::size_t dollar = text.rfind('$');
   if (dollar == std::string_view::npos) {
     const bool has_node = text.size() > 2 && text[0] >= 'A' && text[0] <= 'Z' && text[1] == ',';
@@ -36,28 +36,28 @@ struct MessageName {
   std::string_view sentence;
 };
 MessageName name_of_message(NmeaFormat format, std::string_view line) {
-  const std::string_view text = trimmed(line);
+  const std::string_view text = decode::trimmed(line);
   const std::size_t dollar = text.rfind('$');
   const std::string_view sentence = dollar == std::string_view::npos ? text : text.substr(dollar + 1);
   const std::string_view word = sentence.substr(0, sentence.find(','));
   if (dollar == std::string_view::npos) return {.talker = word, .sentence = "Gill"};
-  if (sentence.starts_with(' ')) return {.talker = split_fields(text, ' ')[1], .sentence = "UMB"};
+  if (sentence.starts_with(' ')) return {.talker = decode::split_fields(text, ' ')[1], .sentence = "UMB"};
   if (format == NmeaFormat::kFt && word.size() == 2) return {.talker = word, .sentence = "WVP"};
   const std::size_t talker_size = std::min<std::size_t>(2, word.size());
   return {.talker = word.substr(0, talker_size), .sentence = word.substr(talker_size)};
 }
 
 /// The frame of MWD and MDA follows from the sentence: in a calm they leave out the direction, and its letter.
-WindFrame frame_of(std::string_view sentence, WindReference reference) {
+WindFrame frame_of(std::string_view sentence, decode::WindReference reference) {
   if (sentence == "MWD" || sentence == "MDA") return WindFrame::kNorth;
-  if (reference == WindReference::kTrue) return WindFrame::kTrue;
-  const bool is_north = reference == WindReference::kNorth || reference == WindReference::kMagnetic;
+  if (reference == decode::WindReference::kTrue) return WindFrame::kTrue;
+  const bool is_north = reference == decode::WindReference::kNorth || reference == decode::WindReference::kMagnetic;
   return is_north ? WindFrame::kNorth : WindFrame::kRelative;
 }
 
 }  // namespace
 
-NmeaSensor::NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<BytePort> port)
+NmeaSensor::NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port)
     : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)), choice_(settings_.frame) {}
 
 void NmeaSensor::begin() {
@@ -66,28 +66,28 @@ void NmeaSensor::begin() {
   lone_direction_.reset();
 }
 
-Result<DecodedWind, Refusal> NmeaSensor::decode(NmeaFormat format, std::string_view line) const {
+Result<decode::DecodedWind, decode::Refusal> NmeaSensor::decode(NmeaFormat format, std::string_view line) const {
   switch (format) {
     case NmeaFormat::kGill: {
-      GillOptions options;
+      decode::text::GillOptions options;
       options.checksum = settings_.makers_checksum;
       options.status = settings_.status;
-      return decode_gill(options, line);
+      return decode::text::decode_gill(options, line);
     }
     case NmeaFormat::kFt:
-      return decode_ft({.checksum = settings_.makers_checksum, .status = settings_.status}, line);
+      return decode::text::decode_ft({.checksum = settings_.makers_checksum, .status = settings_.status}, line);
     case NmeaFormat::kUmb: {
-      UmbOptions options;
+      decode::text::UmbOptions options;
       options.checksum = settings_.makers_checksum;
       options.status = settings_.status;
       options.speed_range_m_s = settings_.speed_range_m_s;
-      return decode_umb(options, line);
+      return decode::text::decode_umb(options, line);
     }
     case NmeaFormat::kAuto:
     case NmeaFormat::kNmea:
       break;
   }
-  return decode_nmea(
+  return decode::text::decode_nmea(
       {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
 }
 
@@ -100,79 +100,80 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
   const MessageName message = name_of_message(format, line);
   const bool is_wanted = settings_.sentences.empty() ||
                          std::ranges::find(settings_.sentences, message.sentence) != settings_.sentences.end();
-  if (!is_wanted || (!settings_.talker.empty() && message.talker != settings_.talker)) return Refusal::kNotMine;
+  if (!is_wanted || (!settings_.talker.empty() && message.talker != settings_.talker)) return decode::Refusal::kNotMine;
 
   // Publish it, or has another source sent the same?
   const WindChoice::Source source = {.name = fmt::format("{} of {}", message.sentence, message.talker),
                                      .frame = frame_of(message.sentence, wind->reference)};
   const auto verdict = choice_.offer(source, now.mono);
-  if (verdict == WindChoice::Verdict::kForeign) return Refusal::kNotMine;
-  if (verdict == WindChoice::Verdict::kPass) return std::optional<WindReading>();
+  if (verdict == WindChoice::Verdict::kForeign) return decode::Refusal::kNotMine;
+  if (verdict == WindChoice::Verdict::kPass) return std::optional<wind::WindReading>();
 
   // A direction alone is kept until its speed comes.
   std::optional<double> direction_deg = choice_.has_direction() ? north_direction_deg(*wind) : std::nullopt;
   if (!wind->speed_m_s) {
     if (direction_deg) lone_direction_ = LoneDirection{source.name, *direction_deg, now.mono};
-    return std::optional<WindReading>();
+    return std::optional<wind::WindReading>();
   }
   const auto waiting = std::exchange(lone_direction_, std::nullopt);
   if (!direction_deg && waiting && waiting->source == source.name && now.mono - waiting->time <= kJoinTime) {
     direction_deg = waiting->direction_deg;
   }
 
-  const bool is_uncertain = wind->status == DecodedStatus::kUncertain;
-  const WindReading reading = {.time = now,
-                               .speed_m_s = *wind->speed_m_s,
-                               .direction_deg = direction_deg,
-                               .gust_m_s = wind->gust_m_s,
-                               .quality = is_uncertain ? ReadingQuality::kUncertain : ReadingQuality::kGood};
+  const bool is_uncertain = wind->status == decode::DecodedStatus::kUncertain;
+  const wind::WindReading reading = {
+      .time = now,
+      .speed_m_s = *wind->speed_m_s,
+      .direction_deg = direction_deg,
+      .gust_m_s = wind->gust_m_s,
+      .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood};
   taken_ = source.name;
   const bool comes_in_bursts = settings().poll_interval == Nanoseconds::zero();
   if (verdict == WindChoice::Verdict::kHold && comes_in_bursts) {
     held_ = reading;
-    return std::optional<WindReading>();
+    return std::optional<wind::WindReading>();
   }
   held_.reset();
   return std::optional(reading);
 }
 
-std::optional<WindReading> NmeaSensor::take_held() {
+std::optional<wind::WindReading> NmeaSensor::take_held() {
   if (held_) choice_.settle();
   return std::exchange(held_, std::nullopt);
 }
 
 /// From true north, as far as the settings know how the device stands.
-std::optional<double> NmeaSensor::north_direction_deg(const DecodedWind& wind) const {
+std::optional<double> NmeaSensor::north_direction_deg(const decode::DecodedWind& wind) const {
   if (!wind.direction_deg) return {};
   double turn_deg = 0.0;
-  if (wind.reference == WindReference::kMagnetic) {
+  if (wind.reference == decode::WindReference::kMagnetic) {
     turn_deg = settings_.variation_deg;
-  } else if (wind.reference != WindReference::kNorth) {
+  } else if (wind.reference != decode::WindReference::kNorth) {
     turn_deg = settings_.north_offset_deg;
   }
   const double turned_deg = std::fmod(*wind.direction_deg + turn_deg, 360.0);
-  return wrapped_direction_deg(turned_deg < 0.0 ? turned_deg + 360.0 : turned_deg);
+  return decode::wrapped_direction_deg(turned_deg < 0.0 ? turned_deg + 360.0 : turned_deg);
 }
 
 std::string NmeaSensor::name() const {
   return taken_.empty() ? "anemometer" : taken_;
 }
 
-std::string NmeaSensor::advice(Refusal why, std::string_view line) const {
+std::string NmeaSensor::advice(decode::Refusal why, std::string_view line) const {
   const std::string where = describe(settings().address);
   const bool has_checksum = line.find('*') != std::string_view::npos || line.find('\x03') != std::string_view::npos;
-  if (why == Refusal::kBadChecksum && !has_checksum) {
+  if (why == decode::Refusal::kBadChecksum && !has_checksum) {
     return "lines arrive from " + where +
            " without a checksum: set the device to send one, or missing_checksum to \"accept\"";
   }
-  if (why == Refusal::kMalformed && settings_.status == WhenMissing::kRefuse) {
+  if (why == decode::Refusal::kMalformed && settings_.status == decode::WhenMissing::kRefuse) {
     return TextSensor::advice(why, line) + "; if they have no status, set missing_status to \"accept\"";
   }
-  if (why == Refusal::kNotMine) {
+  if (why == decode::Refusal::kNotMine) {
     return TextSensor::advice(why, line) +
            " (format, sentences, talker, reference), and what the device is set to send";
   }
   return TextSensor::advice(why, line);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -13,7 +13,7 @@
 #include "drivers/text/wind_choice.hpp"
 #include "engine/base/parameter.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 
 /// The text format of an anemometer.
 enum class NmeaFormat : std::uint8_t {
@@ -27,12 +27,13 @@ enum class NmeaFormat : std::uint8_t {
 struct NmeaSensorSettings {
   TextSensorSettings text;
   NmeaFormat format = NmeaFormat::kAuto;
-  std::vector<std::string> sentences;                  ///< take these only (MWV, MWD, ...); none: all
-  std::string talker;                                  ///< take this one only; empty: any
-  std::optional<WindFrame> frame;                      ///< accept this frame only; nothing: the best received
-  WhenMissing checksum = WhenMissing::kRefuse;         ///< of NMEA sentences
-  WhenMissing makers_checksum = WhenMissing::kRefuse;  ///< of the makers' own formats, which always have one
-  WhenMissing status = WhenMissing::kAccept;
+  std::vector<std::string> sentences;                           ///< take these only (MWV, MWD, ...); none: all
+  std::string talker;                                           ///< take this one only; empty: any
+  std::optional<WindFrame> frame;                               ///< accept this frame only; nothing: the best received
+  decode::WhenMissing checksum = decode::WhenMissing::kRefuse;  ///< of NMEA sentences
+  decode::WhenMissing makers_checksum =
+      decode::WhenMissing::kRefuse;  ///< of the makers' own formats, which always have one
+  decode::WhenMissing status = decode::WhenMissing::kAccept;
   double north_offset_deg = 0.0;  ///< what to add to a direction from the device's own mark
   double variation_deg = 0.0;     ///< what to add to a direction from magnetic north
   int xdr_first_id = 0;
@@ -45,17 +46,17 @@ NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values);
 /// An anemometer that sends NMEA 0183, or the text of Gill, FT Technologies or Lufft.
 class NmeaSensor final : public TextSensor {
  public:
-  NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<BytePort> port);
+  NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port);
 
  private:
   Judgement judge(std::string_view line, const Instant& now) override;
-  std::optional<WindReading> take_held() override;
+  std::optional<wind::WindReading> take_held() override;
   void begin() override;
   std::string name() const override;
-  std::string advice(Refusal why, std::string_view line) const override;
+  std::string advice(decode::Refusal why, std::string_view line) const override;
 
-  Result<DecodedWind, Refusal> decode(NmeaFormat format, std::string_view line) const;
-  std::optional<double> north_direction_deg(const DecodedWind& wind) const;
+  Result<decode::DecodedWind, decode::Refusal> decode(NmeaFormat format, std::string_view line) const;
+  std::optional<double> north_direction_deg(const decode::DecodedWind& wind) const;
 
   /// A direction that came in a message of its own, kept until the speed of the same source.
   struct LoneDirection {
@@ -66,9 +67,9 @@ class NmeaSensor final : public TextSensor {
 
   NmeaSensorSettings settings_;
   WindChoice choice_;
-  std::optional<WindReading> held_;
+  std::optional<wind::WindReading> held_;
   std::optional<LoneDirection> lone_direction_;
   std::string taken_;  // the name of the source that was taken last
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -7,7 +7,7 @@
 
 #include "drivers/text/byte_port_parameters.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 using namespace std::chrono_literals;
@@ -57,7 +57,7 @@ TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
   TextSensorSettings settings;
   settings.address = byte_port_address_of(values);
   settings.delay_after_open =
-      settings.address.kind == BytePortKind::kSerial ? from_seconds(values.number("delay_after_open")) : 0ns;
+      settings.address.kind == bus::BytePortKind::kSerial ? from_seconds(values.number("delay_after_open")) : 0ns;
   settings.silence_timeout = from_seconds(values.number("silence_timeout"));
   settings.play_rate_hz = values.number("play_rate");
   settings.request = values.text("request");
@@ -66,21 +66,21 @@ TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
   return settings;
 }
 
-TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<BytePort> port)
-    : ReopeningSensor(seed_of(describe(settings.address))),
+TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::BytePort> port)
+    : sensor::ReopeningSensor(sensor::seed_of(describe(settings.address))),
       settings_(settings),
       where_(describe(settings.address)),
       port_(std::move(port)),
       assembler_(settings.ending),
-      buffer_(kLargestDatagram) {
+      buffer_(bus::kLargestDatagram) {
   settings_.response_timeout = std::min(settings_.response_timeout, settings_.poll_interval);
 }
 
 bool TextSensor::is_played() const noexcept {
-  return settings_.address.kind == BytePortKind::kFile && settings_.address.is_played;
+  return settings_.address.kind == bus::BytePortKind::kFile && settings_.address.is_played;
 }
 
-Result<MonoTime, Failure> TextSensor::open(const Clock& clock) {
+Result<MonoTime, Failure> TextSensor::open(const sensor::Clock& clock) {
   if (const auto opened = port_->open(); !opened) return opened.error();
   const MonoTime now = clock.now().mono;
   is_fresh_ = settings_.delay_after_open > 0ns;
@@ -101,20 +101,20 @@ void TextSensor::close() noexcept {
   rest_ = {};
 }
 
-Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink) {
+Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
   if (is_finished_) return clock.now().mono + kForAges;
   if (std::exchange(is_fresh_, false)) {
-    for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == ByteStatus::kBytes; ++i) {
+    for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == bus::ByteStatus::kBytes; ++i) {
     }
   }
   if (is_polled() && !request_if_due(clock.now().mono, sink))
     return Failure{where_ + " accepts no request: opened again"};
 
   // Read the next bytes, unless some of a played file are left.
-  ByteArrival arrival{ByteStatus::kBytes};
+  bus::ByteArrival arrival{bus::ByteStatus::kBytes};
   if (rest_.empty()) {
     arrival = port_->read(buffer_, longest_read(clock.now().mono));
-    if (arrival.status == ByteStatus::kBytes) {
+    if (arrival.status == bus::ByteStatus::kBytes) {
       rest_ = std::span(buffer_).first(arrival.size);
       ends_with_rest_ = arrival.is_whole_datagram;
     }
@@ -122,28 +122,28 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
 
   const Instant now = clock.now();
   switch (arrival.status) {
-    case ByteStatus::kInterrupted:
+    case bus::ByteStatus::kInterrupted:
       return now.mono;
-    case ByteStatus::kLost:
+    case bus::ByteStatus::kLost:
       return Failure{where_ +
                      " is gone: opened again as soon as it is back; check its plug, its power and the network"};
-    case ByteStatus::kEnd:
+    case bus::ByteStatus::kEnd:
       if (const auto line = assembler_.finish()) take_line(**line, now, sink);
       if (const auto held = take_held()) publish(*held, sink);
       is_finished_ = true;
       report_finished(sink, where_ + " has been read to its end");
       return now.mono + kForAges;
-    case ByteStatus::kForeign:
+    case bus::ByteStatus::kForeign:
       ++foreign_datagrams_;
       last_bytes_ = now.mono;
-      sink.refused(Refusal::kNotMine);
+      sink.refused(decode::Refusal::kNotMine);
       break;
-    case ByteStatus::kSilence:
+    case bus::ByteStatus::kSilence:
       if (now.mono - last_bytes_ >= kBurstEnd) {
         if (const auto held = take_held()) publish(*held, sink);
       }
       break;
-    case ByteStatus::kBytes:
+    case bus::ByteStatus::kBytes:
       if (take_bytes(now, sink)) return now.mono + from_seconds(1.0 / settings_.play_rate_hz);
       break;
   }
@@ -151,7 +151,7 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
   // Only after all received bytes have been read.
   if (awaits_reply_ && now.mono >= reply_due_) give_up_reply(now.mono, sink);
   if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
-    sink.refused(Refusal::kTimeout);
+    sink.refused(decode::Refusal::kTimeout);
     vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
     return Failure{fmt::format("{} has been silent for {:.0f} s: opened again; check the device's power and cable",
                                where_, seconds(now.mono - last_bytes_))};
@@ -161,11 +161,11 @@ Result<MonoTime, Failure> TextSensor::work(const Clock& clock, SensorSink& sink)
 }
 
 /// False: the port is lost.
-bool TextSensor::request_if_due(MonoTime now, SensorSink& sink) {
+bool TextSensor::request_if_due(MonoTime now, sensor::SensorSink& sink) {
   if (awaits_reply_ || now < next_request_) return true;
   drop_cut_line(sink);
   if (!port_->write(bytes_of(settings_.request))) return false;
-  sink.raw(RawDirection::kSent, bytes_of(settings_.request));
+  sink.raw(sensor::RawDirection::kSent, bytes_of(settings_.request));
   awaits_reply_ = true;
   reply_due_ = now + settings_.response_timeout;
   next_request_ = now + settings_.poll_interval;
@@ -173,11 +173,11 @@ bool TextSensor::request_if_due(MonoTime now, SensorSink& sink) {
 }
 
 /// The next request waits until a late reply has passed, which must not be taken for the next one.
-void TextSensor::give_up_reply(MonoTime now, SensorSink& sink) {
+void TextSensor::give_up_reply(MonoTime now, sensor::SensorSink& sink) {
   awaits_reply_ = false;
   missed_replies_ = std::min(missed_replies_ + 1, kRarestRequest);
   next_request_ = now + std::max<Nanoseconds>(kLatestReply, missed_replies_ * settings_.poll_interval);
-  refuse(Refusal::kTimeout, "", sink);
+  refuse(decode::Refusal::kTimeout, "", sink);
 }
 
 Nanoseconds TextSensor::longest_read(MonoTime now) const {
@@ -186,11 +186,11 @@ Nanoseconds TextSensor::longest_read(MonoTime now) const {
   return std::clamp<Nanoseconds>(due - now, 0ns, kLongestRead);
 }
 
-bool TextSensor::take_bytes(const Instant& now, SensorSink& sink) {
+bool TextSensor::take_bytes(const Instant& now, sensor::SensorSink& sink) {
   // On a line in which bytes follow each other, a pause within a line means that its end is missing. Files and pipes
   // come in blocks that end anywhere, and datagrams end by themselves.
   const bool flows =
-      settings_.address.kind == BytePortKind::kSerial || settings_.address.kind == BytePortKind::kTcpClient;
+      settings_.address.kind == bus::BytePortKind::kSerial || settings_.address.kind == bus::BytePortKind::kTcpClient;
   if (flows && now.mono - last_bytes_ >= kLineCut) drop_cut_line(sink);
   last_bytes_ = now.mono;
 
@@ -213,19 +213,19 @@ bool TextSensor::take_bytes(const Instant& now, SensorSink& sink) {
 }
 
 /// A line that was too long, or was cut off by the next one, and whose bytes are not kept but for the last ones.
-void TextSensor::take_broken_line(Refusal why, std::span<const std::uint8_t> end, SensorSink& sink) {
+void TextSensor::take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::SensorSink& sink) {
   if (std::exchange(skips_line_, false)) return;
-  if (why == Refusal::kMalformed) ++garbled_lines_;
-  sink.raw(RawDirection::kReceived, end);
+  if (why == decode::Refusal::kMalformed) ++garbled_lines_;
+  sink.raw(sensor::RawDirection::kReceived, end);
   refuse(why, "", sink);
 }
 
-bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink& sink) {
+bool TextSensor::take_line(std::string_view line, const Instant& now, sensor::SensorSink& sink) {
   if (std::exchange(skips_line_, false)) return false;
-  sink.raw(RawDirection::kReceived, bytes_of(line));
+  sink.raw(sensor::RawDirection::kReceived, bytes_of(line));
   if (is_polled() && !awaits_reply_) {
     ++late_lines_;
-    refuse(Refusal::kNotMine, line, sink);
+    refuse(decode::Refusal::kNotMine, line, sink);
     return false;
   }
 
@@ -234,8 +234,8 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink
     const bool is_readable = is_text(line);
     ++(is_readable ? readable_lines_ : garbled_lines_);
     // A foreign line may be our own request, echoed by a line with one pair of wires: the reply is still to come.
-    if (judgement.error() != Refusal::kNotMine) awaits_reply_ = false;
-    refuse(is_readable ? judgement.error() : Refusal::kMalformed, line, sink);
+    if (judgement.error() != decode::Refusal::kNotMine) awaits_reply_ = false;
+    refuse(is_readable ? judgement.error() : decode::Refusal::kMalformed, line, sink);
     return false;
   }
   awaits_reply_ = false;
@@ -245,14 +245,14 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, SensorSink
 }
 
 /// Refuses the received part of an incomplete line.
-void TextSensor::drop_cut_line(SensorSink& sink) {
+void TextSensor::drop_cut_line(sensor::SensorSink& sink) {
   const auto cut = assembler_.finish();
   if (!cut) return;
-  sink.raw(RawDirection::kReceived, bytes_of(**cut));
-  if (!std::exchange(skips_line_, false)) refuse(Refusal::kTooShort, **cut, sink);
+  sink.raw(sensor::RawDirection::kReceived, bytes_of(**cut));
+  if (!std::exchange(skips_line_, false)) refuse(decode::Refusal::kTooShort, **cut, sink);
 }
 
-void TextSensor::publish(const WindReading& reading, SensorSink& sink) {
+void TextSensor::publish(const wind::WindReading& reading, sensor::SensorSink& sink) {
   readings_.arrive(reading.time.mono);
   vain_openings_ = 0;
   bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
@@ -261,7 +261,7 @@ void TextSensor::publish(const WindReading& reading, SensorSink& sink) {
   sink.reading(reading);
 }
 
-void TextSensor::refuse(Refusal why, std::string_view line, SensorSink& sink) {
+void TextSensor::refuse(decode::Refusal why, std::string_view line, sensor::SensorSink& sink) {
   Refused& refused = refused_[static_cast<std::size_t>(why)];
   if (refused.count++ == 0) refused.first_line = line;
   sink.refused(why);
@@ -277,15 +277,15 @@ Nanoseconds TextSensor::silence_limit() const {
 }
 
 /// Reports the cause where there are no readings.
-void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
+void TextSensor::judge_device(MonoTime now, sensor::SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
   if (now - last_bytes_ >= kPatience) return report_unusable(sink, silence_trouble());
-  const Refusal why = main_refusal();
+  const decode::Refusal why = main_refusal();
   const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;
   if (late_lines_ > 0 || !has_lines) {
     report_unusable(sink, trouble_without_lines());
-  } else if (why == Refusal::kInvalid || why == Refusal::kImplausible) {
+  } else if (why == decode::Refusal::kInvalid || why == decode::Refusal::kImplausible) {
     // It is there and sends: whether that is valid is checked elsewhere.
     report_connected(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
   } else {
@@ -294,22 +294,22 @@ void TextSensor::judge_device(MonoTime now, SensorSink& sink) {
 }
 
 std::size_t TextSensor::cut_lines() const {
-  return refused_[static_cast<std::size_t>(Refusal::kTooShort)].count;
+  return refused_[static_cast<std::size_t>(decode::Refusal::kTooShort)].count;
 }
 
 /// The reason why most lines were refused: lines of other formats count only where there is nothing else.
-Refusal TextSensor::main_refusal() const {
-  constexpr auto kOthers = static_cast<std::size_t>(Refusal::kNotMine);
+decode::Refusal TextSensor::main_refusal() const {
+  constexpr auto kOthers = static_cast<std::size_t>(decode::Refusal::kNotMine);
   std::size_t most = kOthers;
   for (std::size_t why = 0; why < refused_.size(); ++why) {
     if (why == kOthers || refused_[why].count == 0) continue;
     if (most == kOthers || refused_[why].count > refused_[most].count) most = why;
   }
-  return static_cast<Refusal>(most);
+  return static_cast<decode::Refusal>(most);
 }
 
 std::string TextSensor::silence_trouble() const {
-  const bool is_serial = settings_.address.kind == BytePortKind::kSerial;
+  const bool is_serial = settings_.address.kind == bus::BytePortKind::kSerial;
   return fmt::format("{} {}: check {}", where_, is_polled() ? "does not reply" : "is open, but silent",
                      is_serial ? "the device's power, its wires (TX and RX crossed?) and baud"
                                : "the device's power and network settings");
@@ -324,22 +324,22 @@ std::string TextSensor::trouble_without_lines() const {
   if (foreign_datagrams_ > 0 && bytes_ == 0) {
     return fmt::format("datagrams arrive at {}, but none from {}: check sender", where_, settings_.address.sender);
   }
-  const bool is_serial = settings_.address.kind == BytePortKind::kSerial;
+  const bool is_serial = settings_.address.kind == bus::BytePortKind::kSerial;
   return fmt::format("bytes arrive from {}, but no lines: check {}", where_,
                      is_serial ? "baud, data_bits and parity" : "that this is the device, and that it sends text");
 }
 
-std::string TextSensor::advice(Refusal why, std::string_view line) const {
+std::string TextSensor::advice(decode::Refusal why, std::string_view line) const {
   switch (why) {
-    case Refusal::kInvalid:
+    case decode::Refusal::kInvalid:
       return fmt::format("{} reports that it cannot measure (\"{}\"): check the device", where_, shown(line));
-    case Refusal::kImplausible:
+    case decode::Refusal::kImplausible:
       return fmt::format("{} sends an impossible wind (\"{}\"): check its unit and its settings", where_, shown(line));
-    case Refusal::kBadChecksum:
+    case decode::Refusal::kBadChecksum:
       return fmt::format("lines arrive from {} with wrong checksums: check its cable and baud", where_);
-    case Refusal::kTooShort:
+    case decode::Refusal::kTooShort:
       return fmt::format("lines from {} end too early (\"{}\"): check its cable", where_, shown(line));
-    case Refusal::kTimeout:
+    case decode::Refusal::kTimeout:
       return fmt::format("{} does not reply: check its address, and request", where_);
     default:
       return fmt::format("lines arrive from {}, but without wind (the first: \"{}\"): check that the settings match",
@@ -347,4 +347,4 @@ std::string TextSensor::advice(Refusal why, std::string_view line) const {
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

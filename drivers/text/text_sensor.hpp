@@ -16,12 +16,12 @@
 #include "engine/base/parameter.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 
 /// How a device that sends lines of text is read.
 struct TextSensorSettings {
-  BytePortAddress address;
-  LineEnding ending = LineEnding::kNewline;
+  bus::BytePortAddress address;
+  decode::text::LineEnding ending = decode::text::LineEnding::kNewline;
   bool doubts_first_line = false;  ///< the first line may lack its beginning
   Nanoseconds delay_after_open{};  ///< messages before that are discarded
   Nanoseconds silence_timeout{};   ///< after which the device is opened again; zero: from its usual pauses
@@ -36,59 +36,59 @@ TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
 
 /// A device that sends one line per reading, by itself or on request. This base assembles lines from the bytes, sends
 /// requests, detects silence and invalid lines, and reports them; a driver decodes a line.
-class TextSensor : public ReopeningSensor {
+class TextSensor : public sensor::ReopeningSensor {
  public:
   void interrupt() noexcept final { port_->interrupt(); }
 
  protected:
   /// Decodes a line: a reading, or nothing to publish for now, or a refusal.
-  using Judgement = Result<std::optional<WindReading>, Refusal>;
+  using Judgement = Result<std::optional<wind::WindReading>, decode::Refusal>;
 
-  TextSensor(const TextSensorSettings& settings, std::unique_ptr<BytePort> port);
+  TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::BytePort> port);
 
   virtual Judgement judge(std::string_view line, const Instant& now) = 0;
   /// After a pause that ends a burst of messages: a reading that was held until then.
-  virtual std::optional<WindReading> take_held() { return {}; }
+  virtual std::optional<wind::WindReading> take_held() { return {}; }
   /// The device was opened again: forget the messages before.
   virtual void begin() {}
   /// What the device is, for people.
   virtual std::string name() const = 0;
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
-  virtual std::string advice(Refusal why, std::string_view line) const;
+  virtual std::string advice(decode::Refusal why, std::string_view line) const;
 
   const TextSensorSettings& settings() const noexcept { return settings_; }
 
  private:
-  Result<MonoTime, Failure> open(const Clock& clock) final;
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) final;
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) final;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) final;
   void close() noexcept final;
 
   bool is_polled() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
   bool is_played() const noexcept;
-  bool request_if_due(MonoTime now, SensorSink& sink);
-  void give_up_reply(MonoTime now, SensorSink& sink);
+  bool request_if_due(MonoTime now, sensor::SensorSink& sink);
+  void give_up_reply(MonoTime now, sensor::SensorSink& sink);
   Nanoseconds longest_read(MonoTime now) const;
 
   /// Splits received bytes into lines. Returns whether a reading was published, after which a file that is played has
   /// to wait.
-  bool take_bytes(const Instant& now, SensorSink& sink);
-  bool take_line(std::string_view line, const Instant& now, SensorSink& sink);
-  void take_broken_line(Refusal why, std::span<const std::uint8_t> end, SensorSink& sink);
-  void drop_cut_line(SensorSink& sink);
-  void publish(const WindReading& reading, SensorSink& sink);
-  void refuse(Refusal why, std::string_view line, SensorSink& sink);
+  bool take_bytes(const Instant& now, sensor::SensorSink& sink);
+  bool take_line(std::string_view line, const Instant& now, sensor::SensorSink& sink);
+  void take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::SensorSink& sink);
+  void drop_cut_line(sensor::SensorSink& sink);
+  void publish(const wind::WindReading& reading, sensor::SensorSink& sink);
+  void refuse(decode::Refusal why, std::string_view line, sensor::SensorSink& sink);
 
   Nanoseconds silence_limit() const;
-  void judge_device(MonoTime now, SensorSink& sink);
+  void judge_device(MonoTime now, sensor::SensorSink& sink);
   std::size_t cut_lines() const;
-  Refusal main_refusal() const;
+  decode::Refusal main_refusal() const;
   std::string silence_trouble() const;
   std::string trouble_without_lines() const;
 
   TextSensorSettings settings_;
   std::string where_;
-  std::unique_ptr<BytePort> port_;
-  LineAssembler assembler_;
+  std::unique_ptr<bus::BytePort> port_;
+  decode::text::LineAssembler assembler_;
   std::vector<std::uint8_t> buffer_;
   std::span<const std::uint8_t> rest_;  // of the buffer: not processed yet
   bool ends_with_rest_ = false;         // rest_ is the end of a datagram
@@ -110,7 +110,7 @@ class TextSensor : public ReopeningSensor {
     std::size_t count = 0;
     std::string first_line;
   };
-  std::array<Refused, kRefusalCount> refused_{};
+  std::array<Refused, decode::kRefusalCount> refused_{};
   std::size_t bytes_ = 0;
   std::size_t readable_lines_ = 0;
   std::size_t garbled_lines_ = 0;
@@ -121,4 +121,4 @@ class TextSensor : public ReopeningSensor {
 /// Is every byte one that text has? NUL, STX, ETX and tab may be among them.
 bool is_text(std::string_view line) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 /// A source that misses so many of its own pauses has fallen silent.
@@ -39,4 +39,4 @@ void WindChoice::restart() noexcept {
   is_settled_ = false;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -6,7 +6,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 
 /// What an angle in a message is measured from, as far as it matters for a device that stands still. Best first.
 enum class WindFrame : std::uint8_t {
@@ -57,4 +57,4 @@ class WindChoice {
   Nanoseconds pause_{};  // between the last two of the current source
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

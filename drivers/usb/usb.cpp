@@ -17,7 +17,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/usb/usb_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 constexpr std::array<std::string_view, 3> kUsbDevices = {"auto", "mcc1208", "labjack-u3"};
@@ -171,29 +171,29 @@ void check_together(const UsbSettings& settings) {
   throw std::runtime_error(wrong);
 }
 
-std::vector<UsbId> ids_of(std::span<const UsbDaqModel* const> models) {
-  std::vector<UsbId> ids;
+std::vector<bus::UsbId> ids_of(std::span<const UsbDaqModel* const> models) {
+  std::vector<bus::UsbId> ids;
   ids.reserve(models.size());
   for (const UsbDaqModel* const model : models) ids.push_back(model->id);
   return ids;
 }
 
-std::unique_ptr<Sensor> open_usb(const ParameterValues& values) {
+std::unique_ptr<sensor::Sensor> open_usb(const ParameterValues& values) {
   UsbSettings settings = usb_settings_of(values);
   check_together(settings);
-  auto device = make_usb_device(ids_of(settings.models));
-  const std::uint32_t seed = seed_of("usb" + settings.serial + settings.port);
+  auto device = bus::make_usb_device(ids_of(settings.models));
+  const std::uint32_t seed = sensor::seed_of("usb" + settings.serial + settings.port);
   return std::make_unique<UsbSensor>(std::move(settings), seed, std::move(device));
 }
 
-std::vector<FoundDevice> find_usb() {
-  std::vector<FoundDevice> found;
-  const auto plugged = make_usb_device(ids_of(usb_daq_models()))->plugged();
+std::vector<sensor::FoundDevice> find_usb() {
+  std::vector<sensor::FoundDevice> found;
+  const auto plugged = bus::make_usb_device(ids_of(usb_daq_models()))->plugged();
   if (!plugged) return found;
-  for (const PluggedUsbDevice& device : *plugged) {
+  for (const bus::PluggedUsbDevice& device : *plugged) {
     const UsbDaqModel& model =
         **std::ranges::find(usb_daq_models(), device.id, [](const UsbDaqModel* one) { return one->id; });
-    FoundDevice& one = found.emplace_back();
+    sensor::FoundDevice& one = found.emplace_back();
     one.what = fmt::format("{} ({}) at USB port {}", model.what, describe(model.id), device.port);
     one.settings = fmt::format("device = \"{}\"\n{} = \"{}\"", model.name, device.serial.empty() ? "port" : "serial",
                                device.serial.empty() ? device.port : device.serial);
@@ -206,12 +206,12 @@ std::vector<FoundDevice> find_usb() {
 
 }  // namespace
 
-extern const DriverDescription kUsbDriver;
-const DriverDescription kUsbDriver{
+extern const sensor::DriverDescription kUsbDriver;
+const sensor::DriverDescription kUsbDriver{
     .name = "usb",
     .summary = "a cup and a vane on a counter and ADC device: MCC USB-1208FS-Plus, LabJack U3",
     .parameters = kUsbParameters,
     .open = open_usb,
     .find = find_usb};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 
 std::span<const UsbDaqModel* const> usb_daq_models() {
   static constexpr std::array kModels = {&kMcc1208Model, &kLabjackModel};
@@ -24,29 +24,29 @@ std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring) {
   return "";
 }
 
-DaqTrouble trouble_of(UsbStatus status, SensorSink& sink) {
+DaqTrouble trouble_of(bus::UsbStatus status, sensor::SensorSink& sink) {
   switch (status) {
-    case UsbStatus::kTimeout:
-      sink.refused(Refusal::kTimeout);
+    case bus::UsbStatus::kTimeout:
+      sink.refused(decode::Refusal::kTimeout);
       return {"does not reply: check its cable, and plug it in again if this lasts"};
-    case UsbStatus::kStalled:
-      sink.refused(Refusal::kException);
+    case bus::UsbStatus::kStalled:
+      sink.refused(decode::Refusal::kException);
       return {"refuses the request: plug it in again, and check that it is the configured kind of device"};
-    case UsbStatus::kDone:  // but with the wrong number of bytes
-    case UsbStatus::kOverflow:
-      sink.refused(Refusal::kMalformed);
+    case bus::UsbStatus::kDone:  // but with the wrong number of bytes
+    case bus::UsbStatus::kOverflow:
+      sink.refused(decode::Refusal::kMalformed);
       return {"sends more than was requested: check its cable"};
-    case UsbStatus::kInterrupted:
+    case bus::UsbStatus::kInterrupted:
       return {"was interrupted", true};
-    case UsbStatus::kGone:
+    case bus::UsbStatus::kGone:
       break;
   }
   return {"was unplugged: plug it in again", true};
 }
 
-DaqTrouble trouble_of(Refusal why, SensorSink& sink) {
+DaqTrouble trouble_of(decode::Refusal why, sensor::SensorSink& sink) {
   sink.refused(why);
   return {fmt::format("sends an invalid reply ({}): check its cable, and that no other program uses it", name_of(why))};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -12,7 +12,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 
 /// Where the cup and the vane are connected.
 struct DaqWiring {
@@ -47,16 +47,16 @@ class UsbDaq {
   virtual ~UsbDaq() = default;
 
   /// Configures the device and reads its calibration.
-  virtual Result<DaqIdentity, DaqTrouble> start(UsbDevice& device, SensorSink& sink) = 0;
+  virtual Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::SensorSink& sink) = 0;
 
-  virtual Result<DaqSample, DaqTrouble> sample(UsbDevice& device, SensorSink& sink) = 0;
+  virtual Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::SensorSink& sink) = 0;
 };
 
 /// A kind of such devices.
 struct UsbDaqModel {
   std::string_view name;  ///< in a configuration
   std::string_view what;  ///< for people
-  UsbId id;
+  bus::UsbId id;
   std::uint8_t counters = 1;
   std::uint8_t channels = 1;
   std::unique_ptr<UsbDaq> (*make)(const DaqWiring& wiring, Nanoseconds timeout);
@@ -72,9 +72,9 @@ std::span<const UsbDaqModel* const> usb_daq_models();
 std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring);
 
 /// The trouble of a failed transfer, counted in `sink`.
-DaqTrouble trouble_of(UsbStatus status, SensorSink& sink);
+DaqTrouble trouble_of(bus::UsbStatus status, sensor::SensorSink& sink);
 
 /// The trouble of a refused reply, counted in `sink`.
-DaqTrouble trouble_of(Refusal why, SensorSink& sink);
+DaqTrouble trouble_of(decode::Refusal why, sensor::SensorSink& sink);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -8,7 +8,7 @@
 #include "drivers/decode/usb/labjack.hpp"
 #include "drivers/usb/usb_daq.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 constexpr std::uint8_t kLabjackCommands = 1;  // the end points
@@ -24,33 +24,40 @@ class LabjackDaq final : public UsbDaq {
     request_.counter = wiring.counter;
   }
 
-  Result<DaqIdentity, DaqTrouble> start(UsbDevice& device, SensorSink& sink) override {
-    const auto identity = exchange(device, sink, encode_labjack_identity(), decode_labjack_identity);
+  Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::SensorSink& sink) override {
+    const auto identity =
+        exchange(device, sink, decode::usb::encode_labjack_identity(), decode::usb::decode_labjack_identity);
     if (!identity) return identity.error();
     const std::uint8_t counter = *request_.counter;
-    const auto configured = exchange(device, sink, encode_labjack_configuration(counter), [counter](ByteSpan reply) {
-      return decode_labjack_configuration(counter, reply);
-    });
+    const auto configured = exchange(
+        device, sink, decode::usb::encode_labjack_configuration(counter),
+        [counter](decode::ByteSpan reply) { return decode::usb::decode_labjack_configuration(counter, reply); });
     if (!configured) return configured.error();
 
     // High voltage inputs have a slope and an offset each, in two blocks; the others share one of both.
-    const bool is_high = identity->input == LabjackInput::kHighVoltage;
-    const auto slopes = exchange(device, sink, encode_labjack_memory(is_high ? 3 : 0), decode_labjack_memory);
+    const bool is_high = identity->input == decode::usb::LabjackInput::kHighVoltage;
+    const auto slopes =
+        exchange(device, sink, decode::usb::encode_labjack_memory(is_high ? 3 : 0), decode::usb::decode_labjack_memory);
     if (!slopes) return slopes.error();
-    const auto offsets = is_high ? exchange(device, sink, encode_labjack_memory(4), decode_labjack_memory) : slopes;
+    const auto offsets =
+        is_high ? exchange(device, sink, decode::usb::encode_labjack_memory(4), decode::usb::decode_labjack_memory)
+                : slopes;
     if (!offsets) return offsets.error();
     for (std::size_t channel = 0; channel < calibrations_.size(); ++channel) {
-      const LabjackCalibration own = is_high ? LabjackCalibration{(*slopes)[channel], (*offsets)[channel]}
-                                             : LabjackCalibration{(*slopes)[0], (*slopes)[1]};
-      calibrations_[channel] = is_believable(own, identity->input) ? own : nominal_labjack_calibration(identity->input);
+      const decode::usb::LabjackCalibration own =
+          is_high ? decode::usb::LabjackCalibration{(*slopes)[channel], (*offsets)[channel]}
+                  : decode::usb::LabjackCalibration{(*slopes)[0], (*slopes)[1]};
+      calibrations_[channel] =
+          is_believable(own, identity->input) ? own : decode::usb::nominal_labjack_calibration(identity->input);
     }
     return DaqIdentity{fmt::format("{}", identity->serial)};
   }
 
-  Result<DaqSample, DaqTrouble> sample(UsbDevice& device, SensorSink& sink) override {
+  Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::SensorSink& sink) override {
     ++request_.echo;
-    const auto reply = exchange(device, sink, encode_labjack_feedback(request_),
-                                [this](ByteSpan bytes) { return decode_labjack(request_, bytes); });
+    const auto reply =
+        exchange(device, sink, decode::usb::encode_labjack_feedback(request_),
+                 [this](decode::ByteSpan bytes) { return decode::usb::decode_labjack(request_, bytes); });
     if (!reply) return reply.error();
     DaqSample sample;
     sample.count = *reply->count;
@@ -63,18 +70,18 @@ class LabjackDaq final : public UsbDaq {
   /// Sends a command and decodes its reply. Replies to other commands, such as a late one to the command before, are
   /// counted and skipped.
   template <class Decode>
-  auto exchange(UsbDevice& device, SensorSink& sink, const LabjackCommand& command, Decode&& decode)
-      -> Result<typename decltype(decode(ByteSpan()))::value_type, DaqTrouble> {
-    sink.raw(RawDirection::kSent, command.span());
-    const UsbTransfer sent = device.write(kLabjackCommands, command.span(), timeout_);
-    if (sent.status != UsbStatus::kDone) return trouble_of(sent.status, sink);
+  auto exchange(bus::UsbDevice& device, sensor::SensorSink& sink, const decode::usb::LabjackCommand& command,
+                Decode&& decode) -> Result<typename decltype(decode(decode::ByteSpan()))::value_type, DaqTrouble> {
+    sink.raw(sensor::RawDirection::kSent, command.span());
+    const bus::UsbTransfer sent = device.write(kLabjackCommands, command.span(), timeout_);
+    if (sent.status != bus::UsbStatus::kDone) return trouble_of(sent.status, sink);
     for (int message = 0; message < kMostStrangers; ++message) {
-      const UsbTransfer got = device.read(kLabjackReplies, buffer_, timeout_);
-      if (got.status == UsbStatus::kTimeout && message > 0)
+      const bus::UsbTransfer got = device.read(kLabjackReplies, buffer_, timeout_);
+      if (got.status == bus::UsbStatus::kTimeout && message > 0)
         return DaqTrouble{"replies to other requests, not to this one"};
-      if (got.status != UsbStatus::kDone) return trouble_of(got.status, sink);
-      const ByteSpan reply = ByteSpan(buffer_).first(std::min(got.size, buffer_.size()));
-      sink.raw(RawDirection::kReceived, reply);
+      if (got.status != bus::UsbStatus::kDone) return trouble_of(got.status, sink);
+      const decode::ByteSpan reply = decode::ByteSpan(buffer_).first(std::min(got.size, buffer_.size()));
+      sink.raw(sensor::RawDirection::kReceived, reply);
       auto decoded = decode(reply);
       if (decoded) {
         if constexpr (std::is_void_v<typename decltype(decoded)::value_type>) {
@@ -83,23 +90,23 @@ class LabjackDaq final : public UsbDaq {
           return *decoded;
         }
       }
-      const LabjackRefusal refusal = decoded.error();
-      if (refusal.why == Refusal::kException) return exception(refusal.error, sink);
-      if (refusal.why != Refusal::kNotMine) return trouble_of(refusal.why, sink);
-      sink.refused(Refusal::kNotMine);
+      const decode::usb::LabjackRefusal refusal = decoded.error();
+      if (refusal.why == decode::Refusal::kException) return exception(refusal.error, sink);
+      if (refusal.why != decode::Refusal::kNotMine) return trouble_of(refusal.why, sink);
+      sink.refused(decode::Refusal::kNotMine);
     }
     return DaqTrouble{"replies to other requests, not to this one"};
   }
 
-  static DaqTrouble exception(std::uint8_t error, SensorSink& sink) {
-    sink.refused(Refusal::kException);
+  static DaqTrouble exception(std::uint8_t error, sensor::SensorSink& sink) {
+    sink.refused(decode::Refusal::kException);
     if (error == 0) return {"reports a damaged command: check its cable"};
     return {fmt::format("refuses the command (error {}): check that no other program has configured it", error)};
   }
 
   Nanoseconds timeout_;
-  LabjackRequest request_;
-  std::array<LabjackCalibration, 4> calibrations_{};
+  decode::usb::LabjackRequest request_;
+  std::array<decode::usb::LabjackCalibration, 4> calibrations_{};
   std::array<std::uint8_t, 64> buffer_{};  // one packet
 };
 
@@ -116,4 +123,4 @@ const UsbDaqModel kLabjackModel{.name = "labjack-u3",
                                 .channels = 4,
                                 .make = make_labjack_daq};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -4,28 +4,28 @@
 #include "drivers/decode/usb/mcc1208.hpp"
 #include "drivers/usb/usb_daq.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 class Mcc1208Daq final : public UsbDaq {
  public:
   Mcc1208Daq(const DaqWiring& wiring, Nanoseconds timeout) : wiring_(wiring), timeout_(timeout) {}
 
-  Result<DaqIdentity, DaqTrouble> start(UsbDevice& device, SensorSink& sink) override {
+  Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::SensorSink& sink) override {
     // The counter is not reset: nothing here needs it to begin at 0, and another program may read it.
     for (const auto& [channel, calibration] :
          {std::pair{wiring_.vane_channel, &vane_}, {wiring_.reference_channel, &reference_}}) {
       if (!channel) continue;
-      const auto reply = exchange(device, mcc1208_read_calibration(*channel), sink);
+      const auto reply = exchange(device, decode::usb::mcc1208_read_calibration(*channel), sink);
       if (!reply) return reply.error();
-      const auto decoded = decode_mcc1208_calibration(*reply);
-      if (!decoded && decoded.error() != Refusal::kInvalid) return trouble_of(decoded.error(), sink);
-      *calibration = decoded ? *decoded : Mcc1208Calibration{};  // never written: nominal values
+      const auto decoded = decode::usb::decode_mcc1208_calibration(*reply);
+      if (!decoded && decoded.error() != decode::Refusal::kInvalid) return trouble_of(decoded.error(), sink);
+      *calibration = decoded ? *decoded : decode::usb::Mcc1208Calibration{};  // never written: nominal values
     }
     return DaqIdentity{};
   }
 
-  Result<DaqSample, DaqTrouble> sample(UsbDevice& device, SensorSink& sink) override {
+  Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::SensorSink& sink) override {
     DaqSample sample;
     if (wiring_.vane_channel) {
       const auto volts = read_volts(device, *wiring_.vane_channel, vane_, sink);
@@ -38,36 +38,37 @@ class Mcc1208Daq final : public UsbDaq {
       sample.reference_v = *volts;
     }
     // The count last, so that it is as close as possible to the time that the caller assigns to it.
-    const auto reply = exchange(device, kMcc1208ReadCounter, sink);
+    const auto reply = exchange(device, decode::usb::kMcc1208ReadCounter, sink);
     if (!reply) return reply.error();
-    const auto count = decode_mcc1208_count(*reply);
+    const auto count = decode::usb::decode_mcc1208_count(*reply);
     if (!count) return trouble_of(count.error(), sink);
     sample.count = *count;
     return sample;
   }
 
  private:
-  Result<double, DaqTrouble> read_volts(UsbDevice& device, std::uint8_t channel, const Mcc1208Calibration& calibration,
-                                        SensorSink& sink) {
-    const auto reply = exchange(device, mcc1208_read_analog(channel), sink);
+  Result<double, DaqTrouble> read_volts(bus::UsbDevice& device, std::uint8_t channel,
+                                        const decode::usb::Mcc1208Calibration& calibration, sensor::SensorSink& sink) {
+    const auto reply = exchange(device, decode::usb::mcc1208_read_analog(channel), sink);
     if (!reply) return reply.error();
-    const auto analog = decode_mcc1208_analog(*reply);
+    const auto analog = decode::usb::decode_mcc1208_analog(*reply);
     if (!analog) return trouble_of(analog.error(), sink);
-    return mcc1208_volts(*analog, calibration);
+    return decode::usb::mcc1208_volts(*analog, calibration);
   }
 
   /// The reply, valid until the next one.
-  Result<ByteSpan, DaqTrouble> exchange(UsbDevice& device, const Mcc1208Transfer& command, SensorSink& sink) {
+  Result<decode::ByteSpan, DaqTrouble> exchange(bus::UsbDevice& device, const decode::usb::Mcc1208Transfer& command,
+                                                sensor::SensorSink& sink) {
     const std::array<std::uint8_t, 8> setup = {command.request_type, command.request,     low(command.value),
                                                high(command.value),  low(command.index),  high(command.index),
                                                low(command.length),  high(command.length)};
-    sink.raw(RawDirection::kSent, setup);
-    const UsbRequest request = {command.request_type, command.request, command.value, command.index};
-    const UsbTransfer transfer = device.control(request, std::span(buffer_).first(command.length), timeout_);
-    if (transfer.status != UsbStatus::kDone) return trouble_of(transfer.status, sink);
-    if (transfer.size > command.length) return trouble_of(UsbStatus::kOverflow, sink);
-    const ByteSpan reply = ByteSpan(buffer_).first(transfer.size);
-    sink.raw(RawDirection::kReceived, reply);
+    sink.raw(sensor::RawDirection::kSent, setup);
+    const bus::UsbRequest request = {command.request_type, command.request, command.value, command.index};
+    const bus::UsbTransfer transfer = device.control(request, std::span(buffer_).first(command.length), timeout_);
+    if (transfer.status != bus::UsbStatus::kDone) return trouble_of(transfer.status, sink);
+    if (transfer.size > command.length) return trouble_of(bus::UsbStatus::kOverflow, sink);
+    const decode::ByteSpan reply = decode::ByteSpan(buffer_).first(transfer.size);
+    sink.raw(sensor::RawDirection::kReceived, reply);
     return reply;
   }
 
@@ -76,8 +77,8 @@ class Mcc1208Daq final : public UsbDaq {
 
   DaqWiring wiring_;
   Nanoseconds timeout_;
-  Mcc1208Calibration vane_;
-  Mcc1208Calibration reference_;
+  decode::usb::Mcc1208Calibration vane_;
+  decode::usb::Mcc1208Calibration reference_;
   std::array<std::uint8_t, 8> buffer_{};
 };
 
@@ -91,7 +92,7 @@ const UsbDaqModel kMcc1208Model{.name = "mcc1208",
                                 .what = "MCC USB-1208FS-Plus",
                                 .id = {0x09DB, 0x00E8},
                                 .counters = 1,
-                                .channels = kMcc1208Inputs,
+                                .channels = decode::usb::kMcc1208Inputs,
                                 .make = make_mcc1208_daq};
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

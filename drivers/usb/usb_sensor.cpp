@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 /// A device that hangs looks like one that is slow: after so many rounds in a row without a sample it counts as hung.
@@ -30,25 +30,25 @@ std::optional<double> MeanDirection::mean_deg() const {
   return turned_deg < 360.0 ? turned_deg : 0.0;  // a tiny negative value rounds up to a whole turn
 }
 
-UsbSensor::UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<UsbDevice> device)
-    : ReopeningSensor(seed), settings_(std::move(settings)), device_(std::move(device)) {}
+UsbSensor::UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<bus::UsbDevice> device)
+    : sensor::ReopeningSensor(seed), settings_(std::move(settings)), device_(std::move(device)) {}
 
 UsbSensor::~UsbSensor() {
   device_->close();
 }
 
-Result<MonoTime, Failure> UsbSensor::open(const Clock& clock) {
+Result<MonoTime, Failure> UsbSensor::open(const sensor::Clock& clock) {
   // Select the device among those plugged in.
   auto plugged = device_->plugged();
   if (!plugged) return plugged.error();
-  std::erase_if(*plugged, [this](const PluggedUsbDevice& device) { return !is_wanted(device); });
+  std::erase_if(*plugged, [this](const bus::PluggedUsbDevice& device) { return !is_wanted(device); });
   if (plugged->empty()) {
     return Failure{fmt::format("{} is not plugged in: plug it in, and check with `yuragi sensors list` or lsusb",
                                name_of_wanted())};
   }
 
   // Where one cannot be opened or turns out to be another, the next one is tried.
-  const PluggedUsbDevice& chosen = (*plugged)[turn_ % plugged->size()];
+  const bus::PluggedUsbDevice& chosen = (*plugged)[turn_ % plugged->size()];
   const UsbDaqModel& model = model_of(chosen.id);
   if (const std::string wrong = wrong_wiring(model, settings_.wiring); !wrong.empty()) {
     ++turn_;
@@ -70,7 +70,7 @@ Result<MonoTime, Failure> UsbSensor::open(const Clock& clock) {
   return clock.now().mono;
 }
 
-Result<MonoTime, Failure> UsbSensor::work(const Clock& clock, SensorSink& sink) {
+Result<MonoTime, Failure> UsbSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
   const MonoTime begin = clock.now().mono;
   if (!is_started_) {
     const auto identity = daq_->start(*device_, sink);
@@ -92,7 +92,7 @@ Result<MonoTime, Failure> UsbSensor::work(const Clock& clock, SensorSink& sink) 
   return next;
 }
 
-void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now, SensorSink& sink) {
+void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now, sensor::SensorSink& sink) {
   // The device has counted at some moment since the request. Where bus or scheduler delayed it, the count is kept for
   // the next one: a delayed thread must not appear as a lull or a gust.
   const Nanoseconds doubt = now.mono - requested_at;
@@ -100,7 +100,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now
   if (cup_.last_count && is_too_vague) return;
   counted_doubt_ = doubt;
   const double elapsed_s = seconds(now.mono - std::exchange(counted_at_, now.mono));
-  const auto speed_m_s = advance_cup(cup_, settings_.cup, sample.count, elapsed_s);
+  const auto speed_m_s = decode::usb::advance_cup(cup_, settings_.cup, sample.count, elapsed_s);
 
   // A direction that came with an impossible count is discarded, too.
   if (speed_m_s && !*speed_m_s) {
@@ -114,7 +114,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now
   }
   if (sample.wiper_v) {
     const double reference_v = sample.reference_v.value_or(settings_.reference_v);
-    if (const auto direction_deg = vane_direction_deg(settings_.vane, *sample.wiper_v, reference_v)) {
+    if (const auto direction_deg = decode::usb::vane_direction_deg(settings_.vane, *sample.wiper_v, reference_v)) {
       direction_.add(*direction_deg);
     }
   }
@@ -125,19 +125,19 @@ void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now
                 .speed_m_s = **speed_m_s,
                 .direction_deg = direction_.mean_deg(),
                 .gust_m_s = std::nullopt,
-                .quality = ReadingQuality::kGood});
+                .quality = wind::ReadingQuality::kGood});
   direction_.clear();
 }
 
 /// There was no sample. The pulses counted meanwhile are in the next one, over the time that has passed.
-Result<MonoTime, Failure> UsbSensor::suffer(const DaqTrouble& trouble, MonoTime again, SensorSink& sink) {
+Result<MonoTime, Failure> UsbSensor::suffer(const DaqTrouble& trouble, MonoTime again, sensor::SensorSink& sink) {
   const std::string detail = name_ + " " + trouble.message;
   if (trouble.is_lost || ++failures_ >= kRoundsBeforeReopen) return Failure{detail};
   report_unusable(sink, detail);
   return again;
 }
 
-bool UsbSensor::is_wanted(const PluggedUsbDevice& device) const {
+bool UsbSensor::is_wanted(const bus::PluggedUsbDevice& device) const {
   const bool is_kind = std::ranges::count(settings_.models, device.id, &UsbDaqModel::id) != 0;
   const bool is_there = settings_.port.empty() || device.port == settings_.port;
   // One that shows no serial number on the bus sends it on request.
@@ -145,7 +145,7 @@ bool UsbSensor::is_wanted(const PluggedUsbDevice& device) const {
   return is_kind && is_there && may_be_it;
 }
 
-const UsbDaqModel& UsbSensor::model_of(const UsbId& id) const {
+const UsbDaqModel& UsbSensor::model_of(const bus::UsbId& id) const {
   return **std::ranges::find(settings_.models, id, &UsbDaqModel::id);
 }
 
@@ -165,4 +165,4 @@ Failure UsbSensor::wrong_device(const std::string& serial) {
                              settings_.serial)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

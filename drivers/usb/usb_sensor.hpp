@@ -10,7 +10,7 @@
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/usb/usb_daq.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 
 /// Calibration of a cup and a vane on a counter and ADC device, and which device it is.
 struct UsbSettings {
@@ -18,8 +18,8 @@ struct UsbSettings {
   std::string port;                        ///< the one that is plugged in there; empty: anywhere
   std::string serial;                      ///< the one with this serial number; empty: any
   DaqWiring wiring;
-  CupCalibration cup;
-  VaneCalibration vane;
+  decode::usb::CupCalibration cup;
+  decode::usb::VaneCalibration vane;
   double reference_v = 5.0;                             ///< over the vane's track, where it is not measured
   Nanoseconds period = std::chrono::milliseconds(100);  ///< from one round of requests to the next
   Nanoseconds timeout = std::chrono::milliseconds(500);
@@ -40,29 +40,29 @@ class MeanDirection {
 
 /// A cup anemometer on the counter and a potentiometer vane on the ADC of a USB device. Samples both at a steady rate
 /// and publishes whenever the cup's window closes: its speed, and the mean of the vane's directions in that window.
-class UsbSensor final : public ReopeningSensor {
+class UsbSensor final : public sensor::ReopeningSensor {
  public:
-  UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<UsbDevice> device);
+  UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<bus::UsbDevice> device);
   ~UsbSensor() override;
 
   void interrupt() noexcept override { device_->interrupt(); }
 
  protected:
-  Result<MonoTime, Failure> open(const Clock& clock) override;
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override;
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
   void close() noexcept override { device_->close(); }
   bool poll_for_return() override { return device_->take_arrival(); }
 
  private:
-  bool is_wanted(const PluggedUsbDevice& device) const;
-  const UsbDaqModel& model_of(const UsbId& id) const;
+  bool is_wanted(const bus::PluggedUsbDevice& device) const;
+  const UsbDaqModel& model_of(const bus::UsbId& id) const;
   std::string name_of_wanted() const;
   Failure wrong_device(const std::string& serial);
-  Result<MonoTime, Failure> suffer(const DaqTrouble& trouble, MonoTime again, SensorSink& sink);
-  void take(const DaqSample& sample, MonoTime requested_at, Instant now, SensorSink& sink);
+  Result<MonoTime, Failure> suffer(const DaqTrouble& trouble, MonoTime again, sensor::SensorSink& sink);
+  void take(const DaqSample& sample, MonoTime requested_at, Instant now, sensor::SensorSink& sink);
 
   UsbSettings settings_;
-  std::unique_ptr<UsbDevice> device_;
+  std::unique_ptr<bus::UsbDevice> device_;
 
   // Of the device that is open.
   std::unique_ptr<UsbDaq> daq_;
@@ -73,8 +73,8 @@ class UsbSensor final : public ReopeningSensor {
   std::size_t turn_ = 0;         // which of several that fit is tried
   MonoTime counted_at_{};        // the last count that was taken,
   Nanoseconds counted_doubt_{};  // which may be so much older
-  CupState cup_;
+  decode::usb::CupState cup_;
   MeanDirection direction_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

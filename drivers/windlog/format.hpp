@@ -5,7 +5,7 @@
 #include <limits>
 #include <string_view>
 
-namespace yuragi::windlog {
+namespace yuragi::drivers::windlog {
 
 // A recording (.windlog) is one SQLite database, so that it survives a power cut, seeks by time, and opens in any tool:
 //
@@ -54,4 +54,4 @@ CREATE TABLE reading (  -- as decoded, before calibration
 CREATE INDEX reading_by_time ON reading (session, mono_ns);
 )sql";
 
-}  // namespace yuragi::windlog
+}  // namespace yuragi::drivers::windlog

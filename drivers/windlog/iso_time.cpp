@@ -8,7 +8,7 @@
 // Not by date::parse(): that takes "+2" and "14:00:00." and lets years run over, and refuses a leap second and more
 // than nine decimals, which loggers write.
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr std::size_t kNanoDecimals = 9;
@@ -108,10 +108,10 @@ std::optional<UtcTime> parse_iso_time(std::string_view text) {
   if (!zone || !text.empty()) return std::nullopt;
 
   // A date of four digits can be too far for nanoseconds.
-  constexpr std::int64_t kMaxDays = windlog::kMaxTime_ns / (24LL * 3600 * 1'000'000'000) - 2;
+  constexpr std::int64_t kMaxDays = kMaxTime_ns / (24LL * 3600 * 1'000'000'000) - 2;
   const auto days = day->time_since_epoch().count();
   if (days < -kMaxDays || days > kMaxDays) return std::nullopt;
   return UtcTime(*day) + clock - *zone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -5,7 +5,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 /// A moment as people and loggers write it, in ISO 8601 and near it: 2018-07-20T14:00:00.1Z, with or without T, clock,
 /// seconds, fraction (after a point or a comma; digits beyond nanoseconds are cut off) and zone (Z, +02:00, +0200, +02;
@@ -13,4 +13,4 @@ namespace yuragi {
 /// the text is something else, or a moment that no recording can hold. Thread-safe: yes.
 std::optional<UtcTime> parse_iso_time(std::string_view text);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

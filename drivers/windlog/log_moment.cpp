@@ -7,7 +7,7 @@
 #include "drivers/windlog/iso_time.hpp"
 #include "drivers/windlog/windlog_reader.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr std::string_view kHelp =
@@ -20,7 +20,7 @@ Result<LogMoment, Failure> parse_log_moment(std::string_view text) {
   double from_s = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), from_s);
   if (error == std::errc{} && end == text.data() + text.size()) {
-    if (!(from_s >= 0.0) || from_s > seconds(Nanoseconds(windlog::kMaxTime_ns))) {
+    if (!(from_s >= 0.0) || from_s > seconds(Nanoseconds(kMaxTime_ns))) {
       return Failure{"\"" + std::string(text) + "\" is not in a recording" + std::string(kHelp), FailureKind::kUsage};
     }
     return LogMoment(from_seconds(from_s));
@@ -35,4 +35,4 @@ Result<std::optional<Nanoseconds>, Failure> log_time_of(WindlogReader& reader, c
   return std::optional(std::get<Nanoseconds>(moment));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

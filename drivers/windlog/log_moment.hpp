@@ -7,7 +7,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 class WindlogReader;
 
@@ -22,4 +22,4 @@ Result<LogMoment, Failure> parse_log_moment(std::string_view text);
 /// Its log time in one recording: for UTC that of the first reading at or after it, or nothing if there is none.
 Result<std::optional<Nanoseconds>, Failure> log_time_of(WindlogReader& reader, const LogMoment& moment);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

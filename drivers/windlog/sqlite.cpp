@@ -3,7 +3,7 @@
 #include <array>
 #include <system_error>
 
-namespace yuragi::sqlite {
+namespace yuragi::drivers::windlog::sqlite {
 namespace {
 
 /// A file name as SQLite takes it in a URI.
@@ -156,4 +156,4 @@ Failure Database::failure() const {
   return {message.append("; ").append(advice_for(error_code()))};
 }
 
-}  // namespace yuragi::sqlite
+}  // namespace yuragi::drivers::windlog::sqlite

@@ -11,7 +11,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi::sqlite {
+namespace yuragi::drivers::windlog::sqlite {
 
 enum class Access : std::uint8_t {
   kReadOnly,
@@ -87,4 +87,4 @@ class Database {
   std::filesystem::path file_;
 };
 
-}  // namespace yuragi::sqlite
+}  // namespace yuragi::drivers::windlog::sqlite

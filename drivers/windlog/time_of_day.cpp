@@ -6,7 +6,7 @@
 
 #include <time.h>
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr Nanoseconds kDay = std::chrono::hours(24);
@@ -65,4 +65,4 @@ std::optional<Nanoseconds> find_time_of_day(std::span<const LoggedSession> sessi
   return next;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

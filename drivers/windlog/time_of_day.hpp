@@ -9,7 +9,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 /// How far a place's clocks are ahead of UTC at a moment.
 using UtcOffset = std::function<Nanoseconds(UtcTime)>;
@@ -31,4 +31,4 @@ Nanoseconds time_of_day(UtcTime moment, const UtcOffset& offset);
 std::optional<Nanoseconds> find_time_of_day(std::span<const LoggedSession> sessions, Nanoseconds from,
                                             Nanoseconds wanted, const UtcOffset& recorded);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

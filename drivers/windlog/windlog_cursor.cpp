@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr Nanoseconds kUnknownInterval = std::chrono::seconds(1);
@@ -92,4 +92,4 @@ Result<std::optional<Nanoseconds>, Failure> WindlogCursor::find(const LogMoment&
   return *found;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -10,7 +10,7 @@
 #include "drivers/windlog/log_moment.hpp"
 #include "drivers/windlog/windlog_reader.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 /// The readings of the chosen sensors of a recording, from any place of it on, in the order of log time. Log time is
 /// the recording's own: zero is its first reading, whichever sensor's that is.
@@ -53,4 +53,4 @@ class WindlogCursor {
   Nanoseconds interval_{0};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

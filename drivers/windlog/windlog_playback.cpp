@@ -5,7 +5,7 @@
 
 #include "drivers/windlog/windlog_cursor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 // Between the end and the next beginning of a loop: the recording's own mean interval, within these.
@@ -123,4 +123,4 @@ Result<void, Failure> check_playback_start(std::string_view start) {
   return {};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

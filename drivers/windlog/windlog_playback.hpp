@@ -11,7 +11,7 @@
 #include "engine/base/time.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 /// Which part of a recording is played, and how often.
 struct PlaybackOptions {
@@ -26,9 +26,9 @@ struct PlaybackOptions {
 
 /// A reading of a recording, and when it is played.
 struct PlayedReading {
-  double log_time_s = 0.0;  ///< since the start of the playback; never less than that of the reading before
-  WindReading reading;      ///< as recorded, its own time included
-  std::string_view sensor;  ///< its sensor's name; lives as long as the playback
+  double log_time_s = 0.0;    ///< since the start of the playback; never less than that of the reading before
+  wind::WindReading reading;  ///< as recorded, its own time included
+  std::string_view sensor;    ///< its sensor's name; lives as long as the playback
 };
 
 /// Plays a recording (.windlog) in log time, with no clock: the caller decides when a reading is due. Log time
@@ -68,4 +68,4 @@ Result<Nanoseconds, Failure> begin_of_playback(WindlogCursor& cursor, std::strin
 /// Is this a `start` that PlaybackOptions takes? The failure's text: what it takes.
 Result<void, Failure> check_playback_start(std::string_view start);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -7,7 +7,7 @@
 
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 // Later than this (the machine was suspended) it goes on from where it was.
@@ -28,7 +28,7 @@ Nanoseconds wait_of(double duration_s) {
   return std::chrono::round<Nanoseconds>(wait);
 }
 
-bool is_same_wind(const WindReading& a, const WindReading& b) {
+bool is_same_wind(const wind::WindReading& a, const wind::WindReading& b) {
   return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg;
 }
 
@@ -45,16 +45,16 @@ std::optional<double> parse_relative(std::string_view text) {
 
 }  // namespace
 
-WindReading between(const WindReading& from, const WindReading& to, double part) {
-  WindReading reading = to;
+wind::WindReading between(const wind::WindReading& from, const wind::WindReading& to, double part) {
+  wind::WindReading reading = to;
   reading.speed_m_s = from.speed_m_s + part * (to.speed_m_s - from.speed_m_s);
   if (from.gust_m_s && to.gust_m_s) reading.gust_m_s = *from.gust_m_s + part * (*to.gust_m_s - *from.gust_m_s);
   if (!from.direction_deg || !to.direction_deg) return reading;
-  const WindVector old_wind = wind_from(from.speed_m_s, *from.direction_deg);
-  const WindVector wind = old_wind + part * (wind_from(to.speed_m_s, *to.direction_deg) - old_wind);
+  const wind::WindVector old_wind = wind::wind_from(from.speed_m_s, *from.direction_deg);
+  const wind::WindVector wind = old_wind + part * (wind::wind_from(to.speed_m_s, *to.direction_deg) - old_wind);
   reading.speed_m_s = speed_of(wind);
   // Where two opposite winds cancel out there is no direction; that of the new one is as good.
-  if (reading.speed_m_s > 0.0) reading.direction_deg = direction_from_deg(wind);
+  if (reading.speed_m_s > 0.0) reading.direction_deg = wind::direction_from_deg(wind);
   return reading;
 }
 
@@ -197,14 +197,14 @@ Nanoseconds WindlogPlayer::fade_duration() const {
 void WindlogPlayer::publish(MonoTime time, const Instant& now, const Use& use) {
   // After a change of the rate: time does not go backward.
   if (last_out_) time = std::max(time, last_out_->time.mono);
-  WindReading reading = blended(time);
+  wind::WindReading reading = blended(time);
   reading.time = {time, now.utc - (now.mono - time)};
   reading.is_held = is_paused_ && last_out_ && is_same_wind(reading, *last_out_);
   last_out_ = reading;
   use(reading);
 }
 
-WindReading WindlogPlayer::blended(MonoTime time) {
+wind::WindReading WindlogPlayer::blended(MonoTime time) {
   if (!is_fading(time)) return *playing_.current;
   const double done = std::max(0.0, seconds(time - fade_begin_) / seconds(fade_));
   const double part = done * done * (3.0 - 2.0 * done);
@@ -339,4 +339,4 @@ PlayerPosition WindlogPlayer::position(MonoTime now) const {
           .rounds = rounds_};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

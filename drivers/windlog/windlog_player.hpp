@@ -12,7 +12,7 @@
 #include "drivers/windlog/windlog_playback.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 struct PlayerOptions {
   PlaybackOptions playback = {};
@@ -48,7 +48,7 @@ struct PlayerPosition {
 /// changes nothing, and play() tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayer {
  public:
-  using Use = std::function<void(const WindReading&)>;
+  using Use = std::function<void(const wind::WindReading&)>;
 
   /// Readings that one play() gives at most, whatever the rate.
   static constexpr int kMaxReadingsPerPlay = 4096;
@@ -80,7 +80,7 @@ class WindlogPlayer {
   struct Playhead {
     WindlogCursor cursor;
     std::optional<LoggedReading> upcoming = {};
-    std::optional<WindReading> current = {};
+    std::optional<wind::WindReading> current = {};
     MonoTime anchor{};  ///< when `anchor_log` is, or was, due
     Nanoseconds anchor_log{0};
     bool is_frozen = false;  ///< repeats its last reading
@@ -100,7 +100,7 @@ class WindlogPlayer {
   void settle(MonoTime now);
   Result<MonoTime, Failure> hold(const Instant& now, const Use& use);
   void publish(MonoTime time, const Instant& now, const Use& use);
-  WindReading blended(MonoTime time);
+  wind::WindReading blended(MonoTime time);
   void follow_leaving(MonoTime time);
   void take_while_paused();
   Nanoseconds fade_duration() const;
@@ -118,11 +118,11 @@ class WindlogPlayer {
   Nanoseconds begin_{0};
   MonoTime fade_begin_{};
   Nanoseconds fade_{0};
-  std::optional<WindReading> last_out_;
+  std::optional<wind::WindReading> last_out_;
 };
 
 /// The wind between two readings, `part` (0 to 1) of the way from `from` to `to`: as vectors where both have a
 /// direction, else by speed. Everything else is of `to`.
-WindReading between(const WindReading& from, const WindReading& to, double part);
+wind::WindReading between(const wind::WindReading& from, const wind::WindReading& to, double part);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

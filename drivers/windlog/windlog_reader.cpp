@@ -10,7 +10,7 @@
 
 #include "drivers/windlog/format.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 using sqlite::Statement;
@@ -28,7 +28,7 @@ UtcTime utc_time(std::int64_t ns) {
 }
 
 std::filesystem::path wal_of(const std::filesystem::path& file) {
-  return file.string() + std::string(windlog::kWalSuffix);
+  return file.string() + std::string(kWalSuffix);
 }
 
 bool is_absent_or_empty(const std::filesystem::path& file) {
@@ -67,7 +67,7 @@ Result<std::optional<Instant>, Failure> edge_of(sqlite::Database& database, std:
       std::string(order) + ", rowid " + std::string(order) + " LIMIT 1");
   if (!edge) return edge.error();
   edge->bind(1, session);
-  edge->bind(2, windlog::kMaxTime_ns);
+  edge->bind(2, kMaxTime_ns);
   switch (edge->step()) {
     case Statement::Step::kRow:
       return Instant{mono_time(edge->integer(1)), utc_time(edge->integer(0))};
@@ -130,13 +130,13 @@ Result<void, Failure> WindlogReader::check_format() {
     }
     return application.error();
   }
-  if (*application != windlog::kApplicationId) return Failure{name + ": is not a Yuragi recording"};
+  if (*application != kApplicationId) return Failure{name + ": is not a Yuragi recording"};
 
   const auto version = database_.integer("PRAGMA user_version");
   if (!version) return version.error();
-  if (*version > windlog::kFormatVersion || *version < 1) {
+  if (*version > kFormatVersion || *version < 1) {
     return Failure{name + ": is a recording of format " + std::to_string(*version) + "; this Yuragi reads format " +
-                   std::to_string(windlog::kFormatVersion) + "; update Yuragi"};
+                   std::to_string(kFormatVersion) + "; update Yuragi"};
   }
   return {};
 }
@@ -163,7 +163,7 @@ Result<void, Failure> WindlogReader::load_sessions() {
       session.log_begin = sessions_.back().log_end() + std::max(gap, Nanoseconds{0});
     }
     const std::int64_t span_ns = (session.last.mono - session.first.mono).count();
-    if (span_ns < 0 || session.log_begin.count() > windlog::kMaxTime_ns - span_ns) {
+    if (span_ns < 0 || session.log_begin.count() > kMaxTime_ns - span_ns) {
       return Failure{database_.file().string() + ": session " + std::to_string(session.id) +
                      " has impossible times; the file is damaged"};
     }
@@ -230,7 +230,7 @@ Result<std::int64_t, Failure> WindlogReader::read_block() {
   select_block_.bind(1, session.id);
   select_block_.bind(2, after_mono_ns_);
   select_block_.bind(3, after_row_);
-  select_block_.bind(4, windlog::kMaxTime_ns);
+  select_block_.bind(4, kMaxTime_ns);
   select_block_.bind(5, kBlockRows);
 
   std::int64_t mono_ns = after_mono_ns_;
@@ -290,9 +290,9 @@ std::optional<LoggedReading> WindlogReader::reading_of_row(const LoggedSession& 
   const std::int64_t utc_ns = select_block_.integer(2);
   const std::int64_t mono_ns = select_block_.integer(3);
   const std::int64_t quality = select_block_.integer(7);
-  if (utc_ns < -windlog::kMaxTime_ns || utc_ns > windlog::kMaxTime_ns) return std::nullopt;
+  if (utc_ns < -kMaxTime_ns || utc_ns > kMaxTime_ns) return std::nullopt;
   if (mono_ns < session.first.mono.time_since_epoch().count()) return std::nullopt;
-  if (quality < 0 || quality > static_cast<std::int64_t>(ReadingQuality::kSimulated)) return std::nullopt;
+  if (quality < 0 || quality > static_cast<std::int64_t>(wind::ReadingQuality::kSimulated)) return std::nullopt;
 
   LoggedReading logged;
   logged.sensor = static_cast<std::size_t>(sensor - sensors_.begin());
@@ -301,8 +301,8 @@ std::optional<LoggedReading> WindlogReader::reading_of_row(const LoggedSession& 
   logged.reading.speed_m_s = select_block_.number(4);
   if (is_number(5)) logged.reading.direction_deg = select_block_.number(5);
   if (is_number(6)) logged.reading.gust_m_s = select_block_.number(6);
-  logged.reading.quality = static_cast<ReadingQuality>(quality);
-  if (!is_plausible(logged.reading)) return std::nullopt;
+  logged.reading.quality = static_cast<wind::ReadingQuality>(quality);
+  if (!wind::is_plausible(logged.reading)) return std::nullopt;
   return logged;
 }
 
@@ -318,7 +318,7 @@ void WindlogReader::begin_session(std::size_t index, Nanoseconds into_session) {
   block_.clear();
   next_in_block_ = 0;
   session_index_ = index;
-  const Nanoseconds offset = std::clamp(into_session, Nanoseconds{0}, Nanoseconds{windlog::kMaxTime_ns});
+  const Nanoseconds offset = std::clamp(into_session, Nanoseconds{0}, Nanoseconds{kMaxTime_ns});
   after_mono_ns_ = (sessions_[index].first.mono + offset).time_since_epoch().count();
   after_row_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -332,7 +332,7 @@ Result<std::optional<Nanoseconds>, Failure> WindlogReader::log_time_of(UtcTime m
     if (session.last.utc < moment) continue;
     first_after->bind(1, session.id);
     first_after->bind(2, session.first.mono.time_since_epoch().count());
-    first_after->bind(3, windlog::kMaxTime_ns);
+    first_after->bind(3, kMaxTime_ns);
     first_after->bind(4, moment.time_since_epoch().count());
     const Statement::Step step = first_after->step();
     if (step == Statement::Step::kFailed) return database_.failure();
@@ -380,4 +380,4 @@ Result<void, Failure> WindlogReader::copy_to(const std::filesystem::path& copy) 
   return {};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -13,7 +13,7 @@
 #include "engine/base/time.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 /// A session that has readings, on the line of log time.
 struct LoggedSession {
@@ -35,9 +35,9 @@ struct LoggedSensor {
 };
 
 struct LoggedReading {
-  Nanoseconds log_time{0};  ///< since the recording's first reading
-  std::size_t sensor = 0;   ///< index into WindlogReader::sensors()
-  WindReading reading;      ///< with the times of the recording machine
+  Nanoseconds log_time{0};    ///< since the recording's first reading
+  std::size_t sensor = 0;     ///< index into WindlogReader::sensors()
+  wind::WindReading reading;  ///< with the times of the recording machine
 };
 
 /// Reads a recording (.windlog, format.hpp), in blocks, in the order of log time: sessions one after the other, inside
@@ -111,4 +111,4 @@ class WindlogReader {
   std::size_t skipped_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

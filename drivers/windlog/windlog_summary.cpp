@@ -5,7 +5,7 @@
 
 #include "drivers/windlog/windlog_reader.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 // As many intervals as settle a median; the length of a recording must not matter.
@@ -19,7 +19,7 @@ struct Tally {
   std::int64_t session = 0;
   MonoTime last{};
 
-  void add(const LoggedSensor& sensor, const WindReading& reading) {
+  void add(const LoggedSensor& sensor, const wind::WindReading& reading) {
     if (figures.count > 0 && session == sensor.session && intervals_s.size() < kMaxIntervals) {
       intervals_s.push_back(seconds(reading.time.mono - last));
     }
@@ -65,7 +65,7 @@ Result<WindlogSummary, Failure> summarize(const std::filesystem::path& file) {
       tally->figures.name = sensor.name;
       tally->figures.driver = sensor.driver;
     }
-    const WindReading& reading = (*logged)->reading;
+    const wind::WindReading& reading = (*logged)->reading;
     tally->add(sensor, reading);
 
     if (summary.count++ == 0) summary.first = reading.time.utc;
@@ -77,4 +77,4 @@ Result<WindlogSummary, Failure> summarize(const std::filesystem::path& file) {
   return summary;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

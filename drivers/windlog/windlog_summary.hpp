@@ -8,7 +8,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 /// What a recording holds, in figures.
 struct WindlogSummary {
@@ -33,4 +33,4 @@ struct WindlogSummary {
 /// Reads a whole recording once. Fails as WindlogReader does. Realtime-safe: no.
 Result<WindlogSummary, Failure> summarize(const std::filesystem::path& file);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

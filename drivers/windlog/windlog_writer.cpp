@@ -5,7 +5,7 @@
 
 #include "drivers/windlog/format.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 // At the end a reader can make a writer wait, not for long.
@@ -29,23 +29,23 @@ Result<bool, Failure> is_new(sqlite::Database& database) {
   if (!objects) return objects.error();
 
   if (*application == 0 && *objects == 0) return true;
-  if (*application != windlog::kApplicationId) {
+  if (*application != kApplicationId) {
     return Failure{name + ": is a database, but not a Yuragi recording; it was left unchanged; choose another file"};
   }
-  if (*version > windlog::kFormatVersion) {
+  if (*version > kFormatVersion) {
     return Failure{name + ": was written by a newer Yuragi (format " + std::to_string(*version) + ", this one writes " +
-                   std::to_string(windlog::kFormatVersion) + "); update Yuragi, or choose another file"};
+                   std::to_string(kFormatVersion) + "); update Yuragi, or choose another file"};
   }
   return false;
 }
 
 }  // namespace
 
-bool is_recordable(const WindReading& reading) noexcept {
+bool is_recordable(const wind::WindReading& reading) noexcept {
   const std::int64_t utc_ns = nanoseconds(reading.time.utc);
   const std::int64_t mono_ns = nanoseconds(reading.time.mono);
-  return is_plausible(reading) && mono_ns >= 0 && mono_ns <= windlog::kMaxTime_ns && utc_ns >= -windlog::kMaxTime_ns &&
-         utc_ns <= windlog::kMaxTime_ns;
+  return wind::is_plausible(reading) && mono_ns >= 0 && mono_ns <= kMaxTime_ns && utc_ns >= -kMaxTime_ns &&
+         utc_ns <= kMaxTime_ns;
 }
 
 Result<WindlogWriter, Failure> WindlogWriter::open(const std::filesystem::path& file) {
@@ -69,9 +69,8 @@ Result<void, Failure> WindlogWriter::prepare_file() {
 
   // In one transaction: the whole schema or nothing, even after a power cut.
   if (*fresh) {
-    const std::string create = "BEGIN IMMEDIATE; PRAGMA application_id = " + std::to_string(windlog::kApplicationId) +
-                               "; PRAGMA user_version = " + std::to_string(windlog::kFormatVersion) + ";" +
-                               windlog::kSchema + "COMMIT";
+    const std::string create = "BEGIN IMMEDIATE; PRAGMA application_id = " + std::to_string(kApplicationId) +
+                               "; PRAGMA user_version = " + std::to_string(kFormatVersion) + ";" + kSchema + "COMMIT";
     if (auto done = database_.run(create.c_str()); !done) return done;
   }
 
@@ -121,7 +120,7 @@ Result<std::int64_t, Failure> WindlogWriter::add_sensor(std::string_view name, s
   return database_.last_id();
 }
 
-Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const WindReading& reading) {
+Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::WindReading& reading) {
   if (!is_recordable(reading)) return Failure{database_.file().string() + ": not a reading that can be recorded"};
   insert_reading_.bind(1, session_);
   insert_reading_.bind(2, sensor);
@@ -182,4 +181,4 @@ Result<void, Failure> WindlogWriter::undo() {
   return failure;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -9,7 +9,7 @@
 #include "engine/base/time.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 
 /// What made a session of a recording.
 struct WindlogSession {
@@ -43,7 +43,7 @@ class WindlogWriter {
 
   /// Adds a reading. One that is not plausible, or whose time cannot be, is a failure of the caller's and undoes
   /// nothing.
-  Result<void, Failure> append(std::int64_t sensor, const WindReading& reading);
+  Result<void, Failure> append(std::int64_t sensor, const wind::WindReading& reading);
 
   /// Makes everything so far durable.
   Result<void, Failure> commit();
@@ -68,6 +68,6 @@ class WindlogWriter {
 };
 
 /// Can this reading be recorded?
-bool is_recordable(const WindReading& reading) noexcept;
+bool is_recordable(const wind::WindReading& reading) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

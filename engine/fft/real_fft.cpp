@@ -8,7 +8,7 @@
 
 #include <fftw3.h>
 
-namespace yuragi {
+namespace yuragi::fft {
 namespace {
 
 constexpr std::size_t kMaxSize = std::size_t{1} << 22U;
@@ -110,4 +110,4 @@ void RealFft::inverse() noexcept {
   fftw_execute(plans_->inverse.get());
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::fft

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::fft {
 
 /// A real Fourier transform over a periodic line (dims 1), square (2) or cube (3) of `size` samples an edge, with the
 /// buffers that it works on. The one wrapper of FFTW3 (Frigo and Johnson 2005, "The design and implementation of
@@ -49,4 +49,4 @@ class RealFft {
   std::unique_ptr<Plans> plans_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::fft

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::math {
 
 /// A value that follows a target as fast as it can without overshooting a target at rest: the critically damped
 /// oscillator q'' + 2 w q' + w^2 (q - target) = 0, stepped exactly.
@@ -42,4 +42,4 @@ struct CriticallyDamped {
   static constexpr double kArrived = 700.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::math

@@ -10,7 +10,7 @@
 //
 // For kernel files alone: in each row Lanes is another type.
 
-namespace yuragi {
+namespace yuragi::math {
 
 #if defined(__AVX512F__)
 constexpr std::size_t kLaneBytes = 64;
@@ -50,4 +50,4 @@ constexpr std::size_t kLaneCount = kLaneBytes / sizeof(float);
   return root;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::math

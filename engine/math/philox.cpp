@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace yuragi {
+namespace yuragi::math {
 namespace {
 
 constexpr std::uint32_t low(std::uint64_t word) {
@@ -53,4 +53,4 @@ std::array<double, 2> RandomStream::normal_pair(std::uint64_t pair) const noexce
   return {radius * std::cos(angle_rad), radius * std::sin(angle_rad)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::math

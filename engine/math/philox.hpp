@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::math {
 
 /// The counter-based generator Philox4x32-10: a bijection that scrambles a counter under a key, so that the random
 /// number of any address is computed from that address alone, in any order and on any thread. Source: Salmon, Moraes,
@@ -46,4 +46,4 @@ class RandomStream {
   std::uint64_t stream_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::math

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace yuragi {
+namespace yuragi::math {
 
 /// Number is float, or a vector of floats (engine/math/lanes.hpp).
 template <class Number>
@@ -57,4 +57,4 @@ template <class Bits = std::uint32_t, class Number>
           __builtin_bit_cast(Number, __builtin_bit_cast(Bits, cosine) ^ cos_sign)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::math

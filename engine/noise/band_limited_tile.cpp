@@ -9,7 +9,7 @@
 #include "engine/fft/real_fft.hpp"
 #include "engine/noise/noise_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 /// What is left of a wave of k cycles an edge where waves of `end` and more are removed.
@@ -20,7 +20,7 @@ double passed(double k, double end) noexcept {
   return octave * octave * (3.0 - 2.0 * octave);
 }
 
-NoiseTile2 without_waves_from(double end, const NoiseTile2& base, RealFft& fft) {
+NoiseTile2 without_waves_from(double end, const NoiseTile2& base, fft::RealFft& fft) {
   for (std::size_t i = 0; i < base.values.size(); ++i) fft.samples()[i] = static_cast<double>(base.values[i]);
   fft.forward();
   const std::size_t columns = fft.row_modes();
@@ -46,7 +46,7 @@ BandLimitedTile2::BandLimitedTile2(NoiseTile2 base, std::size_t levels) {
   if (levels < 1 || levels > kMaxLevels) throw std::invalid_argument("a band-limited noise has 1 to 8 levels");
   levels_.reserve(levels);
   levels_.push_back(std::move(base));
-  RealFft fft(2, levels_[0].size);
+  fft::RealFft fft(2, levels_[0].size);
   for (std::size_t index = 1; index < levels; ++index) {
     levels_.push_back(without_waves_from(end_cycles(index), levels_[0], fft));
   }
@@ -68,4 +68,4 @@ BandPick BandLimitedTile2::pick(double speed_m_s, double rate_hz, double period_
           .weight = static_cast<float>(place - static_cast<double>(level))};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

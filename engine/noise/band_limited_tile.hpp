@@ -6,7 +6,7 @@
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/torus.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// Which levels of a BandLimitedTile2 to read: (1 - weight) of `level` and weight of `next`.
 struct BandPick {
@@ -52,4 +52,4 @@ inline float read_noise(const BandLimitedTile2& tile, BandPick pick, TorusPhase 
   return pick.weight > 0.0F ? fine + pick.weight * (read_noise(tile.level(pick.next), at) - fine) : fine;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -8,7 +8,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/noise/noise_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr KernelRows<NoiseKernels> kNoiseRows = YURAGI_KERNEL_ROWS(noise_kernels);
@@ -63,4 +63,4 @@ void EvolvingNoise::advance(double dt_s) noexcept {
                        .out = tile_.values.data()});
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -9,7 +9,7 @@
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// A square of noise whose eddies turn over while the wind carries them: no gust that has passed comes back unchanged
 /// when the tile wraps.
@@ -42,7 +42,7 @@ class EvolvingNoise {
   EvolvingNoise(const NoiseSpec& spec, double turn_rad_s, SimdRow row);
 
   SimdRow row_;
-  RealFft fft_;
+  fft::RealFft fft_;
   Standard standard_;
   NoiseTile2 tile_;
 
@@ -53,4 +53,4 @@ class EvolvingNoise {
   std::vector<std::uint32_t> phase_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

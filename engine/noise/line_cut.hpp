@@ -2,7 +2,7 @@
 
 #include "engine/noise/torus.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// A way over a torus along a line of golden slope, and so a 1-D noise that never visibly repeats: read a 2-D tile
 /// where the line has got to (Chiba, section 2-2 (2), figure 4a).
@@ -37,4 +37,4 @@ class LineCut {
   TorusTravel x_, z_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -9,7 +9,7 @@
 
 #include "engine/noise/noise_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 /// exp(-2 pi i k X) of each wave number of an axis, in the spectrum's order.
@@ -139,4 +139,4 @@ double MovingNoise::read(std::size_t index, std::array<double, 3> place) const n
   return std::lerp(level(y.first), level(y.second), y.fraction);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -10,7 +10,7 @@
 
 #include "engine/fft/real_fft.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// What share of the variance a wave of the full spectrum has: its wave numbers in cycles an edge (z is 0 and below
 /// as well as above, and so are the others), the answer 0 or above and even, the same at k and -k.
@@ -77,9 +77,9 @@ class MovingNoise {
   };
   Field make_field(const MovingField& field);
 
-  RealFft fft_;
+  fft::RealFft fft_;
   std::vector<double> turns_;  ///< s_k |k|^(2/3) of each mode
   std::vector<Field> fields_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -3,7 +3,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/math/trig.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr double kNearestWhole = 0x1.8p52;     // where doubles stand 1 apart
@@ -22,7 +22,7 @@ void turn_modes(const TurnModesArguments& arguments) noexcept {
     phase[i] += static_cast<std::uint32_t>(static_cast<std::int32_t>(part * kPhasesPerTurn));
 
     // F_k exp(-i angle)
-    const SinCos angle = sin_cos(static_cast<float>(static_cast<std::int32_t>(phase[i])) * kRadPerPhase);
+    const math::SinCos angle = math::sin_cos(static_cast<float>(static_cast<std::int32_t>(phase[i])) * kRadPerPhase);
     const auto sine = static_cast<double>(angle.sin);
     const auto cosine = static_cast<double>(angle.cos);
     out[2 * i] = in.first_re[i] * cosine + in.first_im[i] * sine;
@@ -42,4 +42,4 @@ void standardise(const StandardiseArguments& arguments) noexcept {
 
 const NoiseKernels YURAGI_ROW_NAME(noise_kernels) = {turn_modes, standardise};
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -5,7 +5,7 @@
 
 // Internal: between EvolvingNoise and its kernels.
 
-namespace yuragi {
+namespace yuragi::noise {
 
 struct TurnModesArguments {
   std::size_t count = 0;
@@ -33,4 +33,4 @@ extern const NoiseKernels noise_kernels_x86_64;
 extern const NoiseKernels noise_kernels_x86_64_v3;
 extern const NoiseKernels noise_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -1,6 +1,6 @@
 #include "engine/noise/noise_spec.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 std::string_view name_of(NoiseError error) noexcept {
   switch (error) {
@@ -49,4 +49,4 @@ double mode_exponent(int dims, double beta, BetaMeaning meaning) noexcept {
   return meaning == BetaMeaning::kTransect ? beta + (dims - 1) : beta;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

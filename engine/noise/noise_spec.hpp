@@ -9,7 +9,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// What an exponent beta is the exponent of. In one dimension the two are the same.
 enum class BetaMeaning : std::uint8_t {
@@ -68,4 +68,4 @@ std::string_view explain(NoiseError error) noexcept;
 /// a field whose modes fall as |k|^-b has a spectrum that falls as k^-(b - (dims - 1)), so kTransect adds dims - 1.
 double mode_exponent(int dims, double beta, BetaMeaning meaning) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -7,7 +7,7 @@
 
 #include "engine/noise/von_karman_corner.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 using Mode = std::complex<double>;
@@ -34,9 +34,9 @@ std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept {
   return static_cast<std::int64_t>(index) - static_cast<std::int64_t>(index > size / 2 ? size : 0);
 }
 
-RandomStream noise_stream(int dims, std::uint64_t seed) noexcept {
-  constexpr std::array kStreams = {stream_id("spectral noise 1-D"), stream_id("spectral noise 2-D"),
-                                   stream_id("spectral noise 3-D")};
+math::RandomStream noise_stream(int dims, std::uint64_t seed) noexcept {
+  constexpr std::array kStreams = {math::stream_id("spectral noise 1-D"), math::stream_id("spectral noise 2-D"),
+                                   math::stream_id("spectral noise 3-D")};
   return {seed, kStreams[static_cast<std::size_t>(dims - 1)]};
 }
 
@@ -71,9 +71,9 @@ SpectrumRow spectrum_row(std::size_t index, std::size_t size, int dims) noexcept
           .wave_y = signed_wave(y, size)};
 }
 
-void fill_modes(RealFft& fft, std::uint64_t seed,
+void fill_modes(fft::RealFft& fft, std::uint64_t seed,
                 const std::function<double(std::int64_t, std::int64_t, std::int64_t)>& amplitude) {
-  const RandomStream random = noise_stream(fft.dims(), seed);
+  const math::RandomStream random = noise_stream(fft.dims(), seed);
   const std::span<Mode> spectrum = fft.spectrum();
   const std::size_t half = fft.size() / 2;
   const std::size_t columns = fft.row_modes();
@@ -103,7 +103,7 @@ void fill_modes(RealFft& fft, std::uint64_t seed,
   }
 }
 
-void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
+void fill_spectrum(fft::RealFft& fft, const NoiseSpec& spec) {
   const double exponent = mode_exponent(fft.dims(), spec.beta, spec.meaning);
   const double corner = spec.integral_scale > 0.0 ? kCornerPerScale / spec.integral_scale : 0.0;
   fill_modes(fft, spec.seed, [&](std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) {
@@ -114,8 +114,9 @@ void fill_spectrum(RealFft& fft, const NoiseSpec& spec) {
   });
 }
 
-std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed, double from_cycles, double to_cycles) {
-  const RandomStream random(seed, stream_id("evolving noise signs"));
+std::vector<std::int8_t> turning_signs(const fft::RealFft& fft, std::uint64_t seed, double from_cycles,
+                                       double to_cycles) {
+  const math::RandomStream random(seed, math::stream_id("evolving noise signs"));
   const std::size_t columns = fft.row_modes();
   const std::size_t half = fft.size() / 2;
   const std::size_t rows = fft.dims() == 1 ? 1 : fft.dims() == 2 ? fft.size() : fft.size() * fft.size();
@@ -147,4 +148,4 @@ Standard standard_of(std::span<const double> samples) noexcept {
   return {mean, 1.0 / std::sqrt(sum_squares / count)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -16,20 +16,20 @@
 // How a noise's modes are drawn and its samples standardised: what make_noise_1d, 2d, 3d and EvolvingNoise share.
 // Internal to this folder.
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// The random numbers of a noise of so many dimensions.
-RandomStream noise_stream(int dims, std::uint64_t seed) noexcept;
+math::RandomStream noise_stream(int dims, std::uint64_t seed) noexcept;
 
 /// What is wrong with a spec of so many dimensions.
 std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept;
 
 /// Fills the half spectrum of a transform of 1 to 3 dimensions with the random modes of a checked spec, Hermitian.
-void fill_spectrum(RealFft& fft, const NoiseSpec& spec);
+void fill_spectrum(fft::RealFft& fft, const NoiseSpec& spec);
 
 /// The same for modes of any amplitude: `amplitude(wave_x, wave_z, wave_y)` is the standard deviation of a mode's real
 /// part, and of its imaginary part. It is evaluated once for each mode that is drawn.
-void fill_modes(RealFft& fft, std::uint64_t seed,
+void fill_modes(fft::RealFft& fft, std::uint64_t seed,
                 const std::function<double(std::int64_t, std::int64_t, std::int64_t)>& amplitude);
 
 /// The wave number that index `index` stands for on an axis of `size` samples: negative above its half.
@@ -37,7 +37,7 @@ std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept;
 
 /// Which way each mode of the half spectrum turns, where eddies turn over: 1 or -1 at random, s_-k = -s_k, and 0 for
 /// the modes that are their own mirror images, which must stay real, and for those outside the band, if one is given.
-std::vector<std::int8_t> turning_signs(const RealFft& fft, std::uint64_t seed, double from_cycles = 0.0,
+std::vector<std::int8_t> turning_signs(const fft::RealFft& fft, std::uint64_t seed, double from_cycles = 0.0,
                                        double to_cycles = std::numeric_limits<double>::infinity());
 
 /// What brings samples to mean 0 and variance 1.
@@ -62,4 +62,4 @@ struct SpectrumRow {
 };
 SpectrumRow spectrum_row(std::size_t index, std::size_t size, int dims) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

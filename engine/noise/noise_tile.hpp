@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// A periodic noise on a line: size() samples, the last followed by the first. Mean 0, variance 1 (to rounding).
 /// Values stand on a grid of 2^-20, so that they are the same on every machine.
@@ -30,4 +30,4 @@ struct NoiseTile3 {
   float at(std::size_t x, std::size_t y, std::size_t z) const { return values[(y * size + z) * size + x]; }
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -2,12 +2,12 @@
 
 #include "engine/noise/noise_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 /// The values of a checked spec.
 std::vector<float> synthesise(int dims, const NoiseSpec& spec) {
-  RealFft fft(dims, spec.size);
+  fft::RealFft fft(dims, spec.size);
   fill_spectrum(fft, spec);
   fft.inverse();
 
@@ -35,4 +35,4 @@ Result<NoiseTile3, NoiseError> make_noise_3d(const NoiseSpec& spec) {
   return NoiseTile3{spec.size, synthesise(3, spec)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

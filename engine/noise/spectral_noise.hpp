@@ -4,7 +4,7 @@
 #include "engine/noise/noise_spec.hpp"
 #include "engine/noise/noise_tile.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// A 1/f^beta noise (fractional Brownian motion) by spectral synthesis: a Hermitian spectrum of random modes, and one
 /// inverse transform. The tile is periodic in every dimension, has mean 0 and variance 1, and stands on a grid of
@@ -26,4 +26,4 @@ Result<NoiseTile1, NoiseError> make_noise_1d(const NoiseSpec& spec);
 Result<NoiseTile2, NoiseError> make_noise_2d(const NoiseSpec& spec);
 Result<NoiseTile3, NoiseError> make_noise_3d(const NoiseSpec& spec);
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

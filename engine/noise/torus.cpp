@@ -5,7 +5,7 @@
 
 #include "engine/noise/torus_read.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr double kPhasesPerPeriod = 4294967296.0;  // 2^32
@@ -59,4 +59,4 @@ float read_noise(const NoiseTile2& tile, TorusPhase at) noexcept {
   return read_bilinear(tile.values.data(), log2_of(tile.size), at.x, at.z);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -4,7 +4,7 @@
 
 #include "engine/noise/noise_tile.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 // Places on the torus that a noise tile covers, in fixed point: 2^32 is one period, so that wrapping costs nothing, is
 // exact, and a place is as fine after a year as at the start (256 m / 2^32 = 60 nm). A field that has moved by X is
@@ -58,4 +58,4 @@ bool is_readable(const NoiseTile2& tile) noexcept;
 float read_noise(const NoiseTile1& tile, std::uint32_t at) noexcept;
 float read_noise(const NoiseTile2& tile, TorusPhase at) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -5,7 +5,7 @@
 
 // How a tile is read, for kernel files and torus.cpp alike: always inlined, as engine/base/kernel.hpp asks.
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// Where between which samples a phase is, on an axis of 2^log2_size samples.
 struct TorusCell {
@@ -53,4 +53,4 @@ struct TorusCorners {
   return read_corners(values, torus_corners(log2_size, phase_x, phase_z));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

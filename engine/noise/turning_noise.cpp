@@ -8,11 +8,11 @@
 
 #include "engine/noise/noise_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 /// A variance of exactly 1, by what the samples themselves have.
-NoiseTile2 tile_of(RealFft& fft) {
+NoiseTile2 tile_of(fft::RealFft& fft) {
   fft.inverse();
   const Standard standard = standard_of(fft.samples());
   NoiseTile2 tile{fft.size(), {}};
@@ -29,7 +29,7 @@ Result<TurningNoise2, NoiseError> make_turning_noise_2d(const NoiseSpec& spec) {
 
 Result<TurningNoise2, NoiseError> TurningNoiseMaker::make(const NoiseSpec& spec) {
   if (const auto error = check_noise(2, spec)) return *error;
-  RealFft& fft = transforms_.try_emplace(spec.size, 2, spec.size).first->second;
+  fft::RealFft& fft = transforms_.try_emplace(spec.size, 2, spec.size).first->second;
   fill_spectrum(fft, spec);
   const std::vector<std::int8_t> signs = turning_signs(fft, spec.seed, spec.from_cycles, spec.to_cycles);
   turned_.clear();
@@ -44,4 +44,4 @@ Result<TurningNoise2, NoiseError> TurningNoiseMaker::make(const NoiseSpec& spec)
   return noise;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -10,7 +10,7 @@
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// A noise whose eddies turn over, all at one rate, without a transform at run time: the field
 ///
@@ -36,8 +36,8 @@ class TurningNoiseMaker {
   Result<TurningNoise2, NoiseError> make(const NoiseSpec& spec);
 
  private:
-  std::map<std::size_t, RealFft> transforms_;  ///< by their size
+  std::map<std::size_t, fft::RealFft> transforms_;  ///< by their size
   std::vector<std::pair<std::size_t, std::complex<double>>> turned_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::noise {
 
 void scale_to_unit_reading(NoiseTile2& tile) {
   double own = 0.0;
@@ -36,4 +36,4 @@ void scale_to_unit_reading(NoiseTile1& tile) {
   for (float& value : tile.values) value *= scale;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -2,7 +2,7 @@
 
 #include "engine/noise/noise_tile.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// Gives a noise variance 1 as it is read. Reading between samples, over all places alike, has 2/3 of a sample's own
 /// variance, and 1/3 of what it has in common with the next one, on each axis: bands whose waves have few samples lose
@@ -10,4 +10,4 @@ namespace yuragi {
 void scale_to_unit_reading(NoiseTile1& tile);
 void scale_to_unit_reading(NoiseTile2& tile);
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

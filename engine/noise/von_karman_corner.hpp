@@ -1,6 +1,6 @@
 #pragma once
 
-namespace yuragi {
+namespace yuragi::noise {
 
 /// The corner of von Karman's spectrum: of turbulence whose integral length scale is L its shape bends at the
 /// wavenumber 1 / (1.339 L), rad/m. With it the integral length scale of a straight line through the turbulence is L.
@@ -8,4 +8,4 @@ namespace yuragi {
 /// Karman 1948, Progress in the statistical theory of turbulence.
 inline constexpr double kVonKarmanCorner = 1.339;
 
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -4,7 +4,7 @@
 
 // How far the wind bends a plant. For kernel files too: always inlined, as engine/base/kernel.hpp asks.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// Which share of its largest bend the wind bends something to: s^2 / (1 + s^2), where s is the wind's speed over the
 /// one that bends it half as far, and `s_square` is s^2 (at least 0). In a weak wind it grows with the square of the
@@ -24,4 +24,4 @@ namespace yuragi {
 /// bend changes no faster than that times s in any direction.
 inline constexpr double kSteepestBendShare = 3.0 * std::numbers::sqrt3 / 8.0;
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -7,7 +7,7 @@
 #include "engine/base/units.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<BendingKernels> kBendingRows = YURAGI_KERNEL_ROWS(bending_kernels);
@@ -49,4 +49,4 @@ BendingJob::Problem BendingJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The projection operator "bending": from the wind at each strand to its bend, in StrandPose's meaning. The noise of
 /// one moment bends all links of a chain (Chiba, section 2-2 (3)).
@@ -44,4 +44,4 @@ struct BendingJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

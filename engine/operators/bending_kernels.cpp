@@ -4,7 +4,7 @@
 #include "engine/operators/bend_share.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// In half-bend speeds: so strong that the bend is at its largest, and so weak that its square is a number.
@@ -86,4 +86,4 @@ void bend_coat(const CoatBendingKernelArguments& in) noexcept {
 
 const BendingKernels YURAGI_ROW_NAME(bending_kernels) = {bend, bend_locally, bend_coat};
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -6,7 +6,7 @@
 #include "engine/operators/crown_kernels.hpp"
 #include "engine/operators/streamlined_drag.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<CrownKernels> kForceRows = YURAGI_KERNEL_ROWS(crown_kernels);
@@ -51,4 +51,4 @@ BranchForceJob::Problem BranchForceJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The wind at each branch as the noise that drives it: by how much its pull there differs from that of the mean wind,
 /// N = F(|u|) / F(mean) - 1, F being streamlined_drag(), so that F(mean) (1 + N) is the force at the branch; and where
@@ -43,4 +43,4 @@ struct BranchForceJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -6,7 +6,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/cloth_dynamics_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<ClothDynamicsKernels> kDynamicsRows = YURAGI_KERNEL_ROWS(cloth_dynamics_kernels);
@@ -63,7 +63,7 @@ CoarseCloth::CoarseCloth(const ClothThreads& threads, std::size_t columns, std::
     : rows_(std::clamp<std::size_t>(threads.links + 1, 2, kMostRows)),
       columns_(coarse_columns(columns, edge_length_m(edge_x_m, edge_y_m, edge_z_m, columns),
                               threads_length_m(threads) / static_cast<double>(rows_ - 1))),
-      stride_(padded_to_blocks(columns_ + 2)),
+      stride_(pose::padded_to_blocks(columns_ + 2)),
       is_first_column_fixed_(is_first_column_fixed),
       link_length_m_(threads.link_length_m * static_cast<float>(threads.links) / static_cast<float>(rows_ - 1)),
       rest_link_m_(3 * stride_),
@@ -72,7 +72,7 @@ CoarseCloth::CoarseCloth(const ClothThreads& threads, std::size_t columns, std::
       rest_length_m_(stride_),
       skin_share_(stride_, 0.0F),
       mobility_(stride_, 1.0F),
-      offset_m_(3 * rows_ * stride_ + kStrandsPerBlock, 0.0F),
+      offset_m_(3 * rows_ * stride_ + pose::kStrandsPerBlock, 0.0F),
       predicted_m_(3 * rows_ * stride_, 0.0F),
       speed_m_s_(3 * rows_ * stride_, 0.0F),
       lean_(2 * (rows_ - 1) * stride_, 0.0F) {
@@ -190,4 +190,4 @@ ClothDynamicsJob::Problem ClothDynamicsJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

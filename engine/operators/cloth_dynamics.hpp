@@ -10,7 +10,7 @@
 #include "engine/operators/cloth_projection_job.hpp"
 #include "engine/operators/cloth_spline.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// A cloth in few points, where it is and how it moves: the state of ClothDynamicsJob.
 ///
@@ -109,4 +109,4 @@ struct ClothDynamicsJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -3,7 +3,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/math/lanes.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// Below any square that counts: keeps quotients finite.
@@ -13,7 +13,7 @@ constexpr float kTiny = 1e-12F;
 constexpr float kSlack = 1.001F;
 
 struct Lanes3 {
-  Lanes x, y, z;
+  math::Lanes x, y, z;
 };
 [[gnu::always_inline]] inline Lanes3 operator+(Lanes3 a, Lanes3 b) noexcept {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -21,10 +21,10 @@ struct Lanes3 {
 [[gnu::always_inline]] inline Lanes3 operator-(Lanes3 a, Lanes3 b) noexcept {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-[[gnu::always_inline]] inline Lanes3 operator*(Lanes a, Lanes3 b) noexcept {
+[[gnu::always_inline]] inline Lanes3 operator*(math::Lanes a, Lanes3 b) noexcept {
   return {a * b.x, a * b.y, a * b.z};
 }
-[[gnu::always_inline]] inline Lanes dot(Lanes3 a, Lanes3 b) noexcept {
+[[gnu::always_inline]] inline math::Lanes dot(Lanes3 a, Lanes3 b) noexcept {
   return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 [[gnu::always_inline]] inline Lanes3 cross(Lanes3 a, Lanes3 b) noexcept {
@@ -33,17 +33,17 @@ struct Lanes3 {
 
 /// Vectors as the cloth keeps them: all x, then all y, then all z, `apart` from one another.
 [[gnu::always_inline]] inline Lanes3 load3(const float* from, std::size_t apart) noexcept {
-  return {load_lanes(from), load_lanes(from + apart), load_lanes(from + 2 * apart)};
+  return {math::load_lanes(from), math::load_lanes(from + apart), math::load_lanes(from + 2 * apart)};
 }
 [[gnu::always_inline]] inline void store3(float* to, std::size_t apart, Lanes3 value) noexcept {
-  store_lanes(to, value.x);
-  store_lanes(to + apart, value.y);
-  store_lanes(to + 2 * apart, value.z);
+  math::store_lanes(to, value.x);
+  math::store_lanes(to + apart, value.y);
+  math::store_lanes(to + 2 * apart, value.z);
 }
 
 /// `value`, each part cut to `most`.
 [[gnu::always_inline]] inline Lanes3 limited(Lanes3 value, float most) noexcept {
-  return {clamp_lanes(value.x, most), clamp_lanes(value.y, most), clamp_lanes(value.z, most)};
+  return {math::clamp_lanes(value.x, most), math::clamp_lanes(value.y, most), math::clamp_lanes(value.z, most)};
 }
 
 /// Where each point would go: weight, its neighbours, and the air.
@@ -53,10 +53,10 @@ void predict(const ClothDynamicsKernelArguments& in) noexcept {
     const bool is_last = row + 1 == in.rows;
     const std::size_t below = is_last ? 0 : in.stride;  // the last has none: itself, without weight
     const auto links_below = static_cast<float>(in.rows - 1 - row);
-    const Lanes weight_above = same_lanes(in.weight_s2 * (links_below + 1.0F) * in.substep_s);
-    const Lanes weight_below = same_lanes(in.weight_s2 * links_below * in.substep_s);
-    const Lanes across_s = same_lanes(in.across_s2 * in.substep_s);
-    for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+    const math::Lanes weight_above = math::same_lanes(in.weight_s2 * (links_below + 1.0F) * in.substep_s);
+    const math::Lanes weight_below = math::same_lanes(in.weight_s2 * links_below * in.substep_s);
+    const math::Lanes across_s = math::same_lanes(in.across_s2 * in.substep_s);
+    for (std::size_t i = 0; i < in.stride; i += math::kLaneCount) {
       const std::size_t at = row * in.stride + i;
       const Lanes3 here = load3(in.offset_m + at, count);
       const Lanes3 up = load3(in.offset_m + at - in.stride, count);
@@ -69,24 +69,24 @@ void predict(const ClothDynamicsKernelArguments& in) noexcept {
 
       // The cloth's normal, of no length in particular, and the air that blows past.
       const Lanes3 rest_link = load3(in.rest_link_m + i, in.stride);
-      const Lanes3 along = (is_last ? same_lanes(1.0F) : same_lanes(2.0F)) * rest_link + (down - up);
+      const Lanes3 along = (is_last ? math::same_lanes(1.0F) : math::same_lanes(2.0F)) * rest_link + (down - up);
       const Lanes3 across = load3(in.across_m + i, in.stride) +
-                            same_lanes(static_cast<float>(row)) * load3(in.across_growth_m + i, in.stride) +
+                            math::same_lanes(static_cast<float>(row)) * load3(in.across_growth_m + i, in.stride) +
                             (east - west);
       const Lanes3 normal = cross(along, across);
-      const Lanes3 past = {load_lanes(in.air_east_m_s + i) - speed.x, -speed.y,
-                           load_lanes(in.air_south_m_s + i) - speed.z};
+      const Lanes3 past = {math::load_lanes(in.air_east_m_s + i) - speed.x, -speed.y,
+                           math::load_lanes(in.air_south_m_s + i) - speed.z};
 
       // Drag through the cloth, quadratic and implicit: with d the speed past along the normal n and a the drag of a
       // way, the share a |d| / (1 + a |d|) of it goes over to the cloth. In one division, for n of any length.
-      const Lanes along_normal = dot(past, normal);
-      const Lanes drag = in.normal_drag * (along_normal < 0.0F ? -along_normal : along_normal);
-      const Lanes square = dot(normal, normal) + kTiny;
-      const Lanes normal_share = drag * along_normal / ((sqrt_lanes(square) + drag) * square);
+      const math::Lanes along_normal = dot(past, normal);
+      const math::Lanes drag = in.normal_drag * (along_normal < 0.0F ? -along_normal : along_normal);
+      const math::Lanes square = dot(normal, normal) + kTiny;
+      const math::Lanes normal_share = drag * along_normal / ((math::sqrt_lanes(square) + drag) * square);
       const Lanes3 skin = past - normal_share * normal;
-      speed = speed + normal_share * normal + load_lanes(in.skin_share + i) * skin;
-      speed = (load_lanes(in.mobility + i) * in.speed_kept) * limited(speed, in.largest_speed_m_s);
-      store3(in.predicted_m + at, count, here + same_lanes(in.substep_s) * speed);
+      speed = speed + normal_share * normal + math::load_lanes(in.skin_share + i) * skin;
+      speed = (math::load_lanes(in.mobility + i) * in.speed_kept) * limited(speed, in.largest_speed_m_s);
+      store3(in.predicted_m + at, count, here + math::same_lanes(in.substep_s) * speed);
     }
   }
 }
@@ -95,31 +95,31 @@ void predict(const ClothDynamicsKernelArguments& in) noexcept {
 void constrain(const ClothDynamicsKernelArguments& in) noexcept {
   const std::size_t count = in.rows * in.stride;
   const float per_s = 1.0F / in.substep_s;
-  const Lanes half = same_lanes(0.5F);
+  const math::Lanes half = math::same_lanes(0.5F);
   for (std::size_t link = 0; link + 1 < in.rows; ++link) {
     const bool is_first = link == 0;
     const auto links = static_cast<float>(link + 1);
-    for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+    for (std::size_t i = 0; i < in.stride; i += math::kLaneCount) {
       const std::size_t above = link * in.stride + i;
       const std::size_t below = above + in.stride;
       const Lanes3 rest_link = load3(in.rest_link_m + i, in.stride);
-      const Lanes mobility = load_lanes(in.mobility + i);
+      const math::Lanes mobility = math::load_lanes(in.mobility + i);
       Lanes3 from = load3(in.predicted_m + above, count);
       Lanes3 to = load3(in.predicted_m + below, count);
 
       // The distance constraint; the fixed edge leaves it all to the point below.
       const Lanes3 way = rest_link + (to - from);
-      const Lanes rest_m = load_lanes(in.rest_length_m + i);
-      const Lanes excess = mobility * (1.0F - rest_m / sqrt_lanes(dot(way, way)));
-      const Lanes share = is_first ? excess : half * excess;
+      const math::Lanes rest_m = math::load_lanes(in.rest_length_m + i);
+      const math::Lanes excess = mobility * (1.0F - rest_m / math::sqrt_lanes(dot(way, way)));
+      const math::Lanes share = is_first ? excess : half * excess;
       if (!is_first) from = from + share * way;
       to = to - share * way;
 
       // The long-range attachment to the thread's own fixed joint, to first order: 1 - sqrt(q) is (1 - q) / 2.
-      const Lanes3 reach = same_lanes(links) * rest_link + to;
-      const Lanes limit_m = (links * kSlack) * rest_m;
-      const Lanes beyond = half * (1.0F - limit_m * limit_m / (dot(reach, reach) + kTiny));
-      to = to - (beyond > 0.0F ? beyond : same_lanes(0.0F)) * (mobility * reach);
+      const Lanes3 reach = math::same_lanes(links) * rest_link + to;
+      const math::Lanes limit_m = (links * kSlack) * rest_m;
+      const math::Lanes beyond = half * (1.0F - limit_m * limit_m / (dot(reach, reach) + kTiny));
+      to = to - (beyond > 0.0F ? beyond : math::same_lanes(0.0F)) * (mobility * reach);
       store3(in.predicted_m + below, count, to);
       if (is_first) continue;
 
@@ -127,16 +127,16 @@ void constrain(const ClothDynamicsKernelArguments& in) noexcept {
       const Lanes3 was = load3(in.offset_m + above, count);
       const Lanes3 speed = limited(per_s * mobility * (from - was), in.largest_speed_m_s);
       store3(in.speed_m_s + above, count, speed);
-      store3(in.offset_m + above, count, was + same_lanes(in.substep_s) * speed);
+      store3(in.offset_m + above, count, was + math::same_lanes(in.substep_s) * speed);
     }
   }
-  for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+  for (std::size_t i = 0; i < in.stride; i += math::kLaneCount) {
     const std::size_t at = (in.rows - 1) * in.stride + i;
     const Lanes3 was = load3(in.offset_m + at, count);
-    const Lanes mobility = load_lanes(in.mobility + i);
+    const math::Lanes mobility = math::load_lanes(in.mobility + i);
     const Lanes3 speed = limited(per_s * mobility * (load3(in.predicted_m + at, count) - was), in.largest_speed_m_s);
     store3(in.speed_m_s + at, count, speed);
-    store3(in.offset_m + at, count, was + same_lanes(in.substep_s) * speed);
+    store3(in.offset_m + at, count, was + math::same_lanes(in.substep_s) * speed);
   }
 
   // Ghosts copy their neighbours.
@@ -153,28 +153,28 @@ void constrain(const ClothDynamicsKernelArguments& in) noexcept {
 void lean(const ClothDynamicsKernelArguments& in) noexcept {
   const std::size_t count = in.rows * in.stride;
   for (std::size_t link = 0; link + 1 < in.rows; ++link) {
-    for (std::size_t i = 0; i < in.stride; i += kLaneCount) {
+    for (std::size_t i = 0; i < in.stride; i += math::kLaneCount) {
       const std::size_t above = link * in.stride + i;
       const Lanes3 rest_link = load3(in.rest_link_m + i, in.stride);
       const Lanes3 way =
           rest_link + (load3(in.offset_m + above + in.stride, count) - load3(in.offset_m + above, count));
       // A link that points nearly straight up would lean without end; it is taken as one that leans by 2 at most.
       const auto per_lean = [](Lanes3 link_m) {
-        const Lanes length_m = sqrt_lanes(dot(link_m, link_m) + kTiny * kTiny);
-        const Lanes below_top_m = length_m - link_m.y;
-        const Lanes least_m = 0.4F * length_m;
+        const math::Lanes length_m = math::sqrt_lanes(dot(link_m, link_m) + kTiny * kTiny);
+        const math::Lanes below_top_m = length_m - link_m.y;
+        const math::Lanes least_m = 0.4F * length_m;
         return 1.0F / (below_top_m > least_m ? below_top_m : least_m);
       };
-      const Lanes now = per_lean(way);
-      const Lanes rest = per_lean(rest_link);
+      const math::Lanes now = per_lean(way);
+      const math::Lanes rest = per_lean(rest_link);
       float* const east = in.lean + link * 2 * in.stride + i;
       float* const south = east + in.stride;
-      const Lanes east_before = load_lanes(east);
-      const Lanes south_before = load_lanes(south);
-      const Lanes east_step = (way.x * now - rest_link.x * rest) - east_before;
-      const Lanes south_step = (way.z * now - rest_link.z * rest) - south_before;
-      store_lanes(east, east_before + clamp_lanes(east_step, in.largest_lean_step));
-      store_lanes(south, south_before + clamp_lanes(south_step, in.largest_lean_step));
+      const math::Lanes east_before = math::load_lanes(east);
+      const math::Lanes south_before = math::load_lanes(south);
+      const math::Lanes east_step = (way.x * now - rest_link.x * rest) - east_before;
+      const math::Lanes south_step = (way.z * now - rest_link.z * rest) - south_before;
+      math::store_lanes(east, east_before + math::clamp_lanes(east_step, in.largest_lean_step));
+      math::store_lanes(south, south_before + math::clamp_lanes(south_step, in.largest_lean_step));
     }
   }
 }
@@ -192,12 +192,12 @@ void spread(const ClothSpreadKernelArguments& in) noexcept {
   for (std::size_t block = 0; block < in.blocks; ++block) {
     const float* const coarse = in.coarse + in.first[block];
     const float* const weights = in.weights + block * in.taps * kBlock;
-    for (std::size_t i = 0; i < kBlock; i += kLaneCount) {
-      Lanes sum = {};
+    for (std::size_t i = 0; i < kBlock; i += math::kLaneCount) {
+      math::Lanes sum = {};
       for (std::size_t tap = 0; tap < in.taps; ++tap) {
-        sum = sum + same_lanes(coarse[tap]) * load_lanes(weights + tap * kBlock + i);
+        sum = sum + math::same_lanes(coarse[tap]) * math::load_lanes(weights + tap * kBlock + i);
       }
-      store_lanes(in.fine + block * kBlock + i, sum);
+      math::store_lanes(in.fine + block * kBlock + i, sum);
     }
   }
 }
@@ -215,4 +215,4 @@ void add(const ClothAddKernelArguments& arguments) noexcept {
 
 const ClothDynamicsKernels YURAGI_ROW_NAME(cloth_dynamics_kernels) = {step, spread, add};
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

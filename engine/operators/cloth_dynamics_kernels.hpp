@@ -4,7 +4,7 @@
 
 // Internal: between the cloth's dynamics and their kernel.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 struct ClothDynamicsKernelArguments {
   std::size_t stride = 0;
@@ -59,4 +59,4 @@ extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64;
 extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64_v3;
 extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -4,7 +4,7 @@
 
 // Internal: between the cloth's jobs and their kernels.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// One row of values, between two others: out = base + newer_gain * newer + older_gain * older.
 struct PropagationKernelArguments {
@@ -37,4 +37,4 @@ extern const ClothKernels cloth_kernels_x86_64;
 extern const ClothKernels cloth_kernels_x86_64_v3;
 extern const ClothKernels cloth_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -6,7 +6,7 @@
 #include "engine/operators/cloth_kernels.hpp"
 #include "engine/operators/lean.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<ClothKernels> kClothRows = YURAGI_KERNEL_ROWS(cloth_kernels);
@@ -33,7 +33,7 @@ ClothThreads make_threads(std::size_t links, float link_length_m, std::span<cons
 ClothProjectionJob::Problem ClothProjectionJob::validate() const noexcept {
   if (threads == nullptr || pose == nullptr) return Problem::kMissingPart;
   const std::size_t stride = threads->stride;
-  if (stride == 0 || stride % kStrandsPerBlock != 0 || threads->rest_lean.size() != 2 * stride ||
+  if (stride == 0 || stride % pose::kStrandsPerBlock != 0 || threads->rest_lean.size() != 2 * stride ||
       threads->rest_end_m.size() != 3 * stride) {
     return Problem::kThreadsSize;
   }
@@ -75,4 +75,4 @@ ClothProjectionJob::Problem ClothProjectionJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -9,7 +9,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// How the threads of a cloth hang at rest: each a straight line from the fixed edge on, of links of one length. A lean
 /// is the vector (east, south) of lean.hpp.
@@ -40,7 +40,7 @@ struct ClothProjectionJob {
   std::span<const float> edge_m = {};  ///< the fixed edge's offset from rest, x of all columns, then y, z; none: 0
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
-  GridPose* pose = nullptr;  ///< (links + 1) * stride joints
+  pose::GridPose* pose = nullptr;  ///< (links + 1) * stride joints
 
   enum class Problem : std::uint8_t {
     kNone,
@@ -57,4 +57,4 @@ struct ClothProjectionJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

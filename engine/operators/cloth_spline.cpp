@@ -9,7 +9,7 @@
 #include "engine/operators/cloth_kernels.hpp"
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<ClothDynamicsKernels> kSplineRows = YURAGI_KERNEL_ROWS(cloth_dynamics_kernels);
@@ -38,7 +38,7 @@ Taps taps_at(double place, std::size_t last) {
 }  // namespace
 
 ClothSpline::ClothSpline(const ClothKnots& knots, std::size_t columns, std::size_t links)
-    : knots_(knots), width_(2 * padded_to_blocks(columns)), links_(links) {
+    : knots_(knots), width_(2 * pose::padded_to_blocks(columns)), links_(links) {
   // The first ghost is coarse column 0, so the first column of the cloth is at 1.
   const std::size_t stride = width_ / 2;
   const double coarse_per_fine =
@@ -50,19 +50,19 @@ ClothSpline::ClothSpline(const ClothKnots& knots, std::size_t columns, std::size
   }
 
   // As many taps for each block as the widest needs, and none beyond the coarse row's end.
-  const std::size_t blocks = stride / kStrandsPerBlock;
+  const std::size_t blocks = stride / pose::kStrandsPerBlock;
   for (std::size_t block = 0; block < blocks; ++block) {
-    const Taps& first = taps[block * kStrandsPerBlock];
-    const Taps& last = taps[(block + 1) * kStrandsPerBlock - 1];
+    const Taps& first = taps[block * pose::kStrandsPerBlock];
+    const Taps& last = taps[(block + 1) * pose::kStrandsPerBlock - 1];
     taps_ = std::max(taps_, last.at[3] - first.at[0] + 1);
   }
-  weights_.assign(blocks * taps_ * kStrandsPerBlock, 0.0F);
+  weights_.assign(blocks * taps_ * pose::kStrandsPerBlock, 0.0F);
   for (std::size_t block = 0; block < blocks; ++block) {
-    first_.push_back(std::min(taps[block * kStrandsPerBlock].at[0], knots.stride - taps_));
-    for (std::size_t i = 0; i < kStrandsPerBlock; ++i) {
-      const Taps& of = taps[block * kStrandsPerBlock + i];
+    first_.push_back(std::min(taps[block * pose::kStrandsPerBlock].at[0], knots.stride - taps_));
+    for (std::size_t i = 0; i < pose::kStrandsPerBlock; ++i) {
+      const Taps& of = taps[block * pose::kStrandsPerBlock + i];
       for (std::size_t tap = 0; tap < 4; ++tap) {
-        weights_[(block * taps_ + of.at[tap] - first_[block]) * kStrandsPerBlock + i] += of.weight[tap];
+        weights_[(block * taps_ + of.at[tap] - first_[block]) * pose::kStrandsPerBlock + i] += of.weight[tap];
       }
     }
   }
@@ -74,7 +74,7 @@ void ClothSpline::spread(std::span<const float> leans, SimdRow row) noexcept {
   const auto spread_row = kSplineRows[row].spread;
   const std::size_t stride = width_ / 2;
   for (std::size_t line = 0; line < 2 * knots_.links; ++line) {
-    spread_row({.blocks = stride / kStrandsPerBlock,
+    spread_row({.blocks = stride / pose::kStrandsPerBlock,
                 .taps = taps_,
                 .first = first_.data(),
                 .weights = weights_.data(),
@@ -146,4 +146,4 @@ ClothLineJob::Problem ClothLineJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -8,7 +8,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// A coarse grid of leans over a cloth's links. Rows of `stride` (whole blocks): a ghost before the first column, the
 /// columns, and what is behind them, of which the first is a ghost again. Columns are spread evenly from the cloth's
@@ -86,4 +86,4 @@ struct ClothLineJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

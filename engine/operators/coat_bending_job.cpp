@@ -8,7 +8,7 @@
 #include "engine/base/units.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<BendingKernels> kCoatRows = YURAGI_KERNEL_ROWS(bending_kernels);
@@ -59,4 +59,4 @@ CoatBendingJob::Problem CoatBendingJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// BendingJob for hairs on a body: the wind strokes along the skin, and opens partings.
 ///
@@ -52,4 +52,4 @@ struct CoatBendingJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -3,7 +3,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/surface_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<SurfaceKernels> kColorMapRows = YURAGI_KERNEL_ROWS(surface_kernels);
@@ -25,4 +25,4 @@ ColorMapJob::Problem ColorMapJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -7,7 +7,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// A color ramp: this many colors of 4 bytes (red, green, blue, alpha).
 inline constexpr std::size_t kRampColors = 256;
@@ -36,4 +36,4 @@ struct ColorMapJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -4,7 +4,7 @@
 #include "engine/operators/bend_share.hpp"
 #include "engine/operators/streamlined_drag.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// The ramp whose slope is the smooth step 3 u^2 - 2 u^3 over `width` around 0: 0 below, x above.
@@ -108,4 +108,4 @@ void flutter(const FlutterKernelArguments& arguments) noexcept {
 
 const CrownKernels YURAGI_ROW_NAME(crown_kernels) = {split, force, tilt, respond, flutter};
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

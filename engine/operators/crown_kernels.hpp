@@ -6,7 +6,7 @@
 // Internal: between the jobs that move a tree's crown (SplitJob, BranchForceJob, TiltJob, LeafResponseJob, FlutterJob)
 // and their kernels.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 struct SplitKernelArguments {
   std::size_t count = 0;
@@ -86,4 +86,4 @@ extern const CrownKernels crown_kernels_x86_64;
 extern const CrownKernels crown_kernels_x86_64_v3;
 extern const CrownKernels crown_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/surface_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<SurfaceKernels> kDisplacementRows = YURAGI_KERNEL_ROWS(surface_kernels);
@@ -30,4 +30,4 @@ DisplacementJob::Problem DisplacementJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The projection operator "displacement": a noise moves points along a direction, here their normals, as
 /// SurfacePose::displacement_m (Chiba, section 2-2 (3)).
@@ -35,4 +35,4 @@ struct DisplacementJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

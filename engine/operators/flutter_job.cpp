@@ -5,7 +5,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/crown_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<CrownKernels> kFlutterRows = YURAGI_KERNEL_ROWS(crown_kernels);
@@ -45,4 +45,4 @@ FlutterJob::Problem FlutterJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -7,7 +7,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The projection operator of leaves: each leans with the wind in the place of its spray, as far as its petiole gives
 /// way, and flutters to and fro across an axis of its own by its noise (Chiba, section 3.3). The bend, in StrandPose's
@@ -43,4 +43,4 @@ struct FlutterJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

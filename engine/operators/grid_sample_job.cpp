@@ -6,7 +6,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/grid_sample_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<GridSampleKernels> kGridSampleRows = YURAGI_KERNEL_ROWS(grid_sample_kernels);
@@ -19,7 +19,7 @@ GridSampleJob::Problem GridSampleJob::validate() const noexcept {
   const std::size_t rows = layers[0].row_z.size();
   if (out.size() != columns * rows) return Problem::kSizesDiffer;
   for (const GridNoiseLayer& layer : layers) {
-    if (layer.tile == nullptr || !is_readable(*layer.tile)) return Problem::kTileNotReadable;
+    if (layer.tile == nullptr || !noise::is_readable(*layer.tile)) return Problem::kTileNotReadable;
     if (layer.column_x.size() != columns || layer.row_z.size() != rows) return Problem::kSizesDiffer;
     if (!std::isfinite(layer.weight)) return Problem::kWeightNotNumber;
   }
@@ -46,4 +46,4 @@ GridSampleJob::Problem GridSampleJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

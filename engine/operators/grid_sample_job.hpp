@@ -8,15 +8,15 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/noise/torus.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// A shifted noise, and the grid of places at which it is read, whose axes are those of the tile: the phase of each
 /// column along x, and of each row along z. A field that has moved by `offset` is read at place - offset.
 struct GridNoiseLayer {
-  const NoiseTile2* tile = nullptr;
+  const noise::NoiseTile2* tile = nullptr;
   std::span<const std::uint32_t> column_x;
   std::span<const std::uint32_t> row_z;
-  TorusPhase offset = {};
+  noise::TorusPhase offset = {};
   float weight = 1.0F;
 };
 
@@ -48,4 +48,4 @@ struct GridSampleJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -11,7 +11,7 @@
 #define YURAGI_PICKS_LANES 0
 #endif
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// The grid is gone through in strips of so many columns, each from the first row to the last.
@@ -21,9 +21,10 @@ constexpr std::size_t kStrip = 16;
 struct StripColumns {
   alignas(64) std::uint32_t west[kStrip];
   alignas(64) float fraction[kStrip];
-  bool wraps = false;                         ///< one is behind the last sample, whose east is the first
-  bool is_near = false;                       ///< all that is read for a register lies in its window
-  std::uint32_t window[kStrip / kLaneCount];  ///< where the 2 kLaneCount samples begin that hold what is read for it
+  bool wraps = false;    ///< one is behind the last sample, whose east is the first
+  bool is_near = false;  ///< all that is read for a register lies in its window
+  /// Where the 2 kLaneCount samples begin that hold what is read for a register.
+  std::uint32_t window[kStrip / math::kLaneCount];
 };
 
 /// Two samples side by side, the western one in the low half.
@@ -41,8 +42,8 @@ struct StripColumns {
 
 #if YURAGI_PICKS_LANES
 /// window[index] in each lane; an index is below 2 kLaneCount.
-[[gnu::always_inline]] inline Lanes pick(const float* window, LaneBits index) noexcept {
-  return __builtin_shuffle(load_lanes(window), load_lanes(window + kLaneCount), index);
+[[gnu::always_inline]] inline math::Lanes pick(const float* window, math::LaneBits index) noexcept {
+  return __builtin_shuffle(math::load_lanes(window), math::load_lanes(window + math::kLaneCount), index);
 }
 #endif
 
@@ -51,21 +52,21 @@ struct StripColumns {
   const std::uint32_t last = (1U << layer.log2_size) - 1U;
   std::uint32_t wraps = 0;
   for (std::size_t i = 0; i < kStrip; ++i) {
-    const TorusCell x = torus_cell(layer.column_x[first + i] - layer.offset_x, layer.log2_size);
+    const noise::TorusCell x = noise::torus_cell(layer.column_x[first + i] - layer.offset_x, layer.log2_size);
     columns.west[i] = x.first;
     columns.fraction[i] = x.fraction;
     wraps |= x.first == last ? 1U : 0U;
   }
   columns.wraps = wraps != 0;
 #if YURAGI_PICKS_LANES
-  constexpr std::uint32_t kWindow = 2 * kLaneCount;
+  constexpr std::uint32_t kWindow = 2 * math::kLaneCount;
   const std::uint32_t last_window = last + 1U >= kWindow ? last + 1U - kWindow : 0U;
-  for (std::size_t i = 0; i < kStrip; i += kLaneCount) {
-    columns.window[i / kLaneCount] = columns.west[i] < last_window ? columns.west[i] : last_window;
+  for (std::size_t i = 0; i < kStrip; i += math::kLaneCount) {
+    columns.window[i / math::kLaneCount] = columns.west[i] < last_window ? columns.west[i] : last_window;
   }
   std::uint32_t far = wraps | (last + 1U < kWindow ? 1U : 0U);
   for (std::size_t i = 0; i < kStrip; ++i) {
-    far |= columns.west[i] - columns.window[i / kLaneCount] > 2 * kLaneCount - 2 ? 1U : 0U;
+    far |= columns.west[i] - columns.window[i / math::kLaneCount] > 2 * math::kLaneCount - 2 ? 1U : 0U;
   }
   columns.is_near = far == 0;
 #endif
@@ -74,32 +75,33 @@ struct StripColumns {
 /// Adds weight * noise at the columns of a strip in one row.
 [[gnu::always_inline]] inline void add_row(const GridSampleKernelLayer& layer, const StripColumns& columns,
                                            std::size_t first, std::size_t row, float* sum) noexcept {
-  const TorusCell z = torus_cell(layer.row_z[row] - layer.offset_z, layer.log2_size);
+  const noise::TorusCell z = noise::torus_cell(layer.row_z[row] - layer.offset_z, layer.log2_size);
   const float* const north = layer.tile + (std::size_t{z.first} << layer.log2_size);
   const float* const south = layer.tile + (std::size_t{z.second} << layer.log2_size);
 #if YURAGI_PICKS_LANES
   if (columns.is_near) {
-    for (std::size_t i = 0; i < kStrip; i += kLaneCount) {
-      LaneBits west;
+    for (std::size_t i = 0; i < kStrip; i += math::kLaneCount) {
+      math::LaneBits west;
       __builtin_memcpy(&west, columns.west + i, sizeof west);
-      const std::uint32_t begin = columns.window[i / kLaneCount];
+      const std::uint32_t begin = columns.window[i / math::kLaneCount];
       west -= begin;
-      const LaneBits east = west + 1U;
-      const Lanes fraction = load_lanes(columns.fraction + i);
-      const Lanes north_west = pick(north + begin, west);
-      const Lanes south_west = pick(south + begin, west);
-      const Lanes along_north = north_west + fraction * (pick(north + begin, east) - north_west);
-      const Lanes along_south = south_west + fraction * (pick(south + begin, east) - south_west);
-      const Lanes noise = along_north + z.fraction * (along_south - along_north);
-      store_lanes(sum + i, load_lanes(sum + i) + layer.weight * noise);
+      const math::LaneBits east = west + 1U;
+      const math::Lanes fraction = math::load_lanes(columns.fraction + i);
+      const math::Lanes north_west = pick(north + begin, west);
+      const math::Lanes south_west = pick(south + begin, west);
+      const math::Lanes along_north = north_west + fraction * (pick(north + begin, east) - north_west);
+      const math::Lanes along_south = south_west + fraction * (pick(south + begin, east) - south_west);
+      const math::Lanes noise = along_north + z.fraction * (along_south - along_north);
+      math::store_lanes(sum + i, math::load_lanes(sum + i) + layer.weight * noise);
     }
     return;
   }
 #endif
   if (columns.wraps) {
     for (std::size_t i = 0; i < kStrip; ++i) {
-      sum[i] += layer.weight * read_bilinear(layer.tile, layer.log2_size, layer.column_x[first + i] - layer.offset_x,
-                                             layer.row_z[row] - layer.offset_z);
+      sum[i] +=
+          layer.weight * noise::read_bilinear(layer.tile, layer.log2_size, layer.column_x[first + i] - layer.offset_x,
+                                              layer.row_z[row] - layer.offset_z);
     }
     return;
   }
@@ -110,9 +112,9 @@ struct StripColumns {
     in_south[i] = load_both(south + columns.west[i]);
   }
   for (std::size_t i = 0; i < kStrip; ++i) {
-    const float along_north = between(west_of(in_north[i]), east_of(in_north[i]), columns.fraction[i]);
-    const float along_south = between(west_of(in_south[i]), east_of(in_south[i]), columns.fraction[i]);
-    sum[i] += layer.weight * between(along_north, along_south, z.fraction);
+    const float along_north = noise::between(west_of(in_north[i]), east_of(in_north[i]), columns.fraction[i]);
+    const float along_south = noise::between(west_of(in_south[i]), east_of(in_south[i]), columns.fraction[i]);
+    sum[i] += layer.weight * noise::between(along_north, along_south, z.fraction);
   }
 }
 
@@ -140,8 +142,8 @@ void sample(const GridSampleKernelArguments& arguments) noexcept {
       float sum = 0.0F;
       for (std::size_t index = 0; index < in.layer_count; ++index) {
         const GridSampleKernelLayer& layer = in.layers[index];
-        sum += layer.weight * read_bilinear(layer.tile, layer.log2_size, layer.column_x[column] - layer.offset_x,
-                                            layer.row_z[row] - layer.offset_z);
+        sum += layer.weight * noise::read_bilinear(layer.tile, layer.log2_size, layer.column_x[column] - layer.offset_x,
+                                                   layer.row_z[row] - layer.offset_z);
       }
       in.out[row * in.columns + column] = sum;
     }
@@ -152,4 +154,4 @@ void sample(const GridSampleKernelArguments& arguments) noexcept {
 
 const GridSampleKernels YURAGI_ROW_NAME(grid_sample_kernels) = {sample};
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 
 // Internal: between GridSampleJob and its kernel.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 struct GridSampleKernelLayer {
   const float* tile = nullptr;
@@ -32,4 +32,4 @@ extern const GridSampleKernels grid_sample_kernels_x86_64;
 extern const GridSampleKernels grid_sample_kernels_x86_64_v3;
 extern const GridSampleKernels grid_sample_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

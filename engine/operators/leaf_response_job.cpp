@@ -5,7 +5,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/crown_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<CrownKernels> kLeafRows = YURAGI_KERNEL_ROWS(crown_kernels);
@@ -44,4 +44,4 @@ LeafResponseJob::Problem LeafResponseJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

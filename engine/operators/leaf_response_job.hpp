@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// How leaves respond to the wind in each place of a crown: how far they lean with it, and how much they flutter.
 ///
@@ -46,4 +46,4 @@ struct LeafResponseJob {
   static constexpr double kSteepestFlutter = 0.8202;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

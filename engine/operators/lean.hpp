@@ -2,7 +2,7 @@
 
 // How a hanging link stands, in two numbers. For kernel files too: always inlined, as engine/base/kernel.hpp asks.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// Where a hanging link ends, seen from the point that stands its length above where it begins. Number is float, or a
 /// vector of floats.
@@ -27,4 +27,4 @@ template <class Number>
   return {down * east, down, down * south};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

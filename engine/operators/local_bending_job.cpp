@@ -6,7 +6,7 @@
 #include "engine/base/units.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<BendingKernels> kLocalBendingRows = YURAGI_KERNEL_ROWS(bending_kernels);
@@ -42,4 +42,4 @@ LocalBendingJob::Problem LocalBendingJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

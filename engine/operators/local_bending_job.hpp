@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// BendingJob where every strand has a wind of its own: it bends toward where its wind blows, by max_bend s^2/(1 +
 /// s^2), s = speed * strength * flexibility / half_bend_speed.
@@ -38,4 +38,4 @@ struct LocalBendingJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 
 // Internal: between the jobs of this folder and their kernels.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 struct SampleKernelLayer {
   const float* tile = nullptr;
@@ -110,4 +110,4 @@ extern const OscillatorKernels oscillator_kernels_x86_64;
 extern const OscillatorKernels oscillator_kernels_x86_64_v3;
 extern const OscillatorKernels oscillator_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -7,7 +7,7 @@
 #include "engine/base/units.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<OscillatorKernels> kOscillatorRows = YURAGI_KERNEL_ROWS(oscillator_kernels);
@@ -110,4 +110,4 @@ OscillatorJob::Problem OscillatorJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -8,7 +8,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// One tick of a damped oscillator (engine/METHOD.md M17): four constants, the same for all that sway alike.
 struct OscillatorStep {
@@ -90,4 +90,4 @@ struct OscillatorJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

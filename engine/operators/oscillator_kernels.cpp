@@ -1,7 +1,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// What has died away this far is at rest. (Decaying on, it would come to numbers that processors are slow with.)
@@ -46,4 +46,4 @@ void step_each(const OscillatorKernelArguments& arguments) noexcept {
 
 const OscillatorKernels YURAGI_ROW_NAME(oscillator_kernels) = {step, step_each};
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

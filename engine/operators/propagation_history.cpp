@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace yuragi {
+namespace yuragi::operators {
 
 PropagationHistory::PropagationHistory(std::size_t width, double longest_s)
     : width_(width),
@@ -40,4 +40,4 @@ PropagationHistory::Between PropagationHistory::at(double delay_s) const noexcep
   return {samples + sample(newer), samples + sample(newer + 1), static_cast<float>(age - static_cast<double>(newer))};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

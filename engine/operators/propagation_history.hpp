@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// What some values were up to a while ago: the noise's history, which propagation runs along a chain.
 ///
@@ -52,4 +52,4 @@ class PropagationHistory {
   double phase_ = 0.0;      ///< the present's distance from the newest sample, in intervals, [0, 1)
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/cloth_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<ClothKernels> kPropagationRows = YURAGI_KERNEL_ROWS(cloth_kernels);
@@ -42,4 +42,4 @@ PropagationJob::Problem PropagationJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

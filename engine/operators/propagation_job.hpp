@@ -8,7 +8,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/operators/propagation_history.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The projection operator "propagation": link i of n (from 0) takes the value of travel_time * i / (n - 1) ago, times
 /// its growth, on top of a base that the whole chain has at once (Chiba, section 2-2 (3), figures 6 and 10: a base sway
@@ -43,4 +43,4 @@ struct PropagationJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

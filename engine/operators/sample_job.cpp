@@ -6,7 +6,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<SampleKernels> kSampleRows = YURAGI_KERNEL_ROWS(sample_kernels);
@@ -16,7 +16,7 @@ constexpr KernelRows<SampleKernels> kSampleRows = YURAGI_KERNEL_ROWS(sample_kern
 SampleJob::Problem SampleJob::validate() const noexcept {
   if (layers.empty() || layers.size() > kMaxLayers) return Problem::kLayerCount;
   for (const NoiseLayer& layer : layers) {
-    if (layer.tile == nullptr || !is_readable(*layer.tile)) return Problem::kTileNotReadable;
+    if (layer.tile == nullptr || !noise::is_readable(*layer.tile)) return Problem::kTileNotReadable;
     if (layer.place_x.size() != out.size() || layer.place_z.size() != out.size()) return Problem::kSizesDiffer;
     if (!layer.weights.empty() && layer.weights.size() != out.size()) return Problem::kSizesDiffer;
     if (!std::isfinite(layer.weight)) return Problem::kRangeNotNumber;
@@ -46,4 +46,4 @@ SampleJob::Problem SampleJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -9,15 +9,15 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/noise/torus.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// A shifted noise, and the places at which it is read: phases on the tile's torus. A field that has moved by `offset`
 /// is read at place - offset, so that gusts travel downwind.
 struct NoiseLayer {
-  const NoiseTile2* tile = nullptr;
+  const noise::NoiseTile2* tile = nullptr;
   std::span<const std::uint32_t> place_x;
   std::span<const std::uint32_t> place_z;
-  TorusPhase offset = {};
+  noise::TorusPhase offset = {};
   float weight = 1.0F;
   std::span<const float> weights = {};  ///< of each place, beside `weight`; empty: 1
 };
@@ -57,4 +57,4 @@ struct SampleJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 #include "engine/noise/torus_read.hpp"
 #include "engine/operators/operator_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// Places are read this many at a time: where they are and what comes of their samples are computed in SIMD lanes, and
@@ -55,8 +55,8 @@ struct Pairs {
   Cells at;
   std::uint32_t wraps = 0;
   for (std::size_t i = 0; i < kAtOnce; ++i) {
-    const TorusCell x = torus_cell(layer.place_x[begin + i] - layer.offset_x, layer.log2_size);
-    const TorusCell z = torus_cell(layer.place_z[begin + i] - layer.offset_z, layer.log2_size);
+    const noise::TorusCell x = noise::torus_cell(layer.place_x[begin + i] - layer.offset_x, layer.log2_size);
+    const noise::TorusCell z = noise::torus_cell(layer.place_z[begin + i] - layer.offset_z, layer.log2_size);
     at.north[i] = (z.first << layer.log2_size) + x.first;
     at.south[i] = (z.second << layer.log2_size) + x.first;
     at.x_fraction[i] = x.fraction;
@@ -81,9 +81,9 @@ struct Pairs {
     for (std::size_t i = 0; i < kAtOnce; ++i) weights[i] *= layer.weights[begin + i];
   }
   for (std::size_t i = 0; i < kAtOnce; ++i) {
-    const float north = between(western(pairs.north[i]), eastern(pairs.north[i]), at.x_fraction[i]);
-    const float south = between(western(pairs.south[i]), eastern(pairs.south[i]), at.x_fraction[i]);
-    sum[i] += weights[i] * between(north, south, at.z_fraction[i]);
+    const float north = noise::between(western(pairs.north[i]), eastern(pairs.north[i]), at.x_fraction[i]);
+    const float south = noise::between(western(pairs.south[i]), eastern(pairs.south[i]), at.x_fraction[i]);
+    sum[i] += weights[i] * noise::between(north, south, at.z_fraction[i]);
   }
 }
 
@@ -105,16 +105,16 @@ template <std::size_t known_layers>
   for (; i + kAtOnce <= in.count; i += kAtOnce) {
     alignas(64) float sum[kAtOnce] = {};
     for (std::size_t layer = 0; layer < layers; ++layer) add_layer(in.layers[layer], i, sum);
-    for (std::size_t lane = 0; lane < kAtOnce; lane += kLaneCount) {
-      store_lanes(in.out + i + lane, scaled(in, load_lanes(sum + lane)));
+    for (std::size_t lane = 0; lane < kAtOnce; lane += math::kLaneCount) {
+      math::store_lanes(in.out + i + lane, scaled(in, math::load_lanes(sum + lane)));
     }
   }
   for (; i < in.count; ++i) {
     float sum = 0.0F;
     for (std::size_t index = 0; index < layers; ++index) {
       const SampleKernelLayer& layer = in.layers[index];
-      sum += weight_at(layer, i) * read_bilinear(layer.tile, layer.log2_size, layer.place_x[i] - layer.offset_x,
-                                                 layer.place_z[i] - layer.offset_z);
+      sum += weight_at(layer, i) * noise::read_bilinear(layer.tile, layer.log2_size, layer.place_x[i] - layer.offset_x,
+                                                        layer.place_z[i] - layer.offset_z);
     }
     in.out[i] = scaled(in, sum);
   }
@@ -136,4 +136,4 @@ void sample(const SampleKernelArguments& arguments) noexcept {
 
 const SampleKernels YURAGI_ROW_NAME(sample_kernels) = {sample};
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::operators {
 
 ShiftJob::Problem ShiftJob::validate() const noexcept {
   if (offset == nullptr) return Problem::kNoOffset;
@@ -20,4 +20,4 @@ ShiftJob::Problem ShiftJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -4,7 +4,7 @@
 
 #include "engine/noise/torus.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The shifting operator: the wind carries its turbulence along (Taylor's frozen turbulence), offset += wind dt.
 ///
@@ -18,7 +18,7 @@ struct ShiftJob {
   double dt_s = 0.0;
   double period_m = 0.0;  ///< of the tile that is shifted
 
-  TorusOffset* offset = nullptr;
+  noise::TorusOffset* offset = nullptr;
 
   enum class Problem : std::uint8_t {
     kNone,
@@ -33,4 +33,4 @@ struct ShiftJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

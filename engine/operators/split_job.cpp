@@ -5,7 +5,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/crown_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<CrownKernels> kSplitRows = YURAGI_KERNEL_ROWS(crown_kernels);
@@ -35,4 +35,4 @@ SplitJob::Problem SplitJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

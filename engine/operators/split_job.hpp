@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The threshold split: one noise becomes two, what it does above a threshold and what it does below (Chiba,
 /// section 3.3: of a tree's branches the one drives the vertical motion, the other the horizontal one).
@@ -41,4 +41,4 @@ struct SplitJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -2,7 +2,7 @@
 
 // How hard the wind pulls at a plant. For kernel files too: always inlined, as engine/base/kernel.hpp asks.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The drag of a crown that gives way to the wind: F = S / (1 + S)^(3/8), S = (wind / streamline_speed)^2. Without a
 /// unit; 0.77 at that speed. Square roots and a quotient alone: the same bits on every machine.
@@ -16,4 +16,4 @@ namespace yuragi {
   return speed_square / (fourth_root * __builtin_sqrtf(fourth_root));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 
 #include "engine/base/kernel.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 // Outputs may be inputs, element by element, so nothing is declared __restrict.
@@ -43,4 +43,4 @@ void displace(const DisplacementArguments& arguments) noexcept {
 
 const SurfaceKernels YURAGI_ROW_NAME(surface_kernels) = {threshold_ramp, map_colors, displace};
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 
 // Internal: between ThresholdRampJob, ColorMapJob, DisplacementJob and their kernels.
 
-namespace yuragi {
+namespace yuragi::operators {
 
 struct ThresholdRampArguments {
   std::size_t count = 0;
@@ -41,4 +41,4 @@ extern const SurfaceKernels surface_kernels_x86_64;
 extern const SurfaceKernels surface_kernels_x86_64_v3;
 extern const SurfaceKernels surface_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

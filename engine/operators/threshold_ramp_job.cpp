@@ -5,7 +5,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/operators/surface_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<SurfaceKernels> kThresholdRampRows = YURAGI_KERNEL_ROWS(surface_kernels);
@@ -33,4 +33,4 @@ ThresholdRampJob::Problem ThresholdRampJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

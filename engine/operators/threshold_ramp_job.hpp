@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The sampling operator "threshold ramp": shows a noise only where it is above a threshold that rises along an axis,
 /// as a flame that dies out toward its top (Chiba, section 2-2 (2), figure 4b).
@@ -39,4 +39,4 @@ struct ThresholdRampJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

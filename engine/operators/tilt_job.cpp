@@ -6,7 +6,7 @@
 #include "engine/base/units.hpp"
 #include "engine/operators/crown_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<CrownKernels> kTiltRows = YURAGI_KERNEL_ROWS(crown_kernels);
@@ -48,4 +48,4 @@ TiltJob::Problem TiltJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

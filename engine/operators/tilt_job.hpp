@@ -6,7 +6,7 @@
 
 #include "engine/base/simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// The projection operator of a tree's branches: from the two parts of the noise to a bend, in StrandPose's meaning
 /// (Chiba, section 3.3):
@@ -56,4 +56,4 @@ struct TiltJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

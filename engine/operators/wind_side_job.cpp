@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// How widely, in radii, the bend at the floor is rounded.
@@ -33,4 +33,4 @@ WindSideJob::Problem WindSideJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

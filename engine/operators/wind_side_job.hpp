@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::operators {
 
 /// How far things stand from the windward side of what they belong to (dist_to_wind_side of Chiba, section 3.3), in
 /// units of its radius: about 0 at the windward side, 1 in the middle, 2 on the lee.
@@ -37,4 +37,4 @@ struct WindSideJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -2,7 +2,7 @@
 
 #include "engine/pose/pose_hash.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 Kinematics::Joints make_joints(const Skeleton& skeleton) {
@@ -74,4 +74,4 @@ std::uint64_t Kinematics::hash(std::uint64_t seed) const noexcept {
   return hash;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

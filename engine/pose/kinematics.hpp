@@ -11,7 +11,7 @@
 #include "engine/pose/strand_kinematics.hpp"
 #include "engine/pose/tree_kinematics.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 
 /// Where the joints of a skeleton are, whatever its kind: StrandKinematicsJob, GridKinematicsJob, TreeKinematicsJob or
 /// SurfaceKinematicsJob, and the positions that they write.
@@ -44,4 +44,4 @@ class Kinematics {
   Joints joints_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

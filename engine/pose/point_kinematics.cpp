@@ -1,6 +1,6 @@
 #include "engine/pose/point_kinematics.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 /// Points that have been moved along their normals, with their rows.
@@ -85,4 +85,4 @@ SurfaceKinematicsJob::Problem SurfaceKinematicsJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -8,7 +8,7 @@
 #include "engine/pose/skeleton.hpp"
 #include "engine/pose/strand_kinematics.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 
 /// The points of a cloth or a surface, in the world, in the order of its skeleton's arrays (a cloth's padding
 /// included).
@@ -71,4 +71,4 @@ struct SurfaceKinematicsJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 StrandPose rest_pose_of(const StrandSkeleton& strands) {
@@ -102,4 +102,4 @@ std::size_t node_count(const Skeleton& skeleton) noexcept {
   return count;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

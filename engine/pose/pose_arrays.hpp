@@ -7,7 +7,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 
 /// A pose of any kind, or one of the kinds.
 template <class T>
@@ -72,4 +72,4 @@ bool fits(const Pose& pose, const Skeleton& skeleton) noexcept;
 /// How many joints of a skeleton move: the paper's N. Padding does not count.
 std::size_t node_count(const Skeleton& skeleton) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

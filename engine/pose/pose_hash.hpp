@@ -6,7 +6,7 @@
 
 #include "engine/pose/pose_arrays.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 
 /// Where a hash begins (the offset basis of FNV-1a).
 inline constexpr std::uint64_t kPoseHashSeed = 14695981039346656037U;
@@ -31,4 +31,4 @@ std::uint64_t pose_hash(std::uint64_t seed, const AnyPose& pose) {
   return hash;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -8,7 +8,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/pose/quantise_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 constexpr KernelRows<QuantiseKernels> kQuantiseRows = YURAGI_KERNEL_ROWS(quantise_kernels);
@@ -98,4 +98,4 @@ float way_step_m(const SurfaceSkeleton& surface) noexcept {
                      surface.is_closed ? kReachOfBody : kReachOfOpenSurface);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -7,7 +7,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 
 /// What one unit of a quantised bend is worth: the range is +-pi in +-32767 units, so that rounding moves the tip of a
 /// 1 m blade by less than 0.1 mm.
@@ -42,4 +42,4 @@ void quantise_heat(std::span<const float> heat, std::span<std::uint8_t> units,
 float way_step_m(const GridSkeleton& grid) noexcept;
 float way_step_m(const SurfaceSkeleton& surface) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

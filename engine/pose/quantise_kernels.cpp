@@ -2,7 +2,7 @@
 
 #include "engine/base/kernel.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 /// values * units_per_one, from `smallest` to `largest`, rounded to the nearest; NaN becomes 0.
@@ -34,4 +34,4 @@ void to_uint8(const QuantiseArguments<std::uint8_t>& in) noexcept {
 
 const QuantiseKernels YURAGI_ROW_NAME(quantise_kernels) = {to_int16, to_uint8};
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

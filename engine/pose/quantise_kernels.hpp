@@ -5,7 +5,7 @@
 
 // Internal: between quantise.cpp and its kernel.
 
-namespace yuragi {
+namespace yuragi::pose {
 
 template <class Unit>
 struct QuantiseArguments {
@@ -26,4 +26,4 @@ extern const QuantiseKernels quantise_kernels_x86_64;
 extern const QuantiseKernels quantise_kernels_x86_64_v3;
 extern const QuantiseKernels quantise_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 /// Of `count` places from number `first` on.
@@ -48,4 +48,4 @@ double scenes_reach_m(std::span<const Skeleton* const> skeletons) noexcept {
   return farthest_m;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::pose {
 
 // World: right-handed, x east, y up, z south; metres and radians.
 //
@@ -140,4 +140,4 @@ struct SurfacePose {
 using Skeleton = std::variant<StrandSkeleton, GridSkeleton, TreeSkeleton, SurfaceSkeleton>;
 using Pose = std::variant<StrandPose, GridPose, TreePose, SurfacePose>;
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -17,7 +17,7 @@
 // versine(c) g(k). Kept as g and its difference, that is as exact for small c as for large. No sine or cosine but the
 // first.
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 constexpr std::size_t kStrandsPerBlock = 16;  // as skeleton.hpp, whose vectors may not come in here
@@ -33,8 +33,8 @@ constexpr std::size_t kLinksOfSmallAngles = 4;
 constexpr float kSmallestSquare_rad2 = 1e-30F;
 
 struct Phasor {
-  Lanes re;
-  Lanes im;
+  math::Lanes re;
+  math::Lanes im;
 };
 
 [[gnu::always_inline]] inline Phasor operator*(Phasor a, Phasor b) noexcept {
@@ -43,29 +43,30 @@ struct Phasor {
 
 /// A phasor of length 1 whose length is put right to first order, so that it stays right through many products.
 [[gnu::always_inline]] inline Phasor normalised(Phasor a) noexcept {
-  const Lanes correction = 1.5F - 0.5F * (a.re * a.re + a.im * a.im);
+  const math::Lanes correction = 1.5F - 0.5F * (a.re * a.re + a.im * a.im);
   return {a.re * correction, a.im * correction};
 }
 
 /// exp(i angle), angle in [0, pi].
 template <bool is_small>
-[[gnu::always_inline]] inline Phasor unit_phasor(Lanes angle_rad) noexcept {
-  const SinCos<Lanes> turn = is_small ? sin_cos_within_quarter_pi(angle_rad) : sin_cos<LaneBits>(angle_rad);
+[[gnu::always_inline]] inline Phasor unit_phasor(math::Lanes angle_rad) noexcept {
+  const math::SinCos<math::Lanes> turn =
+      is_small ? math::sin_cos_within_quarter_pi(angle_rad) : math::sin_cos<math::LaneBits>(angle_rad);
   return {turn.cos, turn.sin};
 }
 
 /// What stays the same along kLaneCount chains.
 struct Turns {
-  Lanes b_east, b_south;  ///< where they bend to
+  math::Lanes b_east, b_south;  ///< where they bend to
   Phasor with, against;
-  Lanes stiffness;  ///< 2 versine(c)
+  math::Lanes stiffness;  ///< 2 versine(c)
 };
 
 /// kLaneCount chains at one of their links.
 struct Links {
   Phasor with, against;
-  Lanes across, across_step;  ///< g, and its next difference
-  Lanes x_m, y_m, z_m;        ///< where the link begins
+  math::Lanes across, across_step;  ///< g, and its next difference
+  math::Lanes x_m, y_m, z_m;        ///< where the link begins
 };
 
 struct Chains {
@@ -78,38 +79,38 @@ template <bool is_small>
 [[gnu::always_inline]] inline Chains first_links(const StrandKernelArguments& in, std::size_t strand) noexcept {
   // The bend's direction b and angle. No bend (or one whose square is lost to underflow) has no direction: any will do,
   // and east it is.
-  const Lanes east = clamp_lanes(load_lanes(in.bend_east_rad + strand), kLargestComponent_rad);
-  const Lanes south = clamp_lanes(load_lanes(in.bend_south_rad + strand), kLargestComponent_rad);
-  const Lanes square = east * east + south * south;
+  const math::Lanes east = math::clamp_lanes(math::load_lanes(in.bend_east_rad + strand), kLargestComponent_rad);
+  const math::Lanes south = math::clamp_lanes(math::load_lanes(in.bend_south_rad + strand), kLargestComponent_rad);
+  const math::Lanes square = east * east + south * south;
   const auto bent = square > kSmallestSquare_rad2;
-  const Lanes one = same_lanes(1.0F);
-  const Lanes length = sqrt_lanes(bent ? square : same_lanes(0.0F));
-  const Lanes inverse = 1.0F / (bent ? length : one);
-  const Lanes b_east = bent ? east * inverse : one;
-  const Lanes b_south = bent ? south * inverse : same_lanes(0.0F);
-  const Lanes angle = length > kLargestBend_rad ? same_lanes(kLargestBend_rad) : length;
+  const math::Lanes one = math::same_lanes(1.0F);
+  const math::Lanes length = math::sqrt_lanes(bent ? square : math::same_lanes(0.0F));
+  const math::Lanes inverse = 1.0F / (bent ? length : one);
+  const math::Lanes b_east = bent ? east * inverse : one;
+  const math::Lanes b_south = bent ? south * inverse : math::same_lanes(0.0F);
+  const math::Lanes angle = length > kLargestBend_rad ? math::same_lanes(kLargestBend_rad) : length;
 
   // Half of rest and curl, in the plane of the bend and across it; the link's length is carried in them.
-  const Lanes half = 0.5F * load_lanes(in.link_length_m + strand);
-  const Lanes half_east = half * b_east;
-  const Lanes half_south = half * b_south;
-  const Lanes rest_x = load_lanes(in.rest_x + strand);
-  const Lanes rest_z = load_lanes(in.rest_z + strand);
-  const Lanes curl_x = load_lanes(in.curl_x + strand);
-  const Lanes curl_z = load_lanes(in.curl_z + strand);
-  const Lanes rest_y = half * load_lanes(in.rest_y + strand);
-  const Lanes curl_y = half * load_lanes(in.curl_y + strand);
-  const Lanes rest_h = half_east * rest_x + half_south * rest_z;
-  const Lanes curl_h = half_east * curl_x + half_south * curl_z;
-  const Lanes half_rest_g = half_south * rest_x - half_east * rest_z;
-  const Lanes half_curl_g = half_south * curl_x - half_east * curl_z;
-  const Lanes rest_g = half_rest_g + half_rest_g;
-  const Lanes curl_g = half_curl_g + half_curl_g;
+  const math::Lanes half = 0.5F * math::load_lanes(in.link_length_m + strand);
+  const math::Lanes half_east = half * b_east;
+  const math::Lanes half_south = half * b_south;
+  const math::Lanes rest_x = math::load_lanes(in.rest_x + strand);
+  const math::Lanes rest_z = math::load_lanes(in.rest_z + strand);
+  const math::Lanes curl_x = math::load_lanes(in.curl_x + strand);
+  const math::Lanes curl_z = math::load_lanes(in.curl_z + strand);
+  const math::Lanes rest_y = half * math::load_lanes(in.rest_y + strand);
+  const math::Lanes curl_y = half * math::load_lanes(in.curl_y + strand);
+  const math::Lanes rest_h = half_east * rest_x + half_south * rest_z;
+  const math::Lanes curl_h = half_east * curl_x + half_south * curl_z;
+  const math::Lanes half_rest_g = half_south * rest_x - half_east * rest_z;
+  const math::Lanes half_curl_g = half_south * curl_x - half_east * curl_z;
+  const math::Lanes rest_g = half_rest_g + half_rest_g;
+  const math::Lanes curl_g = half_curl_g + half_curl_g;
 
   // The turns from link to link, and the first link.
   const Phasor bend = unit_phasor<is_small>(angle * (1.0F / static_cast<float>(in.links)));
-  const Lanes versine = load_lanes(in.curl_versine + strand);
-  const Phasor curl{1.0F - versine, load_lanes(in.curl_sin + strand)};
+  const math::Lanes versine = math::load_lanes(in.curl_versine + strand);
+  const Phasor curl{1.0F - versine, math::load_lanes(in.curl_sin + strand)};
   return {.turns = {.b_east = b_east,
                     .b_south = b_south,
                     .with = normalised(bend * curl),
@@ -119,9 +120,9 @@ template <bool is_small>
                     .against = Phasor{rest_y - curl_h, rest_h + curl_y} * bend,
                     .across = rest_g,
                     .across_step = curl_g * curl.im - rest_g * versine,
-                    .x_m = load_lanes(in.root_x_m + strand),
-                    .y_m = load_lanes(in.root_y_m + strand),
-                    .z_m = load_lanes(in.root_z_m + strand)}};
+                    .x_m = math::load_lanes(in.root_x_m + strand),
+                    .y_m = math::load_lanes(in.root_y_m + strand),
+                    .z_m = math::load_lanes(in.root_z_m + strand)}};
 }
 
 /// Goes along the chains from root to tip. Joints go to `out`, an axis 16 floats behind the other.
@@ -132,13 +133,13 @@ template <bool is_small>
   __asm__("" : "+r"(turns) : : "memory");
   Links at = chains.first;
   for (std::size_t link = 0; link < links; ++link) {
-    const Lanes h = at.with.im + at.against.im;
+    const math::Lanes h = at.with.im + at.against.im;
     at.x_m += turns->b_east * h + turns->b_south * at.across;
     at.y_m += at.with.re + at.against.re;
     at.z_m += turns->b_south * h - turns->b_east * at.across;
-    store_lanes(out, at.x_m);
-    store_lanes(out + kStrandsPerBlock, at.y_m);
-    store_lanes(out + 2 * kStrandsPerBlock, at.z_m);
+    math::store_lanes(out, at.x_m);
+    math::store_lanes(out + kStrandsPerBlock, at.y_m);
+    math::store_lanes(out + 2 * kStrandsPerBlock, at.z_m);
     out += 3 * kStrandsPerBlock;
 
     at.with = at.with * turns->with;
@@ -152,13 +153,13 @@ template <bool is_small>
 [[gnu::always_inline]] inline void all_joint_positions(const StrandKernelArguments& in) noexcept {
   for (std::size_t block = 0; block < in.blocks; ++block) {
     // All first links of a block before its chains: the one's arithmetic fills the other's waits.
-    Chains chains[kStrandsPerBlock / kLaneCount];
-    for (std::size_t part = 0; part < kStrandsPerBlock / kLaneCount; ++part) {
-      chains[part] = first_links<is_small>(in, block * kStrandsPerBlock + part * kLaneCount);
+    Chains chains[kStrandsPerBlock / math::kLaneCount];
+    for (std::size_t part = 0; part < kStrandsPerBlock / math::kLaneCount; ++part) {
+      chains[part] = first_links<is_small>(in, block * kStrandsPerBlock + part * math::kLaneCount);
     }
     float* out = in.joints_m + block * in.links * 3 * kStrandsPerBlock;
-    for (std::size_t part = 0; part < kStrandsPerBlock / kLaneCount; ++part) {
-      follow(chains[part], in.links, out + part * kLaneCount);
+    for (std::size_t part = 0; part < kStrandsPerBlock / math::kLaneCount; ++part) {
+      follow(chains[part], in.links, out + part * math::kLaneCount);
     }
   }
 }
@@ -176,4 +177,4 @@ void joint_positions(const StrandKernelArguments& arguments) noexcept {
 
 const StrandKernels YURAGI_ROW_NAME(strand_kernels) = {joint_positions};
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -4,7 +4,7 @@
 
 // Internal: between StrandKinematicsJob, TreeKinematicsJob and their kernel.
 
-namespace yuragi {
+namespace yuragi::pose {
 
 /// The arrays of a StrandSkeleton and a StrandPose, in whole blocks, and where the joints go.
 struct StrandKernelArguments {
@@ -35,4 +35,4 @@ extern const StrandKernels strand_kernels_x86_64;
 extern const StrandKernels strand_kernels_x86_64_v3;
 extern const StrandKernels strand_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -6,7 +6,7 @@
 #include "engine/base/kernel.hpp"
 #include "engine/pose/strand_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 constexpr KernelRows<StrandKernels> kStrandRows = YURAGI_KERNEL_ROWS(strand_kernels);
@@ -80,4 +80,4 @@ StrandKinematicsJob::Problem StrandKinematicsJob::run() const noexcept {
   return Problem::kNone;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

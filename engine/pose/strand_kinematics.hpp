@@ -10,7 +10,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 
 struct JointPosition {
   float x_m;
@@ -82,4 +82,4 @@ struct StrandKinematicsJob {
   Problem run() const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -8,7 +8,7 @@
 // link i of n (from 1) is turned by exp(a angle i / n) after the turn of its strand's root, and what grows there with
 // it.
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 constexpr std::size_t kTurnsAtOnce = 16;
@@ -67,7 +67,7 @@ void turn(const TreeKernelArguments& arguments) noexcept {
       const float length = __builtin_sqrtf(bent ? square : 0.0F);
       const float inverse = 1.0F / (bent ? length : 1.0F);
       const float angle = length > kLargestBend_rad ? kLargestBend_rad : length;
-      const SinCos<float> half = sin_cos(angle * parents.half_share[i]);
+      const math::SinCos<float> half = math::sin_cos(angle * parents.half_share[i]);
       const float bw = half.cos;
       const float bx = half.sin * (south * inverse);
       const float bz = -half.sin * (east * inverse);
@@ -92,13 +92,13 @@ void turn(const TreeKernelArguments& arguments) noexcept {
 
 /// The rotation matrix of a turn, less the identity, so that no turn leaves every bit of a vector as it is.
 struct Rotation {
-  Lanes xx, xy, xz, yx, yy, yz, zx, zy, zz;
+  math::Lanes xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
 
-[[gnu::always_inline]] inline Rotation rotation(Lanes w, Lanes x, Lanes y, Lanes z) noexcept {
-  const Lanes two_x = x + x;
-  const Lanes two_y = y + y;
-  const Lanes two_z = z + z;
+[[gnu::always_inline]] inline Rotation rotation(math::Lanes w, math::Lanes x, math::Lanes y, math::Lanes z) noexcept {
+  const math::Lanes two_x = x + x;
+  const math::Lanes two_y = y + y;
+  const math::Lanes two_z = z + z;
   return {.xx = -two_y * y - two_z * z,
           .xy = two_x * y - w * two_z,
           .xz = two_x * z + w * two_y,
@@ -112,18 +112,18 @@ struct Rotation {
 
 [[gnu::always_inline]] inline void rotate(const Rotation& r, const float* const (&from)[3], std::size_t from_strand,
                                           float* const (&to)[3], std::size_t to_strand) noexcept {
-  const Lanes x = load_lanes(from[0] + from_strand);
-  const Lanes y = load_lanes(from[1] + from_strand);
-  const Lanes z = load_lanes(from[2] + from_strand);
-  store_lanes(to[0] + to_strand, x + (r.xx * x + r.xy * y + r.xz * z));
-  store_lanes(to[1] + to_strand, y + (r.yx * x + r.yy * y + r.yz * z));
-  store_lanes(to[2] + to_strand, z + (r.zx * x + r.zy * y + r.zz * z));
+  const math::Lanes x = math::load_lanes(from[0] + from_strand);
+  const math::Lanes y = math::load_lanes(from[1] + from_strand);
+  const math::Lanes z = math::load_lanes(from[2] + from_strand);
+  math::store_lanes(to[0] + to_strand, x + (r.xx * x + r.xy * y + r.xz * z));
+  math::store_lanes(to[1] + to_strand, y + (r.yx * x + r.yy * y + r.yz * z));
+  math::store_lanes(to[2] + to_strand, z + (r.zx * x + r.zy * y + r.zz * z));
 }
 
 /// One number of the turns of kLaneCount strands.
-[[gnu::always_inline]] inline Lanes turn_part(const float* part, std::size_t strands_per_turn,
-                                              std::size_t strand) noexcept {
-  return strands_per_turn == 1 ? load_lanes(part + strand) : same_lanes(part[strand / kBlock]);
+[[gnu::always_inline]] inline math::Lanes turn_part(const float* part, std::size_t strands_per_turn,
+                                                    std::size_t strand) noexcept {
+  return strands_per_turn == 1 ? math::load_lanes(part + strand) : math::same_lanes(part[strand / kBlock]);
 }
 
 void carry(const TreeKernelArguments& arguments) noexcept {
@@ -151,7 +151,7 @@ void carry(const TreeKernelArguments& arguments) noexcept {
 
     const std::size_t each = in.turn.strands_per_turn;
     Rotation r = {};
-    for (std::size_t i = begin; i < begin + kBlock; i += kLaneCount) {
+    for (std::size_t i = begin; i < begin + kBlock; i += math::kLaneCount) {
       const std::size_t strand = first_strand + i;
       if (each == 1 || i == begin) {  // else it is that of the whole block
         r = rotation(turn_part(in.turn.w, each, strand), turn_part(in.turn.x, each, strand),
@@ -174,4 +174,4 @@ bool all_below(const std::uint32_t* numbers, std::size_t count, std::uint32_t li
 
 const TreeKernels YURAGI_ROW_NAME(tree_kernels) = {all_below, turn, carry};
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -5,7 +5,7 @@
 
 // Internal: between TreeKinematicsJob and its kernels.
 
-namespace yuragi {
+namespace yuragi::pose {
 
 /// Unit quaternions as four arrays. Strand s has turn s / strands_per_turn.
 struct TurnArrays {
@@ -52,4 +52,4 @@ extern const TreeKernels tree_kernels_x86_64;
 extern const TreeKernels tree_kernels_x86_64_v3;
 extern const TreeKernels tree_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

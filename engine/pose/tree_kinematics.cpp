@@ -7,7 +7,7 @@
 #include "engine/pose/strand_kernels.hpp"
 #include "engine/pose/tree_kernels.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 constexpr KernelRows<StrandKernels> kTreeStrandRows = YURAGI_KERNEL_ROWS(strand_kernels);
@@ -188,4 +188,4 @@ TreeKernelArguments TreeKinematicsJob::carried_from_parents(std::size_t index) c
           .carried_curl = {array(6), array(7), array(8)}};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -9,7 +9,7 @@
 #include "engine/pose/skeleton.hpp"
 #include "engine/pose/strand_kinematics.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 
 struct StrandKernelArguments;
 struct TreeKernelArguments;
@@ -72,4 +72,4 @@ struct TreeKinematicsJob {
   TreeKernelArguments carried_from_parents(std::size_t level) const noexcept;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::pose

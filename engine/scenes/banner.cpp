@@ -34,7 +34,7 @@
 // sqrt(2) times twice that, over a knot's link; its lean by half as much as the slope. That is generous, since
 // neighbouring rows go together. The arm turns by no more than kFastestTurn a second.
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 const std::array kBannerParameters = {
@@ -143,8 +143,8 @@ class Banner final : public Scene {
   Banner(const BannerSettings& settings, const SceneSetup& setup)
       : Banner(banner_edge(settings, setup), settings, setup) {}
 
-  const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
-  const Pose& pose() const noexcept override { return cloth_.pose(); }
+  const pose::Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
+  const pose::Pose& pose() const noexcept override { return cloth_.pose(); }
 
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double strength_step = ClothStrength::largest_step(dt_s);
@@ -156,7 +156,7 @@ class Banner final : public Scene {
                                        turns_ ? kFastestTurn_rad_s * dt_s : 0.0);
   }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
     waves_.shift(std::min(wave_speed_ * wind_.speed_m_s(), kFastestBannerWave_m_s), dt_s);
@@ -190,7 +190,7 @@ class Banner final : public Scene {
     }
 
     // The hybrid's cloth is in the air as its own frame has it, which turns with the arm.
-    const auto [sine, cosine] = sin_cos(static_cast<float>(turned_rad_));
+    const auto [sine, cosine] = math::sin_cos(static_cast<float>(turned_rad_));
     const ClothTurn turn{static_cast<double>(sine), static_cast<double>(cosine)};
     std::fill(gusts_.begin(), gusts_.end(), waves_.values()[0] * static_cast<float>(1.0 / ClothNoise::kLargest));
     cloth_.blow(turn.cosine * wind_.east_m_s() + turn.sine * wind_.south_m_s(),
@@ -221,7 +221,7 @@ class Banner final : public Scene {
                 .step_m = knot_link_m_,
                 .rows = cloth_.knots().links + 2 + static_cast<std::size_t>(kSlant * 2.0 * width_m_ / knot_link_m_),
                 .across_m = kOneColumn},
-               setup.seed ^ stream_id("banner noise"), setup.row),
+               setup.seed ^ math::stream_id("banner noise"), setup.row),
         gusts_(cloth_.knots().stride),
         row_above_{gusts_, gusts_},
         row_here_{gusts_, gusts_} {
@@ -244,7 +244,7 @@ class Banner final : public Scene {
     const double per_speed_s_m = speed_m_s > 0.0 ? 1.0 / speed_m_s : 0.0;
     const double toward_east = wind_.east_m_s() * per_speed_s_m;
     const double toward_south = wind_.south_m_s() * per_speed_s_m;
-    const auto [sine, cosine] = sin_cos(static_cast<float>(turned_rad_));
+    const auto [sine, cosine] = math::sin_cos(static_cast<float>(turned_rad_));
     const double arm_east = static_cast<double>(cosine) * arm_.east - static_cast<double>(sine) * arm_.south;
     const double arm_south = static_cast<double>(sine) * arm_.east + static_cast<double>(cosine) * arm_.south;
     const double ahead = arm_east * toward_east + arm_south * toward_south;
@@ -272,11 +272,11 @@ class Banner final : public Scene {
     const auto half_step_m = static_cast<float>(0.5 * width_m_ / static_cast<double>(cloth_.knots().columns - 1));
     float ahead_m = 0.0F;
     float aside_m = 0.0F;
-    SinCos<float> before{0.0F, 1.0F};  // on the pole
+    math::SinCos<float> before{0.0F, 1.0F};  // on the pole
     for (std::size_t i = 2; i < from_pole_.size(); ++i) {
       const float* const near = waves + ahead_rows_[i];
       const float noise = near[0] + ahead_part_[i] * (near[1] - near[0]);
-      const auto here = sin_cos(from_pole_[i] * growth * (bow + wave * noise));
+      const auto here = math::sin_cos(from_pole_[i] * growth * (bow + wave * noise));
       ahead_m += half_step_m * (before.cos + here.cos);
       aside_m += half_step_m * (before.sin + here.sin);
       row_here_.ahead_m[i] = ahead_m;
@@ -309,9 +309,9 @@ class Banner final : public Scene {
   std::vector<float> gusts_;
   Row row_above_, row_here_;
 
-  CriticallyDamped cross_;   ///< -1 to 1: from which side the wind fills the belly
-  ClothSwing vane_;          ///< its rate alone
-  double turned_rad_ = 0.0;  ///< of the arm, clockwise from rest
+  math::CriticallyDamped cross_;  ///< -1 to 1: from which side the wind fills the belly
+  ClothSwing vane_;               ///< its rate alone
+  double turned_rad_ = 0.0;       ///< of the arm, clockwise from rest
 };
 
 const std::array kRetiredBannerParameters = {
@@ -337,4 +337,4 @@ const SceneDescription kBannerScene = {
         },
     .retired = kRetiredBannerParameters};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -1,9 +1,9 @@
 #include "engine/scenes/blank_strands.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
-StrandSkeleton blank_strands(std::size_t strands, std::size_t links) {
-  StrandSkeleton skeleton;
+pose::StrandSkeleton blank_strands(std::size_t strands, std::size_t links) {
+  pose::StrandSkeleton skeleton;
   skeleton.strand_count = strands;
   skeleton.links_per_strand = links;
   for (auto* zeros : {&skeleton.root_x_m, &skeleton.root_y_m, &skeleton.root_z_m, &skeleton.rest_x, &skeleton.rest_z,
@@ -15,4 +15,4 @@ StrandSkeleton blank_strands(std::size_t strands, std::size_t links) {
   return skeleton;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -13,7 +13,7 @@
 #include "engine/operators/sample_job.hpp"
 #include "engine/operators/shift_job.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 // The second tile against the first: turned by one radian (its cosine and sine, written out so that no library's
@@ -26,7 +26,7 @@ bool is_lone_band(const CarriedNoiseSpec& spec) {
   return spec.shortest_m > 0.0 && !spec.has_two_tiles;
 }
 
-double largest_difference(const NoiseTile2& a, const NoiseTile2& b) {
+double largest_difference(const noise::NoiseTile2& a, const noise::NoiseTile2& b) {
   float largest = 0.0F;
   for (std::size_t i = 0; i < a.values.size(); ++i) largest = std::max(largest, std::abs(a.values[i] - b.values[i]));
   return static_cast<double>(largest);
@@ -37,14 +37,14 @@ void add_phases(std::span<const float> x_m, std::span<const float> z_m, double c
   for (std::size_t i = 0; i < x_m.size(); ++i) {
     const auto at_x = static_cast<double>(x_m[i]);
     const auto at_z = static_cast<double>(z_m[i]);
-    x.push_back(torus_phase(cos * at_x - sin * at_z, period_m));
-    z.push_back(torus_phase(sin * at_x + cos * at_z, period_m));
+    x.push_back(noise::torus_phase(cos * at_x - sin * at_z, period_m));
+    z.push_back(noise::torus_phase(sin * at_x + cos * at_z, period_m));
   }
 }
 
 }  // namespace
 
-double steepest_slope(const NoiseTile2& tile, double period_m) noexcept {
+double steepest_slope(const noise::NoiseTile2& tile, double period_m) noexcept {
   float along_x = 0.0F;
   float along_z = 0.0F;
   for (std::size_t z = 0; z < tile.size; ++z) {
@@ -59,15 +59,15 @@ double steepest_slope(const NoiseTile2& tile, double period_m) noexcept {
 
 CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::uint64_t which, double period_m) {
   const bool is_band = spec.shortest_m > 0.0;
-  NoiseTile2 noise = make_noise_2d({.size = spec.samples,
-                                    .beta = spec.beta,
-                                    .meaning = spec.meaning,
-                                    .seed = spec.seed ^ which,
-                                    .from_cycles = period_m / spec.longest_m,
-                                    .to_cycles = period_m / spec.shortest_m})
-                         .value();
-  if (is_band) scale_to_unit_reading(noise);
-  Tile tile{.noise = is_band ? BandLimitedTile2(std::move(noise), 1) : BandLimitedTile2(std::move(noise)),
+  noise::NoiseTile2 noise = noise::make_noise_2d({.size = spec.samples,
+                                                  .beta = spec.beta,
+                                                  .meaning = spec.meaning,
+                                                  .seed = spec.seed ^ which,
+                                                  .from_cycles = period_m / spec.longest_m,
+                                                  .to_cycles = period_m / spec.shortest_m})
+                                .value();
+  if (is_band) noise::scale_to_unit_reading(noise);
+  Tile tile{.noise = is_band ? noise::BandLimitedTile2(std::move(noise), 1) : noise::BandLimitedTile2(std::move(noise)),
             .period_m = period_m};
   for (std::size_t level = 0; level < tile.noise.level_count(); ++level) {
     tile.steepest_per_m.push_back(steepest_slope(tile.noise.level(level), period_m));
@@ -79,11 +79,12 @@ CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::ui
 }
 
 CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
-    : turn_cos_(is_lone_band(spec) ? LineCut::kEast : 1.0),
-      turn_sin_(is_lone_band(spec) ? LineCut::kSouth : 0.0),
+    : turn_cos_(is_lone_band(spec) ? noise::LineCut::kEast : 1.0),
+      turn_sin_(is_lone_band(spec) ? noise::LineCut::kSouth : 0.0),
       weight_(spec.has_two_tiles ? 0x1.6a09e6p-1F : 1.0F) {  // 1 / sqrt(2): variances add up to 1
-  tiles_.push_back(make_tile(spec, stream_id("first tile"), spec.period_m));
-  if (spec.has_two_tiles) tiles_.push_back(make_tile(spec, stream_id("second tile"), spec.period_m * kPeriodRatio));
+  tiles_.push_back(make_tile(spec, math::stream_id("first tile"), spec.period_m));
+  if (spec.has_two_tiles)
+    tiles_.push_back(make_tile(spec, math::stream_id("second tile"), spec.period_m * kPeriodRatio));
 
   const auto weight = static_cast<double>(weight_);
   for (const Tile& tile : tiles_) {
@@ -130,11 +131,11 @@ void CarriedNoise::shift(double toward_x_m_s, double toward_z_m_s, double dt_s) 
   double east_m_s = turn_cos_ * toward_x_m_s - turn_sin_ * toward_z_m_s;
   double south_m_s = turn_sin_ * toward_x_m_s + turn_cos_ * toward_z_m_s;
   for (Tile& tile : tiles_) {
-    ShiftJob{.wind_east_m_s = east_m_s,
-             .wind_south_m_s = south_m_s,
-             .dt_s = dt_s,
-             .period_m = tile.period_m,
-             .offset = &tile.offset}
+    operators::ShiftJob{.wind_east_m_s = east_m_s,
+                        .wind_south_m_s = south_m_s,
+                        .dt_s = dt_s,
+                        .period_m = tile.period_m,
+                        .offset = &tile.offset}
         .run();
     tile.band = tile.noise.pick(speed_m_s, 1.0 / dt_s, tile.period_m);
     east_m_s = kTurnCos * toward_x_m_s - kTurnSin * toward_z_m_s;
@@ -145,28 +146,29 @@ void CarriedNoise::shift(double toward_x_m_s, double toward_z_m_s, double dt_s) 
 void CarriedNoise::sample(const CarriedPlaces& places, SimdRow row, std::span<float> out, float scale, float bias,
                           float low, float high, std::size_t first) const noexcept {
   // A tile is one layer, and two while the wind is so strong that its finest waves fade out.
-  std::array<NoiseLayer, SampleJob::kMaxLayers> layers;
+  std::array<operators::NoiseLayer, operators::SampleJob::kMaxLayers> layers;
   std::size_t count = 0;
   for (const Tile& tile : tiles_) {
     const bool is_first = &tile == tiles_.data();
-    NoiseLayer layer{.tile = &tile.noise.level(tile.band.level),
-                     .place_x = std::span(is_first ? places.first_x : places.second_x).subspan(first, out.size()),
-                     .place_z = std::span(is_first ? places.first_z : places.second_z).subspan(first, out.size()),
-                     .offset = tile.offset.phase(),
-                     .weight = weight_ * (1.0F - tile.band.weight)};
+    operators::NoiseLayer layer{
+        .tile = &tile.noise.level(tile.band.level),
+        .place_x = std::span(is_first ? places.first_x : places.second_x).subspan(first, out.size()),
+        .place_z = std::span(is_first ? places.first_z : places.second_z).subspan(first, out.size()),
+        .offset = tile.offset.phase(),
+        .weight = weight_ * (1.0F - tile.band.weight)};
     layers[count++] = layer;
     if (tile.band.weight == 0.0F) continue;
     layer.tile = &tile.noise.level(tile.band.next);
     layer.weight = weight_ * tile.band.weight;
     layers[count++] = layer;
   }
-  SampleJob{.layers = std::span(layers).first(count),
-            .scale = scale,
-            .bias = bias,
-            .low = low,
-            .high = high,
-            .row = row,
-            .out = out}
+  operators::SampleJob{.layers = std::span(layers).first(count),
+                       .scale = scale,
+                       .bias = bias,
+                       .low = low,
+                       .high = high,
+                       .row = row,
+                       .out = out}
       .run();
 }
 
@@ -191,4 +193,4 @@ double CarriedNoise::largest_change(double speed_m_s, double step_m_s, double dt
   return std::min(change, highest_ - lowest_);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

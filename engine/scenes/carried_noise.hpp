@@ -11,14 +11,14 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// Parameters of a carried noise.
 struct CarriedNoiseSpec {
   double period_m = 256.0;    ///< of the first tile, above 0
   std::size_t samples = 512;  ///< an edge of each tile: a power of two
   double beta = 5.0 / 3.0;
-  BetaMeaning meaning = BetaMeaning::kTransect;
+  noise::BetaMeaning meaning = noise::BetaMeaning::kTransect;
   bool has_two_tiles = true;  ///< false: one tile, as in the paper
   /// Only waves of these lengths, at least an octave apart, metres; 0 and infinity: all that the tile has. A band has
   /// variance 1 as it is read, and is not cut by the tick rate: keep its shortest waves above twice what a tick passes.
@@ -28,7 +28,7 @@ struct CarriedNoiseSpec {
 };
 
 /// The steepest slope of a tile of `period_m` read bilinearly, in any direction, a metre.
-double steepest_slope(const NoiseTile2& tile, double period_m) noexcept;
+double steepest_slope(const noise::NoiseTile2& tile, double period_m) noexcept;
 
 /// Where many things stand, on each tile of a CarriedNoise: phases, one element a thing.
 struct CarriedPlaces {
@@ -80,10 +80,10 @@ class CarriedNoise {
 
  private:
   struct Tile {
-    BandLimitedTile2 noise;
+    noise::BandLimitedTile2 noise;
     double period_m = 1.0;
-    TorusOffset offset = {};
-    BandPick band = {};
+    noise::TorusOffset offset = {};
+    noise::BandPick band = {};
     std::vector<double> steepest_per_m = {};  ///< of each level
     double largest_octave = 0.0;              ///< the most by which two neighbouring levels differ
   };
@@ -96,4 +96,4 @@ class CarriedNoise {
   double lowest_ = 0.0, highest_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

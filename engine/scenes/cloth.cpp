@@ -14,7 +14,7 @@
 // and by the turn times its distance from the axis, which is that of its fixed joint and its thread's length at most.
 // And never by more than from one end of its reach to the other, twice that distance.
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// Links in a band: its leans take about 27 kB of 200 columns, which the nearest cache holds.
@@ -37,10 +37,10 @@ double edge_length_m(const ClothEdge& edge) {
   return std::hypot(way_m(edge.x_m), way_m(edge.y_m), way_m(edge.z_m));
 }
 
-ClothKnots cloth_knots(const ClothSpec& spec, const ClothEdge& edge) {
+operators::ClothKnots cloth_knots(const ClothSpec& spec, const ClothEdge& edge) {
   const auto wanted = static_cast<std::size_t>(std::ceil(edge_length_m(edge) / spec.knots_across_m));
   const auto links = static_cast<std::size_t>(std::ceil(spec.length_m / spec.knots_along_m));
-  const std::size_t stride = padded_to_blocks(std::clamp<std::size_t>(wanted + 1, 2, edge.columns) + 2);
+  const std::size_t stride = pose::padded_to_blocks(std::clamp<std::size_t>(wanted + 1, 2, edge.columns) + 2);
   return {.columns = std::clamp<std::size_t>(wanted + 1, 2, edge.columns),
           .links = std::clamp<std::size_t>(links, 1, spec.rows - 1),
           .stride = stride};
@@ -52,8 +52,9 @@ std::vector<float> from_first(const std::vector<float>& at_m) {
   return way_m;
 }
 
-GridSkeleton cloth_skeleton(const ClothSpec& spec, const ClothEdge& edge, const ClothThreads& threads) {
-  GridSkeleton grid;
+pose::GridSkeleton cloth_skeleton(const ClothSpec& spec, const ClothEdge& edge,
+                                  const operators::ClothThreads& threads) {
+  pose::GridSkeleton grid;
   grid.columns = edge.columns;
   grid.rows = spec.rows;
   grid.is_first_column_fixed = spec.is_first_column_fixed;
@@ -77,18 +78,18 @@ GridSkeleton cloth_skeleton(const ClothSpec& spec, const ClothEdge& edge, const 
   return grid;
 }
 
-ClothThreads cloth_threads(const ClothSpec& spec, const ClothEdge& edge) {
+operators::ClothThreads cloth_threads(const ClothSpec& spec, const ClothEdge& edge) {
   std::vector<float> lean = edge.lean_east;
   lean.insert(lean.end(), edge.lean_south.begin(), edge.lean_south.end());
   const std::size_t links = spec.rows - 1;
-  return make_threads(links, static_cast<float>(spec.length_m / static_cast<double>(links)), lean);
+  return operators::make_threads(links, static_cast<float>(spec.length_m / static_cast<double>(links)), lean);
 }
 
 }  // namespace
 
 ClothEdge::ClothEdge(std::size_t column_count)
     : columns(column_count),
-      x_m(padded_to_blocks(column_count)),
+      x_m(pose::padded_to_blocks(column_count)),
       y_m(x_m.size()),
       z_m(x_m.size()),
       lean_east(x_m.size()),
@@ -112,7 +113,7 @@ Cloth::Cloth(const ClothSpec& spec, const ClothEdge& edge, SimdRow row)
       air_south_m_s_(coarse_.stride(), 0.0F),
       skeleton_(cloth_skeleton(spec, edge, threads_)) {
   turned_.resize(std::max(knots_.size(), coarse_.knots().size()));
-  pose_ = rest_pose(skeleton_);
+  pose_ = pose::rest_pose(skeleton_);
 }
 
 float Cloth::wave_share() const noexcept {
@@ -162,15 +163,15 @@ std::span<const float> Cloth::turned(std::span<const float> leans, std::size_t s
 void Cloth::project(double dt_s, double rest_kept, ClothTurn turn) noexcept {
   const bool is_hybrid = spec_.hybrid > 0.0;
   if (is_hybrid) {
-    ClothDynamicsJob{.air_east_m_s = air_east_m_s_,
-                     .air_south_m_s = air_south_m_s_,
-                     .dt_s = dt_s,
-                     .normal_drag_per_m = spec_.normal_drag_per_m,
-                     .skin_drag_per_m = spec_.skin_drag_per_m,
-                     .across_stiffness_s2 = spec_.across_stiffness_s2,
-                     .largest_lean_per_s = kLargestLean_per_s,
-                     .row = row_,
-                     .cloth = &coarse_}
+    operators::ClothDynamicsJob{.air_east_m_s = air_east_m_s_,
+                                .air_south_m_s = air_south_m_s_,
+                                .dt_s = dt_s,
+                                .normal_drag_per_m = spec_.normal_drag_per_m,
+                                .skin_drag_per_m = spec_.skin_drag_per_m,
+                                .across_stiffness_s2 = spec_.across_stiffness_s2,
+                                .largest_lean_per_s = kLargestLean_per_s,
+                                .row = row_,
+                                .cloth = &coarse_}
         .run();
     dynamics_.spread(turned(coarse_.lean(), coarse_.stride(), turn), row_);
   }
@@ -198,18 +199,18 @@ void Cloth::project(double dt_s, double rest_kept, ClothTurn turn) noexcept {
   // From the fixed edge on, band by band.
   for (std::size_t link = 0; link < threads_.links; link += kBandLinks) {
     const std::span band = std::span(links_).first(std::min(kBandLinks, threads_.links - link) * 2 * stride);
-    ClothLineJob{.spline = &spline_, .base = base_, .first_link = link, .row = row_, .out = band}.run();
+    operators::ClothLineJob{.spline = &spline_, .base = base_, .first_link = link, .row = row_, .out = band}.run();
     if (is_hybrid) {
-      ClothSplineJob{
+      operators::ClothSplineJob{
           .spline = &dynamics_, .share = static_cast<float>(spec_.hybrid), .first_link = link, .row = row_, .out = band}
           .run();
     }
-    ClothProjectionJob{.threads = &threads_,
-                       .first_link = link,
-                       .lean = band,
-                       .edge_m = edge_m_,
-                       .row = row_,
-                       .pose = std::get_if<GridPose>(&pose_)}
+    operators::ClothProjectionJob{.threads = &threads_,
+                                  .first_link = link,
+                                  .lean = band,
+                                  .edge_m = edge_m_,
+                                  .row = row_,
+                                  .pose = std::get_if<pose::GridPose>(&pose_)}
         .run();
   }
 }
@@ -244,4 +245,4 @@ double drag_per_m(double half_speed_m_s) noexcept {
   return kGravity_m_s2 / (half_speed_m_s * half_speed_m_s);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

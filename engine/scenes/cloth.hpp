@@ -11,7 +11,7 @@
 #include "engine/pose/skeleton.hpp"
 #include "engine/scenes/scene.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// A cloth as it hangs at rest: the joints of its fixed edge, in the world, and how the thread from each leans. All
 /// vectors have a value a column, whole blocks of them.
@@ -59,11 +59,11 @@ class Cloth {
  public:
   Cloth(const ClothSpec& spec, const ClothEdge& edge, SimdRow row);
 
-  const Skeleton& skeleton() const noexcept { return skeleton_; }
-  const Pose& pose() const noexcept { return pose_; }
+  const pose::Skeleton& skeleton() const noexcept { return skeleton_; }
+  const pose::Pose& pose() const noexcept { return pose_; }
 
   /// The coarse grid.
-  const ClothKnots& knots() const noexcept { return knots_; }
+  const operators::ClothKnots& knots() const noexcept { return knots_; }
   /// Where on the fixed edge a column of the grid hangs, of stride: 0 with the first thread, 1 with the last; ghosts
   /// are beyond.
   double across(std::size_t knot_column) const noexcept {
@@ -101,20 +101,20 @@ class Cloth {
 
   ClothSpec spec_;
   SimdRow row_;
-  ClothThreads threads_;
-  ClothKnots knots_;
+  operators::ClothThreads threads_;
+  operators::ClothKnots knots_;
   std::vector<float> lean_;  ///< of the knots
-  ClothSpline spline_;
+  operators::ClothSpline spline_;
   std::vector<float> turned_;               ///< leans of a coarse grid, in the world
   std::vector<float> base_;                 ///< what is kept of the rest lean
   std::vector<float> links_;                ///< the leans of a band of links
   std::vector<float> from_x_m_, from_z_m_;  ///< the fixed edge at rest, from its first joint on
   std::vector<float> edge_m_;               ///< the fixed edge's offset: where it may turn
-  CoarseCloth coarse_;
-  ClothSpline dynamics_;
+  operators::CoarseCloth coarse_;
+  operators::ClothSpline dynamics_;
   std::vector<float> air_east_m_s_, air_south_m_s_;
-  Pose pose_;
-  Skeleton skeleton_;
+  pose::Pose pose_;
+  pose::Skeleton skeleton_;
 };
 
 /// A place or direction of a scene's own, in metres east and south of its origin, turned by its heading.
@@ -130,4 +130,4 @@ double lean_of_deg(double angle_deg) noexcept;
 /// The drag that holds a hanging cloth half way up, at 45 degrees, in a wind of this speed.
 double drag_per_m(double half_speed_m_s) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 // The tiles are read along no simple slope, so that a cloth whose waves always run the same way sees none come round:
@@ -51,4 +51,4 @@ double ClothNoise::largest_change(double speed_m_s, double dt_s) const noexcept 
   return std::min(largest_read_change(speed_m_s, dt_s), 2.0 * kLargest);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -7,7 +7,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/scenes/carried_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// A noise of one band of wavelengths (CarriedNoise::band) that is carried over a cloth, or over the ground below it.
 /// Mean 0. Its coordinates are the caller's, metres. Allocates when it is made and in places(). Thread-safe: no.
@@ -49,4 +49,4 @@ class ClothNoise {
   CarriedNoise noise_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -6,7 +6,7 @@
 
 #include "engine/math/critically_damped.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// How strongly a cloth flutters, 0 to 1: by u^2 / (u^2 + half^2) of the wind u, which grows with the square of a weak
 /// wind and never reaches 1; a quarter of a second late (2 / omega), for waves need some time to grow.
@@ -35,7 +35,7 @@ class ClothStrength {
   static constexpr double kOmega_rad_s = 8.0;
   static constexpr double kAtRest = 1e-9;
 
-  CriticallyDamped follower_;
+  math::CriticallyDamped follower_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

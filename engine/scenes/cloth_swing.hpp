@@ -5,7 +5,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// A damped oscillator whose frequency and damping may change while it swings: q'' + c q' + w^2 (q - target) = 0,
 /// stepped by the implicit midpoint rule, which is stable for any step and takes no energy of its own from the swing.
@@ -47,4 +47,4 @@ struct ClothSwing {
   static constexpr double kAtRest = 1e-6;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

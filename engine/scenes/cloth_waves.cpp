@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// Brings the difference over half a wave back to variance 1: it is 2 - 2 J0(pi) of a noise whose waves have all
@@ -47,4 +47,4 @@ double ClothWaves::largest_change(double speed_m_s, double dt_s) const noexcept 
   return std::min(of_both, 2.0 * ClothNoise::kLargest);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -6,7 +6,7 @@
 
 #include "engine/scenes/cloth_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// Where the waves of a cloth are read: rows at even steps of the way that they run, in each of them the same columns.
 struct ClothWaveGrid {
@@ -44,4 +44,4 @@ class ClothWaves {
   std::vector<float> values_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -11,7 +11,7 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/scenes/blank_strands.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// Large, as the paper has it for fur: smooth from hair to hair.
@@ -35,12 +35,12 @@ Vector unit(const Vector& a) {
   return scaled(1.0 / std::sqrt(dot(a, a)), a);
 }
 
-NoiseTile2 coat_noise(const CoatSpec& spec, std::string_view property) {
-  const std::size_t size = std::bit_ceil(std::max({spec.hairs_along, spec.hairs_around, kMinNoiseSize}));
-  return make_noise_2d({.size = size,
-                        .beta = kCoatBeta,
-                        .meaning = BetaMeaning::kRadial,
-                        .seed = spec.seed ^ stream_id(property)})
+noise::NoiseTile2 coat_noise(const CoatSpec& spec, std::string_view property) {
+  const std::size_t size = std::bit_ceil(std::max({spec.hairs_along, spec.hairs_around, noise::kMinNoiseSize}));
+  return noise::make_noise_2d({.size = size,
+                               .beta = kCoatBeta,
+                               .meaning = noise::BetaMeaning::kRadial,
+                               .seed = spec.seed ^ math::stream_id(property)})
       .value();
 }
 
@@ -52,10 +52,10 @@ Coat make_coat(const CoatSpec& spec) {
   for (auto* array : {&coat.place_x_m, &coat.place_z_m, &coat.normal_x, &coat.normal_z, &coat.flexibility}) {
     array->assign(coat.skeleton.padded_count(), 0.0F);
   }
-  const NoiseTile2 parting_noise = coat_noise(spec, "coat parting");
-  const NoiseTile2 length_noise = coat_noise(spec, "coat length");
-  const NoiseTile2 lie_noise = coat_noise(spec, "coat lie");
-  const RandomStream random(spec.seed, stream_id("coat stray"));
+  const noise::NoiseTile2 parting_noise = coat_noise(spec, "coat parting");
+  const noise::NoiseTile2 length_noise = coat_noise(spec, "coat length");
+  const noise::NoiseTile2 lie_noise = coat_noise(spec, "coat lie");
+  const math::RandomStream random(spec.seed, math::stream_id("coat stray"));
 
   const double a_m = 0.5 * spec.body_length_m;
   const double b_m = 0.5 * spec.body_height_m;
@@ -87,7 +87,7 @@ Coat make_coat(const CoatSpec& spec) {
     const Vector rest = sum(scaled(std::cos(lie_rad), normal), scaled(std::sin(lie_rad), combed));
     const Vector curl = sum(scaled(-std::sin(lie_rad), normal), scaled(std::cos(lie_rad), combed));
 
-    StrandSkeleton& skeleton = coat.skeleton;
+    pose::StrandSkeleton& skeleton = coat.skeleton;
     skeleton.root_x_m[hair] = static_cast<float>(root[0]);
     skeleton.root_y_m[hair] = static_cast<float>(root[1] + b_m);
     skeleton.root_z_m[hair] = static_cast<float>(root[2]);
@@ -113,4 +113,4 @@ Coat make_coat(const CoatSpec& spec) {
   return coat;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

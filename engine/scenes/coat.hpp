@@ -6,7 +6,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// Parameters of a coat of fur, and of the body under it: an ellipsoid that lies along x, resting on the ground.
 struct CoatSpec {
@@ -26,7 +26,7 @@ struct CoatSpec {
 
 /// Hairs on a body, where each reads the wind, and how easily each is bent.
 struct Coat {
-  StrandSkeleton skeleton;
+  pose::StrandSkeleton skeleton;
   std::vector<float> place_x_m, place_z_m;  ///< on the body, unrolled: along it, and around it from its ridge to +z
   std::vector<float> normal_x, normal_z;    ///< of the skin, outward
   std::vector<float> flexibility;           ///< 1 on average. padded_count() elements, like all here
@@ -38,4 +38,4 @@ struct Coat {
 /// Thread-safe: yes.
 Coat make_coat(const CoatSpec& spec);
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

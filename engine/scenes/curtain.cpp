@@ -39,7 +39,7 @@
 // the sway's lean, below 1, and w half the hem's angle. So a lean changes by at most
 //   0.4 sqrt(2) r (1 + 2 * 2.2 w) + 2 w d (1 + 0.2155 delay kLargestPull_per_s).
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 const std::array kCurtainParameters = {
@@ -146,7 +146,7 @@ ClothEdge curtain_edge(const CurtainSettings& settings, const SceneSetup& setup)
   const double height_m = settings.height_m;
   const double depth_m = 0.5 * settings.fold_depth_m;
   const double pitch_m = settings.width_m / static_cast<double>(edge.columns - 1);
-  const RandomStream random(setup.seed, stream_id("curtain folds"));
+  const math::RandomStream random(setup.seed, math::stream_id("curtain folds"));
   const double first_phase_rad = 2.0 * kPi * random.uniform(0);
   const double second_phase_rad = 2.0 * kPi * random.uniform(1);
   for (std::size_t column = 0; column < edge.stride(); ++column) {
@@ -175,8 +175,8 @@ class Curtain final : public Scene {
   Curtain(const CurtainSettings& settings, const SceneSetup& setup)
       : Curtain(curtain_edge(settings, setup), settings, setup) {}
 
-  const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
-  const Pose& pose() const noexcept override { return cloth_.pose(); }
+  const pose::Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
+  const pose::Pose& pose() const noexcept override { return cloth_.pose(); }
 
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double pull_step = 0.4 * std::numbers::sqrt2 * kLargestPull_per_s * dt_s;
@@ -187,7 +187,7 @@ class Curtain final : public Scene {
         dt_s, pull_step * (1.0 + 2.0 * ClothNoise::kLargest * flutter_) + 2.0 * flutter_ * flutter_step * later);
   }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
     const double speed_m_s = wind_.speed_m_s();
@@ -230,12 +230,12 @@ class Curtain final : public Scene {
 
     // The flutter runs down, sooner where the wind tightens the cloth.
     history_.push(flutter_now_, dt_s);
-    PropagationJob{.history = &history_,
-                   .base = still_,
-                   .growth = growth_,
-                   .travel_time_s = calm_delay_s_ / std::sqrt(std::sqrt(1.0 + mean * mean)),
-                   .row = row_,
-                   .out = flutter_down_}
+    operators::PropagationJob{.history = &history_,
+                              .base = still_,
+                              .growth = growth_,
+                              .travel_time_s = calm_delay_s_ / std::sqrt(std::sqrt(1.0 + mean * mean)),
+                              .row = row_,
+                              .out = flutter_down_}
         .run();
 
     const auto along_east = static_cast<float>(along_.east);
@@ -282,9 +282,9 @@ class Curtain final : public Scene {
         along_(turned_by_heading(setup.placement, 1.0, 0.0)),
         wind_(setup.placement, setup.gusts),
         gust_noise_(settings.wave_length_m / kCurtainBand, settings.wave_length_m,
-                    setup.seed ^ stream_id("curtain gusts"), setup.row),
+                    setup.seed ^ math::stream_id("curtain gusts"), setup.row),
         hem_noise_(kHemWaves * settings.wave_length_m / kCurtainBand, kHemWaves * settings.wave_length_m,
-                   setup.seed ^ stream_id("curtain noise"), setup.row),
+                   setup.seed ^ math::stream_id("curtain noise"), setup.row),
         cloth_(curtain_spec(settings), edge, setup.row),
         gust_(cloth_.knots().stride),
         flutter_now_(gust_.size()),
@@ -347,7 +347,7 @@ class Curtain final : public Scene {
   std::vector<ClothSwing> first_, second_;
   ClothSwing sideways_;
   std::vector<float> still_;
-  PropagationHistory history_;
+  operators::PropagationHistory history_;
   std::vector<float> growth_, shape_;  ///< each knot link's
   std::vector<float> flutter_down_;    ///< each knot's
 };
@@ -373,4 +373,4 @@ const SceneDescription kCurtainScene = {
         },
     .retired = kRetiredCurtainParameters};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

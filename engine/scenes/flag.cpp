@@ -43,7 +43,7 @@
 // What is kept of the rest lean is cos^2(lift), which changes by at most 2 a unit of l. So a lean changes by at most
 //   R dt (1 + 2 rest) + G A (d_n + 2.2 d_S).
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 const std::array kFlagParameters = {
@@ -138,7 +138,7 @@ ClothSpec flag_spec(const FlagSettings& settings) {
 ClothEdge flag_edge(const FlagSettings& settings, const SceneSetup& setup) {
   ClothEdge edge(settings.columns);
   const double pitch_m = settings.hoist_m / static_cast<double>(edge.columns - 1);
-  const RandomStream random(setup.seed, stream_id("flag folds"));
+  const math::RandomStream random(setup.seed, math::stream_id("flag folds"));
   const double phase_rad = 2.0 * kPi * random.uniform(0);
   for (std::size_t column = 0; column < edge.stride(); ++column) {
     const double along = static_cast<double>(column) / static_cast<double>(edge.columns - 1);
@@ -159,20 +159,20 @@ class Flag final : public Scene {
  public:
   Flag(const FlagSettings& settings, const SceneSetup& setup) : Flag(flag_edge(settings, setup), settings, setup) {}
 
-  const Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
-  const Pose& pose() const noexcept override { return cloth_.pose(); }
+  const pose::Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
+  const pose::Pose& pose() const noexcept override { return cloth_.pose(); }
 
   double largest_joint_step_m(double dt_s) const noexcept override {
-    const double lift_step = OscillatorStep::largest_rate_per_s(lift_hz_, kFlagLiftDamping) * dt_s;
+    const double lift_step = operators::OscillatorStep::largest_rate_per_s(lift_hz_, kFlagLiftDamping) * dt_s;
     const double noise_step = waves_.largest_change(kFastestWave_m_s, dt_s) +
                               edge_flutter_ * edge_waves_.largest_change(kFastestWave_m_s, dt_s) +
                               (1.0 + edge_flutter_) * ClothNoise::kLargest * ClothStrength::largest_step(dt_s);
-    const double longest = OscillatorStep::largest_gain(kFlagLiftDamping);
+    const double longest = operators::OscillatorStep::largest_gain(kFlagLiftDamping);
     return cloth_.largest_joint_step_m(dt_s,
                                        lift_step * (1.0 + 2.0 * longest_rest_) + longest * flutter_rad_ * noise_step);
   }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
     const double speed_m_s = std::min(wave_speed_ * wind_.speed_m_s(), kFastestWave_m_s);
@@ -192,7 +192,7 @@ class Flag final : public Scene {
     const double tangent = s * s;
     const double half_tangent = tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
     const double per_speed = speed_m_s > 0.0 ? half_tangent / speed_m_s : 0.0;
-    const OscillatorStep step = OscillatorStep::exact(lift_hz_, kFlagLiftDamping, dt_s);
+    const operators::OscillatorStep step = operators::OscillatorStep::exact(lift_hz_, kFlagLiftDamping, dt_s);
     lift_east_.step(wind_.east_m_s() * per_speed, step);
     lift_south_.step(wind_.south_m_s() * per_speed, step);
 
@@ -215,7 +215,7 @@ class Flag final : public Scene {
       float* const lean_east = lean.data() + link * 2 * stride;
       float* const lean_south = lean_east + stride;
       for (std::size_t i = 0; i < stride; ++i) {
-        const auto [sine, cosine] = sin_cos(angle_rad_[i]);
+        const auto [sine, cosine] = math::sin_cos(angle_rad_[i]);
         const float ahead = sway_share + wave_share * (cosine - 1.0F);
         const float aside = wave_share * sine;
         lean_east[i] = ahead * east - aside * south;
@@ -238,7 +238,7 @@ class Flag final : public Scene {
     double value = 0.0;
     double rate_per_s = 0.0;
 
-    void step(double target, const OscillatorStep& step) noexcept {
+    void step(double target, const operators::OscillatorStep& step) noexcept {
       constexpr double kAtRest = 1e-9;
       const double distance = value - target;
       value = target + step.q_from_e * distance + step.q_from_v * rate_per_s;
@@ -259,9 +259,9 @@ class Flag final : public Scene {
         cloth_(flag_spec(settings), edge, setup.row),
         down_m_(heights_m(cloth_, settings.hoist_m)),
         waves_(settings.wave_length_m / kFlagBand, settings.wave_length_m, wave_grid(settings, 0.0),
-               setup.seed ^ stream_id("flag noise"), setup.row),
+               setup.seed ^ math::stream_id("flag noise"), setup.row),
         edge_waves_(kFlagEdgeWaves * settings.wave_length_m / kFlagBand, kFlagEdgeWaves * settings.wave_length_m,
-                    wave_grid(settings, kFlagEdgeBegins), setup.seed ^ stream_id("flag edge noise"), setup.row),
+                    wave_grid(settings, kFlagEdgeBegins), setup.seed ^ math::stream_id("flag edge noise"), setup.row),
         angle_rad_(cloth_.knots().stride),
         gusts_(cloth_.knots().stride) {
     for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
@@ -333,4 +333,4 @@ const SceneDescription kFlagScene = {
         },
     .retired = kRetiredFlagParameters};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -43,7 +43,7 @@
 // the layers' largest change while they rise by rise_speed dt, what a puff of 2 pi f dt does, and what catching fire
 // does, w dt / e of the whole range of thresholds.
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// A tile is crossed by the rising gas in so many seconds: its samples are 0.04 s apart, so that nothing is finer than
@@ -167,10 +167,10 @@ std::array<NoiseLayerSpec, 2> flame_layers(const FlameSettings& settings, std::u
         .period_x_m = longer * period_m,
         .period_z_m = longer * period_m,
         .weight = weight,
-        .turn_cos = LineCut::kEast,
-        .turn_sin = LineCut::kSouth};
+        .turn_cos = noise::LineCut::kEast,
+        .turn_sin = noise::LineCut::kSouth};
   };
-  return {layer(stream_id("flame"), 1.0, 0.8F), layer(stream_id("flame tongues"), kSecondFaster, 0.6F)};
+  return {layer(math::stream_id("flame"), 1.0, 0.8F), layer(math::stream_id("flame tongues"), kSecondFaster, 0.6F)};
 }
 
 LayeredNoise flame_noise(const FlameBody& body, const FlameSettings& settings, double across, std::uint64_t seed) {
@@ -181,12 +181,14 @@ LayeredNoise flame_noise(const FlameBody& body, const FlameSettings& settings, d
 }
 
 /// A noise for the puffs' pace, with waves of one to twelve seconds and more, for it is read along a line.
-NoiseTile2 pace_of_puffs(std::uint64_t seed) {
-  NoiseTile2 pace =
-      make_noise_2d(
-          {.size = 128, .beta = 1.0, .seed = seed ^ stream_id("flame pace"), .from_cycles = 4.0, .to_cycles = 48.0})
-          .value();
-  scale_to_unit_reading(pace);
+noise::NoiseTile2 pace_of_puffs(std::uint64_t seed) {
+  noise::NoiseTile2 pace = noise::make_noise_2d({.size = 128,
+                                                 .beta = 1.0,
+                                                 .seed = seed ^ math::stream_id("flame pace"),
+                                                 .from_cycles = 4.0,
+                                                 .to_cycles = 48.0})
+                               .value();
+  noise::scale_to_unit_reading(pace);
   return pace;
 }
 
@@ -201,10 +203,10 @@ class Flame final : public Scene {
                               setup.placement),
               settings, setup) {}
 
-  const Skeleton& skeleton() const noexcept override { return skeleton_; }
-  const Pose& pose() const noexcept override { return pose_; }
+  const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
+  const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     kindled_.step(1.0, kKindle_rad_s, dt_s);
     double east_m_s = exposure_ * wind_.east_m_s();
@@ -219,14 +221,14 @@ class Flame final : public Scene {
     noise_.shift(0, 0.0, rise_m_s_ * dt_s);
     noise_.shift(1, 0.0, kSecondFaster * rise_m_s_ * dt_s);
     pace_at_.add(dt_s, kPacePeriod_s);
-    puffed_ += puff_hz_ * (1.0 + kPaceWanders * static_cast<double>(read_noise(pace_, pace_at_.phase()))) * dt_s;
+    puffed_ += puff_hz_ * (1.0 + kPaceWanders * static_cast<double>(noise::read_noise(pace_, pace_at_.phase()))) * dt_s;
     puffed_ -= std::floor(puffed_);
     const double calmer = std::sqrt(east_m_s * east_m_s + south_m_s * south_m_s) / kPuffless_m_s;
     puff_ = kPuff * puffing_ / std::sqrt(1.0 + calmer * calmer);
   }
 
   void sample() noexcept override {
-    SurfacePose& pose = *std::get_if<SurfacePose>(&pose_);
+    pose::SurfacePose& pose = *std::get_if<pose::SurfacePose>(&pose_);
     if (body_.is_panel) {
       axis_.write({bent_m_, unseen_, drop_m_, unseen_, unseen_});
       show_on_panel();
@@ -238,13 +240,13 @@ class Flame final : public Scene {
 
     // As the flame kindles the thresholds come down from where nothing shows.
     const double unlit = (1.0 - kindled_.value) * (noise_.highest() - kFootThreshold + kHotter.back() + puff_);
-    ThresholdRampJob{.noise = values_,
-                     .along = along_,
-                     .first_threshold = static_cast<float>(kFootThreshold + unlit),
-                     .last_threshold = static_cast<float>(kTopThreshold + unlit),
-                     .edge = static_cast<float>(kEdge),
-                     .row = row_,
-                     .level = pose.heat}
+    operators::ThresholdRampJob{.noise = values_,
+                                .along = along_,
+                                .first_threshold = static_cast<float>(kFootThreshold + unlit),
+                                .last_threshold = static_cast<float>(kTopThreshold + unlit),
+                                .edge = static_cast<float>(kEdge),
+                                .row = row_,
+                                .level = pose.heat}
         .run();
   }
 
@@ -252,12 +254,12 @@ class Flame final : public Scene {
     if (body_.is_panel) return;  // its colors are all that there is to it
 
     // The shape's points move along their normals, by the noise.
-    std::vector<float>& displacement_m = std::get_if<SurfacePose>(&pose_)->displacement_m;
-    DisplacementJob{.noise = values_,
-                    .share = body_.moved_m,
-                    .amplitude_m = kindled_.value * flicker_,
-                    .row = row_,
-                    .displacement_m = displacement_m}
+    std::vector<float>& displacement_m = std::get_if<pose::SurfacePose>(&pose_)->displacement_m;
+    operators::DisplacementJob{.noise = values_,
+                               .share = body_.moved_m,
+                               .amplitude_m = kindled_.value * flicker_,
+                               .row = row_,
+                               .displacement_m = displacement_m}
         .run();
     for (std::size_t i = 0; i < displacement_m.size(); ++i) {
       displacement_m[i] = std::max(displacement_m[i], -kInward * body_.radius_m[i]);
@@ -307,7 +309,7 @@ class Flame final : public Scene {
         drop_m_(bent_m_.size()),
         unseen_(bent_m_.size()),
         skeleton_(std::move(body.surface)),
-        pose_(rest_pose(skeleton_)),
+        pose_(pose::rest_pose(skeleton_)),
         body_(std::move(body)) {}
 
   /// Where a part of the flame, `v` of the way from its foot to its top, is along the rising threshold. The foot of a
@@ -315,14 +317,14 @@ class Flame final : public Scene {
   double along_at(double v, double hotter) const noexcept {
     double wave = puffed_ - v * height_m_ * puff_hz_ / rise_m_s_;
     wave -= std::floor(wave);
-    const auto sine = static_cast<double>(sin_cos(static_cast<float>(2.0 * kPi * wave)).sin);
+    const auto sine = static_cast<double>(math::sin_cos(static_cast<float>(2.0 * kPi * wave)).sin);
     const double grown = std::min(v / kPuffGrown, 1.0);
     return v * v * v - (puff_ * grown * sine + hotter * std::max(1.0 - v, 0.0)) / (kTopThreshold - kFootThreshold);
   }
 
   /// Where each point of the body is along the rising threshold.
   void show_on_shells() noexcept {
-    const auto& surface = *std::get_if<SurfaceSkeleton>(&skeleton_);
+    const auto& surface = *std::get_if<pose::SurfaceSkeleton>(&skeleton_);
     const std::size_t around = surface.columns / surface.shells;
     float* along = along_.data();
     for (std::size_t row = 0; row < surface.rows; ++row) {
@@ -335,7 +337,7 @@ class Flame final : public Scene {
 
   /// The same for the panel: at each height it shows the part of the bent flame that is as high, where it is.
   void show_on_panel() noexcept {
-    const auto& surface = *std::get_if<SurfaceSkeleton>(&skeleton_);
+    const auto& surface = *std::get_if<pose::SurfaceSkeleton>(&skeleton_);
     const auto up_m = [this](std::size_t row) { return static_cast<double>(body_.along[row]) * height_m_; };
     const auto high_m = [&](std::size_t row) { return up_m(row) - static_cast<double>(drop_m_[row]); };
     std::size_t part = 0;  // of the axis: the last whose end is not higher
@@ -373,17 +375,17 @@ class Flame final : public Scene {
   double across_;  ///< of a tile's metres in one across the flame
 
   SceneWind wind_;
-  CriticallyDamped kindled_;  ///< 0 unlit, 1 burning
+  math::CriticallyDamped kindled_;  ///< 0 unlit, 1 burning
   FlameAxis axis_;
   LayeredNoise noise_;
-  NoiseTile2 pace_;
-  LineCut pace_at_;
+  noise::NoiseTile2 pace_;
+  noise::LineCut pace_at_;
   double puffed_ = 0.0;                          ///< puffs, their whole number left out
   double puff_ = 0.0;                            ///< what one lowers the threshold by at most
   std::vector<float> values_, along_;            ///< a point each
   std::vector<float> bent_m_, drop_m_, unseen_;  ///< of the panel's flame, a row each
-  Skeleton skeleton_;
-  Pose pose_;
+  pose::Skeleton skeleton_;
+  pose::Pose pose_;
   FlameBody body_;  ///< but for its surface, which is in skeleton_
 };
 
@@ -401,4 +403,4 @@ const SceneDescription kFlameScene = {
     .is_still_in_calm = false,
     .retired = kRetiredFlameParameters};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -11,7 +11,7 @@
 #include "engine/operators/lean.hpp"
 #include "engine/scenes/carried_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kFlameGravity_m_s2 = 9.81;
@@ -37,20 +37,20 @@ constexpr std::size_t kWobbleSamples = 128;
 constexpr double kWobblePeriod_s = 12.8;
 constexpr double kWobbleFrom = 8.0;  ///< waves a tile
 constexpr double kWobbleTo = 32.0;
-constexpr TorusPhase kSouthOfEast{0x5a000000U, 0x93000000U};  ///< where the second component is read
+constexpr noise::TorusPhase kSouthOfEast{0x5a000000U, 0x93000000U};  ///< where the second component is read
 
-NoiseTile2 wobble_tile(std::uint64_t seed) {
-  NoiseTile2 tile = make_noise_2d({.size = kWobbleSamples,
-                                   .beta = 1.0,
-                                   .seed = seed ^ stream_id("flame wobble"),
-                                   .from_cycles = kWobbleFrom,
-                                   .to_cycles = kWobbleTo})
-                        .value();
-  scale_to_unit_reading(tile);
+noise::NoiseTile2 wobble_tile(std::uint64_t seed) {
+  noise::NoiseTile2 tile = noise::make_noise_2d({.size = kWobbleSamples,
+                                                 .beta = 1.0,
+                                                 .seed = seed ^ math::stream_id("flame wobble"),
+                                                 .from_cycles = kWobbleFrom,
+                                                 .to_cycles = kWobbleTo})
+                               .value();
+  noise::scale_to_unit_reading(tile);
   return tile;
 }
 
-double largest_of(const NoiseTile2& tile) {
+double largest_of(const noise::NoiseTile2& tile) {
   float largest = 0.0F;
   for (const float value : tile.values) largest = std::max(largest, std::abs(value));
   return static_cast<double>(largest);
@@ -71,7 +71,7 @@ FlameInWind FlameInWind::at(double relative_wind) noexcept {
   return {.lean = std::sqrt((1.0 - cosine) / (1.0 + cosine)), .part = power_of_length(std::max(relative_wind, 1.0))};
 }
 
-void FlameAxis::Oscillator::step(const OscillatorStep& step, double target) noexcept {
+void FlameAxis::Oscillator::step(const operators::OscillatorStep& step, double target) noexcept {
   const double distance = value - target;
   value = target + step.q_from_e * distance + step.q_from_v * rate;
   rate = step.v_from_e * distance + step.v_from_v * rate;
@@ -100,7 +100,7 @@ void FlameAxis::step(double east_m_s, double south_m_s, double dt_s) noexcept {
   const double speed_m_s = std::sqrt(east_m_s * east_m_s + south_m_s * south_m_s);
   const FlameInWind wanted = FlameInWind::at(relative_wind_s_m_ * speed_m_s);
   const double per_wind_s_m = speed_m_s > 0.0 ? wanted.lean / speed_m_s : 0.0;
-  const OscillatorStep step = OscillatorStep::exact(kSway_hz, kSwayDamping, dt_s);
+  const operators::OscillatorStep step = operators::OscillatorStep::exact(kSway_hz, kSwayDamping, dt_s);
   lean_east_.step(step, per_wind_s_m * east_m_s);
   lean_south_.step(step, per_wind_s_m * south_m_s);
   missing_.step(step, 1.0 - wanted.part);
@@ -111,8 +111,8 @@ void FlameAxis::step(double east_m_s, double south_m_s, double dt_s) noexcept {
   now[kLeanEast] = static_cast<float>(lean_east_.value);
   now[kLeanSouth] = static_cast<float>(lean_south_.value);
   now[kMissing] = static_cast<float>(missing_.value);
-  now[kWobbleEast] = wobble * read_noise(wobble_, wobbled_.phase());
-  now[kWobbleSouth] = wobble * read_noise(wobble_, wobbled_.phase() - kSouthOfEast);
+  now[kWobbleEast] = wobble * noise::read_noise(wobble_, wobbled_.phase());
+  now[kWobbleSouth] = wobble * noise::read_noise(wobble_, wobbled_.phase() - kSouthOfEast);
   history_.push(now, dt_s);
 }
 
@@ -126,14 +126,14 @@ void FlameAxis::write(const Rows& rows) const noexcept {
     float lean_east = 0.0F;
     float lean_south = 0.0F;
     if (row > 0) {
-      const PropagationHistory::Between then = history_.at(delay_s * static_cast<double>(row));
+      const operators::PropagationHistory::Between then = history_.at(delay_s * static_cast<double>(row));
       const auto was = [&then](std::size_t channel) {
         return then.newer[channel] + then.fraction * (then.older[channel] - then.newer[channel]);
       };
       const float long_m = link_m * (1.0F - was(kMissing));
       lean_east = turned_[row] * (was(kLeanEast) + was(kWobbleEast));
       lean_south = turned_[row] * (was(kLeanSouth) + was(kWobbleSouth));
-      const LinkEnd<float> end = link_end(lean_east, lean_south, 2.0F * long_m);
+      const operators::LinkEnd<float> end = operators::link_end(lean_east, lean_south, 2.0F * long_m);
       at_east_m += end.east;
       at_south_m += end.south;
       at_drop_m += link_m - (end.down - long_m);  // it goes up by as much as a hanging one would go down
@@ -150,24 +150,26 @@ void FlameAxis::write(const Rows& rows) const noexcept {
 /// rate, and the wobble by its steepest slope in each of two components. What is read of the history moves no faster
 /// than what was written.
 double FlameAxis::largest_slope_step(double dt_s) const noexcept {
-  const double rate = std::min(OscillatorStep::largest_rate_per_s(kSway_hz, kSwayDamping) * dt_s,
-                               2.0 * OscillatorStep::largest_gain(kSwayDamping));
+  const double rate = std::min(operators::OscillatorStep::largest_rate_per_s(kSway_hz, kSwayDamping) * dt_s,
+                               2.0 * operators::OscillatorStep::largest_gain(kSwayDamping));
   const double wobble = std::min(wobble_steepest_per_s_ * dt_s, 2.0 * wobble_largest_);
   return strongest_.lean * rate + std::sqrt(2.0) * spec_.wobble * wobble;
 }
 
 double FlameAxis::largest_slope() const noexcept {
-  return strongest_.lean * OscillatorStep::largest_gain(kSwayDamping) + std::sqrt(2.0) * spec_.wobble * wobble_largest_;
+  return strongest_.lean * operators::OscillatorStep::largest_gain(kSwayDamping) +
+         std::sqrt(2.0) * spec_.wobble * wobble_largest_;
 }
 
 /// A row stands on the sum of its links, whose lengths add up to less than height (1 + overshoot). A link of length l
 /// that leans by d more and grows by g is elsewhere by at most l 2 d + g (lean.hpp). The length follows as the lean
 /// does.
 double FlameAxis::largest_step_m(double dt_s) const noexcept {
-  const double gain = OscillatorStep::largest_gain(kSwayDamping);
-  const double rate = std::min(OscillatorStep::largest_rate_per_s(kSway_hz, kSwayDamping) * dt_s, 2.0 * gain);
+  const double gain = operators::OscillatorStep::largest_gain(kSwayDamping);
+  const double rate =
+      std::min(operators::OscillatorStep::largest_rate_per_s(kSway_hz, kSwayDamping) * dt_s, 2.0 * gain);
   const double missing = 1.0 - strongest_.part;
   return spec_.height_m * (2.0 * (1.0 + (gain - 1.0) * missing) * largest_slope_step(dt_s) + missing * rate);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

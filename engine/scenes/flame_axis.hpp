@@ -10,7 +10,7 @@
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/operators/propagation_history.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// Tilt and length of a fire in the open in a wind, measured on burning cribs and pools (engine/METHOD.md M36).
 ///
@@ -70,7 +70,7 @@ class FlameAxis {
   enum Channel : std::size_t { kLeanEast, kLeanSouth, kMissing, kWobbleEast, kWobbleSouth, kChannels };
   struct Oscillator {
     double value = 0.0, rate = 0.0;
-    void step(const OscillatorStep& step, double target) noexcept;
+    void step(const operators::OscillatorStep& step, double target) noexcept;
   };
 
   FlameAxisSpec spec_;
@@ -78,12 +78,12 @@ class FlameAxis {
   /// profile.
   double relative_wind_s_m_ = 0.0;
   FlameInWind strongest_;
-  NoiseTile2 wobble_;
+  noise::NoiseTile2 wobble_;
   double wobble_steepest_per_s_, wobble_largest_;
-  LineCut wobbled_;
+  noise::LineCut wobbled_;
   Oscillator lean_east_, lean_south_, missing_;
-  PropagationHistory history_;
+  operators::PropagationHistory history_;
   std::vector<float> turned_;  ///< of each row: how much of the lean it has
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

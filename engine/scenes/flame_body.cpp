@@ -9,7 +9,7 @@
 #include "engine/math/trig.hpp"
 #include "engine/scenes/placement.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// A panel is higher than its flame, whose last tongues go out above it, and wide enough for one that leans: the most
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> flame_ramp() {
   return ramp;
 }
 
-void add_point(SurfaceSkeleton& surface, std::array<double, 3> place_m, std::array<double, 3> normal) {
+void add_point(pose::SurfaceSkeleton& surface, std::array<double, 3> place_m, std::array<double, 3> normal) {
   surface.rest_x_m.push_back(static_cast<float>(place_m[0]));
   surface.rest_y_m.push_back(static_cast<float>(place_m[1]));
   surface.rest_z_m.push_back(static_cast<float>(place_m[2]));
@@ -95,8 +95,8 @@ void add_body_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
     const double growth = kThickest * half_m * (0.5 / root - 1.5 * root) / spec.height_m;
     const double length = std::sqrt(1.0 + growth * growth);
     for (std::size_t column = 0; column < around; ++column) {
-      const SinCos turn =
-          sin_cos(static_cast<float>(2.0 * kPi * static_cast<double>(column) / static_cast<double>(around)));
+      const math::SinCos turn =
+          math::sin_cos(static_cast<float>(2.0 * kPi * static_cast<double>(column) / static_cast<double>(around)));
       const auto x = static_cast<double>(turn.cos);
       const auto z = static_cast<double>(turn.sin);
       add_flame_point({radius_m * x, up_m, radius_m * z}, {x / length, -growth / length, z / length}, radius_m, moved_m,
@@ -137,4 +137,4 @@ FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& place
   return body;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -7,7 +7,7 @@
 #include "engine/pose/skeleton.hpp"
 #include "engine/scenes/scene.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// A body of flame is nested shells, of these parts of its width, from the outermost inward.
 inline constexpr std::array<double, 3> kFlameShells = {1.0, 0.65, 0.35};
@@ -27,7 +27,7 @@ struct FlameBodySpec {
 /// axis, round, pointed at the foot and at the top, and thickest at a third of its height; its rows move. Rows go from
 /// the foot up; columns from west to east, or around from the east by the south, shell by shell.
 struct FlameBody {
-  SurfaceSkeleton surface;
+  pose::SurfaceSkeleton surface;
   bool is_panel = false;
   std::vector<float> east_m, south_m, up_m;  ///< of each point at rest, from the foot's middle, before it is placed
   std::vector<float> radius_m;               ///< of each point from the axis; of a panel none
@@ -41,4 +41,4 @@ struct FlameBody {
 /// Thread-safe: yes. Realtime-safe: no.
 FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement);
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -28,7 +28,7 @@
 //
 // The gusts of the wind outside are longer than a body: all hairs have the wind of the scene's place.
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// The strokes' waves, the shortest and the longest; how many standard deviations they reach; and across the wind
@@ -99,10 +99,10 @@ class Fur final : public Scene {
  public:
   Fur(const ParameterValues& values, const SceneSetup& setup) : Fur(placed_coat(values, setup), values, setup) {}
 
-  const Skeleton& skeleton() const noexcept override { return skeleton_; }
-  const Pose& pose() const noexcept override { return pose_; }
+  const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
+  const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     // Strokes run over the coat as it lies unrolled: along the body, and around it.
     const double speed_m_s = wind_.speed_m_s();
@@ -128,31 +128,31 @@ class Fur final : public Scene {
   }
 
   void project_part(Part part, double dt_s) noexcept override {
-    StrandPose& pose = *std::get_if<StrandPose>(&pose_);
+    pose::StrandPose& pose = *std::get_if<pose::StrandPose>(&pose_);
     const std::span<float> bend_east_rad = strands_of(part, std::span(pose.bend_east_rad));
     const std::span<float> bend_south_rad = strands_of(part, std::span(pose.bend_south_rad));
-    CoatBendingJob{.wind_east_m_s = wind_.east_m_s(),
-                   .wind_south_m_s = wind_.south_m_s(),
-                   .normal_x = strands_of(part, std::span<const float>(normal_x_)),
-                   .normal_z = strands_of(part, std::span<const float>(normal_z_)),
-                   .stroke_along = strands_of(part, std::span<const float>(along_)),
-                   .stroke_across = strands_of(part, std::span<const float>(across_)),
-                   .flexibility = strands_of(part, std::span<const float>(flexibility_)),
-                   .half_bend_speed_m_s = half_bend_speed_m_s_,
-                   .max_bend_rad = max_bend_rad_,
-                   .stroke_rad = stroke_rad_,
-                   .sheltered = kSheltered,
-                   .row = row_,
-                   .bend_east_rad = bend_east_rad,
-                   .bend_south_rad = bend_south_rad}
+    operators::CoatBendingJob{.wind_east_m_s = wind_.east_m_s(),
+                              .wind_south_m_s = wind_.south_m_s(),
+                              .normal_x = strands_of(part, std::span<const float>(normal_x_)),
+                              .normal_z = strands_of(part, std::span<const float>(normal_z_)),
+                              .stroke_along = strands_of(part, std::span<const float>(along_)),
+                              .stroke_across = strands_of(part, std::span<const float>(across_)),
+                              .flexibility = strands_of(part, std::span<const float>(flexibility_)),
+                              .half_bend_speed_m_s = half_bend_speed_m_s_,
+                              .max_bend_rad = max_bend_rad_,
+                              .stroke_rad = stroke_rad_,
+                              .sheltered = kSheltered,
+                              .row = row_,
+                              .bend_east_rad = bend_east_rad,
+                              .bend_south_rad = bend_south_rad}
         .run();
-    OscillatorJob{.step = OscillatorStep::exact(natural_hz_, damping_ratio_, dt_s),
-                  .blend = hybrid_,
-                  .row = row_,
-                  .oscillators = &oscillators_,
-                  .first = static_cast<std::size_t>(bend_east_rad.data() - pose.bend_east_rad.data()),
-                  .east = bend_east_rad,
-                  .south = bend_south_rad}
+    operators::OscillatorJob{.step = operators::OscillatorStep::exact(natural_hz_, damping_ratio_, dt_s),
+                             .blend = hybrid_,
+                             .row = row_,
+                             .oscillators = &oscillators_,
+                             .first = static_cast<std::size_t>(bend_east_rad.data() - pose.bend_east_rad.data()),
+                             .east = bend_east_rad,
+                             .south = bend_south_rad}
         .run();
   }
 
@@ -165,14 +165,14 @@ class Fur final : public Scene {
     const double largest_stroke = std::hypot(1.0, kStrokeAcross) * kLargestStroke;
     const double largest_bend_rad = max_bend_rad_ + stroke_rad_ * largest_stroke;
     const double s = largest_flexibility_ / half_bend_speed_m_s_ * SceneWind::largest_step_m_s(dt_s);
-    const double slope = kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * max_bend_rad_;
+    const double slope = operators::kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * max_bend_rad_;
     const double stroke_step =
         std::hypot(1.0, kStrokeAcross) * strokes_.largest_change(fastest_stroke_m_s_, fastest_stroke_m_s_, dt_s);
     const double bend_rad =
         std::min(slope * s + stroke_rad_ * std::min(stroke_step, 2.0 * largest_stroke), 2.0 * largest_bend_rad);
     const double swaying_rad =
-        std::min(OscillatorStep::largest_gain(damping_ratio_) * bend_rad,
-                 OscillatorStep::largest_rate_per_s(natural_hz_, damping_ratio_) * dt_s * largest_bend_rad);
+        std::min(operators::OscillatorStep::largest_gain(damping_ratio_) * bend_rad,
+                 operators::OscillatorStep::largest_rate_per_s(natural_hz_, damping_ratio_) * dt_s * largest_bend_rad);
     return lever_m_ * ((1.0 - hybrid_) * bend_rad + hybrid_ * swaying_rad);
   }
 
@@ -191,7 +191,7 @@ class Fur final : public Scene {
         heading_sin_(std::sin(setup.placement.heading_deg * kRadPerDeg)),
         wind_(setup.placement, setup.gusts),
         strokes_(CarriedNoise::band(kStrokeWaves_m[0], kStrokeWaves_m[1],
-                                    setup.seed ^ stream_id("strokes over the coat"), false)),
+                                    setup.seed ^ math::stream_id("strokes over the coat"), false)),
         places_(strokes_.places(coat.place_x_m, coat.place_z_m)),
         elsewhere_(places_elsewhere(coat)),
         along_(coat.place_x_m.size(), 0.0F),
@@ -205,7 +205,7 @@ class Fur final : public Scene {
                      *std::max_element(coat.skeleton.link_length_m.begin(), coat.skeleton.link_length_m.end())) *
                  (static_cast<double>(coat.skeleton.links_per_strand) + 1.0) / 2.0),
         skeleton_(std::move(coat.skeleton)),
-        pose_(rest_pose(skeleton_)) {}
+        pose_(pose::rest_pose(skeleton_)) {}
 
   CarriedPlaces places_elsewhere(const Coat& coat) const {
     std::vector<float> x_m = coat.place_x_m;
@@ -225,10 +225,10 @@ class Fur final : public Scene {
   std::vector<float> along_, across_;  ///< what it reads there
   std::vector<float> normal_x_, normal_z_;
   std::vector<float> flexibility_;
-  Oscillators oscillators_;
+  operators::Oscillators oscillators_;
   double largest_flexibility_, lever_m_;
-  Skeleton skeleton_;
-  Pose pose_;
+  pose::Skeleton skeleton_;
+  pose::Pose pose_;
 };
 
 }  // namespace
@@ -242,4 +242,4 @@ const SceneDescription kFurScene = {
                const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Fur>(values, setup)); },
     .retired = kRetiredFurParameters};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -12,7 +12,7 @@
 // Grass in the wind (Chiba, section 3.1): a meadow laid out by noise, and the wind on the ground that passes over it
 // (StrandSway).
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// 256 m in 512 samples are cells of 0.5 m: what is read stays below half the tick rate up to 30 m/s at 60 Hz
@@ -63,7 +63,7 @@ std::unique_ptr<Scene> make_grass(const ParameterValues& values, const SceneSetu
   Meadow meadow = placed_meadow(values, setup);
   return std::make_unique<StrandSway>(
       meadow.skeleton, meadow.skeleton.root_x_m, meadow.skeleton.root_z_m, std::move(meadow.flexibility),
-      strand_sway_spec(values, setup.seed ^ stream_id("grass wind on the ground")), setup);
+      strand_sway_spec(values, setup.seed ^ math::stream_id("grass wind on the ground")), setup);
 }
 
 }  // namespace
@@ -74,4 +74,4 @@ const SceneDescription kGrassScene = {.name = "grass",
                                       .parameters = kGrassParameters,
                                       .make = make_grass};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

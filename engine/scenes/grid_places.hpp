@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// Are these places (of x and z) the rows of a grid, `columns` in each, that go along x and all have the same x? Then
 /// GridSampleJob can read them. 0 columns: no grid. Thread-safe and realtime-safe: yes.
@@ -15,4 +15,4 @@ inline bool goes_along_axes(std::span<const float> x_m, std::span<const float> z
   return true;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

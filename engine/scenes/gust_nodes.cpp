@@ -7,7 +7,7 @@
 
 #include "engine/operators/sample_job.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr std::size_t kFewestCoarseNodes = 4;
@@ -36,24 +36,24 @@ GroundNodes coarse_of(const GroundNodes& nodes) {
 }
 
 /// Reads and adds up those layers that there are.
-void add_up(std::span<const NoiseLayer> layers, SimdRow row, std::span<float> out) noexcept {
+void add_up(std::span<const operators::NoiseLayer> layers, SimdRow row, std::span<float> out) noexcept {
   if (layers.empty()) {
     std::ranges::fill(out, 0.0F);
   } else {
-    SampleJob{.layers = layers, .row = row, .out = out}.run();
+    operators::SampleJob{.layers = layers, .row = row, .out = out}.run();
   }
 }
 
 }  // namespace
 
-GustNodes::Nodes::Nodes(const GustNoise& gusts, const GroundNodes& nodes)
+GustNodes::Nodes::Nodes(const wind::turbulence::GustNoise& gusts, const GroundNodes& nodes)
     : along_m_s(nodes.size()), across_m_s(nodes.size()) {
   for (std::size_t line = 0; line < nodes.lines; ++line) {
     for (std::size_t column = 0; column < nodes.columns; ++column) {
       x_m.push_back(nodes.west_m + nodes.cell_x_m * static_cast<double>(column));
       z_m.push_back(nodes.north_m + nodes.cell_z_m * static_cast<double>(line));
-      for (std::size_t torus = 0; torus < GustNoise::kTori; ++torus) {
-        const TorusPhase phase = gusts.place_on(torus, x_m.back(), z_m.back());
+      for (std::size_t torus = 0; torus < wind::turbulence::GustNoise::kTori; ++torus) {
+        const noise::TorusPhase phase = gusts.place_on(torus, x_m.back(), z_m.back());
         on_torus_x[torus].push_back(phase.x);
         on_torus_z[torus].push_back(phase.z);
       }
@@ -61,7 +61,7 @@ GustNodes::Nodes::Nodes(const GustNoise& gusts, const GroundNodes& nodes)
   }
 }
 
-GustNodes::GustNodes(std::shared_ptr<const GustNoise> gusts, const GroundNodes& nodes, SimdRow row)
+GustNodes::GustNodes(std::shared_ptr<const wind::turbulence::GustNoise> gusts, const GroundNodes& nodes, SimdRow row)
     : gusts_(std::move(gusts)), row_(row), fine_(*gusts_, nodes), coarse_(*gusts_, coarse_of(nodes)) {
   const GroundNodes coarse = coarse_of(nodes);
   columns_ = between(nodes.columns, coarse.columns);
@@ -71,7 +71,8 @@ GustNodes::GustNodes(std::shared_ptr<const GustNoise> gusts, const GroundNodes& 
 
   const double cell_m = std::max(nodes.cell_x_m, nodes.cell_z_m);
   for (std::size_t i = 0; i < held_.size(); ++i) {
-    const double shortest_m = 2.0 * std::numbers::pi / gusts_->octaves()[GustNoise::kFirstTileOctave + i].to_rad_m;
+    const double shortest_m =
+        2.0 * std::numbers::pi / gusts_->octaves()[wind::turbulence::GustNoise::kFirstTileOctave + i].to_rad_m;
     held_[i] = is_coarse(i) ? 1.0F : static_cast<float>(std::clamp(std::log2(0.5 * shortest_m / cell_m), 0.0, 1.0));
   }
 }
@@ -86,9 +87,9 @@ std::vector<GustNodes::Between> GustNodes::between(std::size_t nodes, std::size_
   return result;
 }
 
-void GustNodes::read(const GustNoise::Moment& moment, const GustWeights& weights) noexcept {
-  read(moment, GustNoise::Component::kAlong, weights);
-  read(moment, GustNoise::Component::kAcross, weights);
+void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights) noexcept {
+  read(moment, wind::turbulence::GustNoise::Component::kAlong, weights);
+  read(moment, wind::turbulence::GustNoise::Component::kAcross, weights);
   for (std::size_t i = 0; i < envelope_.size(); ++i) {
     envelope_[i] = gusts_->envelope(moment, coarse_.x_m[i], coarse_.z_m[i]);
   }
@@ -96,21 +97,21 @@ void GustNodes::read(const GustNoise::Moment& moment, const GustWeights& weights
 }
 
 /// One component at the nodes, and apart from it at the coarse nodes.
-void GustNodes::read(const GustNoise::Moment& moment, GustNoise::Component component,
-                     const GustWeights& weights) noexcept {
-  const bool is_along = component == GustNoise::Component::kAlong;
-  std::array<GustNoise::Layer, GustNoise::kMaxLayers> octaves;
+void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment,
+                     wind::turbulence::GustNoise::Component component, const GustWeights& weights) noexcept {
+  const bool is_along = component == wind::turbulence::GustNoise::Component::kAlong;
+  std::array<wind::turbulence::GustNoise::Layer, wind::turbulence::GustNoise::kMaxLayers> octaves;
   const std::size_t count = gusts_->layers(moment, component, octaves);
-  static_assert(GustNoise::kMaxLayers <= SampleJob::kMaxLayers);
-  std::array<NoiseLayer, GustNoise::kMaxLayers> fine;
-  std::array<NoiseLayer, GustNoise::kMaxLayers> coarse;
+  static_assert(wind::turbulence::GustNoise::kMaxLayers <= operators::SampleJob::kMaxLayers);
+  std::array<operators::NoiseLayer, wind::turbulence::GustNoise::kMaxLayers> fine;
+  std::array<operators::NoiseLayer, wind::turbulence::GustNoise::kMaxLayers> coarse;
   std::size_t fine_count = 0;
   std::size_t coarse_count = 0;
-  for (const GustNoise::Layer& layer : std::span(octaves).first(count)) {
+  for (const wind::turbulence::GustNoise::Layer& layer : std::span(octaves).first(count)) {
     if (held_[layer.octave] == 0.0F) continue;
     const bool is_slow = is_coarse(layer.octave);
     const Nodes& nodes = is_slow ? coarse_ : fine_;
-    const std::size_t torus = GustNoise::torus_of(layer.octave);
+    const std::size_t torus = wind::turbulence::GustNoise::torus_of(layer.octave);
     (is_slow ? coarse[coarse_count++] : fine[fine_count++]) = {
         .tile = layer.tile,
         .place_x = nodes.on_torus_x[torus],
@@ -154,4 +155,4 @@ void GustNodes::add_coarse() noexcept {
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -10,7 +10,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/wind/turbulence/gust_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// Regular nodes over the ground: line by line from north to south, each line from west to east.
 struct GroundNodes {
@@ -23,7 +23,7 @@ struct GroundNodes {
 
 /// By what the octaves of the tiles are weakened, place by place: a weight for each place, or none at all (1).
 struct GustWeights {
-  std::array<std::span<const float>, 2 * GustNoise::kTileOctaves> along, across;
+  std::array<std::span<const float>, 2 * wind::turbulence::GustNoise::kTileOctaves> along, across;
 };
 
 /// The gusts at many nodes of a regular grid at once: GustNoise::local() at each, but for its turn into the world.
@@ -37,7 +37,7 @@ struct GustWeights {
 /// node and layer.
 class GustNodes {
  public:
-  GustNodes(std::shared_ptr<const GustNoise> gusts, const GroundNodes& nodes, SimdRow row);
+  GustNodes(std::shared_ptr<const wind::turbulence::GustNoise> gusts, const GroundNodes& nodes, SimdRow row);
 
   /// Where the nodes are, metres east and south of the middle of all scenes.
   std::span<const double> x_m() const noexcept { return fine_.x_m; }
@@ -47,14 +47,14 @@ class GustNodes {
 
   /// Is an octave of the tiles read at the coarse nodes?
   static constexpr bool is_coarse(std::size_t tile_octave) noexcept {
-    return tile_octave % GustNoise::kTileOctaves < GustNoise::kLongOctaves;
+    return tile_octave % wind::turbulence::GustNoise::kTileOctaves < wind::turbulence::GustNoise::kLongOctaves;
   }
 
   /// Is an octave of the tiles read at all?
   bool is_held(std::size_t tile_octave) const noexcept { return held_[tile_octave] > 0.0F; }
 
   /// Reads the gusts of a moment, with weights for each octave: one for each node, or for each coarse node.
-  void read(const GustNoise::Moment& moment, const GustWeights& weights = {}) noexcept;
+  void read(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights = {}) noexcept;
 
   /// What was read: m/s at each node, along the mean wind and to the left of it.
   std::span<const float> along_m_s() const noexcept { return fine_.along_m_s; }
@@ -63,9 +63,9 @@ class GustNodes {
  private:
   /// Nodes, where they are on the tiles' tori, and the gusts there.
   struct Nodes {
-    Nodes(const GustNoise& gusts, const GroundNodes& nodes);
+    Nodes(const wind::turbulence::GustNoise& gusts, const GroundNodes& nodes);
     std::vector<double> x_m, z_m;
-    std::array<std::vector<std::uint32_t>, GustNoise::kTori> on_torus_x, on_torus_z;
+    std::array<std::vector<std::uint32_t>, wind::turbulence::GustNoise::kTori> on_torus_x, on_torus_z;
     std::vector<float> along_m_s, across_m_s;
   };
   /// Where a line or a column of nodes is between the coarse ones.
@@ -74,13 +74,14 @@ class GustNodes {
     float fraction = 0.0F;
   };
 
-  void read(const GustNoise::Moment& moment, GustNoise::Component component, const GustWeights& weights) noexcept;
+  void read(const wind::turbulence::GustNoise::Moment& moment, wind::turbulence::GustNoise::Component component,
+            const GustWeights& weights) noexcept;
   void add_coarse() noexcept;
   static std::vector<Between> between(std::size_t nodes, std::size_t coarse_nodes);
 
-  std::shared_ptr<const GustNoise> gusts_;
+  std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   SimdRow row_;
-  std::array<float, 2 * GustNoise::kTileOctaves> held_{};  ///< what part of an octave the nodes hold
+  std::array<float, 2 * wind::turbulence::GustNoise::kTileOctaves> held_{};  ///< what part of an octave the nodes hold
   Nodes fine_, coarse_;
   std::vector<float> envelope_;  ///< at the coarse nodes
   std::vector<Between> columns_, lines_;
@@ -88,4 +89,4 @@ class GustNodes {
   std::vector<float> line_along_m_s_, line_across_m_s_, line_envelope_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -9,7 +9,7 @@
 #include "engine/operators/sample_job.hpp"
 #include "engine/scenes/grid_places.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// One coordinate of places on a turned tile: from_x x + from_z z, as phases. Either may be left out with its factor 0.
@@ -21,7 +21,7 @@ std::vector<std::uint32_t> phases_on(std::span<const float> x_m, double from_x, 
   for (std::size_t i = 0; i < count; ++i) {
     const double along_x_m = from_x != 0.0 ? from_x * static_cast<double>(x_m[i]) : 0.0;
     const double along_z_m = from_z != 0.0 ? from_z * static_cast<double>(z_m[i]) : 0.0;
-    phases.push_back(torus_phase(along_x_m + along_z_m, period_m));
+    phases.push_back(noise::torus_phase(along_x_m + along_z_m, period_m));
   }
   return phases;
 }
@@ -34,8 +34,8 @@ bool is_plain(const NoiseLayerSpec& layer) {
 
 LayeredNoise::LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<const float> x_m,
                            std::span<const float> z_m, std::size_t columns)
-    : is_grid_(layers.size() <= GridSampleJob::kMaxLayers && std::all_of(layers.begin(), layers.end(), is_plain) &&
-               goes_along_axes(x_m, z_m, columns)) {
+    : is_grid_(layers.size() <= operators::GridSampleJob::kMaxLayers &&
+               std::all_of(layers.begin(), layers.end(), is_plain) && goes_along_axes(x_m, z_m, columns)) {
   // Of a grid the first row has every x, and the first column every z.
   std::vector<float> column_z_m;
   if (is_grid_) {
@@ -47,21 +47,22 @@ LayeredNoise::LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<con
     const std::span<const float> own_x_m = spec.x_m.empty() ? x_m : spec.x_m;
     const auto place_x = phases_on(own_x_m, spec.turn_cos, z_m, -spec.turn_sin, spec.period_x_m);
     const auto place_z = phases_on(own_x_m, spec.turn_sin, z_m, spec.turn_cos, spec.period_z_m);
-    layers_.push_back({.tile = BandLimitedTile2(make_noise_2d(spec.noise).value(), spec.band + 1).level(spec.band),
-                       .period_x_m = spec.period_x_m,
-                       .period_z_m = spec.period_z_m,
-                       .weight = spec.weight,
-                       .offset = {},
-                       .first_place_x = place_x,
-                       .first_place_z = place_z,
-                       .place_x = place_x,
-                       .place_z = place_z,
-                       .turn_cos = spec.turn_cos,
-                       .turn_sin = spec.turn_sin});
+    layers_.push_back(
+        {.tile = noise::BandLimitedTile2(noise::make_noise_2d(spec.noise).value(), spec.band + 1).level(spec.band),
+         .period_x_m = spec.period_x_m,
+         .period_z_m = spec.period_z_m,
+         .weight = spec.weight,
+         .offset = {},
+         .first_place_x = place_x,
+         .first_place_z = place_z,
+         .place_x = place_x,
+         .place_z = place_z,
+         .turn_cos = spec.turn_cos,
+         .turn_sin = spec.turn_sin});
 
     // A tile that is read bilinearly is nowhere steeper than between neighbours.
     Layer& layer = layers_.back();
-    const NoiseTile2& tile = layer.tile;
+    const noise::NoiseTile2& tile = layer.tile;
     float steepest_x = 0.0F;
     float steepest_z = 0.0F;
     double squares = 0.0;
@@ -97,8 +98,8 @@ void LayeredNoise::shift(std::size_t layer, double x_m, double z_m) noexcept {
 
 void LayeredNoise::lean(std::size_t first, std::size_t count, double x_m) noexcept {
   for (Layer& layer : layers_) {
-    const std::uint32_t way_x = torus_phase(layer.turn_cos * x_m, layer.period_x_m);
-    const std::uint32_t way_z = torus_phase(layer.turn_sin * x_m, layer.period_z_m);
+    const std::uint32_t way_x = noise::torus_phase(layer.turn_cos * x_m, layer.period_x_m);
+    const std::uint32_t way_z = noise::torus_phase(layer.turn_sin * x_m, layer.period_z_m);
     for (std::size_t i = first; i < first + count; ++i) {
       layer.place_x[i] = layer.first_place_x[i] + way_x;
       layer.place_z[i] = layer.first_place_z[i] + way_z;
@@ -108,7 +109,7 @@ void LayeredNoise::lean(std::size_t first, std::size_t count, double x_m) noexce
 
 void LayeredNoise::sample(SimdRow row, std::span<float> out) const noexcept {
   if (is_grid_) return sample_grid(row, out);
-  std::array<NoiseLayer, SampleJob::kMaxLayers> read;
+  std::array<operators::NoiseLayer, operators::SampleJob::kMaxLayers> read;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const Layer& layer = layers_[i];
     read[i] = {.tile = &layer.tile,
@@ -117,11 +118,11 @@ void LayeredNoise::sample(SimdRow row, std::span<float> out) const noexcept {
                .offset = layer.offset.phase(),
                .weight = layer.weight};
   }
-  SampleJob{.layers = std::span(read).first(layers_.size()), .row = row, .out = out}.run();
+  operators::SampleJob{.layers = std::span(read).first(layers_.size()), .row = row, .out = out}.run();
 }
 
 void LayeredNoise::sample_grid(SimdRow row, std::span<float> out) const noexcept {
-  std::array<GridNoiseLayer, GridSampleJob::kMaxLayers> read;
+  std::array<operators::GridNoiseLayer, operators::GridSampleJob::kMaxLayers> read;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const Layer& layer = layers_[i];
     read[i] = {.tile = &layer.tile,
@@ -130,7 +131,7 @@ void LayeredNoise::sample_grid(SimdRow row, std::span<float> out) const noexcept
                .offset = layer.offset.phase(),
                .weight = layer.weight};
   }
-  GridSampleJob{.layers = std::span(read).first(layers_.size()), .row = row, .out = out}.run();
+  operators::GridSampleJob{.layers = std::span(read).first(layers_.size()), .row = row, .out = out}.run();
 }
 
 double LayeredNoise::largest_change(std::size_t layer, double x_m, double z_m) const noexcept {
@@ -140,4 +141,4 @@ double LayeredNoise::largest_change(std::size_t layer, double x_m, double z_m) c
   return std::min(moved.steepest_x_per_m * turned_x_m + moved.steepest_z_per_m * turned_z_m, moved.range);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -10,11 +10,11 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// One layer of a LayeredNoise.
 struct NoiseLayerSpec {
-  NoiseSpec noise;
+  noise::NoiseSpec noise;
   double period_x_m = 1.0;  ///< of the tile along x, above 0
   double period_z_m = 1.0;  ///< along z: a tile may be stretched
   float weight = 1.0F;      ///< above 0: its standard deviation in the sum, at most (set_weight)
@@ -66,11 +66,11 @@ class LayeredNoise {
 
  private:
   struct Layer {
-    NoiseTile2 tile;
+    noise::NoiseTile2 tile;
     double period_x_m;
     double period_z_m;
     float weight;
-    TorusOffset offset;
+    noise::TorusOffset offset;
     std::vector<std::uint32_t> first_place_x, first_place_z;  ///< where the places were made
     std::vector<std::uint32_t> place_x, place_z;              ///< one a place; of a grid one a column, and one a row
     double turn_cos, turn_sin;
@@ -86,4 +86,4 @@ class LayeredNoise {
   double lowest_ = 0.0, highest_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

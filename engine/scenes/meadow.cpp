@@ -10,19 +10,19 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/scenes/blank_strands.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// Small, as the paper has it for grass: close to white, with a hint of patches.
 constexpr double kLayoutBeta = 0.7;
 
 /// One property of all blades: a noise of mean 0 and variance 1, a sample a blade.
-NoiseTile2 layout_noise(const MeadowSpec& spec, std::string_view property) {
-  const std::size_t size = std::bit_ceil(std::max({spec.blades_across, spec.blades_deep, kMinNoiseSize}));
-  return make_noise_2d({.size = size,
-                        .beta = kLayoutBeta,
-                        .meaning = BetaMeaning::kRadial,
-                        .seed = spec.seed ^ stream_id(property)})
+noise::NoiseTile2 layout_noise(const MeadowSpec& spec, std::string_view property) {
+  const std::size_t size = std::bit_ceil(std::max({spec.blades_across, spec.blades_deep, noise::kMinNoiseSize}));
+  return noise::make_noise_2d({.size = size,
+                               .beta = kLayoutBeta,
+                               .meaning = noise::BetaMeaning::kRadial,
+                               .seed = spec.seed ^ math::stream_id(property)})
       .value();
 }
 
@@ -37,19 +37,19 @@ Meadow make_meadow(const MeadowSpec& spec) {
   const std::size_t count = spec.blades_across * spec.blades_deep;
   Meadow meadow{blank_strands(count, spec.links), {}};
   meadow.flexibility.assign(meadow.skeleton.padded_count(), 0.0F);
-  const NoiseTile2 x_noise = layout_noise(spec, "meadow x");
-  const NoiseTile2 z_noise = layout_noise(spec, "meadow z");
-  const NoiseTile2 length_noise = layout_noise(spec, "meadow length");
-  const NoiseTile2 heading_noise = layout_noise(spec, "meadow heading");
-  const NoiseTile2 tilt_noise = layout_noise(spec, "meadow tilt");
-  const NoiseTile2 curl_noise = layout_noise(spec, "meadow curl");
+  const noise::NoiseTile2 x_noise = layout_noise(spec, "meadow x");
+  const noise::NoiseTile2 z_noise = layout_noise(spec, "meadow z");
+  const noise::NoiseTile2 length_noise = layout_noise(spec, "meadow length");
+  const noise::NoiseTile2 heading_noise = layout_noise(spec, "meadow heading");
+  const noise::NoiseTile2 tilt_noise = layout_noise(spec, "meadow tilt");
+  const noise::NoiseTile2 curl_noise = layout_noise(spec, "meadow curl");
 
   const double pitch_x_m = spec.width_m / static_cast<double>(spec.blades_across);
   const double pitch_z_m = spec.depth_m / static_cast<double>(spec.blades_deep);
   for (std::size_t strand = 0; strand < count; ++strand) {
     const std::size_t across = strand % spec.blades_across;
     const std::size_t deep = strand / spec.blades_across;
-    StrandSkeleton& skeleton = meadow.skeleton;
+    pose::StrandSkeleton& skeleton = meadow.skeleton;
 
     // Place: a grid, from which each blade strays by up to one and a half cells.
     const double stray_x = std::clamp(0.45 * static_cast<double>(x_noise.at(across, deep)), -1.5, 1.5);
@@ -63,8 +63,9 @@ Meadow make_meadow(const MeadowSpec& spec) {
     const float heading_rad = static_cast<float>(
         (spec.heading_deg + spec.heading_spread_deg * static_cast<double>(heading_noise.at(across, deep))) *
         kRadPerDeg);
-    const SinCos heading = sin_cos(heading_rad);
-    const SinCos tilt = sin_cos(varied(spec.tilt_deg * kRadPerDeg, 0.4, tilt_noise.at(across, deep), 0.0, 2.0));
+    const math::SinCos heading = math::sin_cos(heading_rad);
+    const math::SinCos tilt =
+        math::sin_cos(varied(spec.tilt_deg * kRadPerDeg, 0.4, tilt_noise.at(across, deep), 0.0, 2.0));
     skeleton.rest_x[strand] = tilt.sin * heading.sin;
     skeleton.rest_y[strand] = tilt.cos;
     skeleton.rest_z[strand] = -tilt.sin * heading.cos;
@@ -84,4 +85,4 @@ Meadow make_meadow(const MeadowSpec& spec) {
   return meadow;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -6,7 +6,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// Parameters of a meadow.
 struct MeadowSpec {
@@ -26,7 +26,7 @@ struct MeadowSpec {
 
 /// Blades of grass, and how easily each is bent.
 struct Meadow {
-  StrandSkeleton skeleton;
+  pose::StrandSkeleton skeleton;
   std::vector<float> flexibility;  ///< 1 on average, more for longer ones; padded_count() elements
 };
 
@@ -37,4 +37,4 @@ struct Meadow {
 /// Realtime-safe: no.
 Meadow make_meadow(const MeadowSpec& spec);
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -5,7 +5,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// x east, z south: clockwise from above turns north (-z) to east (+x).
 void turn(const ScenePlacement& placement, std::span<float> x, std::span<float> z) noexcept {
@@ -37,21 +37,21 @@ void turn_and_move(const ScenePlacement& placement, std::span<float> x_m, std::s
 
 }  // namespace
 
-void place(const ScenePlacement& placement, StrandSkeleton& strands) noexcept {
+void place(const ScenePlacement& placement, pose::StrandSkeleton& strands) noexcept {
   turn_and_move(placement, strands.root_x_m, strands.root_y_m, strands.root_z_m);
   turn(placement, strands.rest_x, strands.rest_z);
   turn(placement, strands.curl_x, strands.curl_z);
 }
 
-void place(const ScenePlacement& placement, GridSkeleton& grid) noexcept {
+void place(const ScenePlacement& placement, pose::GridSkeleton& grid) noexcept {
   turn_and_move(placement, grid.rest_x_m, grid.rest_y_m, grid.rest_z_m);
 }
 
-void place(const ScenePlacement& placement, TreeSkeleton& tree) noexcept {
-  for (TreeLevel& level : tree.levels) place(placement, level.strands);
+void place(const ScenePlacement& placement, pose::TreeSkeleton& tree) noexcept {
+  for (pose::TreeLevel& level : tree.levels) place(placement, level.strands);
 }
 
-void place(const ScenePlacement& placement, SurfaceSkeleton& surface) noexcept {
+void place(const ScenePlacement& placement, pose::SurfaceSkeleton& surface) noexcept {
   turn_and_move(placement, surface.rest_x_m, surface.rest_y_m, surface.rest_z_m);
   turn(placement, surface.normal_x, surface.normal_z);
   turn(placement, surface.axis_x_m, surface.axis_z_m);
@@ -59,4 +59,4 @@ void place(const ScenePlacement& placement, SurfaceSkeleton& surface) noexcept {
   move(placement.z_m, surface.axis_z_m);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

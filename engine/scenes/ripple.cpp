@@ -33,7 +33,7 @@
 // Short waves come first, long ones with the wind: from 1 to 8 m/s the variance goes over from the short field to the
 // long one.
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr std::size_t kWaveSamples = 512;
@@ -117,8 +117,8 @@ RippleSettings ripple_settings(const ParameterValues& values) {
 }
 
 /// A level grid around the world's origin, rows along x from north to south.
-SurfaceSkeleton level_water(const RippleSettings& settings, std::size_t columns, std::size_t rows) {
-  SurfaceSkeleton water;
+pose::SurfaceSkeleton level_water(const RippleSettings& settings, std::size_t columns, std::size_t rows) {
+  pose::SurfaceSkeleton water;
   water.columns = columns;
   water.rows = rows;
   const auto at = [](std::size_t index, std::size_t count, double extent_m) {
@@ -138,9 +138,9 @@ SurfaceSkeleton level_water(const RippleSettings& settings, std::size_t columns,
   return water;
 }
 
-SurfaceSkeleton placed_water(const RippleSettings& settings, std::size_t columns, std::size_t rows,
-                             const ScenePlacement& placement) {
-  SurfaceSkeleton water = level_water(settings, columns, rows);
+pose::SurfaceSkeleton placed_water(const RippleSettings& settings, std::size_t columns, std::size_t rows,
+                                   const ScenePlacement& placement) {
+  pose::SurfaceSkeleton water = level_water(settings, columns, rows);
   place(placement, water);
   return water;
 }
@@ -171,16 +171,17 @@ double square_of(double value) {
 std::array<NoiseLayerSpec, 2> wave_layers(const RippleSettings& settings, std::uint64_t seed) {
   const double beta = settings.beta;
   const double period_m = kWavesPerTile * settings.wave_length_m;
-  const double scale = 1.0 / (kWavesPerTile * 2.0 * std::numbers::pi * std::sqrt(beta) * kVonKarmanCorner);
+  const double scale = 1.0 / (kWavesPerTile * 2.0 * std::numbers::pi * std::sqrt(beta) * noise::kVonKarmanCorner);
   const auto waves = [&](std::uint64_t which) {
-    return NoiseSpec{.size = kWaveSamples,
-                     .beta = beta,
-                     .seed = seed ^ which,
-                     .integral_scale = scale,
-                     .from_cycles = kWavesPerTile / kLongest};
+    return noise::NoiseSpec{.size = kWaveSamples,
+                            .beta = beta,
+                            .seed = seed ^ which,
+                            .integral_scale = scale,
+                            .from_cycles = kWavesPerTile / kLongest};
   };
-  return {{{waves(stream_id("ripple waves")), period_m, period_m, 1.0F, kWaveBand},
-           {waves(stream_id("ripple crossing waves")), kShorter * period_m, kShorter * period_m, 1.0F, kWaveBand}}};
+  return {
+      {{waves(math::stream_id("ripple waves")), period_m, period_m, 1.0F, kWaveBand},
+       {waves(math::stream_id("ripple crossing waves")), kShorter * period_m, kShorter * period_m, 1.0F, kWaveBand}}};
 }
 
 class Ripple final : public Scene {
@@ -188,10 +189,10 @@ class Ripple final : public Scene {
   Ripple(const RippleSettings& settings, const SceneSetup& setup)
       : Ripple(placed_water(settings, settings.columns, settings.rows, setup.placement), settings, setup) {}
 
-  const Skeleton& skeleton() const noexcept override { return skeleton_; }
-  const Pose& pose() const noexcept override { return pose_; }
+  const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
+  const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     const double east_m_s = wind_.east_m_s();
     const double south_m_s = wind_.south_m_s();
@@ -230,11 +231,11 @@ class Ripple final : public Scene {
   }
 
   void project(double /*dt_s*/) noexcept override {
-    DisplacementJob{.noise = noise_,
-                    .share = slope_,
-                    .amplitude_m = height_per_slope_m_,
-                    .row = row_,
-                    .displacement_m = std::get_if<SurfacePose>(&pose_)->displacement_m}
+    operators::DisplacementJob{.noise = noise_,
+                               .share = slope_,
+                               .amplitude_m = height_per_slope_m_,
+                               .row = row_,
+                               .displacement_m = std::get_if<pose::SurfacePose>(&pose_)->displacement_m}
         .run();
   }
 
@@ -259,19 +260,20 @@ class Ripple final : public Scene {
   }
 
  private:
-  Ripple(SurfaceSkeleton water, const RippleSettings& settings, const SceneSetup& setup)
+  Ripple(pose::SurfaceSkeleton water, const RippleSettings& settings, const SceneSetup& setup)
       : row_(setup.row),
         gustiness_(settings.gustiness),
         wave_speed_m_s_{wave_speed(settings.wave_length_m), wave_speed(kShorter * settings.wave_length_m)},
         wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
         waves_(wave_layers(settings, setup.seed), water.rest_x_m, water.rest_z_m, water.columns),
-        gusts_({.has_two_tiles = false, .seed = setup.seed ^ stream_id("ripple gusts")}),
+        gusts_({.has_two_tiles = false, .seed = setup.seed ^ math::stream_id("ripple gusts")}),
         rough_(roughness_of(settings)),
         noise_(water.rest_x_m.size(), 0.0F),
         slope_(water.rest_x_m.size(), 0.0F),
         skeleton_(std::move(water)),
-        pose_(rest_pose(skeleton_)) {
-    const SurfaceSkeleton nodes = placed_water(settings, rough_.node_columns(), rough_.node_rows(), setup.placement);
+        pose_(pose::rest_pose(skeleton_)) {
+    const pose::SurfaceSkeleton nodes =
+        placed_water(settings, rough_.node_columns(), rough_.node_rows(), setup.placement);
     const std::size_t count = nodes.rest_x_m.size();
     node_wind_m_s_.assign(count, 0.0F);
     if (setup.gusts) {
@@ -301,17 +303,17 @@ class Ripple final : public Scene {
   std::array<double, 2> wave_speed_m_s_;
 
   SceneWind wind_;
-  CriticallyDamped long_part_;  ///< 0: as in a light wind, to 1
-  LayeredNoise waves_;          ///< the long field and the short one
-  CarriedNoise gusts_;          ///< of its own
+  math::CriticallyDamped long_part_;  ///< 0: as in a light wind, to 1
+  LayeredNoise waves_;                ///< the long field and the short one
+  CarriedNoise gusts_;                ///< of its own
   CarriedPlaces gust_places_;
   std::optional<WindGrid> outside_;  ///< and the wind outside over the nodes, where there is one
   RoughWater rough_;
   std::vector<float> node_wind_m_s_, node_east_m_s_, node_south_m_s_;  ///< a node of rough_ each
   double height_per_slope_m_ = 0.0;
   std::vector<float> noise_, slope_;  ///< a point each
-  Skeleton skeleton_;
-  Pose pose_;
+  pose::Skeleton skeleton_;
+  pose::Pose pose_;
 };
 
 }  // namespace
@@ -327,4 +329,4 @@ const SceneDescription kRippleScene = {
         },
     .retired = kRetiredRippleParameters};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -8,7 +8,7 @@
 #include "engine/operators/grid_sample_job.hpp"
 #include "engine/scenes/scene.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kStillSlopes = 0.003;
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> phases_between(std::size_t points, std::size_t nodes,
   std::vector<std::uint32_t> phases;
   for (std::size_t i = 0; i < points; ++i) {
     const double node = static_cast<double>(i * (nodes - 1)) / static_cast<double>(points - 1);
-    phases.push_back(torus_phase(node, static_cast<double>(size)));
+    phases.push_back(noise::torus_phase(node, static_cast<double>(size)));
   }
   return phases;
 }
@@ -87,8 +87,8 @@ void RoughWater::step(std::span<const float> wind_m_s, double dt_s) noexcept {
 }
 
 void RoughWater::sample(SimdRow row, std::span<float> slope) const noexcept {
-  const GridNoiseLayer layer{.tile = &on_torus_, .column_x = column_x_, .row_z = row_z_};
-  GridSampleJob{.layers = std::span(&layer, 1), .row = row, .out = slope}.run();
+  const operators::GridNoiseLayer layer{.tile = &on_torus_, .column_x = column_x_, .row_z = row_z_};
+  operators::GridSampleJob{.layers = std::span(&layer, 1), .row = row, .out = slope}.run();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -8,7 +8,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/noise/noise_tile.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// The variance of the slope of open water in a wind of at least 0 m/s: 0.003 + 0.00512 u, as the sun's glitter on the
 /// sea shows it (Cox and Munk 1954, Measurement of the roughness of the sea surface from photographs of the sun's
@@ -55,8 +55,8 @@ class RoughWater {
   RoughWaterSpec spec_;
   std::size_t node_columns_, node_rows_;
   std::vector<float> value_, rate_per_s_;
-  NoiseTile2 on_torus_;                          ///< the values, where points read them
+  noise::NoiseTile2 on_torus_;                   ///< the values, where points read them
   std::vector<std::uint32_t> column_x_, row_z_;  ///< of the points, on it
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -11,7 +11,7 @@
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// The strongest wind that a scene is moved by; what is stronger is taken as this. (The strongest gust of a typhoon
 /// over a town is about 70 m/s, and everything here is long saturated.)
@@ -26,16 +26,17 @@ class Scene {
   virtual ~Scene() = default;
 
   /// Advances by dt_s (above 0) under `wind` (finite).
-  void tick(const GroundWind& wind, double dt_s) noexcept {
+  void tick(const wind::ground::GroundWind& wind, double dt_s) noexcept {
     shift(wind, dt_s);
     sample();
     project(dt_s);
   }
 
   // The three steps of a tick, in this order, one by one: for benchmarks, and for work that threads share.
-  virtual void shift(const GroundWind& wind, double dt_s) noexcept = 0;  ///< the wind carries the noise on
-  virtual void sample() noexcept = 0;                                    ///< each element reads it
-  virtual void project(double dt_s) noexcept = 0;                        ///< and is moved: the pose
+  virtual void shift(const wind::ground::GroundWind& wind,
+                     double dt_s) noexcept = 0;    ///< the wind carries the noise on
+  virtual void sample() noexcept = 0;              ///< each element reads it
+  virtual void project(double dt_s) noexcept = 0;  ///< and is moved: the pose
 
   // The same in parts that different threads may run at the same time: all parts of sample, then all of project. The
   // pose is the same, bit for bit. What is not worth sharing out does all in its first part.
@@ -47,14 +48,14 @@ class Scene {
   }
 
   /// What never changes. Valid for the scene's life.
-  virtual const Skeleton& skeleton() const noexcept = 0;
+  virtual const pose::Skeleton& skeleton() const noexcept = 0;
 
   /// No joint moves farther than this in one tick of dt_s, whatever the wind does: steps, gaps, turns. The bound is
   /// derived in the scene's file.
   virtual double largest_joint_step_m(double dt_s) const noexcept = 0;
 
   /// The pose after the last tick; the rest pose before the first.
-  virtual const Pose& pose() const noexcept = 0;
+  virtual const pose::Pose& pose() const noexcept = 0;
 };
 
 /// Where a scene stands in the world: its own origin, and what in it is north.
@@ -72,7 +73,7 @@ struct SceneSetup {
   SimdRow row = best_simd_row();
   /// The gusts of the wind that the scene will be given, shared with all other scenes and with the wind's source.
   /// Without, the wind is the same everywhere, and what differs from place to place is the scene's own noise.
-  std::shared_ptr<const GustNoise> gusts = nullptr;
+  std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr;
 };
 
 /// A parameter that a scene had once.
@@ -96,4 +97,4 @@ struct SceneDescription {
 /// Every kind of scene (generated).
 std::span<const SceneDescription* const> scene_table();
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -7,35 +7,36 @@
 
 #include "engine/scenes/scene.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// What is left of a wind that has ceased: below it a wind moves nothing, and the filter would decay without end in
 /// numbers that processors are slow with.
 constexpr double kCalm_m_s = 1e-12;
 
-void settle(CriticallyDamped& follower) noexcept {
+void settle(math::CriticallyDamped& follower) noexcept {
   if (std::abs(follower.value) < kCalm_m_s && std::abs(follower.rate_per_s) < kCalm_m_s) follower = {};
 }
 
 }  // namespace
 
-SceneWind::SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts, WindPart part)
+SceneWind::SceneWind(const ScenePlacement& placement, std::shared_ptr<const wind::turbulence::GustNoise> gusts,
+                     WindPart part)
     : gusts_(std::move(gusts)), part_(part), place_x_m_(placement.x_m), place_z_m_(placement.z_m) {}
 
-WindVector SceneWind::at_place(const GroundWind& wind) const noexcept {
+wind::WindVector SceneWind::at_place(const wind::ground::GroundWind& wind) const noexcept {
   if (part_ == WindPart::kMean) return wind.smooth_at(place_x_m_, place_z_m_);
   if (!gusts_) return wind.measured_at(place_x_m_, place_z_m_);
   return wind.at(*gusts_, place_x_m_, place_z_m_);
 }
 
-WindVector SceneWind::cut(WindVector wind) noexcept {
+wind::WindVector SceneWind::cut(wind::WindVector wind) noexcept {
   const double speed_m_s = std::sqrt(wind.u_m_s * wind.u_m_s + wind.v_m_s * wind.v_m_s);
   return speed_m_s > kStrongestSceneWind_m_s ? (kStrongestSceneWind_m_s / speed_m_s) * wind : wind;
 }
 
-void SceneWind::step(const GroundWind& wind, double dt_s) noexcept {
-  const WindVector here = cut(at_place(wind));
+void SceneWind::step(const wind::ground::GroundWind& wind, double dt_s) noexcept {
+  const wind::WindVector here = cut(at_place(wind));
   east_.step(here.u_m_s, kOmega_rad_s, dt_s);
   south_.step(-here.v_m_s, kOmega_rad_s, dt_s);
   settle(east_);
@@ -51,4 +52,4 @@ double SceneWind::largest_step_m_s(double dt_s) noexcept {
   return std::min(rate_m_s2 * dt_s, 2.0 * kStrongestSceneWind_m_s);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -6,7 +6,7 @@
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 struct ScenePlacement;
 
@@ -29,11 +29,12 @@ class SceneWind {
 
   /// The wind in the place of a scene. `gusts`: the noise of the wind that it will be given; without it, only what was
   /// measured blows there.
-  explicit SceneWind(const ScenePlacement& placement, std::shared_ptr<const GustNoise> gusts = nullptr,
+  explicit SceneWind(const ScenePlacement& placement,
+                     std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr,
                      WindPart part = WindPart::kAll);
 
   /// Advances by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
-  void step(const GroundWind& wind, double dt_s) noexcept;
+  void step(const wind::ground::GroundWind& wind, double dt_s) noexcept;
 
   double east_m_s() const noexcept { return east_.value; }
   double south_m_s() const noexcept { return south_.value; }
@@ -42,15 +43,15 @@ class SceneWind {
   static double largest_step_m_s(double dt_s) noexcept;
 
   /// A wind that is too strong for any scene is cut to kStrongestSceneWind_m_s.
-  static WindVector cut(WindVector wind) noexcept;
+  static wind::WindVector cut(wind::WindVector wind) noexcept;
 
  private:
-  WindVector at_place(const GroundWind& wind) const noexcept;
+  wind::WindVector at_place(const wind::ground::GroundWind& wind) const noexcept;
 
-  std::shared_ptr<const GustNoise> gusts_;
+  std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   WindPart part_;
   double place_x_m_, place_z_m_;
-  CriticallyDamped east_, south_;
+  math::CriticallyDamped east_, south_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

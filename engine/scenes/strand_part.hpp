@@ -6,14 +6,14 @@
 #include "engine/base/part.hpp"
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// A part's strands, in whole blocks, of any array that has an element for each.
 template <class Value>
 std::span<Value> strands_of(Part part, std::span<Value> values) noexcept {
-  const std::size_t blocks = values.size() / kStrandsPerBlock;
-  const std::size_t begin = part.begin(blocks) * kStrandsPerBlock;
-  return values.subspan(begin, part.end(blocks) * kStrandsPerBlock - begin);
+  const std::size_t blocks = values.size() / pose::kStrandsPerBlock;
+  const std::size_t begin = part.begin(blocks) * pose::kStrandsPerBlock;
+  return values.subspan(begin, part.end(blocks) * pose::kStrandsPerBlock - begin);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

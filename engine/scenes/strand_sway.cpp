@@ -15,7 +15,7 @@
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/scenes/strand_part.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// Strands sway by themselves at rates that differ by so much at most.
@@ -31,7 +31,7 @@ constexpr double kLargestCanopyWave = 2.2;
 constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
 
 /// The shorter, the faster: each strand's own rate against that of one of mean length.
-std::vector<float> natural_rates_hz(const StrandSkeleton& strands, double mean_hz) {
+std::vector<float> natural_rates_hz(const pose::StrandSkeleton& strands, double mean_hz) {
   const auto all = std::span(strands.link_length_m).first(strands.strand_count);
   const double mean_m =
       std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(std::max<std::size_t>(all.size(), 1));
@@ -53,24 +53,25 @@ StrandSway::OwnGusts::OwnGusts(const StrandSwaySpec& spec, std::span<const float
                                std::span<const float> place_z_m)
     : noise(spec.noise),
       places(noise.places(place_x_m, place_z_m)),
-      along(make_noise_2d({.size = spec.noise.samples,
-                           .beta = spec.noise.beta,
-                           .meaning = spec.noise.meaning,
-                           .seed = spec.noise.seed ^ stream_id("along the wind")})
+      along(noise::make_noise_2d({.size = spec.noise.samples,
+                                  .beta = spec.noise.beta,
+                                  .meaning = spec.noise.meaning,
+                                  .seed = spec.noise.seed ^ math::stream_id("along the wind")})
                 .value()),
       largest_along(largest_of(along.values)),
       steepest_along_per_m(steepest_slope(along, spec.noise.period_m)),
       strength(place_x_m.size(), 0.0F) {}
 
-StrandSway::OutsideGusts::OutsideGusts(const StrandSkeleton& strands, const SceneSetup& setup)
+StrandSway::OutsideGusts::OutsideGusts(const pose::StrandSkeleton& strands, const SceneSetup& setup)
     : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row),
       east_m_s(strands.padded_count(), 0.0F),
       south_m_s(strands.padded_count(), 0.0F),
-      canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ stream_id("canopy waves"), false)),
+      canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ math::stream_id("canopy waves"),
+                                false)),
       places(canopy.places(strands.root_x_m, strands.root_z_m)),
       strength(strands.padded_count(), 1.0F) {}
 
-StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
+StrandSway::StrandSway(pose::StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
                        std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup)
     : row_(setup.row),
       spec_(spec),
@@ -82,16 +83,16 @@ StrandSway::StrandSway(StrandSkeleton strands, std::span<const float> place_x_m,
       largest_flexibility_(largest_of(flexibility_)),
       lever_m_(largest_of(strands.link_length_m) * (static_cast<double>(strands.links_per_strand) + 1.0) / 2.0),
       skeleton_(std::move(strands)),
-      pose_(rest_pose(skeleton_)) {
+      pose_(pose::rest_pose(skeleton_)) {
   if (setup.gusts) spec_.gust_strength = 0.0;
   if (setup.gusts && !spec.has_own_gusts) {
-    outside_.emplace(*std::get_if<StrandSkeleton>(&skeleton_), setup);
+    outside_.emplace(*std::get_if<pose::StrandSkeleton>(&skeleton_), setup);
   } else {
     own_.emplace(spec, place_x_m, place_z_m);
   }
 }
 
-void StrandSway::shift(const GroundWind& wind, double dt_s) noexcept {
+void StrandSway::shift(const wind::ground::GroundWind& wind, double dt_s) noexcept {
   steps_.set_pace(natural_hz_, spec_.damping_ratio, dt_s);
   wind_.step(wind, dt_s);
   if (outside_) {
@@ -125,46 +126,46 @@ void StrandSway::sample_part(Part part) noexcept {
 }
 
 void StrandSway::project_part(Part part, double) noexcept {
-  StrandPose& pose = *std::get_if<StrandPose>(&pose_);
+  pose::StrandPose& pose = *std::get_if<pose::StrandPose>(&pose_);
   const std::span<const float> flexibility = strands_of(part, std::span<const float>(flexibility_));
   const std::span<float> bend_east_rad = strands_of(part, std::span(pose.bend_east_rad));
   const std::span<float> bend_south_rad = strands_of(part, std::span(pose.bend_south_rad));
 
   // The wind bends the strand toward where it blows.
   if (outside_) {
-    LocalBendingJob{.wind_east_m_s = strands_of(part, std::span<const float>(outside_->east_m_s)),
-                    .wind_south_m_s = strands_of(part, std::span<const float>(outside_->south_m_s)),
-                    .strength = strands_of(part, std::span<const float>(outside_->strength)),
-                    .flexibility = flexibility,
-                    .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
-                    .max_bend_rad = spec_.max_bend_rad,
-                    .row = row_,
-                    .bend_east_rad = bend_east_rad,
-                    .bend_south_rad = bend_south_rad}
+    operators::LocalBendingJob{.wind_east_m_s = strands_of(part, std::span<const float>(outside_->east_m_s)),
+                               .wind_south_m_s = strands_of(part, std::span<const float>(outside_->south_m_s)),
+                               .strength = strands_of(part, std::span<const float>(outside_->strength)),
+                               .flexibility = flexibility,
+                               .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
+                               .max_bend_rad = spec_.max_bend_rad,
+                               .row = row_,
+                               .bend_east_rad = bend_east_rad,
+                               .bend_south_rad = bend_south_rad}
         .run();
   } else {
-    const double along = static_cast<double>(read_noise(own_->along, own_->way.phase()));
+    const double along = static_cast<double>(noise::read_noise(own_->along, own_->way.phase()));
     const double wind_speed = std::max(1.0 + spec_.gust_strength * along, 0.0);
-    BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
-               .wind_south_m_s = wind_speed * wind_.south_m_s(),
-               .strength = strands_of(part, std::span<const float>(own_->strength)),
-               .flexibility = flexibility,
-               .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
-               .max_bend_rad = spec_.max_bend_rad,
-               .row = row_,
-               .bend_east_rad = bend_east_rad,
-               .bend_south_rad = bend_south_rad}
+    operators::BendingJob{.wind_east_m_s = wind_speed * wind_.east_m_s(),
+                          .wind_south_m_s = wind_speed * wind_.south_m_s(),
+                          .strength = strands_of(part, std::span<const float>(own_->strength)),
+                          .flexibility = flexibility,
+                          .half_bend_speed_m_s = spec_.half_bend_speed_m_s,
+                          .max_bend_rad = spec_.max_bend_rad,
+                          .row = row_,
+                          .bend_east_rad = bend_east_rad,
+                          .bend_south_rad = bend_south_rad}
         .run();
   }
 
   // And the strand, a damped oscillator, follows, overshoots, and sways on.
-  OscillatorJob{.steps = &steps_,
-                .blend = spec_.hybrid,
-                .row = row_,
-                .oscillators = &oscillators_,
-                .first = static_cast<std::size_t>(bend_east_rad.data() - pose.bend_east_rad.data()),
-                .east = bend_east_rad,
-                .south = bend_south_rad}
+  operators::OscillatorJob{.steps = &steps_,
+                           .blend = spec_.hybrid,
+                           .row = row_,
+                           .oscillators = &oscillators_,
+                           .first = static_cast<std::size_t>(bend_east_rad.data() - pose.bend_east_rad.data()),
+                           .east = bend_east_rad,
+                           .south = bend_south_rad}
       .run();
 }
 
@@ -191,11 +192,11 @@ double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
 
 double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
   const double s = largest_flexibility_ / spec_.half_bend_speed_m_s * largest_bend_input_step(dt_s);
-  const double bend_rad = std::min(spec_.max_bend_rad * kSteepestBendShare * s, 2.0 * spec_.max_bend_rad);
-  const double swaying_rad =
-      std::min(OscillatorStep::largest_gain(spec_.damping_ratio) * bend_rad,
-               OscillatorStep::largest_rate_per_s((1.0 + kPaceSpread) * spec_.natural_hz, spec_.damping_ratio) * dt_s *
-                   spec_.max_bend_rad);
+  const double bend_rad = std::min(spec_.max_bend_rad * operators::kSteepestBendShare * s, 2.0 * spec_.max_bend_rad);
+  const double swaying_rad = std::min(
+      operators::OscillatorStep::largest_gain(spec_.damping_ratio) * bend_rad,
+      operators::OscillatorStep::largest_rate_per_s((1.0 + kPaceSpread) * spec_.natural_hz, spec_.damping_ratio) *
+          dt_s * spec_.max_bend_rad);
   return lever_m_ * ((1.0 - spec_.hybrid) * bend_rad + spec_.hybrid * swaying_rad);
 }
 
@@ -228,7 +229,7 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
        "after how many metres the wind on the ground repeats; 512 samples"},
       {"tiles", "", std::int64_t{defaults.noise.has_two_tiles ? 2 : 1}, 1, 2,
        "2: a second tile is added, so that no repeat is seen; 1: the paper's letter"},
-      {"beta", "", defaults.noise.beta, kMinTransectBeta2, 4,
+      {"beta", "", defaults.noise.beta, noise::kMinTransectBeta2, 4,
        "exponent of the wind's spectrum, 1/f^beta; 5/3 is Simiu's wind"},
       {"beta_meaning",
        "",
@@ -255,9 +256,9 @@ StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t see
           .canopy_waves = values.number("canopy_waves"),
           .noise = {.period_m = values.number("tile_period"),
                     .beta = values.number("beta"),
-                    .meaning = is_radial ? BetaMeaning::kRadial : BetaMeaning::kTransect,
+                    .meaning = is_radial ? noise::BetaMeaning::kRadial : noise::BetaMeaning::kTransect,
                     .has_two_tiles = values.integer("tiles") == 2,
                     .seed = seed}};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

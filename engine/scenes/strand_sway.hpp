@@ -16,7 +16,7 @@
 #include "engine/scenes/scene_wind.hpp"
 #include "engine/scenes/wind_grid.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// How strands respond to the wind.
 struct StrandSwaySpec {
@@ -54,13 +54,13 @@ class StrandSway final : public Scene {
  public:
   /// `place_x_m` and `place_z_m`: where each strand reads its own noise; `flexibility`: of each. All have
   /// strands.padded_count() elements.
-  StrandSway(StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
+  StrandSway(pose::StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
              std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup);
 
-  const Skeleton& skeleton() const noexcept override { return skeleton_; }
-  const Pose& pose() const noexcept override { return pose_; }
+  const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
+  const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override;
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override;
   void sample() noexcept override { sample_part({}); }
   void project(double dt_s) noexcept override { project_part({}, dt_s); }
   void sample_part(Part part) noexcept override;
@@ -82,15 +82,15 @@ class StrandSway final : public Scene {
 
     CarriedNoise noise;
     CarriedPlaces places;
-    NoiseTile2 along;  ///< Wind-speed, the strength along the wind's way: a line through a noise
-    LineCut way;
+    noise::NoiseTile2 along;  ///< Wind-speed, the strength along the wind's way: a line through a noise
+    noise::LineCut way;
     double largest_along = 0.0, steepest_along_per_m = 0.0;
     std::vector<float> strength;  ///< of the wind, as a factor; of each strand
   };
 
   /// Those of the wind outside.
   struct OutsideGusts {
-    OutsideGusts(const StrandSkeleton& strands, const SceneSetup& setup);
+    OutsideGusts(const pose::StrandSkeleton& strands, const SceneSetup& setup);
 
     WindGrid grid;
     std::vector<float> east_m_s, south_m_s;  ///< each strand's wind
@@ -108,12 +108,12 @@ class StrandSway final : public Scene {
   std::optional<OutsideGusts> outside_;
 
   std::vector<float> flexibility_;
-  Oscillators oscillators_;
+  operators::Oscillators oscillators_;
   std::vector<float> natural_hz_;
-  OscillatorSteps steps_;
+  operators::OscillatorSteps steps_;
   double largest_flexibility_ = 0.0, lever_m_ = 0.0;
-  Skeleton skeleton_;
-  Pose pose_;
+  pose::Skeleton skeleton_;
+  pose::Pose pose_;
 };
 
 /// The parameters that go with it (max_bend, half_bend_speed, turbulence ... beta_meaning): for a scene's own table,
@@ -123,4 +123,4 @@ std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults);
 /// Reads them back. `seed` is the noise's.
 StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t seed);
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

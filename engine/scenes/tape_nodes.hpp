@@ -8,7 +8,7 @@
 #include "engine/scenes/gust_nodes.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// What is known of the wind at the nodes of a grid: WindTapes read at each of them, and at the coarse nodes for those
 /// octaves of the noise that are read there.
@@ -20,21 +20,21 @@ class TapeNodes {
   explicit TapeNodes(const GustNodes& nodes);
 
   /// Reads a wind that has tapes where these nodes are.
-  void read(const GroundWind& wind, const GustNodes& nodes) noexcept;
+  void read(const wind::ground::GroundWind& wind, const GustNodes& nodes) noexcept;
 
   /// The measured wind at a node.
-  WindVector known(std::size_t node) const noexcept { return known_[node]; }
+  wind::WindVector known(std::size_t node) const noexcept { return known_[node]; }
   /// By what the ceiling holds its noise back.
   double gain(std::size_t node) const noexcept { return gain_[node]; }
   /// What is left of each octave of the noise.
   const GustWeights& weights() const noexcept { return weights_; }
 
  private:
-  std::vector<WindVector> known_;
+  std::vector<wind::WindVector> known_;
   std::vector<double> gain_;
   std::vector<float> factors_;  ///< of the octaves that are held, along and across, one behind the other
-  WindTapes::NoiseLeft left_, coarse_left_;
+  wind::ground::WindTapes::NoiseLeft left_, coarse_left_;
   GustWeights weights_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -46,7 +46,7 @@
 // that arise in the crown); Tadrist and others 2018, "Foliage motion under wind, from leaf flutter to branch
 // buffeting".
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr std::array<std::string_view, 2> kTreeBetaMeanings = {"transect", "radial"};
@@ -61,7 +61,7 @@ const std::array kTreeParameters = {
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
     Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
-    Parameter{"foliage", "", "green"s, {}, {}, "the colour of its leaves", kFoliageColorNames},
+    Parameter{"foliage", "", "green"s, {}, {}, "the colour of its leaves", pose::kFoliageColorNames},
     Parameter{"flexibility", "", 1.0, 0, 10,
               "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
     Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
@@ -82,7 +82,7 @@ const std::array kTreeParameters = {
               "quarter more"},
     Parameter{"tile_period", "m", 64.0, 4, 4096, "after how many metres the wind on the ground repeats; 128 samples"},
     Parameter{"tiles", "", std::int64_t{2}, 1, 2, "2: a second tile hides the repeat; 1: the paper's letter"},
-    Parameter{"beta", "", 5.0 / 3.0, kMinTransectBeta2, 4,
+    Parameter{"beta", "", 5.0 / 3.0, noise::kMinTransectBeta2, 4,
               "exponent of the wind's spectrum, 1/f^beta; 5/3 is Simiu's wind"},
     Parameter{"beta_meaning",
               "",
@@ -159,29 +159,30 @@ const TreeSpecies& species_of(const ParameterValues& values) {
   return tree_species(values.text("species"));
 }
 
-TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& setup) {
+pose::TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& setup) {
   const auto count = [&values](std::string_view name) { return static_cast<std::size_t>(values.integer(name)); };
-  TreeSkeleton tree = make_tree({.habit = species_of(values).habit,
-                                 .limbs = count("limbs"),
-                                 .twigs = count("twigs"),
-                                 .leaves = count("leaves"),
-                                 .branch_links = count("branch_links"),
-                                 .leaf_links = count("leaf_links"),
-                                 .size = values.number("size"),
-                                 .seed = setup.seed});
-  const auto* const color = std::ranges::find(kFoliageColorNames, values.text("foliage"));
-  tree.foliage = static_cast<FoliageColor>(color - kFoliageColorNames.begin());
+  pose::TreeSkeleton tree = make_tree({.habit = species_of(values).habit,
+                                       .limbs = count("limbs"),
+                                       .twigs = count("twigs"),
+                                       .leaves = count("leaves"),
+                                       .branch_links = count("branch_links"),
+                                       .leaf_links = count("leaf_links"),
+                                       .size = values.number("size"),
+                                       .seed = setup.seed});
+  const auto* const color = std::ranges::find(pose::kFoliageColorNames, values.text("foliage"));
+  tree.foliage = static_cast<pose::FoliageColor>(color - pose::kFoliageColorNames.begin());
   place(setup.placement, tree);
   return tree;
 }
 
 CarriedNoiseSpec tree_wind_noise(const ParameterValues& values, std::uint64_t seed) {
-  return {.period_m = values.number("tile_period"),
-          .samples = 128,
-          .beta = values.number("beta"),
-          .meaning = values.text("beta_meaning") == "radial" ? BetaMeaning::kRadial : BetaMeaning::kTransect,
-          .has_two_tiles = values.integer("tiles") == 2,
-          .seed = seed ^ stream_id("tree wind on the ground")};
+  return {
+      .period_m = values.number("tile_period"),
+      .samples = 128,
+      .beta = values.number("beta"),
+      .meaning = values.text("beta_meaning") == "radial" ? noise::BetaMeaning::kRadial : noise::BetaMeaning::kTransect,
+      .has_two_tiles = values.integer("tiles") == 2,
+      .seed = seed ^ math::stream_id("tree wind on the ground")};
 }
 
 /// Read ten thousand times a tick: one small tile, which stays in the fast caches.
@@ -192,7 +193,7 @@ CarriedNoiseSpec leaf_noise(std::uint64_t seed) {
           .has_two_tiles = false,
           .shortest_m = kLeafShortest_m,
           .longest_m = kLeafLongest_m,
-          .seed = seed ^ stream_id("tree wind in the leaves")};
+          .seed = seed ^ math::stream_id("tree wind in the leaves")};
 }
 
 /// One generation of wood: where its branches stand, and what they read.
@@ -210,8 +211,8 @@ struct Wood {
   std::vector<float> east_m_s, south_m_s, gust;  ///< the wind there
   std::vector<float> distance, noise, toward_east, toward_south, vertical, horizontal;
   double force = 0.0;  ///< of the mean wind, over the mean distance
-  OscillatorSteps steps;
-  Oscillators oscillators;
+  operators::OscillatorSteps steps;
+  operators::Oscillators oscillators;
 };
 
 /// The leaves, how each gives way and flutters, and how they respond to the wind at each twig.
@@ -231,7 +232,7 @@ struct StrandMiddle {
   double x_m, y_m, z_m;
 };
 
-StrandMiddle middle_of(const StrandSkeleton& strands, std::size_t strand) {
+StrandMiddle middle_of(const pose::StrandSkeleton& strands, std::size_t strand) {
   const auto number = [strand](const std::vector<float>& array) { return static_cast<double>(array[strand]); };
   StrandMiddle middle{number(strands.root_x_m), number(strands.root_y_m), number(strands.root_z_m)};
   for (std::size_t link = 0; link < (strands.links_per_strand + 1) / 2; ++link) {
@@ -255,10 +256,10 @@ class Tree final : public Scene {
  public:
   Tree(const ParameterValues& values, const SceneSetup& setup) : Tree(placed_tree(values, setup), values, setup) {}
 
-  const Skeleton& skeleton() const noexcept override { return skeleton_; }
-  const Pose& pose() const noexcept override { return pose_; }
+  const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
+  const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
     // The wind carries all noises on.
     wind_.step(wind, dt_s);
     middle_wind_.step(wind, dt_s);
@@ -276,38 +277,38 @@ class Tree final : public Scene {
 
   void sample() noexcept override {
     for (Wood& wood : wood_) sample_wood(wood);
-    LeafResponseJob{.wind_east_m_s = wood_[kTwigs].east_m_s,
-                    .wind_south_m_s = wood_[kTwigs].south_m_s,
-                    .half_lean_speed_m_s = half_lean_speed_m_s_,
-                    .flutter_speed_m_s = species_.flutter_speed_m_s,
-                    .lean_rad = leaf_lean_rad_,
-                    .flutter_rad = leaf_flutter_rad_,
-                    .row = row_,
-                    .lean_east_rad = leaves_.lean_east_rad,
-                    .lean_south_rad = leaves_.lean_south_rad,
-                    .flutter_rad_each = leaves_.flutter_rad}
+    operators::LeafResponseJob{.wind_east_m_s = wood_[kTwigs].east_m_s,
+                               .wind_south_m_s = wood_[kTwigs].south_m_s,
+                               .half_lean_speed_m_s = half_lean_speed_m_s_,
+                               .flutter_speed_m_s = species_.flutter_speed_m_s,
+                               .lean_rad = leaf_lean_rad_,
+                               .flutter_rad = leaf_flutter_rad_,
+                               .row = row_,
+                               .lean_east_rad = leaves_.lean_east_rad,
+                               .lean_south_rad = leaves_.lean_south_rad,
+                               .flutter_rad_each = leaves_.flutter_rad}
         .run();
     const auto largest = static_cast<float>(kLargestFine);
     leaf_noise_.sample(leaves_.places, row_, leaves_.noise, 1.0F, 0.0F, -largest, largest);
   }
 
   void project(double dt_s) noexcept override {
-    auto& levels = std::get_if<TreePose>(&pose_)->levels;
+    auto& levels = std::get_if<pose::TreePose>(&pose_)->levels;
     for (Wood& wood : wood_) {
       wood.steps.set_pace(wood.natural_hz, wood.damping_ratio, dt_s);
       project_wood(wood, levels[wood.level]);
     }
-    FlutterJob{.lean_east_rad = leaves_.lean_east_rad,
-               .lean_south_rad = leaves_.lean_south_rad,
-               .flutter_rad = leaves_.flutter_rad,
-               .place = leaves_.twig,
-               .noise = leaves_.noise,
-               .give = leaves_.give,
-               .axis_east = leaves_.axis_east,
-               .axis_south = leaves_.axis_south,
-               .row = row_,
-               .bend_east_rad = levels[kLeaves].bend_east_rad,
-               .bend_south_rad = levels[kLeaves].bend_south_rad}
+    operators::FlutterJob{.lean_east_rad = leaves_.lean_east_rad,
+                          .lean_south_rad = leaves_.lean_south_rad,
+                          .flutter_rad = leaves_.flutter_rad,
+                          .place = leaves_.twig,
+                          .noise = leaves_.noise,
+                          .give = leaves_.give,
+                          .axis_east = leaves_.axis_east,
+                          .axis_south = leaves_.axis_south,
+                          .row = row_,
+                          .bend_east_rad = levels[kLeaves].bend_east_rad,
+                          .bend_south_rad = levels[kLeaves].bend_south_rad}
         .run();
   }
 
@@ -319,16 +320,16 @@ class Tree final : public Scene {
   }
 
  private:
-  Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup);
+  Tree(pose::TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup);
 
   /// Where branches are on the ground, x and z.
   using Places = std::array<std::vector<float>, 2>;
 
-  void add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m);
-  void add_leaves(const TreeLevel& level, std::uint64_t seed);
+  void add_wood(const pose::TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m);
+  void add_leaves(const pose::TreeLevel& level, std::uint64_t seed);
   void sample_wood(Wood& wood) noexcept;
   void blow_on(Wood& wood) noexcept;
-  void project_wood(Wood& wood, StrandPose& pose) noexcept;
+  void project_wood(Wood& wood, pose::StrandPose& pose) noexcept;
   double largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept;
   double largest_leaf_step_rad(double dt_s) const noexcept;
 
@@ -346,12 +347,12 @@ class Tree final : public Scene {
   std::optional<WindGrid> outside_;  ///< the wind at each branch, where it brings its gusts; noise_ is not read then
   std::array<Wood, kLeaves> wood_;
   Foliage leaves_;
-  std::array<double, kMaxTreeLevels> levers_m_;
-  Skeleton skeleton_;
-  Pose pose_;
+  std::array<double, pose::kMaxTreeLevels> levers_m_;
+  pose::Skeleton skeleton_;
+  pose::Pose pose_;
 };
 
-Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup)
+Tree::Tree(pose::TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup)
     : row_(setup.row),
       species_(species_of(values)),
       flexibility_(values.number("flexibility")),
@@ -369,8 +370,8 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
       wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
       middle_wind_(setup.placement, setup.gusts),
       noise_(tree_wind_noise(values, setup.seed)),
-      crown_noise_(
-          CarriedNoise::band(kCrownShortest_m, kCrownLongest_m, setup.seed ^ stream_id("tree gusts in the crown"))),
+      crown_noise_(CarriedNoise::band(kCrownShortest_m, kCrownLongest_m,
+                                      setup.seed ^ math::stream_id("tree gusts in the crown"))),
       leaf_noise_(leaf_noise(setup.seed)),
       levers_m_(tree_levers_m(tree)) {
   Places places_m;
@@ -392,11 +393,11 @@ Tree::Tree(TreeSkeleton tree, const ParameterValues& values, const SceneSetup& s
 
   add_leaves(tree.levels[kLeaves], setup.seed);
   skeleton_ = std::move(tree);
-  pose_ = rest_pose(skeleton_);
+  pose_ = pose::rest_pose(skeleton_);
 }
 
-void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m) {
-  const StrandSkeleton& strands = tree.levels[level].strands;
+void Tree::add_wood(const pose::TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m) {
+  const pose::StrandSkeleton& strands = tree.levels[level].strands;
   const std::size_t padded = strands.padded_count();
   Wood& wood = wood_[level];
   wood.level = level;
@@ -443,20 +444,21 @@ void Tree::add_wood(const TreeSkeleton& tree, std::size_t level, const ScenePlac
                       &wood.toward_south, &wood.vertical, &wood.horizontal}) {
     array->assign(padded, 0.0F);
   }
-  wood.steps = OscillatorSteps(padded);
-  wood.oscillators = Oscillators(padded);
+  wood.steps = operators::OscillatorSteps(padded);
+  wood.oscillators = operators::Oscillators(padded);
 }
 
-void Tree::add_leaves(const TreeLevel& level, std::uint64_t seed) {
-  const RandomStream random(seed, stream_id("tree petioles"));
-  const StrandSkeleton& strands = level.strands;
+void Tree::add_leaves(const pose::TreeLevel& level, std::uint64_t seed) {
+  const math::RandomStream random(seed, math::stream_id("tree petioles"));
+  const pose::StrandSkeleton& strands = level.strands;
   std::vector<float> x_m;
   std::vector<float> z_m;
   for (std::size_t i = 0; i < strands.padded_count(); ++i) {
     const auto y_m = static_cast<double>(strands.root_y_m[i]);
     x_m.push_back(static_cast<float>(static_cast<double>(strands.root_x_m[i]) + kHeightSkew[0] * y_m));
     z_m.push_back(static_cast<float>(static_cast<double>(strands.root_z_m[i]) + kHeightSkew[1] * y_m));
-    if (i % FlutterJob::kLeavesOfASpray == 0) leaves_.twig.push_back(i < strands.strand_count ? level.parent[i] : 0);
+    if (i % operators::FlutterJob::kLeavesOfASpray == 0)
+      leaves_.twig.push_back(i < strands.strand_count ? level.parent[i] : 0);
 
     const double liveliness = 0.7 + 0.6 * random.uniform(2 * i);
     leaves_.give.push_back(static_cast<float>(species_.petiole * liveliness));
@@ -508,61 +510,61 @@ void Tree::blow_on(Wood& wood) noexcept {
 
 void Tree::sample_wood(Wood& wood) noexcept {
   blow_on(wood);
-  const BranchForceJob force{.mean_m_s = wind_.speed_m_s(),
-                             .streamline_speed_m_s = streamline_speed_m_s_,
-                             .calm_m_s = kLeastMean_m_s,
-                             .row = row_,
-                             .wind_east_m_s = wood.east_m_s,
-                             .wind_south_m_s = wood.south_m_s,
-                             .noise = wood.noise,
-                             .toward_east = wood.toward_east,
-                             .toward_south = wood.toward_south};
+  const operators::BranchForceJob force{.mean_m_s = wind_.speed_m_s(),
+                                        .streamline_speed_m_s = streamline_speed_m_s_,
+                                        .calm_m_s = kLeastMean_m_s,
+                                        .row = row_,
+                                        .wind_east_m_s = wood.east_m_s,
+                                        .wind_south_m_s = wood.south_m_s,
+                                        .noise = wood.noise,
+                                        .toward_east = wood.toward_east,
+                                        .toward_south = wood.toward_south};
   force.run();
-  WindSideJob{.wind_east_m_s = wind_.east_m_s(),
-              .wind_south_m_s = wind_.south_m_s(),
-              .calm_m_s = kSidelessWind_m_s,
-              .floor = kWindSideFloor,
-              .place_x = wood.side_x,
-              .place_z = wood.side_z,
-              .distance = wood.distance}
+  operators::WindSideJob{.wind_east_m_s = wind_.east_m_s(),
+                         .wind_south_m_s = wind_.south_m_s(),
+                         .calm_m_s = kSidelessWind_m_s,
+                         .floor = kWindSideFloor,
+                         .place_x = wood.side_x,
+                         .place_z = wood.side_z,
+                         .distance = wood.distance}
       .run();
   // Those on the windward side bend more than the mean of their kind, those on the lee side less.
   double nearness = 0.0;
   for (std::size_t i = 0; i < wood.count; ++i) nearness += 1.0 / static_cast<double>(wood.distance[i]);
   wood.force = static_cast<double>(force.mean_force()) * static_cast<double>(wood.count) / nearness;
-  SplitJob{.noise = wood.noise,
-           .ramp = wood.distance,
-           .threshold = kThreshold,
-           .threshold_rise = kThresholdRise,
-           .width = kSplitWidth,
-           .row = row_,
-           .above = wood.vertical,
-           .below = wood.horizontal}
+  operators::SplitJob{.noise = wood.noise,
+                      .ramp = wood.distance,
+                      .threshold = kThreshold,
+                      .threshold_rise = kThresholdRise,
+                      .width = kSplitWidth,
+                      .row = row_,
+                      .above = wood.vertical,
+                      .below = wood.horizontal}
       .run();
 }
 
-void Tree::project_wood(Wood& wood, StrandPose& pose) noexcept {
-  TiltJob{.force = wood.force,
-          .toward_east = wood.toward_east,
-          .toward_south = wood.toward_south,
-          .vertical = wood.vertical,
-          .horizontal = wood.horizontal,
-          .distance = wood.distance,
-          .gain = wood.gain,
-          .alpha_vertical = 1.0,
-          .beta_horizontal = species_.beta_horizontal,
-          .max_tilt_rad = max_tilt_rad_,
-          .max_swing_rad = max_swing_rad_,
-          .row = row_,
-          .bend_east_rad = pose.bend_east_rad,
-          .bend_south_rad = pose.bend_south_rad}
+void Tree::project_wood(Wood& wood, pose::StrandPose& pose) noexcept {
+  operators::TiltJob{.force = wood.force,
+                     .toward_east = wood.toward_east,
+                     .toward_south = wood.toward_south,
+                     .vertical = wood.vertical,
+                     .horizontal = wood.horizontal,
+                     .distance = wood.distance,
+                     .gain = wood.gain,
+                     .alpha_vertical = 1.0,
+                     .beta_horizontal = species_.beta_horizontal,
+                     .max_tilt_rad = max_tilt_rad_,
+                     .max_swing_rad = max_swing_rad_,
+                     .row = row_,
+                     .bend_east_rad = pose.bend_east_rad,
+                     .bend_south_rad = pose.bend_south_rad}
       .run();
-  OscillatorJob{.steps = &wood.steps,
-                .blend = hybrid_,
-                .row = row_,
-                .oscillators = &wood.oscillators,
-                .east = pose.bend_east_rad,
-                .south = pose.bend_south_rad}
+  operators::OscillatorJob{.steps = &wood.steps,
+                           .blend = hybrid_,
+                           .row = row_,
+                           .oscillators = &wood.oscillators,
+                           .east = pose.bend_east_rad,
+                           .south = pose.bend_south_rad}
       .run();
 }
 
@@ -572,7 +574,7 @@ void Tree::project_wood(Wood& wood, StrandPose& pose) noexcept {
 double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept {
   const double largest_rad = std::hypot(max_tilt_rad_, max_swing_rad_);
   const double swayed_rad =
-      OscillatorStep::largest_rate_per_s(wood.largest_hz, wood.damping_ratio) * dt_s * largest_rad;
+      operators::OscillatorStep::largest_rate_per_s(wood.largest_hz, wood.damping_ratio) * dt_s * largest_rad;
   return (1.0 - hybrid_) * 2.0 * largest_rad + hybrid_ * swayed_rad;
 }
 
@@ -598,10 +600,10 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
 
   // The noise of the leaves goes the fastest in the strongest wind.
   const double noise_step = change(leaf_noise_, leaf_carry(kStrongestSceneWind_m_s), kLargestFine);
-  const double lean_step = std::min(kSteepestBendShare * step_m_s / half_lean_speed_m_s_, 2.0);
-  const double flutter_step =
-      std::min(LeafResponseJob::kSteepestFlutter * step_m_s / species_.flutter_speed_m_s * kLargestFine + noise_step,
-               2.0 * kLargestFine);
+  const double lean_step = std::min(operators::kSteepestBendShare * step_m_s / half_lean_speed_m_s_, 2.0);
+  const double flutter_step = std::min(
+      operators::LeafResponseJob::kSteepestFlutter * step_m_s / species_.flutter_speed_m_s * kLargestFine + noise_step,
+      2.0 * kLargestFine);
   return leaves_.largest_give * leaf_lean_rad_ * lean_step + leaves_.liveliest * leaf_flutter_rad_ * flutter_step;
 }
 
@@ -621,4 +623,4 @@ const SceneDescription kTreeScene = {
                const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Tree>(values, setup)); },
     .retired = kRetiredTreeParameters};
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

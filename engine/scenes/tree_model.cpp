@@ -8,7 +8,7 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kGoldenAngle_rad = kPi * (3.0 - 2.23606797749979);  // 137.5 degrees
@@ -96,7 +96,7 @@ double interpolated(const std::array<double, 2>& ends, double part) {
 }
 
 /// A factor around 1, within 40 % of it.
-double random_factor(const RandomStream& random, std::size_t index, double deviation) {
+double random_factor(const math::RandomStream& random, std::size_t index, double deviation) {
   return std::clamp(1.0 + deviation * random.normal(index), 0.6, 1.4);
 }
 
@@ -104,14 +104,14 @@ class Grower {
  public:
   explicit Grower(const TreeSpec& spec) : spec_(spec), height_m_(spec.size * spec.habit.height_m) {}
 
-  TreeSkeleton grow() {
+  pose::TreeSkeleton grow() {
     grow_trunk();
     limbs_ = grow_branches(trunk_, spec_.habit.limb, spec_.limbs, "tree limbs");
     twigs_ = grow_branches(limbs_, spec_.habit.twig, spec_.twigs, "tree twigs");
     grow_leaves();
     thicken();
 
-    TreeSkeleton tree;
+    pose::TreeSkeleton tree;
     tree.levels.resize(kTreePartCount);
     fill(tree.levels[kTrunk], trunk_, spec_.branch_links);
     fill(tree.levels[kLimbs], limbs_, spec_.branch_links);
@@ -128,7 +128,7 @@ class Grower {
  private:
   /// All but upright, with a slight bow.
   void grow_trunk() {
-    const RandomStream random(spec_.seed, stream_id("tree trunk"));
+    const math::RandomStream random(spec_.seed, math::stream_id("tree trunk"));
     const double around_rad = 2.0 * kPi * random.uniform(0);
     const double lean_rad = 2.0 * kRadPerDeg * random.uniform(1);
     const TreeVector side = {std::sin(around_rad), 0.0, -std::cos(around_rad)};
@@ -142,7 +142,7 @@ class Grower {
   /// `count` branches, shared out evenly among the parents, from the foot of each to its tip.
   std::vector<Shoot> grow_branches(const std::vector<Shoot>& parents, const BranchHabit& habit, std::size_t count,
                                    std::string_view what) const {
-    const RandomStream random(spec_.seed, stream_id(what));
+    const math::RandomStream random(spec_.seed, math::stream_id(what));
     std::vector<Shoot> branches;
     for (std::size_t p = 0; p < parents.size(); ++p) {
       const std::size_t first = p * count / parents.size();
@@ -179,31 +179,31 @@ class Grower {
   /// each somewhere else on its twig. In the order in which their roots lie together in memory: block of twigs by
   /// block, and in it by node (JointPositions).
   std::vector<Spray> sprays() const {
-    const std::size_t count = (spec_.leaves + kStrandsPerBlock - 1) / kStrandsPerBlock;
-    const std::size_t starts = kNodesOfATwig - kStrandsPerBlock - kFirstNode + 1;
+    const std::size_t count = (spec_.leaves + pose::kStrandsPerBlock - 1) / pose::kStrandsPerBlock;
+    const std::size_t starts = kNodesOfATwig - pose::kStrandsPerBlock - kFirstNode + 1;
     std::vector<Spray> sprays;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t left_over = i * twigs_.size() % count;
       sprays.push_back({i * twigs_.size() / count, kFirstNode + left_over * starts / count});
     }
     std::stable_sort(sprays.begin(), sprays.end(), [](const Spray& a, const Spray& b) {
-      const std::size_t a_block = a.twig / kStrandsPerBlock;
-      const std::size_t b_block = b.twig / kStrandsPerBlock;
+      const std::size_t a_block = a.twig / pose::kStrandsPerBlock;
+      const std::size_t b_block = b.twig / pose::kStrandsPerBlock;
       return a_block != b_block ? a_block < b_block : a.node < b.node;
     });
     return sprays;
   }
 
   void grow_leaves() {
-    const RandomStream random(spec_.seed, stream_id("tree leaves"));
+    const math::RandomStream random(spec_.seed, math::stream_id("tree leaves"));
     const TreeHabit& habit = spec_.habit;
     std::vector<Course> courses;
     for (const Shoot& twig : twigs_) courses.push_back(course_of(twig, spec_.branch_links));
     const std::vector<Spray> all_sprays = sprays();
     for (std::size_t leaf = 0; leaf < spec_.leaves; ++leaf) {
-      const Spray& spray = all_sprays[leaf / kStrandsPerBlock];
+      const Spray& spray = all_sprays[leaf / pose::kStrandsPerBlock];
       const Course& course = courses[spray.twig];
-      const std::size_t node = spray.node + leaf % kStrandsPerBlock;
+      const std::size_t node = spray.node + leaf % pose::kStrandsPerBlock;
       const std::size_t link = link_at(static_cast<double>(node) / kNodesOfATwig);
       const double angle_rad = habit.leaf_angle_deg * kRadPerDeg * random_factor(random, 4 * leaf, 0.2);
       const TreeVector rest =
@@ -254,8 +254,8 @@ class Grower {
   }
 
   /// What is behind the last strand stands upright at the world's origin and has no length.
-  static void fill(TreeLevel& level, const std::vector<Shoot>& shoots, std::size_t links) {
-    StrandSkeleton& strands = level.strands;
+  static void fill(pose::TreeLevel& level, const std::vector<Shoot>& shoots, std::size_t links) {
+    pose::StrandSkeleton& strands = level.strands;
     strands.strand_count = shoots.size();
     strands.links_per_strand = links;
     const Shoot nothing{
@@ -287,22 +287,22 @@ class Grower {
 
 }  // namespace
 
-TreeSkeleton make_tree(const TreeSpec& spec) {
+pose::TreeSkeleton make_tree(const TreeSpec& spec) {
   return Grower(spec).grow();
 }
 
-std::array<double, kMaxTreeLevels> tree_levers_m(const TreeSkeleton& tree) {
-  std::array<double, kMaxTreeLevels> largest_m = {};
+std::array<double, pose::kMaxTreeLevels> tree_levers_m(const pose::TreeSkeleton& tree) {
+  std::array<double, pose::kMaxTreeLevels> largest_m = {};
   for (std::size_t top = 0; top < tree.levels.size(); ++top) {
     for (std::size_t tip = 0; tip < tree.levels[top].strands.strand_count; ++tip) {
       // From the tip of a strand down to the ground: of each strand on the way, the links up to the one that goes on.
-      std::array<double, kMaxTreeLevels> lever_m = {};
+      std::array<double, pose::kMaxTreeLevels> lever_m = {};
       double beyond_m = 0.0;  // the way from there to the tip
       std::size_t level = top;
       std::size_t strand = tip;
       double links = static_cast<double>(tree.levels[top].strands.links_per_strand);  // up to it
       for (;;) {
-        const StrandSkeleton& strands = tree.levels[level].strands;
+        const pose::StrandSkeleton& strands = tree.levels[level].strands;
         const double all_links = static_cast<double>(strands.links_per_strand);
         const double link_m = static_cast<double>(strands.link_length_m[strand]);
         lever_m[level] += link_m * links * (links + 1.0) / (2.0 * all_links) + beyond_m * links / all_links;
@@ -312,10 +312,10 @@ std::array<double, kMaxTreeLevels> tree_levers_m(const TreeSkeleton& tree) {
         strand = tree.levels[level].parent[strand];
         level = tree.levels[level].parent_level;
       }
-      for (std::size_t i = 0; i < kMaxTreeLevels; ++i) largest_m[i] = std::max(largest_m[i], lever_m[i]);
+      for (std::size_t i = 0; i < pose::kMaxTreeLevels; ++i) largest_m[i] = std::max(largest_m[i], lever_m[i]);
     }
   }
   return largest_m;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

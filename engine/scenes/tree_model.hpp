@@ -6,7 +6,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// How a generation of branches grows out of the one before. Of pairs of numbers the first holds at the foot of the
 /// parent, the second at its tip, linear between.
@@ -50,7 +50,7 @@ enum TreePart : std::size_t { kTrunk, kLimbs, kTwigs, kLeaves, kTreePartCount };
 /// the habit's angle, and curls to the light or droops; lengths and angles differ at random. Where a branch begins, its
 /// section is the sum of those that it carries (the pipe model: Shinozaki and others 1964, "A quantitative analysis of
 /// plant form"). Deterministic by seed. Allocates; may throw std::bad_alloc. Thread-safe: yes. Realtime-safe: no.
-TreeSkeleton make_tree(const TreeSpec& spec);
+pose::TreeSkeleton make_tree(const TreeSpec& spec);
 
 /// How far a joint may be moved by the bends of each level: if no bend of level l changes by more than d[l] (as a
 /// vector, rad), no joint moves farther than the sum of lever[l] d[l], metres.
@@ -59,6 +59,6 @@ TreeSkeleton make_tree(const TreeSpec& spec);
 /// shortens), and each link of a joint's path from the ground is turned by i/n of the bend of each strand on that path
 /// that is at or before it. Levels that are not there have 0. The tree has valid parents (TreeKinematicsJob).
 /// Thread-safe: yes.
-std::array<double, kMaxTreeLevels> tree_levers_m(const TreeSkeleton& tree);
+std::array<double, pose::kMaxTreeLevels> tree_levers_m(const pose::TreeSkeleton& tree);
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

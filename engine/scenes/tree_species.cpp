@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 // Leaves are larger than in nature, where a tree has twenty times as many.
@@ -67,4 +67,4 @@ const TreeSpecies& tree_species(std::string_view name) noexcept {
                        [name](const TreeSpecies& species) { return species.name == name; });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -5,7 +5,7 @@
 
 #include "engine/scenes/tree_model.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// What trees of a species have in common: how they grow, and how they respond to the wind (Chiba, section 3.3).
 struct TreeSpecies {
@@ -24,4 +24,4 @@ inline constexpr std::array<std::string_view, 3> kTreeSpeciesNames = {"cherry", 
 /// One of kTreeSpeciesNames; the last for any other name. Thread-safe: yes.
 const TreeSpecies& tree_species(std::string_view name) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -10,7 +10,7 @@
 #include "engine/scenes/grid_places.hpp"
 #include "engine/scenes/scene.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr std::size_t kFewestNodes = 4;
@@ -43,8 +43,8 @@ WindGrid::Layout::Layout(std::span<const float> x_m, std::span<const float> z_m,
   const double cell_m = std::max(extent_m / static_cast<double>(torus_nodes - 2), finest_cell_m);
   const double period_m = cell_m * static_cast<double>(torus_nodes);
   for (std::size_t i = 0; i < x_m.size(); ++i) {
-    place_x.push_back(torus_phase(static_cast<double>(x_m[i]) - nodes.west_m, period_m));
-    place_z.push_back(torus_phase(static_cast<double>(z_m[i]) - nodes.north_m, period_m));
+    place_x.push_back(noise::torus_phase(static_cast<double>(x_m[i]) - nodes.west_m, period_m));
+    place_z.push_back(noise::torus_phase(static_cast<double>(z_m[i]) - nodes.north_m, period_m));
   }
   nodes.cell_x_m = cell_m;
   nodes.cell_z_m = cell_m;
@@ -52,8 +52,8 @@ WindGrid::Layout::Layout(std::span<const float> x_m, std::span<const float> z_m,
   nodes.lines = nodes_read(place_z, torus_nodes);
 }
 
-WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m,
-                   SimdRow row, double finest_cell_m, std::size_t columns)
+WindGrid::WindGrid(std::shared_ptr<const wind::turbulence::GustNoise> gusts, std::span<const float> x_m,
+                   std::span<const float> z_m, SimdRow row, double finest_cell_m, std::size_t columns)
     : row_(row), layout_(x_m, z_m, finest_cell_m), gusts_(std::move(gusts), layout_.nodes, row), tape_nodes_(gusts_) {
   if (goes_along_axes(x_m, z_m, columns)) {
     column_x_.assign(layout_.place_x.begin(), layout_.place_x.begin() + static_cast<std::ptrdiff_t>(columns));
@@ -68,19 +68,19 @@ WindGrid::WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float
   }
 }
 
-void WindGrid::step(const GroundWind& wind, double dt_s) noexcept {
+void WindGrid::step(const wind::ground::GroundWind& wind, double dt_s) noexcept {
   // What is known at each node, and the noise that fills the rest: along the mean wind and to the left of it, turned
   // into the world.
   if (wind.tapes != nullptr) tape_nodes_.read(wind, gusts_);
   gusts_.read(wind.gusts, wind.tapes != nullptr ? tape_nodes_.weights() : GustWeights{});
-  const WindVector ahead = wind.gusts.ahead;
+  const wind::WindVector ahead = wind.gusts.ahead;
   for (std::size_t i = 0; i < east_.target.size(); ++i) {
     const auto along = static_cast<double>(gusts_.along_m_s()[i]);
     const auto across = static_cast<double>(gusts_.across_m_s()[i]);
-    const WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
-    const WindVector here = wind.tapes != nullptr ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
-                                                  : wind.untaped_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
-    const WindVector felt = SceneWind::cut(here);
+    const wind::WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
+    const wind::WindVector here = wind.tapes != nullptr ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
+                                                        : wind.untaped_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
+    const wind::WindVector felt = SceneWind::cut(here);
     east_.target[i] = static_cast<float>(felt.u_m_s);
     south_.target[i] = static_cast<float>(-felt.v_m_s);
   }
@@ -116,14 +116,14 @@ void WindGrid::follow(Component& component, double dt_s) const noexcept {
 
 void WindGrid::read(const Component& component, std::size_t first, std::span<float> out) const noexcept {
   if (!column_x_.empty() && out.size() == layout_.place_x.size()) {
-    const GridNoiseLayer layer{.tile = &component.on_torus, .column_x = column_x_, .row_z = row_z_};
-    GridSampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();
+    const operators::GridNoiseLayer layer{.tile = &component.on_torus, .column_x = column_x_, .row_z = row_z_};
+    operators::GridSampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();
     return;
   }
-  const NoiseLayer layer{.tile = &component.on_torus,
-                         .place_x = std::span(layout_.place_x).subspan(first, out.size()),
-                         .place_z = std::span(layout_.place_z).subspan(first, out.size())};
-  SampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();
+  const operators::NoiseLayer layer{.tile = &component.on_torus,
+                                    .place_x = std::span(layout_.place_x).subspan(first, out.size()),
+                                    .place_z = std::span(layout_.place_z).subspan(first, out.size())};
+  operators::SampleJob{.layers = std::span(&layer, 1), .row = row_, .out = out}.run();
 }
 
 void WindGrid::sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept {
@@ -131,4 +131,4 @@ void WindGrid::sample(std::size_t first, std::span<float> east_m_s, std::span<fl
   read(south_, first, south_m_s);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

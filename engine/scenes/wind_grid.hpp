@@ -12,7 +12,7 @@
 #include "engine/scenes/tape_nodes.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 /// The wind at each place of a scene: a grid over the scene whose nodes each feel the wind as SceneWind does (cut to
 /// kStrongestSceneWind_m_s, smoothed by 0.1 s), gusts of the place included; places between nodes read it bilinearly.
@@ -28,11 +28,11 @@ class WindGrid {
   /// Places: metres east and south of the middle of all scenes, as many of x as of z.
   /// `finest_cell_m`: nodes are not nearer to each other. `columns`: how many places stand in a row, where they are the
   /// rows of a grid: if those go along x, all of them together are read faster (GridSampleJob), to the same bits.
-  WindGrid(std::shared_ptr<const GustNoise> gusts, std::span<const float> x_m, std::span<const float> z_m, SimdRow row,
-           double finest_cell_m = 0.5, std::size_t columns = 0);
+  WindGrid(std::shared_ptr<const wind::turbulence::GustNoise> gusts, std::span<const float> x_m,
+           std::span<const float> z_m, SimdRow row, double finest_cell_m = 0.5, std::size_t columns = 0);
 
   /// Advances by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
-  void step(const GroundWind& wind, double dt_s) noexcept;
+  void step(const wind::ground::GroundWind& wind, double dt_s) noexcept;
 
   /// The wind at as many places as the outputs have, from place `first` on.
   void sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept;
@@ -48,7 +48,7 @@ class WindGrid {
   /// One component of the wind at the nodes: toward where it goes, and how quickly it does.
   struct Component {
     std::vector<float> value, target, rate_per_s;
-    NoiseTile2 on_torus;  ///< the values, where places read them
+    noise::NoiseTile2 on_torus;  ///< the values, where places read them
   };
 
   void follow(Component& component, double dt_s) const noexcept;
@@ -62,4 +62,4 @@ class WindGrid {
   Component east_, south_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::wind {
 
 /// Does a sensor's device reply? The stream (pose.fbs) has the same in the same order.
 enum class LinkState : std::uint8_t {
@@ -20,4 +20,4 @@ constexpr std::string_view name_of(LinkState state) {
   return number < kLinkStateNames.size() ? kLinkStateNames[number] : "?";
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind

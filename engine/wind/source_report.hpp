@@ -6,7 +6,7 @@
 
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::wind {
 
 /// How a source of readings does, seen from the estimator. The stream (pose.fbs, SensorHealth) has the same in the same
 /// order.
@@ -24,4 +24,4 @@ struct SourceReport {
   std::optional<WindReading> last;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind

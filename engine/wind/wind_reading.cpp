@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::wind {
 namespace {
 
 bool is_physical_speed(double speed_m_s) {
@@ -18,4 +18,4 @@ bool is_plausible(const WindReading& reading) noexcept {
   return std::isfinite(*reading.direction_deg) && *reading.direction_deg >= 0.0 && *reading.direction_deg < 360.0;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind

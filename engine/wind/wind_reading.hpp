@@ -5,7 +5,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::wind {
 
 /// The quality of a reading as its own device reports it.
 enum class ReadingQuality : std::uint8_t {
@@ -34,4 +34,4 @@ inline constexpr double kMaxPlausibleSpeed_m_s = 120.0;
 /// Is everything in the reading finite and within physical range?
 bool is_plausible(const WindReading& reading) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind

@@ -5,7 +5,7 @@
 #include "engine/base/time.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind {
 
 /// Where the wind of a moment comes from.
 enum class WindSource : std::uint8_t {
@@ -29,4 +29,4 @@ struct WindState {
   bool is_place_configured = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind

@@ -4,7 +4,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::wind {
 
 double speed_of(WindVector wind) noexcept {
   return std::hypot(wind.u_m_s, wind.v_m_s);
@@ -22,4 +22,4 @@ WindVector wind_from(double speed_m_s, double direction_deg) noexcept {
   return {-speed_m_s * std::sin(from_rad), -speed_m_s * std::cos(from_rad)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind

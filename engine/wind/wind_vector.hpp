@@ -1,6 +1,6 @@
 #pragma once
 
-namespace yuragi {
+namespace yuragi::wind {
 
 /// Horizontal wind toward which the air moves: u east, v north, m/s. Averages and blends are made of these, never of
 /// degrees, so that none of them crosses 360.
@@ -22,4 +22,4 @@ double direction_from_deg(WindVector wind) noexcept;
 /// The vector of a wind that comes from `direction_deg`.
 WindVector wind_from(double speed_m_s, double direction_deg) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind

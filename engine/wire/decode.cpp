@@ -27,10 +27,10 @@ constexpr double kMaxWind_m_s = 1e3;
 constexpr double kMaxWay_m = 1e6;
 constexpr double kMaxDuration_s = 1e12;
 
-bool read(const fb::Wind* from, WindState& to) {
+bool read(const fb::Wind* from, wind::WindState& to) {
   if (from == nullptr || from->source() > fb::WindSource_MAX) return false;
   to.wind = {static_cast<double>(from->u_m_s()), static_cast<double>(from->v_m_s())};
-  to.source = static_cast<WindSource>(from->source());
+  to.source = static_cast<wind::WindSource>(from->source());
   to.live_weight = static_cast<double>(from->live_weight());
   to.reading_age_s = static_cast<double>(from->reading_age_s());
   return is_within(to.wind.u_m_s, -kMaxWind_m_s, kMaxWind_m_s) &&
@@ -39,7 +39,7 @@ bool read(const fb::Wind* from, WindState& to) {
 }
 
 /// A server that does not know of it sends none: then the wind is in the middle.
-bool read(const fb::WindPlace* from, WindState& to) {
+bool read(const fb::WindPlace* from, wind::WindState& to) {
   if (from == nullptr) return true;
   to.upwind_m = static_cast<double>(from->upwind_m());
   to.to_middle_s = static_cast<double>(from->to_middle_s());
@@ -105,8 +105,8 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   if (from.link() > fb::LinkState_MAX || from.health() > fb::SensorHealth_MAX || from.state() > fb::SensorState_MAX) {
     return false;
   }
-  to.link = static_cast<LinkState>(from.link());
-  to.health = static_cast<SourceHealth>(from.health());
+  to.link = static_cast<wind::LinkState>(from.link());
+  to.health = static_cast<wind::SourceHealth>(from.health());
   to.simulated = from.simulated();
   to.age_s = from.age_s();
   to.interval_s = from.interval_s();
@@ -114,7 +114,7 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   to.frames = from.frames();
   to.reconnects = from.reconnects();
   to.replayed = from.replayed();
-  to.state = static_cast<SensorState>(from.state());
+  to.state = static_cast<wind::judging::SensorState>(from.state());
   const std::size_t reasons = from.refused() == nullptr ? 0 : from.refused()->size();
   if (reasons > kMaxRefusalReasons) return false;
   for (std::size_t i = 0; i < reasons; ++i) {

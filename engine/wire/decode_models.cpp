@@ -36,7 +36,7 @@ struct Layout {
 };
 
 Layout strands_of(std::size_t count) {
-  return {.columns = count, .stride = padded_to_blocks(count)};
+  return {.columns = count, .stride = pose::padded_to_blocks(count)};
 }
 
 /// The values, `convert`ed, and the padding filled with zeros.
@@ -82,7 +82,7 @@ bool is_unit(float x, float y, float z) {
 }
 
 /// Of `rest` and `curl` of every strand: are they unit vectors, one across the other?
-bool is_frame(const StrandSkeleton& s) {
+bool is_frame(const pose::StrandSkeleton& s) {
   for (std::size_t i = 0; i < s.strand_count; ++i) {
     const float across = s.rest_x[i] * s.curl_x[i] + s.rest_y[i] * s.curl_y[i] + s.rest_z[i] * s.curl_z[i];
     if (!is_unit(s.rest_x[i], s.rest_y[i], s.rest_z[i]) || !is_unit(s.curl_x[i], s.curl_y[i], s.curl_z[i]) ||
@@ -92,7 +92,7 @@ bool is_frame(const StrandSkeleton& s) {
   return true;
 }
 
-bool read(const fb::StrandSkeleton& from, StrandSkeleton& to) {
+bool read(const fb::StrandSkeleton& from, pose::StrandSkeleton& to) {
   const std::size_t count = size_of(from.root_x_m());
   if (count > kMaxStrands || from.links_per_strand() < 1 || from.links_per_strand() > kMaxLinksPerStrand) return false;
   to.strand_count = count;
@@ -116,7 +116,7 @@ bool is_grid(std::size_t columns, std::size_t rows, std::size_t stride) {
   return columns <= kMaxStrands && rows <= kMaxStrands && stride * rows <= kMaxStrands;
 }
 
-bool read(const fb::GridSkeleton& from, GridSkeleton& to) {
+bool read(const fb::GridSkeleton& from, pose::GridSkeleton& to) {
   to.columns = from.columns();
   to.rows = from.rows();
   to.is_first_column_fixed = from.is_first_column_fixed();
@@ -127,7 +127,7 @@ bool read(const fb::GridSkeleton& from, GridSkeleton& to) {
 }
 
 /// A level that grows on the levels before it, which have been read.
-bool read(const fb::TreeLevel& from, std::span<const TreeLevel> before, TreeLevel& to) {
+bool read(const fb::TreeLevel& from, std::span<const pose::TreeLevel> before, pose::TreeLevel& to) {
   if (from.strands() == nullptr || !read(*from.strands(), to.strands)) return false;
   to.is_turned_by_block = from.is_turned_by_block();
   to.is_leaves = from.is_leaves();
@@ -139,20 +139,20 @@ bool read(const fb::TreeLevel& from, std::span<const TreeLevel> before, TreeLeve
 
   if (from.parent_level() >= before.size()) return false;
   to.parent_level = from.parent_level();
-  const StrandSkeleton& parents = before[to.parent_level].strands;
+  const pose::StrandSkeleton& parents = before[to.parent_level].strands;
   return read_indices(from.parent(), all, parents.strand_count, to.parent) &&
          read_indices(from.parent_link(), all, parents.links_per_strand, to.parent_link);
 }
 
-bool read(const fb::TreeSkeleton& from, TreeSkeleton& to) {
+bool read(const fb::TreeSkeleton& from, pose::TreeSkeleton& to) {
   const std::size_t count = size_of(from.levels());
-  if (count < 1 || count > kMaxTreeLevels) return false;
+  if (count < 1 || count > pose::kMaxTreeLevels) return false;
   // A newer server may know more colours.
-  if (from.foliage() <= fb::FoliageColor_MAX) to.foliage = static_cast<FoliageColor>(from.foliage());
+  if (from.foliage() <= fb::FoliageColor_MAX) to.foliage = static_cast<pose::FoliageColor>(from.foliage());
   to.levels.reserve(count);
   std::size_t room = 0;  // the levels may share arrays: few bytes must not ask for much memory
   for (std::size_t i = 0; i < count; ++i) {
-    TreeLevel level;
+    pose::TreeLevel level;
     if (!read(*from.levels()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.levels, level)) return false;
     room += level.strands.strand_count;
     if (room > kMaxStrands) return false;
@@ -161,7 +161,7 @@ bool read(const fb::TreeSkeleton& from, TreeSkeleton& to) {
   return true;
 }
 
-bool read(const fb::SurfaceSkeleton& from, SurfaceSkeleton& to) {
+bool read(const fb::SurfaceSkeleton& from, pose::SurfaceSkeleton& to) {
   to.columns = from.columns();
   to.rows = from.rows();
   to.is_closed = from.is_closed();
@@ -188,7 +188,7 @@ bool read(const fb::SurfaceSkeleton& from, SurfaceSkeleton& to) {
   return true;
 }
 
-bool read(const fb::StrandPose& from, StrandPose& to) {
+bool read(const fb::StrandPose& from, pose::StrandPose& to) {
   const std::size_t count = size_of(from.bend_east());
   const float step_rad = from.bend_step_rad();
   return count <= kMaxStrands && step_rad > 0.0f && step_rad <= kMaxBendStep_rad &&
@@ -200,22 +200,22 @@ bool is_way_step(float step_m) {
   return step_m > 0.0f && step_m <= kMaxWayStep_m;
 }
 
-bool read(const fb::GridPose& from, GridPose& to) {
+bool read(const fb::GridPose& from, pose::GridPose& to) {
   const std::size_t columns = from.columns();
   const std::size_t rows = columns == 0 ? 0 : size_of(from.offset_x()) / columns;
-  const Layout all{.columns = columns, .rows = rows, .stride = padded_to_blocks(columns)};
+  const Layout all{.columns = columns, .rows = rows, .stride = pose::padded_to_blocks(columns)};
   return is_way_step(from.step_m()) && is_grid(all.columns, all.rows, all.stride) &&
          read_units(from.offset_x(), all, from.step_m(), to.offset_x_m) &&
          read_units(from.offset_y(), all, from.step_m(), to.offset_y_m) &&
          read_units(from.offset_z(), all, from.step_m(), to.offset_z_m);
 }
 
-bool read(const fb::TreePose& from, TreePose& to) {
+bool read(const fb::TreePose& from, pose::TreePose& to) {
   const std::size_t count = size_of(from.levels());
-  if (count < 1 || count > kMaxTreeLevels) return false;
+  if (count < 1 || count > pose::kMaxTreeLevels) return false;
   std::size_t room = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    StrandPose& level = to.levels.emplace_back();
+    pose::StrandPose& level = to.levels.emplace_back();
     if (!read(*from.levels()->Get(static_cast<flatbuffers::uoffset_t>(i)), level)) return false;
     room += level.bend_east_rad.size();
     if (room > kMaxStrands + kMaxPadding) return false;
@@ -227,7 +227,7 @@ bool is_slope_step(float step) {
   return step > 0.0f && step <= kMaxSlopeStep;
 }
 
-bool read(const fb::SurfacePose& from, SurfacePose& to) {
+bool read(const fb::SurfacePose& from, pose::SurfacePose& to) {
   const Layout all{.columns = size_of(from.displacement())};
   const Layout glowing{.columns = size_of(from.heat()) == 0 ? 0 : all.columns};
   const Layout rows{.columns = size_of(from.row_east())};
@@ -254,55 +254,56 @@ bool read_scene(const fb::Scene& from, SceneModel& to) {
   if (!read_text(from.name(), to.name) || !read_text(from.kind(), to.kind)) return false;
   switch (from.skeleton_type()) {
     case fb::Skeleton_StrandSkeleton:
-      return read_kind<StrandSkeleton>(from.skeleton_as_StrandSkeleton(), to.skeleton);
+      return read_kind<pose::StrandSkeleton>(from.skeleton_as_StrandSkeleton(), to.skeleton);
     case fb::Skeleton_GridSkeleton:
-      return read_kind<GridSkeleton>(from.skeleton_as_GridSkeleton(), to.skeleton);
+      return read_kind<pose::GridSkeleton>(from.skeleton_as_GridSkeleton(), to.skeleton);
     case fb::Skeleton_TreeSkeleton:
-      return read_kind<TreeSkeleton>(from.skeleton_as_TreeSkeleton(), to.skeleton);
+      return read_kind<pose::TreeSkeleton>(from.skeleton_as_TreeSkeleton(), to.skeleton);
     case fb::Skeleton_SurfaceSkeleton:
-      return read_kind<SurfaceSkeleton>(from.skeleton_as_SurfaceSkeleton(), to.skeleton);
+      return read_kind<pose::SurfaceSkeleton>(from.skeleton_as_SurfaceSkeleton(), to.skeleton);
     case fb::Skeleton_NONE:
       return false;
   }
-  to.skeleton.emplace<StrandSkeleton>().links_per_strand = 1;  // of a newer server
+  to.skeleton.emplace<pose::StrandSkeleton>().links_per_strand = 1;  // of a newer server
   return true;
 }
 
-bool read_pose(const fb::ScenePose& from, Pose& pose, float& opacity) {
+bool read_pose(const fb::ScenePose& from, pose::Pose& pose, float& opacity) {
   opacity = from.opacity();
   if (!is_within(static_cast<double>(opacity), 0.0, 1.0)) return false;
   switch (from.pose_type()) {
     case fb::Pose_StrandPose:
-      return read_kind<StrandPose>(from.pose_as_StrandPose(), pose);
+      return read_kind<pose::StrandPose>(from.pose_as_StrandPose(), pose);
     case fb::Pose_GridPose:
-      return read_kind<GridPose>(from.pose_as_GridPose(), pose);
+      return read_kind<pose::GridPose>(from.pose_as_GridPose(), pose);
     case fb::Pose_TreePose:
-      return read_kind<TreePose>(from.pose_as_TreePose(), pose);
+      return read_kind<pose::TreePose>(from.pose_as_TreePose(), pose);
     case fb::Pose_SurfacePose:
-      return read_kind<SurfacePose>(from.pose_as_SurfacePose(), pose);
+      return read_kind<pose::SurfacePose>(from.pose_as_SurfacePose(), pose);
     case fb::Pose_NONE:
-      pose.emplace<StrandPose>();
+      pose.emplace<pose::StrandPose>();
       return opacity == 0.0f;  // only what is hidden may be left out
   }
-  pose.emplace<StrandPose>();  // of a newer server
+  pose.emplace<pose::StrandPose>();  // of a newer server
   return true;
 }
 
-std::size_t room_of(const Skeleton& skeleton) {
-  if (const auto* strands = std::get_if<StrandSkeleton>(&skeleton)) return strands->root_x_m.size();
-  if (const auto* grid = std::get_if<GridSkeleton>(&skeleton)) return grid->rest_x_m.size();
-  if (const auto* surface = std::get_if<SurfaceSkeleton>(&skeleton)) return surface->rest_x_m.size();
+std::size_t room_of(const pose::Skeleton& skeleton) {
+  if (const auto* strands = std::get_if<pose::StrandSkeleton>(&skeleton)) return strands->root_x_m.size();
+  if (const auto* grid = std::get_if<pose::GridSkeleton>(&skeleton)) return grid->rest_x_m.size();
+  if (const auto* surface = std::get_if<pose::SurfaceSkeleton>(&skeleton)) return surface->rest_x_m.size();
   std::size_t room = 0;
-  for (const TreeLevel& level : std::get<TreeSkeleton>(skeleton).levels) room += level.strands.root_x_m.size();
+  for (const pose::TreeLevel& level : std::get<pose::TreeSkeleton>(skeleton).levels)
+    room += level.strands.root_x_m.size();
   return room;
 }
 
-std::size_t room_of(const Pose& pose) {
-  if (const auto* strands = std::get_if<StrandPose>(&pose)) return strands->bend_east_rad.size();
-  if (const auto* grid = std::get_if<GridPose>(&pose)) return grid->offset_x_m.size();
-  if (const auto* surface = std::get_if<SurfacePose>(&pose)) return surface->displacement_m.size();
+std::size_t room_of(const pose::Pose& pose) {
+  if (const auto* strands = std::get_if<pose::StrandPose>(&pose)) return strands->bend_east_rad.size();
+  if (const auto* grid = std::get_if<pose::GridPose>(&pose)) return grid->offset_x_m.size();
+  if (const auto* surface = std::get_if<pose::SurfacePose>(&pose)) return surface->displacement_m.size();
   std::size_t room = 0;
-  for (const StrandPose& level : std::get<TreePose>(pose).levels) room += level.bend_east_rad.size();
+  for (const pose::StrandPose& level : std::get<pose::TreePose>(pose).levels) room += level.bend_east_rad.size();
   return room;
 }
 

@@ -22,13 +22,13 @@ bool read_text(const flatbuffers::String* from, std::string& to);
 bool read_scene(const fb::Scene& from, SceneModel& to);
 
 /// A scene's pose, in padded arrays. Of an unknown kind, or left out since it is hidden: strands, none of them.
-bool read_pose(const fb::ScenePose& from, Pose& pose, float& opacity);
+bool read_pose(const fb::ScenePose& from, pose::Pose& pose, float& opacity);
 
 /// How many strands, joints of cloth and points of surfaces it has, padding included: what kMaxStrands limits.
-std::size_t room_of(const Skeleton& skeleton);
-std::size_t room_of(const Pose& pose);
+std::size_t room_of(const pose::Skeleton& skeleton);
+std::size_t room_of(const pose::Pose& pose);
 
 /// What padding may add to kMaxStrands.
-inline constexpr std::size_t kMaxPadding = kMaxScenes * kMaxTreeLevels * kStrandsPerBlock;
+inline constexpr std::size_t kMaxPadding = kMaxScenes * pose::kMaxTreeLevels * pose::kStrandsPerBlock;
 
 }  // namespace yuragi::wire

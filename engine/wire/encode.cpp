@@ -26,7 +26,7 @@ flatbuffers::Offset<flatbuffers::Vector<T>> add_values(Builder& builder, const s
   return builder.CreateVector(values.data(), count);
 }
 
-flatbuffers::Offset<fb::StrandSkeleton> add_skeleton(Builder& builder, const StrandSkeleton& skeleton) {
+flatbuffers::Offset<fb::StrandSkeleton> add_skeleton(Builder& builder, const pose::StrandSkeleton& skeleton) {
   const auto add = [&](const std::vector<float>& values) { return add_values(builder, values, skeleton.strand_count); };
   const auto root_x = add(skeleton.root_x_m);
   const auto root_y = add(skeleton.root_y_m);
@@ -43,7 +43,7 @@ flatbuffers::Offset<fb::StrandSkeleton> add_skeleton(Builder& builder, const Str
                                   root_z, rest_x, rest_y, rest_z, curl_x, curl_y, curl_z, rest_curl, link_length);
 }
 
-flatbuffers::Offset<fb::GridSkeleton> add_skeleton(Builder& builder, const GridSkeleton& skeleton) {
+flatbuffers::Offset<fb::GridSkeleton> add_skeleton(Builder& builder, const pose::GridSkeleton& skeleton) {
   const auto add = [&](const std::vector<float>& padded) {
     float* values = nullptr;
     const auto vector = builder.CreateUninitializedVector(skeleton.columns * skeleton.rows, &values);
@@ -61,9 +61,9 @@ flatbuffers::Offset<fb::GridSkeleton> add_skeleton(Builder& builder, const GridS
                                 rest_y, rest_z);
 }
 
-flatbuffers::Offset<fb::TreeSkeleton> add_skeleton(Builder& builder, const TreeSkeleton& skeleton) {
+flatbuffers::Offset<fb::TreeSkeleton> add_skeleton(Builder& builder, const pose::TreeSkeleton& skeleton) {
   std::vector<flatbuffers::Offset<fb::TreeLevel>> levels;
-  for (const TreeLevel& level : skeleton.levels) {
+  for (const pose::TreeLevel& level : skeleton.levels) {
     const std::size_t count = level.strands.strand_count;
     const std::size_t children = levels.empty() ? 0 : count;
     const auto strands = add_skeleton(builder, level.strands);
@@ -78,7 +78,7 @@ flatbuffers::Offset<fb::TreeSkeleton> add_skeleton(Builder& builder, const TreeS
   return fb::CreateTreeSkeleton(builder, builder.CreateVector(levels), static_cast<fb::FoliageColor>(skeleton.foliage));
 }
 
-flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const SurfaceSkeleton& skeleton) {
+flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const pose::SurfaceSkeleton& skeleton) {
   const auto add = [&](const std::vector<float>& values) {
     return add_values(builder, values, skeleton.columns * skeleton.rows);
   };
@@ -98,14 +98,15 @@ flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const Su
 }
 
 /// The schema's kinds are those of skeleton.hpp, in the same order.
-fb::Skeleton kind_of(const Skeleton& skeleton) {
+fb::Skeleton kind_of(const pose::Skeleton& skeleton) {
   return static_cast<fb::Skeleton>(skeleton.index() + fb::Skeleton_MIN + 1);
 }
-static_assert(fb::Skeleton_MAX == std::variant_size_v<Skeleton>);
-static_assert(fb::SensorState_MAX + 1 == kSensorStateNames.size(), "the states of sensor_state.hpp, in the same order");
-static_assert(fb::FoliageColor_MAX + 1 == kFoliageColorNames.size(), "those of skeleton.hpp");
-static_assert(fb::LinkState_MAX + 1 == kLinkStateNames.size(), "those of link_state.hpp");
-static_assert(fb::SensorHealth_MAX + 1 == kSourceHealthCount, "those of source_report.hpp");
+static_assert(fb::Skeleton_MAX == std::variant_size_v<pose::Skeleton>);
+static_assert(fb::SensorState_MAX + 1 == wind::judging::kSensorStateNames.size(),
+              "the states of sensor_state.hpp, in the same order");
+static_assert(fb::FoliageColor_MAX + 1 == pose::kFoliageColorNames.size(), "those of skeleton.hpp");
+static_assert(fb::LinkState_MAX + 1 == wind::kLinkStateNames.size(), "those of link_state.hpp");
+static_assert(fb::SensorHealth_MAX + 1 == wind::kSourceHealthCount, "those of source_report.hpp");
 
 flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus& sensor) {
   std::vector<flatbuffers::Offset<fb::Counter>> refused;

@@ -23,7 +23,7 @@ struct FrameEncoder::Builder {
   Units add_bends(std::span<const float> bend_rad) {
     std::int16_t* values = nullptr;
     const auto vector = buffer.CreateUninitializedVector(bend_rad.size(), &values);
-    quantise(bend_rad, {values, bend_rad.size()});
+    pose::quantise(bend_rad, {values, bend_rad.size()});
     return vector;
   }
 
@@ -33,18 +33,18 @@ struct FrameEncoder::Builder {
     std::int16_t* values = nullptr;
     const auto vector = buffer.CreateUninitializedVector(columns * rows, &values);
     for (std::size_t row = 0; row < rows; ++row)
-      quantise_ways(way_m.subspan(row * stride, columns), step_m, {values + row * columns, columns});
+      pose::quantise_ways(way_m.subspan(row * stride, columns), step_m, {values + row * columns, columns});
     return vector;
   }
 
-  flatbuffers::Offset<fb::StrandPose> add(const StrandPose& pose, const StrandSkeleton& skeleton) {
+  flatbuffers::Offset<fb::StrandPose> add(const pose::StrandPose& pose, const pose::StrandSkeleton& skeleton) {
     const auto east = add_bends({pose.bend_east_rad.data(), skeleton.strand_count});
     const auto south = add_bends({pose.bend_south_rad.data(), skeleton.strand_count});
-    return fb::CreateStrandPose(buffer, kBendStep_rad, east, south);
+    return fb::CreateStrandPose(buffer, pose::kBendStep_rad, east, south);
   }
 
-  flatbuffers::Offset<fb::GridPose> add(const GridPose& pose, const GridSkeleton& grid) {
-    const float step_m = way_step_m(grid);
+  flatbuffers::Offset<fb::GridPose> add(const pose::GridPose& pose, const pose::GridSkeleton& grid) {
+    const float step_m = pose::way_step_m(grid);
     const auto add_axis = [&](const std::vector<float>& offset_m) {
       return add_ways(offset_m, step_m, grid.columns, grid.rows, grid.stride());
     };
@@ -54,20 +54,20 @@ struct FrameEncoder::Builder {
     return fb::CreateGridPose(buffer, static_cast<std::uint32_t>(grid.columns), step_m, x, y, z);
   }
 
-  flatbuffers::Offset<fb::TreePose> add(const TreePose& pose, const TreeSkeleton& tree) {
-    std::array<flatbuffers::Offset<fb::StrandPose>, kMaxTreeLevels> levels;
+  flatbuffers::Offset<fb::TreePose> add(const pose::TreePose& pose, const pose::TreeSkeleton& tree) {
+    std::array<flatbuffers::Offset<fb::StrandPose>, pose::kMaxTreeLevels> levels;
     const std::size_t count = std::min(tree.levels.size(), levels.size());
     for (std::size_t i = 0; i < count; ++i) levels[i] = add(pose.levels[i], tree.levels[i].strands);
     return fb::CreateTreePose(buffer, buffer.CreateVector(levels.data(), count));
   }
 
-  flatbuffers::Offset<fb::SurfacePose> add(const SurfacePose& pose, const SurfaceSkeleton& surface) {
-    const float step_m = way_step_m(surface);
+  flatbuffers::Offset<fb::SurfacePose> add(const pose::SurfacePose& pose, const pose::SurfaceSkeleton& surface) {
+    const float step_m = pose::way_step_m(surface);
     const std::size_t count = surface.columns * surface.rows;
     const auto displacement = add_ways(pose.displacement_m, step_m, count, 1, count);
     std::uint8_t* heat = nullptr;
     const auto colours = buffer.CreateUninitializedVector(pose.heat.size(), &heat);
-    quantise_heat(pose.heat, {heat, pose.heat.size()});
+    pose::quantise_heat(pose.heat, {heat, pose.heat.size()});
     if (!surface.moves_rows()) return fb::CreateSurfacePose(buffer, step_m, displacement, colours);
     const auto add_rows = [&](const std::vector<float>& values, float step) {
       return add_ways(values, step, surface.rows, 1, surface.rows);
@@ -75,13 +75,13 @@ struct FrameEncoder::Builder {
     const auto east = add_rows(pose.row_east_m, step_m);
     const auto south = add_rows(pose.row_south_m, step_m);
     const auto drop = add_rows(pose.row_drop_m, step_m);
-    const auto slope_east = add_rows(pose.row_slope_east, kSlopeStep);
-    const auto slope_south = add_rows(pose.row_slope_south, kSlopeStep);
-    return fb::CreateSurfacePose(buffer, step_m, displacement, colours, east, south, drop, kSlopeStep, slope_east,
+    const auto slope_east = add_rows(pose.row_slope_east, pose::kSlopeStep);
+    const auto slope_south = add_rows(pose.row_slope_south, pose::kSlopeStep);
+    return fb::CreateSurfacePose(buffer, step_m, displacement, colours, east, south, drop, pose::kSlopeStep, slope_east,
                                  slope_south);
   }
 
-  flatbuffers::Offset<fb::ScenePose> add_scene(const Pose& pose, const Skeleton& skeleton, float opacity) {
+  flatbuffers::Offset<fb::ScenePose> add_scene(const pose::Pose& pose, const pose::Skeleton& skeleton, float opacity) {
     if (!(opacity > 0.0F)) return fb::CreateScenePose(buffer, fb::Pose_NONE, 0, 0.0F);
     assert(fits(pose, skeleton));
     const auto kind = static_cast<fb::Pose>(pose.index() + fb::Pose_MIN + 1);
@@ -91,16 +91,16 @@ struct FrameEncoder::Builder {
     flatbuffers::Offset<void> body;
     switch (kind) {
       case fb::Pose_StrandPose:
-        body = add_kind(std::get_if<StrandSkeleton>(&skeleton), std::get_if<StrandPose>(&pose));
+        body = add_kind(std::get_if<pose::StrandSkeleton>(&skeleton), std::get_if<pose::StrandPose>(&pose));
         break;
       case fb::Pose_GridPose:
-        body = add_kind(std::get_if<GridSkeleton>(&skeleton), std::get_if<GridPose>(&pose));
+        body = add_kind(std::get_if<pose::GridSkeleton>(&skeleton), std::get_if<pose::GridPose>(&pose));
         break;
       case fb::Pose_TreePose:
-        body = add_kind(std::get_if<TreeSkeleton>(&skeleton), std::get_if<TreePose>(&pose));
+        body = add_kind(std::get_if<pose::TreeSkeleton>(&skeleton), std::get_if<pose::TreePose>(&pose));
         break;
       case fb::Pose_SurfacePose:
-        body = add_kind(std::get_if<SurfaceSkeleton>(&skeleton), std::get_if<SurfacePose>(&pose));
+        body = add_kind(std::get_if<pose::SurfaceSkeleton>(&skeleton), std::get_if<pose::SurfacePose>(&pose));
         break;
       case fb::Pose_NONE:
         break;
@@ -108,7 +108,7 @@ struct FrameEncoder::Builder {
     return fb::CreateScenePose(buffer, kind, body, std::min(opacity, 1.0F));
   }
 };
-static_assert(fb::Pose_MAX == std::variant_size_v<Pose>, "the kinds of skeleton.hpp, in the same order");
+static_assert(fb::Pose_MAX == std::variant_size_v<pose::Pose>, "the kinds of skeleton.hpp, in the same order");
 
 FrameEncoder::FrameEncoder() : builder_(std::make_unique<Builder>()) {
   // A zero takes as much room as any other number, so that no later frame is longer than the first.
@@ -119,8 +119,9 @@ FrameEncoder::~FrameEncoder() = default;
 FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
 FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
 
-std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info, std::span<const Skeleton* const> skeletons,
-                                                   std::span<const Pose* const> poses,
+std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info,
+                                                   std::span<const pose::Skeleton* const> skeletons,
+                                                   std::span<const pose::Pose* const> poses,
                                                    std::span<const float> opacities) {
   assert(skeletons.size() == poses.size() && (opacities.empty() || opacities.size() == poses.size()));
   auto& buffer = builder_->buffer;

@@ -37,9 +37,9 @@ bool fits(const Frame& frame, const Scenes& scenes) {
   const std::size_t count = scenes.scenes.size();
   if (frame.poses.size() != count || frame.opacities.size() != count) return false;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto* strands = std::get_if<StrandPose>(&frame.poses[i]);
+    const auto* strands = std::get_if<pose::StrandPose>(&frame.poses[i]);
     const bool is_left_out = frame.opacities[i] <= 0.0F && strands != nullptr && strands->bend_east_rad.empty();
-    if (!is_left_out && !yuragi::fits(frame.poses[i], scenes.scenes[i].skeleton)) return false;
+    if (!is_left_out && !pose::fits(frame.poses[i], scenes.scenes[i].skeleton)) return false;
   }
   return true;
 }

@@ -73,7 +73,7 @@ struct Subscribe {
 struct SceneModel {
   std::string name;
   std::string kind;
-  Skeleton skeleton;
+  pose::Skeleton skeleton;
 };
 
 struct Scenes {
@@ -85,20 +85,20 @@ struct FrameInfo {
   std::uint64_t tick = 0;
   double time_s = 0.0;
   std::int64_t utc_ns = 0;
-  WindState wind;  ///< its `time` does not travel
+  wind::WindState wind;  ///< its `time` does not travel
 };
 
 struct Frame {
   FrameInfo info;
-  std::vector<Pose> poses;       ///< padded to whole blocks with zeros; a hidden scene's is a StrandPose of no strands
-  std::vector<float> opacities;  ///< one a scene, 0 (hidden) to 1; in between while it fades in or out
+  std::vector<pose::Pose> poses;  ///< padded to whole blocks with zeros; a hidden scene's is a StrandPose of no strands
+  std::vector<float> opacities;   ///< one a scene, 0 (hidden) to 1; in between while it fades in or out
 };
 
 struct SensorStatus {
   std::string name;
   std::string driver;
-  LinkState link = LinkState::kConnecting;
-  SourceHealth health = SourceHealth::kSilent;
+  wind::LinkState link = wind::LinkState::kConnecting;
+  wind::SourceHealth health = wind::SourceHealth::kSilent;
   std::string detail;
   std::optional<double> speed_m_s;
   std::optional<double> direction_deg;
@@ -111,7 +111,7 @@ struct SensorStatus {
   std::uint64_t frames = 0;      ///< messages from the device, of use or not
   std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
   bool replayed = false;         ///< a recording that is played again
-  SensorState state = SensorState::kConnecting;
+  wind::judging::SensorState state = wind::judging::SensorState::kConnecting;
   std::string state_reason;             ///< why, and what to do about it
   std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
   std::optional<double> raw_direction_deg;
@@ -135,7 +135,7 @@ struct Shaping {
 
 struct Sensors {
   std::vector<SensorStatus> sensors;
-  WindState wind;  ///< the real one; that of the frames is shaped
+  wind::WindState wind;  ///< the real one; that of the frames is shaped
   std::uint64_t late_ticks = 0;
   std::uint32_t clients = 0;
   Shaping shaping = {};
@@ -238,8 +238,8 @@ class FrameEncoder {
 
   /// `poses` pairs with `skeletons` and `opacities`, scene by scene; no opacities at all: every scene is shown. A scene
   /// of opacity 0 is hidden, and sends no pose. The bytes, size prefix included, are valid until the next call.
-  std::span<const std::uint8_t> encode(const FrameInfo& info, std::span<const Skeleton* const> skeletons,
-                                       std::span<const Pose* const> poses, std::span<const float> opacities = {});
+  std::span<const std::uint8_t> encode(const FrameInfo& info, std::span<const pose::Skeleton* const> skeletons,
+                                       std::span<const pose::Pose* const> poses, std::span<const float> opacities = {});
 
  private:
   struct Builder;

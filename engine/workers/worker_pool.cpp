@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::workers {
 namespace {
 
 /// Looks at a value before a thread sleeps: some tens of microseconds.
@@ -64,4 +64,4 @@ void WorkerPool::serve(std::size_t index) noexcept {
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::workers

@@ -8,7 +8,7 @@
 
 #include "engine/base/part.hpp"
 
-namespace yuragi {
+namespace yuragi::workers {
 
 /// Threads that share work with the caller, for scenes that are too large for one core in a tick.
 ///
@@ -47,4 +47,4 @@ class WorkerPool {
   std::vector<std::thread> workers_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::workers

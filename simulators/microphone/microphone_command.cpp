@@ -7,7 +7,7 @@
 #include "simulators/microphone/microphone_file.hpp"
 #include "simulators/microphone/microphone_simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr const char* kMicrophoneFooter =
@@ -91,4 +91,4 @@ void add_microphone_command(CLI::App& app) {
   });
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

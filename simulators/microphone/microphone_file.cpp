@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr double kStep_s = 0.05;
@@ -115,4 +115,4 @@ void write_microphone_file(const std::string& path, SampleFormat format, const M
   }
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

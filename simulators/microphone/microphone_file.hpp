@@ -6,7 +6,7 @@
 #include "simulators/microphone/microphone_sound.hpp"
 #include "simulators/simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 
 enum class SampleFormat : std::uint8_t { kFloat32, kSigned16 };
 
@@ -16,4 +16,4 @@ enum class SampleFormat : std::uint8_t { kFloat32, kSigned16 };
 void write_microphone_file(const std::string& path, SampleFormat format, const MicrophoneOptions& options,
                            MeasuredWind wind, const Faults& faults, double duration_s);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

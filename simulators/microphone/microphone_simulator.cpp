@@ -17,7 +17,7 @@
 
 #include "engine/base/count_text.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr double kMostAtOnce_s = 1.0;  // a halted machine does not make up for more
@@ -182,4 +182,4 @@ std::string MicrophoneSimulator::status() const {
                      state.fault ? ", fault: " : "", state.fault ? name_of(*state.fault) : "");
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

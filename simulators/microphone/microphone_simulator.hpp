@@ -6,7 +6,7 @@
 #include "simulators/microphone/microphone_sound.hpp"
 #include "simulators/simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 
 /// The outputs of the sound, in real time. Raw 32-bit floats, native byte order, frame after frame.
 struct MicrophoneOutputs {
@@ -35,4 +35,4 @@ class MicrophoneSimulator final : public Simulator {
 /// The faults that microphones can play.
 std::span<const FaultKind> microphone_faults();
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

@@ -8,7 +8,7 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/von_karman_corner.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -24,15 +24,15 @@ double amplitude_of(double level_db) {
   return std::pow(10.0, level_db / 20.0);
 }
 
-NoiseTile1 make_wind_noise(double rate_hz, std::uint64_t seed) {
-  NoiseSpec spec;
+noise::NoiseTile1 make_wind_noise(double rate_hz, std::uint64_t seed) {
+  noise::NoiseSpec spec;
   spec.size = 1024;
-  while (static_cast<double>(spec.size) < kTile_s * rate_hz && spec.size < kMaxNoiseSize1) spec.size *= 2;
+  while (static_cast<double>(spec.size) < kTile_s * rate_hz && spec.size < noise::kMaxNoiseSize1) spec.size *= 2;
   spec.beta = kPressureSlope;
   spec.seed = seed;
   const double corner_cycles = kCorner_hz * static_cast<double>(spec.size) / rate_hz;
-  spec.integral_scale = 1.0 / (kTurn * kVonKarmanCorner * corner_cycles);
-  return *make_noise_1d(spec);
+  spec.integral_scale = 1.0 / (kTurn * noise::kVonKarmanCorner * corner_cycles);
+  return *noise::make_noise_1d(spec);
 }
 
 }  // namespace
@@ -125,4 +125,4 @@ void MicrophoneSound::render(const PlayedMoment& moment, std::size_t frames, std
   amplitudes_ = target;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

@@ -11,7 +11,7 @@
 #include "simulators/faults.hpp"
 #include "simulators/played_wind.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 
 inline constexpr std::size_t kMicrophoneMaxChannels = 4;
 
@@ -50,7 +50,7 @@ class MicrophoneSound {
   double music_at(double time_s) const;
 
   MicrophoneOptions options_;
-  std::vector<NoiseTile1> wind_;  ///< of each channel
+  std::vector<noise::NoiseTile1> wind_;  ///< of each channel
   std::mt19937_64 random_;
   Amplitudes amplitudes_{};
   double voice_phase_ = 0.0;
@@ -59,4 +59,4 @@ class MicrophoneSound {
   std::uint64_t replayed_ = 0;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

@@ -10,7 +10,7 @@
 #include "simulators/common_options.hpp"
 #include "simulators/modbus/modbus_simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 namespace {
 
 struct ModbusOptions {
@@ -81,4 +81,4 @@ void add_modbus_command(CLI::App& app) {
   command->callback([options] { simulate_modbus(*options); });
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

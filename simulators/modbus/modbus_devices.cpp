@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 namespace {
 
 constexpr double kTenths = 10.0;
@@ -225,4 +225,4 @@ std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id) {
   return slaves;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

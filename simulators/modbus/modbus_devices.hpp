@@ -9,7 +9,7 @@
 
 #include "simulators/played_wind.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 
 /// The wind, as devices report it.
 struct ModbusAir {
@@ -51,4 +51,4 @@ std::vector<std::string> modbus_device_names();
 /// Throws std::runtime_error for an unknown name and for an id that no slave can have.
 std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

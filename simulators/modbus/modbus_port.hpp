@@ -8,7 +8,7 @@
 
 #include "simulators/modbus/modbus_protocol.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 
 /// The connection of a simulated Modbus bus: a TCP port or a serial one.
 class ModbusPort {
@@ -44,4 +44,4 @@ std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::u
 /// A pseudo terminal, and, if it is not empty, a `link` to it. Throws std::system_error.
 std::unique_ptr<ModbusPort> make_modbus_rtu_port(const std::string& link);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 namespace {
 
 constexpr std::size_t kTcpHeader = 6;  // transaction, protocol, length; the unit is counted by the length
@@ -114,4 +114,4 @@ ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& reply) {
   return message;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 
 // Modbus from the slave's side, byte by byte: the faults need replies that no library would send. Source: MODBUS
 // Application Protocol V1.1b3 (sections 4, 6, 7); MODBUS over Serial Line V1.02 (2.5.1, 6.2.2); MODBUS Messaging on
@@ -42,4 +42,4 @@ ModbusBytes exception_reply(std::uint8_t function, std::uint8_t code);
 ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& reply);
 ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& reply);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

@@ -3,7 +3,7 @@
 #include "simulators/modbus/modbus_port.hpp"
 #include "simulators/pty.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 namespace {
 
 class RtuPort final : public ModbusPort {
@@ -45,4 +45,4 @@ std::unique_ptr<ModbusPort> make_modbus_rtu_port(const std::string& link) {
   return std::make_unique<RtuPort>(link);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

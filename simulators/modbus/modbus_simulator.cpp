@@ -10,7 +10,7 @@
 
 #include "engine/base/count_text.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 namespace {
 
 constexpr double kWindow_s = 3.0;         // of gust, lull and mean
@@ -254,4 +254,4 @@ std::string ModbusSimulator::status() const {
   return state_->status();
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

@@ -10,7 +10,7 @@
 #include "simulators/played_wind.hpp"
 #include "simulators/simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 
 struct ModbusFaultOptions {
   std::optional<std::uint8_t> id;  ///< the only slave with faults; the others work. Freeze and spike are of the
@@ -41,4 +41,4 @@ class ModbusSimulator final : public Simulator {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

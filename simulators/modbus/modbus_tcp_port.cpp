@@ -13,7 +13,7 @@
 
 #include "simulators/modbus/modbus_port.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 namespace {
 
 constexpr int kModbusBacklog = 8;
@@ -117,4 +117,4 @@ std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::u
   return std::make_unique<TcpPort>(host, port);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

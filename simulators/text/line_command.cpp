@@ -4,7 +4,7 @@
 #include "simulators/text/line_device.hpp"
 #include "simulators/text/text_options.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 namespace {
 
 struct LineOptions {
@@ -24,4 +24,4 @@ void add_line_command(CLI::App& app) {
   command->callback([options] { options->text.run(make_line_device(options->format)); });
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

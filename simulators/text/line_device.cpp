@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 namespace {
 
 class LineDevice final : public TextDevice {
@@ -41,4 +41,4 @@ std::unique_ptr<TextDevice> make_line_device(const std::string& format) {
   return std::make_unique<LineDevice>(format == "key-value");
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

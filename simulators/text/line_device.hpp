@@ -6,7 +6,7 @@
 
 #include "simulators/text/text_simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 
 /// The formats of make_line_device(): csv, key-value.
 std::vector<std::string> line_format_names();
@@ -15,4 +15,4 @@ std::vector<std::string> line_format_names();
 /// direction=270.0". Its request is a line with "?". Throws std::runtime_error for an unknown format.
 std::unique_ptr<TextDevice> make_line_device(const std::string& format);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

@@ -5,7 +5,7 @@
 #include "simulators/text/nmea_device.hpp"
 #include "simulators/text/text_options.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 namespace {
 
 struct NmeaOptions {
@@ -35,4 +35,4 @@ void add_nmea_command(CLI::App& app) {
   command->callback([options] { simulate_nmea(*options); });
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

@@ -28,7 +28,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 namespace {
 
 constexpr double kKnotsOfAMetrePerSecond = 3600.0 / 1852.0;
@@ -204,4 +204,4 @@ bool is_only_polled(std::string_view nmea_format) {
   return nmea_format == "umb";
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

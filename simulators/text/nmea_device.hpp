@@ -7,7 +7,7 @@
 
 #include "simulators/text/text_simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 
 /// The formats of make_nmea_device(): mwv, mwd, vwr, vwt, mda, xdr, gill, gill-uv, ft, umb.
 std::vector<std::string> nmea_format_names();
@@ -19,4 +19,4 @@ std::unique_ptr<TextDevice> make_nmea_device(const std::vector<std::string>& for
 /// Does a device of this format send only on request?
 bool is_only_polled(std::string_view nmea_format);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 
 void TextOptions::add_to(CLI::App& command) {
   CLI::Option_group* wire = command.add_option_group("wire", "how it is connected");
@@ -35,4 +35,4 @@ void TextOptions::run(std::unique_ptr<TextDevice> device) const {
   common.run_simulator(simulator);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

@@ -8,7 +8,7 @@
 #include "simulators/common_options.hpp"
 #include "simulators/text/text_simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 
 /// The options of simulators that send text: over which transport, and how often.
 struct TextOptions {
@@ -30,4 +30,4 @@ struct TextOptions {
   std::unique_ptr<TextWire> make_wire() const;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

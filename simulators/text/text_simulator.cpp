@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 namespace {
 
 constexpr std::size_t kTextGarbageBytes = 24;
@@ -101,4 +101,4 @@ std::string TextSimulator::status() const {
                      wire_->place(), sent_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

@@ -14,7 +14,7 @@
 #include "simulators/simulator.hpp"
 #include "simulators/text/text_wire.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 
 /// The messages of a simulated device. Pure: no socket, no file, no clock. Thread-safe: no.
 class TextDevice {
@@ -72,4 +72,4 @@ class TextSimulator final : public Simulator {
   std::optional<FaultKind> fault_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

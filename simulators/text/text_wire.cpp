@@ -13,7 +13,7 @@
 
 #include "simulators/pty.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 namespace {
 
 using boost::asio::ip::tcp;
@@ -197,4 +197,4 @@ std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t p
   return std::make_unique<UdpWire>(host, port);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

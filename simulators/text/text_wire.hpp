@@ -9,7 +9,7 @@
 
 #include "simulators/faults.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 
 /// The transport of a simulated device that sends text. It never waits: what no client reads is lost. Thread-safe: no.
 class TextWire {
@@ -43,4 +43,4 @@ std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t p
 /// Datagrams to one address, one for each write. Throws std::runtime_error for a text that is no address.
 std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

@@ -13,7 +13,7 @@
 #include <array>
 #include <cmath>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 // Silence is a console in mode 1 or 2: it is on the bus and refuses every request.
@@ -104,4 +104,4 @@ std::unique_ptr<UsbDevice> make_acurite(const HidModelOptions& options) {
   return std::make_unique<Acurite>(options);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,9 +4,9 @@
 
 #include "simulators/usb/hid_model.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// An AcuRite 01035 console, in USB mode 3 or 4.
 std::unique_ptr<UsbDevice> make_acurite(const HidModelOptions& options);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

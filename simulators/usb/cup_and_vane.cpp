@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 void CupAndVane::advance(double time_s, const PlayedMoment& wind, bool is_jammed) {
   const double step_s = std::max(time_s - time_s_, 0.0);
@@ -17,4 +17,4 @@ std::uint64_t CupAndVane::pulses() const noexcept {
   return static_cast<std::uint64_t>(passed_m_ / kMetresPerPulse);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,7 +4,7 @@
 
 #include "simulators/played_wind.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A cup and a vane in the played wind, wired to a counter and an analogue input:
 ///
@@ -33,4 +33,4 @@ class CupAndVane {
   double wiper_v_ = 0.0;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

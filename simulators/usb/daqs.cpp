@@ -9,7 +9,7 @@
 #include "simulators/usb/labjack.hpp"
 #include "simulators/usb/mcc1208.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 struct KnownDaq {
@@ -36,4 +36,4 @@ std::unique_ptr<UsbDevice> make_daq(std::string_view name) {
   return found->make();
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -7,7 +7,7 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// The counter and ADC devices that can be simulated: "mcc1208", "labjack-u3".
 std::vector<std::string> daq_names();
@@ -16,4 +16,4 @@ std::vector<std::string> daq_names();
 /// of 5 V on analogue input 1. Throws std::runtime_error for another name.
 std::unique_ptr<UsbDevice> make_daq(std::string_view name);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,7 +4,7 @@
 
 #include "simulators/usb/umockdev_calls.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A device node, served as the kernel would: a program's system calls become transfers. Thread-safe: no.
 class EmulatedNode {
@@ -26,4 +26,4 @@ class EmulatedNode {
   ProgramCallQueue calls_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

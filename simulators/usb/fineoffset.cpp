@@ -18,7 +18,7 @@
 #include <array>
 #include <cmath>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr std::array kFineOffsetFaults = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike,
@@ -168,4 +168,4 @@ void FineOffset::queue_block(UsbBytes block) {
   }
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

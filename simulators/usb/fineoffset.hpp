@@ -6,7 +6,7 @@
 
 #include "simulators/usb/hid_model.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// How long a console's records are, bytes.
 enum class FineOffsetRecord : std::uint8_t { kWh1080 = 16, kWh3080 = 20 };
@@ -56,4 +56,4 @@ class FineOffset final : public HidModel {
   int blocks_read_ = 0;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr double kKeptFor_s = 5.0;  // longer than a slow virtual machine takes to fetch a report
@@ -154,4 +154,4 @@ UsbBytes HidModel::random_bytes(std::size_t size) {
   return bytes;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -9,7 +9,7 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// What distinguishes one HID device from another on the bus. Ours have one interface, one interrupt IN end point (1)
 /// and, some of them, one interrupt OUT end point (1).
@@ -95,4 +95,4 @@ class HidModel : public UsbDevice {
 /// Which of the 16 points of the compass: 0 north, 1 north-north-east ... 15.
 unsigned compass_point(double direction_deg);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

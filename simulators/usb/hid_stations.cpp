@@ -12,7 +12,7 @@
 #include "simulators/usb/wmr100.hpp"
 #include "simulators/usb/wmr300.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 struct HidStationKind {
@@ -51,4 +51,4 @@ std::unique_ptr<UsbDevice> make_hid_station(std::string_view name, double pace, 
   return kind->make({.pace = pace, .seed = seed});
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

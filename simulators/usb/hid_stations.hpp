@@ -7,7 +7,7 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// The stations of make_hid_station(): wmr100, wmr300, fineoffset (WH1080), fineoffset-wh3080, acurite, te923.
 std::vector<std::string_view> hid_station_names();
@@ -17,4 +17,4 @@ std::vector<std::string_view> hid_station_names();
 /// fault. Throws std::runtime_error for an unknown name.
 std::unique_ptr<UsbDevice> make_hid_station(std::string_view name, double pace = 1.0, std::uint64_t seed = 1);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

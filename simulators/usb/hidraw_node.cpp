@@ -9,7 +9,7 @@
 #include <linux/input.h>
 #include <sys/ioctl.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 // Of HID's requests (Device Class Definition for HID 1.11, 7.2).
@@ -223,4 +223,4 @@ void HidrawNode::give_up_late_ones() {
   });
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

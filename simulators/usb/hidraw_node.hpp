@@ -10,7 +10,7 @@
 #include "simulators/usb/readiness_node.hpp"
 #include "simulators/usb/usb_host.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// /dev/hidrawN of a simulated device, with the kernel's usbhid behind it: reports are read while a program has it
 /// open, and kept until it reads them; writes become SET_REPORT, or go to the interrupt OUT end point where there is
@@ -53,4 +53,4 @@ class HidrawNode final : public EmulatedNode {
   double time_s_ = 0.0;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

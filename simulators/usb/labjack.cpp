@@ -17,7 +17,7 @@
 
 #include "simulators/usb/cup_and_vane.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr std::uint8_t kCommandEndpoint = 1;
@@ -281,4 +281,4 @@ std::unique_ptr<UsbDevice> make_labjack() {
   return std::make_unique<Labjack>();
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,9 +4,9 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A simulated LabJack U3-HV. See CupAndVane for what is wired to it: the cup to FIO4.
 std::unique_ptr<UsbDevice> make_labjack();
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

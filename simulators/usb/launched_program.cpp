@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr int kNotThere = 127;
@@ -74,4 +74,4 @@ void LaunchedProgram::serve(std::span<const int> ready, double time_s, std::opti
   simulator_.serve(ready, time_s, fault);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -8,7 +8,7 @@
 
 #include "simulators/simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A program that runs in the simulator's testbed; when it ends, the simulation ends. Its standard input is empty,
 /// since the simulator's own takes commands.
@@ -40,4 +40,4 @@ class LaunchedProgram final : public Simulator {
   std::optional<int> exit_code_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -19,7 +19,7 @@
 
 #include "simulators/usb/cup_and_vane.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr unsigned kMccInputs = 8;
@@ -150,4 +150,4 @@ std::unique_ptr<UsbDevice> make_mcc1208() {
   return std::make_unique<Mcc1208>();
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,9 +4,9 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A simulated MCC USB-1208FS-Plus. See CupAndVane for what is wired to it.
 std::unique_ptr<UsbDevice> make_mcc1208();
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

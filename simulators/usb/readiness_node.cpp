@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr int kOnePage = 4096;
@@ -40,4 +40,4 @@ void ReadinessNode::set_ready(bool is_ready) noexcept {
   is_filled_ = is_to_be_filled ? write(descriptor_, &byte, 1) == 1 : read(descriptor_, &byte, 1) != 1;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A FIFO in the place of a device node of umockdev's, whose readiness can be set. umockdev's own node is an ordinary
 /// file, which is always ready, so that poll() would never wait. Reads and writes are intercepted elsewhere
@@ -28,4 +28,4 @@ class ReadinessNode {
   bool is_filled_ = false;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

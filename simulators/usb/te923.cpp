@@ -12,7 +12,7 @@
 #include <array>
 #include <cmath>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr std::array kTe923Faults = {FaultKind::kSilence,     FaultKind::kFreeze, FaultKind::kSpike,
@@ -108,4 +108,4 @@ std::unique_ptr<UsbDevice> make_te923(const HidModelOptions& options) {
   return std::make_unique<Te923>(options);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,9 +4,9 @@
 
 #include "simulators/usb/hid_model.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A Hideki TE923 console (Meade, TFA Nexus, Mebus, IROX).
 std::unique_ptr<UsbDevice> make_te923(const HidModelOptions& options);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

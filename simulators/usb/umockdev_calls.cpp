@@ -13,7 +13,7 @@
 #include <umockdev.h>
 #include <unistd.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 struct ProgramCallQueue::State {
   std::mutex mutex;
@@ -182,4 +182,4 @@ _UMockdevIoctlBase* ProgramCallQueue::make_handler() const {
   return handler;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

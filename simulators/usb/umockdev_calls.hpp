@@ -13,7 +13,7 @@ struct _UMockdevIoctlClient;
 struct _UMockdevIoctlData;
 // NOLINTEND(bugprone-reserved-identifier)
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// Memory of the program under test, as umockdev gives access to it: a copy, which is written back to the program with
 /// the reply to the call that it belongs to. Copies of this refer to the same memory. Thread-safe: no.
@@ -98,4 +98,4 @@ class ProgramCallQueue {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

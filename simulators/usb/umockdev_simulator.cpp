@@ -13,7 +13,7 @@
 #include "simulators/usb/usbfs_node.hpp"
 #include "simulators/usb/usbip_server.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr const char* kRootHub = "/devices/pci0000:00/0000:00:14.0/usb1";
@@ -224,4 +224,4 @@ std::string UmockdevSimulator::status() const {
                      state.fault ? name_of(*state.fault) : "");
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

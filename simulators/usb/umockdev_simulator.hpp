@@ -7,7 +7,7 @@
 #include "simulators/simulator.hpp"
 #include "simulators/usb/usb_port.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// Simulated USB devices in a testbed of umockdev's: programs that run beside it in that testbed find them with libusb,
 /// and stations with hidapi's hidraw backend, as if they were plugged in. Unplugged, a device vanishes with its nodes,
@@ -28,4 +28,4 @@ class UmockdevSimulator final : public Simulator {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -14,7 +14,7 @@
 #include <umockdev.h>
 #include <unistd.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 void throw_if(GError* error, const std::string& what) {
@@ -92,4 +92,4 @@ void UmockdevTestbed::detach(const std::string& node) {
   if (error != nullptr) g_error_free(error);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

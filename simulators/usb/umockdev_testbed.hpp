@@ -7,7 +7,7 @@
 
 struct _UMockdevTestbed;  // NOLINT(bugprone-reserved-identifier): the name is GObject's
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// True: this program runs with umockdev's library before the C library's, as a testbed and the programs that use it
 /// must.
@@ -46,4 +46,4 @@ class UmockdevTestbed {
   std::shared_ptr<_UMockdevTestbed> testbed_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

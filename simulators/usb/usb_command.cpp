@@ -17,7 +17,7 @@
 #include "simulators/usb/umockdev_testbed.hpp"
 #endif
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 struct UsbOptions {
@@ -125,4 +125,4 @@ void add_usb_command(CLI::App& app) {
                   [](const std::string& name, const UsbOptions& /*asked*/) { return make_daq(name); });
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

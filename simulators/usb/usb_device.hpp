@@ -9,7 +9,7 @@
 #include "simulators/faults.hpp"
 #include "simulators/played_wind.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 using UsbBytes = std::vector<std::uint8_t>;
 
@@ -60,4 +60,4 @@ class UsbDevice {
   virtual bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) = 0;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -7,7 +7,7 @@
 
 #include "simulators/usb/usb_port.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// The host's end of a port, for several users of one device: each transfer is submitted with a function that takes its
 /// outcome. Thread-safe: no.
@@ -58,4 +58,4 @@ class UsbHost {
   std::map<std::uint64_t, Then> waiting_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 /// The faults of every device: of its wind, or of its port.
@@ -111,4 +111,4 @@ std::optional<UsbOutcome> UsbPort::attempt(const UsbTransfer& transfer) {
   return outcome;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

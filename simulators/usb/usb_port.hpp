@@ -12,7 +12,7 @@
 #include "simulators/usb/usb_device.hpp"
 #include "simulators/usb/usb_standard.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A transfer of the host to or from an end point. Number 0 is the control pipe; only there `setup` is used.
 struct UsbTransfer {
@@ -75,4 +75,4 @@ class UsbPort {
   std::deque<UsbTransfer> waiting_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

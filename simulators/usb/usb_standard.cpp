@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 // bRequest.
@@ -169,4 +169,4 @@ std::optional<UsbBytes> UsbControlPipe::descriptor(const UsbSetup& setup) const 
   }
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

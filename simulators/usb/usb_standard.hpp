@@ -9,7 +9,7 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// An interface as the kernel shows it in sysfs, and a USB/IP server in its list.
 struct UsbInterface {
@@ -74,4 +74,4 @@ class UsbControlPipe {
   std::uint8_t configuration_ = 0;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

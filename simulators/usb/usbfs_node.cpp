@@ -9,7 +9,7 @@
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr std::uint32_t kCapabilities =
@@ -154,4 +154,4 @@ void UsbfsNode::finish(std::uintptr_t address, int status, std::size_t size) {
   readiness_.set_ready(true);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

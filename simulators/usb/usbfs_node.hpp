@@ -9,7 +9,7 @@
 #include "simulators/usb/readiness_node.hpp"
 #include "simulators/usb/usb_host.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// /dev/bus/usb/BBB/DDD of a simulated device, as far as libusb uses it: transfers are submitted, discarded and reaped.
 /// A program that waits for a transfer's end really waits: the node becomes writable when it has completed. Source:
@@ -44,4 +44,4 @@ class UsbfsNode final : public EmulatedNode {
   std::deque<Urb> done_;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

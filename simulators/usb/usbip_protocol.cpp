@@ -18,7 +18,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr std::uint16_t kVersion = 0x0111;
@@ -193,4 +193,4 @@ UsbBytes usbip_unlink_reply(std::uint32_t number, std::int32_t status) {
   return bytes;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -12,7 +12,7 @@
 #include "simulators/usb/usb_device.hpp"
 #include "simulators/usb/usb_standard.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 // USB/IP, version 1.1.1, from the server's side: a host's messages, read from bytes, and the replies to them, as bytes.
 // Pure. Bytes from the host are hostile. Source: Linux Documentation/usb/usbip_protocol.rst.
@@ -80,4 +80,4 @@ UsbBytes usbip_submit_reply(std::uint32_t number, std::int32_t status, std::size
                             std::span<const std::uint8_t> data);
 UsbBytes usbip_unlink_reply(std::uint32_t number, std::int32_t status);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -12,7 +12,7 @@
 
 #include "simulators/usb/usbip_protocol.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 namespace asio = boost::asio;
@@ -238,4 +238,4 @@ std::vector<FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports
   return all;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

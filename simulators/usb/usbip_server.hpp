@@ -8,7 +8,7 @@
 #include "simulators/simulator.hpp"
 #include "simulators/usb/usb_port.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// Simulated USB devices as a USB/IP server: any Linux machine with the module vhci_hcd can attach them as if they were
 /// plugged in, by `usbip attach -r HOST -b 1-1` (the first; the second is 1-2, and so on). A device is given to one
@@ -35,4 +35,4 @@ class UsbipServer final : public Simulator {
 /// The faults that any of these devices can play; a device ignores a fault that it does not know.
 std::vector<FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -4,9 +4,9 @@
 
 #include "simulators/usb/hid_model.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// An Oregon Scientific WMR100 console with its wind, thermometer, pressure and clock frames.
 std::unique_ptr<UsbDevice> make_wmr100(const HidModelOptions& options);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -15,7 +15,7 @@
 #include <array>
 #include <cmath>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 constexpr std::array kWmr300Faults = {FaultKind::kSilence, FaultKind::kFreeze,  FaultKind::kSpike,
@@ -130,4 +130,4 @@ std::unique_ptr<UsbDevice> make_wmr300(const HidModelOptions& options) {
   return std::make_unique<Wmr300>(options);
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

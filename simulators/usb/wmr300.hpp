@@ -4,9 +4,9 @@
 
 #include "simulators/usb/hid_model.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// An Oregon Scientific WMR300 console with its wind, thermometer and rain packets.
 std::unique_ptr<UsbDevice> make_wmr300(const HidModelOptions& options);
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -29,14 +29,14 @@ constexpr std::array kBannerBounds = {
 
 class BannerMeter final : public Meter {
  public:
-  explicit BannerMeter(const Skeleton& skeleton) : BannerMeter(std::get<GridSkeleton>(skeleton)) {}
+  explicit BannerMeter(const pose::Skeleton& skeleton) : BannerMeter(std::get<pose::GridSkeleton>(skeleton)) {}
 
-  void take(std::size_t /*tick*/, const Pose& /*pose*/, const Kinematics& joints) override {
+  void take(std::size_t /*tick*/, const pose::Pose& /*pose*/, const pose::Kinematics& joints) override {
     sides_.tracks().take(joints);
   }
-  Horizontal direction(const Pose& /*pose*/, const Kinematics& joints) const override {
-    const JointPosition pole = joints.joint(0);
-    const JointPosition end = joints.joint(columns_ - 1);
+  Horizontal direction(const pose::Pose& /*pose*/, const pose::Kinematics& joints) const override {
+    const pose::JointPosition pole = joints.joint(0);
+    const pose::JointPosition end = joints.joint(columns_ - 1);
     return {static_cast<double>(end.x_m - pole.x_m), static_cast<double>(end.z_m - pole.z_m)};
   }
   double largest_step_m() const override { return sides_.tracks().largest_step_m(); }
@@ -76,7 +76,7 @@ class BannerMeter final : public Meter {
   static constexpr std::size_t kPole = 0, kFree = 1;  ///< its two sides
   static constexpr double kLongestLag_s = 1.5;
 
-  explicit BannerMeter(const GridSkeleton& grid)
+  explicit BannerMeter(const pose::GridSkeleton& grid)
       : columns_(grid.columns),
         width_m_(static_cast<double>(std::hypot(grid.rest_x_m[columns_ - 1] - grid.rest_x_m[0],
                                                 grid.rest_z_m[columns_ - 1] - grid.rest_z_m[0]))),
@@ -137,7 +137,7 @@ SceneTable banner_table() {
           .scene = "banner",
           .parameters = {{"columns", std::int64_t{32}}, {"rows", std::int64_t{128}}},
           .bounds = {kBannerBounds.begin(), kBannerBounds.end()},
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<BannerMeter>(skeleton);
           }};
 }

@@ -8,12 +8,12 @@ namespace yuragi::answer {
 Figures calm_figures(const SceneTable& table, std::uint64_t seed) {
   constexpr int kTicks = 120;
   if (!described(table.scene).is_still_in_calm) return {};
-  const std::unique_ptr<Scene> scene = make_scene(table, seed);
-  for (int tick = 0; tick < kTicks; ++tick) scene->tick(WindVector{}, kTick_s);
+  const std::unique_ptr<scenes::Scene> scene = make_scene(table, seed);
+  for (int tick = 0; tick < kTicks; ++tick) scene->tick(wind::WindVector{}, kTick_s);
 
-  const Pose rest = rest_pose(scene->skeleton());
-  const PoseArrays<const float> is(scene->pose());
-  const PoseArrays<const float> was(rest);
+  const pose::Pose rest = pose::rest_pose(scene->skeleton());
+  const pose::PoseArrays<const float> is(scene->pose());
+  const pose::PoseArrays<const float> was(rest);
   std::size_t moved = 0;
   for (std::size_t array = 0; array < is.size(); ++array) {
     for (std::size_t i = 0; i < is[array].size(); ++i) moved += is[array][i] == was[array][i] ? 0U : 1U;

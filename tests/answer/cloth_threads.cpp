@@ -17,7 +17,7 @@ std::size_t row_at(std::size_t rows, double way) {
   return static_cast<std::size_t>(std::lround(way * static_cast<double>(rows - 1)));
 }
 
-double thread_length_m(const GridSkeleton& grid) {
+double thread_length_m(const pose::GridSkeleton& grid) {
   double length_m = 0.0;
   for (std::size_t row = 1; row < grid.rows; ++row) {
     const std::size_t at = row * grid.stride();
@@ -30,7 +30,7 @@ double thread_length_m(const GridSkeleton& grid) {
   return length_m;
 }
 
-std::vector<std::size_t> joints_of(const GridSkeleton& grid, const std::vector<std::size_t>& columns) {
+std::vector<std::size_t> joints_of(const pose::GridSkeleton& grid, const std::vector<std::size_t>& columns) {
   const std::size_t half = row_at(grid.rows, 0.5);
   const std::size_t late = row_at(grid.rows, 0.9);
   std::vector<std::size_t> joints;
@@ -45,10 +45,10 @@ std::vector<std::size_t> joints_of(const GridSkeleton& grid, const std::vector<s
 
 }  // namespace
 
-ClothThreads::ClothThreads(const GridSkeleton& grid, std::size_t threads)
+ClothThreads::ClothThreads(const pose::GridSkeleton& grid, std::size_t threads)
     : ClothThreads(grid, spread(grid.columns, threads)) {}
 
-ClothThreads::ClothThreads(const GridSkeleton& grid, std::vector<std::size_t> columns)
+ClothThreads::ClothThreads(const pose::GridSkeleton& grid, std::vector<std::size_t> columns)
     : columns_(std::move(columns)),
       grid_columns_(grid.columns),
       rows_(grid.rows),
@@ -69,11 +69,11 @@ double ClothThreads::speed_m_s(Lag lag) const {
   return lag.seconds > 0.0 ? way_m / lag.seconds : std::numeric_limits<double>::infinity();
 }
 
-Horizontal ClothThreads::tip_way(const Kinematics& joints) const {
+Horizontal ClothThreads::tip_way(const pose::Kinematics& joints) const {
   Horizontal sum;
   for (const std::size_t column : columns_) {
-    const JointPosition first = joints.joint(column);
-    const JointPosition tip = joints.joint((rows_ - 1) * grid_columns_ + column);
+    const pose::JointPosition first = joints.joint(column);
+    const pose::JointPosition tip = joints.joint((rows_ - 1) * grid_columns_ + column);
     sum.east += static_cast<double>(tip.x_m - first.x_m);
     sum.south += static_cast<double>(tip.z_m - first.z_m);
   }

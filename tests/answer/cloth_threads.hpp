@@ -20,9 +20,9 @@ class ClothThreads {
   static constexpr std::size_t kJoints = 7;
 
   /// `threads` of the grid's columns, spread evenly.
-  ClothThreads(const GridSkeleton& grid, std::size_t threads);
+  ClothThreads(const pose::GridSkeleton& grid, std::size_t threads);
   /// These columns.
-  ClothThreads(const GridSkeleton& grid, std::vector<std::size_t> columns);
+  ClothThreads(const pose::GridSkeleton& grid, std::vector<std::size_t> columns);
 
   JointTracks& tracks() { return tracks_; }
   const JointTracks& tracks() const { return tracks_; }
@@ -45,7 +45,7 @@ class ClothThreads {
   double speed_m_s(Lag lag) const;
 
   /// The way of the threads' tips from their first joints at a moment.
-  Horizontal tip_way(const Kinematics& joints) const;
+  Horizontal tip_way(const pose::Kinematics& joints) const;
 
  private:
   static constexpr double kHalfWay = 0.5;

@@ -15,8 +15,8 @@ namespace {
 constexpr double kClothLength_m = 1.8;
 
 /// A flag that stands out to the east.
-GridSkeleton level_cloth() {
-  GridSkeleton grid;
+pose::GridSkeleton level_cloth() {
+  pose::GridSkeleton grid;
   grid.columns = 2;
   grid.rows = 61;
   for (auto* axis : {&grid.rest_x_m, &grid.rest_y_m, &grid.rest_z_m}) axis->assign(grid.rows * grid.stride(), 0.0F);
@@ -40,11 +40,11 @@ double waves(double t_s) {
 }
 
 /// It slopes aside by a wave that runs along it at a speed, and grows evenly; and the whole of it turns slowly.
-ClothThreads waving(const Skeleton& skeleton, double speed_m_s) {
-  const auto& grid = std::get<GridSkeleton>(skeleton);
+ClothThreads waving(const pose::Skeleton& skeleton, double speed_m_s) {
+  const auto& grid = std::get<pose::GridSkeleton>(skeleton);
   ClothThreads threads(grid, 2);
-  Kinematics joints(skeleton);
-  GridPose pose;
+  pose::Kinematics joints(skeleton);
+  pose::GridPose pose;
   for (auto* axis : {&pose.offset_x_m, &pose.offset_y_m, &pose.offset_z_m}) axis->assign(grid.rest_x_m.size(), 0.0F);
   const double link_m = kClothLength_m / static_cast<double>(grid.rows - 1);
   for (int tick = 0; tick < 6000; ++tick) {
@@ -58,14 +58,14 @@ ClothThreads waving(const Skeleton& skeleton, double speed_m_s) {
       }
       aside_m += link_m * 0.1 * way_m / kClothLength_m * waves(t_s - way_m / speed_m_s);
     }
-    joints.run(Pose(pose));
+    joints.run(pose::Pose(pose));
     threads.tracks().take(joints);
   }
   return threads;
 }
 
 TEST(ClothThreads, AWaveThatRunsToTheFlyHasItsSpeed) {
-  const Skeleton skeleton = level_cloth();
+  const pose::Skeleton skeleton = level_cloth();
   for (const double speed_m_s : {1.5, 3.0, 7.0}) {
     const ClothThreads threads = waving(skeleton, speed_m_s);
     const Lag lag = threads.lag(0, {0.0, 1.0});
@@ -76,7 +76,7 @@ TEST(ClothThreads, AWaveThatRunsToTheFlyHasItsSpeed) {
 
 TEST(ClothThreads, WhatSlopesEverywhereAtOnceGrowsAsItsSlopesAddUp) {
   // Slopes of 0.1 s / L add up to 0.05 s^2 / L.
-  const Skeleton skeleton = level_cloth();
+  const pose::Skeleton skeleton = level_cloth();
   const ClothThreads threads = waving(skeleton, 1e9);
   EXPECT_NEAR(threads.length_m(), kClothLength_m, 1e-5);
   EXPECT_GT(threads.speed_m_s(threads.lag(0, {0.0, 1.0})), 100.0);
@@ -93,7 +93,7 @@ TEST(ClothThreads, WhatSlopesEverywhereAtOnceGrowsAsItsSlopesAddUp) {
 }
 
 TEST(ClothThreads, AChordThatLiesLevelIsNinetyDegreesFromDown) {
-  const Skeleton skeleton = level_cloth();
+  const pose::Skeleton skeleton = level_cloth();
   EXPECT_NEAR(mean(waving(skeleton, 3.0).chord_deg(0)), 90.0, 1e-3);
 }
 

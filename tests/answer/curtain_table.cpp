@@ -38,7 +38,7 @@ constexpr std::array kCurtainBounds = {
 /// The hem of a curtain: how far its joints are from their places at rest.
 class Hem {
  public:
-  explicit Hem(const GridSkeleton& grid) : Hem(grid, spread(grid.columns, kJoints)) {}
+  explicit Hem(const pose::GridSkeleton& grid) : Hem(grid, spread(grid.columns, kJoints)) {}
 
   JointTracks& tracks() { return tracks_; }
   const JointTracks& tracks() const { return tracks_; }
@@ -66,7 +66,7 @@ class Hem {
  private:
   static constexpr std::size_t kJoints = 33;
 
-  Hem(const GridSkeleton& grid, const std::vector<std::size_t>& columns) : tracks_(joints_of(grid, columns)) {
+  Hem(const pose::GridSkeleton& grid, const std::vector<std::size_t>& columns) : tracks_(joints_of(grid, columns)) {
     for (const std::size_t column : columns) {
       const std::size_t at = (grid.rows - 1) * grid.stride() + column;
       rest_x_m_.push_back(grid.rest_x_m[at]);
@@ -75,7 +75,7 @@ class Hem {
     }
   }
 
-  static std::vector<std::size_t> joints_of(const GridSkeleton& grid, std::vector<std::size_t> columns) {
+  static std::vector<std::size_t> joints_of(const pose::GridSkeleton& grid, std::vector<std::size_t> columns) {
     for (std::size_t& column : columns) column += (grid.rows - 1) * grid.columns;
     return columns;
   }
@@ -118,13 +118,13 @@ double mean_distance_m(const JointTracks& tracks, std::size_t joint, std::size_t
 
 class CurtainMeter final : public Meter {
  public:
-  explicit CurtainMeter(const Skeleton& skeleton) : CurtainMeter(std::get<GridSkeleton>(skeleton)) {}
+  explicit CurtainMeter(const pose::Skeleton& skeleton) : CurtainMeter(std::get<pose::GridSkeleton>(skeleton)) {}
 
-  void take(std::size_t /*tick*/, const Pose& /*pose*/, const Kinematics& joints) override {
+  void take(std::size_t /*tick*/, const pose::Pose& /*pose*/, const pose::Kinematics& joints) override {
     threads_.tracks().take(joints);
     hem_.tracks().take(joints);
   }
-  Horizontal direction(const Pose& /*pose*/, const Kinematics& joints) const override {
+  Horizontal direction(const pose::Pose& /*pose*/, const pose::Kinematics& joints) const override {
     return threads_.tip_way(joints);
   }
   double largest_step_m() const override { return hem_.tracks().largest_step_m(); }
@@ -177,7 +177,7 @@ class CurtainMeter final : public Meter {
   static constexpr std::size_t kThreads = 9;
   using Joint = ClothThreads::Joint;
 
-  explicit CurtainMeter(const GridSkeleton& grid) : threads_(grid, kThreads), hem_(grid) {}
+  explicit CurtainMeter(const pose::GridSkeleton& grid) : threads_(grid, kThreads), hem_(grid) {}
 
   Series mean_chord_deg() const {
     std::vector<Series> chords;
@@ -193,14 +193,14 @@ class CurtainMeter final : public Meter {
 std::array<Figures, kBeauforts> curtain_after_a_step(const SceneTable& table, std::uint64_t seed) {
   constexpr int kBlownTicks = 1200;
   constexpr int kCalmTicks = 1200;
-  const std::unique_ptr<Scene> scene = make_scene(table, seed);
-  ClothThreads threads(std::get<GridSkeleton>(scene->skeleton()), 9);
-  Kinematics joints(scene->skeleton());
-  const GroundWind breeze = wind_from(kMeanSpeed_m_s[1], 0.0);
+  const std::unique_ptr<scenes::Scene> scene = make_scene(table, seed);
+  ClothThreads threads(std::get<pose::GridSkeleton>(scene->skeleton()), 9);
+  pose::Kinematics joints(scene->skeleton());
+  const wind::ground::GroundWind breeze = wind::wind_from(kMeanSpeed_m_s[1], 0.0);
   for (int tick = 0; tick < kBlownTicks; ++tick) scene->tick(breeze, kTick_s);
   Series way_m;
   for (int tick = 0; tick < kCalmTicks; ++tick) {
-    scene->tick(WindVector{}, kTick_s);
+    scene->tick(wind::WindVector{}, kTick_s);
     joints.run(scene->pose());
     way_m.push_back(static_cast<float>(threads.tip_way(joints).south));
   }
@@ -218,7 +218,7 @@ SceneTable curtain_table() {
           .scene = "curtain",
           .parameters = {{"columns", std::int64_t{96}}, {"rows", std::int64_t{50}}},
           .bounds = {kCurtainBounds.begin(), kCurtainBounds.end()},
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<CurtainMeter>(skeleton);
           },
           .further = curtain_after_a_step,

@@ -18,9 +18,9 @@ constexpr int kEvery = 12;
 /// The angle between downwind and the scene's direction, degrees; 0 where the wind is mostly what it does not give way
 /// to.
 double turn_deg(const SceneTable& table, std::size_t beaufort_index, double direction_deg, std::uint64_t seed) {
-  const std::unique_ptr<Scene> scene = make_scene(table, seed);
+  const std::unique_ptr<scenes::Scene> scene = make_scene(table, seed);
   const std::unique_ptr<Meter> meter = table.make_meter(scene->skeleton());
-  Kinematics joints(scene->skeleton());
+  pose::Kinematics joints(scene->skeleton());
   TestWind wind(test_gusts(), {.speed_m_s = kMeanSpeed_m_s[beaufort_index],
                                .direction_deg = direction_deg,
                                .seed = wind_seed(beaufort_index) + seed - 1});
@@ -31,7 +31,7 @@ double turn_deg(const SceneTable& table, std::size_t beaufort_index, double dire
     joints.run(scene->pose());
     const Horizontal way = meter->direction(scene->pose(), joints);
     pointed = {pointed.east + way.east, pointed.south + way.south};
-    const WindVector air = wind.at_origin();
+    const wind::WindVector air = wind.at_origin();
     blown = {blown.east + air.u_m_s, blown.south - air.v_m_s};
   }
   const double all = blown.length();

@@ -11,7 +11,7 @@ namespace {
 
 /// A rough pattern along a line, read at a place in metres.
 double pattern(double at_m) {
-  const RandomStream random(5, stream_id("field test"));
+  const math::RandomStream random(5, math::stream_id("field test"));
   double sum = 0.0;
   for (std::uint64_t wave = 0; wave < 40; ++wave) {
     const double rad_m = 1.0 + 0.1 * static_cast<double>(wave);

@@ -33,12 +33,12 @@ constexpr std::array kFlagBounds = {
 
 class FlagMeter final : public Meter {
  public:
-  explicit FlagMeter(const Skeleton& skeleton) : threads_(std::get<GridSkeleton>(skeleton), kThreads) {}
+  explicit FlagMeter(const pose::Skeleton& skeleton) : threads_(std::get<pose::GridSkeleton>(skeleton), kThreads) {}
 
-  void take(std::size_t /*tick*/, const Pose& /*pose*/, const Kinematics& joints) override {
+  void take(std::size_t /*tick*/, const pose::Pose& /*pose*/, const pose::Kinematics& joints) override {
     threads_.tracks().take(joints);
   }
-  Horizontal direction(const Pose& /*pose*/, const Kinematics& joints) const override {
+  Horizontal direction(const pose::Pose& /*pose*/, const pose::Kinematics& joints) const override {
     return threads_.tip_way(joints);
   }
   double largest_step_m() const override { return threads_.tracks().largest_step_m(); }
@@ -105,7 +105,7 @@ SceneTable flag_table() {
           .scene = "flag",
           .parameters = {{"columns", std::int64_t{48}}, {"rows", std::int64_t{76}}},
           .bounds = {kFlagBounds.begin(), kFlagBounds.end()},
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<FlagMeter>(skeleton);
           }};
 }

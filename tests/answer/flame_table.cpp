@@ -44,11 +44,11 @@ constexpr double kReached = 0.02;
 
 class FlameMeter final : public Meter {
  public:
-  explicit FlameMeter(const Skeleton& skeleton)
-      : columns_(std::get<SurfaceSkeleton>(skeleton).columns),
-        rows_(std::get<SurfaceSkeleton>(skeleton).rows),
+  explicit FlameMeter(const pose::Skeleton& skeleton)
+      : columns_(std::get<pose::SurfaceSkeleton>(skeleton).columns),
+        rows_(std::get<pose::SurfaceSkeleton>(skeleton).rows),
         hot_(rows_ / 2, 0.0) {
-    const auto& surface = std::get<SurfaceSkeleton>(skeleton);
+    const auto& surface = std::get<pose::SurfaceSkeleton>(skeleton);
     for (std::size_t i = 0; i < columns_; ++i) {
       const double part = 1.0 / static_cast<double>(columns_);
       foot_m_[0] += part * static_cast<double>(surface.rest_x_m[i]);
@@ -57,8 +57,8 @@ class FlameMeter final : public Meter {
     }
   }
 
-  void take(std::size_t /*tick*/, const Pose& pose, const Kinematics& joints) override {
-    const auto& heat = std::get<SurfacePose>(pose).heat;
+  void take(std::size_t /*tick*/, const pose::Pose& pose, const pose::Kinematics& joints) override {
+    const auto& heat = std::get<pose::SurfacePose>(pose).heat;
     const auto centroid = centroid_of(pose, joints);
     const auto& [place_m, sum] = centroid;
     const double across_m = std::hypot(place_m[0] - foot_m_[0], place_m[2] - foot_m_[2]);
@@ -74,7 +74,7 @@ class FlameMeter final : public Meter {
       std::size_t seen = 0;
       std::size_t hot = 0;
       for (std::size_t i = row * columns_; i < (row + 1) * columns_; ++i) {
-        const JointPosition place = joints.joint(i);
+        const pose::JointPosition place = joints.joint(i);
         middle_m[0] += static_cast<double>(place.x_m);
         middle_m[1] += static_cast<double>(place.y_m);
         middle_m[2] += static_cast<double>(place.z_m);
@@ -92,7 +92,7 @@ class FlameMeter final : public Meter {
     largest_step_m_ = std::max(largest_step_m_, step_m(joints));
   }
 
-  Horizontal direction(const Pose& pose, const Kinematics& joints) const override {
+  Horizontal direction(const pose::Pose& pose, const pose::Kinematics& joints) const override {
     const auto place_m = centroid_of(pose, joints).first;
     return {place_m[0] - foot_m_[0], place_m[2] - foot_m_[2]};
   }
@@ -122,12 +122,12 @@ class FlameMeter final : public Meter {
 
  private:
   /// Where the heat is on average, and how much of it there is.
-  std::pair<std::array<double, 3>, double> centroid_of(const Pose& pose, const Kinematics& joints) const {
-    const auto& heat = std::get<SurfacePose>(pose).heat;
+  std::pair<std::array<double, 3>, double> centroid_of(const pose::Pose& pose, const pose::Kinematics& joints) const {
+    const auto& heat = std::get<pose::SurfacePose>(pose).heat;
     std::array<double, 3> place_m = {};
     double sum = 0.0;
     for (std::size_t i = 0; i < heat.size(); ++i) {
-      const JointPosition place = joints.joint(i);
+      const pose::JointPosition place = joints.joint(i);
       const auto hot = static_cast<double>(heat[i]);
       place_m[0] += hot * static_cast<double>(place.x_m);
       place_m[1] += hot * static_cast<double>(place.y_m);
@@ -139,9 +139,9 @@ class FlameMeter final : public Meter {
   }
 
   /// How far the points of two columns have moved since the moment before.
-  double step_m(const Kinematics& joints) {
+  double step_m(const pose::Kinematics& joints) {
     double largest_m = 0.0;
-    std::vector<JointPosition> now;
+    std::vector<pose::JointPosition> now;
     for (std::size_t row = 0; row < rows_; row += 4) {
       for (const std::size_t column : {std::size_t{0}, columns_ / 2})
         now.push_back(joints.joint(row * columns_ + column));
@@ -159,7 +159,7 @@ class FlameMeter final : public Meter {
   std::array<double, 3> foot_m_ = {};
   std::vector<double> hot_;  ///< of each row of the lower half: the part that is hot, summed over time
   Series tilt_deg_, heat_, length_m_;
-  std::vector<JointPosition> before_;
+  std::vector<pose::JointPosition> before_;
   double largest_step_m_ = 0.0;
 };
 
@@ -167,13 +167,13 @@ class FlameMeter final : public Meter {
 std::array<Figures, kBeauforts> flame_in_calm(const SceneTable& table, std::uint64_t seed) {
   constexpr int kStartTicks = 600;
   constexpr int kRecordTicks = 3600;
-  const std::unique_ptr<Scene> scene = make_scene(table, seed);
+  const std::unique_ptr<scenes::Scene> scene = make_scene(table, seed);
   const std::unique_ptr<Meter> meter = table.make_meter(scene->skeleton());
-  Kinematics joints(scene->skeleton());
+  pose::Kinematics joints(scene->skeleton());
   WindRecord calm;
   Horizontal sum;
   for (int tick = 0; tick < kStartTicks + kRecordTicks; ++tick) {
-    scene->tick(WindVector{}, kTick_s);
+    scene->tick(wind::WindVector{}, kTick_s);
     if (tick < kStartTicks) continue;
     joints.run(scene->pose());
     meter->take(static_cast<std::size_t>(tick - kStartTicks), scene->pose(), joints);
@@ -203,7 +203,7 @@ SceneTable flame_table() {
           .scene = "flame",
           .parameters = {},
           .bounds = {kFlameBounds.begin(), kFlameBounds.end()},
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<FlameMeter>(skeleton);
           },
           .further = flame_in_calm,

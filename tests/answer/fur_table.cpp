@@ -36,7 +36,7 @@ struct HairPlace {
 
 class Body {
  public:
-  explicit Body(const StrandSkeleton& hairs) {
+  explicit Body(const pose::StrandSkeleton& hairs) {
     const auto half_range = [&](const std::vector<float>& place_m) {
       const auto end = place_m.begin() + static_cast<std::ptrdiff_t>(hairs.strand_count);
       const auto [least, most] = std::minmax_element(place_m.begin(), end);
@@ -47,7 +47,7 @@ class Body {
     middle_y_m_ = static_cast<double>(*std::min_element(hairs.root_y_m.begin(), end)) + half_m_[1];
   }
 
-  HairPlace place(const StrandSkeleton& hairs, std::size_t hair) const {
+  HairPlace place(const pose::StrandSkeleton& hairs, std::size_t hair) const {
     const std::array at_m = {static_cast<double>(hairs.root_x_m[hair]),
                              static_cast<double>(hairs.root_y_m[hair]) - middle_y_m_,
                              static_cast<double>(hairs.root_z_m[hair])};
@@ -69,17 +69,17 @@ class Body {
 
 class FurMeter final : public Meter {
  public:
-  explicit FurMeter(const Skeleton& skeleton) : FurMeter(std::get<StrandSkeleton>(skeleton)) {}
+  explicit FurMeter(const pose::Skeleton& skeleton) : FurMeter(std::get<pose::StrandSkeleton>(skeleton)) {}
 
   bool needs_joints(std::size_t tick) const override { return JointSpeeds::needs_joints(tick); }
 
-  void take(std::size_t tick, const Pose& pose, const Kinematics& joints) override {
+  void take(std::size_t tick, const pose::Pose& pose, const pose::Kinematics& joints) override {
     hairs_.take(pose);
     tips_.take(tick, joints);
   }
 
-  Horizontal direction(const Pose& pose, const Kinematics& /*joints*/) const override {
-    const auto& bends = std::get<StrandPose>(pose);
+  Horizontal direction(const pose::Pose& pose, const pose::Kinematics& /*joints*/) const override {
+    const auto& bends = std::get<pose::StrandPose>(pose);
     Horizontal sum;
     for (std::size_t i = 0; i < hairs_.count(); ++i) {
       sum.east += static_cast<double>(bends.bend_east_rad[hairs_.strand(i)]);
@@ -140,15 +140,15 @@ class FurMeter final : public Meter {
   static constexpr double kSlowest_m_s = 0.15;
   static constexpr std::size_t kMostPairs = 48;
 
-  explicit FurMeter(const StrandSkeleton& hairs) : FurMeter(hairs, hairs_of(hairs)) {}
-  FurMeter(const StrandSkeleton& strands, const std::vector<std::size_t>& hairs)
+  explicit FurMeter(const pose::StrandSkeleton& hairs) : FurMeter(hairs, hairs_of(hairs)) {}
+  FurMeter(const pose::StrandSkeleton& strands, const std::vector<std::size_t>& hairs)
       : hairs_(hairs), tips_(tips_of(strands, hairs)) {
     const Body body(strands);
     for (const std::size_t hair : hairs) places_.push_back(body.place(strands, hair));
   }
 
   /// Hairs near the nodes of a grid over the body: six rings, hairs 6.5 cm apart in each.
-  static std::vector<std::size_t> hairs_of(const StrandSkeleton& strands) {
+  static std::vector<std::size_t> hairs_of(const pose::StrandSkeleton& strands) {
     constexpr double kPitch_m = 0.065;
     const Body body(strands);
     std::vector<HairPlace> places;
@@ -167,7 +167,7 @@ class FurMeter final : public Meter {
     }
     return hairs;
   }
-  static std::vector<std::size_t> tips_of(const StrandSkeleton& strands, std::vector<std::size_t> hairs) {
+  static std::vector<std::size_t> tips_of(const pose::StrandSkeleton& strands, std::vector<std::size_t> hairs) {
     for (std::size_t& hair : hairs) hair = hair * strands.links_per_strand + strands.links_per_strand - 1;
     return hairs;
   }
@@ -185,7 +185,7 @@ SceneTable fur_table() {
           .scene = "fur",
           .parameters = {{"hairs_along", std::int64_t{80}}, {"hairs_around", std::int64_t{80}}},
           .bounds = {kFurBounds.begin(), kFurBounds.end()},
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<FurMeter>(skeleton);
           }};
 }

@@ -30,17 +30,17 @@ constexpr std::array kGrassBounds = {
 
 class GrassMeter final : public Meter {
  public:
-  explicit GrassMeter(const Skeleton& skeleton) : GrassMeter(std::get<StrandSkeleton>(skeleton)) {}
+  explicit GrassMeter(const pose::Skeleton& skeleton) : GrassMeter(std::get<pose::StrandSkeleton>(skeleton)) {}
 
   bool needs_joints(std::size_t tick) const override { return JointSpeeds::needs_joints(tick); }
 
-  void take(std::size_t tick, const Pose& pose, const Kinematics& joints) override {
+  void take(std::size_t tick, const pose::Pose& pose, const pose::Kinematics& joints) override {
     blades_.take(pose);
     tips_.take(tick, joints);
   }
 
-  Horizontal direction(const Pose& pose, const Kinematics& /*joints*/) const override {
-    const auto& bends = std::get<StrandPose>(pose);
+  Horizontal direction(const pose::Pose& pose, const pose::Kinematics& /*joints*/) const override {
+    const auto& bends = std::get<pose::StrandPose>(pose);
     Horizontal sum;
     for (std::size_t i = 0; i < blades_.count(); ++i) {
       sum.east += static_cast<double>(bends.bend_east_rad[blades_.strand(i)]);
@@ -91,8 +91,8 @@ class GrassMeter final : public Meter {
   static constexpr double kFieldFrom_hz = 0.5;
   static constexpr double kSlowest = 0.25;  ///< of the wind: what goes slower is not carried by it
 
-  explicit GrassMeter(const StrandSkeleton& strands) : GrassMeter(strands, blades_of(strands)) {}
-  GrassMeter(const StrandSkeleton& strands, const std::vector<std::size_t>& blades)
+  explicit GrassMeter(const pose::StrandSkeleton& strands) : GrassMeter(strands, blades_of(strands)) {}
+  GrassMeter(const pose::StrandSkeleton& strands, const std::vector<std::size_t>& blades)
       : blades_(blades), tips_(tips_of(strands, blades)) {
     for (const std::size_t blade : blades) {
       places_.push_back({static_cast<double>(strands.root_x_m[blade]), static_cast<double>(strands.root_z_m[blade])});
@@ -100,14 +100,14 @@ class GrassMeter final : public Meter {
   }
 
   /// Blades near the nodes of a coarse grid: rows downwind, of which some pairs stand whole metres apart.
-  static std::vector<std::size_t> blades_of(const StrandSkeleton& strands) {
+  static std::vector<std::size_t> blades_of(const pose::StrandSkeleton& strands) {
     std::vector<std::size_t> blades;
     for (double east_m = -2.7; east_m < 3.0; east_m += 0.9) {
       for (double south_m = -3.0; south_m < 3.1; south_m += 0.5) blades.push_back(nearest(strands, {east_m, south_m}));
     }
     return blades;
   }
-  static std::size_t nearest(const StrandSkeleton& strands, Horizontal place) {
+  static std::size_t nearest(const pose::StrandSkeleton& strands, Horizontal place) {
     std::size_t best = 0;
     double best_m = 1e9;
     for (std::size_t i = 0; i < strands.strand_count; ++i) {
@@ -120,7 +120,7 @@ class GrassMeter final : public Meter {
     }
     return best;
   }
-  static std::vector<std::size_t> tips_of(const StrandSkeleton& strands, std::vector<std::size_t> blades) {
+  static std::vector<std::size_t> tips_of(const pose::StrandSkeleton& strands, std::vector<std::size_t> blades) {
     for (std::size_t& blade : blades) blade = blade * strands.links_per_strand + strands.links_per_strand - 1;
     return blades;
   }
@@ -138,7 +138,7 @@ SceneTable grass_table() {
           .scene = "grass",
           .parameters = {{"blades_across", std::int64_t{50}}, {"blades_deep", std::int64_t{50}}},
           .bounds = {kGrassBounds.begin(), kGrassBounds.end()},
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<GrassMeter>(skeleton);
           }};
 }

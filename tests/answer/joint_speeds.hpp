@@ -20,11 +20,11 @@ class JointSpeeds {
 
   static bool needs_joints(std::size_t tick) { return tick % kEvery < 2; }
 
-  void take(std::size_t tick, const Kinematics& joints) {
+  void take(std::size_t tick, const pose::Kinematics& joints) {
     if (!needs_joints(tick)) return;
     const bool is_second = tick % kEvery == 1;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const JointPosition place = joints.joint(joints_[i]);
+      const pose::JointPosition place = joints.joint(joints_[i]);
       if (is_second) {
         const auto x_m = static_cast<double>(place.x_m - before_[i].x_m);
         const auto y_m = static_cast<double>(place.y_m - before_[i].y_m);
@@ -51,7 +51,7 @@ class JointSpeeds {
   static constexpr std::size_t kEvery = 6;
 
   std::vector<std::size_t> joints_;
-  std::vector<JointPosition> before_;
+  std::vector<pose::JointPosition> before_;
   std::vector<double> squares_m2_;
   double largest_m2_ = 0.0;
   std::size_t pairs_ = 0;

@@ -14,7 +14,7 @@ Repeat largest_repeat(const Series& series, double rate_hz, double least_s) {
   if (count == 0) return {};
 
   // Sums of products at each lag, by a transform of twice the length, half of it zero (Wiener and Khinchin).
-  RealFft fft(1, 2 * count);
+  fft::RealFft fft(1, 2 * count);
   for (std::size_t i = 0; i < 2 * count; ++i) fft.samples()[i] = i < count ? static_cast<double>(quick[i]) : 0.0;
   fft.forward();
   for (std::complex<double>& line : fft.spectrum()) line = std::norm(line);

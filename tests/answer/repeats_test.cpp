@@ -11,7 +11,7 @@ namespace {
 
 /// A rough series of ten minutes that comes again after `period` samples; 0: it does not.
 Series ten_minutes(std::size_t period) {
-  const RandomStream random(3, stream_id("repeats test"));
+  const math::RandomStream random(3, math::stream_id("repeats test"));
   Series series;
   for (std::size_t i = 0; i < 36000; ++i) {
     const std::size_t at = period == 0 ? i : i % period;

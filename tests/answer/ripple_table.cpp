@@ -31,13 +31,13 @@ constexpr std::size_t kWaveTicks = 30;
 
 class RippleMeter final : public Meter {
  public:
-  explicit RippleMeter(const Skeleton& skeleton) : RippleMeter(std::get<SurfaceSkeleton>(skeleton)) {}
+  explicit RippleMeter(const pose::Skeleton& skeleton) : RippleMeter(std::get<pose::SurfaceSkeleton>(skeleton)) {}
 
   bool needs_joints(std::size_t tick) const override { return tick % kSlopeTicks < 2; }
 
-  void take(std::size_t tick, const Pose& /*pose*/, const Kinematics& joints) override {
+  void take(std::size_t tick, const pose::Pose& /*pose*/, const pose::Kinematics& joints) override {
     if (!needs_joints(tick)) return;
-    const std::span<const float> up_m = std::get<PointPositions>(joints.joints()).axis_m(1);
+    const std::span<const float> up_m = std::get<pose::PointPositions>(joints.joints()).axis_m(1);
     const bool is_second = tick % kSlopeTicks == 1;
     if (is_second) {
       for (std::size_t i = 0; i < up_m.size(); ++i) {
@@ -49,7 +49,7 @@ class RippleMeter final : public Meter {
     if (tick % kWaveTicks < 2) waves_.take(heights_m_, is_second);
   }
 
-  Horizontal direction(const Pose& /*pose*/, const Kinematics& /*joints*/) const override { return {}; }
+  Horizontal direction(const pose::Pose& /*pose*/, const pose::Kinematics& /*joints*/) const override { return {}; }
   double largest_step_m() const override { return largest_step_m_; }
 
   Figures figures(const WindRecord& wind) const override {
@@ -78,7 +78,7 @@ class RippleMeter final : public Meter {
   }
 
  private:
-  explicit RippleMeter(const SurfaceSkeleton& water)
+  explicit RippleMeter(const pose::SurfaceSkeleton& water)
       : size_(water.columns),
         pitch_m_(static_cast<double>(water.rest_x_m[1] - water.rest_x_m[0])),
         heights_m_(size_ * size_, 0.0),
@@ -142,7 +142,7 @@ SceneTable ripple_table() {
           .scene = "ripple",
           .parameters = {},
           .bounds = {kRippleBounds.begin(), kRippleBounds.end()},
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<RippleMeter>(skeleton);
           },
           .largest_turn_deg = 0.0};

@@ -13,15 +13,15 @@ std::size_t ticks_in(double seconds) {
 
 }  // namespace
 
-const SceneDescription& described(std::string_view name) {
-  for (const SceneDescription* scene : scene_table()) {
+const scenes::SceneDescription& described(std::string_view name) {
+  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
     if (scene->name == name) return *scene;
   }
   throw std::invalid_argument("no scene is called " + std::string(name));
 }
 
-std::unique_ptr<Scene> make_scene(const SceneTable& table, std::uint64_t seed) {
-  const SceneDescription& scene = described(table.scene);
+std::unique_ptr<scenes::Scene> make_scene(const SceneTable& table, std::uint64_t seed) {
+  const scenes::SceneDescription& scene = described(table.scene);
   return scene.make(ParameterValues::resolve(scene.parameters, table.parameters).value(),
                     {.seed = seed, .gusts = test_gusts()});
 }
@@ -38,9 +38,9 @@ TestWind record_wind(std::size_t beaufort_index, const WindChoice& choice) {
 
 SceneRecord record_scene(const SceneTable& table, std::size_t beaufort_index, const RecordLength& length,
                          const WindChoice& choice) {
-  const std::unique_ptr<Scene> scene = make_scene(table, choice.seed);
+  const std::unique_ptr<scenes::Scene> scene = make_scene(table, choice.seed);
   const std::unique_ptr<Meter> meter = table.make_meter(scene->skeleton());
-  Kinematics joints(scene->skeleton());
+  pose::Kinematics joints(scene->skeleton());
   TestWind wind = record_wind(beaufort_index, choice);
   for (std::size_t tick = 0; tick < ticks_in(length.start_s); ++tick) scene->tick(wind.step(kTick_s), kTick_s);
 

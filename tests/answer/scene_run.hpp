@@ -13,10 +13,10 @@
 namespace yuragi::answer {
 
 /// The scene that scene_table() has under this name. Throws std::invalid_argument without one.
-const SceneDescription& described(std::string_view name);
+const scenes::SceneDescription& described(std::string_view name);
 
 /// The scene of a table, made as the daemon makes it, with the gusts of the wind that it will be given.
-std::unique_ptr<Scene> make_scene(const SceneTable& table, std::uint64_t seed);
+std::unique_ptr<scenes::Scene> make_scene(const SceneTable& table, std::uint64_t seed);
 
 /// How long a record takes, after how long a start.
 struct RecordLength {

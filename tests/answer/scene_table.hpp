@@ -29,10 +29,10 @@ class Meter {
   /// Are the joints asked for at this tick? Those of a tree cost as much as its motion.
   virtual bool needs_joints(std::size_t /*tick*/) const { return true; }
 
-  virtual void take(std::size_t tick, const Pose& pose, const Kinematics& joints) = 0;
+  virtual void take(std::size_t tick, const pose::Pose& pose, const pose::Kinematics& joints) = 0;
 
   /// Where the scene is bent to at this moment, east and south: of any length.
-  virtual Horizontal direction(const Pose& pose, const Kinematics& joints) const = 0;
+  virtual Horizontal direction(const pose::Pose& pose, const pose::Kinematics& joints) const = 0;
 
   virtual Figures figures(const WindRecord& wind) const = 0;
   virtual std::vector<Trace> traces(const WindRecord& wind) const = 0;
@@ -47,7 +47,7 @@ struct SceneTable {
   std::string_view scene;           ///< in scene_table()
   ParameterValues::Map parameters;  ///< that differ from the defaults: only how finely it is drawn, or its kind
   std::vector<Bound> bounds;
-  std::unique_ptr<Meter> (*make_meter)(const Skeleton& skeleton);
+  std::unique_ptr<Meter> (*make_meter)(const pose::Skeleton& skeleton);
   /// Figures of records of their own (a step to calm, say), by Beaufort number; none: null.
   std::array<Figures, kBeauforts> (*further)(const SceneTable& table, std::uint64_t seed) = nullptr;
   /// Adds to the figures of a Beaufort number, further ones among them, what follows from several; none: null.

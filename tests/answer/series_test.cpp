@@ -11,7 +11,7 @@ namespace yuragi::answer {
 namespace {
 
 Series rough_series(std::size_t count, std::uint64_t seed) {
-  const RandomStream random(seed, stream_id("answer test"));
+  const math::RandomStream random(seed, math::stream_id("answer test"));
   Series series;
   double value = 0.0;
   for (std::size_t i = 0; i < count; ++i) {

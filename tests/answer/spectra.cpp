@@ -88,7 +88,7 @@ Series high_passed(std::span<const float> series, double rate_hz, double from_hz
   const auto second = static_cast<std::size_t>(std::lround(rate_hz));
   const std::size_t size = series.size() / second * second;
   if (size == 0) return {};
-  RealFft fft(1, size);
+  fft::RealFft fft(1, size);
   for (std::size_t i = 0; i < size; ++i) fft.samples()[i] = static_cast<double>(series[i]);
   fft.forward();
   const std::size_t first = std::min(line_at(from_hz, rate_hz / static_cast<double>(size)), fft.row_modes());

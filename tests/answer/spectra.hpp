@@ -35,7 +35,7 @@ class Welch {
   Spectrum of(std::span<const float> series);
 
  private:
-  RealFft fft_;
+  fft::RealFft fft_;
   std::vector<double> window_;
   double window_power_ = 0.0;
   double step_hz_;

@@ -34,7 +34,7 @@ TEST(Spectrum, ASineHasItsPeakItsCentroidAndItsVariance) {
 }
 
 TEST(Spectrum, AllLinesTogetherAreTheVariance) {
-  const RandomStream random(7, stream_id("spectrum test"));
+  const math::RandomStream random(7, math::stream_id("spectrum test"));
   Series white;
   for (std::size_t i = 0; i < 18000; ++i) white.push_back(static_cast<float>(random.uniform(i)));
   const Spectrum spectrum = Welch(kTestRate_hz).of(white);

@@ -32,23 +32,23 @@ struct TestWindSettings {
 /// its speed in Hz. Across the wind gusts have 0.8 of what they have along it (IEC 61400-1).
 class TestWind {
  public:
-  TestWind(std::shared_ptr<const GustNoise> noise, const TestWindSettings& settings);
+  TestWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, const TestWindSettings& settings);
 
   /// The wind of the next tick.
-  const GroundWind& step(double dt_s) noexcept;
+  const wind::ground::GroundWind& step(double dt_s) noexcept;
 
   /// What blows at the origin, as a frame of the stream says it.
-  WindVector at_origin() const noexcept { return wind_.at(*noise_, 0.0, 0.0); }
+  wind::WindVector at_origin() const noexcept { return wind_.at(*noise_, 0.0, 0.0); }
 
  private:
-  std::shared_ptr<const GustNoise> noise_;
-  WindVector mean_;
+  std::shared_ptr<const wind::turbulence::GustNoise> noise_;
+  wind::WindVector mean_;
   double turnover_m23_s_;
-  GroundWind wind_;
+  wind::ground::GroundWind wind_;
 };
 
 /// The noise of all test winds: large, and made once.
-std::shared_ptr<const GustNoise> test_gusts();
+std::shared_ptr<const wind::turbulence::GustNoise> test_gusts();
 
 /// The place in the noise at which the record of a Beaufort number begins: one where the mean and the intensity of the
 /// record are near those of the settings. Of few gusts, as a record of minutes has them, both scatter.

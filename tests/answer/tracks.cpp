@@ -21,9 +21,9 @@ JointTracks::JointTracks(std::vector<std::size_t> joints) : joints_(std::move(jo
   for (auto& axis : axes_m_) axis.resize(joints_.size());
 }
 
-void JointTracks::take(const Kinematics& joints) {
+void JointTracks::take(const pose::Kinematics& joints) {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const JointPosition place = joints.joint(joints_[i]);
+    const pose::JointPosition place = joints.joint(joints_[i]);
     axes_m_[0][i].push_back(place.x_m);
     axes_m_[1][i].push_back(place.y_m);
     axes_m_[2][i].push_back(place.z_m);
@@ -87,9 +87,9 @@ double JointTracks::largest_step_m() const {
 BendTracks::BendTracks(std::vector<std::size_t> strands, std::size_t level)
     : strands_(std::move(strands)), level_(level), east_deg_(strands_.size()), south_deg_(strands_.size()) {}
 
-void BendTracks::take(const Pose& pose) {
-  const auto* tree = std::get_if<TreePose>(&pose);
-  const StrandPose& bends = tree != nullptr ? tree->levels[level_] : std::get<StrandPose>(pose);
+void BendTracks::take(const pose::Pose& pose) {
+  const auto* tree = std::get_if<pose::TreePose>(&pose);
+  const pose::StrandPose& bends = tree != nullptr ? tree->levels[level_] : std::get<pose::StrandPose>(pose);
   constexpr auto kDegPerRad = static_cast<float>(1.0 / kRadPerDeg);
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     east_deg_[i].push_back(kDegPerRad * bends.bend_east_rad[strands_[i]]);

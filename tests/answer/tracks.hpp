@@ -27,7 +27,7 @@ class JointTracks {
   /// The joints' numbers, as Kinematics::joint() counts them.
   explicit JointTracks(std::vector<std::size_t> joints);
 
-  void take(const Kinematics& joints);
+  void take(const pose::Kinematics& joints);
 
   std::size_t count() const { return joints_.size(); }
   const Series& x_m(std::size_t joint) const { return axes_m_[0][joint]; }
@@ -56,7 +56,7 @@ class BendTracks {
  public:
   explicit BendTracks(std::vector<std::size_t> strands, std::size_t level = 0);
 
-  void take(const Pose& pose);
+  void take(const pose::Pose& pose);
 
   std::size_t count() const { return strands_.size(); }
   std::size_t strand(std::size_t index) const { return strands_[index]; }

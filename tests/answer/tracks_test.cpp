@@ -10,19 +10,19 @@ namespace {
 
 /// Two joints of which the second hangs a metre below the first and swings to the east by a sine of 1 Hz.
 JointTracks swinging() {
-  GridSkeleton grid;
+  pose::GridSkeleton grid;
   grid.columns = 1;
   grid.rows = 2;
   for (auto* axis : {&grid.rest_x_m, &grid.rest_y_m, &grid.rest_z_m}) axis->assign(2 * grid.stride(), 0.0F);
   grid.rest_y_m[grid.stride()] = -1.0F;
-  const Skeleton skeleton = grid;
-  Kinematics joints(skeleton);
+  const pose::Skeleton skeleton = grid;
+  pose::Kinematics joints(skeleton);
   JointTracks tracks({0, 1});
-  GridPose pose;
+  pose::GridPose pose;
   for (auto* axis : {&pose.offset_x_m, &pose.offset_y_m, &pose.offset_z_m}) axis->assign(2 * grid.stride(), 0.0F);
   for (int tick = 0; tick < 600; ++tick) {
     pose.offset_x_m[grid.stride()] = static_cast<float>(0.1 * std::sin(2.0 * std::numbers::pi * tick / 60.0));
-    joints.run(Pose(pose));
+    joints.run(pose::Pose(pose));
     tracks.take(joints);
   }
   return tracks;

@@ -57,18 +57,18 @@ std::vector<Bound> tree_bounds(double trunk, double limb, double twig, Bound lea
 
 class TreeMeter final : public Meter {
  public:
-  explicit TreeMeter(const Skeleton& skeleton) : TreeMeter(std::get<TreeSkeleton>(skeleton)) {}
+  explicit TreeMeter(const pose::Skeleton& skeleton) : TreeMeter(std::get<pose::TreeSkeleton>(skeleton)) {}
 
   bool needs_joints(std::size_t tick) const override { return JointSpeeds::needs_joints(tick); }
 
-  void take(std::size_t tick, const Pose& pose, const Kinematics& joints) override {
+  void take(std::size_t tick, const pose::Pose& pose, const pose::Kinematics& joints) override {
     for (BendTracks* level : {&trunk_, &limbs_, &twigs_, &leaves_}) level->take(pose);
     twig_speeds_.take(tick, joints);
     leaf_speeds_.take(tick, joints);
   }
 
-  Horizontal direction(const Pose& pose, const Kinematics& /*joints*/) const override {
-    const StrandPose& limbs = std::get<TreePose>(pose).levels[kLimbs];
+  Horizontal direction(const pose::Pose& pose, const pose::Kinematics& /*joints*/) const override {
+    const pose::StrandPose& limbs = std::get<pose::TreePose>(pose).levels[kLimbs];
     Horizontal sum;
     for (std::size_t i = 0; i < limbs_.count(); ++i) {
       sum.east += static_cast<double>(limbs.bend_east_rad[limbs_.strand(i)]);
@@ -127,7 +127,7 @@ class TreeMeter final : public Meter {
   static constexpr std::size_t kLimbs = 1, kTwigs = 2, kLeaves = 3;  ///< levels, in the order in which they grow
   static constexpr std::size_t kMostTwigs = 60, kMostLeaves = 100;
 
-  explicit TreeMeter(const TreeSkeleton& tree)
+  explicit TreeMeter(const pose::TreeSkeleton& tree)
       : trunk_({0}, 0),
         limbs_(spread(strands_in(tree, kLimbs), strands_in(tree, kLimbs)), kLimbs),
         twigs_(spread(strands_in(tree, kTwigs), kMostTwigs), kTwigs),
@@ -135,11 +135,11 @@ class TreeMeter final : public Meter {
         twig_speeds_(tips(tree, kTwigs, kMostTwigs)),
         leaf_speeds_(tips(tree, kLeaves, kMostLeaves)) {}
 
-  static std::size_t strands_in(const TreeSkeleton& tree, std::size_t level) {
+  static std::size_t strands_in(const pose::TreeSkeleton& tree, std::size_t level) {
     return tree.levels[level].strands.strand_count;
   }
 
-  static std::vector<std::size_t> tips(const TreeSkeleton& tree, std::size_t level, std::size_t most) {
+  static std::vector<std::size_t> tips(const pose::TreeSkeleton& tree, std::size_t level, std::size_t most) {
     std::size_t first = 0;
     for (std::size_t below = 0; below < level; ++below) {
       first += strands_in(tree, below) * tree.levels[below].strands.links_per_strand;
@@ -170,7 +170,7 @@ SceneTable table_of(std::string_view name, const std::string& species, std::vect
           .scene = "tree",
           .parameters = {{"species", species}, {"leaves", std::int64_t{1600}}, {"branch_links", std::int64_t{32}}},
           .bounds = std::move(bounds),
-          .make_meter = [](const Skeleton& skeleton) -> std::unique_ptr<Meter> {
+          .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<TreeMeter>(skeleton);
           }};
 }

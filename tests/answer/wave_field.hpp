@@ -31,7 +31,7 @@ class WaveField {
   template <class Visit>
   void for_each_mode(const Visit& visit) const;
 
-  RealFft fft_;
+  fft::RealFft fft_;
   double edge_m_, rate_hz_;
   std::vector<double> window_, power_;
   std::vector<std::complex<double>> turn_, first_;

@@ -15,11 +15,11 @@ inline constexpr double kBenchTick_s = 1.0 / 60.0;
 /// and nowhere else.
 class BenchWind {
  public:
-  static constexpr WindVector kBreeze = {6.0, 3.0};
+  static constexpr wind::WindVector kBreeze = {6.0, 3.0};
 
   /// With `gusts`: every octave that a tile holds has a strength, and is carried and turned as the daemon does it.
   /// `has_tape`: or nothing is measured, and the breeze is the same everywhere.
-  explicit BenchWind(std::shared_ptr<const GustNoise> gusts = nullptr, bool has_tape = true)
+  explicit BenchWind(std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr, bool has_tape = true)
       : gusts_(std::move(gusts)) {
     if (!gusts_) return;
     wind_.gusts.ahead = (1.0 / speed_of(kBreeze)) * kBreeze;
@@ -37,7 +37,7 @@ class BenchWind {
   BenchWind& operator=(const BenchWind&) = delete;
 
   /// The wind of the next tick.
-  const GroundWind& next() noexcept {
+  const wind::ground::GroundWind& next() noexcept {
     if (gusts_) gusts_->carry(wind_.gusts.carried, kBreeze.u_m_s, -kBreeze.v_m_s, kBenchTick_s, kTurnover_m23_s);
     if (wind_.tapes != nullptr) write();
     return wind_;
@@ -45,7 +45,7 @@ class BenchWind {
 
   /// What one tick adds to the tapes.
   void write() noexcept {
-    WindPen& pen = stroke_.pens[0];
+    wind::ground::WindPen& pen = stroke_.pens[0];
     const auto carry = [&](double& carried_m, double& sample_m, double& written_m, double speed_m_s) {
       carried_m += speed_m_s * kBenchTick_s;
       sample_m -= speed_m_s * kBenchTick_s;
@@ -62,10 +62,10 @@ class BenchWind {
   static constexpr double kTurnover_m23_s = 0.3;
   static constexpr int kTicksOfATape = 2400;  ///< its 256 m are written
 
-  std::shared_ptr<const GustNoise> gusts_;
-  WindTapes tapes_{1};
-  WindStroke stroke_;
-  GroundWind wind_ = kBreeze;
+  std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
+  wind::ground::WindTapes tapes_{1};
+  wind::ground::WindStroke stroke_;
+  wind::ground::GroundWind wind_ = kBreeze;
 };
 
 }  // namespace yuragi::bench

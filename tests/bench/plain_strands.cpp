@@ -16,8 +16,8 @@ constexpr double kDamping = 0.2;
 
 }  // namespace
 
-PlainStrands::PlainStrands(const StrandSkeleton& skeleton, std::vector<float> flexibility, NoiseTile2 first,
-                           NoiseTile2 second, double period_m, double second_period_m)
+PlainStrands::PlainStrands(const pose::StrandSkeleton& skeleton, std::vector<float> flexibility,
+                           noise::NoiseTile2 first, noise::NoiseTile2 second, double period_m, double second_period_m)
     : skeleton_(&skeleton),
       flexibility_(std::move(flexibility)),
       first_(std::move(first)),
@@ -35,7 +35,7 @@ PlainStrands::PlainStrands(const StrandSkeleton& skeleton, std::vector<float> fl
   }
 }
 
-float PlainStrands::noise_at(const NoiseTile2& tile, float x_m, float z_m, double period_m,
+float PlainStrands::noise_at(const noise::NoiseTile2& tile, float x_m, float z_m, double period_m,
                              const PlainOffset& offset) const {
   const auto size = static_cast<float>(tile.size);
   const auto cells_per_m = static_cast<float>(static_cast<double>(tile.size) / period_m);
@@ -60,7 +60,7 @@ void PlainStrands::frame(double east_m_s, double south_m_s, double dt_s, double 
   const auto speed = static_cast<float>(std::sqrt(east_m_s * east_m_s + south_m_s * south_m_s));
   const float toward_east = static_cast<float>(east_m_s) / speed;
   const float toward_south = static_cast<float>(south_m_s) / speed;
-  const OscillatorStep step = OscillatorStep::exact(kNatural_hz, kDamping, dt_s);
+  const operators::OscillatorStep step = operators::OscillatorStep::exact(kNatural_hz, kDamping, dt_s);
   const auto sway = [&step, hybrid](Oscillator& oscillator, float g) {
     const float e = oscillator.value - g;
     const float value =
@@ -91,7 +91,7 @@ void PlainStrands::frame(double east_m_s, double south_m_s, double dt_s, double 
 }
 
 void PlainStrands::joints_of(std::size_t strand) {
-  const StrandSkeleton& s = *skeleton_;
+  const pose::StrandSkeleton& s = *skeleton_;
   const std::size_t links = s.links_per_strand;
   const float east = bend_east_rad_[strand];
   const float south = bend_south_rad_[strand];

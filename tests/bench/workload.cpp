@@ -15,13 +15,13 @@ namespace yuragi::bench {
 namespace {
 
 /// The arrays in which joints lie.
-void add_joints(Kinematics::Joints& joints, std::vector<std::span<float>>& all) {
-  if (auto* strands = std::get_if<JointPositions>(&joints)) {
+void add_joints(pose::Kinematics::Joints& joints, std::vector<std::span<float>>& all) {
+  if (auto* strands = std::get_if<pose::JointPositions>(&joints)) {
     all.emplace_back(strands->data());
-  } else if (auto* points = std::get_if<PointPositions>(&joints)) {
+  } else if (auto* points = std::get_if<pose::PointPositions>(&joints)) {
     all.emplace_back(points->data());
   } else {
-    auto& tree = std::get<TreeJoints>(joints);
+    auto& tree = std::get<pose::TreeJoints>(joints);
     for (std::size_t level = 0; level < tree.level_count(); ++level) all.emplace_back(tree.level(level).data());
   }
 }
@@ -40,7 +40,7 @@ ParameterValues::Map parameters_in(const toml::table& table) {
 }  // namespace
 
 BenchScene bench_scene(std::string_view kind, const ParameterValues::Map& given) {
-  for (const SceneDescription* scene : scene_table()) {
+  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
     if (scene->name == kind) {
       return {.kind = scene, .values = ParameterValues::resolve(scene->parameters, given).value()};
     }
@@ -57,10 +57,10 @@ std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file) {
     const auto number = [&scene](const char* key, double otherwise) { return scene[key].value_or(otherwise); };
     const auto kind = scene["kind"].value_or(std::string());
     const bool is_shown = scene["shown"].value_or(true);
-    const ScenePlacement placement{.x_m = number("x", 0.0),
-                                   .y_m = number("y", 0.0),
-                                   .z_m = number("z", 0.0),
-                                   .heading_deg = number("heading", 0.0)};
+    const scenes::ScenePlacement placement{.x_m = number("x", 0.0),
+                                           .y_m = number("y", 0.0),
+                                           .z_m = number("z", 0.0),
+                                           .heading_deg = number("heading", 0.0)};
     const double gain = number("gain", 1.0);
     for (const char* key : {"kind", "name", "x", "y", "z", "heading", "gain", "shown"}) scene.erase(key);
     if (!is_shown) continue;
@@ -73,22 +73,23 @@ std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file) {
   return scenes;
 }
 
-Workload::Workload(const std::vector<BenchScene>& scenes, SimdRow row, std::shared_ptr<const GustNoise> gusts)
+Workload::Workload(const std::vector<BenchScene>& scenes, SimdRow row,
+                   std::shared_ptr<const wind::turbulence::GustNoise> gusts)
     : wind_(gusts) {
   for (const BenchScene& scene : scenes) {
     Placed& placed = parts_.emplace_back();
     placed.gain = scene.gain;
     placed.scene =
         scene.kind->make(scene.values, {.seed = scene.seed, .placement = scene.placement, .row = row, .gusts = gusts});
-    placed.kinematics = std::make_unique<Kinematics>(placed.scene->skeleton(), row);
+    placed.kinematics = std::make_unique<pose::Kinematics>(placed.scene->skeleton(), row);
     add_joints(placed.kinematics->joints(), joints_);
-    nodes_ += node_count(placed.scene->skeleton());
+    nodes_ += pose::node_count(placed.scene->skeleton());
   }
   for (int i = 0; i < 60; ++i) frame();  // it moves when it is measured
 }
 
 void Workload::shift() {
-  const GroundWind& wind = wind_.next();
+  const wind::ground::GroundWind& wind = wind_.next();
   for (Placed& part : parts_) part.scene->shift(part.gain * wind, kBenchTick_s);
 }
 
@@ -103,7 +104,7 @@ void Workload::project() {
   }
 }
 
-void Workload::frame(WorkerPool& pool) {
+void Workload::frame(workers::WorkerPool& pool) {
   shift();
   for (Placed& placed : parts_) {
     pool.run([&placed](Part part) { placed.scene->sample_part(part); });

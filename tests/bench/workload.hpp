@@ -15,10 +15,10 @@ namespace yuragi::bench {
 
 /// A scene of a workload.
 struct BenchScene {
-  const SceneDescription* kind = nullptr;
+  const scenes::SceneDescription* kind = nullptr;
   ParameterValues values;
   std::uint64_t seed = 1;
-  ScenePlacement placement = {};
+  scenes::ScenePlacement placement = {};
   double gain = 1.0;
 };
 
@@ -32,10 +32,11 @@ std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file);
 class Workload {
  public:
   /// With `gusts` from outside, or with what noise a scene has of its own.
-  Workload(const std::vector<BenchScene>& scenes, SimdRow row, std::shared_ptr<const GustNoise> gusts = nullptr);
+  Workload(const std::vector<BenchScene>& scenes, SimdRow row,
+           std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr);
 
   std::size_t nodes() const { return nodes_; }
-  const Skeleton& first_skeleton() const { return parts_.front().scene->skeleton(); }
+  const pose::Skeleton& first_skeleton() const { return parts_.front().scene->skeleton(); }
 
   // One frame's parts. Projection goes as far as joint positions.
   void shift();
@@ -48,7 +49,7 @@ class Workload {
   }
 
   /// The same frame, shared out among the pool's threads.
-  void frame(WorkerPool& pool);
+  void frame(workers::WorkerPool& pool);
 
   // Store 12 bytes a node into the same joints, and compute nothing: in a plain loop, by memset, and past the caches.
   void store_in_a_loop();
@@ -57,8 +58,8 @@ class Workload {
 
  private:
   struct Placed {
-    std::unique_ptr<Scene> scene;
-    std::unique_ptr<Kinematics> kinematics;
+    std::unique_ptr<scenes::Scene> scene;
+    std::unique_ptr<pose::Kinematics> kinematics;
     double gain = 1.0;
   };
 

@@ -75,7 +75,7 @@ std::vector<Case> all_cases() {
       own_noise("grass 1,000,000", "grass", meadow(400, 250)),
   };
   // As the daemon ships them.
-  for (const SceneDescription* kind : scene_table()) {
+  for (const scenes::SceneDescription* kind : scenes::scene_table()) {
     const std::string name(kind->name);
     cases.push_back({.name = name + ", gusts", .scenes = {bench_scene(name)}, .has_gusts = true});
   }
@@ -87,16 +87,16 @@ std::vector<Case> all_cases() {
 }
 
 /// The plain implementation of the same strands.
-std::unique_ptr<PlainStrands> make_plain(const Skeleton& skeleton) {
-  const auto& strands = std::get<StrandSkeleton>(skeleton);
+std::unique_ptr<PlainStrands> make_plain(const pose::Skeleton& skeleton) {
+  const auto& strands = std::get<pose::StrandSkeleton>(skeleton);
   return std::make_unique<PlainStrands>(strands, std::vector<float>(strands.padded_count(), 1.0F),
-                                        make_noise_2d({.size = 512, .seed = 1}).value(),
-                                        make_noise_2d({.size = 512, .seed = 2}).value(), 256.0, 414.0);
+                                        noise::make_noise_2d({.size = 512, .seed = 1}).value(),
+                                        noise::make_noise_2d({.size = 512, .seed = 2}).value(), 256.0, 414.0);
 }
 
 /// A grid of the wind over a square meadow.
 struct BenchGrid {
-  BenchGrid(double side_m, SimdRow row, const std::shared_ptr<const GustNoise>& gusts, bool has_tape)
+  BenchGrid(double side_m, SimdRow row, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts, bool has_tape)
       : wind(gusts, has_tape), grid(gusts, places(side_m), places(side_m), row) {}
   /// Two places, in opposite corners.
   static std::vector<float> places(double side_m) {
@@ -104,7 +104,7 @@ struct BenchGrid {
   }
 
   BenchWind wind;
-  WindGrid grid;
+  scenes::WindGrid grid;
 };
 
 /// Collects the fastest time of each benchmark, and says on standard error how far it is.
@@ -214,10 +214,11 @@ int run(int argc, char** argv) {
   std::vector<std::unique_ptr<Workload>> workloads;
   std::vector<std::unique_ptr<PlainStrands>> plains;
   std::vector<TableRow> rows;
-  const auto gusts = std::make_shared<const GustNoise>(GustNoiseSettings{.evolves = true});
+  const auto gusts =
+      std::make_shared<const wind::turbulence::GustNoise>(wind::turbulence::GustNoiseSettings{.evolves = true});
   for (const Case& one : all_cases()) {
-    Workload& workload = *workloads.emplace_back(
-        std::make_unique<Workload>(one.scenes, row, one.has_gusts ? gusts : std::shared_ptr<const GustNoise>()));
+    Workload& workload = *workloads.emplace_back(std::make_unique<Workload>(
+        one.scenes, row, one.has_gusts ? gusts : std::shared_ptr<const wind::turbulence::GustNoise>()));
     rows.push_back({one.name, workload.nodes(), one.paper});
     add(one.name + "/floor", [&workload] { workload.store_in_a_loop(); });
     add(one.name + "/memset", [&workload] { workload.store_by_memset(); });
@@ -235,7 +236,7 @@ int run(int argc, char** argv) {
   std::vector<float> angles_rad;
   for (std::size_t i = 0; i < kQuantised; ++i) angles_rad.push_back(std::sin(0.37F * static_cast<float>(i)));
   std::vector<std::int16_t> units(angles_rad.size());
-  add("quantise/bends", [&angles_rad, &units, row] { quantise(angles_rad, units, row); });
+  add("quantise/bends", [&angles_rad, &units, row] { pose::quantise(angles_rad, units, row); });
 
   // A step of the grid of the wind with the tape and without; writing the tape, once a tick for all scenes; one place
   // of it; and the estimator's tick, with one sensor.
@@ -257,12 +258,12 @@ int run(int argc, char** argv) {
   for (int tick = 0; tick < 600; ++tick) measured.step();
   add("wind/estimator", [&measured] { benchmark::DoNotOptimize(measured.step()); });
   add("wind/copy", [wind = measured.step()] {
-    const DrivingWind copy = wind;
+    const wind::ground::DrivingWind copy = wind;
     benchmark::DoNotOptimize(&copy);
   });
 
   // A second thread, on the largest meadow: back to back, and a frame at a time 60 times a second.
-  WorkerPool pool(2);
+  workers::WorkerPool pool(2);
   const std::vector<BenchScene> largest = {bench_scene("grass", meadow(400, 250))};
   Workload alone(largest, row);
   Workload shared(largest, row);

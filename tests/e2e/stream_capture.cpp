@@ -30,30 +30,33 @@ void run(const Job& job) {
   if (job.run() != Job::Problem::kNone) throw std::logic_error("skeleton and pose do not fit");
 }
 
-void add_tips(const StrandSkeleton& skeleton, const JointPositions& joints, std::vector<JointPosition>& points) {
+void add_tips(const pose::StrandSkeleton& skeleton, const pose::JointPositions& joints,
+              std::vector<pose::JointPosition>& points) {
   for (std::size_t strand = 0; strand < skeleton.strand_count; ++strand)
     points.push_back(joints.joint(strand, skeleton.links_per_strand - 1));
 }
 
 /// What our own kinematics makes of a pose that a client decoded.
-void add_points(const Skeleton& skeleton, const Pose& pose, std::vector<JointPosition>& points) {
-  if (const auto* strands = std::get_if<StrandSkeleton>(&skeleton)) {
-    JointPositions joints(*strands);
-    run(StrandKinematicsJob{.skeleton = strands, .pose = &std::get<StrandPose>(pose), .row = {}, .joints = &joints});
+void add_points(const pose::Skeleton& skeleton, const pose::Pose& pose, std::vector<pose::JointPosition>& points) {
+  if (const auto* strands = std::get_if<pose::StrandSkeleton>(&skeleton)) {
+    pose::JointPositions joints(*strands);
+    run(pose::StrandKinematicsJob{
+        .skeleton = strands, .pose = &std::get<pose::StrandPose>(pose), .row = {}, .joints = &joints});
     add_tips(*strands, joints, points);
-  } else if (const auto* grid = std::get_if<GridSkeleton>(&skeleton)) {
-    PointPositions joints(*grid);
-    run(GridKinematicsJob{.skeleton = grid, .pose = &std::get<GridPose>(pose), .points = &joints});
+  } else if (const auto* grid = std::get_if<pose::GridSkeleton>(&skeleton)) {
+    pose::PointPositions joints(*grid);
+    run(pose::GridKinematicsJob{.skeleton = grid, .pose = &std::get<pose::GridPose>(pose), .points = &joints});
     for (std::size_t i = 0; i < joints.size(); ++i)
       if (i % grid->stride() < grid->columns) points.push_back(joints.point(i));
-  } else if (const auto* tree = std::get_if<TreeSkeleton>(&skeleton)) {
-    TreeJoints joints(*tree);
-    run(TreeKinematicsJob{.skeleton = tree, .pose = &std::get<TreePose>(pose), .row = {}, .joints = &joints});
+  } else if (const auto* tree = std::get_if<pose::TreeSkeleton>(&skeleton)) {
+    pose::TreeJoints joints(*tree);
+    run(pose::TreeKinematicsJob{
+        .skeleton = tree, .pose = &std::get<pose::TreePose>(pose), .row = {}, .joints = &joints});
     for (std::size_t i = 0; i < tree->levels.size(); ++i) add_tips(tree->levels[i].strands, joints.level(i), points);
   } else {
-    const auto& surface = std::get<SurfaceSkeleton>(skeleton);
-    PointPositions moved(surface);
-    run(SurfaceKinematicsJob{.skeleton = &surface, .pose = &std::get<SurfacePose>(pose), .points = &moved});
+    const auto& surface = std::get<pose::SurfaceSkeleton>(skeleton);
+    pose::PointPositions moved(surface);
+    run(pose::SurfaceKinematicsJob{.skeleton = &surface, .pose = &std::get<pose::SurfacePose>(pose), .points = &moved});
     for (std::size_t i = 0; i < moved.size(); ++i) points.push_back(moved.point(i));
   }
 }
@@ -74,12 +77,12 @@ void capture(const std::filesystem::path& folder) {
   wire::Bytes newest;
   for (std::uint64_t i = 0; i < 5; ++i) {
     const auto largest_rad = 0.5f * static_cast<float>(i);
-    std::vector<Pose> moved{samples::bent(3, largest_rad)};
-    for (const Pose& pose : samples::all_moved()) moved.push_back(pose);
+    std::vector<pose::Pose> moved{samples::bent(3, largest_rad)};
+    for (const pose::Pose& pose : samples::all_moved()) moved.push_back(pose);
     moved[1] = samples::bent(1000, largest_rad);
     moved.emplace_back(samples::bent(5));
-    std::vector<const Skeleton*> skeletons;
-    std::vector<const Pose*> poses;
+    std::vector<const pose::Skeleton*> skeletons;
+    std::vector<const pose::Pose*> poses;
     for (std::size_t scene = 0; scene < moved.size(); ++scene) {
       skeletons.push_back(&scenes.scenes[scene].skeleton);
       poses.push_back(&moved[scene]);
@@ -94,11 +97,11 @@ void capture(const std::filesystem::path& folder) {
 
   // The points of what a client decodes: the quantised pose, not the one that it was made of.
   const auto frame = std::get<wire::Frame>(wire::decode(samples::body(newest)).value());
-  std::vector<JointPosition> points;
+  std::vector<pose::JointPosition> points;
   for (std::size_t i = 0; i < frame.poses.size(); ++i)
     if (frame.opacities[i] > 0.0f) add_points(scenes.scenes[i].skeleton, frame.poses[i], points);
   write(folder / "stream.bin", stream.data(), stream.size());
-  write(folder / "points.f32", points.data(), points.size() * sizeof(JointPosition));
+  write(folder / "points.f32", points.data(), points.size() * sizeof(pose::JointPosition));
 }
 
 }  // namespace

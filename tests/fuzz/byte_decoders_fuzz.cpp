@@ -21,95 +21,98 @@
 namespace {
 
 using namespace yuragi;
+using namespace yuragi::drivers;
 
 void require(bool holds) {
   if (!holds) std::abort();
 }
 
-void require_physical(const Result<DecodedWind, Refusal>& decoded) {
-  require(!decoded || checked(*decoded).has_value());
+void require_physical(const Result<decode::DecodedWind, decode::Refusal>& decoded) {
+  require(!decoded || decode::checked(*decoded).has_value());
 }
 
-void read_stream(ByteSpan bytes) {
-  Wmr100Stream stream;
+void read_stream(decode::ByteSpan bytes) {
+  decode::hid::Wmr100Stream stream;
   for (const std::uint8_t byte : bytes) {
-    if (const auto result = take_wmr100_byte(stream, byte)) require_physical(*result);
-    require(stream.size <= kWmr100LongestFrame + 1);
+    if (const auto result = decode::hid::take_wmr100_byte(stream, byte)) require_physical(*result);
+    require(stream.size <= decode::hid::kWmr100LongestFrame + 1);
   }
-  if (const auto result = finish_wmr100(stream)) require_physical(*result);
+  if (const auto result = decode::hid::finish_wmr100(stream)) require_physical(*result);
   require(stream.size == 0);
-  require(wmr100_report_bytes(bytes).size() <= 7);
+  require(decode::hid::wmr100_report_bytes(bytes).size() <= 7);
 }
 
 void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
-  require_physical(decode_wmr100_frame(bytes));
-  require_physical(decode_wmr300(bytes));
-  require_physical(decode_te923(bytes));
-  require_physical(decode_acurite(bytes));
-  require_physical(decode_fineoffset_record(bytes));
-  static_cast<void>(encode_wmr300_acknowledgement(bytes));
-  for (const auto model : {FineOffsetModel::kWh1080, FineOffsetModel::kWh3080}) {
-    if (const auto fixed = decode_fineoffset_fixed_block(bytes, model)) {
-      require(previous_fineoffset_position(fixed->current_position, model) >= kFineOffsetFirstRecord);
+  require_physical(decode::hid::decode_wmr100_frame(bytes));
+  require_physical(decode::hid::decode_wmr300(bytes));
+  require_physical(decode::hid::decode_te923(bytes));
+  require_physical(decode::hid::decode_acurite(bytes));
+  require_physical(decode::hid::decode_fineoffset_record(bytes));
+  static_cast<void>(decode::hid::encode_wmr300_acknowledgement(bytes));
+  for (const auto model : {decode::hid::FineOffsetModel::kWh1080, decode::hid::FineOffsetModel::kWh3080}) {
+    if (const auto fixed = decode::hid::decode_fineoffset_fixed_block(bytes, model)) {
+      require(decode::hid::previous_fineoffset_position(fixed->current_position, model) >=
+              decode::hid::kFineOffsetFirstRecord);
     }
   }
   if (!is_mended) return;
   if (bytes.size() >= 11) {
     std::vector<std::uint8_t> frame(bytes.begin(), bytes.begin() + 11);
     frame[1] = 0x48;
-    const auto sum = sum_16(ByteSpan(frame).first(9));
+    const auto sum = decode::sum_16(decode::ByteSpan(frame).first(9));
     frame[9] = static_cast<std::uint8_t>(sum & 0xFFU);
     frame[10] = static_cast<std::uint8_t>(sum >> 8U);
-    require_physical(decode_wmr100_frame(frame));
+    require_physical(decode::hid::decode_wmr100_frame(frame));
   }
-  if (bytes.size() >= kTe923Block) {
-    std::vector<std::uint8_t> block(bytes.begin(), bytes.begin() + kTe923Block);
+  if (bytes.size() >= decode::hid::kTe923Block) {
+    std::vector<std::uint8_t> block(bytes.begin(), bytes.begin() + decode::hid::kTe923Block);
     block[0] = 0x5A;
-    block[33] = static_cast<std::uint8_t>(block[33] ^ xor_8(block));
-    const auto decoded = decode_te923(block);
-    require(decoded || decoded.error() == Refusal::kInvalid);
+    block[33] = static_cast<std::uint8_t>(block[33] ^ decode::xor_8(block));
+    const auto decoded = decode::hid::decode_te923(block);
+    require(decoded || decoded.error() == decode::Refusal::kInvalid);
     require_physical(decoded);
   }
-  if (bytes.size() >= kWmr300WindPacket) {
+  if (bytes.size() >= decode::hid::kWmr300WindPacket) {
     bytes[0] = 0xD4;
     bytes[1] = 54;
-    const auto sum = sum_16(ByteSpan(bytes).first(52));
+    const auto sum = decode::sum_16(decode::ByteSpan(bytes).first(52));
     bytes[52] = static_cast<std::uint8_t>(sum >> 8U);
     bytes[53] = static_cast<std::uint8_t>(sum & 0xFFU);
-    require_physical(decode_wmr300(bytes));
+    require_physical(decode::hid::decode_wmr300(bytes));
   }
 }
 
-void read_daq(ByteSpan bytes, std::uint8_t choice) {
-  LabjackRequest request;
+void read_daq(decode::ByteSpan bytes, std::uint8_t choice) {
+  decode::usb::LabjackRequest request;
   if ((choice & 1U) != 0) request.analog_channel.reset();
   if ((choice & 2U) != 0) request.counter.reset();
   if ((choice & 4U) != 0) request.reference_channel = 1;
-  if (const auto reply = decode_labjack(request, bytes)) {
+  if (const auto reply = decode::usb::decode_labjack(request, bytes)) {
     require(reply->analog.has_value() == request.analog_channel.has_value());
     require(reply->reference.has_value() == request.reference_channel.has_value());
     require(reply->count.has_value() == request.counter.has_value());
   }
-  if (const auto analog = decode_mcc1208_analog(bytes)) require(*analog < 4096 && bytes.size() == 2);
-  if (decode_mcc1208_count(bytes)) require(bytes.size() == 4);
-  if (const auto calibration = decode_mcc1208_calibration(bytes)) {
-    require(std::isfinite(mcc1208_volts(4095, *calibration)));
+  if (const auto analog = decode::usb::decode_mcc1208_analog(bytes)) require(*analog < 4096 && bytes.size() == 2);
+  if (decode::usb::decode_mcc1208_count(bytes)) require(bytes.size() == 4);
+  if (const auto calibration = decode::usb::decode_mcc1208_calibration(bytes)) {
+    require(std::isfinite(decode::usb::mcc1208_volts(4095, *calibration)));
   }
-  if (const auto block = decode_labjack_memory(bytes)) require(std::isfinite((*block)[0]));
-  static_cast<void>(decode_labjack_identity(bytes));
-  static_cast<void>(decode_labjack_configuration(0, bytes));
+  if (const auto block = decode::usb::decode_labjack_memory(bytes)) require(std::isfinite((*block)[0]));
+  static_cast<void>(decode::usb::decode_labjack_identity(bytes));
+  static_cast<void>(decode::usb::decode_labjack_configuration(0, bytes));
 }
 
 /// Counts and any doubles, as they come.
-void turn_cup_and_vane(ByteSpan bytes) {
+void turn_cup_and_vane(decode::ByteSpan bytes) {
   constexpr std::size_t kStep = 4 + sizeof(double);
-  CupState state;
+  decode::usb::CupState state;
   for (; bytes.size() >= kStep; bytes = bytes.subspan(kStep)) {
     double number = 0.0;
     std::memcpy(&number, bytes.data() + 4, sizeof number);
-    const auto speed = advance_cup(state, {.metres_per_pulse = 0.1}, little_endian_32(bytes, 0), number);
-    if (speed && *speed) require(**speed >= 0.0 && **speed <= kMaxPlausibleSpeed_m_s);
-    const auto direction_deg = vane_direction_deg({.start_deg = 17.0}, number, 5.0);
+    const auto speed =
+        decode::usb::advance_cup(state, {.metres_per_pulse = 0.1}, decode::little_endian_32(bytes, 0), number);
+    if (speed && *speed) require(**speed >= 0.0 && **speed <= wind::kMaxPlausibleSpeed_m_s);
+    const auto direction_deg = decode::usb::vane_direction_deg({.start_deg = 17.0}, number, 5.0);
     if (direction_deg) require(*direction_deg >= 0.0 && *direction_deg < 360.0);
   }
 }
@@ -119,7 +122,7 @@ void turn_cup_and_vane(ByteSpan bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {  // NOLINT(readability-identifier-naming)
   if (size == 0) return 0;
-  const ByteSpan bytes(data + 1, size - 1);
+  const decode::ByteSpan bytes(data + 1, size - 1);
   read_stream(bytes);
   read_frames({bytes.begin(), bytes.end()}, (data[0] & 4U) != 0);
   read_daq(bytes, data[0]);

@@ -12,6 +12,7 @@
 namespace {
 
 using namespace yuragi;
+using namespace yuragi::drivers;
 
 void require(bool holds) {
   if (!holds) std::abort();
@@ -21,46 +22,47 @@ void require(bool holds) {
 constexpr std::size_t kChoices = 8;
 
 void decode_reply(std::span<const std::uint8_t> input) {
-  const ModbusRequest request = {.transaction = static_cast<std::uint16_t>((input[0] << 8U) | input[1]),
-                                 .unit = input[2],
-                                 .function = static_cast<std::uint8_t>(3U + (input[3] & 1U)),
-                                 .address = 0,
-                                 .count = input[4]};
-  ModbusQuantity quantity;
-  quantity.type = static_cast<RegisterType>(input[5] % 5);
-  quantity.order = static_cast<ByteOrder>(input[6] % 4);
-  quantity.unit = static_cast<QuantityUnit>(input[7] % 4);
-  quantity.map = static_cast<DirectionMap>((input[7] / 4) % 3);
+  const decode::modbus::ModbusRequest request = {.transaction = static_cast<std::uint16_t>((input[0] << 8U) | input[1]),
+                                                 .unit = input[2],
+                                                 .function = static_cast<std::uint8_t>(3U + (input[3] & 1U)),
+                                                 .address = 0,
+                                                 .count = input[4]};
+  decode::modbus::ModbusQuantity quantity;
+  quantity.type = static_cast<decode::modbus::RegisterType>(input[5] % 5);
+  quantity.order = static_cast<decode::modbus::ByteOrder>(input[6] % 4);
+  quantity.unit = static_cast<decode::modbus::QuantityUnit>(input[7] % 4);
+  quantity.map = static_cast<decode::modbus::DirectionMap>((input[7] / 4) % 3);
   quantity.scale = (input[3] & 2U) != 0 ? 0.1 : 1.0;
 
-  for (const auto framing : {ModbusFraming::kTcp, ModbusFraming::kRtu}) {
-    const auto registers = decode_modbus(framing, request, input.subspan(kChoices));
+  for (const auto framing : {decode::modbus::ModbusFraming::kTcp, decode::modbus::ModbusFraming::kRtu}) {
+    const auto registers = decode::modbus::decode_modbus(framing, request, input.subspan(kChoices));
     if (!registers) continue;
     require(registers->count == request.count);
-    if (const auto speed_m_s = decode_speed_m_s(quantity, registers->span())) {
-      require(*speed_m_s >= 0.0 && *speed_m_s <= kMaxPlausibleSpeed_m_s);
+    if (const auto speed_m_s = decode::modbus::decode_speed_m_s(quantity, registers->span())) {
+      require(*speed_m_s >= 0.0 && *speed_m_s <= wind::kMaxPlausibleSpeed_m_s);
     }
-    if (const auto direction_deg = decode_direction_deg(quantity, registers->span())) {
+    if (const auto direction_deg = decode::modbus::decode_direction_deg(quantity, registers->span())) {
       require(*direction_deg >= 0.0 && *direction_deg < 360.0);
     }
   }
 }
 
 /// Whatever a profile says, each of its quantities stands in the answer to the request that is to bring it.
-void check_plan(const ModbusProfile& profile) {
+void check_plan(const modbus::ModbusProfile& profile) {
   for (const bool is_direction_apart : {false, true}) {
-    const auto reads = plan_modbus_reads(profile, is_direction_apart);
-    require(!reads.empty() && reads.front().contains(ModbusMeasure::kSpeed));
-    for (const ModbusRead& read : reads) {
-      require(read.request.count >= 1 && read.request.count <= kModbusMaxRegisters);
-      ModbusRegisters registers;
+    const auto reads = modbus::plan_modbus_reads(profile, is_direction_apart);
+    require(!reads.empty() && reads.front().contains(modbus::ModbusMeasure::kSpeed));
+    for (const modbus::ModbusRead& read : reads) {
+      require(read.request.count >= 1 && read.request.count <= decode::modbus::kModbusMaxRegisters);
+      decode::modbus::ModbusRegisters registers;
       registers.count = read.request.count;
-      for (const ModbusMeasure measure : read.measures) {
-        const ModbusQuantity& quantity = quantity_of(profile, measure);
+      for (const modbus::ModbusMeasure measure : read.measures) {
+        const decode::modbus::ModbusQuantity& quantity = modbus::quantity_of(profile, measure);
         require(quantity.address >= read.request.address);
-        require(quantity.address + register_count(quantity.type) <=
+        require(quantity.address + decode::modbus::register_count(quantity.type) <=
                 read.request.address + std::size_t{read.request.count});
-        require(registers_of(quantity, read.request, registers).size() == register_count(quantity.type));
+        require(modbus::registers_of(quantity, read.request, registers).size() ==
+                decode::modbus::register_count(quantity.type));
       }
     }
   }
@@ -68,7 +70,7 @@ void check_plan(const ModbusProfile& profile) {
 
 void read_profile(std::string_view text) {
   try {
-    const ModbusProfile profile = parse_modbus_profile(text, "fuzz.toml");
+    const modbus::ModbusProfile profile = modbus::parse_modbus_profile(text, "fuzz.toml");
     require(profile.speed.slave >= 1 && profile.speed.slave <= 247);
     require(profile.response_timeout > Nanoseconds::zero());
     check_plan(profile);

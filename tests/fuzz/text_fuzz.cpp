@@ -17,44 +17,46 @@
 namespace {
 
 using namespace yuragi;
+using namespace yuragi::drivers;
 
 void require_text(bool holds) {
   if (!holds) std::abort();
 }
 
-void require_physical(const Result<DecodedWind, Refusal>& decoded) {
+void require_physical(const Result<decode::DecodedWind, decode::Refusal>& decoded) {
   if (!decoded) return;
   require_text(decoded->speed_m_s || decoded->direction_deg || decoded->gust_m_s);
   const double speed_m_s = decoded->speed_m_s.value_or(0.0);
   const double gust_m_s = decoded->gust_m_s.value_or(0.0);
   const double direction_deg = decoded->direction_deg.value_or(0.0);
-  require_text(speed_m_s >= 0.0 && speed_m_s <= kMaxPlausibleSpeed_m_s);
-  require_text(gust_m_s >= 0.0 && gust_m_s <= kMaxPlausibleSpeed_m_s);
+  require_text(speed_m_s >= 0.0 && speed_m_s <= wind::kMaxPlausibleSpeed_m_s);
+  require_text(gust_m_s >= 0.0 && gust_m_s <= wind::kMaxPlausibleSpeed_m_s);
   require_text(direction_deg >= 0.0 && direction_deg < 360.0);
 }
 
 /// The line as each decoder reads it: as it is, and with a checksum that is right, so that the fields are reached.
 void decode_everything(std::string_view line, unsigned choices) {
-  const WhenMissing checksum = (choices & 1U) != 0 ? WhenMissing::kAccept : WhenMissing::kRefuse;
-  const WhenMissing status = (choices & 2U) != 0 ? WhenMissing::kAccept : WhenMissing::kRefuse;
+  const decode::WhenMissing checksum =
+      (choices & 1U) != 0 ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
+  const decode::WhenMissing status = (choices & 2U) != 0 ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
   constexpr std::string_view kDigits = "0123456789abcdef";
-  const unsigned sum = xor_checksum(line);
+  const unsigned sum = decode::xor_checksum(line);
   const std::string digits = {kDigits[sum / 16], kDigits[sum % 16]};
   const std::string sentence = "$" + std::string(line) + "*" + digits;
   const std::string frame = '\x02' + std::string(line) + '\x03' + digits;
 
-  GillOptions gill;
+  decode::text::GillOptions gill;
   gill.checksum = checksum;
   gill.status = status;
-  LineOptions numbers;
-  numbers.format = static_cast<LineFormat>((choices >> 2U) % 3);
+  decode::text::LineOptions numbers;
+  numbers.format = static_cast<decode::text::LineFormat>((choices >> 2U) % 3);
   numbers.separator = (choices & 32U) != 0 ? ' ' : ',';
   for (const std::string_view text : {line, std::string_view(sentence), std::string_view(frame)}) {
-    require_physical(decode_nmea({.checksum = checksum, .status = status, .xdr_first_id = 0}, text));
-    require_physical(decode_gill(gill, text));
-    require_physical(decode_ft({.checksum = checksum, .status = status}, text));
-    require_physical(decode_umb({}, text));
-    require_physical(decode_line(numbers, text));
+    require_physical(decode::text::decode_nmea({.checksum = checksum, .status = status, .xdr_first_id = 0}, text));
+    require_physical(decode::text::decode_gill(gill, text));
+    require_physical(decode::text::decode_ft({.checksum = checksum, .status = status}, text));
+    require_physical(decode::text::decode_umb({}, text));
+    require_physical(decode::text::decode_line(numbers, text));
   }
 }
 
@@ -67,10 +69,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   const std::size_t piece_size = 1U + data[1];
   std::span<const std::uint8_t> rest(data + 2, size - 2);
 
-  LineAssembler assembler((choices & 64U) != 0 ? LineEnding::kEtx : LineEnding::kNewline);
-  const auto use = [&](const std::optional<LineAssembler::Line>& line) {
+  decode::text::LineAssembler assembler((choices & 64U) != 0 ? decode::text::LineEnding::kEtx
+                                                             : decode::text::LineEnding::kNewline);
+  const auto use = [&](const std::optional<decode::text::LineAssembler::Line>& line) {
     if (!line || !*line) return;
-    require_text(!(*line)->empty() && (*line)->size() <= LineAssembler::kMaxLine);
+    require_text(!(*line)->empty() && (*line)->size() <= decode::text::LineAssembler::kMaxLine);
     decode_everything(**line, choices);
   };
   while (!rest.empty()) {

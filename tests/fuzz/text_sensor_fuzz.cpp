@@ -41,14 +41,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   for (std::size_t at = 1; at < size;) {
     const std::uint8_t how = data[at++];
     if (how == 255) {
-      text.far_end.incoming.push_back({ByteStatus::kLost, "", false});
+      text.far_end.incoming.push_back({drivers::bus::ByteStatus::kLost, "", false});
     } else if (how > kLongest) {
       text.run(std::chrono::milliseconds(100) * (how - kLongest));
     } else {
       const std::size_t length = std::min<std::size_t>(how, size - at);
       if (length > 0) {
         const std::string piece(reinterpret_cast<const char*>(data + at), length);
-        text.far_end.incoming.push_back({ByteStatus::kBytes, piece, how % 2 == 0});
+        text.far_end.incoming.push_back({drivers::bus::ByteStatus::kBytes, piece, how % 2 == 0});
       }
       at += length;
     }
@@ -56,6 +56,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   }
   text.run(std::chrono::minutes(1));
 
-  for (const WindReading& reading : text.sink.readings) require_holds(is_plausible(reading));
+  for (const wind::WindReading& reading : text.sink.readings) require_holds(wind::is_plausible(reading));
   return 0;
 }

@@ -9,28 +9,29 @@
 
 namespace {
 
-using namespace yuragi::sim;
+using namespace yuragi;
 
 void require(bool holds) {
   if (!holds) std::abort();
 }
 
-void obey(UsbPort& port, const UsbipMessage& message, double time_s) {
+void obey(simulators::usb::UsbPort& port, const simulators::usb::UsbipMessage& message, double time_s) {
   port.advance(time_s, std::nullopt);
-  if (const auto* submit = std::get_if<UsbipSubmit>(&message)) {
-    require(submit->length <= kUsbipLongestTransfer && submit->endpoint < 16);
+  if (const auto* submit = std::get_if<simulators::usb::UsbipSubmit>(&message)) {
+    require(submit->length <= simulators::usb::kUsbipLongestTransfer && submit->endpoint < 16);
     port.submit({.id = submit->number,
                  .endpoint = submit->endpoint,
                  .is_to_host = submit->is_to_host,
                  .setup = submit->setup,
                  .data = submit->data,
                  .max_size = submit->length});
-  } else if (const auto* unlink = std::get_if<UsbipUnlink>(&message)) {
+  } else if (const auto* unlink = std::get_if<simulators::usb::UsbipUnlink>(&message)) {
     port.cancel(unlink->unlinked);
   }
-  for (const UsbOutcome& outcome : port.take_outcomes()) {
-    require(usbip_submit_reply(static_cast<std::uint32_t>(outcome.id), kUsbipDone, outcome.size, outcome.data).size() >=
-            48);
+  for (const simulators::usb::UsbOutcome& outcome : port.take_outcomes()) {
+    require(simulators::usb::usbip_submit_reply(static_cast<std::uint32_t>(outcome.id), simulators::usb::kUsbipDone,
+                                                outcome.size, outcome.data)
+                .size() >= 48);
   }
 }
 
@@ -38,11 +39,12 @@ void obey(UsbPort& port, const UsbipMessage& message, double time_s) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {  // NOLINT(readability-identifier-naming)
-  for (const UsbipPhase phase : {UsbipPhase::kRequests, UsbipPhase::kTransfers}) {
-    const std::unique_ptr<UsbPort> port = echo_port();
+  for (const simulators::usb::UsbipPhase phase :
+       {simulators::usb::UsbipPhase::kRequests, simulators::usb::UsbipPhase::kTransfers}) {
+    const std::unique_ptr<simulators::usb::UsbPort> port = simulators::usb::echo_port();
     std::span bytes(data, size);
     for (double time_s = 0.0;; time_s += 0.02) {
-      const auto taken = take_usbip_message(phase, bytes);
+      const auto taken = simulators::usb::take_usbip_message(phase, bytes);
       if (!taken || !taken->message) break;
       require(taken->size > 0 && taken->size <= bytes.size());
       obey(*port, *taken->message, time_s);

@@ -19,6 +19,7 @@
 namespace {
 
 using namespace yuragi;
+using namespace yuragi::drivers;
 
 const std::filesystem::path& scratch_file() {
   static const std::filesystem::path kFile =
@@ -29,13 +30,13 @@ const std::filesystem::path& scratch_file() {
 std::string make_recording() {
   std::filesystem::remove(scratch_file());
   {
-    auto writer = WindlogWriter::open(scratch_file());
+    auto writer = windlog::WindlogWriter::open(scratch_file());
     if (!writer) std::abort();
     for (int session = 0; session < 2; ++session) {
       if (!writer->begin_session({{}, "fuzz", ""})) std::abort();
       const auto sensor = writer->add_sensor("mast", "fuzz", "");
       for (int i = 0; i < 150; ++i) {
-        WindReading reading;
+        wind::WindReading reading;
         reading.time.mono += std::chrono::milliseconds(100 * i);
         reading.direction_deg = i;
         if (!writer->append(*sensor, reading)) std::abort();
@@ -50,17 +51,17 @@ std::string make_recording() {
 void play_anything(std::span<const std::uint8_t> orders) {
   Instant now{MonoTime(std::chrono::hours(1)), UtcTime(std::chrono::hours(500'000))};
   MonoTime last = now.mono;
-  const auto use = [&](const WindReading& reading) {
-    if (!is_plausible(reading) || reading.time.mono < last) std::abort();
+  const auto use = [&](const wind::WindReading& reading) {
+    if (!wind::is_plausible(reading) || reading.time.mono < last) std::abort();
     last = reading.time.mono;
   };
   const std::string place(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(orders.size() % 12));
-  static_cast<void>(parse_utc_offset(place));
-  auto opened = WindlogPlayer::open(
+  static_cast<void>(windlog::parse_utc_offset(place));
+  auto opened = windlog::WindlogPlayer::open(
       scratch_file(),
       {.playback = {.loop = orders.size() % 2 == 0, .sensor = "*"}, .at_time_of_day = orders.size() % 3 == 0}, now);
   if (!opened) return;
-  WindlogPlayer& player = *opened;
+  windlog::WindlogPlayer& player = *opened;
   for (const std::uint8_t order : orders.first(std::min<std::size_t>(orders.size(), 64))) {
     switch (order % 8) {
       case 0:
@@ -110,13 +111,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   play_anything(std::span(data, size));
 
-  auto reader = WindlogReader::open(scratch_file());
+  auto reader = windlog::WindlogReader::open(scratch_file());
   if (!reader) return 0;
   reader->seek(std::chrono::seconds(size % 40));
   static_cast<void>(reader->log_time_of(UtcTime{}));
   for (;;) {
     const auto logged = reader->next();
     if (!logged || !*logged) return 0;
-    if (!is_plausible((*logged)->reading) || (*logged)->sensor >= reader->sensors().size()) std::abort();
+    if (!wind::is_plausible((*logged)->reading) || (*logged)->sensor >= reader->sensors().size()) std::abort();
   }
 }

@@ -23,7 +23,7 @@ class Welch {
   Welch(double rate_hz, double segment_s, double top_hz);
 
   /// Of both components: first those of u, then those of v. At least a segment long.
-  Segments segments(std::span<const WindVector> samples);
+  Segments segments(std::span<const wind::WindVector> samples);
 
   /// How much each of so many samples counts in the density, 1 on average: those at both ends count little.
   std::vector<double> weights(std::size_t samples) const;
@@ -41,7 +41,7 @@ class Welch {
   std::size_t kept_;
   double scale_;
   std::vector<double> window_;
-  RealFft fft_;
+  fft::RealFft fft_;
 };
 
 /// A band of frequencies, from `from_hz` on and below `to_hz`.
@@ -58,11 +58,11 @@ double power_in(const std::vector<double>& density, double step_hz, Band band);
 
 /// What a wind adds up to: means and variance.
 struct WindMoments {
-  WindVector mean;
+  wind::WindVector mean;
   double mean_speed_m_s = 0.0;
   double variance_m2_s2 = 0.0;  ///< of u and of v together
 };
-WindMoments moments_of(std::span<const WindVector> samples);
+WindMoments moments_of(std::span<const wind::WindVector> samples);
 
 inline double decibel(double ratio) noexcept {
   return 10.0 * std::log10(ratio);

@@ -30,7 +30,7 @@ double sinc(double x) {
 /// alike.
 class TileCuts {
  public:
-  explicit TileCuts(const GustNoise& noise) : noise_(noise) {
+  explicit TileCuts(const wind::turbulence::GustNoise& noise) : noise_(noise) {
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
       cuts_[i] = cut(from_rad_m(i) * noise.sample_m(i) / (2.0 * std::numbers::pi));
     }
@@ -38,11 +38,11 @@ class TileCuts {
 
   /// Adds to a density in steps of step_hz, from kToHz on, what the gusts of a moment should have that pass at this
   /// speed, times a weight.
-  void add(const GustNoise::Moment& gusts, double speed_m_s, double step_hz, std::vector<double>& density,
-           double weight) const {
+  void add(const wind::turbulence::GustNoise::Moment& gusts, double speed_m_s, double step_hz,
+           std::vector<double>& density, double weight) const {
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      const auto along_m_s = static_cast<double>(gusts.along_m_s[GustNoise::kFirstTileOctave + i]);
-      const auto across_m_s = static_cast<double>(gusts.across_m_s[GustNoise::kFirstTileOctave + i]);
+      const auto along_m_s = static_cast<double>(gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i]);
+      const auto across_m_s = static_cast<double>(gusts.across_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i]);
       const double variance = along_m_s * along_m_s + across_m_s * across_m_s;
       const double unit_hz = from_rad_m(i) * speed_m_s / (2.0 * std::numbers::pi);
       for (auto k = static_cast<std::size_t>(kToHz / step_hz); k < density.size(); ++k) {
@@ -58,7 +58,7 @@ class TileCuts {
   using Cut = std::array<double, kPoints>;  ///< one-sided density at k / k0 from 0 to 2, of variance 1
 
   double from_rad_m(std::size_t tile_octave) const {
-    return noise_.octaves()[GustNoise::kFirstTileOctave + tile_octave].from_rad_m;
+    return noise_.octaves()[wind::turbulence::GustNoise::kFirstTileOctave + tile_octave].from_rad_m;
   }
 
   /// Of an octave whose longest waves have `cycles` a sample.
@@ -95,15 +95,16 @@ class TileCuts {
     return result;
   }
 
-  const GustNoise& noise_;
-  std::array<Cut, 2 * GustNoise::kTileOctaves> cuts_{};
+  const wind::turbulence::GustNoise& noise_;
+  std::array<Cut, 2 * wind::turbulence::GustNoise::kTileOctaves> cuts_{};
 };
 
 /// How fast the gusts are carried, from how far they have come.
 class Carriage {
  public:
-  explicit Carriage(const GustNoise& noise) : period_m_(2.0 * std::numbers::pi / noise.octaves()[0].from_rad_m) {}
-  double speed_m_s(const GustNoise::Carried& carried, double dt_s) {
+  explicit Carriage(const wind::turbulence::GustNoise& noise)
+      : period_m_(2.0 * std::numbers::pi / noise.octaves()[0].from_rad_m) {}
+  double speed_m_s(const wind::turbulence::GustNoise::Carried& carried, double dt_s) {
     const std::uint32_t phase = carried.way_first.phase();
     const double way_m = static_cast<double>(phase - before_) / 4294967296.0 * period_m_;
     before_ = phase;
@@ -117,8 +118,8 @@ class Carriage {
 
 /// The winds of one run, tick by tick.
 struct Run {
-  std::vector<WindVector> signal, synthetic;
-  std::array<std::vector<WindVector>, kBlades.size()> blades;
+  std::vector<wind::WindVector> signal, synthetic;
+  std::array<std::vector<wind::WindVector>, kBlades.size()> blades;
 };
 
 /// What one seed gives.
@@ -137,12 +138,12 @@ struct SeedResult {
 };
 
 /// `apart`: from a sample to the one that it is compared with; `step`: from one of those pairs to the next.
-Increments increments_of(std::span<const WindVector> samples, std::size_t apart, std::size_t step) {
+Increments increments_of(std::span<const wind::WindVector> samples, std::size_t apart, std::size_t step) {
   double second = 0.0;
   double fourth = 0.0;
   std::vector<double> differences;
   for (std::size_t i = apart; i < samples.size(); i += step) {
-    const WindVector difference = samples[i] - samples[i - apart];
+    const wind::WindVector difference = samples[i] - samples[i - apart];
     for (const double value : {difference.u_m_s, difference.v_m_s}) {
       differences.push_back(value);
       second += value * value;
@@ -167,7 +168,8 @@ std::vector<double> unfolded(std::vector<double> density, double step_hz, double
 
 class Comparer {
  public:
-  Comparer(const SonicRecord& record, double interval_s, double gustiness, std::shared_ptr<const GustNoise> noise)
+  Comparer(const SonicRecord& record, double interval_s, double gustiness,
+           std::shared_ptr<const wind::turbulence::GustNoise> noise)
       : readings_(block_means(record, interval_s)),
         gustiness_(gustiness),
         ticks_a_sample_(static_cast<std::size_t>(std::lround(kTick_hz / record.rate_hz))),
@@ -180,13 +182,13 @@ class Comparer {
   double to_s() const { return static_cast<double>(last_tick_) / kTick_hz; }
 
   /// The readings, held: what is heard of the sensor at each tick that is compared.
-  std::vector<WindVector> held() const {
-    std::vector<WindVector> result;
+  std::vector<wind::WindVector> held() const {
+    std::vector<wind::WindVector> result;
     std::size_t next = 0;
-    WindVector last{};
+    wind::WindVector last{};
     for (std::size_t tick = 0; tick <= last_tick_; ++tick) {
       for (; next < readings_.size() && readings_[next].time.mono <= time_of(tick); ++next) {
-        last = wind_from(readings_[next].speed_m_s, *readings_[next].direction_deg);
+        last = wind::wind_from(readings_[next].speed_m_s, *readings_[next].direction_deg);
       }
       if (tick >= first_tick_) result.push_back(last);
     }
@@ -197,7 +199,7 @@ class Comparer {
     SeedResult result;
     result.model_density.resize(sensor.front().size());
     const Run run = simulate(seed, welch, result.model_density);
-    const auto measure = [&welch](const std::vector<WindVector>& winds) {
+    const auto measure = [&welch](const std::vector<wind::WindVector>& winds) {
       return SeedResult::Place{moments_of(winds), Welch::density(welch.segments(winds))};
     };
     const Welch::Segments wind = welch.segments(run.signal);
@@ -225,8 +227,8 @@ class Comparer {
   static MonoTime time_of(std::size_t tick) { return MonoTime(from_seconds(static_cast<double>(tick) / kTick_hz)); }
 
   Run simulate(std::uint64_t seed, const Welch& welch, std::vector<double>& model_density) const {
-    BlendedEstimator estimator(1, {.climate = {.seed = seed}, .gustiness = gustiness_}, noise_);
-    WindTapes tapes;
+    wind::blend::BlendedEstimator estimator(1, {.climate = {.seed = seed}, .gustiness = gustiness_}, noise_);
+    wind::ground::WindTapes tapes;
     const std::vector<double> weights = welch.weights(last_tick_ - first_tick_ + 1);
     double moments = 0.0;
     Carriage carriage(*noise_);
@@ -236,12 +238,12 @@ class Comparer {
       for (; next < readings_.size() && readings_[next].time.mono <= time_of(tick); ++next) {
         estimator.accept(0, readings_[next]);
       }
-      const WindVector wind = estimator.advance(time_of(tick)).wind;
-      const GroundWind ground = written_to(tapes, {{}, estimator.ground(), estimator.stroke()});
+      const wind::WindVector wind = estimator.advance(time_of(tick)).wind;
+      const wind::ground::GroundWind ground = written_to(tapes, {{}, estimator.ground(), estimator.stroke()});
       const double speed_m_s = carriage.speed_m_s(ground.gusts.carried, 1.0 / kTick_hz);
       if (tick < first_tick_) continue;
       run.signal.push_back(wind);
-      const GustNoise::Moment left = estimator.gusts_at(0);
+      const wind::turbulence::GustNoise::Moment left = estimator.gusts_at(0);
       run.synthetic.push_back(noise_->everywhere(left) + noise_->local(left, 0.0, 0.0));
       for (std::size_t i = 0; i < kBlades.size(); ++i) {
         run.blades[i].push_back(ground.at(*noise_, kBlades[i].east_m, kBlades[i].south_m));
@@ -254,11 +256,11 @@ class Comparer {
     return run;
   }
 
-  std::vector<WindReading> readings_;
+  std::vector<wind::WindReading> readings_;
   double gustiness_;
   std::size_t ticks_a_sample_;  ///< of the record
   std::size_t first_tick_, last_tick_;
-  std::shared_ptr<const GustNoise> noise_;
+  std::shared_ptr<const wind::turbulence::GustNoise> noise_;
   TileCuts cuts_;
 };
 
@@ -296,7 +298,7 @@ std::vector<double> decibels(const std::vector<double>& density, const std::vect
 }  // namespace
 
 BlendComparison compare_blend(const SonicRecord& record, double interval_s, double gustiness, int seeds,
-                              const std::shared_ptr<const GustNoise>& noise) {
+                              const std::shared_ptr<const wind::turbulence::GustNoise>& noise) {
   const Comparer comparer(record, interval_s, gustiness, noise);
   Welch welch(kTick_hz, kSegment_s, kTopHz);
   BlendComparison result;
@@ -311,7 +313,7 @@ BlendComparison compare_blend(const SonicRecord& record, double interval_s, doub
   const auto index = [&record](double time_s) {
     return static_cast<std::size_t>(std::lround(time_s * record.rate_hz));
   };
-  const std::span<const WindVector> compared =
+  const std::span<const wind::WindVector> compared =
       std::span(record.samples).subspan(index(result.from_s), index(result.to_s) - index(result.from_s));
   result.record = moments_of(compared);
   result.record_density = Welch::density(Welch(record.rate_hz, kSegment_s, kTopHz).segments(compared));

@@ -74,6 +74,6 @@ struct BlendComparison {
 /// each seed from 1 on, and compares. The sensor stands in the middle, and so does what is compared but for the blades,
 /// which read the tapes. The first max(30, 3 intervals) seconds are not compared.
 BlendComparison compare_blend(const SonicRecord& record, double interval_s, double gustiness, int seeds,
-                              const std::shared_ptr<const GustNoise>& noise);
+                              const std::shared_ptr<const wind::turbulence::GustNoise>& noise);
 
 }  // namespace yuragi::proof

@@ -74,10 +74,11 @@ Complex averaged(double frequency_hz, double interval_s) {
 }
 
 /// How far each band is trusted, after the mean.
-BandWeights trusted(double interval_s) {
-  BandWeights weights{1.0};
-  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-    weights[1 + band] = 1.0 / (1.0 + std::pow(OctaveFollower::centre_hz(band) * interval_s / 0.5, 4.0));
+wind::blend::BandWeights trusted(double interval_s) {
+  wind::blend::BandWeights weights{1.0};
+  for (std::size_t band = 0; band < wind::turbulence::OctaveFollower::kBands; ++band) {
+    weights[1 + band] =
+        1.0 / (1.0 + std::pow(wind::turbulence::OctaveFollower::centre_hz(band) * interval_s / 0.5, 4.0));
   }
   return weights;
 }
@@ -85,25 +86,27 @@ BandWeights trusted(double interval_s) {
 /// From the reading to the wind: it is held for an interval, and what the bands pass of that, each as far as it is
 /// trusted, adds up. A tick takes what is there at its end, as if it had been there from its begin on.
 Complex estimated(double frequency_hz, double interval_s) {
-  return averaged(frequency_hz, interval_s) * OctaveFollower::Response(frequency_hz).weighted(trusted(interval_s)) *
+  return averaged(frequency_hz, interval_s) *
+         wind::turbulence::OctaveFollower::Response(frequency_hz).weighted(trusted(interval_s)) *
          ahead_by(kDelayTick_s, frequency_hz);
 }
 
 /// What comes a way downwind along the tape, the time that it takes taken out: each band less what it loses.
-Complex carried(double frequency_hz, double interval_s, double way_m, const GustCoherence& coherence) {
-  BandWeights weights = trusted(interval_s);
-  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-    const double centre_hz = OctaveFollower::centre_hz(band);
-    const double on_tape = std::clamp(std::log2(coherence.speed_m_s / (4.0 * WindTape::kStep_m * centre_hz)), 0.0, 1.0);
+Complex carried(double frequency_hz, double interval_s, double way_m, const wind::ground::GustCoherence& coherence) {
+  wind::blend::BandWeights weights = trusted(interval_s);
+  for (std::size_t band = 0; band < wind::turbulence::OctaveFollower::kBands; ++band) {
+    const double centre_hz = wind::turbulence::OctaveFollower::centre_hz(band);
+    const double on_tape =
+        std::clamp(std::log2(coherence.speed_m_s / (4.0 * wind::ground::WindTape::kStep_m * centre_hz)), 0.0, 1.0);
     weights[1 + band] *= on_tape * std::exp(-coherence.distance_m(way_m, 0.0) * coherence.loss_per_m(centre_hz));
   }
-  return OctaveFollower::Response(frequency_hz).weighted(weights);
+  return wind::turbulence::OctaveFollower::Response(frequency_hz).weighted(weights);
 }
 
 /// From the wind to a blade's bend: SceneWind, and the part of it that is an oscillator. Both are stepped exactly, with
 /// the wind at the end of the tick: half a tick ahead of it.
 Complex bent(double frequency_hz, double /*interval_s*/) {
-  const Complex scene = 1.0 / std::pow(Complex(1.0, turn_rad_s(frequency_hz) / SceneWind::kOmega_rad_s), 2.0);
+  const Complex scene = 1.0 / std::pow(Complex(1.0, turn_rad_s(frequency_hz) / scenes::SceneWind::kOmega_rad_s), 2.0);
   const double ratio = frequency_hz / kNatural_hz;
   const Complex oscillator = 1.0 / Complex(1.0 - ratio * ratio, 2.0 * kDampingRatio * ratio);
   const Complex early = ahead_by(0.5 * kDelayTick_s, frequency_hz);
@@ -157,16 +160,16 @@ class Passage {
   }
 
   void run() {
-    BlendedEstimator estimator(1, {.climate = {}, .reach_m = kDelayReach_m}, shared_noise());
-    WindTapes tapes;
-    const std::unique_ptr<Scene> grass = make_grass();
+    wind::blend::BlendedEstimator estimator(1, {.climate = {}, .reach_m = kDelayReach_m}, shared_noise());
+    wind::ground::WindTapes tapes;
+    const std::unique_ptr<scenes::Scene> grass = make_grass();
     const auto settle = static_cast<int>(std::lround(kSettle_s / kDelayTick_s));
     const auto last = settle + static_cast<int>(std::lround(window_s_ / kDelayTick_s));
     int told = 0;
     for (int tick = 0; tick < last; ++tick) {
       const double time_s = tick * kDelayTick_s;
       for (; told * interval_s_ <= time_s + 1e-9; ++told) {
-        WindReading reading;
+        wind::WindReading reading;
         reading.time.mono = MonoTime(from_seconds(told * interval_s_));
         reading.speed_m_s = block_mean_m_s(told * interval_s_);
         reading.direction_deg = 180.0;
@@ -174,13 +177,14 @@ class Passage {
       }
       estimator.advance(MonoTime(from_seconds(time_s)));
       // What is known of the wind goes to the scene; the noise, which is known too, is left out.
-      const WindVector known = estimator.ground().everywhere - shared_noise()->everywhere(estimator.ground().gusts);
+      const wind::WindVector known =
+          estimator.ground().everywhere - shared_noise()->everywhere(estimator.ground().gusts);
       grass->tick(known, kDelayTick_s);
       tapes.write(estimator.stroke());
       if (tick < settle) continue;
       std::array<double, kDelayPlaces.size()> places_m_s{};
       for (std::size_t i = 0; i < kDelayPlaces.size(); ++i) {
-        const WindTapes::Reading reading = tapes.at(0.0, kDelayReach_m - kDelayPlaces[i].way_m);
+        const wind::ground::WindTapes::Reading reading = tapes.at(0.0, kDelayReach_m - kDelayPlaces[i].way_m);
         places_m_s[i] = (reading.mean + reading.gusts).v_m_s;
       }
       const double bend_rad = mean_bend_rad(*grass);
@@ -207,7 +211,7 @@ class Passage {
   double derived_lag_s(std::size_t pair, std::size_t place) const {
     const auto since_edge = [&](double frequency_hz) {
       return carried(frequency_hz, interval_s_, kDelayPlaces.at(place).way_m, coherence_) /
-             OctaveFollower::Response(frequency_hz).weighted(trusted(interval_s_));
+             wind::turbulence::OctaveFollower::Response(frequency_hz).weighted(trusted(interval_s_));
     };
     return group_delay_s(since_edge(pairs_[pair].low_hz), since_edge(pairs_[pair].high_hz), pairs_[pair]);
   }
@@ -230,9 +234,9 @@ class Passage {
     return speed_m_s;
   }
 
-  static std::unique_ptr<Scene> make_grass() {
-    const auto is_grass = [](const SceneDescription* kind) { return kind->name == std::string_view("grass"); };
-    const SceneDescription& kind = **std::ranges::find_if(scene_table(), is_grass);
+  static std::unique_ptr<scenes::Scene> make_grass() {
+    const auto is_grass = [](const scenes::SceneDescription* kind) { return kind->name == std::string_view("grass"); };
+    const scenes::SceneDescription& kind = **std::ranges::find_if(scenes::scene_table(), is_grass);
     const ParameterValues::Map small = {{"blades_across", std::int64_t{8}},
                                         {"blades_deep", std::int64_t{8}},
                                         {"blade_length_variation", 0.0},
@@ -241,15 +245,15 @@ class Passage {
   }
 
   /// Toward north, where the wind goes.
-  static double mean_bend_rad(const Scene& scene) {
-    const std::vector<float>& south_rad = std::get<StrandPose>(scene.pose()).bend_south_rad;
+  static double mean_bend_rad(const scenes::Scene& scene) {
+    const std::vector<float>& south_rad = std::get<pose::StrandPose>(scene.pose()).bend_south_rad;
     return -std::accumulate(south_rad.begin(), south_rad.end(), 0.0) / static_cast<double>(south_rad.size());
   }
 
   double interval_s_, window_s_;
   std::vector<Pair> pairs_;
   std::vector<Tone> tones_;
-  GustCoherence coherence_;  // at the end
+  wind::ground::GustCoherence coherence_;  // at the end
 };
 
 /// Over the ground: way over speed, and a little for what is lost.
@@ -286,8 +290,8 @@ void expect_as_derived(Passage& passage) {
     // The wave is cosine in the wind outside: what is measured of it counts from there.
     const double reading_s = derived_s(averaged, pair, interval_s);
     const double blend_s = derived_s(estimated, pair, interval_s);
-    EXPECT_NEAR(blend_group_delay_s(pair.centre_hz(), interval_s, interval_s), reading_s + blend_s + kDelayTick_s,
-                kTolerance * blend_s)
+    EXPECT_NEAR(wind::blend::blend_group_delay_s(pair.centre_hz(), interval_s, interval_s),
+                reading_s + blend_s + kDelayTick_s, kTolerance * blend_s)
         << "what the estimator says of itself, at " << pair.centre_hz() << " Hz";
     const double bent_s = derived_s(bent, pair, interval_s);
     const double blend_measured_s = passage.wind_delay_s(i) - reading_s;

@@ -10,17 +10,17 @@ constexpr double kEstimateTick_s = 1.0 / 60.0;
 
 }  // namespace
 
-std::shared_ptr<const GustNoise> shared_noise() {
-  static const auto noise = std::make_shared<const GustNoise>(GustNoiseSettings{});
+std::shared_ptr<const wind::turbulence::GustNoise> shared_noise() {
+  static const auto noise = std::make_shared<const wind::turbulence::GustNoise>(wind::turbulence::GustNoiseSettings{});
   return noise;
 }
 
-std::vector<WindVector> wind_of(EstimatedWind& estimated, const std::vector<WindReading>& readings, double from_s,
-                                double to_s) {
-  std::vector<WindVector> winds;
+std::vector<wind::WindVector> wind_of(EstimatedWind& estimated, const std::vector<wind::WindReading>& readings,
+                                      double from_s, double to_s) {
+  std::vector<wind::WindVector> winds;
   const MonoTime from(from_seconds(from_s));
   auto next =
-      std::ranges::lower_bound(readings, from, {}, [](const WindReading& reading) { return reading.time.mono; });
+      std::ranges::lower_bound(readings, from, {}, [](const wind::WindReading& reading) { return reading.time.mono; });
   const auto ticks = static_cast<int>(std::lround((to_s - from_s) / kEstimateTick_s));
   for (int tick = 0; tick < ticks; ++tick) {
     const MonoTime now = from + from_seconds(tick * kEstimateTick_s);

@@ -11,7 +11,7 @@
 namespace yuragi::proof {
 
 /// The gusts that all runs of a program share.
-std::shared_ptr<const GustNoise> shared_noise();
+std::shared_ptr<const wind::turbulence::GustNoise> shared_noise();
 
 /// A sensor's readings on their way to the wind, as in the daemon: what is no wind at all is refused, what its judge
 /// does not believe is held back, and the estimator hears the rest.
@@ -19,24 +19,24 @@ class EstimatedWind {
  public:
   explicit EstimatedWind(std::uint64_t seed) : estimator_(1, {.climate = {.seed = seed}}, shared_noise()) {}
 
-  void take(const WindReading& reading) {
-    if (is_plausible(reading) && judge_.judge(reading)) estimator_.accept(0, reading);
+  void take(const wind::WindReading& reading) {
+    if (wind::is_plausible(reading) && judge_.judge(reading)) estimator_.accept(0, reading);
   }
 
   /// Goes on to `now`.
-  WindVector advance(MonoTime now) { return estimator_.advance(now).wind; }
+  wind::WindVector advance(MonoTime now) { return estimator_.advance(now).wind; }
 
-  const BlendedEstimator& estimator() const { return estimator_; }
-  const ReadingJudge& judge() const { return judge_; }
+  const wind::blend::BlendedEstimator& estimator() const { return estimator_; }
+  const wind::judging::ReadingJudge& judge() const { return judge_; }
 
  private:
-  ReadingJudge judge_;
-  BlendedEstimator estimator_;
+  wind::judging::ReadingJudge judge_;
+  wind::blend::BlendedEstimator estimator_;
 };
 
 /// The states of a run: from `from_s` on and before `to_s`, 60 a second, the readings told at their own times. Those
 /// before `from_s` are not told.
-std::vector<WindVector> wind_of(EstimatedWind& estimated, const std::vector<WindReading>& readings, double from_s,
-                                double to_s);
+std::vector<wind::WindVector> wind_of(EstimatedWind& estimated, const std::vector<wind::WindReading>& readings,
+                                      double from_s, double to_s);
 
 }  // namespace yuragi::proof

@@ -37,7 +37,8 @@ constexpr double kSiteFrom_hz = 0.0375;
 constexpr double kSiteTo_hz = 0.6;
 constexpr double kSiteSegment_s = 300.0;
 
-BlendSettings blend_of(double length_m, std::uint64_t seed, std::shared_ptr<SiteSpectrum> site, bool fits) {
+wind::blend::BlendSettings blend_of(double length_m, std::uint64_t seed,
+                                    std::shared_ptr<wind::turbulence::SiteSpectrum> site, bool fits) {
   return {.climate = {.turbulence_intensity = kUsualIntensity, .seed = seed},
           .rate_hz = kSiteTick_hz,
           .site = std::move(site),
@@ -45,10 +46,11 @@ BlendSettings blend_of(double length_m, std::uint64_t seed, std::shared_ptr<Site
 }
 
 /// What a sensor of this interval shows of the site.
-std::shared_ptr<SiteSpectrum> fitted_by(const SonicRecord& record, double interval_s, double length_m) {
-  auto site = std::make_shared<SiteSpectrum>();
-  BlendedEstimator estimator(1, blend_of(length_m, 1, site, true), shared_noise());
-  for (const WindReading& reading : block_means(record, interval_s)) {
+std::shared_ptr<wind::turbulence::SiteSpectrum> fitted_by(const SonicRecord& record, double interval_s,
+                                                          double length_m) {
+  auto site = std::make_shared<wind::turbulence::SiteSpectrum>();
+  wind::blend::BlendedEstimator estimator(1, blend_of(length_m, 1, site, true), shared_noise());
+  for (const wind::WindReading& reading : block_means(record, interval_s)) {
     estimator.accept(0, reading);
     estimator.advance(reading.time.mono);
   }
@@ -75,28 +77,28 @@ struct Filled {
   }
 };
 
-Filled fill(const SonicRecord& record, double length_m, const std::shared_ptr<SiteSpectrum>& site) {
-  const std::vector<WindReading> readings = block_means(record, kSlowInterval_s);
+Filled fill(const SonicRecord& record, double length_m, const std::shared_ptr<wind::turbulence::SiteSpectrum>& site) {
+  const std::vector<wind::WindReading> readings = block_means(record, kSlowInterval_s);
   const double from_s = 3.0 * kSlowInterval_s;
   const double to_s = seconds(readings.back().time.mono.time_since_epoch());
   const auto sample_at = [&](double time_s) {
     return record.samples.begin() + static_cast<std::ptrdiff_t>(time_s * record.rate_hz);
   };
-  const std::vector<WindVector> real(sample_at(from_s), sample_at(to_s));
+  const std::vector<wind::WindVector> real(sample_at(from_s), sample_at(to_s));
   Welch of_record(record.rate_hz, kSiteSegment_s, 5.0);
   const std::vector<double> real_density = Welch::density(of_record.segments(real));
   Welch of_wind(kSiteTick_hz, kSiteSegment_s, 5.0);
   std::vector<double> density(real_density.size());
   Filled result;
   for (std::uint64_t seed = 1; seed <= kSiteSeeds; ++seed) {
-    BlendedEstimator estimator(1, blend_of(length_m, seed, site, false), shared_noise());
-    std::vector<WindVector> winds;
+    wind::blend::BlendedEstimator estimator(1, blend_of(length_m, seed, site, false), shared_noise());
+    std::vector<wind::WindVector> winds;
     auto next = readings.begin();
     for (int tick = 0; tick <= static_cast<int>(to_s * kSiteTick_hz); ++tick) {
       const double time_s = tick / kSiteTick_hz;
       const MonoTime now(from_seconds(time_s));
       for (; next != readings.end() && next->time.mono <= now; ++next) estimator.accept(0, *next);
-      const WindVector wind = estimator.advance(now).wind;
+      const wind::WindVector wind = estimator.advance(now).wind;
       if (time_s >= from_s) winds.push_back(wind);
     }
     const std::vector<double> of_seed = Welch::density(of_wind.segments(winds));
@@ -116,7 +118,7 @@ std::string text_of(const Filled& filled) {
   return text + fmt::format(" | {:.2f}", filled.variance);
 }
 
-std::string text_of(const SiteSpectrum& site) {
+std::string text_of(const wind::turbulence::SiteSpectrum& site) {
   std::string text;
   for (const double level_db : site.octaves_db()) text += fmt::format(" {:+.1f}", level_db);
   return text;
@@ -125,7 +127,7 @@ std::string text_of(const SiteSpectrum& site) {
 TEST(SiteProof, WhatAQuickSensorShowsOfASiteHelpsASlowOneOnAnotherHalfHour) {
   const std::array<std::optional<SonicRecord>, 2> records = {load_sonic(0), load_sonic(1)};
   if (!records[0] || !records[1]) GTEST_SKIP() << "../shared/data/sonic is not here";
-  const double own_m = iec_length_scale_m(WindComponent::kAlong, kSonicHeight_m);
+  const double own_m = wind::turbulence::iec_length_scale_m(wind::turbulence::WindComponent::kAlong, kSonicHeight_m);
 
   int within = 0, within_by_height = 0, all = 0;
   fmt::print("dB at 0.0375, 0.075, 0.15, 0.3 to 0.6 Hz | variance, of a sensor of 14 s; 57 m || {:.0f} m || and site\n",
@@ -163,14 +165,15 @@ TEST(SiteProof, WhatAQuickSensorShowsOfASiteHelpsASlowOneOnAnotherHalfHour) {
 SonicRecord made_up_wind(double speed_m_s, double sigma_m_s, double length_m, std::uint64_t seed) {
   SonicRecord record{.name = "made up", .samples = {}};
   record.samples.assign(18000, {0.0, speed_m_s});
-  const RandomStream random(seed, 1);
+  const math::RandomStream random(seed, 1);
   std::uint64_t drawn = 0;
   constexpr double kStep = 1.0 / 32.0;
   for (double place = std::log2(1.0 / 1800.0); place < std::log2(5.0); place += kStep) {
     const double low_hz = std::exp2(place);
-    const double power = von_karman_share(low_hz, std::exp2(place + kStep), length_m / speed_m_s);
-    for (const auto component : {&WindVector::v_m_s, &WindVector::u_m_s}) {
-      const double sigma = component == &WindVector::v_m_s ? sigma_m_s : kAcrossPerAlong * sigma_m_s;
+    const double power = wind::turbulence::von_karman_share(low_hz, std::exp2(place + kStep), length_m / speed_m_s);
+    for (const auto component : {&wind::WindVector::v_m_s, &wind::WindVector::u_m_s}) {
+      const double sigma =
+          component == &wind::WindVector::v_m_s ? sigma_m_s : wind::turbulence::kAcrossPerAlong * sigma_m_s;
       const double frequency_hz = low_hz * std::exp2(kStep * random.uniform(drawn++));
       const double phase = 2.0 * std::numbers::pi * random.uniform(drawn++);
       const double turn = 2.0 * std::numbers::pi * frequency_hz / record.rate_hz;
@@ -184,11 +187,12 @@ SonicRecord made_up_wind(double speed_m_s, double sigma_m_s, double length_m, st
 }
 
 TEST(SiteProof, AStormFifteenMetresHighHasItsOwnVarianceAndNoMore) {
-  const double own_m = iec_length_scale_m(WindComponent::kAlong, 15.0);
+  const double own_m = wind::turbulence::iec_length_scale_m(wind::turbulence::WindComponent::kAlong, 15.0);
   double usual = 0.0, by_height = 0.0;
   constexpr int kStorms = 4;
   for (int storm = 0; storm < kStorms; ++storm) {
-    const double sigma_m_s = iec_sigma_m_s(IecTurbulenceClass::kB, WindComponent::kAlong, 20.0);
+    const double sigma_m_s = wind::turbulence::iec_sigma_m_s(wind::turbulence::IecTurbulenceClass::kB,
+                                                             wind::turbulence::WindComponent::kAlong, 20.0);
     const SonicRecord record = made_up_wind(20.0, sigma_m_s, own_m, static_cast<std::uint64_t>(storm) + 1);
     const Filled with_usual = fill(record, kNoOwnLength, nullptr);
     const Filled with_own = fill(record, own_m, nullptr);

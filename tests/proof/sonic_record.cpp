@@ -29,7 +29,7 @@ std::optional<SonicRecord> load_sonic(int number) {
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with('#') || line.starts_with("timestamp")) continue;
     const std::size_t comma = line.find(',');
-    WindVector wind;
+    wind::WindVector wind;
     if (comma == std::string::npos || std::sscanf(line.c_str() + comma, ",%lf,%lf", &wind.u_m_s, &wind.v_m_s) != 2) {
       throw std::runtime_error(std::string(file).append(": a line is not time,u,v: ").append(line));
     }
@@ -45,31 +45,32 @@ SonicRecord sonic_or_synthetic(int number) {
   constexpr int kSamples = 18'000;
   // Gusts of another seed than those of the runs that hear them.
   const auto seed = static_cast<std::uint64_t>(number) + 1;
-  const auto gusts = std::make_shared<const GustNoise>(GustNoiseSettings{.seed = 999 + seed});
-  BlendedEstimator climate(
+  const auto gusts =
+      std::make_shared<const wind::turbulence::GustNoise>(wind::turbulence::GustNoiseSettings{.seed = 999 + seed});
+  wind::blend::BlendedEstimator climate(
       0,
       {.climate = {.mean_speed_m_s = 7.0, .mean_direction_deg = 270.0, .turbulence_intensity = 0.3, .seed = seed},
        .gustiness = 0.5},
       gusts);
   SonicRecord record{.name = "synthetic", .samples = {}};
   for (int i = 0; i < kTicksASample * kSamples; ++i) {
-    const WindVector wind = climate.advance(MonoTime(from_seconds(i / (kTicksASample * record.rate_hz)))).wind;
+    const wind::WindVector wind = climate.advance(MonoTime(from_seconds(i / (kTicksASample * record.rate_hz)))).wind;
     if (i % kTicksASample == 0) record.samples.push_back(wind);
   }
   return record;
 }
 
-std::vector<WindReading> block_means(const SonicRecord& record, double interval_s) {
+std::vector<wind::WindReading> block_means(const SonicRecord& record, double interval_s) {
   const auto per_block = static_cast<std::size_t>(std::lround(interval_s * record.rate_hz));
-  std::vector<WindReading> readings;
+  std::vector<wind::WindReading> readings;
   for (std::size_t end = per_block; end <= record.samples.size(); end += per_block) {
-    WindVector sum{};
+    wind::WindVector sum{};
     for (std::size_t i = end - per_block; i < end; ++i) sum = sum + record.samples[i];
-    const WindVector mean = (1.0 / static_cast<double>(per_block)) * sum;
-    WindReading reading;
+    const wind::WindVector mean = (1.0 / static_cast<double>(per_block)) * sum;
+    wind::WindReading reading;
     reading.time.mono = MonoTime(from_seconds(static_cast<double>(end) / record.rate_hz));
     reading.speed_m_s = speed_of(mean);
-    reading.direction_deg = direction_from_deg(mean);
+    reading.direction_deg = wind::direction_from_deg(mean);
     readings.push_back(reading);
   }
   return readings;

@@ -13,7 +13,7 @@ namespace yuragi::proof {
 struct SonicRecord {
   std::string name;
   double rate_hz = 10.0;
-  std::vector<WindVector> samples;  ///< as the file has them: u, v
+  std::vector<wind::WindVector> samples;  ///< as the file has them: u, v
 
   double duration_s() const { return static_cast<double>(samples.size()) / rate_hz; }
 };
@@ -30,6 +30,6 @@ SonicRecord sonic_or_synthetic(int number);
 
 /// What a slower sensor would have said: vector means over blocks of `interval_s`, each heard at the end of its block.
 /// Their times begin at 0 with the record. A block that is not full at the end is left out.
-std::vector<WindReading> block_means(const SonicRecord& record, double interval_s);
+std::vector<wind::WindReading> block_means(const SonicRecord& record, double interval_s);
 
 }  // namespace yuragi::proof

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 namespace {
 
 using testing::HasSubstr;
@@ -94,4 +94,4 @@ TEST(Faults, AtRandomComeOnceInEachStretchAndFollowTheirSeed) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -5,20 +5,20 @@
 #include "drivers/windlog/windlog_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 namespace {
 
 using namespace std::chrono_literals;
 
 TEST(PlayedWind, ThatIsSyntheticIsTheEnginesWind) {
-  const SyntheticWindSettings settings{.mean_speed_m_s = 6.0, .mean_direction_deg = 100.0, .seed = 5};
+  const wind::turbulence::SyntheticWindSettings settings{.mean_speed_m_s = 6.0, .mean_direction_deg = 100.0, .seed = 5};
   const auto played = play_synthetic_wind(settings);
-  const SyntheticWind wind(settings);
+  const wind::turbulence::SyntheticWind wind(settings);
   for (int step = 0; step < 35; ++step) {
     const double time_s = 1.7 * step;
     const PlayedMoment moment = played->at(time_s);
     EXPECT_EQ(moment.speed_m_s, speed_of(wind.at(time_s)));
-    EXPECT_EQ(moment.direction_deg, direction_from_deg(wind.at(time_s)));
+    EXPECT_EQ(moment.direction_deg, wind::direction_from_deg(wind.at(time_s)));
   }
 }
 
@@ -26,14 +26,14 @@ TEST(PlayedWind, ThatIsRecordedKeepsItsPaceHoldsBetweenReadingsAndBeginsAgain) {
   const test::TemporaryFolder folder;
   const auto file = folder / "three.windlog";
   {
-    auto writer = WindlogWriter::open(file);
+    auto writer = drivers::windlog::WindlogWriter::open(file);
     ASSERT_TRUE(writer.has_value());
     const Instant start{MonoTime(1h), UtcTime(std::chrono::sys_days(std::chrono::year(2024) / 6 / 1))};
     ASSERT_TRUE(writer->begin_session({start, "test", ""}));
     const auto sensor = writer->add_sensor("mast", "test", "");
     ASSERT_TRUE(sensor.has_value());
     const auto append = [&](Nanoseconds at, double speed_m_s, std::optional<double> direction_deg) {
-      WindReading reading;
+      wind::WindReading reading;
       reading.time = {start.mono + at, start.utc + at};
       reading.speed_m_s = speed_m_s;
       reading.direction_deg = direction_deg;
@@ -81,4 +81,4 @@ TEST(MeasuredWind, IsTheWindButForWhatFreezesOrSpikesIt) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -10,7 +10,7 @@
 #include "simulators/commands.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators {
 namespace {
 
 class RecordingCommand : public testing::Test {
@@ -22,9 +22,11 @@ class RecordingCommand : public testing::Test {
     app.parse("recording -o " + file.string() + " " + arguments);
   }
 
-  static std::vector<PlayedReading> readings_of(const std::filesystem::path& file, const std::string& sensor = "*") {
-    WindlogPlayback playback = WindlogPlayback::open(file, {.sensor = sensor}).value();
-    std::vector<PlayedReading> readings;
+  static std::vector<drivers::windlog::PlayedReading> readings_of(const std::filesystem::path& file,
+                                                                  const std::string& sensor = "*") {
+    drivers::windlog::WindlogPlayback playback =
+        drivers::windlog::WindlogPlayback::open(file, {.sensor = sensor}).value();
+    std::vector<drivers::windlog::PlayedReading> readings;
     while (const auto reading = playback.next().value()) readings.push_back(*reading);
     return readings;
   }
@@ -37,14 +39,14 @@ TEST_F(RecordingCommand, HoldsTheModelsWindReadingByReading) {
          "--speed 17 --direction 280 --turbulence 0.3 --seed 2 --duration 60 --interval 0.5");
   const auto readings = readings_of(folder_ / "storm.windlog");
   ASSERT_EQ(readings.size(), 120U);
-  const SyntheticWind wind(
+  const wind::turbulence::SyntheticWind wind(
       {.mean_speed_m_s = 17.0, .mean_direction_deg = 280.0, .turbulence_intensity = 0.3, .seed = 2});
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const double time_s = 0.5 * static_cast<double>(i);
     EXPECT_DOUBLE_EQ(readings[i].log_time_s, time_s);
     EXPECT_DOUBLE_EQ(readings[i].reading.speed_m_s, speed_of(wind.at(time_s)));
-    EXPECT_DOUBLE_EQ(*readings[i].reading.direction_deg, direction_from_deg(wind.at(time_s)));
-    EXPECT_EQ(readings[i].reading.quality, ReadingQuality::kSimulated);
+    EXPECT_DOUBLE_EQ(*readings[i].reading.direction_deg, wind::direction_from_deg(wind.at(time_s)));
+    EXPECT_EQ(readings[i].reading.quality, wind::ReadingQuality::kSimulated);
   }
 }
 
@@ -93,4 +95,4 @@ TEST_F(RecordingCommand, LeavesNothingWhereItFails) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators

@@ -7,15 +7,17 @@
 namespace yuragi::test {
 
 /// Passes if `decoded` was refused for this reason.
-inline testing::AssertionResult is_refused_as(const Result<DecodedWind, Refusal>& decoded, Refusal why) {
+inline testing::AssertionResult is_refused_as(
+    const Result<drivers::decode::DecodedWind, drivers::decode::Refusal>& decoded, drivers::decode::Refusal why) {
   if (!decoded && decoded.error() == why) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (decoded ? "accepted" : name_of(decoded.error())) << ", not " << name_of(why);
 }
 
 /// Passes if `decoded` was refused, or is what DecodedWind promises.
-inline testing::AssertionResult is_refused_or_physical(const Result<DecodedWind, Refusal>& decoded) {
+inline testing::AssertionResult is_refused_or_physical(
+    const Result<drivers::decode::DecodedWind, drivers::decode::Refusal>& decoded) {
   if (!decoded) return testing::AssertionSuccess();
-  const auto again = checked(*decoded);
+  const auto again = drivers::decode::checked(*decoded);
   return again ? testing::AssertionSuccess() : testing::AssertionFailure() << name_of(again.error());
 }
 

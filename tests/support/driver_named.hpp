@@ -9,8 +9,8 @@
 namespace yuragi {
 
 /// The driver of that name, as the daemon finds it.
-inline const DriverDescription& driver_named(std::string_view name) {
-  for (const DriverDescription* driver : driver_table()) {
+inline const drivers::sensor::DriverDescription& driver_named(std::string_view name) {
+  for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
     if (driver->name == name) return *driver;
   }
   throw std::logic_error("no driver named " + std::string(name));

@@ -12,16 +12,17 @@ namespace yuragi {
 /// A line without a device: the test says what comes of each request.
 struct FakeLine {
   bool can_open = true;
-  std::vector<ModbusRequest> requests;
+  std::vector<drivers::decode::modbus::ModbusRequest> requests;
   int opened = 0;
   int settled = 0;
   /// What a request brings, message after message; silence when they are used up.
-  std::function<std::deque<BusStatus>(const ModbusRequest&)> statuses;
-  std::function<std::vector<std::uint8_t>(const ModbusRequest&)> message;
+  std::function<std::deque<drivers::bus::BusStatus>(const drivers::decode::modbus::ModbusRequest&)> statuses;
+  std::function<std::vector<std::uint8_t>(const drivers::decode::modbus::ModbusRequest&)> message;
 };
 
 /// A whole answer to `request`, on TCP.
-inline std::vector<std::uint8_t> reply_with(const ModbusRequest& request, const std::vector<std::uint16_t>& registers) {
+inline std::vector<std::uint8_t> reply_with(const drivers::decode::modbus::ModbusRequest& request,
+                                            const std::vector<std::uint16_t>& registers) {
   std::vector<std::uint8_t> bytes = {static_cast<std::uint8_t>(request.transaction >> 8U),
                                      static_cast<std::uint8_t>(request.transaction & 0xFFU),
                                      0,
@@ -39,11 +40,11 @@ inline std::vector<std::uint8_t> reply_with(const ModbusRequest& request, const 
 }
 
 /// The connection to it.
-class FakeConnection final : public ModbusConnection {
+class FakeConnection final : public drivers::bus::ModbusConnection {
  public:
   explicit FakeConnection(FakeLine& line) : line_(line) {}
 
-  Result<void, Failure> open(const Interruption&) override {
+  Result<void, Failure> open(const drivers::bus::Interruption&) override {
     ++line_.opened;
     if (!line_.can_open) return Failure{"cannot open the fake"};
     is_open_ = true;
@@ -51,21 +52,23 @@ class FakeConnection final : public ModbusConnection {
   }
   bool is_open() const noexcept override { return is_open_; }
   void close() noexcept override { is_open_ = false; }
-  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const Interruption&) override {
+  std::size_t settle(std::span<std::uint8_t, drivers::decode::modbus::kModbusMaxMessage>,
+                     const drivers::bus::ModbusPatience&, const drivers::bus::Interruption&) override {
     ++line_.settled;
     return 0;
   }
-  bool send(const ModbusRequest& request, const ModbusPatience&) override {
+  bool send(const drivers::decode::modbus::ModbusRequest& request, const drivers::bus::ModbusPatience&) override {
     line_.requests.push_back(request);
     coming_ = line_.statuses(request);
     return true;
   }
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
-    if (interruption.is_set()) return {BusStatus::kInterrupted};
-    if (coming_.empty()) return {BusStatus::kSilence};
-    const BusStatus status = coming_.front();
+  drivers::bus::BusMessage receive(std::span<std::uint8_t, drivers::decode::modbus::kModbusMaxMessage> buffer,
+                                   const drivers::bus::Interruption& interruption) override {
+    if (interruption.is_set()) return {drivers::bus::BusStatus::kInterrupted};
+    if (coming_.empty()) return {drivers::bus::BusStatus::kSilence};
+    const drivers::bus::BusStatus status = coming_.front();
     coming_.pop_front();
-    if (status != BusStatus::kMessage) return {status};
+    if (status != drivers::bus::BusStatus::kMessage) return {status};
     const auto bytes = line_.message(line_.requests.back());
     std::ranges::copy(bytes, buffer.begin());
     return {status, bytes.size()};
@@ -74,7 +77,7 @@ class FakeConnection final : public ModbusConnection {
  private:
   FakeLine& line_;
   bool is_open_ = false;
-  std::deque<BusStatus> coming_;
+  std::deque<drivers::bus::BusStatus> coming_;
 };
 
 }  // namespace yuragi

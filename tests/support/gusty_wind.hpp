@@ -8,8 +8,9 @@
 namespace yuragi {
 
 /// One pattern of gusts for all tests: it is large.
-inline const std::shared_ptr<const GustNoise>& shared_gusts() {
-  static const auto kGusts = std::make_shared<const GustNoise>(GustNoiseSettings{.samples = 256, .seed = 3});
+inline const std::shared_ptr<const wind::turbulence::GustNoise>& shared_gusts() {
+  static const auto kGusts = std::make_shared<const wind::turbulence::GustNoise>(
+      wind::turbulence::GustNoiseSettings{.samples = 256, .seed = 3});
   return kGusts;
 }
 
@@ -17,21 +18,21 @@ inline const std::shared_ptr<const GustNoise>& shared_gusts() {
 class GustyWind {
  public:
   /// `deviation_m_s`: of each octave, along the wind and across it.
-  GustyWind(WindVector mean, float deviation_m_s) : wind_(mean) {
+  GustyWind(wind::WindVector mean, float deviation_m_s) : wind_(mean) {
     const double speed_m_s = std::hypot(mean.u_m_s, mean.v_m_s);
     if (speed_m_s > 0.0) wind_.gusts.ahead = (1.0 / speed_m_s) * mean;
     wind_.gusts.along_m_s.fill(deviation_m_s);
     wind_.gusts.across_m_s.fill(deviation_m_s);
   }
 
-  const GroundWind& step(double dt_s) {
+  const wind::ground::GroundWind& step(double dt_s) {
     shared_gusts()->carry(wind_.gusts.carried, wind_.everywhere.u_m_s, -wind_.everywhere.v_m_s, dt_s);
     return wind_;
   }
-  const GroundWind& wind() const { return wind_; }
+  const wind::ground::GroundWind& wind() const { return wind_; }
 
  private:
-  GroundWind wind_;
+  wind::ground::GroundWind wind_;
 };
 
 }  // namespace yuragi

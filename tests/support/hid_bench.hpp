@@ -22,20 +22,21 @@ namespace yuragi::test {
 /// it for a report. What the kernel does with reports is done here as in Linux' hidraw.
 class HidBus {
  public:
-  HidBus(std::unique_ptr<sim::UsbDevice> device, HidId id) : device_(std::move(device)), id_(id) {}
+  HidBus(std::unique_ptr<simulators::usb::UsbDevice> device, drivers::bus::HidId id)
+      : device_(std::move(device)), id_(id) {}
 
   ManualClock clock;
   /// The wind of each moment.
-  std::function<sim::PlayedMoment(double)> wind = [](double) { return sim::PlayedMoment{8.6, 225.0}; };
+  std::function<simulators::PlayedMoment(double)> wind = [](double) { return simulators::PlayedMoment{8.6, 225.0}; };
   /// What goes wrong at each moment; kUnplug pulls the plug.
-  std::function<std::optional<sim::FaultKind>(double)> fault = [](double) { return std::nullopt; };
+  std::function<std::optional<simulators::FaultKind>(double)> fault = [](double) { return std::nullopt; };
   int opened = 0;
   bool is_interrupted = false;
 
   double now_s() const { return seconds(clock.now().mono - start_); }
   bool is_plugged_in() const { return is_plugged_in_; }
-  sim::UsbDevice& device() { return *device_; }
-  HidId id() const { return id_; }
+  simulators::usb::UsbDevice& device() { return *device_; }
+  drivers::bus::HidId id() const { return id_; }
 
   /// Lets time pass; up to `until` if no report comes first and `stops_at_report`.
   void run_to(MonoTime until, bool stops_at_report = false) {
@@ -60,9 +61,9 @@ class HidBus {
   void close() { is_open_ = false; }
   bool is_open() const { return is_open_ && is_plugged_in_; }
 
-  std::optional<sim::UsbBytes> next_report() {
+  std::optional<simulators::usb::UsbBytes> next_report() {
     if (reports_.empty()) return std::nullopt;
-    sim::UsbBytes report = std::move(reports_.front());
+    simulators::usb::UsbBytes report = std::move(reports_.front());
     reports_.pop_front();
     return report;
   }
@@ -70,12 +71,12 @@ class HidBus {
  private:
   void go_on() {
     const auto kind = fault(now_s());
-    is_plugged_in_ = kind != sim::FaultKind::kUnplug;
+    is_plugged_in_ = kind != simulators::FaultKind::kUnplug;
     // A wind that does not change, and one that leaps, are what the air in front of the sensor does.
-    sim::PlayedMoment moment = measured_.value_or(wind(now_s()));
-    if (kind != sim::FaultKind::kFreeze) moment = wind(now_s());
+    simulators::PlayedMoment moment = measured_.value_or(wind(now_s()));
+    if (kind != simulators::FaultKind::kFreeze) moment = wind(now_s());
     measured_ = moment;
-    if (kind == sim::FaultKind::kSpike) moment.speed_m_s = 55.0;
+    if (kind == simulators::FaultKind::kSpike) moment.speed_m_s = 55.0;
     device_->advance(now_s(), moment, kind);
     if (!is_plugged_in_) {
       is_open_ = false;  // whoever had it open has nothing any more
@@ -87,40 +88,42 @@ class HidBus {
     if (auto report = device_->in(1, 64); report && reports_.size() < kKernelKeeps) reports_.push_back(*report);
   }
 
-  std::unique_ptr<sim::UsbDevice> device_;
-  HidId id_;
+  std::unique_ptr<simulators::usb::UsbDevice> device_;
+  drivers::bus::HidId id_;
   MonoTime start_ = clock.now().mono;
   bool is_plugged_in_ = true;
   bool is_open_ = false;
-  std::deque<sim::UsbBytes> reports_;  ///< that the kernel keeps for whoever has it open
-  std::optional<sim::PlayedMoment> measured_;
+  std::deque<simulators::usb::UsbBytes> reports_;  ///< that the kernel keeps for whoever has it open
+  std::optional<simulators::PlayedMoment> measured_;
 };
 
 /// The device on that bus, in place of hidapi's.
-class BridgedHid final : public HidDevice {
+class BridgedHid final : public drivers::bus::HidDevice {
  public:
   explicit BridgedHid(HidBus& bus) : bus_(bus) {}
 
-  Result<HidInfo, Failure> open(std::span<const HidId> ids, const HidPlace&) override {
+  Result<drivers::bus::HidInfo, Failure> open(std::span<const drivers::bus::HidId> ids,
+                                              const drivers::bus::HidPlace&) override {
     if (!bus_.is_plugged_in() || std::ranges::find(ids, bus_.id()) == ids.end()) return Failure{"plug it in"};
     bus_.open();
-    return HidInfo{.id = bus_.id(), .node = "/dev/hidraw7", .port = "1-1.2", .serial = "", .interface = 0};
+    return drivers::bus::HidInfo{
+        .id = bus_.id(), .node = "/dev/hidraw7", .port = "1-1.2", .serial = "", .interface = 0};
   }
   void close() noexcept override { bus_.close(); }
 
-  HidArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
-    if (bus_.is_interrupted) return {HidStatus::kInterrupted};
-    if (!bus_.is_open()) return {HidStatus::kLost};
+  drivers::bus::HidArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
+    if (bus_.is_interrupted) return {drivers::bus::HidStatus::kInterrupted};
+    if (!bus_.is_open()) return {drivers::bus::HidStatus::kLost};
     auto report = bus_.next_report();
     if (!report) {
       bus_.run_to(bus_.clock.now().mono + timeout, true);
-      if (!bus_.is_open()) return {HidStatus::kLost};
+      if (!bus_.is_open()) return {drivers::bus::HidStatus::kLost};
       report = bus_.next_report();
     }
-    if (!report) return {HidStatus::kSilence};
+    if (!report) return {drivers::bus::HidStatus::kSilence};
     const std::size_t size = std::min(report->size(), buffer.size());
     std::copy_n(report->begin(), size, buffer.begin());
-    return {HidStatus::kReport, size};
+    return {drivers::bus::HidStatus::kReport, size};
   }
 
   bool write(std::span<const std::uint8_t> report) override {
@@ -132,14 +135,14 @@ class BridgedHid final : public HidDevice {
     return bus_.device().control({0x21, 0x09, 0x0200, 0, static_cast<std::uint16_t>(bytes.size())}, bytes).has_value();
   }
 
-  HidArrival get_input_report(std::uint8_t id, std::span<std::uint8_t> buffer) override {
-    if (bus_.is_interrupted) return {HidStatus::kInterrupted};
-    if (!bus_.is_open()) return {HidStatus::kLost};
+  drivers::bus::HidArrival get_input_report(std::uint8_t id, std::span<std::uint8_t> buffer) override {
+    if (bus_.is_interrupted) return {drivers::bus::HidStatus::kInterrupted};
+    if (!bus_.is_open()) return {drivers::bus::HidStatus::kLost};
     const auto value = static_cast<std::uint16_t>(0x0100U | id);
     const auto report = bus_.device().control({0xA1, 0x01, value, 0, static_cast<std::uint16_t>(buffer.size())}, {});
-    if (!report) return {HidStatus::kSilence};
+    if (!report) return {drivers::bus::HidStatus::kSilence};
     std::ranges::copy(*report, buffer.begin());
-    return {HidStatus::kReport, report->size()};
+    return {drivers::bus::HidStatus::kReport, report->size()};
   }
 
   void interrupt() noexcept override { bus_.is_interrupted = true; }
@@ -149,23 +152,25 @@ class BridgedHid final : public HidDevice {
 };
 
 /// The station's name in a configuration, of the name of its model ("fineoffset-wh3080").
-inline const StationKind& kind_of_model(std::string_view model) {
-  const auto kinds = station_kinds();
-  return *std::ranges::find_if(kinds, [model](const StationKind& kind) { return model.starts_with(kind.name); });
+inline const drivers::hid::StationKind& kind_of_model(std::string_view model) {
+  const auto kinds = drivers::hid::station_kinds();
+  return *std::ranges::find_if(kinds,
+                               [model](const drivers::hid::StationKind& kind) { return model.starts_with(kind.name); });
 }
 
 /// A simulated station, and the driver that reads it.
 class HidBench {
  public:
-  explicit HidBench(std::string_view model, StationTiming timing = {}, std::uint64_t seed = 1)
-      : HidBench(sim::make_hid_station(model, timing.pace, seed), kind_of_model(model), timing) {}
-  HidBench(std::unique_ptr<sim::UsbDevice> device, const StationKind& kind, StationTiming timing = {})
+  explicit HidBench(std::string_view model, drivers::hid::StationTiming timing = {}, std::uint64_t seed = 1)
+      : HidBench(simulators::usb::make_hid_station(model, timing.pace, seed), kind_of_model(model), timing) {}
+  HidBench(std::unique_ptr<simulators::usb::UsbDevice> device, const drivers::hid::StationKind& kind,
+           drivers::hid::StationTiming timing = {})
       : bus(std::move(device), kind.id),
-        sensor(station_kinds(), HidPlace{}, timing, 1, std::make_unique<BridgedHid>(bus)) {}
+        sensor(drivers::hid::station_kinds(), drivers::bus::HidPlace{}, timing, 1, std::make_unique<BridgedHid>(bus)) {}
 
   HidBus bus;
   RecordingSink sink;
-  HidSensor sensor;
+  drivers::hid::HidSensor sensor;
   int polls = 0;
 
   /// Polls the sensor whenever it wants to be, for a time.

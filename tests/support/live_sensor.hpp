@@ -13,7 +13,7 @@ namespace yuragi::test {
 /// waits.
 class LiveSensor {
  public:
-  explicit LiveSensor(std::unique_ptr<Sensor> sensor) : sensor_(std::move(sensor)) {}
+  explicit LiveSensor(std::unique_ptr<drivers::sensor::Sensor> sensor) : sensor_(std::move(sensor)) {}
 
   RecordingSink sink;
 

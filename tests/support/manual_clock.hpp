@@ -13,7 +13,7 @@
 namespace yuragi {
 
 /// The tests' clock: it stands still until the test moves it. One thread moves it; any may read it and wait by it.
-class ManualClock final : public Clock {
+class ManualClock final : public drivers::sensor::Clock {
  public:
   Instant now() const noexcept override {
     return {.mono = MonoTime(Nanoseconds(mono_ns_)), .utc = UtcTime(Nanoseconds(utc_ns_))};

@@ -17,50 +17,51 @@ class MeasuredWind {
  public:
   static constexpr double kTick_s = 1.0 / 60.0;
 
-  MeasuredWind(std::shared_ptr<const GustNoise> noise, WindVector mean,
-               std::vector<BlendSourceSettings> sources = {BlendSourceSettings()}, int ticks_a_reading = 6)
+  MeasuredWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, wind::WindVector mean,
+               std::vector<wind::blend::BlendSourceSettings> sources = {wind::blend::BlendSourceSettings()},
+               int ticks_a_reading = 6)
       : mean_(mean),
         source_count_(sources.size()),
         ticks_a_reading_(ticks_a_reading),
         estimator_(source_count_, settings(std::move(sources)), std::move(noise)) {}
 
   /// Goes on by a tick.
-  DrivingWind step() {
+  wind::ground::DrivingWind step() {
     now_ += from_seconds(kTick_s);
     for (std::size_t source = 0; source < source_count_ && tick_ % ticks_a_reading_ == 0; ++source) {
       estimator_.accept(source, reading(source));
     }
     ++tick_;
-    const WindState state = estimator_.advance(now_);
+    const wind::WindState state = estimator_.advance(now_);
     return {state, estimator_.ground(), estimator_.stroke()};
   }
 
  private:
-  static BlendSettings settings(std::vector<BlendSourceSettings> sources) {
-    BlendSettings settings;
+  static wind::blend::BlendSettings settings(std::vector<wind::blend::BlendSourceSettings> sources) {
+    wind::blend::BlendSettings settings;
     settings.sources = std::move(sources);
     return settings;
   }
-  WindReading reading(std::size_t source) const {
+  wind::WindReading reading(std::size_t source) const {
     // A sine in each octave from 0.02 to 2.6 Hz, weaker by k^(-1/3); other sources have other phases.
-    WindVector wind = mean_;
+    wind::WindVector wind = mean_;
     for (int octave = 0; octave < 8; ++octave) {
       const double phase_rad = 0.04 * std::numbers::pi * std::exp2(octave) * kTick_s * static_cast<double>(tick_) +
                                2.4 * octave + static_cast<double>(source);
       const double height_m_s = 0.08 * speed_of(mean_) * std::exp2(-octave / 3.0);
-      wind = wind + height_m_s * WindVector{std::sin(phase_rad), std::cos(1.3 * phase_rad)};
+      wind = wind + height_m_s * wind::WindVector{std::sin(phase_rad), std::cos(1.3 * phase_rad)};
     }
-    WindReading reading;
+    wind::WindReading reading;
     reading.time.mono = now_;
     reading.speed_m_s = speed_of(wind);
-    reading.direction_deg = direction_from_deg(wind);
+    reading.direction_deg = wind::direction_from_deg(wind);
     return reading;
   }
 
-  WindVector mean_;
+  wind::WindVector mean_;
   std::size_t source_count_;
   int ticks_a_reading_;
-  BlendedEstimator estimator_;
+  wind::blend::BlendedEstimator estimator_;
   MonoTime now_{std::chrono::hours(1)};
   int tick_ = 0;
 };

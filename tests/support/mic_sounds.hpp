@@ -124,10 +124,11 @@ inline std::vector<double> music(double rate_hz, std::size_t frames) {
 }
 
 /// The blocks of a sound, as the worker would make them.
-inline std::pair<MicHello, std::vector<MicBlock>> blocks_of(const Sound& sound, double low_hz = 20.0,
-                                                            double high_hz = 200.0) {
-  MicAnalyser analyser({.rate_hz = sound.rate_hz, .channels = sound.channels, .low_hz = low_hz, .high_hz = high_hz});
-  std::vector<MicBlock> blocks;
+inline std::pair<drivers::decode::microphone::MicHello, std::vector<drivers::decode::microphone::MicBlock>> blocks_of(
+    const Sound& sound, double low_hz = 20.0, double high_hz = 200.0) {
+  drivers::decode::microphone::MicAnalyser analyser(
+      {.rate_hz = sound.rate_hz, .channels = sound.channels, .low_hz = low_hz, .high_hz = high_hz});
+  std::vector<drivers::decode::microphone::MicBlock> blocks;
   for (std::size_t i = 0; i < sound.frames(); ++i) {
     const auto block = analyser.add(std::span(sound.samples).subspan(i * sound.channels, sound.channels));
     if (block) blocks.push_back(*block);

@@ -14,7 +14,7 @@
 namespace yuragi::test {
 
 /// The Modbus driver's sensor, as the daemon opens it.
-inline std::unique_ptr<Sensor> open_modbus_sensor(ParameterValues::Map given) {
+inline std::unique_ptr<drivers::sensor::Sensor> open_modbus_sensor(ParameterValues::Map given) {
   given.try_emplace("profile_dir", source_path("drivers/modbus/profiles"));
   return driver_named("modbus").open(values_for("modbus", given));
 }

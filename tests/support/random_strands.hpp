@@ -12,9 +12,10 @@ namespace yuragi {
 
 /// Strands of every kind: any rest direction and curl direction, 1 m long in all, curled by up to `curl_rad` a link.
 /// All roots are the origin, so that lengths are not lost in the rounding of places far away.
-inline StrandSkeleton random_strands(std::size_t strands, std::size_t links, double curl_rad, std::uint64_t seed) {
-  const RandomStream random(seed, stream_id("random strands"));
-  StrandSkeleton skeleton;
+inline pose::StrandSkeleton random_strands(std::size_t strands, std::size_t links, double curl_rad,
+                                           std::uint64_t seed) {
+  const math::RandomStream random(seed, math::stream_id("random strands"));
+  pose::StrandSkeleton skeleton;
   skeleton.strand_count = strands;
   skeleton.links_per_strand = links;
   for (std::size_t i = 0; i < skeleton.padded_count(); ++i) {
@@ -45,9 +46,9 @@ inline StrandSkeleton random_strands(std::size_t strands, std::size_t links, dou
 }
 
 /// Bends toward all directions, up to `largest_rad`.
-inline StrandPose random_bends(const StrandSkeleton& skeleton, double largest_rad, std::uint64_t seed) {
-  const RandomStream random(seed, stream_id("random bends"));
-  StrandPose pose;
+inline pose::StrandPose random_bends(const pose::StrandSkeleton& skeleton, double largest_rad, std::uint64_t seed) {
+  const math::RandomStream random(seed, math::stream_id("random bends"));
+  pose::StrandPose pose;
   for (std::size_t i = 0; i < skeleton.padded_count(); ++i) {
     const double angle = largest_rad * random.uniform(2 * i);
     const double around = 2.0 * std::numbers::pi * random.uniform(2 * i + 1);

@@ -17,9 +17,9 @@
 namespace yuragi {
 
 /// A sensor on a thread of its own and in real time, as the daemon runs it; the test looks at what it has said.
-class RunningSensor final : private SensorSink {
+class RunningSensor final : private drivers::sensor::SensorSink {
  public:
-  explicit RunningSensor(std::unique_ptr<Sensor> sensor)
+  explicit RunningSensor(std::unique_ptr<drivers::sensor::Sensor> sensor)
       : sensor_(std::move(sensor)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
   ~RunningSensor() override { end(); }
   RunningSensor(const RunningSensor&) = delete;
@@ -39,8 +39,8 @@ class RunningSensor final : private SensorSink {
   bool take_until(RecordingSink& taken, Condition&& holds, Nanoseconds at_most = kHang) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, at_most, [&] {
-      for (const WindReading& reading : take(sink_.readings, whole_.readings)) taken.reading(reading);
-      for (const Refusal why : take(sink_.refusals, whole_.refusals)) taken.refused(why);
+      for (const wind::WindReading& reading : take(sink_.readings, whole_.readings)) taken.reading(reading);
+      for (const drivers::decode::Refusal why : take(sink_.refusals, whole_.refusals)) taken.refused(why);
       for (const auto& link : take(sink_.links, whole_.links)) taken.link(link.state, link.detail);
       for (const auto& raw : take(sink_.raws, whole_.raws)) taken.raw(raw.direction, raw.message);
       return holds();
@@ -111,21 +111,21 @@ class RunningSensor final : private SensorSink {
     }
     changed_.notify_all();
   }
-  void reading(const WindReading& reading) override {
+  void reading(const wind::WindReading& reading) override {
     change([&](RecordingSink& sink) { sink.reading(reading); });
   }
-  void refused(Refusal why) override {
+  void refused(drivers::decode::Refusal why) override {
     change([&](RecordingSink& sink) { sink.refused(why); });
   }
-  void link(LinkState state, std::string_view detail) override {
+  void link(wind::LinkState state, std::string_view detail) override {
     change([&](RecordingSink& sink) { sink.link(state, detail); });
   }
-  void raw(RawDirection direction, std::span<const std::uint8_t> message) override {
+  void raw(drivers::sensor::RawDirection direction, std::span<const std::uint8_t> message) override {
     change([&](RecordingSink& sink) { sink.raw(direction, message); });
   }
 
-  const SystemClock clock_;
-  std::unique_ptr<Sensor> sensor_;
+  const daemon::sensing::SystemClock clock_;
+  std::unique_ptr<drivers::sensor::Sensor> sensor_;
   std::mutex mutex_;
   std::condition_variable changed_;
   RecordingSink sink_;

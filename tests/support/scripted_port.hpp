@@ -17,7 +17,7 @@ namespace yuragi {
 /// The far end of a port without a wire: the test says what comes, and sees what is sent.
 struct FarEnd {
   struct Message {
-    ByteStatus status = ByteStatus::kBytes;
+    drivers::bus::ByteStatus status = drivers::bus::ByteStatus::kBytes;
     std::string bytes;
     bool is_datagram = false;
   };
@@ -31,11 +31,11 @@ struct FarEnd {
   /// Called with each request; incoming() what it likes.
   std::function<void(const std::string& request)> on_request;
 
-  void send(std::string_view text) { incoming.push_back({ByteStatus::kBytes, std::string(text), false}); }
+  void send(std::string_view text) { incoming.push_back({drivers::bus::ByteStatus::kBytes, std::string(text), false}); }
 };
 
 /// Waiting for nothing moves the clock.
-class ScriptedPort final : public BytePort {
+class ScriptedPort final : public drivers::bus::BytePort {
  public:
   ScriptedPort(FarEnd& far_end, ManualClock& clock) : far_end_(far_end), clock_(clock) {}
 
@@ -46,7 +46,7 @@ class ScriptedPort final : public BytePort {
   }
   void close() noexcept override { ++far_end_.closed; }
 
-  ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
+  drivers::bus::ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
     if (far_end_.incoming.empty()) {
       clock_.advance(timeout);
       return {};
@@ -54,7 +54,7 @@ class ScriptedPort final : public BytePort {
     FarEnd::Message& message = far_end_.incoming.front();
     const std::size_t size = std::min(buffer.size(), message.bytes.size());
     std::copy_n(message.bytes.begin(), size, buffer.begin());
-    const ByteArrival arrival = {message.status, size, message.is_datagram};
+    const drivers::bus::ByteArrival arrival = {message.status, size, message.is_datagram};
     message.bytes.erase(0, size);
     if (message.bytes.empty()) far_end_.incoming.pop_front();
     return arrival;
@@ -66,7 +66,9 @@ class ScriptedPort final : public BytePort {
     if (far_end_.on_request) far_end_.on_request(far_end_.written.back());
     return true;
   }
-  void interrupt() noexcept override { far_end_.incoming.push_front({ByteStatus::kInterrupted, "", false}); }
+  void interrupt() noexcept override {
+    far_end_.incoming.push_front({drivers::bus::ByteStatus::kInterrupted, "", false});
+  }
 
  private:
   FarEnd& far_end_;

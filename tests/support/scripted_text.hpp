@@ -17,18 +17,20 @@ struct ScriptedText {
   FarEnd far_end;
   ManualClock clock;
   RecordingSink sink;
-  std::unique_ptr<Sensor> sensor;
+  std::unique_ptr<drivers::sensor::Sensor> sensor;
 
   void make_nmea(ParameterValues::Map given = {}) {
     given.try_emplace("device", std::string("/dev/script"));
-    sensor = std::make_unique<NmeaSensor>(nmea_sensor_settings_of(values_for("nmea", given)),
-                                          std::make_unique<ScriptedPort>(far_end, clock));
+    sensor =
+        std::make_unique<drivers::text::NmeaSensor>(drivers::text::nmea_sensor_settings_of(values_for("nmea", given)),
+                                                    std::make_unique<ScriptedPort>(far_end, clock));
   }
   void make_line(ParameterValues::Map given = {}) {
     given.try_emplace("device", std::string("/dev/script"));
     given.try_emplace("delay_after_open", 0.0);
-    sensor = std::make_unique<LineSensor>(line_sensor_settings_of(values_for("line", given)),
-                                          std::make_unique<ScriptedPort>(far_end, clock));
+    sensor =
+        std::make_unique<drivers::text::LineSensor>(drivers::text::line_sensor_settings_of(values_for("line", given)),
+                                                    std::make_unique<ScriptedPort>(far_end, clock));
   }
 
   /// Polls for so long, as the daemon does: whenever the sensor wants it.

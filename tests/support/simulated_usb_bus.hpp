@@ -18,15 +18,15 @@ struct SimulatedUsbBus {
   struct Socket {
     std::string port;
     std::string serial;  ///< as the bus shows it
-    std::unique_ptr<sim::UsbDevice> device;
+    std::unique_ptr<simulators::usb::UsbDevice> device;
   };
 
   explicit SimulatedUsbBus(ManualClock& its_clock) : clock(its_clock) {}
 
   ManualClock& clock;
   std::vector<Socket> sockets;
-  sim::PlayedMoment wind = {5.0, 90.0};
-  std::optional<sim::FaultKind> fault;  ///< of every device
+  simulators::PlayedMoment wind = {5.0, 90.0};
+  std::optional<simulators::FaultKind> fault;  ///< of every device
   bool is_permitted = true;
   bool has_arrived = false;
   Nanoseconds transfer_time{0};  ///< each transfer takes so long; what it brings is from its beginning
@@ -35,27 +35,27 @@ struct SimulatedUsbBus {
   bool is_interrupted = false;
   MonoTime start = clock.now().mono;
 
-  bool is_unplugged() const { return fault == sim::FaultKind::kUnplug; }
-  bool is_silent() const { return fault == sim::FaultKind::kSilence; }
+  bool is_unplugged() const { return fault == simulators::FaultKind::kUnplug; }
+  bool is_silent() const { return fault == simulators::FaultKind::kSilence; }
 
   /// All devices go on to the clock's time.
   void advance() {
-    sim::PlayedMoment measured = wind;
-    if (fault == sim::FaultKind::kSpike) measured.speed_m_s = 55.0;
+    simulators::PlayedMoment measured = wind;
+    if (fault == simulators::FaultKind::kSpike) measured.speed_m_s = 55.0;
     for (Socket& socket : sockets) socket.device->advance(seconds(clock.now().mono - start), measured, fault);
   }
 };
 
 /// A driver's way onto it.
-class SimulatedUsbDevice final : public UsbDevice {
+class SimulatedUsbDevice final : public drivers::bus::UsbDevice {
  public:
   explicit SimulatedUsbDevice(SimulatedUsbBus& bus) : bus_(bus) {}
 
-  Result<std::vector<PluggedUsbDevice>, Failure> plugged() override {
-    std::vector<PluggedUsbDevice> all;
+  Result<std::vector<drivers::bus::PluggedUsbDevice>, Failure> plugged() override {
+    std::vector<drivers::bus::PluggedUsbDevice> all;
     if (bus_.is_unplugged()) return all;
     for (const auto& socket : bus_.sockets) {
-      const sim::UsbBytes& bytes = socket.device->descriptors().device;
+      const simulators::usb::UsbBytes& bytes = socket.device->descriptors().device;
       const auto id = [&bytes](std::size_t at) { return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8U); };
       all.push_back({.id = {id(8), id(10)},
                      .port = socket.port,
@@ -68,7 +68,7 @@ class SimulatedUsbDevice final : public UsbDevice {
 
   bool take_arrival() override { return std::exchange(bus_.has_arrived, false); }
 
-  Result<void, Failure> open(const PluggedUsbDevice& device) override {
+  Result<void, Failure> open(const drivers::bus::PluggedUsbDevice& device) override {
     if (!bus_.is_permitted) return Failure{"this user may not open it"};
     const auto found = std::ranges::find(bus_.sockets, device.port, &SimulatedUsbBus::Socket::port);
     if (found == bus_.sockets.end()) return Failure{"it is gone"};
@@ -78,24 +78,27 @@ class SimulatedUsbDevice final : public UsbDevice {
   }
   void close() noexcept override { open_ = nullptr; }
 
-  UsbTransfer control(const UsbRequest& request, std::span<std::uint8_t> data, Nanoseconds timeout) override {
-    if (!begin()) return {UsbStatus::kGone};
+  drivers::bus::UsbTransfer control(const drivers::bus::UsbRequest& request, std::span<std::uint8_t> data,
+                                    Nanoseconds timeout) override {
+    if (!begin()) return {drivers::bus::UsbStatus::kGone};
     if (bus_.is_silent()) return time_out(timeout);
     const auto reply = open_->control(
         {request.request_type, request.request, request.value, request.index, static_cast<std::uint16_t>(data.size())},
         data);
-    return reply ? copy(*reply, data) : UsbTransfer{UsbStatus::kStalled};
+    return reply ? copy(*reply, data) : drivers::bus::UsbTransfer{drivers::bus::UsbStatus::kStalled};
   }
 
-  UsbTransfer read(std::uint8_t endpoint, std::span<std::uint8_t> data, Nanoseconds timeout) override {
-    if (!begin()) return {UsbStatus::kGone};
+  drivers::bus::UsbTransfer read(std::uint8_t endpoint, std::span<std::uint8_t> data, Nanoseconds timeout) override {
+    if (!begin()) return {drivers::bus::UsbStatus::kGone};
     const auto reply = bus_.is_silent() ? std::nullopt : open_->in(endpoint, data.size());
     return reply ? copy(*reply, data) : time_out(timeout);
   }
 
-  UsbTransfer write(std::uint8_t endpoint, std::span<const std::uint8_t> data, Nanoseconds /*timeout*/) override {
-    if (!begin()) return {UsbStatus::kGone};
-    return open_->out(endpoint, data) ? UsbTransfer{UsbStatus::kDone, data.size()} : UsbTransfer{UsbStatus::kStalled};
+  drivers::bus::UsbTransfer write(std::uint8_t endpoint, std::span<const std::uint8_t> data,
+                                  Nanoseconds /*timeout*/) override {
+    if (!begin()) return {drivers::bus::UsbStatus::kGone};
+    return open_->out(endpoint, data) ? drivers::bus::UsbTransfer{drivers::bus::UsbStatus::kDone, data.size()}
+                                      : drivers::bus::UsbTransfer{drivers::bus::UsbStatus::kStalled};
   }
 
   void interrupt() noexcept override { bus_.is_interrupted = true; }
@@ -107,18 +110,18 @@ class SimulatedUsbDevice final : public UsbDevice {
     bus_.clock.advance(bus_.transfer_time);
     return open_ != nullptr && !bus_.is_unplugged();
   }
-  UsbTransfer time_out(Nanoseconds timeout) {
+  drivers::bus::UsbTransfer time_out(Nanoseconds timeout) {
     bus_.clock.advance(timeout);
-    return {UsbStatus::kTimeout};
+    return {drivers::bus::UsbStatus::kTimeout};
   }
-  static UsbTransfer copy(const sim::UsbBytes& reply, std::span<std::uint8_t> data) {
+  static drivers::bus::UsbTransfer copy(const simulators::usb::UsbBytes& reply, std::span<std::uint8_t> data) {
     const std::size_t size = std::min(reply.size(), data.size());
     std::copy_n(reply.begin(), size, data.begin());
-    return {reply.size() > data.size() ? UsbStatus::kOverflow : UsbStatus::kDone, size};
+    return {reply.size() > data.size() ? drivers::bus::UsbStatus::kOverflow : drivers::bus::UsbStatus::kDone, size};
   }
 
   SimulatedUsbBus& bus_;
-  sim::UsbDevice* open_ = nullptr;
+  simulators::usb::UsbDevice* open_ = nullptr;
 };
 
 }  // namespace yuragi

@@ -17,31 +17,31 @@
 namespace yuragi {
 
 /// The real port, whose waits the test shortens: its time is not the machine's.
-class ImpatientPort final : public BytePort {
+class ImpatientPort final : public drivers::bus::BytePort {
  public:
-  ImpatientPort(std::unique_ptr<BytePort> port, const Nanoseconds& patience)
+  ImpatientPort(std::unique_ptr<drivers::bus::BytePort> port, const Nanoseconds& patience)
       : port_(std::move(port)), patience_(patience) {}
 
   Result<void, Failure> open() override { return port_->open(); }
   void close() noexcept override { port_->close(); }
-  ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
+  drivers::bus::ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
     return port_->read(buffer, std::min(timeout, patience_));
   }
   bool write(std::span<const std::uint8_t> bytes) override { return port_->write(bytes); }
   void interrupt() noexcept override { port_->interrupt(); }
 
  private:
-  std::unique_ptr<BytePort> port_;
+  std::unique_ptr<drivers::bus::BytePort> port_;
   const Nanoseconds& patience_;
 };
 
 /// The real wire, which tells when something is said.
-class ObservedWire final : public sim::TextWire {
+class ObservedWire final : public simulators::text::TextWire {
  public:
-  ObservedWire(std::unique_ptr<sim::TextWire> wire, bool& has_written)
+  ObservedWire(std::unique_ptr<simulators::text::TextWire> wire, bool& has_written)
       : wire_(std::move(wire)), has_written_(has_written) {}
 
-  std::span<const sim::FaultKind> known_faults() const override { return wire_->known_faults(); }
+  std::span<const simulators::FaultKind> known_faults() const override { return wire_->known_faults(); }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
   std::string read(std::span<const int> ready) override { return wire_->read(ready); }
   void write(std::string_view bytes) override {
@@ -53,18 +53,18 @@ class ObservedWire final : public sim::TextWire {
   std::string place() const override { return wire_->place(); }
 
  private:
-  std::unique_ptr<sim::TextWire> wire_;
+  std::unique_ptr<simulators::text::TextWire> wire_;
   bool& has_written_;
 };
 
 /// A wind that stands still.
-class StillWind final : public sim::PlayedWind {
+class StillWind final : public simulators::PlayedWind {
  public:
-  explicit StillWind(sim::PlayedMoment moment) : moment_(moment) {}
-  sim::PlayedMoment at(double /*time_s*/) override { return moment_; }
+  explicit StillWind(simulators::PlayedMoment moment) : moment_(moment) {}
+  simulators::PlayedMoment at(double /*time_s*/) override { return moment_; }
 
  private:
-  sim::PlayedMoment moment_;
+  simulators::PlayedMoment moment_;
 };
 
 /// A driver and a simulator with a real wire between them, in a time that the test makes: the seconds pass as fast as
@@ -72,27 +72,28 @@ class StillWind final : public sim::PlayedWind {
 class TextBench {
  public:
   /// What stands between the two: a wire's faults are tried by its `know`.
-  std::unique_ptr<sim::TextWire> observed(std::unique_ptr<sim::TextWire> wire) {
+  std::unique_ptr<simulators::text::TextWire> observed(std::unique_ptr<simulators::text::TextWire> wire) {
     return std::make_unique<ObservedWire>(std::move(wire), has_written_);
   }
-  std::unique_ptr<BytePort> port(const BytePortAddress& address) {
-    return std::make_unique<ImpatientPort>(make_byte_port(address), patience_);
+  std::unique_ptr<drivers::bus::BytePort> port(const drivers::bus::BytePortAddress& address) {
+    return std::make_unique<ImpatientPort>(drivers::bus::make_byte_port(address), patience_);
   }
 
-  void put(std::unique_ptr<sim::TextSimulator> simulator, std::unique_ptr<Sensor> sensor) {
+  void put(std::unique_ptr<simulators::text::TextSimulator> simulator,
+           std::unique_ptr<drivers::sensor::Sensor> sensor) {
     simulator_ = std::move(simulator);
     sensor_ = std::move(sensor);
   }
 
   /// Lets both live for so long. The readings and refusals of before are forgotten.
-  void run(double duration_s, std::optional<sim::FaultKind> fault = {}) {
+  void run(double duration_s, std::optional<simulators::FaultKind> fault = {}) {
     sink.readings.clear();
     sink.refusals.clear();
     for (double end_s = time_s_ + duration_s; time_s_ < end_s;) step(fault);
   }
   /// Lets both live until something holds; false if it does not within `limit_s`.
   template <class Condition>
-  bool run_until(double limit_s, std::optional<sim::FaultKind> fault, Condition&& holds) {
+  bool run_until(double limit_s, std::optional<simulators::FaultKind> fault, Condition&& holds) {
     for (const double end_s = time_s_ + limit_s; time_s_ < end_s && !holds();) step(fault);
     return holds();
   }
@@ -103,7 +104,7 @@ class TextBench {
  private:
   static constexpr double kStep_s = 0.02;
 
-  void step(std::optional<sim::FaultKind> fault) {
+  void step(std::optional<simulators::FaultKind> fault) {
     time_s_ += kStep_s;
     clock.advance(from_seconds(kStep_s));
 
@@ -124,8 +125,8 @@ class TextBench {
     sensor_->poll(clock, sink);
   }
 
-  std::unique_ptr<sim::TextSimulator> simulator_;
-  std::unique_ptr<Sensor> sensor_;
+  std::unique_ptr<simulators::text::TextSimulator> simulator_;
+  std::unique_ptr<drivers::sensor::Sensor> sensor_;
   Nanoseconds patience_ = std::chrono::milliseconds(1);
   bool has_written_ = false;
   double time_s_ = 0.0;

@@ -23,17 +23,18 @@ class TextFaultBench : public testing::Test {
 
  protected:
   /// Makes the driver of its values, to speak through the bench's port.
-  using MakeSensor = std::function<std::unique_ptr<Sensor>(const ParameterValues& values, TextBench& bench)>;
+  using MakeSensor =
+      std::function<std::unique_ptr<drivers::sensor::Sensor>(const ParameterValues& values, TextBench& bench)>;
 
-  TextFaultBench(std::string driver, sim::PlayedMoment wind) : driver_name_(std::move(driver)), wind_(wind) {}
+  TextFaultBench(std::string driver, simulators::PlayedMoment wind) : driver_name_(std::move(driver)), wind_(wind) {}
 
   /// `rate_hz`: how often the device speaks; 0: when it is asked. `given`: what is not the driver's default.
-  void connect(Wire wire, std::unique_ptr<sim::TextDevice> device, double rate_hz, ParameterValues::Map given,
-               const MakeSensor& make_sensor) {
+  void connect(Wire wire, std::unique_ptr<simulators::text::TextDevice> device, double rate_hz,
+               ParameterValues::Map given, const MakeSensor& make_sensor) {
     bench_.put(nullptr, nullptr);  // the name of the port is free again
-    auto carried = wire == Wire::kPty   ? sim::make_pty_wire((folder_ / "device").string())
-                   : wire == Wire::kTcp ? sim::make_tcp_wire("127.0.0.1", 0)
-                                        : sim::make_udp_wire("127.0.0.1", udp_port_);
+    auto carried = wire == Wire::kPty   ? simulators::text::make_pty_wire((folder_ / "device").string())
+                   : wire == Wire::kTcp ? simulators::text::make_tcp_wire("127.0.0.1", 0)
+                                        : simulators::text::make_udp_wire("127.0.0.1", udp_port_);
     const std::string place = carried->place();
     if (wire == Wire::kPty) {
       given["device"] = (folder_ / "device").string();
@@ -42,8 +43,9 @@ class TextFaultBench : public testing::Test {
       given["host"] = std::string("127.0.0.1");
       given["port"] = std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))};
     }
-    bench_.put(std::make_unique<sim::TextSimulator>(std::move(device), bench_.observed(std::move(carried)), rate_hz,
-                                                    sim::MeasuredWind(std::make_unique<StillWind>(wind_)), 1),
+    bench_.put(std::make_unique<simulators::text::TextSimulator>(
+                   std::move(device), bench_.observed(std::move(carried)), rate_hz,
+                   simulators::MeasuredWind(std::make_unique<StillWind>(wind_)), 1),
                make_sensor(values_for(driver_name_, given), bench_));
   }
 
@@ -53,7 +55,7 @@ class TextFaultBench : public testing::Test {
   bool is_live(double limit_s = 20.0) {
     bench_.sink.readings.clear();
     return bench_.run_until(limit_s, {}, [this] {
-      return !bench_.sink.readings.empty() && bench_.sink.last_state() == LinkState::kConnected;
+      return !bench_.sink.readings.empty() && bench_.sink.last_state() == wind::LinkState::kConnected;
     });
   }
   void expect_return() {
@@ -64,17 +66,17 @@ class TextFaultBench : public testing::Test {
     expect_only_the_wind();
   }
   /// What was live says nothing: nothing is published, and the link says so.
-  void expect_silence(sim::FaultKind fault, double duration_s) {
+  void expect_silence(simulators::FaultKind fault, double duration_s) {
     bench_.run(duration_s, fault);
     EXPECT_TRUE(bench_.sink.readings.empty());
-    EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting) << bench_.sink.last_detail();
+    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting) << bench_.sink.last_detail();
   }
 
   TextBench bench_;
 
  private:
   std::string driver_name_;
-  sim::PlayedMoment wind_;
+  simulators::PlayedMoment wind_;
   const std::uint16_t udp_port_ = free_port(SOCK_DGRAM);
   test::TemporaryFolder folder_;
 };

@@ -6,6 +6,7 @@
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  if (!testing::GTEST_FLAG(list_tests) && !yuragi::sim::is_in_umockdev()) yuragi::sim::restart_in_umockdev();
+  if (!testing::GTEST_FLAG(list_tests) && !yuragi::simulators::usb::is_in_umockdev())
+    yuragi::simulators::usb::restart_in_umockdev();
   return RUN_ALL_TESTS();
 }

@@ -16,24 +16,25 @@ struct UsbBench {
   ManualClock clock;
   SimulatedUsbBus bus{clock};
   RecordingSink sink;
-  UsbSettings settings;
-  std::unique_ptr<UsbSensor> sensor;
+  drivers::usb::UsbSettings settings;
+  std::unique_ptr<drivers::usb::UsbSensor> sensor;
   MonoTime due{};
 
   /// With one device plugged in.
   explicit UsbBench(const std::string& device) : UsbBench() { plug(device, "1-2"); }
   UsbBench() {
-    settings.models.assign(usb_daq_models().begin(), usb_daq_models().end());
+    settings.models.assign(drivers::usb::usb_daq_models().begin(), drivers::usb::usb_daq_models().end());
     settings.cup.metres_per_pulse = 0.1;
   }
 
   void plug(const std::string& device, const std::string& port, const std::string& serial = "") {
-    bus.sockets.push_back({port, serial, sim::make_daq(device)});
+    bus.sockets.push_back({port, serial, simulators::usb::make_daq(device)});
   }
 
   /// One poll, when it is due; makes the sensor the first time.
   Nanoseconds poll() {
-    if (!sensor) sensor = std::make_unique<UsbSensor>(settings, 1, std::make_unique<SimulatedUsbDevice>(bus));
+    if (!sensor)
+      sensor = std::make_unique<drivers::usb::UsbSensor>(settings, 1, std::make_unique<SimulatedUsbDevice>(bus));
     clock.advance_to(due);
     due = sensor->poll(clock, sink);
     return due - clock.now().mono;

@@ -28,14 +28,14 @@ wire::Bytes sensor_status() {
   sensors.sensors.resize(1);
   sensors.sensors[0].name = "mast";
   sensors.sensors[0].driver = "modbus";
-  sensors.sensors[0].health = SourceHealth::kLive;
+  sensors.sensors[0].health = wind::SourceHealth::kLive;
   sensors.sensors[0].speed_m_s = 6.1;
   sensors.sensors[0].direction_deg = 281.0;
   return wire::encode(sensors);
 }
 
 /// Sends what frame(tick, time_s) makes, 60 times a second, for ever.
-[[noreturn]] void stream(StreamServer& server, const std::function<wire::Bytes(std::uint64_t, double)>& frame) {
+[[noreturn]] void stream(viewer::StreamServer& server, const std::function<wire::Bytes(std::uint64_t, double)>& frame) {
   std::printf("on port %d\n", server.port());
   std::fflush(stdout);
   const auto began = std::chrono::steady_clock::now();
@@ -54,20 +54,21 @@ int main(int argc, char** argv) {
   const auto port = static_cast<std::uint16_t>(argument(1, wire::kDefaultPort));
   wire::FrameEncoder encoder;
   if (argc > 2 && std::string_view(argv[2]) == "garden") {
-    const std::vector<wire::SceneModel> garden = test_garden();
-    StreamServer server(greeting_for(garden), port);
+    const std::vector<wire::SceneModel> garden = viewer::test_garden();
+    viewer::StreamServer server(viewer::greeting_for(garden), port);
     std::vector<float> opacities(garden.size(), 1.0F);
     stream(server, [&](std::uint64_t tick, double time_s) {
       const auto turn = static_cast<std::size_t>(time_s / kTurn_s) % garden.size();
       std::fill(opacities.begin(), opacities.end(), 1.0F);
       opacities[turn] = static_cast<float>(std::max(0.0, std::cos(2 * std::numbers::pi * time_s / kTurn_s)));
-      return frame_of(garden, opacities, time_s, 0.5 + 0.4 * std::sin(0.3 * time_s), tick, encoder);
+      return viewer::frame_of(garden, opacities, time_s, 0.5 + 0.4 * std::sin(0.3 * time_s), tick, encoder);
     });
   }
-  const Skeleton meadow = test_meadow(static_cast<std::size_t>(argument(2, 100)), argument(3, 10.0));
-  StreamServer server(greeting_for(meadow), port);
+  const pose::Skeleton meadow = viewer::test_meadow(static_cast<std::size_t>(argument(2, 100)), argument(3, 10.0));
+  viewer::StreamServer server(viewer::greeting_for(meadow), port);
   stream(server, [&](std::uint64_t tick, double time_s) {
     const double toward_deg = 100.0 + 15.0 * std::sin(0.2 * time_s);
-    return frame_of(meadow, test_pose(meadow, time_s, 0.15, 0.9, toward_deg), tick, time_s, toward_deg, encoder);
+    return viewer::frame_of(meadow, viewer::test_pose(meadow, time_s, 0.15, 0.9, toward_deg), tick, time_s, toward_deg,
+                            encoder);
   });
 }

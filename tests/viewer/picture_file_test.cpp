@@ -9,7 +9,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 TEST(PictureFile, HasTheFormatThatItsNameAsksFor) {
@@ -36,4 +36,4 @@ TEST(PictureFile, IsWrittenWholeInItsFormatAndNothingStaysBesideIt) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer

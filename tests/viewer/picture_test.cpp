@@ -21,7 +21,7 @@
 #include "tests/viewer/test_models.hpp"
 #include "tests/viewer/virtual_screen.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 constexpr int kWidth_px = 480;
@@ -151,7 +151,7 @@ class PictureTest : public testing::Test {
 
   std::unique_ptr<Picture> take(const std::string& file, double lean_rad, const std::vector<std::string>& more) const {
     // From the greeting on the meadow stands still: the picture is of this pose, whenever it is taken.
-    const Skeleton meadow = test_meadow(60, 6.0);
+    const pose::Skeleton meadow = test_meadow(60, 6.0);
     wire::FrameEncoder encoder;
     wire::Bytes greeting = greeting_for(meadow);
     for (std::uint64_t i = 0; i < 3; ++i) {
@@ -240,7 +240,7 @@ TEST_F(PictureTest, EndsWith69WhenNoDaemonAnswers) {
 }
 
 TEST_F(PictureTest, EndsWith73WhenThePictureCannotBeWritten) {
-  const Skeleton meadow = test_meadow(4, 1.0);
+  const pose::Skeleton meadow = test_meadow(4, 1.0);
   wire::FrameEncoder encoder;
   const StreamServer server(greeting_for(meadow) +
                             frame_of(meadow, test_pose(meadow, 0.0, 0.0, 0.0, 0.0), 1, 0.1, 0.0, encoder));
@@ -267,4 +267,4 @@ TEST_F(PictureTest, EndsWith64ForAWrongCommandLine) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer

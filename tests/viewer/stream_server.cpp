@@ -9,7 +9,7 @@
 
 #include "engine/wire/message_reader.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
@@ -98,4 +98,4 @@ wire::Bytes operator+(wire::Bytes a, const wire::Bytes& b) {
   return a;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -13,7 +13,7 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// A server on loopback that says what a test tells it to say. It reads each client's Subscribe and nothing more.
 /// Thread-safe: yes. Sending never waits; what a slow client does not read is kept.
@@ -58,4 +58,4 @@ class StreamServer {
 /// One message after another.
 wire::Bytes operator+(wire::Bytes a, const wire::Bytes& b);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -6,14 +6,14 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 
-Skeleton test_meadow(std::size_t side, double size_m) {
+pose::Skeleton test_meadow(std::size_t side, double size_m) {
   constexpr std::size_t kLinks = 10;
-  StrandSkeleton meadow;
+  pose::StrandSkeleton meadow;
   meadow.strand_count = side * side;
   meadow.links_per_strand = kLinks;
-  const RandomStream chance(1, stream_id("test meadow"));
+  const math::RandomStream chance(1, math::stream_id("test meadow"));
   for (std::size_t i = 0; i < meadow.padded_count(); ++i) {
     const auto [jitter_x, jitter_z] = chance.uniform_pair(3 * i);
     const auto [tilt, bearing] = chance.uniform_pair(3 * i + 1);
@@ -44,10 +44,10 @@ Skeleton test_meadow(std::size_t side, double size_m) {
   return meadow;
 }
 
-Pose test_pose(const Skeleton& meadow, double time_s, double lean_rad, double sway_rad, double toward_deg) {
-  const auto& strands = std::get<StrandSkeleton>(meadow);
+pose::Pose test_pose(const pose::Skeleton& meadow, double time_s, double lean_rad, double sway_rad, double toward_deg) {
+  const auto& strands = std::get<pose::StrandSkeleton>(meadow);
   const double toward = toward_deg * kRadPerDeg;
-  StrandPose pose;
+  pose::StrandPose pose;
   for (std::size_t i = 0; i < strands.padded_count(); ++i) {
     const auto x_m = static_cast<double>(strands.root_x_m[i]);
     const auto z_m = static_cast<double>(strands.root_z_m[i]);
@@ -62,23 +62,23 @@ Pose test_pose(const Skeleton& meadow, double time_s, double lean_rad, double sw
   return pose;
 }
 
-wire::Bytes greeting_for(const Skeleton& meadow) {
+wire::Bytes greeting_for(const pose::Skeleton& meadow) {
   return wire::encode(wire::Hello{wire::kProtocol, "a test meadow", 60.0}) +
          wire::encode(wire::Scenes{{{"meadow", "grass", meadow}}});
 }
 
-wire::Bytes frame_of(const Skeleton& meadow, const Pose& pose, std::uint64_t sequence, double time_s, double toward_deg,
-                     wire::FrameEncoder& encoder) {
-  const std::array<const Skeleton*, 1> skeletons{&meadow};
-  const std::array<const Pose*, 1> poses{&pose};
+wire::Bytes frame_of(const pose::Skeleton& meadow, const pose::Pose& pose, std::uint64_t sequence, double time_s,
+                     double toward_deg, wire::FrameEncoder& encoder) {
+  const std::array<const pose::Skeleton*, 1> skeletons{&meadow};
+  const std::array<const pose::Pose*, 1> poses{&pose};
   wire::FrameInfo info;
   info.sequence = info.tick = sequence;
   info.time_s = time_s;
-  info.wind.wind = wind_from(6.0, toward_deg + 180.0);
-  info.wind.source = WindSource::kLive;
+  info.wind.wind = wind::wind_from(6.0, toward_deg + 180.0);
+  info.wind.source = wind::WindSource::kLive;
   info.wind.live_weight = 1.0;
   const auto bytes = encoder.encode(info, skeletons, poses);
   return {bytes.begin(), bytes.end()};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -10,14 +10,14 @@
 #include "engine/pose/pose_arrays.hpp"
 #include "tests/viewer/test_meadow.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 using Point = std::array<double, 3>;
 
-GridSkeleton cloth_of(std::size_t columns, std::size_t rows, bool is_pole_fixed, TestPlace place,
-                      const std::function<Point(double, double)>& at) {
-  GridSkeleton cloth;
+pose::GridSkeleton cloth_of(std::size_t columns, std::size_t rows, bool is_pole_fixed, TestPlace place,
+                            const std::function<Point(double, double)>& at) {
+  pose::GridSkeleton cloth;
   cloth.columns = columns;
   cloth.rows = rows;
   cloth.is_first_column_fixed = is_pole_fixed;
@@ -39,27 +39,27 @@ GridSkeleton cloth_of(std::size_t columns, std::size_t rows, bool is_pole_fixed,
 }
 
 /// Gathered folds, as deep at the hem as they are many at the rod.
-GridSkeleton curtain(TestPlace place) {
+pose::GridSkeleton curtain(TestPlace place) {
   return cloth_of(120, 90, false, place, [](double across, double down) {
     return Point{
         2.4 * (across - 0.5), 2.5 - 2.3 * down,
         0.055 * std::sin(2 * kPi * 14 * across) * (0.45 + 0.55 * down) + 0.02 * std::sin(2 * kPi * 5 * across + 1.0)};
   });
 }
-GridSkeleton flag(TestPlace place) {
+pose::GridSkeleton flag(TestPlace place) {
   return cloth_of(70, 110, false, place, [](double down, double out) {
     return Point{1.8 * out, 4.0 - 1.2 * down, 0.0};
   });
 }
-GridSkeleton banner(TestPlace place) {
+pose::GridSkeleton banner(TestPlace place) {
   return cloth_of(40, 150, true, place, [](double across, double down) {
     return Point{0.7 * across, 4.6 - 3.6 * down, 0.0};
   });
 }
 
-SurfaceSkeleton surface_of(std::size_t columns, std::size_t rows, TestPlace place,
-                           const std::function<std::array<Point, 2>(double, double)>& at) {
-  SurfaceSkeleton surface;
+pose::SurfaceSkeleton surface_of(std::size_t columns, std::size_t rows, TestPlace place,
+                                 const std::function<std::array<Point, 2>(double, double)>& at) {
+  pose::SurfaceSkeleton surface;
   surface.columns = columns;
   surface.rows = rows;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -76,7 +76,7 @@ SurfaceSkeleton surface_of(std::size_t columns, std::size_t rows, TestPlace plac
   return surface;
 }
 
-SurfaceSkeleton water(TestPlace place) {
+pose::SurfaceSkeleton water(TestPlace place) {
   constexpr std::size_t kColumns = 120;
   return surface_of(kColumns, 120, place, [](double column, double down) {
     return std::array{Point{5.0 * (column / (kColumns - 1) - 0.5), 0.0, 5.0 * (down - 0.5)}, Point{0.0, 1.0, 0.0}};
@@ -95,9 +95,9 @@ std::vector<std::uint8_t> fire_ramp() {
   return ramp;
 }
 
-SurfaceSkeleton flame_body(TestPlace place) {
+pose::SurfaceSkeleton flame_body(TestPlace place) {
   constexpr std::size_t kAround = 24;  // two shells
-  SurfaceSkeleton flame = surface_of(2 * kAround, 64, place, [](double column, double up) {
+  pose::SurfaceSkeleton flame = surface_of(2 * kAround, 64, place, [](double column, double up) {
     const double angle = 2 * kPi * column / kAround;
     const double radius_m = (column < kAround ? 0.22 : 0.12) * std::sqrt(std::max(0.0, 1.0 - up)) * (0.75 + 0.9 * up);
     return std::array{Point{radius_m * std::cos(angle), 0.5 + 1.2 * up, radius_m * std::sin(angle)},
@@ -110,9 +110,9 @@ SurfaceSkeleton flame_body(TestPlace place) {
   flame.ramp_rgba = fire_ramp();
   return flame;
 }
-SurfaceSkeleton flame_panel(TestPlace place) {
+pose::SurfaceSkeleton flame_panel(TestPlace place) {
   constexpr std::size_t kColumns = 64;
-  SurfaceSkeleton flame = surface_of(kColumns, 96, place, [](double column, double up) {
+  pose::SurfaceSkeleton flame = surface_of(kColumns, 96, place, [](double column, double up) {
     return std::array{Point{0.9 * (column / (kColumns - 1) - 0.5), 0.5 + 1.35 * up, 0.0}, Point{0.0, 0.0, 1.0}};
   });
   flame.ramp_rgba = fire_ramp();
@@ -120,13 +120,13 @@ SurfaceSkeleton flame_panel(TestPlace place) {
 }
 
 /// Hairs on a lying egg, combed to the east and down.
-StrandSkeleton fur(TestPlace place) {
+pose::StrandSkeleton fur(TestPlace place) {
   constexpr std::size_t kHairs = 12'000;
   constexpr std::size_t kLinks = 8;
-  StrandSkeleton coat;
+  pose::StrandSkeleton coat;
   coat.strand_count = kHairs;
   coat.links_per_strand = kLinks;
-  const RandomStream chance(2, stream_id("test fur"));
+  const math::RandomStream chance(2, math::stream_id("test fur"));
   const Point radius_m{0.62, 0.40, 0.40};
   for (std::size_t i = 0; i < coat.padded_count(); ++i) {
     const auto [jitter, longer] = chance.uniform_pair(i);
@@ -157,7 +157,7 @@ StrandSkeleton fur(TestPlace place) {
 
 /// Strands of a level to be, one by one.
 struct Growing {
-  TreeLevel level;
+  pose::TreeLevel level;
 
   Growing(std::size_t links, std::size_t parent_level, bool is_leaves) {
     level.strands.links_per_strand = links;
@@ -167,7 +167,7 @@ struct Growing {
 
   void add(const Point& root, const Point& rest, double length_m, double curl_rad, double base_m, double tip_m,
            std::size_t parent, std::size_t parent_link) {
-    StrandSkeleton& s = level.strands;
+    pose::StrandSkeleton& s = level.strands;
     const double norm = std::hypot(rest[0], rest[1], rest[2]);
     const Point unit{rest[0] / norm, rest[1] / norm, rest[2] / norm};
     const double flat = std::max(1e-3, std::hypot(unit[0], unit[2]));
@@ -193,8 +193,8 @@ struct Growing {
   }
 
   /// Whole blocks: the last strand again and again.
-  TreeLevel finished() {
-    StrandSkeleton& s = level.strands;
+  pose::TreeLevel finished() {
+    pose::StrandSkeleton& s = level.strands;
     for (std::vector<float>* values :
          {&s.root_x_m, &s.root_y_m, &s.root_z_m, &s.rest_x, &s.rest_y, &s.rest_z, &s.curl_x, &s.curl_y, &s.curl_z,
           &s.rest_curl_rad, &s.link_length_m, &level.base_radius_m, &level.tip_radius_m}) {
@@ -207,7 +207,7 @@ struct Growing {
 };
 
 /// Where the joint behind a link is at rest, on the arc of the strand.
-Point joint_of(const StrandSkeleton& s, std::size_t strand, std::size_t link) {
+Point joint_of(const pose::StrandSkeleton& s, std::size_t strand, std::size_t link) {
   Point at{static_cast<double>(s.root_x_m[strand]), static_cast<double>(s.root_y_m[strand]),
            static_cast<double>(s.root_z_m[strand])};
   for (std::size_t i = 0; i <= link; ++i) {
@@ -224,9 +224,9 @@ Point joint_of(const StrandSkeleton& s, std::size_t strand, std::size_t link) {
 }
 
 /// A trunk, 14 limbs, 12 twigs on each, and 16 leaves at each of four places of a twig.
-TreeSkeleton tree(TestPlace place) {
+pose::TreeSkeleton tree(TestPlace place) {
   constexpr double kGolden = 2.399963;
-  const RandomStream chance(3, stream_id("test tree"));
+  const math::RandomStream chance(3, math::stream_id("test tree"));
   std::uint64_t drawn = 0;
   const auto between = [&](double low, double high) { return low + (high - low) * chance.uniform(drawn++); };
   Growing trunk(24, 0, false);
@@ -257,17 +257,17 @@ TreeSkeleton tree(TestPlace place) {
       }
     }
   }
-  TreeSkeleton grown;
+  pose::TreeSkeleton grown;
   grown.levels = {trunk.finished(), limbs.finished(), twigs.finished(), leaves.finished()};
   grown.levels[0].parent.clear();
   grown.levels[0].parent_link.clear();
   return grown;
 }
 
-Skeleton skeleton_of(std::string_view kind, TestPlace place) {
+pose::Skeleton skeleton_of(std::string_view kind, TestPlace place) {
   if (kind == "grass") {
-    Skeleton meadow = test_meadow(60, 6.0);
-    auto& strands = std::get<StrandSkeleton>(meadow);
+    pose::Skeleton meadow = test_meadow(60, 6.0);
+    auto& strands = std::get<pose::StrandSkeleton>(meadow);
     for (float& x_m : strands.root_x_m) x_m += static_cast<float>(place.east_m);
     for (float& z_m : strands.root_z_m) z_m += static_cast<float>(place.south_m);
     return meadow;
@@ -282,8 +282,8 @@ Skeleton skeleton_of(std::string_view kind, TestPlace place) {
 }
 
 /// A wave runs from the fixed edge to the free one, and grows; the joints go with their links.
-GridPose wave(const GridSkeleton& cloth, double time_s, double strength) {
-  GridPose pose = std::get<GridPose>(rest_pose(cloth));
+pose::GridPose wave(const pose::GridSkeleton& cloth, double time_s, double strength) {
+  pose::GridPose pose = std::get<pose::GridPose>(pose::rest_pose(cloth));
   const bool is_flag = cloth.rest_y_m[cloth.columns - 1] < cloth.rest_y_m[0];
   for (std::size_t row = 1; row < cloth.rows; ++row) {
     const double share = static_cast<double>(row) / static_cast<double>(cloth.rows - 1);
@@ -303,8 +303,8 @@ GridPose wave(const GridSkeleton& cloth, double time_s, double strength) {
 }
 
 /// Each generation sways more than that before it, leaves quickly.
-TreePose sway(const TreeSkeleton& tree, double time_s, double strength) {
-  TreePose pose = std::get<TreePose>(rest_pose(tree));
+pose::TreePose sway(const pose::TreeSkeleton& tree, double time_s, double strength) {
+  pose::TreePose pose = std::get<pose::TreePose>(pose::rest_pose(tree));
   for (std::size_t level = 0; level < pose.levels.size(); ++level) {
     const double gain = strength * (level == 0 ? 0.08 : 0.16 * static_cast<double>(level));
     for (std::size_t i = 0; i < pose.levels[level].bend_east_rad.size(); ++i) {
@@ -316,8 +316,8 @@ TreePose sway(const TreeSkeleton& tree, double time_s, double strength) {
   return pose;
 }
 
-SurfacePose waves(const SurfaceSkeleton& surface, double time_s, double strength) {
-  SurfacePose pose = std::get<SurfacePose>(rest_pose(surface));
+pose::SurfacePose waves(const pose::SurfaceSkeleton& surface, double time_s, double strength) {
+  pose::SurfacePose pose = std::get<pose::SurfacePose>(pose::rest_pose(surface));
   for (std::size_t i = 0; i < pose.displacement_m.size(); ++i) {
     const auto x_m = static_cast<double>(surface.rest_x_m[i]);
     const auto y_m = static_cast<double>(surface.rest_y_m[i]);
@@ -353,15 +353,15 @@ wire::SceneModel test_model(std::string_view kind, TestPlace place) {
   return {std::string(kind), kind == "flame panel" ? "flame" : std::string(kind), skeleton_of(kind, place)};
 }
 
-Pose test_pose(const wire::SceneModel& model, double time_s, double strength) {
-  if (std::holds_alternative<StrandSkeleton>(model.skeleton)) {
+pose::Pose test_pose(const wire::SceneModel& model, double time_s, double strength) {
+  if (std::holds_alternative<pose::StrandSkeleton>(model.skeleton)) {
     return test_pose(model.skeleton, time_s, 0.5 * strength, 0.7 * strength, 90.0);
   }
-  if (const auto* const cloth = std::get_if<GridSkeleton>(&model.skeleton)) return wave(*cloth, time_s, strength);
-  if (const auto* const surface = std::get_if<SurfaceSkeleton>(&model.skeleton)) {
+  if (const auto* const cloth = std::get_if<pose::GridSkeleton>(&model.skeleton)) return wave(*cloth, time_s, strength);
+  if (const auto* const surface = std::get_if<pose::SurfaceSkeleton>(&model.skeleton)) {
     return waves(*surface, time_s, strength);
   }
-  return sway(std::get<TreeSkeleton>(model.skeleton), time_s, strength);
+  return sway(std::get<pose::TreeSkeleton>(model.skeleton), time_s, strength);
 }
 
 std::vector<wire::SceneModel> test_garden() {
@@ -376,23 +376,23 @@ wire::Bytes greeting_for(const std::vector<wire::SceneModel>& models) {
 
 wire::Bytes frame_of(const std::vector<wire::SceneModel>& models, std::span<const float> opacities, double time_s,
                      double strength, std::uint64_t sequence, wire::FrameEncoder& encoder) {
-  std::vector<Pose> poses;
-  std::vector<const Skeleton*> skeletons;
-  std::vector<const Pose*> pointers;
+  std::vector<pose::Pose> poses;
+  std::vector<const pose::Skeleton*> skeletons;
+  std::vector<const pose::Pose*> pointers;
   for (const wire::SceneModel& model : models) {
     poses.push_back(test_pose(model, time_s, strength));
     skeletons.push_back(&model.skeleton);
   }
   pointers.reserve(poses.size());
-  for (const Pose& pose : poses) pointers.push_back(&pose);
+  for (const pose::Pose& pose : poses) pointers.push_back(&pose);
   wire::FrameInfo info;
   info.sequence = info.tick = sequence;
   info.time_s = time_s;
-  info.wind.wind = wind_from(12.0 * strength, 270.0);
-  info.wind.source = WindSource::kLive;
+  info.wind.wind = wind::wind_from(12.0 * strength, 270.0);
+  info.wind.source = wind::WindSource::kLive;
   info.wind.live_weight = 1.0;
   const auto bytes = encoder.encode(info, skeletons, pointers, opacities);
   return {bytes.begin(), bytes.end()};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -6,7 +6,7 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// Where a model stands, east and south of the origin.
 struct TestPlace {
@@ -19,7 +19,7 @@ struct TestPlace {
 wire::SceneModel test_model(std::string_view kind, TestPlace place = {});
 
 /// That model in a made-up wind toward the east: strength 0 is calm (the rest pose; a flame burns), 1 a storm.
-Pose test_pose(const wire::SceneModel& model, double time_s, double strength);
+pose::Pose test_pose(const wire::SceneModel& model, double time_s, double strength);
 
 /// All of them side by side.
 std::vector<wire::SceneModel> test_garden();
@@ -31,4 +31,4 @@ wire::Bytes greeting_for(const std::vector<wire::SceneModel>& models);
 wire::Bytes frame_of(const std::vector<wire::SceneModel>& models, std::span<const float> opacities, double time_s,
                      double strength, std::uint64_t sequence, wire::FrameEncoder& encoder);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 pid_t start_program(std::vector<std::string> words, std::vector<std::string> environment,
                     posix_spawn_file_actions_t* actions) {
@@ -65,4 +65,4 @@ std::vector<std::string> VirtualScreen::environment() const {
   return environment;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -6,7 +6,7 @@
 #include <spawn.h>
 #include <sys/types.h>
 
-namespace yuragi {
+namespace yuragi::viewer {
 
 /// Starts a program; 0 if that was not possible. `environment` is all that it gets.
 pid_t start_program(std::vector<std::string> words, std::vector<std::string> environment,
@@ -33,4 +33,4 @@ class VirtualScreen {
   std::string number_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::viewer {
 namespace {
 
 TEST(WindPlaceText, SaysInFewWordsWhereTheWindIs) {
@@ -17,4 +17,4 @@ TEST(WindPlaceText, SaysInFewWordsWhereTheWindIs) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer

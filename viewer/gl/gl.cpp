@@ -7,7 +7,7 @@
 
 #include "viewer/gl/shaders.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 namespace {
 
 struct GlShader {
@@ -145,4 +145,4 @@ int gl_error_count() {
   return error_count;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

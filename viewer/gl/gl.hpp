@@ -6,7 +6,7 @@
 
 #include <epoxy/gl.h>
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 
 // OpenGL objects that delete themselves. All of this needs a current context of at least 3.3 core, on its thread.
 
@@ -93,4 +93,4 @@ void report_gl_errors();
 /// How many errors the driver has reported since report_gl_errors(). For tests.
 int gl_error_count();
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

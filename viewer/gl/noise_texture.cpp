@@ -7,7 +7,7 @@
 
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 namespace {
 
 constexpr std::size_t kSize = 256;
@@ -19,7 +19,7 @@ float smooth(float t) {
 
 /// Adds random values on a lattice of cells x cells, smoothly interpolated.
 void add_octave(std::size_t cells, float weight, std::vector<float>& tile) {
-  const RandomStream random(0, stream_id("viewer noise") + cells);
+  const math::RandomStream random(0, math::stream_id("viewer noise") + cells);
   const auto lattice = [&](std::size_t x, std::size_t y) {
     return static_cast<float>(random.uniform((y % cells) * cells + x % cells));
   };
@@ -65,4 +65,4 @@ GlTexture make_noise_texture() {
   return texture;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

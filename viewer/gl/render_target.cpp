@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 namespace {
 
 int supported_samples(int wanted) {
@@ -75,4 +75,4 @@ std::vector<std::uint8_t> RenderTarget::read_rgb() {
   return picture;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

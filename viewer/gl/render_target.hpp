@@ -5,7 +5,7 @@
 
 #include "viewer/gl/gl.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 
 /// An off-screen framebuffer, which needs no visible window: several samples a pixel, resolved into one; with depth and
 /// stencil. Needs a current context. Throws std::runtime_error where the driver cannot make it.
@@ -38,4 +38,4 @@ class RenderTarget {
   GlRenderbuffer resolved_color_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

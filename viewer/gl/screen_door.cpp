@@ -2,7 +2,7 @@
 
 #include "viewer/gl/shaders.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 
 ScreenDoor::ScreenDoor() : program_(link_program("door", shaders::kDoorVert, shaders::kDoorFrag)) {
   opacity_place_ = glGetUniformLocation(program_.name(), "opacity");
@@ -61,4 +61,4 @@ void ScreenDoor::close() {
   glDisable(GL_STENCIL_TEST);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

@@ -2,7 +2,7 @@
 
 #include "viewer/gl/gl.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 
 // The bits of the stencil while the stage draws.
 inline constexpr GLuint kBehindDoor = 1;  ///< the scene that fades does not draw on this pixel
@@ -34,4 +34,4 @@ class ScreenDoor {
   bool is_half_open_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

@@ -3,7 +3,7 @@
 #include <string_view>
 
 /// The text of viewer/gl/shaders/*.glsl, which the build puts into the program.
-namespace yuragi::shaders {
+namespace yuragi::viewer::gl::shaders {
 
 extern const std::string_view kCommon;  ///< in front of each of the others
 extern const std::string_view kShadeFrag;
@@ -31,4 +31,4 @@ extern const std::string_view kUndercoatVert;
 extern const std::string_view kWaterVert;
 extern const std::string_view kWaterFrag;
 
-}  // namespace yuragi::shaders
+}  // namespace yuragi::viewer::gl::shaders

@@ -3,15 +3,15 @@
 #include "viewer/gl/gl.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::gl {
 
 /// The uniform buffer that holds a View. Needs a current context.
 class ViewBuffer {
  public:
-  void set(const View& view);
+  void set(const meshes::View& view);
 
  private:
   GlBuffer buffer_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::gl

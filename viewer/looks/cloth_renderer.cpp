@@ -5,11 +5,11 @@
 
 #include "viewer/gl/shaders.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
 /// From a banner's pole to the end of its arm along the ground, at rest and in a pose.
-glm::vec2 arm_m(const GridSkeleton& cloth, const GridPose* pose) {
+glm::vec2 arm_m(const pose::GridSkeleton& cloth, const pose::GridPose* pose) {
   const std::size_t end = cloth.columns - 1;
   const glm::vec2 at_rest_m(cloth.rest_x_m[end] - cloth.rest_x_m[0], cloth.rest_z_m[end] - cloth.rest_z_m[0]);
   return pose == nullptr ? at_rest_m : at_rest_m + glm::vec2(pose->offset_x_m[end], pose->offset_z_m[end]);
@@ -17,14 +17,14 @@ glm::vec2 arm_m(const GridSkeleton& cloth, const GridPose* pose) {
 
 }  // namespace
 
-ClothRenderer::ClothRenderer(const GridSkeleton& cloth, std::string_view kind)
+ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind)
     : cloth_(&cloth),
-      is_vane_(cloth_style(kind, cloth) == ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
+      is_vane_(meshes::cloth_style(kind, cloth) == meshes::ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
       points_(cloth),
-      sheet_(layout_of(cloth)),
-      holder_(cloth_holder(cloth_style(kind, cloth), cloth)),
-      program_(link_program("cloth", shaders::kClothVert, shaders::kClothFrag)) {
-  const ClothMeasure lies = measure(cloth);
+      sheet_(meshes::layout_of(cloth)),
+      holder_(meshes::cloth_holder(meshes::cloth_style(kind, cloth), cloth)),
+      program_(gl::link_program("cloth", gl::shaders::kClothVert, gl::shaders::kClothFrag)) {
+  const meshes::ClothMeasure lies = meshes::measure(cloth);
   const auto place = [&](const char* name) { return glGetUniformLocation(program_.name(), name); };
   glUseProgram(program_.name());
   glUniform1i(place("stride"), static_cast<GLint>(cloth.stride()));
@@ -32,13 +32,13 @@ ClothRenderer::ClothRenderer(const GridSkeleton& cloth, std::string_view kind)
   glUniform2f(place("per_column_m"), lies.per_column_m.x, lies.per_column_m.y);
   glUniform2f(place("per_row_m"), lies.per_row_m.x, lies.per_row_m.y);
   glUniform2f(place("size_m"), lies.size_m.x, lies.size_m.y);
-  glUniform1i(place("style"), static_cast<GLint>(cloth_style(kind, cloth)));
+  glUniform1i(place("style"), static_cast<GLint>(meshes::cloth_style(kind, cloth)));
 }
 
-void ClothRenderer::move_to(const Pose& pose) {
-  const auto* const offsets = std::get_if<GridPose>(&pose);
-  const GridKinematicsJob job{.skeleton = cloth_, .pose = offsets, .points = &points_};
-  if (job.run() != GridKinematicsJob::Problem::kNone) return;
+void ClothRenderer::move_to(const pose::Pose& pose) {
+  const auto* const offsets = std::get_if<pose::GridPose>(&pose);
+  const pose::GridKinematicsJob job{.skeleton = cloth_, .pose = offsets, .points = &points_};
+  if (job.run() != pose::GridKinematicsJob::Problem::kNone) return;
   sheet_.move_to(std::as_const(points_).data());
   if (!is_vane_) return;
   const glm::vec2 rest_m = arm_m(*cloth_, nullptr);
@@ -49,10 +49,10 @@ void ClothRenderer::move_to(const Pose& pose) {
                glm::dot(rest_m, now_m) / square_m2);
 }
 
-void ClothRenderer::draw(const View&) {
+void ClothRenderer::draw(const meshes::View&) {
   glUseProgram(program_.name());
   sheet_.draw();
   holder_.draw();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

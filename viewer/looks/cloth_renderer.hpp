@@ -8,25 +8,25 @@
 #include "viewer/looks/solids.hpp"
 #include "viewer/meshes/cloth_measure.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// Draws a cloth and what holds it: a curtain of linen that light shines through, a flag, a nobori banner.
 class ClothRenderer : public SceneRenderer {
  public:
   /// `cloth` must outlive this.
-  ClothRenderer(const GridSkeleton& cloth, std::string_view kind);
+  ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind);
 
-  void move_to(const Pose& pose) override;
-  void draw(const View& view) override;
+  void move_to(const pose::Pose& pose) override;
+  void draw(const meshes::View& view) override;
   bool casts_shadow() const override { return true; }
 
  private:
-  const GridSkeleton* cloth_;
+  const pose::GridSkeleton* cloth_;
   bool is_vane_;  ///< what holds it turns with its fixed edge
-  PointPositions points_;
+  pose::PointPositions points_;
   GridSheet sheet_;
   Solids holder_;
-  GlProgram program_;
+  gl::GlProgram program_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

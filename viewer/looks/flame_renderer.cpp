@@ -7,7 +7,7 @@
 #include "viewer/gl/shaders.hpp"
 #include "viewer/meshes/bounds.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
 const glm::vec3 kIron(0.030F, 0.027F, 0.025F);
@@ -17,15 +17,15 @@ constexpr float kGlowPerHeight = 1.15F;  // the glow's radius
 
 }  // namespace
 
-SolidMesh flame_bowl(const SurfaceSkeleton& surface) {
-  SolidMesh bowl;
+meshes::SolidMesh flame_bowl(const pose::SurfaceSkeleton& surface) {
+  meshes::SolidMesh bowl;
   if (surface.rest_x_m.empty()) return bowl;
-  const Bounds bounds = bounds_of(surface);
+  const meshes::Bounds bounds = meshes::bounds_of(surface);
   const glm::vec3 size_m = bounds.high_m - bounds.low_m;
   const float foot_m = *std::min_element(surface.rest_y_m.begin(), surface.rest_y_m.end());
 
   // As wide as the flame in its lowest tenth.
-  Bounds foot{glm::vec3(1e9F), glm::vec3(-1e9F)};
+  meshes::Bounds foot{glm::vec3(1e9F), glm::vec3(-1e9F)};
   for (std::size_t i = 0; i < surface.rest_x_m.size(); ++i) {
     const glm::vec3 point(surface.rest_x_m[i], surface.rest_y_m[i], surface.rest_z_m[i]);
     if (point.y < foot_m + 0.1F * size_m.y) foot = united(foot, {point, point});
@@ -47,13 +47,13 @@ SolidMesh flame_bowl(const SurfaceSkeleton& surface) {
   return bowl;
 }
 
-FlameRenderer::FlameRenderer(const SurfaceSkeleton& surface)
+FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface)
     : surface_(&surface),
       points_(surface),
-      sheet_(layout_of(surface)),
+      sheet_(meshes::layout_of(surface)),
       bowl_(flame_bowl(surface)),
-      program_(link_program("flame", shaders::kFlameVert, shaders::kFlameFrag)),
-      glow_program_(link_program("glow", shaders::kGlowVert, shaders::kGlowFrag)) {
+      program_(gl::link_program("flame", gl::shaders::kFlameVert, gl::shaders::kFlameFrag)),
+      glow_program_(gl::link_program("glow", gl::shaders::kGlowVert, gl::shaders::kGlowFrag)) {
   glBindTexture(GL_TEXTURE_2D, ramp_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kRampColors, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
@@ -62,24 +62,24 @@ FlameRenderer::FlameRenderer(const SurfaceSkeleton& surface)
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  set_sampler(program_, "ramp", 0);
+  gl::set_sampler(program_, "ramp", 0);
   glUniform1i(glGetUniformLocation(program_.name(), "is_closed"), surface.is_closed ? 1 : 0);
 
   glUniform1i(glGetUniformLocation(program_.name(), "columns"), static_cast<GLint>(surface.columns));
   glUniform1i(glGetUniformLocation(program_.name(), "shells"), static_cast<GLint>(sheet_.shells()));
   glUniform1i(glGetUniformLocation(program_.name(), "rows"), static_cast<GLint>(surface.rows));
 
-  const Bounds bounds = bounds_of(surface);
+  const meshes::Bounds bounds = meshes::bounds_of(surface);
   glow_radius_m_ = kGlowPerHeight * (bounds.high_m.y - bounds.low_m.y);
   glow_middle_m_ = (bounds.low_m + bounds.high_m) / 2.0F;
   glow_ball_place_ = glGetUniformLocation(glow_program_.name(), "ball_m");
   glow_strength_place_ = glGetUniformLocation(glow_program_.name(), "strength");
 }
 
-void FlameRenderer::move_to(const Pose& pose) {
-  const auto* const burning = std::get_if<SurfacePose>(&pose);
-  const SurfaceKinematicsJob job{.skeleton = surface_, .pose = burning, .points = &points_};
-  if (job.run() != SurfaceKinematicsJob::Problem::kNone || burning->heat.size() != points_.size()) return;
+void FlameRenderer::move_to(const pose::Pose& pose) {
+  const auto* const burning = std::get_if<pose::SurfacePose>(&pose);
+  const pose::SurfaceKinematicsJob job{.skeleton = surface_, .pose = burning, .points = &points_};
+  if (job.run() != pose::SurfaceKinematicsJob::Problem::kNone || burning->heat.size() != points_.size()) return;
   sheet_.move_to(std::as_const(points_).data());
   sheet_.set_level(burning->heat);
 
@@ -87,7 +87,7 @@ void FlameRenderer::move_to(const Pose& pose) {
   float heat = 0.0F;
   glm::vec3 sum_m(0.0F);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const JointPosition at = points_.point(i);
+    const pose::JointPosition at = points_.point(i);
     heat += burning->heat[i];
     sum_m += burning->heat[i] * glm::vec3(at.x_m, at.y_m, at.z_m);
   }
@@ -95,7 +95,7 @@ void FlameRenderer::move_to(const Pose& pose) {
   if (heat > 0.0F) glow_middle_m_ = sum_m / heat;
 }
 
-void FlameRenderer::draw(const View&) {
+void FlameRenderer::draw(const meshes::View&) {
   bowl_.draw();
 }
 
@@ -131,4 +131,4 @@ void FlameRenderer::draw_light() {
   glDisable(GL_BLEND);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -6,15 +6,15 @@
 
 #include "viewer/gl/shaders.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
 constexpr float kDiscPerSpacing = 1.5F;  // so that discs overlap although roots are unevenly spread
 constexpr GLsizei kDiscCorners = 6;
 
 /// Sets a program's uniforms of the body: the ellipsoid in the box around the roots.
-void set_body(const GlProgram& program, const StrandSkeleton& strands) {
-  Bounds roots{glm::vec3(1e9F), glm::vec3(-1e9F)};
+void set_body(const gl::GlProgram& program, const pose::StrandSkeleton& strands) {
+  meshes::Bounds roots{glm::vec3(1e9F), glm::vec3(-1e9F)};
   for (std::size_t i = 0; i < strands.strand_count; ++i) {
     const glm::vec3 root(strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]);
     roots = united(roots, {root, root});
@@ -33,22 +33,22 @@ void set_body(const GlProgram& program, const StrandSkeleton& strands) {
 
 }  // namespace
 
-FurRenderer::FurRenderer(const StrandSkeleton& strands)
-    : ribbons_(strands, BladeStyle::kFur),
-      hair_(link_program("hair", shaders::kHairVert, shaders::kShadeFrag)),
-      undercoat_(link_program("undercoat", shaders::kUndercoatVert, shaders::kShadeFrag)) {
-  set_sampler(hair_, "joints", 0);
+FurRenderer::FurRenderer(const pose::StrandSkeleton& strands)
+    : ribbons_(strands, meshes::BladeStyle::kFur),
+      hair_(gl::link_program("hair", gl::shaders::kHairVert, gl::shaders::kShadeFrag)),
+      undercoat_(gl::link_program("undercoat", gl::shaders::kUndercoatVert, gl::shaders::kShadeFrag)) {
+  gl::set_sampler(hair_, "joints", 0);
   set_body(hair_, strands);
   set_body(undercoat_, strands);
 }
 
-void FurRenderer::move_to(const Pose& pose) {
-  if (const auto* const bends = std::get_if<StrandPose>(&pose)) ribbons_.move_to(*bends);
+void FurRenderer::move_to(const pose::Pose& pose) {
+  if (const auto* const bends = std::get_if<pose::StrandPose>(&pose)) ribbons_.move_to(*bends);
 }
 
-void FurRenderer::draw(const View& view) {
+void FurRenderer::draw(const meshes::View& view) {
   ribbons_.draw(hair_, view);
   ribbons_.draw_fans(undercoat_, kDiscCorners);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -1,10 +1,10 @@
 #include "viewer/looks/grid_sheet.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
 /// `buffer` holds one array of `size` numbers for each attribute from `first` on.
-void describe_arrays(const GlBuffer& buffer, GLuint first, GLuint count, std::size_t size) {
+void describe_arrays(const gl::GlBuffer& buffer, GLuint first, GLuint count, std::size_t size) {
   glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
   for (GLuint i = 0; i < count; ++i) {
     // OpenGL takes an offset in a buffer as a pointer.
@@ -17,8 +17,8 @@ void describe_arrays(const GlBuffer& buffer, GLuint first, GLuint count, std::si
 
 }  // namespace
 
-GridSheet::GridSheet(const GridLayout& layout) : layout_(layout), normals_(3 * layout.size()) {
-  const std::vector<std::uint32_t> triangles = grid_triangles(layout);
+GridSheet::GridSheet(const meshes::GridLayout& layout) : layout_(layout), normals_(3 * layout.size()) {
+  const std::vector<std::uint32_t> triangles = meshes::grid_triangles(layout);
   index_count_ = static_cast<GLsizei>(triangles.size());
   glBindVertexArray(array_.name());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_.name());
@@ -29,14 +29,14 @@ GridSheet::GridSheet(const GridLayout& layout) : layout_(layout), normals_(3 * l
 }
 
 void GridSheet::move_to(std::span<const float> points) {
-  grid_normals(layout_, points, normals_);
-  stream_to(GL_ARRAY_BUFFER, point_buffer_, points);
-  stream_to(GL_ARRAY_BUFFER, normal_buffer_, std::span<const float>(normals_));
+  meshes::grid_normals(layout_, points, normals_);
+  gl::stream_to(GL_ARRAY_BUFFER, point_buffer_, points);
+  gl::stream_to(GL_ARRAY_BUFFER, normal_buffer_, std::span<const float>(normals_));
 }
 
 void GridSheet::set_level(std::span<const float> levels) {
   glBindVertexArray(array_.name());
-  stream_to(GL_ARRAY_BUFFER, level_buffer_, levels);
+  gl::stream_to(GL_ARRAY_BUFFER, level_buffer_, levels);
   describe_arrays(level_buffer_, 6, 1, layout_.size());
 }
 
@@ -54,4 +54,4 @@ void GridSheet::draw_shell(std::size_t shell) const {
   glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, at);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -5,7 +5,7 @@
 #include "viewer/gl/gl.hpp"
 #include "viewer/meshes/grid_mesh.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// The triangles of a cloth or a surface on the GPU, with smooth normals. Needs a current context.
 ///
@@ -13,7 +13,7 @@ namespace yuragi {
 /// after it is made.
 class GridSheet {
  public:
-  explicit GridSheet(const GridLayout& layout);
+  explicit GridSheet(const meshes::GridLayout& layout);
 
   /// Takes the points' present positions: all x, then all y, then all z.
   void move_to(std::span<const float> points);
@@ -30,14 +30,14 @@ class GridSheet {
   void set_level(std::span<const float> levels);
 
  private:
-  GridLayout layout_;
+  meshes::GridLayout layout_;
   std::vector<float> normals_;
   GLsizei index_count_ = 0;
-  GlBuffer index_buffer_;
-  GlBuffer point_buffer_;
-  GlBuffer normal_buffer_;
-  GlBuffer level_buffer_;
-  GlVertexArray array_;
+  gl::GlBuffer index_buffer_;
+  gl::GlBuffer point_buffer_;
+  gl::GlBuffer normal_buffer_;
+  gl::GlBuffer level_buffer_;
+  gl::GlVertexArray array_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -4,7 +4,7 @@
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/shaders.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
 // The shaders have the same numbers.
@@ -18,13 +18,13 @@ constexpr float kSunInShadow = 0.22F;  // leaves, threads and the air let some t
 }  // namespace
 
 Landscape::Landscape()
-    : noise_(make_noise_texture()),
-      ground_(link_program("ground", shaders::kGroundVert, shaders::kGroundFrag)),
-      hills_(link_program("hills", shaders::kHillsVert, shaders::kShadeFrag)),
-      sky_(link_program("sky", shaders::kSkyVert, shaders::kSkyFrag)) {
-  set_sampler(ground_, "noise_tile", 0);
+    : noise_(gl::make_noise_texture()),
+      ground_(gl::link_program("ground", gl::shaders::kGroundVert, gl::shaders::kGroundFrag)),
+      hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kShadeFrag)),
+      sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
+  gl::set_sampler(ground_, "noise_tile", 0);
   sunlight_place_ = glGetUniformLocation(ground_.name(), "sunlight");
-  set_sampler(sky_, "noise_tile", 0);
+  gl::set_sampler(sky_, "noise_tile", 0);
 }
 
 void Landscape::draw() {
@@ -34,8 +34,8 @@ void Landscape::draw() {
   glUseProgram(ground_.name());
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  for (const GLuint shadow : {GLuint{0}, kShadow}) {
-    glStencilFunc(GL_EQUAL, static_cast<GLint>(shadow), kHole | kShadow);
+  for (const GLuint shadow : {GLuint{0}, gl::kShadow}) {
+    glStencilFunc(GL_EQUAL, static_cast<GLint>(shadow), gl::kHole | gl::kShadow);
     glUniform1f(sunlight_place_, shadow == 0 ? 1.0F : kSunInShadow);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   }
@@ -50,4 +50,4 @@ void Landscape::draw() {
   glDepthFunc(GL_LESS);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -2,7 +2,7 @@
 
 #include "viewer/gl/gl.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// The ground and the evening sky around the scenes. Drawn after them, so that what they cover is not painted. Needs a
 /// current context.
@@ -15,12 +15,12 @@ class Landscape {
   void draw();
 
  private:
-  GlTexture noise_;
-  GlProgram ground_;
+  gl::GlTexture noise_;
+  gl::GlProgram ground_;
   GLint sunlight_place_ = -1;
-  GlProgram hills_;
-  GlProgram sky_;
-  GlVertexArray no_attributes_;
+  gl::GlProgram hills_;
+  gl::GlProgram sky_;
+  gl::GlVertexArray no_attributes_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -6,20 +6,20 @@
 #include "viewer/looks/tree_renderer.hpp"
 #include "viewer/looks/water_renderer.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
-std::unique_ptr<SceneRenderer> renderer_of(const StrandSkeleton& strands, const wire::SceneModel& scene) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, const wire::SceneModel& scene) {
   if (scene.kind == "fur") return std::make_unique<FurRenderer>(strands);
   return std::make_unique<GrassRenderer>(strands);
 }
-std::unique_ptr<SceneRenderer> renderer_of(const GridSkeleton& cloth, const wire::SceneModel& scene) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, const wire::SceneModel& scene) {
   return std::make_unique<ClothRenderer>(cloth, scene.kind);
 }
-std::unique_ptr<SceneRenderer> renderer_of(const TreeSkeleton& tree, const wire::SceneModel&) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const wire::SceneModel&) {
   return std::make_unique<TreeRenderer>(tree);
 }
-std::unique_ptr<SceneRenderer> renderer_of(const SurfaceSkeleton& surface, const wire::SceneModel&) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::SurfaceSkeleton& surface, const wire::SceneModel&) {
   if (surface.ramp_rgba.empty()) return std::make_unique<WaterRenderer>(surface);
   return std::make_unique<FlameRenderer>(surface);
 }
@@ -30,4 +30,4 @@ std::unique_ptr<SceneRenderer> make_scene_renderer(const wire::SceneModel& scene
   return std::visit([&](const auto& kind) { return renderer_of(kind, scene); }, scene.skeleton);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

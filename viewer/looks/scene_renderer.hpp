@@ -5,7 +5,7 @@
 #include "engine/wire/wire.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// The renderer of a scene view. Owns its GPU objects; needs a current context; on its thread. Allocates nothing from
 /// picture to picture after the first few.
@@ -17,11 +17,11 @@ class SceneRenderer {
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
   /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn.
-  virtual void move_to(const Pose& pose) = 0;
+  virtual void move_to(const pose::Pose& pose) = 0;
 
   /// Draws the opaque parts. The View is bound (ViewBuffer::set). The stage has set depth and stencil tests; other
   /// OpenGL state that is changed here, but for bindings, is restored.
-  virtual void draw(const View& view) = 0;
+  virtual void draw(const meshes::View& view) = 0;
 
   /// Draws, after everything else, what is blended over it: flames.
   virtual void draw_light() {}
@@ -40,4 +40,4 @@ class SceneRenderer {
 /// outlive it.
 std::unique_ptr<SceneRenderer> make_scene_renderer(const wire::SceneModel& scene);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

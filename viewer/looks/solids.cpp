@@ -4,11 +4,11 @@
 
 #include "viewer/gl/shaders.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
-Solids::Solids(const SolidMesh& mesh)
+Solids::Solids(const meshes::SolidMesh& mesh)
     : index_count_(static_cast<GLsizei>(mesh.indices().size())),
-      program_(link_program("solid", shaders::kSolidVert, shaders::kSolidFrag)),
+      program_(gl::link_program("solid", gl::shaders::kSolidVert, gl::shaders::kSolidFrag)),
       axis_place_(glGetUniformLocation(program_.name(), "axis_m")),
       turn_place_(glGetUniformLocation(program_.name(), "turn")) {
   glBindVertexArray(array_.name());
@@ -16,14 +16,16 @@ Solids::Solids(const SolidMesh& mesh)
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices().size() * sizeof(std::uint32_t)),
                mesh.indices().data(), GL_STATIC_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, vertex_buffer_.name());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices().size() * sizeof(SolidVertex)),
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices().size() * sizeof(meshes::SolidVertex)),
                mesh.vertices().data(), GL_STATIC_DRAW);
   // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SolidVertex), at(offsetof(SolidVertex, place_m)));
-  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(SolidVertex), at(offsetof(SolidVertex, normal)));
-  glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(SolidVertex), at(offsetof(SolidVertex, tint)));
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(meshes::SolidVertex),
+                        at(offsetof(meshes::SolidVertex, place_m)));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(meshes::SolidVertex),
+                        at(offsetof(meshes::SolidVertex, normal)));
+  glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(meshes::SolidVertex), at(offsetof(meshes::SolidVertex, tint)));
   for (GLuint attribute = 0; attribute < 3; ++attribute) glEnableVertexAttribArray(attribute);
 }
 
@@ -39,4 +41,4 @@ void Solids::draw() const {
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -5,12 +5,12 @@
 #include "viewer/gl/gl.hpp"
 #include "viewer/meshes/solid_mesh.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// A SolidMesh on the GPU, with its own program. Needs a current context.
 class Solids {
  public:
-  explicit Solids(const SolidMesh& mesh);
+  explicit Solids(const meshes::SolidMesh& mesh);
 
   /// Turns it about the vertical through a place (x, z), clockwise seen from above, from the position in which it was
   /// made.
@@ -21,11 +21,11 @@ class Solids {
 
  private:
   GLsizei index_count_;
-  GlProgram program_;
+  gl::GlProgram program_;
   GLint axis_place_, turn_place_;
-  GlBuffer vertex_buffer_;
-  GlBuffer index_buffer_;
-  GlVertexArray array_;
+  gl::GlBuffer vertex_buffer_;
+  gl::GlBuffer index_buffer_;
+  gl::GlVertexArray array_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

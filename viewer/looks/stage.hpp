@@ -12,7 +12,7 @@
 #include "viewer/meshes/view.hpp"
 #include "viewer/stream/pose_moment.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// All scene views, each with its SceneRenderer, in a landscape. Needs a current context; on its thread.
 class Stage {
@@ -27,26 +27,26 @@ class Stage {
   void show_next();
 
   /// The box around all scenes that are drawn, and the camera's first place for a picture of width / height `aspect`.
-  Bounds bounds() const;
-  CameraPlace home(double aspect) const;
+  meshes::Bounds bounds() const;
+  meshes::CameraPlace home(double aspect) const;
   /// How many joints move in all scenes.
   std::size_t node_count() const;
 
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
-  void draw(const PoseMoment& moment, const OrbitCamera& camera, RenderTarget& target);
+  void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
  private:
   bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene].name == *only_; }
-  bool is_seen(const PoseMoment& moment, std::size_t scene) const;
-  Bounds field(const PoseMoment& moment) const;
+  bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
+  meshes::Bounds field(const stream::PoseMoment& moment) const;
 
   std::vector<wire::SceneModel> scenes_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // one a scene
-  std::vector<Bounds> bounds_;                             // one a scene
+  std::vector<meshes::Bounds> bounds_;                     // one a scene
   std::optional<std::string> only_;
   Landscape landscape_;
-  ScreenDoor door_;
-  ViewBuffer view_buffer_;
+  gl::ScreenDoor door_;
+  gl::ViewBuffer view_buffer_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

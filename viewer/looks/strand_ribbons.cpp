@@ -2,18 +2,18 @@
 
 #include <cstddef>
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
-void describe_blade(const GlVertexArray& array, const GlBuffer& buffer) {
+void describe_blade(const gl::GlVertexArray& array, const gl::GlBuffer& buffer) {
   // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
   glBindVertexArray(array.name());
   glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
-  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(Blade), at(offsetof(Blade, root_m)));
-  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(Blade), at(offsetof(Blade, tint)));
-  glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, sizeof(Blade), at(offsetof(Blade, strand)));
+  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::Blade), at(offsetof(meshes::Blade, root_m)));
+  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::Blade), at(offsetof(meshes::Blade, tint)));
+  glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, sizeof(meshes::Blade), at(offsetof(meshes::Blade, strand)));
   for (GLuint attribute = 0; attribute < 3; ++attribute) {
     glEnableVertexAttribArray(attribute);
     glVertexAttribDivisor(attribute, 1);
@@ -22,20 +22,20 @@ void describe_blade(const GlVertexArray& array, const GlBuffer& buffer) {
 
 }  // namespace
 
-StrandRibbons::StrandRibbons(const StrandSkeleton& strands, BladeStyle style)
+StrandRibbons::StrandRibbons(const pose::StrandSkeleton& strands, meshes::BladeStyle style)
     : strands_(&strands), sorter_(strands, style), joints_(strands) {
   describe_blade(blade_array_, blade_buffer_);
   glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // creates the buffer, even if no pose is ever taken
 }
 
-void StrandRibbons::move_to(const StrandPose& pose) {
+void StrandRibbons::move_to(const pose::StrandPose& pose) {
   // The forward kinematics of engine/pose; its joints are uploaded as they lie.
-  const StrandKinematicsJob job{.skeleton = strands_, .pose = &pose, .row = {}, .joints = &joints_};
-  if (job.run() != StrandKinematicsJob::Problem::kNone) return;
-  stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(joints_).data()));
+  const pose::StrandKinematicsJob job{.skeleton = strands_, .pose = &pose, .row = {}, .joints = &joints_};
+  if (job.run() != pose::StrandKinematicsJob::Problem::kNone) return;
+  gl::stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(joints_).data()));
 }
 
-void StrandRibbons::draw(const GlProgram& program, const View& view) {
+void StrandRibbons::draw(const gl::GlProgram& program, const meshes::View& view) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), "links"), static_cast<GLint>(strands_->links_per_strand));
   const GLint rings_place = glGetUniformLocation(program.name(), "rings");
@@ -46,23 +46,23 @@ void StrandRibbons::draw(const GlProgram& program, const View& view) {
   // Near blades first: the depth test then saves painting what they hide.
   sorter_.sort(view);
   glBindVertexArray(blade_array_.name());
-  for (const DetailLevel& level : sorter_.levels()) {
+  for (const meshes::DetailLevel& level : sorter_.levels()) {
     if (level.blades.empty()) continue;
-    stream_to(GL_ARRAY_BUFFER, blade_buffer_, std::span(level.blades));
+    gl::stream_to(GL_ARRAY_BUFFER, blade_buffer_, std::span(level.blades));
     glUniform1i(rings_place, static_cast<GLint>(level.rings));
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, static_cast<GLsizei>(2 * (level.rings + 1)),
                           static_cast<GLsizei>(level.blades.size()));
   }
 }
 
-void StrandRibbons::draw_fans(const GlProgram& program, GLsizei corners) {
+void StrandRibbons::draw_fans(const gl::GlProgram& program, GLsizei corners) {
   glUseProgram(program.name());
   glBindVertexArray(blade_array_.name());
-  for (const DetailLevel& level : sorter_.levels()) {
+  for (const meshes::DetailLevel& level : sorter_.levels()) {
     if (level.blades.empty()) continue;
-    stream_to(GL_ARRAY_BUFFER, blade_buffer_, std::span(level.blades));
+    gl::stream_to(GL_ARRAY_BUFFER, blade_buffer_, std::span(level.blades));
     glDrawArraysInstanced(GL_TRIANGLE_FAN, 0, corners, static_cast<GLsizei>(level.blades.size()));
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

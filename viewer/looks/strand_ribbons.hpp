@@ -5,7 +5,7 @@
 #include "viewer/meshes/blades.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// Strands on the GPU, each a ribbon along its joints, with more vertices the larger it is in the picture. Needs a
 /// current context.
@@ -15,23 +15,23 @@ namespace yuragi {
 class StrandRibbons {
  public:
   /// `strands` must outlive this.
-  StrandRibbons(const StrandSkeleton& strands, BladeStyle style);
+  StrandRibbons(const pose::StrandSkeleton& strands, meshes::BladeStyle style);
 
   /// Computes and uploads the joints of this pose.
-  void move_to(const StrandPose& pose);
+  void move_to(const pose::StrandPose& pose);
   /// Draws what is in view, near ones first, with `program`.
-  void draw(const GlProgram& program, const View& view);
+  void draw(const gl::GlProgram& program, const meshes::View& view);
   /// Draws `corners` vertices, as a fan, for each strand in view of the last draw().
-  void draw_fans(const GlProgram& program, GLsizei corners);
+  void draw_fans(const gl::GlProgram& program, GLsizei corners);
 
  private:
-  const StrandSkeleton* strands_;
-  BladeSorter sorter_;
-  JointPositions joints_;
-  GlBuffer joint_buffer_;
-  GlTexture joint_texture_;
-  GlBuffer blade_buffer_;
-  GlVertexArray blade_array_;
+  const pose::StrandSkeleton* strands_;
+  meshes::BladeSorter sorter_;
+  pose::JointPositions joints_;
+  gl::GlBuffer joint_buffer_;
+  gl::GlTexture joint_texture_;
+  gl::GlBuffer blade_buffer_;
+  gl::GlVertexArray blade_array_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -8,37 +8,37 @@
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/tree_parts.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 
 /// Draws a tree: tapering branches with bark, and leaves that the low sun shines through.
 class TreeRenderer : public SceneRenderer {
  public:
   /// `tree` must outlive this.
-  explicit TreeRenderer(const TreeSkeleton& tree);
+  explicit TreeRenderer(const pose::TreeSkeleton& tree);
 
-  void move_to(const Pose& pose) override;
-  void draw(const View& view) override;
+  void move_to(const pose::Pose& pose) override;
+  void draw(const meshes::View& view) override;
   bool casts_shadow() const override { return true; }
 
  private:
   struct Level {
-    GlBuffer part_buffer;
-    GlBuffer index_buffer;  // of branches: the triangles of a tube, ring behind ring
-    GlVertexArray array;
+    gl::GlBuffer part_buffer;
+    gl::GlBuffer index_buffer;  // of branches: the triangles of a tube, ring behind ring
+    gl::GlVertexArray array;
     GLsizei sides = 0;
   };
 
   void draw_branches(std::size_t level, std::size_t rings);
   void draw_leaves(std::size_t level);
 
-  const TreeSkeleton* tree_;
-  Bounds bounds_;
-  TreeJoints joints_;
+  const pose::TreeSkeleton* tree_;
+  meshes::Bounds bounds_;
+  pose::TreeJoints joints_;
   std::vector<Level> levels_;
-  GlProgram bark_;
-  GlProgram leaf_;
-  GlBuffer joint_buffer_;
-  GlTexture joint_texture_;
+  gl::GlProgram bark_;
+  gl::GlProgram leaf_;
+  gl::GlBuffer joint_buffer_;
+  gl::GlTexture joint_texture_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -7,7 +7,7 @@
 
 #include "viewer/gl/shaders.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
 const glm::vec3 kStone(0.23F, 0.21F, 0.18F);
@@ -15,7 +15,7 @@ constexpr float kHalfRimPerSide = 0.02F;  // half the rim's width, of the longes
 constexpr float kRimRise_m = 0.06F;       // above the water at rest
 constexpr float kBasinDepth_m = 0.6F;
 
-std::array<glm::vec3, 4> corners_of(const SurfaceSkeleton& surface) {
+std::array<glm::vec3, 4> corners_of(const pose::SurfaceSkeleton& surface) {
   const std::size_t columns = surface.columns;
   const std::size_t last = columns * (surface.rows - 1);
   const auto corner = [&](std::size_t i) {
@@ -24,14 +24,14 @@ std::array<glm::vec3, 4> corners_of(const SurfaceSkeleton& surface) {
   return {corner(0), corner(columns - 1), corner(last + columns - 1), corner(last)};
 }
 
-bool is_open_sheet(const SurfaceSkeleton& surface) {
+bool is_open_sheet(const pose::SurfaceSkeleton& surface) {
   return surface.columns > 1 && surface.rows > 1 && !surface.is_closed;
 }
 
 }  // namespace
 
-SolidMesh water_basin(const SurfaceSkeleton& surface) {
-  SolidMesh basin;
+meshes::SolidMesh water_basin(const pose::SurfaceSkeleton& surface) {
+  meshes::SolidMesh basin;
   if (!is_open_sheet(surface)) return basin;
   const std::array<glm::vec3, 4> corners = corners_of(surface);
   const glm::vec3 middle = (corners[0] + corners[2]) / 2.0F;
@@ -52,8 +52,8 @@ SolidMesh water_basin(const SurfaceSkeleton& surface) {
   return basin;
 }
 
-SolidMesh water_hole(const SurfaceSkeleton& surface) {
-  SolidMesh hole;
+meshes::SolidMesh water_hole(const pose::SurfaceSkeleton& surface) {
+  meshes::SolidMesh hole;
   if (!is_open_sheet(surface)) return hole;
   std::array<glm::vec3, 4> corners = corners_of(surface);
   for (glm::vec3& corner : corners) corner.y = 0.0F;
@@ -61,21 +61,21 @@ SolidMesh water_hole(const SurfaceSkeleton& surface) {
   return hole;
 }
 
-WaterRenderer::WaterRenderer(const SurfaceSkeleton& surface)
+WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface)
     : surface_(&surface),
       points_(surface),
-      sheet_(layout_of(surface)),
+      sheet_(meshes::layout_of(surface)),
       basin_(water_basin(surface)),
       hole_(water_hole(surface)),
-      program_(link_program("water", shaders::kWaterVert, shaders::kWaterFrag)) {}
+      program_(gl::link_program("water", gl::shaders::kWaterVert, gl::shaders::kWaterFrag)) {}
 
-void WaterRenderer::move_to(const Pose& pose) {
-  const auto* const waves = std::get_if<SurfacePose>(&pose);
-  const SurfaceKinematicsJob job{.skeleton = surface_, .pose = waves, .points = &points_};
-  if (job.run() == SurfaceKinematicsJob::Problem::kNone) sheet_.move_to(std::as_const(points_).data());
+void WaterRenderer::move_to(const pose::Pose& pose) {
+  const auto* const waves = std::get_if<pose::SurfacePose>(&pose);
+  const pose::SurfaceKinematicsJob job{.skeleton = surface_, .pose = waves, .points = &points_};
+  if (job.run() == pose::SurfaceKinematicsJob::Problem::kNone) sheet_.move_to(std::as_const(points_).data());
 }
 
-void WaterRenderer::draw(const View&) {
+void WaterRenderer::draw(const meshes::View&) {
   glUseProgram(program_.name());
   sheet_.draw();
   basin_.draw();
@@ -85,4 +85,4 @@ void WaterRenderer::draw_hole() {
   hole_.draw();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

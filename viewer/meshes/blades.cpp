@@ -9,7 +9,7 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kWidthPerSpacing = 0.26F;
@@ -43,13 +43,13 @@ glm::vec3 coat_at(float paleness) {
 
 }  // namespace
 
-std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style) {
+std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton, BladeStyle style) {
   const Bounds bounds = bounds_of(skeleton);
   const glm::vec3 size_m = bounds.high_m - bounds.low_m;
   const float spacing_m =
       std::sqrt(size_m.x * size_m.z / static_cast<float>(std::max<std::size_t>(1, skeleton.strand_count)));
 
-  const RandomStream chance(0, stream_id("viewer blades"));
+  const math::RandomStream chance(0, math::stream_id("viewer blades"));
   std::vector<Blade> blades(skeleton.strand_count);
   for (std::size_t i = 0; i < blades.size(); ++i) {
     const auto [first, second] = chance.uniform_pair(2 * i);
@@ -75,7 +75,7 @@ std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style) {
   return blades;
 }
 
-BladeSorter::BladeSorter(const StrandSkeleton& skeleton, BladeStyle style) : blades_(blades_of(skeleton, style)) {
+BladeSorter::BladeSorter(const pose::StrandSkeleton& skeleton, BladeStyle style) : blades_(blades_of(skeleton, style)) {
   const std::size_t links = skeleton.links_per_strand;
   for (std::size_t i = 0; i < blades_.size(); ++i) {
     length_m_.push_back(skeleton.link_length_m[i] * static_cast<float>(links));
@@ -111,4 +111,4 @@ void BladeSorter::sort(const View& view) {
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

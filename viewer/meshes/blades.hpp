@@ -11,7 +11,7 @@
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// An instance for a strand, in the layout that the grass shader reads.
 struct Blade {
@@ -27,7 +27,7 @@ enum class BladeStyle : std::uint8_t { kGrass, kFur };
 
 /// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted by patches and
 /// at random. The same skeleton always gives the same blades.
-std::vector<Blade> blades_of(const StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
+std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
 
 /// Blades of one level of detail.
 struct DetailLevel {
@@ -42,7 +42,7 @@ class BladeSorter {
   static constexpr float kRingPx = 22.0F;      ///< a ring for each of so many pixels of a blade's height
   static constexpr std::size_t kMinRings = 3;  ///< where there are as many links
 
-  explicit BladeSorter(const StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
+  explicit BladeSorter(const pose::StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
 
   void sort(const View& view);
 
@@ -55,4 +55,4 @@ class BladeSorter {
   std::vector<DetailLevel> levels_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

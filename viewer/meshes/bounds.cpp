@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kSwingPerLength = 0.45F;  // how far a hanging cloth swings out
@@ -15,13 +15,13 @@ constexpr float kFlyPerLength = 0.9F;     // how far a flag reaches, in whatever
 constexpr float kWaveRoom_m = 0.05F;      // above and below a surface
 constexpr float kRimPerSide = 0.05F;      // of a basin around water
 
-glm::vec3 joint_at_rest(const GridSkeleton& cloth, std::size_t column, std::size_t row) {
+glm::vec3 joint_at_rest(const pose::GridSkeleton& cloth, std::size_t column, std::size_t row) {
   const std::size_t i = row * cloth.stride() + column;
   return {cloth.rest_x_m[i], cloth.rest_y_m[i], cloth.rest_z_m[i]};
 }
 
 /// From the root of a strand at rest to its tip, along the arc (skeleton.hpp).
-glm::vec3 chord_m(const StrandSkeleton& s, std::size_t strand) {
+glm::vec3 chord_m(const pose::StrandSkeleton& s, std::size_t strand) {
   const glm::vec3 rest(s.rest_x[strand], s.rest_y[strand], s.rest_z[strand]);
   const glm::vec3 curl(s.curl_x[strand], s.curl_y[strand], s.curl_z[strand]);
   glm::vec3 sum(0.0F);
@@ -42,7 +42,7 @@ Bounds united(const Bounds& a, const Bounds& b) {
   return {glm::min(a.low_m, b.low_m), glm::max(a.high_m, b.high_m)};
 }
 
-Bounds bounds_of(const StrandSkeleton& strands) {
+Bounds bounds_of(const pose::StrandSkeleton& strands) {
   if (strands.strand_count == 0) return {};
   Bounds bounds{glm::vec3(1e9F), glm::vec3(-1e9F)};
   for (std::size_t i = 0; i < strands.strand_count; ++i) {
@@ -53,7 +53,7 @@ Bounds bounds_of(const StrandSkeleton& strands) {
   return bounds;
 }
 
-Bounds bounds_of(const GridSkeleton& cloth) {
+Bounds bounds_of(const pose::GridSkeleton& cloth) {
   if (cloth.columns == 0 || cloth.rows == 0) return {};
   Bounds fixed{joint_at_rest(cloth, 0, 0), joint_at_rest(cloth, 0, 0)};
   Bounds whole = fixed;
@@ -80,12 +80,12 @@ Bounds bounds_of(const GridSkeleton& cloth) {
   return united(whole, widened({top, top}, {arm_m, 0.0F, arm_m}));
 }
 
-Bounds bounds_of(const TreeSkeleton& tree) {
+Bounds bounds_of(const pose::TreeSkeleton& tree) {
   Bounds bounds{glm::vec3(1e9F), glm::vec3(-1e9F)};
   bool is_empty = true;
-  for (const TreeLevel& level : tree.levels) {
+  for (const pose::TreeLevel& level : tree.levels) {
     for (std::size_t i = 0; i < level.strands.strand_count; ++i) {
-      const StrandSkeleton& s = level.strands;
+      const pose::StrandSkeleton& s = level.strands;
       const glm::vec3 root(s.root_x_m[i], s.root_y_m[i], s.root_z_m[i]);
       const glm::vec3 tip = root + chord_m(s, i);
       bounds = united(bounds, {glm::min(root, tip), glm::max(root, tip)});
@@ -95,7 +95,7 @@ Bounds bounds_of(const TreeSkeleton& tree) {
   return is_empty ? Bounds{} : bounds;
 }
 
-Bounds bounds_of(const SurfaceSkeleton& surface) {
+Bounds bounds_of(const pose::SurfaceSkeleton& surface) {
   if (surface.rest_x_m.empty()) return {};
   const auto range = [](std::span<const float> values) { return std::minmax_element(values.begin(), values.end()); };
   const auto [low_x, high_x] = range(surface.rest_x_m);
@@ -107,8 +107,8 @@ Bounds bounds_of(const SurfaceSkeleton& surface) {
   return widened(bounds, {rim_m, kWaveRoom_m, rim_m});
 }
 
-Bounds bounds_of(const Skeleton& skeleton) {
+Bounds bounds_of(const pose::Skeleton& skeleton) {
   return std::visit([](const auto& kind) { return bounds_of(kind); }, skeleton);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -4,7 +4,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// A box around something, in metres.
 struct Bounds {
@@ -13,13 +13,13 @@ struct Bounds {
 };
 
 /// The box that a skeleton's poses fill. An estimate: in a storm a cloth may exceed it.
-Bounds bounds_of(const Skeleton& skeleton);
-Bounds bounds_of(const StrandSkeleton& strands);
-Bounds bounds_of(const GridSkeleton& cloth);
-Bounds bounds_of(const TreeSkeleton& tree);
-Bounds bounds_of(const SurfaceSkeleton& surface);
+Bounds bounds_of(const pose::Skeleton& skeleton);
+Bounds bounds_of(const pose::StrandSkeleton& strands);
+Bounds bounds_of(const pose::GridSkeleton& cloth);
+Bounds bounds_of(const pose::TreeSkeleton& tree);
+Bounds bounds_of(const pose::SurfaceSkeleton& surface);
 
 /// The box around both.
 Bounds united(const Bounds& a, const Bounds& b);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 const glm::vec3 kOak(0.150F, 0.078F, 0.034F);
@@ -13,12 +13,12 @@ const glm::vec3 kBamboo(0.30F, 0.24F, 0.085F);
 const glm::vec3 kSteel(0.42F, 0.42F, 0.43F);
 const glm::vec3 kBrass(0.62F, 0.40F, 0.10F);
 
-glm::vec3 cloth_joint(const GridSkeleton& cloth, std::size_t column, std::size_t row) {
+glm::vec3 cloth_joint(const pose::GridSkeleton& cloth, std::size_t column, std::size_t row) {
   const std::size_t i = row * cloth.stride() + column;
   return {cloth.rest_x_m[i], cloth.rest_y_m[i], cloth.rest_z_m[i]};
 }
 
-bool is_hoisted(const GridSkeleton& cloth) {
+bool is_hoisted(const pose::GridSkeleton& cloth) {
   const glm::vec3 edge = cloth_joint(cloth, cloth.columns - 1, 0) - cloth_joint(cloth, 0, 0);
   return std::abs(edge.y) > std::hypot(edge.x, edge.z);
 }
@@ -28,7 +28,7 @@ glm::vec3 on_ground(const glm::vec3& place) {
 }
 
 /// A rod along the fixed edge and a little beyond, on two posts.
-void add_curtain_rod(const GridSkeleton& cloth, SolidMesh& mesh) {
+void add_curtain_rod(const pose::GridSkeleton& cloth, SolidMesh& mesh) {
   const glm::vec3 first = cloth_joint(cloth, 0, 0);
   const glm::vec3 last = cloth_joint(cloth, cloth.columns - 1, 0);
   const float width_m = glm::distance(first, last);
@@ -53,7 +53,7 @@ void add_pole(const glm::vec3& top, const glm::vec3& tint, SolidMesh& mesh) {
 
 }  // namespace
 
-ClothStyle cloth_style(std::string_view kind, const GridSkeleton& cloth) {
+ClothStyle cloth_style(std::string_view kind, const pose::GridSkeleton& cloth) {
   if (kind == "curtain") return ClothStyle::kCurtain;
   if (kind == "flag") return ClothStyle::kFlag;
   if (kind == "banner" || cloth.is_first_column_fixed) return ClothStyle::kBanner;
@@ -61,7 +61,7 @@ ClothStyle cloth_style(std::string_view kind, const GridSkeleton& cloth) {
   return is_flag ? ClothStyle::kFlag : ClothStyle::kCurtain;
 }
 
-ClothMeasure measure(const GridSkeleton& cloth) {
+ClothMeasure measure(const pose::GridSkeleton& cloth) {
   if (cloth.columns < 2 || cloth.rows < 2) return {};
   float along_row_m = 0.0F;
   float along_column_m = 0.0F;
@@ -84,7 +84,7 @@ ClothMeasure measure(const GridSkeleton& cloth) {
   return flag;
 }
 
-SolidMesh cloth_holder(ClothStyle style, const GridSkeleton& cloth) {
+SolidMesh cloth_holder(ClothStyle style, const pose::GridSkeleton& cloth) {
   SolidMesh mesh;
   if (cloth.columns < 2 || cloth.rows < 2) return mesh;
   const glm::vec3 first = cloth_joint(cloth, 0, 0);
@@ -108,4 +108,4 @@ SolidMesh cloth_holder(ClothStyle style, const GridSkeleton& cloth) {
   return mesh;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

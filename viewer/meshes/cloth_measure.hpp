@@ -8,13 +8,13 @@
 #include "engine/pose/skeleton.hpp"
 #include "viewer/meshes/solid_mesh.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// How a cloth is drawn and held. The numbers are those of the cloth shader.
 enum class ClothStyle : int { kCurtain = 0, kFlag = 1, kBanner = 2 };
 
 /// By the scene's kind; an unknown kind is a curtain, or a flag where its fixed edge is upright.
-ClothStyle cloth_style(std::string_view kind, const GridSkeleton& cloth);
+ClothStyle cloth_style(std::string_view kind, const pose::GridSkeleton& cloth);
 
 /// How a cloth's picture lies on its grid: the place of joint (column, row) on it, in metres from its upper left corner
 /// to the right and down, is origin_m + column * per_column_m + row * per_row_m.
@@ -24,9 +24,9 @@ struct ClothMeasure {
   glm::vec2 per_row_m{0.0F};
   glm::vec2 size_m{0.0F};
 };
-ClothMeasure measure(const GridSkeleton& cloth);
+ClothMeasure measure(const pose::GridSkeleton& cloth);
 
 /// The mesh of what holds it: a rod on two posts, a pole, a pole with a cross-arm, on the ground at height 0.
-SolidMesh cloth_holder(ClothStyle style, const GridSkeleton& cloth);
+SolidMesh cloth_holder(ClothStyle style, const pose::GridSkeleton& cloth);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

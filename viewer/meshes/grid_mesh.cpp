@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kSmallestArea_m2 = 1e-16F;
@@ -33,10 +33,10 @@ void write_normal(const Axes& p, std::size_t left, std::size_t right, std::size_
 
 }  // namespace
 
-GridLayout layout_of(const GridSkeleton& cloth) {
+GridLayout layout_of(const pose::GridSkeleton& cloth) {
   return {cloth.columns, cloth.rows, cloth.stride(), false};
 }
-GridLayout layout_of(const SurfaceSkeleton& surface) {
+GridLayout layout_of(const pose::SurfaceSkeleton& surface) {
   return {surface.columns, surface.rows, surface.columns, surface.is_closed, surface.is_closed ? surface.shells : 1};
 }
 
@@ -86,4 +86,4 @@ void grid_normals(const GridLayout& layout, std::span<const float> points, std::
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

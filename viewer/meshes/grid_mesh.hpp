@@ -6,7 +6,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// How the points of a cloth or a surface lie in their arrays: point (column, row) at row * stride + column.
 struct GridLayout {
@@ -18,8 +18,8 @@ struct GridLayout {
 
   std::size_t size() const { return rows * stride; }
 };
-GridLayout layout_of(const GridSkeleton& cloth);
-GridLayout layout_of(const SurfaceSkeleton& surface);
+GridLayout layout_of(const pose::GridSkeleton& cloth);
+GridLayout layout_of(const pose::SurfaceSkeleton& surface);
 
 /// Two triangles for each cell, three indices of points each, all with the same winding; shell after shell.
 std::vector<std::uint32_t> grid_triangles(const GridLayout& layout);
@@ -31,4 +31,4 @@ std::vector<std::uint32_t> grid_triangles(const GridLayout& layout);
 /// is not written. Pure; allocates nothing.
 void grid_normals(const GridLayout& layout, std::span<const float> points, std::span<float> normals);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -5,7 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr double kOrbit_deg = 180.0;  // for a drag over the picture's height
@@ -147,4 +147,4 @@ CameraPlace place_around(const Bounds& bounds, double aspect) {
   return limited(place);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

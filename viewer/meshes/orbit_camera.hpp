@@ -5,7 +5,7 @@
 
 #include "viewer/meshes/bounds.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// The position of a camera that orbits a target and never rolls.
 struct CameraPlace {
@@ -64,4 +64,4 @@ CameraPlace place_across(const Bounds& bounds);
 /// little from the corner, toward the evening sun's side.
 CameraPlace place_around(const Bounds& bounds, double aspect);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -6,7 +6,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr std::uint32_t kSides = 16;
@@ -85,4 +85,4 @@ void SolidMesh::add_beam(const glm::vec3& from, const glm::vec3& to, float half_
            tint);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// A vertex of a rigid mesh, in the layout that the shader reads.
 struct SolidVertex {
@@ -36,4 +36,4 @@ class SolidMesh {
   std::vector<std::uint32_t> indices_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -9,7 +9,7 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 const glm::vec3 kBark(0.085F, 0.062F, 0.045F);
@@ -23,20 +23,20 @@ struct LeafTints {
   glm::vec3 fresh;
 };
 
-LeafTints tints_of(FoliageColor foliage) {
+LeafTints tints_of(pose::FoliageColor foliage) {
   switch (foliage) {
-    case FoliageColor::kBlossom:
+    case pose::FoliageColor::kBlossom:
       return {{0.52F, 0.27F, 0.31F}, {0.80F, 0.60F, 0.60F}};
-    case FoliageColor::kAutumn:
+    case pose::FoliageColor::kAutumn:
       return {{0.36F, 0.045F, 0.012F}, {0.62F, 0.26F, 0.030F}};
-    case FoliageColor::kGreen:
+    case pose::FoliageColor::kGreen:
       break;
   }
   return {{0.050F, 0.118F, 0.020F}, {0.150F, 0.225F, 0.038F}};
 }
 
 /// The vector from a strand's foot to its tip at rest.
-glm::vec3 rest_direction(const StrandSkeleton& strands, std::size_t i) {
+glm::vec3 rest_direction(const pose::StrandSkeleton& strands, std::size_t i) {
   const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
   const glm::vec3 curl(strands.curl_x[i], strands.curl_y[i], strands.curl_z[i]);
   glm::vec3 sum(0.0F);
@@ -49,7 +49,7 @@ glm::vec3 rest_direction(const StrandSkeleton& strands, std::size_t i) {
 }
 
 /// The middle of the strands' roots.
-glm::vec3 middle_of(const StrandSkeleton& strands) {
+glm::vec3 middle_of(const pose::StrandSkeleton& strands) {
   glm::vec3 sum(0.0F);
   for (std::size_t i = 0; i < strands.strand_count; ++i) {
     sum += glm::vec3(strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]);
@@ -63,20 +63,20 @@ std::array<float, 3> array_of(const glm::vec3& v) {
 
 }  // namespace
 
-std::size_t first_joint_at(const TreeSkeleton& tree, std::size_t level) {
+std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < level; ++i) {
-    const StrandSkeleton& strands = tree.levels[i].strands;
+    const pose::StrandSkeleton& strands = tree.levels[i].strands;
     first += strands.padded_count() * strands.links_per_strand * 3;
   }
   return first;
 }
 
-std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level) {
-  const TreeLevel& from = tree.levels[level];
+std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level) {
+  const pose::TreeLevel& from = tree.levels[level];
   const LeafTints tints = tints_of(tree.foliage);
-  const RandomStream chance(level, stream_id("viewer tree"));
-  const StrandSkeleton& strands = from.strands;
+  const math::RandomStream chance(level, math::stream_id("viewer tree"));
+  const pose::StrandSkeleton& strands = from.strands;
   std::vector<TreePart> parts(strands.strand_count);
   const glm::vec3 middle_m = middle_of(strands);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -90,10 +90,10 @@ std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level) {
     if (level > 0) {
       // The layout of JointPositions: blocks of strands, links, axes, lanes.
       const std::size_t links = tree.levels[from.parent_level].strands.links_per_strand;
-      const std::size_t block = from.parent[i] / kStrandsPerBlock;
+      const std::size_t block = from.parent[i] / pose::kStrandsPerBlock;
       part.root_at = static_cast<std::int32_t>(first_joint_at(tree, from.parent_level) +
-                                               (block * links + from.parent_link[i]) * 3 * kStrandsPerBlock +
-                                               from.parent[i] % kStrandsPerBlock);
+                                               (block * links + from.parent_link[i]) * 3 * pose::kStrandsPerBlock +
+                                               from.parent[i] % pose::kStrandsPerBlock);
     }
 
     const auto light = static_cast<float>(0.8 + 0.4 * second);
@@ -116,7 +116,7 @@ std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level) {
   return parts;
 }
 
-std::size_t tree_rings(const TreeLevel& level, const Bounds& bounds, const View& view) {
+std::size_t tree_rings(const pose::TreeLevel& level, const Bounds& bounds, const View& view) {
   float length_m = 0.0F;
   for (std::size_t i = 0; i < level.strands.strand_count; ++i) {
     length_m = std::max(length_m, level.strands.link_length_m[i]);
@@ -130,4 +130,4 @@ std::size_t tree_rings(const TreeLevel& level, const Bounds& bounds, const View&
   return std::clamp(rings, std::min(kMinTreeRings, links), links);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -9,7 +9,7 @@
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// An instance for a strand of a tree (a branch or a leaf), in the layout that the tree's shaders read.
 ///
@@ -26,16 +26,16 @@ struct TreePart {
 };
 
 /// The index in that array at which the joints of a level begin.
-std::size_t first_joint_at(const TreeSkeleton& tree, std::size_t level);
+std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level);
 
 /// The parts of a level, one a strand, leaves in the colours of the tree's foliage. The same tree always makes the same
 /// parts.
-std::vector<TreePart> tree_parts(const TreeSkeleton& tree, std::size_t level);
+std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level);
 
 /// How many rings of vertices a level's branches get in this view: more, the longer they are in the picture; at least
 /// kMinTreeRings and at most one a link.
-std::size_t tree_rings(const TreeLevel& level, const Bounds& bounds, const View& view);
+std::size_t tree_rings(const pose::TreeLevel& level, const Bounds& bounds, const View& view);
 inline constexpr std::size_t kMinTreeRings = 4;
 inline constexpr float kTreeRingPx = 5.0F;
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

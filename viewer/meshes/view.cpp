@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kSunHeading_deg = 239.0F;
@@ -45,4 +45,4 @@ View laid_flat(const View& view) {
   return flat;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -5,7 +5,7 @@
 
 #include "viewer/meshes/orbit_camera.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 
 /// What all renderers know of the picture being drawn: the uniform block View of viewer/gl/shaders/common.glsl, in its
 /// layout (std140).
@@ -25,4 +25,4 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bound
 /// The same view of everything projected onto the ground along the sun's rays: of its shadows.
 View laid_flat(const View& view);
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

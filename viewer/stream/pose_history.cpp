@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 
 void PoseHistory::reset(const PoseMoment& layout) {
   const std::size_t bytes = std::max<std::size_t>(1, value_bytes(layout.poses));
@@ -42,4 +42,4 @@ void PoseHistory::sample(double time_s, PoseMoment& out) const {
   blend(before, after, span_s > 0.0 ? (time_s - before.time_s) / span_s : 0.0, out);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -5,7 +5,7 @@
 
 #include "viewer/stream/pose_moment.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 
 /// The last few seconds of received poses, in the order of the sender's time.
 ///
@@ -43,4 +43,4 @@ class PoseHistory {
   std::size_t count_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -5,27 +5,27 @@
 
 #include "engine/pose/pose_arrays.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 PoseMoment rest_moment(std::span<const wire::SceneModel> scenes) {
   PoseMoment rest;
-  for (const wire::SceneModel& scene : scenes) rest.poses.push_back(rest_pose(scene.skeleton));
+  for (const wire::SceneModel& scene : scenes) rest.poses.push_back(pose::rest_pose(scene.skeleton));
   rest.opacities.assign(scenes.size(), 1.0F);
   return rest;
 }
 
-bool has_same_layout(std::span<const Pose> a, std::span<const Pose> b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Pose& left, const Pose& right) {
-    const PoseArrays<const float> lefts(left);
-    const PoseArrays<const float> rights(right);
+bool has_same_layout(std::span<const pose::Pose> a, std::span<const pose::Pose> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const pose::Pose& left, const pose::Pose& right) {
+    const pose::PoseArrays<const float> lefts(left);
+    const pose::PoseArrays<const float> rights(right);
     return left.index() == right.index() && std::equal(lefts.begin(), lefts.end(), rights.begin(), rights.end(),
                                                        [](auto one, auto other) { return one.size() == other.size(); });
   });
 }
 
-std::size_t value_bytes(std::span<const Pose> poses) {
+std::size_t value_bytes(std::span<const pose::Pose> poses) {
   std::size_t bytes = 0;
-  for (const Pose& pose : poses) {
-    for_each_array(pose, [&bytes](std::span<const float> values) { bytes += values.size_bytes(); });
+  for (const pose::Pose& pose : poses) {
+    pose::for_each_array(pose, [&bytes](std::span<const float> values) { bytes += values.size_bytes(); });
   }
   return bytes;
 }
@@ -33,9 +33,9 @@ std::size_t value_bytes(std::span<const Pose> poses) {
 void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& out) {
   const auto share = static_cast<float>(weight);
   for (std::size_t scene = 0; scene < out.poses.size(); ++scene) {
-    const PoseArrays<const float> from(a.poses[scene]);
-    const PoseArrays<const float> to(b.poses[scene]);
-    const PoseArrays<float> mixed(out.poses[scene]);
+    const pose::PoseArrays<const float> from(a.poses[scene]);
+    const pose::PoseArrays<const float> to(b.poses[scene]);
+    const pose::PoseArrays<float> mixed(out.poses[scene]);
     for (std::size_t array = 0; array < mixed.size(); ++array) {
       for (std::size_t i = 0; i < mixed[array].size(); ++i) {
         mixed[array][i] = from[array][i] + share * (to[array][i] - from[array][i]);
@@ -55,4 +55,4 @@ void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& 
   out.wind.source = weight < 0.5 ? a.wind.source : b.wind.source;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 
 void PoseTimeline::set_scenes(std::span<const wire::SceneModel> scenes) {
   PoseMoment rest = rest_moment(scenes);
@@ -67,4 +67,4 @@ Playback PoseTimeline::playback() const {
   return is_fading() ? Playback::kReturning : Playback::kLive;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

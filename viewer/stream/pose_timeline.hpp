@@ -5,7 +5,7 @@
 
 #include "viewer/stream/pose_track.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 
 /// What is shown at the moment.
 enum class Playback : std::uint8_t {
@@ -56,4 +56,4 @@ class PoseTimeline {
   double last_local_s_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

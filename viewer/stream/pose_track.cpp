@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 namespace {
 
 constexpr double kTurnEasing_s = 1.0;    // to slow down before a turn, and to speed up after it
@@ -84,4 +84,4 @@ void PoseTrack::advance(double local_s, PoseMoment& out) {
   history_.sample(shown_s_, out);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

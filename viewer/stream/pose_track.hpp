@@ -3,7 +3,7 @@
 #include "viewer/stream/pose_history.hpp"
 #include "viewer/stream/stream_clock.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 
 /// The position in a replay back and forth over span_s seconds, elapsed_s after its start: the distance from the start,
 /// from 0 to span_s. It starts at rest, moves at a rate of 1 at most, and slows down to rest at each turn.
@@ -49,4 +49,4 @@ class PoseTrack {
   double replay_elapsed_s_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

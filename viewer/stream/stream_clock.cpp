@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 namespace {
 
 constexpr double kClockDrift = 0.001;       // two machines' clocks drift apart by less than this, s/s
@@ -34,4 +34,4 @@ double StreamClock::delay_s() const {
   return std::min(1.5 * interval_s_ + jitter_s_, kMaxDelay_s);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

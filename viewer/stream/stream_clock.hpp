@@ -1,6 +1,6 @@
 #pragma once
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 
 /// Which moment of the sender's time line to show now, estimated from the frames' arrivals.
 ///
@@ -34,4 +34,4 @@ class StreamClock {
   double interval_s_ = 1.0 / 60.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

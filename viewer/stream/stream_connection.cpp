@@ -16,7 +16,7 @@
 
 #include "engine/wire/message_reader.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
@@ -216,4 +216,4 @@ void StreamConnection::wait_for_news(Nanoseconds limit) {
   session_->wait_for_news(limit);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -9,7 +9,7 @@
 #include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 
 struct TimedFrame {
   wire::Frame frame;
@@ -65,4 +65,4 @@ class StreamConnection {
   std::unique_ptr<Session> session_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -11,7 +11,7 @@
 #include "daemon/settings/standard_output.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::calibration {
 namespace {
 
 constexpr double kLineInterval_s = 5.0;
@@ -34,19 +34,19 @@ CalibrationDialog::CalibrationDialog(bool takes_yes)
       is_watched_(isatty(STDERR_FILENO) != 0) {}
 
 void CalibrationDialog::print(const std::string& text) const {
-  write_at_once(text + "\n");
+  settings::write_at_once(text + "\n");
 }
 
 void CalibrationDialog::wait_until_prepared(const std::string& what) const {
   print(what);
   if (!has_person_) return;
-  write_at_once("Press Enter when ready, Ctrl-C to quit: ");
+  settings::write_at_once("Press Enter when ready, Ctrl-C to quit: ");
   read_line();
 }
 
 double CalibrationDialog::prompt_number(const std::string& question, double least, double most) const {
   for (;;) {
-    write_at_once(fmt::format("{} ({:g} to {:g}): ", question, least, most));
+    settings::write_at_once(fmt::format("{} ({:g} to {:g}): ", question, least, most));
     const std::string line = read_line();
     double value = 0.0;
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
@@ -57,7 +57,7 @@ double CalibrationDialog::prompt_number(const std::string& question, double leas
 
 bool CalibrationDialog::confirm(const std::string& question) const {
   if (!has_person_) return takes_yes_;
-  write_at_once(question + " [y/N] ");
+  settings::write_at_once(question + " [y/N] ");
   const std::string answer = read_line();
   return answer == "y" || answer == "Y" || answer == "yes";
 }
@@ -73,4 +73,4 @@ void CalibrationDialog::show(double elapsed_s, const std::string& values, bool i
   std::fflush(stderr);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::calibration

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::calibration {
 
 /// Leads a person through a calibration: steps and results on standard output, live values on standard error. Where
 /// there is no person (no terminal, or --yes) it never waits.
@@ -36,4 +36,4 @@ class CalibrationDialog {
   double next_line_s_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::calibration

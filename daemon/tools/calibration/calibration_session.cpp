@@ -10,7 +10,7 @@
 #include "daemon/settings/config_file.hpp"
 #include "engine/base/count_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::calibration {
 namespace {
 
 FailureError usage(const std::string& message) {
@@ -30,17 +30,17 @@ Stretch parse_part(const std::string& text) {
   return {.from_s = from_s, .to_s = to_s};
 }
 
-std::string key_of(const ConfigChange& change) {
+std::string key_of(const settings::ConfigChange& change) {
   return change.table.empty() ? change.key : change.table + "." + change.key;
 }
 
 /// The driver's parameters whose values differ from those in the recording, except a microphone's own calibration,
 /// which is undone.
-std::set<std::string> settings_that_differ(const SensorConfig& sensor, const SensorReadings& collected) {
+std::set<std::string> settings_that_differ(const settings::SensorConfig& sensor, const SensorReadings& collected) {
   const bool is_microphone = sensor.driver->name == std::string_view("microphone");
   std::set<std::string> keys;
   for (const std::string& text : collected.settings) {
-    const auto values = parse_values(text, sensor.driver->parameters);
+    const auto values = settings::parse_values(text, sensor.driver->parameters);
     if (!values) return {"some that this version does not understand: " + values.error().message};
     for (const auto& [key, value] : values->all()) {
       const bool is_undone = is_microphone && (key == "gain" || key == "exponent" || key == "curve");
@@ -51,9 +51,9 @@ std::set<std::string> settings_that_differ(const SensorConfig& sensor, const Sen
 }
 
 /// The live values of a sensor.
-std::string live_text(const SensorConfig& sensor, const SensorReadings& collected) {
+std::string live_text(const settings::SensorConfig& sensor, const SensorReadings& collected) {
   if (collected.readings.empty()) return fmt::format("{}: waiting", sensor.name);
-  const WindReading& last = collected.readings.back().reading;
+  const wind::WindReading& last = collected.readings.back().reading;
   const double speed_m_s = last.speed_m_s * sensor.calibration.unit_m_s;
   return fmt::format("{}: {:.2f} m/s{}, {}", sensor.name, speed_m_s,
                      last.direction_deg ? fmt::format(" from {:.0f} deg", *last.direction_deg) : "",
@@ -71,10 +71,10 @@ CalibrationSession::CalibrationSession(const CalibrationRequest& request, double
     throw usage("there is no terminal for questions: add --yes to write, or --dry-run to see the result only");
   }
 
-  text_ = read_config_text(request_.config_file);
-  config_ = parse_config(text_, request_.config_file.string());
+  text_ = settings::read_config_text(request_.config_file);
+  config_ = settings::parse_config(text_, request_.config_file.string());
   if (config_.sensors.front().origin.empty()) {
-    throw ConfigError(request_.config_file.string() + ": has no [[sensor]] to calibrate");
+    throw settings::ConfigError(request_.config_file.string() + ": has no [[sensor]] to calibrate");
   }
   if (request_.sensor.empty() && config_.sensors.size() > 1) {
     throw usage("there are several sensors: add --sensor NAME");
@@ -87,7 +87,7 @@ CalibrationSession::CalibrationSession(const CalibrationRequest& request, double
 }
 
 void CalibrationSession::open_source() {
-  std::vector<const SensorConfig*> sensors = {&sensor()};
+  std::vector<const settings::SensorConfig*> sensors = {&sensor()};
   if (reference_) sensors.push_back(reference());
   const std::string address = request_.connect.value_or(config_.stream.listen);
   source_ = (is_live() ? make_live_source(std::move(sensors), address, clock_)
@@ -99,10 +99,10 @@ void CalibrationSession::open_source() {
 
 std::size_t CalibrationSession::find(const std::string& name) const {
   const auto& sensors = config_.sensors;
-  const auto found = std::ranges::find(sensors, name, &SensorConfig::name);
+  const auto found = std::ranges::find(sensors, name, &settings::SensorConfig::name);
   if (found != sensors.end()) return static_cast<std::size_t>(found - sensors.begin());
   std::string known;
-  for (const SensorConfig& sensor : sensors) known += (known.empty() ? "" : ", ") + sensor.name;
+  for (const settings::SensorConfig& sensor : sensors) known += (known.empty() ? "" : ", ") + sensor.name;
   throw usage(fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
 }
 
@@ -133,13 +133,15 @@ CollectedReadings CalibrationSession::collect(const std::string& preparation) {
 
 void CalibrationSession::beware(const CollectedReadings& collected) const {
   for (std::size_t index = 0; index < collected.size(); ++index) {
-    const SensorConfig& one = index == 0 ? sensor() : *reference();
+    const settings::SensorConfig& one = index == 0 ? sensor() : *reference();
     if (const auto keys = settings_that_differ(one, collected[index]); !keys.empty()) {
       dialog_.print(fmt::format("Warning: when this was recorded, the driver of \"{}\" had different settings: {}.",
                                 one.name, fmt::join(keys, ", ")));
     }
   }
-  const auto is_simulated = [](const TimedReading& one) { return one.reading.quality == ReadingQuality::kSimulated; };
+  const auto is_simulated = [](const TimedReading& one) {
+    return one.reading.quality == wind::ReadingQuality::kSimulated;
+  };
   for (const SensorReadings& one : collected) {
     if (std::ranges::any_of(one.readings, is_simulated)) {
       dialog_.print("Warning: these readings are simulated.");
@@ -154,23 +156,23 @@ std::string CalibrationSession::progress_line(double elapsed_s, const CollectedR
   return line;
 }
 
-ParameterValue CalibrationSession::value_now(const ConfigChange& change) const {
+ParameterValue CalibrationSession::value_now(const settings::ConfigChange& change) const {
   return (change.table.empty() ? sensor().values : sensor().by_name.calibration).all().at(change.key);
 }
 
-std::vector<std::string> CalibrationSession::speed_effect(std::span<const ConfigChange> wanted,
+std::vector<std::string> CalibrationSession::speed_effect(std::span<const settings::ConfigChange> wanted,
                                                           std::span<const double> indicated_m_s) const {
   ParameterValues changed = sensor().by_name.calibration;
-  for (const ConfigChange& change : wanted) {
+  for (const settings::ConfigChange& change : wanted) {
     if (!change.table.empty()) changed.set(change.key, change.value);
   }
   // At the height of the sensor: the height factor is applied afterwards, and does not change.
-  Calibration now = calibration();
-  Calibration then = calibration_of(changed).value();
+  wind::judging::Calibration now = calibration();
+  wind::judging::Calibration then = settings::calibration_of(changed).value();
   now.height_factor = then.height_factor = 1.0;
   std::vector<std::string> lines = {"   reading          speed now        speed then"};
   for (const double indicated : indicated_m_s) {
-    WindReading reading;
+    wind::WindReading reading;
     reading.speed_m_s = indicated / now.unit_m_s;
     lines.push_back(fmt::format("{:8.2f} m/s       {:8.2f} m/s   {:6.2f} m/s", indicated,
                                 now.applied_to(reading).speed_m_s, then.applied_to(reading).speed_m_s));
@@ -178,33 +180,35 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const Config
   return lines;
 }
 
-void CalibrationSession::finish(std::vector<ConfigChange> wanted, const std::vector<std::string>& effect) {
-  std::erase_if(wanted, [this](const ConfigChange& change) { return change.value == value_now(change); });
+void CalibrationSession::finish(std::vector<settings::ConfigChange> wanted, const std::vector<std::string>& effect) {
+  std::erase_if(wanted, [this](const settings::ConfigChange& change) { return change.value == value_now(change); });
   if (wanted.empty()) {
     dialog_.print("\nThe configuration has these values already: nothing to write.");
     return;
   }
   std::string text = "\n";
-  for (const ConfigChange& change : wanted) {
-    text += fmt::format("  {:<24} {} -> {}\n", key_of(change), toml_value(value_now(change)), toml_value(change.value));
+  for (const settings::ConfigChange& change : wanted) {
+    text += fmt::format("  {:<24} {} -> {}\n", key_of(change), settings::toml_value(value_now(change)),
+                        settings::toml_value(change.value));
   }
   for (const std::string& line : effect) text += "  " + line + "\n";
   dialog_.print(text);
 
-  const auto edited = edit_sensor(text_, sensor().name, wanted);
-  if (!edited) throw ConfigError(request_.config_file.string() + ": " + edited.error().message);
+  const auto edited = settings::edit_sensor(text_, sensor().name, wanted);
+  if (!edited) throw settings::ConfigError(request_.config_file.string() + ": " + edited.error().message);
   if (request_.is_dry_run) {
     dialog_.print("A dry run: nothing was written.");
   } else if (!dialog_.confirm(fmt::format("Write this to {}?", request_.config_file.string()))) {
     dialog_.print("Nothing was written.");
   } else {
-    const auto kept = replace_config(request_.config_file, text_, *edited).value();
+    const auto kept = settings::replace_config(request_.config_file, text_, *edited).value();
     dialog_.print(fmt::format("{} was written; the previous version is in {}. Restart a running daemon to apply it.",
                               request_.config_file.string(), kept.string()));
   }
 }
 
-std::vector<double> indicated_speeds_m_s(const SensorReadings& collected, const Calibration& calibration) {
+std::vector<double> indicated_speeds_m_s(const SensorReadings& collected,
+                                         const wind::judging::Calibration& calibration) {
   std::vector<double> speeds_m_s;
   for (const TimedReading& one : collected.readings) speeds_m_s.push_back(one.reading.speed_m_s * calibration.unit_m_s);
   return speeds_m_s;
@@ -213,8 +217,8 @@ std::vector<double> indicated_speeds_m_s(const SensorReadings& collected, const 
 ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
                                    double least_block_s) {
   // Only where both heights are known; else the sensors are assumed to be side by side.
-  const Calibration calibration = session.calibration();
-  Calibration reference = session.reference()->calibration;
+  const wind::judging::Calibration calibration = session.calibration();
+  wind::judging::Calibration reference = session.reference()->calibration;
   const bool has_heights =
       session.sensor().heights.sensor_m.has_value() && session.reference()->heights.sensor_m.has_value();
   if (!has_heights) reference.height_factor = 1.0;
@@ -226,14 +230,14 @@ ReferencePairs pair_with_reference(const CalibrationSession& session, const Coll
     const double span_s = one.readings.back().time_s - one.readings.front().time_s;
     result.block_s = std::max(result.block_s, 3.0 * span_s / static_cast<double>(one.readings.size() - 1));
   }
-  std::vector<TimedSpeed> indicated;
+  std::vector<wind::judging::TimedSpeed> indicated;
   for (const TimedReading& one : collected[0].readings) {
     indicated.push_back({one.time_s, one.reading.speed_m_s * calibration.unit_m_s});
   }
   for (const TimedReading& one : collected[1].readings) {
     result.truth.push_back({one.time_s, reference.applied_to(one.reading).speed_m_s * to_sensor});
   }
-  result.pairs = pair_means(indicated, result.truth, result.block_s);
+  result.pairs = wind::judging::pair_means(indicated, result.truth, result.block_s);
   return result;
 }
 
@@ -248,4 +252,4 @@ double rounded(double value, double step) noexcept {
   return std::round(result * scale) / scale + 0.0;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::calibration

@@ -14,7 +14,7 @@
 #include "daemon/tools/calibration/calibration_source.hpp"
 #include "engine/wind/judging/calibration_fit.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::calibration {
 
 /// The options that every `yuragi calibrate` has.
 struct CalibrationRequest {
@@ -36,10 +36,10 @@ class CalibrationSession {
   /// Reads the configuration and finds the sensors. `default_duration_s`: of a live stretch.
   CalibrationSession(const CalibrationRequest& request, double default_duration_s);
 
-  const SensorConfig& sensor() const { return config_.sensors[sensor_]; }
+  const settings::SensorConfig& sensor() const { return config_.sensors[sensor_]; }
   /// nullptr: no reference.
-  const SensorConfig* reference() const { return reference_ ? &config_.sensors[*reference_] : nullptr; }
-  const Calibration& calibration() const { return sensor().calibration; }
+  const settings::SensorConfig* reference() const { return reference_ ? &config_.sensors[*reference_] : nullptr; }
+  const wind::judging::Calibration& calibration() const { return sensor().calibration; }
   bool is_live() const { return request_.recording.empty(); }
   std::size_t part_count() const { return request_.parts.size(); }
   CalibrationDialog& dialog() { return dialog_; }
@@ -50,25 +50,25 @@ class CalibrationSession {
 
   /// Shows the changes and their `effect`, asks for confirmation, and writes them. Values that are unchanged are left
   /// out.
-  void finish(std::vector<ConfigChange> wanted, const std::vector<std::string>& effect);
+  void finish(std::vector<settings::ConfigChange> wanted, const std::vector<std::string>& effect);
 
   /// The effect of new calibration values on indicated speeds in m/s: the lines of a table.
-  std::vector<std::string> speed_effect(std::span<const ConfigChange> wanted,
+  std::vector<std::string> speed_effect(std::span<const settings::ConfigChange> wanted,
                                         std::span<const double> indicated_m_s) const;
 
  private:
   void open_source();
   std::size_t find(const std::string& name) const;
   void beware(const CollectedReadings& collected) const;  ///< warns of readings that are unsuitable
-  ParameterValue value_now(const ConfigChange& change) const;
+  ParameterValue value_now(const settings::ConfigChange& change) const;
   std::string progress_line(double elapsed_s, const CollectedReadings& collected) const;
 
   CalibrationRequest request_;
   CalibrationDialog dialog_;
-  SystemClock clock_;
+  sensing::SystemClock clock_;
   double duration_s_;
   std::string text_;  ///< of the configuration
-  Config config_;
+  settings::Config config_;
   std::size_t sensor_ = 0;
   std::optional<std::size_t> reference_;
   std::unique_ptr<CalibrationSource> source_;  ///< opened by the first collect()
@@ -76,15 +76,16 @@ class CalibrationSession {
 };
 
 /// The speeds that a sensor indicated, converted to m/s, otherwise uncalibrated.
-std::vector<double> indicated_speeds_m_s(const SensorReadings& collected, const Calibration& calibration);
+std::vector<double> indicated_speeds_m_s(const SensorReadings& collected,
+                                         const wind::judging::Calibration& calibration);
 
 /// Sensor and reference (collect() with one), as means over blocks that are long enough for the slower of the two, at
 /// least `least_block_s`. The readings of the reference are calibrated, and scaled to the sensor's height where both
 /// heights are known.
 struct ReferencePairs {
   double block_s = 0.0;
-  std::vector<TimedSpeed> truth{};
-  std::vector<CalibrationPoint> pairs{};
+  std::vector<wind::judging::TimedSpeed> truth{};
+  std::vector<wind::judging::CalibrationPoint> pairs{};
 };
 ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
                                    double least_block_s);
@@ -102,4 +103,4 @@ Value value_or_refuse(Result<Value, Failure> result) {
 /// Rounded to `step`, and never -0.
 double rounded(double value, double step) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::calibration

@@ -10,10 +10,10 @@
 #include "daemon/stream/stream_client.hpp"
 #include "drivers/windlog/windlog_reader.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::calibration {
 namespace {
 
-using SensorConfigs = std::vector<const SensorConfig*>;
+using SensorConfigs = std::vector<const settings::SensorConfig*>;
 
 constexpr auto kDaemonConnectTimeout = std::chrono::seconds(2);
 constexpr auto kDaemonSilence = std::chrono::seconds(5);
@@ -33,7 +33,7 @@ bool all_have_readings(const CollectedReadings& collected) {
 /// One live stretch: its beginning, its end, and its progress.
 class LiveStretch {
  public:
-  LiveStretch(const SensorConfigs& sensors, double duration_s, const Clock& clock,
+  LiveStretch(const SensorConfigs& sensors, double duration_s, const drivers::sensor::Clock& clock,
               const CalibrationSource::Progress& progress)
       : sensors_(sensors),
         duration_s_(duration_s),
@@ -42,7 +42,7 @@ class LiveStretch {
         begun_(clock.now().mono),
         collected_(sensors.size()) {}
 
-  void add(std::size_t sensor, const WindReading& reading) {
+  void add(std::size_t sensor, const wind::WindReading& reading) {
     collected_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
@@ -76,7 +76,7 @@ class LiveStretch {
 
   const SensorConfigs& sensors_;
   double duration_s_;
-  const Clock& clock_;
+  const drivers::sensor::Clock& clock_;
   const CalibrationSource::Progress& progress_;
   MonoTime begun_;
   CollectedReadings collected_;
@@ -87,10 +87,11 @@ class LiveStretch {
 /// The devices, opened here. They stay open between two stretches, so that the second begins at once.
 class DeviceSource final : public CalibrationSource {
  public:
-  DeviceSource(SensorConfigs sensors, const Clock& clock) : sensors_(std::move(sensors)), clock_(clock) {
-    std::vector<std::unique_ptr<Sensor>> opened;
-    for (const SensorConfig* sensor : sensors_) opened.push_back(open_sensor(*sensor));
-    for (auto& sensor : opened) runners_.push_back(std::make_unique<SensorRunner>(std::move(sensor), clock_));
+  DeviceSource(SensorConfigs sensors, const drivers::sensor::Clock& clock)
+      : sensors_(std::move(sensors)), clock_(clock) {
+    std::vector<std::unique_ptr<drivers::sensor::Sensor>> opened;
+    for (const settings::SensorConfig* sensor : sensors_) opened.push_back(settings::open_sensor(*sensor));
+    for (auto& sensor : opened) runners_.push_back(std::make_unique<sensing::SensorRunner>(std::move(sensor), clock_));
   }
 
   std::string description() const override { return "the devices themselves"; }
@@ -98,11 +99,11 @@ class DeviceSource final : public CalibrationSource {
 
   Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
-    for (const auto& runner : runners_) runner->drain([](const WindReading&) {});  // discards earlier readings
+    for (const auto& runner : runners_) runner->drain([](const wind::WindReading&) {});  // discards earlier readings
     for (;;) {
       std::this_thread::sleep_for(kDevicePause);
       for (std::size_t index = 0; index < runners_.size(); ++index) {
-        runners_[index]->drain([&](const WindReading& reading) { live.add(index, reading); });
+        runners_[index]->drain([&](const wind::WindReading& reading) { live.add(index, reading); });
       }
       const auto is_over = live.is_over([this](std::size_t sensor) { return runners_[sensor]->link().detail; });
       if (!is_over) return is_over.error();
@@ -112,11 +113,11 @@ class DeviceSource final : public CalibrationSource {
 
  private:
   SensorConfigs sensors_;
-  const Clock& clock_;
-  std::vector<std::unique_ptr<SensorRunner>> runners_;
+  const drivers::sensor::Clock& clock_;
+  std::vector<std::unique_ptr<sensing::SensorRunner>> runners_;
 };
 
-const wire::SensorStatus* find_status(const wire::Sensors& all, const SensorConfig& sensor) {
+const wire::SensorStatus* find_status(const wire::Sensors& all, const settings::SensorConfig& sensor) {
   const auto found = std::ranges::find_if(all.sensors, [&](const wire::SensorStatus& status) {
     return status.name == sensor.name && status.driver == sensor.driver->name;
   });
@@ -124,18 +125,18 @@ const wire::SensorStatus* find_status(const wire::Sensors& all, const SensorConf
 }
 
 /// A client of the daemon, subscribed to the sensors. Nothing where no daemon replies.
-std::optional<StreamClient> connect_to_daemon(const std::string& address) {
-  auto client = StreamClient::connect(address, kDaemonConnectTimeout);
+std::optional<stream::StreamClient> connect_to_daemon(const std::string& address) {
+  auto client = stream::StreamClient::connect(address, kDaemonConnectTimeout);
   if (!client || !client->subscribe({.poses = false, .sensors = true, .client = "calibrate"})) return std::nullopt;
   return std::move(*client);
 }
 
 /// The daemon's next message about its sensors. Fails where the connection ends.
-Result<wire::Sensors, Failure> next_sensors(StreamClient& client, const std::string& address) {
+Result<wire::Sensors, Failure> next_sensors(stream::StreamClient& client, const std::string& address) {
   for (;;) {
     auto message = client.receive(kDaemonSilence);
-    if (!message) return connection_lost(address, message.error());
-    if (const auto refusal = refusal_in(*message, address)) return *refusal;
+    if (!message) return stream::connection_lost(address, message.error());
+    if (const auto refusal = stream::refusal_in(*message, address)) return *refusal;
     if (auto* sensors = std::get_if<wire::Sensors>(&*message)) return std::move(*sensors);
   }
 }
@@ -143,7 +144,7 @@ Result<wire::Sensors, Failure> next_sensors(StreamClient& client, const std::str
 /// The daemon as the source: it sends each sensor's last raw reading about twice a second.
 class DaemonSource final : public CalibrationSource {
  public:
-  DaemonSource(SensorConfigs sensors, std::string address, const Clock& clock)
+  DaemonSource(SensorConfigs sensors, std::string address, const drivers::sensor::Clock& clock)
       : sensors_(std::move(sensors)), address_(std::move(address)), clock_(clock) {}
 
   std::string description() const override { return "the running daemon at " + address_; }
@@ -176,18 +177,18 @@ class DaemonSource final : public CalibrationSource {
   }
 
  private:
-  WindReading reading_of(const wire::SensorStatus& status) const {
-    WindReading reading;
+  wind::WindReading reading_of(const wire::SensorStatus& status) const {
+    wind::WindReading reading;
     reading.time = clock_.now();
     reading.speed_m_s = status.raw_speed_m_s.value_or(0.0);
     reading.direction_deg = status.raw_direction_deg;
-    reading.quality = status.simulated ? ReadingQuality::kSimulated : ReadingQuality::kGood;
+    reading.quality = status.simulated ? wind::ReadingQuality::kSimulated : wind::ReadingQuality::kGood;
     return reading;
   }
 
   SensorConfigs sensors_;
   std::string address_;
-  const Clock& clock_;
+  const drivers::sensor::Clock& clock_;
 };
 
 /// A recording, read from its beginning for each stretch.
@@ -201,10 +202,10 @@ class RecordedSource final : public CalibrationSource {
     const auto reader = opened();
     if (!reader) return reader.error();
     const auto& known = reader->sensors();
-    for (const SensorConfig* sensor : sensors_) {
-      if (std::ranges::find(known, sensor->name, &LoggedSensor::name) != known.end()) continue;
+    for (const settings::SensorConfig* sensor : sensors_) {
+      if (std::ranges::find(known, sensor->name, &drivers::windlog::LoggedSensor::name) != known.end()) continue;
       std::set<std::string> names;
-      for (const LoggedSensor& one : known) names.insert(one.name);
+      for (const drivers::windlog::LoggedSensor& one : known) names.insert(one.name);
       return Failure{
           fmt::format("{}: has no sensor \"{}\"; there are: {}", file_.string(), sensor->name, fmt::join(names, ", ")),
           FailureKind::kBadData};
@@ -218,7 +219,7 @@ class RecordedSource final : public CalibrationSource {
   Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     auto open = opened();
     if (!open) return open.error();
-    WindlogReader& reader = *open;
+    drivers::windlog::WindlogReader& reader = *open;
     if (stretch.from_s) reader.seek(from_seconds(*stretch.from_s));
     CollectedReadings collected(sensors_.size());
     for (std::size_t count = 1;; ++count) {
@@ -228,7 +229,7 @@ class RecordedSource final : public CalibrationSource {
       const double time_s = seconds((*logged)->log_time);
       if (stretch.to_s && time_s >= *stretch.to_s) break;
       if (count % kReadingsPerProgress == 0) progress(time_s, collected);
-      const LoggedSensor& from = reader.sensors()[(*logged)->sensor];
+      const drivers::windlog::LoggedSensor& from = reader.sensors()[(*logged)->sensor];
       for (std::size_t index = 0; index < sensors_.size(); ++index) {
         if (sensors_[index]->name != from.name) continue;
         collected[index].readings.push_back({time_s, (*logged)->reading});
@@ -239,7 +240,9 @@ class RecordedSource final : public CalibrationSource {
   }
 
  private:
-  Result<WindlogReader, Failure> opened() const { return WindlogReader::open(file_); }
+  Result<drivers::windlog::WindlogReader, Failure> opened() const {
+    return drivers::windlog::WindlogReader::open(file_);
+  }
 
   SensorConfigs sensors_;
   std::filesystem::path file_;
@@ -248,7 +251,7 @@ class RecordedSource final : public CalibrationSource {
 }  // namespace
 
 Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfigs sensors, const std::string& address,
-                                                                     const Clock& clock) {
+                                                                     const drivers::sensor::Clock& clock) {
   auto client = connect_to_daemon(address);
   if (!client) return std::make_unique<DeviceSource>(std::move(sensors), clock);
 
@@ -256,9 +259,9 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfi
   if (!received) return received.error();
   const wire::Sensors& all = *received;
   const auto held = std::ranges::count_if(
-      sensors, [&all](const SensorConfig* sensor) { return find_status(all, *sensor) != nullptr; });
+      sensors, [&all](const settings::SensorConfig* sensor) { return find_status(all, *sensor) != nullptr; });
   if (held == 0) return std::make_unique<DeviceSource>(std::move(sensors), clock);
-  for (const SensorConfig* sensor : sensors) {
+  for (const settings::SensorConfig* sensor : sensors) {
     const wire::SensorStatus* status = find_status(all, *sensor);
     std::string obstacle;
     if (status == nullptr) {
@@ -285,4 +288,4 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(SensorC
   return source;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::calibration

@@ -13,12 +13,12 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::calibration {
 
 /// A reading before calibration, and its time in seconds since collecting began, or since the recording began.
 struct TimedReading {
   double time_s = 0.0;
-  WindReading reading;
+  wind::WindReading reading;
 };
 
 /// The readings collected from one sensor.
@@ -58,11 +58,12 @@ class CalibrationSource {
 /// Live readings: from the running daemon at `address` where it has all of these sensors, else from the devices
 /// themselves. `sensors` and `clock` must outlive it. Fails where a daemon has the sensors, but does not send raw
 /// readings.
-Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(std::vector<const SensorConfig*> sensors,
-                                                                     const std::string& address, const Clock& clock);
+Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(std::vector<const settings::SensorConfig*> sensors,
+                                                                     const std::string& address,
+                                                                     const drivers::sensor::Clock& clock);
 
 /// A recording. Fails where it cannot be read or has not all of these sensors.
-Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(std::vector<const SensorConfig*> sensors,
-                                                                         const std::filesystem::path& file);
+Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(
+    std::vector<const settings::SensorConfig*> sensors, const std::filesystem::path& file);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::calibration

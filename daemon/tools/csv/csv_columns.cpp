@@ -8,28 +8,29 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
-constexpr SpeedUnit kMetresPerSecond{"m/s", 1.0};
-constexpr SpeedUnit kKilometresPerHour{"km/h", kMetresPerSecondPerKmh};
-constexpr SpeedUnit kKnots{"kn", kMetresPerSecondPerKnot};
-constexpr SpeedUnit kMilesPerHour{"mph", kMetresPerSecondPerMph};
+constexpr drivers::sensor::SpeedUnit kMetresPerSecond{"m/s", 1.0};
+constexpr drivers::sensor::SpeedUnit kKilometresPerHour{"km/h", kMetresPerSecondPerKmh};
+constexpr drivers::sensor::SpeedUnit kKnots{"kn", kMetresPerSecondPerKnot};
+constexpr drivers::sensor::SpeedUnit kMilesPerHour{"mph", kMetresPerSecondPerMph};
 
-constexpr std::array<std::pair<std::string_view, SpeedUnit>, 14> kSpeedUnits = {{{"ms", kMetresPerSecond},
-                                                                                 {"ms1", kMetresPerSecond},
-                                                                                 {"mps", kMetresPerSecond},
-                                                                                 {"mpers", kMetresPerSecond},
-                                                                                 {"kmh", kKilometresPerHour},
-                                                                                 {"kmh1", kKilometresPerHour},
-                                                                                 {"kph", kKilometresPerHour},
-                                                                                 {"kmph", kKilometresPerHour},
-                                                                                 {"kn", kKnots},
-                                                                                 {"kt", kKnots},
-                                                                                 {"kts", kKnots},
-                                                                                 {"knot", kKnots},
-                                                                                 {"knots", kKnots},
-                                                                                 {"mph", kMilesPerHour}}};
+constexpr std::array<std::pair<std::string_view, drivers::sensor::SpeedUnit>, 14> kSpeedUnits = {
+    {{"ms", kMetresPerSecond},
+     {"ms1", kMetresPerSecond},
+     {"mps", kMetresPerSecond},
+     {"mpers", kMetresPerSecond},
+     {"kmh", kKilometresPerHour},
+     {"kmh1", kKilometresPerHour},
+     {"kph", kKilometresPerHour},
+     {"kmph", kKilometresPerHour},
+     {"kn", kKnots},
+     {"kt", kKnots},
+     {"kts", kKnots},
+     {"knot", kKnots},
+     {"knots", kKnots},
+     {"mph", kMilesPerHour}}};
 
 // Usual names of columns, in lower case, without punctuation and unit. The first that is found is used.
 constexpr std::array<std::string_view, 15> kTimeNames = {"utc",       "utctime",  "timeutc", "datetimeutc", "dateutc",
@@ -157,7 +158,7 @@ std::string_view name_of(CsvRole role) {
   return kNames.at(static_cast<std::size_t>(role));
 }
 
-std::optional<SpeedUnit> find_speed_unit(std::string_view name) {
+std::optional<drivers::sensor::SpeedUnit> find_speed_unit(std::string_view name) {
   const std::string plain = joined(words_of(name));
   for (const auto& [known, unit] : kSpeedUnits) {
     if (known == plain) return unit;
@@ -228,4 +229,4 @@ Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& heade
   return columns;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -11,7 +11,7 @@
 #include "drivers/sensor/speed_unit.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 
 /// The meanings that a column of a CSV file can have.
 enum class CsvRole : std::uint8_t { kTime, kElapsed, kSpeed, kDirection, kGust, kU, kV, kQuality, kSensor };
@@ -26,15 +26,15 @@ inline constexpr std::string_view kExportedHeader = "utc,time_s,sensor,speed_m_s
 inline constexpr std::array<std::string_view, 3> kQualityWords = {"good", "uncertain", "simulated"};
 
 /// The unit with one of its usual names ("km/h", "kn", "kts", "mph"), in lower case, with or without punctuation.
-std::optional<SpeedUnit> find_speed_unit(std::string_view name);
+std::optional<drivers::sensor::SpeedUnit> find_speed_unit(std::string_view name);
 
 /// A column that was found.
 struct CsvColumn {
-  std::string name;               ///< as in the header
-  std::size_t index = 0;          ///< in the header, from 0
-  std::optional<SpeedUnit> unit;  ///< of a speed; empty: not in its name
-  bool is_in_radians = false;     ///< by its name
-  bool is_in_ms = false;          ///< a time in milliseconds, by its name
+  std::string name;                                ///< as in the header
+  std::size_t index = 0;                           ///< in the header, from 0
+  std::optional<drivers::sensor::SpeedUnit> unit;  ///< of a speed; empty: not in its name
+  bool is_in_radians = false;                      ///< by its name
+  bool is_in_ms = false;                           ///< a time in milliseconds, by its name
 };
 
 /// The columns, by role.
@@ -47,4 +47,4 @@ using CsvColumnNames = std::array<std::string, kCsvRoleCount>;
 /// with a list of the columns, without a time, without a speed or both u and v, or with two columns of one name.
 Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -13,7 +13,7 @@
 
 #include "daemon/tools/csv/csv_columns.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
 constexpr std::size_t kBufferBytes = 1 << 16;
@@ -46,7 +46,7 @@ void append_number(std::string& text, const std::optional<double>& number) {
   if (number) fmt::format_to(std::back_inserter(text), "{}", *number);
 }
 
-void append_row(std::string& text, const LoggedReading& logged, std::string_view sensor) {
+void append_row(std::string& text, const drivers::windlog::LoggedReading& logged, std::string_view sensor) {
   const std::int64_t log_ns = logged.log_time.count();
   append_utc(text, logged.reading.time.utc);
   fmt::format_to(std::back_inserter(text), ",{}.{:09},", log_ns / kNanosecondsPerSecond,
@@ -65,8 +65,8 @@ void append_row(std::string& text, const LoggedReading& logged, std::string_view
 
 }  // namespace
 
-Result<CsvExportReport, Failure> export_csv(WindlogReader& reader, const CsvExportRange& range, std::FILE* out,
-                                            const std::function<void(std::size_t)>& progress) {
+Result<CsvExportReport, Failure> export_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
+                                            std::FILE* out, const std::function<void(std::size_t)>& progress) {
   CsvExportReport report;
   std::string text(kExportedHeader);
   text += '\n';
@@ -94,4 +94,4 @@ Result<CsvExportReport, Failure> export_csv(WindlogReader& reader, const CsvExpo
   return report;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

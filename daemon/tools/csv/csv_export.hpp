@@ -8,7 +8,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 
 /// The part of a recording to export, in log time: from `from` on, and before `to`.
 struct CsvExportRange {
@@ -27,7 +27,7 @@ struct CsvExportReport {
 ///
 /// `out` is not closed. `progress` is called now and then with the number of rows. Fails as the reader does, or where
 /// `out` cannot be written to. Thread-safe: yes, with separate readers.
-Result<CsvExportReport, Failure> export_csv(WindlogReader& reader, const CsvExportRange& range, std::FILE* out,
-                                            const std::function<void(std::size_t)>& progress = {});
+Result<CsvExportReport, Failure> export_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
+                                            std::FILE* out, const std::function<void(std::size_t)>& progress = {});
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -6,7 +6,7 @@
 #include "daemon/tools/csv/csv_lines.hpp"
 #include "daemon/tools/csv/csv_row.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
 char delimiter_of(std::string_view header) {
@@ -93,4 +93,4 @@ Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string&
   return Import(name, options, *columns, names.size(), sink).run(lines, delimiter);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -11,7 +11,7 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 
 struct CsvImportReport {
   std::vector<std::string> columns;  ///< how each column was understood, a line each
@@ -24,7 +24,7 @@ struct CsvImportReport {
 };
 
 /// Called for each reading, with the name of its sensor. May throw, which ends the import.
-using CsvReadingSink = std::function<void(std::string_view sensor, const WindReading& reading)>;
+using CsvReadingSink = std::function<void(std::string_view sensor, const wind::WindReading& reading)>;
 
 /// Reads a CSV file with a header: each row is a reading with UTC, and with a monotonic time that begins at zero. Rows
 /// that are not valid readings, or go back in time, are refused and counted. A decimal comma is understood where the
@@ -36,4 +36,4 @@ using CsvReadingSink = std::function<void(std::string_view sensor, const WindRea
 Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string& name, const CsvImportOptions& options,
                                             const CsvReadingSink& sink);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

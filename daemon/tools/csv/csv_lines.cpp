@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <istream>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
 bool is_blank(char c) {
@@ -63,4 +63,4 @@ bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::strin
   return !is_quoted;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

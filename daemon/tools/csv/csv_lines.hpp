@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 
 /// Reads the lines of a CSV file one by one: skips empty ones and comments, and removes line ends ("\n" or "\r\n") and
 /// byte order mark. Thread-safe: no.
@@ -39,4 +39,4 @@ class CsvLines {
 /// point into the line.
 bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::string_view>& fields);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -7,7 +7,7 @@
 #include "daemon/tools/csv/csv_columns.hpp"
 #include "daemon/tools/csv/csv_time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 
 /// The unit of directions in a CSV file.
 enum class CsvDirectionUnit : std::uint8_t {
@@ -20,7 +20,8 @@ enum class CsvDirectionUnit : std::uint8_t {
 struct CsvImportOptions {
   CsvColumnNames columns;  ///< the user's names; empty ones are guessed
   CsvTimeFormat time_format = CsvTimeFormat::kAuto;
-  std::optional<SpeedUnit> unit;  ///< of speed, gust, u and v; empty: as the column's name says, or else m/s
+  /// Of speed, gust, u and v; empty: as the column's name says, or else m/s.
+  std::optional<drivers::sensor::SpeedUnit> unit;
   CsvDirectionUnit direction_unit = CsvDirectionUnit::kAuto;
   bool direction_is_toward = false;  ///< directions are where the wind blows to
   bool components_are_from = false;  ///< u and v point to where the wind comes from
@@ -30,4 +31,4 @@ struct CsvImportOptions {
   bool strict = false;               ///< fail at the first row that is refused
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

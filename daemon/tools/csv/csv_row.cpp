@@ -9,7 +9,7 @@
 #include "engine/base/units.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
 constexpr int kElapsedDecimals = 9;
@@ -65,8 +65,8 @@ double CsvRowReader::unit_of(CsvRole role) const {
   return column && column->unit ? column->unit->metres_per_second : 1.0;
 }
 
-Result<WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
-  WindReading reading;
+Result<wind::WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
+  wind::WindReading reading;
   if (const auto done = read_wind(fields, reading); !done) return done.error();
 
   const auto gust_m_s = read_speed(fields, CsvRole::kGust);
@@ -77,9 +77,9 @@ Result<WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
   if (const auto quality = field(fields, CsvRole::kQuality)) {
     const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), *quality);
     if (word == kQualityWords.end()) return refusal("unknown quality:", *quality);
-    reading.quality = static_cast<ReadingQuality>(word - kQualityWords.begin());
+    reading.quality = static_cast<wind::ReadingQuality>(word - kQualityWords.begin());
   }
-  if (!is_plausible(reading)) {
+  if (!wind::is_plausible(reading)) {
     return Failure{"impossible wind: " + std::to_string(reading.speed_m_s) + " m/s" +
                    (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "")};
   }
@@ -109,10 +109,10 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
     if (!ns) return refusal("not a number of seconds:", *elapsed);
     time.mono = MonoTime(Nanoseconds(*ns));
   }
-  WindReading recordable;
+  wind::WindReading recordable;
   recordable.time = time;
   if (time.mono < last_) return refusal("time goes back:", text);
-  if (!is_recordable(recordable)) return refusal("time out of range:", text);
+  if (!drivers::windlog::is_recordable(recordable)) return refusal("time out of range:", text);
 
   // The first accepted row determines the format of times.
   time_format_ = format;
@@ -130,7 +130,7 @@ Result<std::optional<double>, Failure> CsvRowReader::read_speed(const CsvFields&
 }
 
 /// Speed and direction, from themselves or from components.
-Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, WindReading& reading) const {
+Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, wind::WindReading& reading) const {
   if (columns_[static_cast<std::size_t>(CsvRole::kSpeed)]) {
     const auto speed_m_s = read_speed(fields, CsvRole::kSpeed);
     if (!speed_m_s) return speed_m_s.error();
@@ -151,9 +151,9 @@ Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, WindReadi
   const auto v_m_s = read_speed(fields, CsvRole::kV);
   if (!v_m_s) return v_m_s.error();
   if (!*u_m_s || !*v_m_s) return Failure{"no u or no v"};
-  const WindVector wind = (options_.components_are_from ? -1.0 : 1.0) * WindVector{**u_m_s, **v_m_s};
+  const wind::WindVector wind = (options_.components_are_from ? -1.0 : 1.0) * wind::WindVector{**u_m_s, **v_m_s};
   reading.speed_m_s = speed_of(wind);
-  if (reading.speed_m_s > 0.0) reading.direction_deg = direction_from_deg(wind);
+  if (reading.speed_m_s > 0.0) reading.direction_deg = wind::direction_from_deg(wind);
   return {};
 }
 
@@ -196,7 +196,7 @@ std::vector<std::string> CsvRowReader::describe() const {
     const auto role = static_cast<CsvRole>(index);
     std::string line = std::string(name_of(role)) + " from \"" + column.name + "\"";
     const auto speed_unit = [&] {
-      const SpeedUnit assumed{"m/s", 1.0};
+      const drivers::sensor::SpeedUnit assumed{"m/s", 1.0};
       return std::string(options_.unit.value_or(column.unit.value_or(assumed)).name);
     };
     switch (role) {
@@ -230,4 +230,4 @@ std::vector<std::string> CsvRowReader::describe() const {
   return lines;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -10,7 +10,7 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 
 /// The fields of a row, by role; none for a missing column.
 using CsvFields = std::array<std::optional<std::string_view>, kCsvRoleCount>;
@@ -21,7 +21,7 @@ class CsvRowReader {
   CsvRowReader(const CsvColumns& columns, const CsvImportOptions& options);
 
   /// The reading in a row, or why it is refused. To be called in the order of the file.
-  Result<WindReading, Failure> read(const CsvFields& fields);
+  Result<wind::WindReading, Failure> read(const CsvFields& fields);
 
   /// How each column was understood, a line each; complete after the first row.
   std::vector<std::string> describe() const;
@@ -31,7 +31,7 @@ class CsvRowReader {
   Result<Instant, Failure> read_time(const CsvFields& fields);
   Result<std::optional<double>, Failure> read_speed(const CsvFields& fields, CsvRole role) const;
   Result<std::optional<double>, Failure> read_direction(std::string_view text) const;
-  Result<void, Failure> read_wind(const CsvFields& fields, WindReading& reading) const;
+  Result<void, Failure> read_wind(const CsvFields& fields, wind::WindReading& reading) const;
 
   CsvColumns columns_;
   CsvImportOptions options_;
@@ -40,4 +40,4 @@ class CsvRowReader {
   MonoTime last_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

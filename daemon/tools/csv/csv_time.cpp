@@ -6,7 +6,7 @@
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/iso_time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
 constexpr int kNanoDecimals = 9;
@@ -17,7 +17,7 @@ bool is_digit(char c) {
 }
 
 std::optional<UtcTime> utc_if_recordable(std::optional<std::int64_t> ns) {
-  if (!ns || *ns < -windlog::kMaxTime_ns || *ns > windlog::kMaxTime_ns) return std::nullopt;
+  if (!ns || *ns < -drivers::windlog::kMaxTime_ns || *ns > drivers::windlog::kMaxTime_ns) return std::nullopt;
   return UtcTime(Nanoseconds(*ns));
 }
 
@@ -77,11 +77,11 @@ std::optional<UtcTime> parse_time(std::string_view text, CsvTimeFormat format) {
     case CsvTimeFormat::kUnixMs:
       return utc_if_recordable(parse_decimal(text, kNanoDecimalsOfMs));
     case CsvTimeFormat::kIso:
-      return parse_iso_time(text);
+      return drivers::windlog::parse_iso_time(text);
     case CsvTimeFormat::kAuto:
       break;
   }
   return std::nullopt;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -6,7 +6,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 
 /// The format of times in a CSV file.
 enum class CsvTimeFormat : std::uint8_t {
@@ -29,4 +29,4 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 /// Nothing if the text is not a time of this format (not kAuto), or outside the range of a recording.
 std::optional<UtcTime> parse_time(std::string_view text, CsvTimeFormat format);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -7,7 +7,7 @@
 #include "daemon/tools/decode/decode_formats.hpp"
 #include "drivers/decode/usb/mcc1208.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
 /// The content of a reply.
@@ -30,10 +30,10 @@ class CounterMeaning {
     reading.volts = reply.volts;
     const auto reference_v = reply.reference_v ? reply.reference_v : options_.vane_reference_v;
     if (reply.volts && reference_v) {
-      reading.wind.direction_deg = vane_direction_deg(options_.vane, *reply.volts, *reference_v);
+      reading.wind.direction_deg = drivers::decode::usb::vane_direction_deg(options_.vane, *reply.volts, *reference_v);
     }
     if (reply.count && options_.interval_s) {
-      const auto speed_m_s = advance_cup(cup_, options_.cup, *reply.count, *options_.interval_s);
+      const auto speed_m_s = drivers::decode::usb::advance_cup(cup_, options_.cup, *reply.count, *options_.interval_s);
       if (speed_m_s && !*speed_m_s) return UnitRefusal{speed_m_s->error(), "the counter went back or jumped"};
       if (speed_m_s) reading.wind.speed_m_s = **speed_m_s;
     }
@@ -45,7 +45,7 @@ class CounterMeaning {
 
  private:
   UnitDecoderOptions options_;
-  CupState cup_;
+  drivers::decode::usb::CupState cup_;
 };
 
 /// Replies to control transfers, identified by the setup packet before them, or by their length.
@@ -54,23 +54,26 @@ class Mcc1208Decoder final : public UnitDecoder {
   explicit Mcc1208Decoder(const UnitDecoderOptions& options) : meaning_(options) {}
 
   void take(const RawUnit& unit, const Sink& sink) override {
-    const ByteSpan setup = unit.request.size() == 8 ? unit.request : ByteSpan();
+    const drivers::decode::ByteSpan setup = unit.request.size() == 8 ? unit.request : drivers::decode::ByteSpan();
     const bool is_polled = !setup.empty();
-    if (is_polled && setup[1] == mcc1208_read_calibration(0).request) return take_calibration(unit, sink);
+    if (is_polled && setup[1] == drivers::decode::usb::mcc1208_read_calibration(0).request)
+      return take_calibration(unit, sink);
 
-    const bool is_analog = is_polled ? setup[1] == mcc1208_read_analog(0).request : unit.bytes.size() == 2;
+    const bool is_analog =
+        is_polled ? setup[1] == drivers::decode::usb::mcc1208_read_analog(0).request : unit.bytes.size() == 2;
     CounterReply reply;
-    std::optional<Refusal> why;
+    std::optional<drivers::decode::Refusal> why;
     if (is_analog) {
-      const auto analog = decode_mcc1208_analog(unit.bytes);
+      const auto analog = drivers::decode::usb::decode_mcc1208_analog(unit.bytes);
       if (analog) {
-        reply.volts =
-            mcc1208_volts(*analog, is_polled ? calibrations_[setup[2] % kMcc1208Inputs] : Mcc1208Calibration{});
+        reply.volts = drivers::decode::usb::mcc1208_volts(
+            *analog, is_polled ? calibrations_[setup[2] % drivers::decode::usb::kMcc1208Inputs]
+                               : drivers::decode::usb::Mcc1208Calibration{});
       } else {
         why = analog.error();
       }
     } else {
-      const auto count = decode_mcc1208_count(unit.bytes);
+      const auto count = drivers::decode::usb::decode_mcc1208_count(unit.bytes);
       if (count) {
         reply.count = *count;
       } else {
@@ -85,23 +88,23 @@ class Mcc1208Decoder final : public UnitDecoder {
  private:
   /// The calibration of an input, for its later values. An unwritten one is ignored.
   void take_calibration(const RawUnit& unit, const Sink& sink) {
-    const auto calibration = decode_mcc1208_calibration(unit.bytes);
+    const auto calibration = drivers::decode::usb::decode_mcc1208_calibration(unit.bytes);
     if (!calibration) return sink(UnitRefusal{calibration.error(), "the calibration of an input"});
     const auto channel = static_cast<std::size_t>(unit.request[2] / 8U);
-    calibrations_[channel % kMcc1208Inputs] = *calibration;
+    calibrations_[channel % drivers::decode::usb::kMcc1208Inputs] = *calibration;
   }
 
-  std::array<Mcc1208Calibration, kMcc1208Inputs> calibrations_{};
+  std::array<drivers::decode::usb::Mcc1208Calibration, drivers::decode::usb::kMcc1208Inputs> calibrations_{};
   CounterMeaning meaning_;
 };
 
 /// The command of a feedback reply: as given; else guessed from its echo and length.
-LabjackRequest labjack_request_of(const RawUnit& unit) {
+drivers::decode::usb::LabjackRequest labjack_request_of(const RawUnit& unit) {
   constexpr std::size_t kCommandEcho = 6;
   constexpr std::size_t kReplyEcho = 8;
   constexpr std::uint8_t kAnalog = 0x01;
   constexpr std::uint8_t kCounter0 = 0x36;
-  LabjackRequest request;
+  drivers::decode::usb::LabjackRequest request;
   if (unit.request.size() <= kCommandEcho) {
     if (unit.bytes.size() > kReplyEcho) request.echo = unit.bytes[kReplyEcho];
     if (unit.bytes.size() == 12) request.counter.reset();
@@ -110,7 +113,7 @@ LabjackRequest labjack_request_of(const RawUnit& unit) {
   }
 
   request = {.echo = unit.request[kCommandEcho], .analog_channel = {}, .reference_channel = {}, .counter = {}};
-  for (ByteSpan parts = unit.request.subspan(kCommandEcho + 1); parts.size() >= 2;) {
+  for (drivers::decode::ByteSpan parts = unit.request.subspan(kCommandEcho + 1); parts.size() >= 2;) {
     const bool is_analog = parts[0] == kAnalog;
     if (is_analog) {
       (request.analog_channel ? request.reference_channel : request.analog_channel) = parts[1];
@@ -125,13 +128,13 @@ LabjackRequest labjack_request_of(const RawUnit& unit) {
 class LabjackDecoder final : public UnitDecoder {
  public:
   explicit LabjackDecoder(const UnitDecoderOptions& options)
-      : calibration_(nominal_labjack_calibration(options.input)), meaning_(options) {}
+      : calibration_(drivers::decode::usb::nominal_labjack_calibration(options.input)), meaning_(options) {}
 
   void take(const RawUnit& unit, const Sink& sink) override {
-    const auto reply = decode_labjack(labjack_request_of(unit), unit.bytes);
+    const auto reply = drivers::decode::usb::decode_labjack(labjack_request_of(unit), unit.bytes);
     if (!reply) {
       meaning_.interrupt();
-      const bool has_code = reply.error().why == Refusal::kException && reply.error().error != 0;
+      const bool has_code = reply.error().why == drivers::decode::Refusal::kException && reply.error().error != 0;
       return sink(UnitRefusal{reply.error().why, has_code ? fmt::format("error {}", reply.error().error) : ""});
     }
     const auto volts = [this](std::optional<std::uint16_t> analog) {
@@ -141,7 +144,7 @@ class LabjackDecoder final : public UnitDecoder {
   }
 
  private:
-  LabjackCalibration calibration_;
+  drivers::decode::usb::LabjackCalibration calibration_;
   CounterMeaning meaning_;
 };
 
@@ -155,4 +158,4 @@ std::unique_ptr<UnitDecoder> make_labjack_unit_decoder(const UnitDecoderOptions&
   return std::make_unique<LabjackDecoder>(options);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -14,13 +14,14 @@
 #include "drivers/decode/text/nmea.hpp"
 #include "drivers/decode/text/umb.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
 /// A format in which every message is decoded by itself.
 class StatelessDecoder final : public UnitDecoder {
  public:
-  using Decode = std::function<Result<DecodedWind, Refusal>(ByteSpan message)>;
+  using Decode =
+      std::function<Result<drivers::decode::DecodedWind, drivers::decode::Refusal>(drivers::decode::ByteSpan message)>;
   explicit StatelessDecoder(Decode decode) : decode_(std::move(decode)) {}
 
   void take(const RawUnit& unit, const Sink& sink) override { sink(outcome_of(decode_(unit.bytes))); }
@@ -34,15 +35,15 @@ class Wmr100Decoder final : public UnitDecoder {
  public:
   void take(const RawUnit& unit, const Sink& sink) override {
     for (const std::uint8_t byte : unit.bytes) {
-      if (const auto ended = take_wmr100_byte(stream_, byte)) sink(outcome_of(*ended));
+      if (const auto ended = drivers::decode::hid::take_wmr100_byte(stream_, byte)) sink(outcome_of(*ended));
     }
   }
   void finish(const Sink& sink) override {
-    if (const auto ended = finish_wmr100(stream_)) sink(outcome_of(*ended));
+    if (const auto ended = drivers::decode::hid::finish_wmr100(stream_)) sink(outcome_of(*ended));
   }
 
  private:
-  Wmr100Stream stream_;
+  drivers::decode::hid::Wmr100Stream stream_;
 };
 
 using Made = std::unique_ptr<UnitDecoder>;
@@ -53,35 +54,39 @@ Made stateless(StatelessDecoder::Decode decode) {
 
 /// A decoder of lines, with options of its own.
 template <class Options>
-Made of_lines(Result<DecodedWind, Refusal> (*decode)(const Options&, std::string_view) noexcept, Options options) {
-  return stateless([decode, options = std::move(options)](ByteSpan line) {
+Made of_lines(Result<drivers::decode::DecodedWind, drivers::decode::Refusal> (*decode)(const Options&,
+                                                                                       std::string_view) noexcept,
+              Options options) {
+  return stateless([decode, options = std::move(options)](drivers::decode::ByteSpan line) {
     return decode(options, {reinterpret_cast<const char*>(line.data()), line.size()});
   });
 }
 
 Made make_nmea(const UnitDecoderOptions& options) {
-  return of_lines(decode_nmea, NmeaOptions{options.checksum, options.status, options.xdr_first_id});
+  return of_lines(drivers::decode::text::decode_nmea,
+                  drivers::decode::text::NmeaOptions{options.checksum, options.status, options.xdr_first_id});
 }
 
 Made make_gill(const UnitDecoderOptions& options) {
-  GillOptions gill;
+  drivers::decode::text::GillOptions gill;
   gill.checksum = options.checksum;
   gill.status = options.status;
   gill.node = options.node;
-  return of_lines(decode_gill, gill);
+  return of_lines(drivers::decode::text::decode_gill, gill);
 }
 
 Made make_ft(const UnitDecoderOptions& options) {
-  return of_lines(decode_ft, FtOptions{options.checksum, options.status});
+  return of_lines(drivers::decode::text::decode_ft, drivers::decode::text::FtOptions{options.checksum, options.status});
 }
 
 Made make_umb(const UnitDecoderOptions& options) {
-  return of_lines(decode_umb,
-                  UmbOptions{options.checksum, options.status, options.umb_device, options.umb_speed_range_m_s});
+  return of_lines(drivers::decode::text::decode_umb,
+                  drivers::decode::text::UmbOptions{options.checksum, options.status, options.umb_device,
+                                                    options.umb_speed_range_m_s});
 }
 
 Made make_line(const UnitDecoderOptions& options) {
-  return of_lines(decode_line, options.line);
+  return of_lines(drivers::decode::text::decode_line, options.line);
 }
 
 Made make_wmr100(const UnitDecoderOptions& options) {
@@ -91,11 +96,12 @@ Made make_wmr100(const UnitDecoderOptions& options) {
 }
 
 Made make_te923(const UnitDecoderOptions& options) {
-  return options.are_reports ? make_te923_reports_decoder() : stateless(decode_te923);
+  return options.are_reports ? make_te923_reports_decoder() : stateless(drivers::decode::hid::decode_te923);
 }
 
 Made make_fineoffset(const UnitDecoderOptions& options) {
-  return options.are_reports ? make_fineoffset_reports_decoder() : stateless(decode_fineoffset_record);
+  return options.are_reports ? make_fineoffset_reports_decoder()
+                             : stateless(drivers::decode::hid::decode_fineoffset_record);
 }
 
 constexpr std::array kUnitFormats = {
@@ -125,7 +131,7 @@ constexpr std::array kUnitFormats = {
                .make = make_ft},
     UnitFormat{.name = "line",
                .is_text = true,
-               .ending = LineEnding::kEtx,
+               .ending = drivers::decode::text::LineEnding::kEtx,
                .unit = "a line",
                .devices = "numbers that a microcontroller prints",
                .example = "line --speed-column 2 --direction-column 1 --speed-unit km/h esp32.log",
@@ -141,7 +147,7 @@ constexpr std::array kUnitFormats = {
                .unit = "a packet",
                .devices = "Oregon Scientific WMR300",
                .example = "wmr300 --hex --refused packets.hex",
-               .make = [](const UnitDecoderOptions&) { return stateless(decode_wmr300); }},
+               .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::hid::decode_wmr300); }},
     UnitFormat{.name = "fineoffset",
                .is_text = false,
                .unit = "a record of 16 or 20 bytes",
@@ -153,7 +159,7 @@ constexpr std::array kUnitFormats = {
                .unit = "report 1, of 10 bytes",
                .devices = "AcuRite 01025, 01035, 01036, 02032, 02064",
                .example = "acurite --hex r1.hex",
-               .make = [](const UnitDecoderOptions&) { return stateless(decode_acurite); }},
+               .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::hid::decode_acurite); }},
     UnitFormat{.name = "te923",
                .is_text = false,
                .unit = "the block of readings, of 34 bytes",
@@ -182,7 +188,7 @@ constexpr std::array kUnitFormats = {
 
 }  // namespace
 
-UnitDecoder::Outcome outcome_of(const Result<DecodedWind, Refusal>& decoded) {
+UnitDecoder::Outcome outcome_of(const Result<drivers::decode::DecodedWind, drivers::decode::Refusal>& decoded) {
   if (!decoded) return UnitRefusal{decoded.error(), {}};
   return UnitReading{*decoded, {}, {}};
 }
@@ -201,4 +207,4 @@ const UnitFormat* find_unit_format(std::string_view name) {
   return found == kUnitFormats.end() ? nullptr : found;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

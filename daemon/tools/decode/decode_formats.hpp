@@ -16,27 +16,27 @@
 #include "drivers/decode/usb/labjack.hpp"
 #include "drivers/decode/usb/potentiometer_vane.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 
 // The formats of `yuragi decode`: the drivers' own decoders, applied to a sequence of messages.
 
 /// One received message: a line, a report, a reply.
 struct RawUnit {
-  ByteSpan bytes;
-  ByteSpan request;  ///< what it replies to; empty where that is not known
+  drivers::decode::ByteSpan bytes;
+  drivers::decode::ByteSpan request;  ///< what it replies to; empty where that is not known
 };
 
 /// The content of a message. Of a counter: its count and its analogue input; the wind is empty unless the options say
 /// how to convert them.
 struct UnitReading {
-  DecodedWind wind;
+  drivers::decode::DecodedWind wind;
   std::optional<std::uint32_t> count;
   std::optional<double> volts;
 };
 
 /// Why a message has no reading.
 struct UnitRefusal {
-  Refusal why = Refusal::kMalformed;
+  drivers::decode::Refusal why = drivers::decode::Refusal::kMalformed;
   std::string detail;  ///< more about it, for people; may be empty
 };
 
@@ -56,13 +56,13 @@ class UnitDecoder {
 
 /// Policies, and facts that are not in the messages. Each format uses its own.
 struct UnitDecoderOptions {
-  WhenMissing checksum = WhenMissing::kRefuse;
-  WhenMissing status = WhenMissing::kRefuse;
+  drivers::decode::WhenMissing checksum = drivers::decode::WhenMissing::kRefuse;
+  drivers::decode::WhenMissing status = drivers::decode::WhenMissing::kRefuse;
   int xdr_first_id = 0;                     ///< nmea
   std::optional<char> node;                 ///< gill
   std::optional<std::uint16_t> umb_device;  ///< umb
   double umb_speed_range_m_s = 75.0;        ///< umb
-  LineOptions line;                         ///< line
+  drivers::decode::text::LineOptions line;  ///< line
   bool are_reports = false;                 ///< wmr100, te923, fineoffset: input reports of 8 bytes, as received
 
   std::string profile;      ///< modbus: a name, or the path of a .toml file
@@ -70,19 +70,19 @@ struct UnitDecoderOptions {
   int direction_slave = 0;  ///< modbus; 0 takes the profile's
 
   // mcc1208, labjack. Two counts give a speed only where the time between them is known.
-  std::optional<double> interval_s;  ///< from one reply to the next
-  CupCalibration cup;                ///< used where there is an interval
-  LabjackInput input = LabjackInput::kLowVoltage;
+  std::optional<double> interval_s;          ///< from one reply to the next
+  drivers::decode::usb::CupCalibration cup;  ///< used where there is an interval
+  drivers::decode::usb::LabjackInput input = drivers::decode::usb::LabjackInput::kLowVoltage;
   std::optional<double>
       vane_reference_v;  ///< voltage across the vane's potentiometer; the input then measures its wiper
-  VaneCalibration vane;
+  drivers::decode::usb::VaneCalibration vane;
 };
 
 /// A format of the command.
 struct UnitFormat {
   std::string_view name;
   bool is_text = true;  ///< lines of text; otherwise bytes, given as hexadecimal digits
-  LineEnding ending = LineEnding::kNewline;
+  drivers::decode::text::LineEnding ending = drivers::decode::text::LineEnding::kNewline;
   std::string_view unit;
   std::string_view devices;
   std::string_view example;  ///< a command line, without `yuragi decode`
@@ -97,7 +97,7 @@ std::span<const UnitFormat> unit_formats();
 const UnitFormat* find_unit_format(std::string_view name);
 
 /// Converts the result of a pure decoder.
-UnitDecoder::Outcome outcome_of(const Result<DecodedWind, Refusal>& decoded);
+UnitDecoder::Outcome outcome_of(const Result<drivers::decode::DecodedWind, drivers::decode::Refusal>& decoded);
 
 /// The decoders in files of their own, which combine several messages.
 std::unique_ptr<UnitDecoder> make_wmr100_reports_decoder(std::unique_ptr<UnitDecoder> stream);
@@ -107,4 +107,4 @@ std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& 
 std::unique_ptr<UnitDecoder> make_mcc1208_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_labjack_unit_decoder(const UnitDecoderOptions& options);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

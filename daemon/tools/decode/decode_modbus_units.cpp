@@ -7,42 +7,46 @@
 #include "drivers/decode/modbus/modbus.hpp"
 #include "drivers/modbus/modbus_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
 struct RequestedRegisters {
-  ModbusFraming framing = ModbusFraming::kRtu;
-  ModbusRequest request;
+  drivers::decode::modbus::ModbusFraming framing = drivers::decode::modbus::ModbusFraming::kRtu;
+  drivers::decode::modbus::ModbusRequest request;
 };
 
 /// Parses a request to read registers, of RTU or TCP by its format. Nothing for anything else.
-std::optional<RequestedRegisters> requested_registers_of(ByteSpan bytes) {
+std::optional<RequestedRegisters> requested_registers_of(drivers::decode::ByteSpan bytes) {
   constexpr std::size_t kRtuRequest = 8;
   constexpr std::size_t kTcpRequest = 12;
   constexpr std::size_t kTcpHeader = 6;  // in front of the unit id
   RequestedRegisters requested;
-  if (bytes.size() == kRtuRequest && modbus_crc(bytes.first(6)) == little_endian_16(bytes, 6)) {
-    requested.framing = ModbusFraming::kRtu;
-  } else if (bytes.size() == kTcpRequest && big_endian_16(bytes, 2) == 0 && big_endian_16(bytes, 4) == 6) {
-    requested.framing = ModbusFraming::kTcp;
-    requested.request.transaction = big_endian_16(bytes, 0);
+  if (bytes.size() == kRtuRequest &&
+      drivers::decode::modbus::modbus_crc(bytes.first(6)) == drivers::decode::little_endian_16(bytes, 6)) {
+    requested.framing = drivers::decode::modbus::ModbusFraming::kRtu;
+  } else if (bytes.size() == kTcpRequest && drivers::decode::big_endian_16(bytes, 2) == 0 &&
+             drivers::decode::big_endian_16(bytes, 4) == 6) {
+    requested.framing = drivers::decode::modbus::ModbusFraming::kTcp;
+    requested.request.transaction = drivers::decode::big_endian_16(bytes, 0);
     bytes = bytes.subspan(kTcpHeader);
   } else {
     return std::nullopt;
   }
   requested.request.unit = bytes[0];
   requested.request.function = bytes[1];
-  requested.request.address = big_endian_16(bytes, 2);
-  requested.request.count = big_endian_16(bytes, 4);
+  requested.request.address = drivers::decode::big_endian_16(bytes, 2);
+  requested.request.count = drivers::decode::big_endian_16(bytes, 4);
   const bool reads = requested.request.function == 3 || requested.request.function == 4;
-  const bool is_possible = requested.request.count >= 1 && requested.request.count <= kModbusMaxRegisters;
+  const bool is_possible =
+      requested.request.count >= 1 && requested.request.count <= drivers::decode::modbus::kModbusMaxRegisters;
   return reads && is_possible ? std::optional(requested) : std::nullopt;
 }
 
 /// The part of a reply that belongs to `quantity`; empty where it was not requested.
-std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, const ModbusRequest& request,
-                                            const ModbusRegisters& registers) {
-  const std::size_t count = register_count(quantity.type);
+std::span<const std::uint16_t> registers_of(const drivers::decode::modbus::ModbusQuantity& quantity,
+                                            const drivers::decode::modbus::ModbusRequest& request,
+                                            const drivers::decode::modbus::ModbusRegisters& registers) {
+  const std::size_t count = drivers::decode::modbus::register_count(quantity.type);
   const bool is_polled = request.unit == quantity.slave && request.function == quantity.function &&
                          request.address <= quantity.address &&
                          quantity.address + count <= std::size_t{request.address} + request.count;
@@ -52,34 +56,38 @@ std::span<const std::uint16_t> registers_of(const ModbusQuantity& quantity, cons
 
 class ModbusUnitDecoder final : public UnitDecoder {
  public:
-  explicit ModbusUnitDecoder(ModbusProfile profile) : profile_(std::move(profile)) {}
+  explicit ModbusUnitDecoder(drivers::modbus::ModbusProfile profile) : profile_(std::move(profile)) {}
 
   void take(const RawUnit& unit, const Sink& sink) override {
     if (unit.request.empty()) {
-      return sink(UnitRefusal{Refusal::kMalformed, "no request: write request | response on one line"});
+      return sink(
+          UnitRefusal{drivers::decode::Refusal::kMalformed, "no request: write request | response on one line"});
     }
     const auto requested = requested_registers_of(unit.request);
     if (!requested) {
-      return sink(UnitRefusal{Refusal::kMalformed, "the request does not read registers, or its checksum is wrong"});
+      return sink(UnitRefusal{drivers::decode::Refusal::kMalformed,
+                              "the request does not read registers, or its checksum is wrong"});
     }
-    const auto registers = decode_modbus(requested->framing, requested->request, unit.bytes);
+    const auto registers = drivers::decode::modbus::decode_modbus(requested->framing, requested->request, unit.bytes);
     if (!registers) {
-      const ModbusRefusal& refusal = registers.error();
-      const bool is_exception = refusal.why == Refusal::kException;
+      const drivers::decode::modbus::ModbusRefusal& refusal = registers.error();
+      const bool is_exception = refusal.why == drivers::decode::Refusal::kException;
       return sink(UnitRefusal{
-          refusal.why,
-          is_exception ? fmt::format("{}, {}", refusal.exception, modbus_exception_name(refusal.exception)) : ""});
+          refusal.why, is_exception ? fmt::format("{}, {}", refusal.exception,
+                                                  drivers::decode::modbus::modbus_exception_name(refusal.exception))
+                                    : ""});
     }
     describe_reply(requested->request, *registers, sink);
   }
 
  private:
   /// One reading of all quantities in the reply; refusals of single ones are reported, too.
-  void describe_reply(const ModbusRequest& request, const ModbusRegisters& registers, const Sink& sink) const {
+  void describe_reply(const drivers::decode::modbus::ModbusRequest& request,
+                      const drivers::decode::modbus::ModbusRegisters& registers, const Sink& sink) const {
     UnitReading reading;
     bool holds_any = false;
-    const auto take_value = [&](const ModbusQuantity& quantity, const char* what, const auto& decode,
-                                std::optional<double>& value) {
+    const auto take_value = [&](const drivers::decode::modbus::ModbusQuantity& quantity, const char* what,
+                                const auto& decode, std::optional<double>& value) {
       const auto own = registers_of(quantity, request, registers);
       if (own.empty()) return;
       holds_any = true;
@@ -90,32 +98,34 @@ class ModbusUnitDecoder final : public UnitDecoder {
         sink(UnitRefusal{decoded.error(), what});
       }
     };
-    take_value(profile_.speed, "speed", decode_speed_m_s, reading.wind.speed_m_s);
+    take_value(profile_.speed, "speed", drivers::decode::modbus::decode_speed_m_s, reading.wind.speed_m_s);
     if (profile_.direction)
-      take_value(*profile_.direction, "direction", decode_direction_deg, reading.wind.direction_deg);
-    if (profile_.gust) take_value(*profile_.gust, "gust", decode_speed_m_s, reading.wind.gust_m_s);
+      take_value(*profile_.direction, "direction", drivers::decode::modbus::decode_direction_deg,
+                 reading.wind.direction_deg);
+    if (profile_.gust)
+      take_value(*profile_.gust, "gust", drivers::decode::modbus::decode_speed_m_s, reading.wind.gust_m_s);
     if (auto& direction_deg = reading.wind.direction_deg; direction_deg) {
       direction_deg = std::fmod(*direction_deg + profile_.north_offset_deg + 360.0, 360.0);
     }
 
     if (!holds_any) {
       sink(UnitRefusal{
-          Refusal::kNotMine,
+          drivers::decode::Refusal::kNotMine,
           fmt::format("slave {}, function {}, registers {:#06x} to {:#06x}: not in the profile", request.unit,
                       request.function, request.address, request.address + request.count - 1)});
-    } else if (reading.wind != DecodedWind{}) {
+    } else if (reading.wind != drivers::decode::DecodedWind{}) {
       sink(reading);
     }
   }
 
-  ModbusProfile profile_;
+  drivers::modbus::ModbusProfile profile_;
 };
 
 }  // namespace
 
 std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& options) {
-  ModbusProfile profile = load_modbus_profile(options.profile, "");
-  if (options.speed_slave != 0) set_slave(profile, static_cast<std::uint8_t>(options.speed_slave));
+  drivers::modbus::ModbusProfile profile = drivers::modbus::load_modbus_profile(options.profile, "");
+  if (options.speed_slave != 0) drivers::modbus::set_slave(profile, static_cast<std::uint8_t>(options.speed_slave));
   if (options.direction_slave != 0) {
     if (!profile.direction) throw std::runtime_error("profile \"" + profile.name + "\" has no direction");
     profile.direction->slave = static_cast<std::uint8_t>(options.direction_slave);
@@ -123,4 +133,4 @@ std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& 
   return std::make_unique<ModbusUnitDecoder>(std::move(profile));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -9,7 +9,7 @@
 #include "drivers/decode/hid/te923.hpp"
 #include "drivers/decode/hid/wmr100.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
 constexpr std::size_t kStationReport = 8;
@@ -17,7 +17,8 @@ constexpr std::size_t kStationReport = 8;
 bool is_report(const RawUnit& unit, const UnitDecoder::Sink& sink) {
   if (unit.bytes.size() == kStationReport) return true;
   const bool is_short = unit.bytes.size() < kStationReport;
-  sink(UnitRefusal{is_short ? Refusal::kTooShort : Refusal::kMalformed, "a report has 8 bytes"});
+  sink(UnitRefusal{is_short ? drivers::decode::Refusal::kTooShort : drivers::decode::Refusal::kMalformed,
+                   "a report has 8 bytes"});
   return false;
 }
 
@@ -27,7 +28,7 @@ class Wmr100Reports final : public UnitDecoder {
   explicit Wmr100Reports(std::unique_ptr<UnitDecoder> stream) : stream_(std::move(stream)) {}
 
   void take(const RawUnit& unit, const Sink& sink) override {
-    if (is_report(unit, sink)) stream_->take({wmr100_report_bytes(unit.bytes), {}}, sink);
+    if (is_report(unit, sink)) stream_->take({drivers::decode::hid::wmr100_report_bytes(unit.bytes), {}}, sink);
   }
   void finish(const Sink& sink) override { stream_->finish(sink); }
 
@@ -41,15 +42,15 @@ class Te923Reports final : public UnitDecoder {
   void take(const RawUnit& unit, const Sink& sink) override {
     if (!is_report(unit, sink)) return;
     if (!unit.request.empty()) finish(sink);
-    const ByteSpan valid = wmr100_report_bytes(unit.bytes);
+    const drivers::decode::ByteSpan valid = drivers::decode::hid::wmr100_report_bytes(unit.bytes);
     block_.insert(block_.end(), valid.begin(), valid.end());
-    if (block_.size() >= kTe923Block) finish(sink);
+    if (block_.size() >= drivers::decode::hid::kTe923Block) finish(sink);
   }
 
   /// The received part of a block.
   void finish(const Sink& sink) override {
     if (block_.empty()) return;
-    sink(outcome_of(decode_te923(block_)));
+    sink(outcome_of(drivers::decode::hid::decode_te923(block_)));
     block_.clear();
   }
 
@@ -65,10 +66,11 @@ class FineOffsetReports final : public UnitDecoder {
     if (!is_report(unit, sink)) return;
     if (unit.request.size() == kStationReport) {
       size_ = 0;
-      address_ = big_endian_16(unit.request, 1);
+      address_ = drivers::decode::big_endian_16(unit.request, 1);
     }
     if (!address_)
-      return sink(UnitRefusal{Refusal::kMalformed, "no request: write request | first report on one line"});
+      return sink(
+          UnitRefusal{drivers::decode::Refusal::kMalformed, "no request: write request | first report on one line"});
     std::ranges::copy(unit.bytes, block_.begin() + static_cast<std::ptrdiff_t>(size_));
     size_ += unit.bytes.size();
     if (size_ < block_.size()) return;
@@ -79,8 +81,11 @@ class FineOffsetReports final : public UnitDecoder {
  private:
   void take_block(std::uint16_t address, const Sink& sink) {
     if (address == 0) {
-      auto fixed = decode_fineoffset_fixed_block(block_, FineOffsetModel::kWh1080);
-      if (!fixed) fixed = decode_fineoffset_fixed_block(block_, FineOffsetModel::kWh3080);
+      auto fixed =
+          drivers::decode::hid::decode_fineoffset_fixed_block(block_, drivers::decode::hid::FineOffsetModel::kWh1080);
+      if (!fixed)
+        fixed =
+            drivers::decode::hid::decode_fineoffset_fixed_block(block_, drivers::decode::hid::FineOffsetModel::kWh3080);
       if (!fixed) return sink(UnitRefusal{fixed.error(), "the fixed block"});
       position_ = fixed->current_position;
       return;
@@ -100,11 +105,12 @@ class FineOffsetReports final : public UnitDecoder {
     const bool holds_record =
         position_ && memory_address_ <= *position_ && *position_ + kRecord <= memory_address_ + memory_.size();
     if (!holds_record) return;
-    sink(outcome_of(decode_fineoffset_record(ByteSpan(memory_).subspan(*position_ - memory_address_, kRecord))));
+    sink(outcome_of(drivers::decode::hid::decode_fineoffset_record(
+        drivers::decode::ByteSpan(memory_).subspan(*position_ - memory_address_, kRecord))));
     memory_.clear();
   }
 
-  std::array<std::uint8_t, kFineOffsetBlock> block_{};
+  std::array<std::uint8_t, drivers::decode::hid::kFineOffsetBlock> block_{};
   std::size_t size_ = 0;
   std::optional<std::uint16_t> address_;   ///< of the block being received
   std::optional<std::uint16_t> position_;  ///< of the current record
@@ -126,4 +132,4 @@ std::unique_ptr<UnitDecoder> make_fineoffset_reports_decoder() {
   return std::make_unique<FineOffsetReports>();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 
 std::optional<std::vector<std::uint8_t>> parse_hex(std::string_view text) {
   constexpr std::string_view kBetweenBytes = " \t,:-";
@@ -41,4 +41,4 @@ std::string to_printable(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -7,7 +7,7 @@
 
 #include "daemon/tools/decode/hex_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
 /// "20:40:01.123"
@@ -55,4 +55,4 @@ std::string RawHexLines::line_of(const wire::RawTrace& trace) {
   return line + to_hex(trace.bytes) + "\n";
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -4,7 +4,7 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 
 /// A message to or from a device, for a terminal: time (UTC), sensor, "<-" from the device or "->" to it, and its bytes
 /// in hexadecimal digits, 16 a line, with their text beside. A line before it gives the number of messages that were
@@ -23,4 +23,4 @@ class RawHexLines {
   std::vector<std::uint8_t> request_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -3,16 +3,16 @@
 #include "daemon/tools/decode/hex_text.hpp"
 #include "drivers/decode/text_fields.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
-ByteSpan bytes_of(std::string_view text) {
+drivers::decode::ByteSpan bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 }  // namespace
 
-void UnitReader::feed(ByteSpan bytes, const Sink& sink) {
+void UnitReader::feed(drivers::decode::ByteSpan bytes, const Sink& sink) {
   if (form_ == Form::kLines) {
     while (!bytes.empty()) {
       if (const auto line = lines_.next(bytes)) take_line(*line, sink);
@@ -35,9 +35,9 @@ void UnitReader::finish(const Sink& sink) {
   if (const auto line = lines_.finish()) take_line(*line, sink);
 }
 
-void UnitReader::take_line(const LineAssembler::Line& line, const Sink& sink) {
+void UnitReader::take_line(const drivers::decode::text::LineAssembler::Line& line, const Sink& sink) {
   if (line) return sink({.bytes = bytes_of(*line), .request = {}, .text = *line, .why = {}});
-  const bool is_cut = line.error() == Refusal::kTooShort;
+  const bool is_cut = line.error() == drivers::decode::Refusal::kTooShort;
   sink({.bytes = {},
         .request = {},
         .text = {},
@@ -46,9 +46,9 @@ void UnitReader::take_line(const LineAssembler::Line& line, const Sink& sink) {
 }
 
 void UnitReader::take_hex_line(const Sink& sink) {
-  std::string_view text = trimmed(hex_line_);
+  std::string_view text = drivers::decode::trimmed(hex_line_);
   const auto refuse = [&](std::string_view detail) {
-    sink({.bytes = {}, .request = {}, .text = text, .why = Refusal::kMalformed, .detail = detail});
+    sink({.bytes = {}, .request = {}, .text = text, .why = drivers::decode::Refusal::kMalformed, .detail = detail});
   };
   if (is_overlong_) {
     refuse("line too long");
@@ -76,4 +76,4 @@ void UnitReader::take_hex_line(const Sink& sink) {
   is_overlong_ = false;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

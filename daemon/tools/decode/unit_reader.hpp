@@ -9,14 +9,14 @@
 #include "drivers/decode/byte_order.hpp"
 #include "drivers/decode/text/line_assembler.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 
 /// One message of an input, or the text of the input and what is wrong with it.
 struct ReadUnit {
-  ByteSpan bytes;
-  ByteSpan request;            ///< what is before '|' in hexadecimal input
-  std::string_view text;       ///< as it is in the input
-  std::optional<Refusal> why;  ///< why nothing can be decoded
+  drivers::decode::ByteSpan bytes;
+  drivers::decode::ByteSpan request;            ///< what is before '|' in hexadecimal input
+  std::string_view text;                        ///< as it is in the input
+  std::optional<drivers::decode::Refusal> why;  ///< why nothing can be decoded
   std::string_view detail = {};
 };
 
@@ -32,24 +32,24 @@ class UnitReader {
   };
   using Sink = std::function<void(const ReadUnit&)>;
 
-  UnitReader(Form form, LineEnding ending) : form_(form), ending_(ending), lines_(ending) {}
+  UnitReader(Form form, drivers::decode::text::LineEnding ending) : form_(form), ending_(ending), lines_(ending) {}
 
   /// Takes the next bytes of the input, and calls `sink` with each message that they complete.
-  void feed(ByteSpan bytes, const Sink& sink);
+  void feed(drivers::decode::ByteSpan bytes, const Sink& sink);
   /// Called at the end of the input, which may be within a line.
   void finish(const Sink& sink);
 
  private:
   static constexpr std::size_t kMaxHexLine = 8192;
 
-  void take_line(const LineAssembler::Line& line, const Sink& sink);
+  void take_line(const drivers::decode::text::LineAssembler::Line& line, const Sink& sink);
   void take_hex_line(const Sink& sink);
 
   Form form_;
-  LineEnding ending_;
-  LineAssembler lines_;
+  drivers::decode::text::LineEnding ending_;
+  drivers::decode::text::LineAssembler lines_;
   std::string hex_line_;
   bool is_overlong_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

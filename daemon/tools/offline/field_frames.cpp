@@ -9,7 +9,7 @@
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 namespace {
 
 /// The least rate of the estimator's steps: its filters are designed for the daemon's rate.
@@ -17,27 +17,28 @@ constexpr double kLeastTickRate_hz = 50.0;
 
 }  // namespace
 
-void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const FieldFrames& frames,
-                          const UseField& use) {
+void make_spectral_frames(wind::field::SpectralWindField& field, const wind::field::FieldGrid& grid,
+                          const FieldFrames& frames, const UseField& use) {
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
   for (std::size_t frame = 0; frame < frames.count; ++frame) {
     field.go_to(frames.time_s(frame));
-    sample_field(field, grid, values);
+    wind::field::sample_field(field, grid, values);
     use(values);
   }
 }
 
 Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording,
-                                           const PlaybackOptions& playback_options, const Config& config,
-                                           const FieldGrid& grid, const FieldFrames& frames, const UseField& use) {
-  auto opened = WindlogPlayback::open(recording, playback_options);
+                                           const drivers::windlog::PlaybackOptions& playback_options,
+                                           const settings::Config& config, const wind::field::FieldGrid& grid,
+                                           const FieldFrames& frames, const UseField& use) {
+  auto opened = drivers::windlog::WindlogPlayback::open(recording, playback_options);
   if (!opened) return opened.error();
-  WindlogPlayback& playback = *opened;
-  const std::shared_ptr<const GustNoise> noise = make_gust_noise(config);
-  BlendedEstimator estimator = make_estimator(config, noise, grid.reach_m());
-  WindTapes tapes;
-  GroundWind ground;
-  const GroundWindField field(ground, *noise);
+  drivers::windlog::WindlogPlayback& playback = *opened;
+  const std::shared_ptr<const wind::turbulence::GustNoise> noise = sensing::make_gust_noise(config);
+  wind::blend::BlendedEstimator estimator = sensing::make_estimator(config, noise, grid.reach_m());
+  wind::ground::WindTapes tapes;
+  wind::ground::GroundWind ground;
+  const wind::field::GroundWindField field(ground, *noise);
 
   // Several ticks per frame. A frame is that of the first tick at its time or after it.
   OfflineWindOptions offline;
@@ -47,10 +48,10 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
   std::size_t next = 0;
-  const auto result = run_offline(playback, estimator, offline, [&](double time_s, const WindState& state) {
+  const auto result = run_offline(playback, estimator, offline, [&](double time_s, const wind::WindState& state) {
     ground = written_to(tapes, {state, estimator.ground(), estimator.stroke()});
     if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
-    sample_field(field, grid, values);
+    wind::field::sample_field(field, grid, values);
     use(values);
     ++next;
   });
@@ -65,4 +66,4 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
   return {};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

@@ -11,7 +11,7 @@
 #include "engine/wind/field/spectral_wind_field.hpp"
 #include "engine/wind/field/wind_field.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 
 /// The moments at which a field is sampled.
 struct FieldFrames {
@@ -26,14 +26,15 @@ struct FieldFrames {
 using UseField = std::function<void(std::span<const float> values)>;
 
 /// The frames of a wind with given statistics.
-void make_spectral_frames(SpectralWindField& field, const FieldGrid& grid, const FieldFrames& frames,
-                          const UseField& use);
+void make_spectral_frames(wind::field::SpectralWindField& field, const wind::field::FieldGrid& grid,
+                          const FieldFrames& frames, const UseField& use);
 
 /// The frames of the live wind over the ground, as the daemon with this configuration would have estimated it while the
 /// recording was made: the estimator takes its readings one by one from the beginning on. Fails where the recording
 /// cannot be read, or ends before the last frame.
-Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording, const PlaybackOptions& playback,
-                                           const Config& config, const FieldGrid& grid, const FieldFrames& frames,
-                                           const UseField& use);
+Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording,
+                                           const drivers::windlog::PlaybackOptions& playback,
+                                           const settings::Config& config, const wind::field::FieldGrid& grid,
+                                           const FieldFrames& frames, const UseField& use);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

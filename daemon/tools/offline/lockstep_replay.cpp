@@ -6,36 +6,37 @@
 #include "daemon/sensing/sensor_hub.hpp"
 #include "engine/pose/pose_hash.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 namespace {
 
-std::uint64_t hash_poses(std::uint64_t hash, std::span<const Pose* const> poses) {
-  for (const Pose* pose : poses) hash = pose_hash(hash, *pose);
+std::uint64_t hash_poses(std::uint64_t hash, std::span<const pose::Pose* const> poses) {
+  for (const pose::Pose* pose : poses) hash = pose::pose_hash(hash, *pose);
   return hash;
 }
 
 }  // namespace
 
-Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
-                                                   const PlayerOptions& options, double duration_s,
+Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& config,
+                                                   const std::filesystem::path& recording,
+                                                   const drivers::windlog::PlayerOptions& options, double duration_s,
                                                    const std::function<void(double)>& progress, const UseTick& use) {
-  auto opened = WindlogPlayer::open(recording, options, Instant{});
+  auto opened = drivers::windlog::WindlogPlayer::open(recording, options, Instant{});
   if (!opened) return opened.error();
-  WindlogPlayer& player = *opened;
-  const std::shared_ptr<const GustNoise> gusts = make_gust_noise(config);
-  Animation animation(config, gusts);
-  Config one_source = config;
+  drivers::windlog::WindlogPlayer& player = *opened;
+  const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
+  animation::Animation animation(config, gusts);
+  settings::Config one_source = config;
   one_source.sensors.resize(1);
   one_source.wind.fallback.reset();
-  BlendedEstimator estimator = make_estimator(one_source, gusts, animation.reach_m());
-  WindShaping shaping(config.shaping.settings, gusts);
+  wind::blend::BlendedEstimator estimator = sensing::make_estimator(one_source, gusts, animation.reach_m());
+  wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
 
   const double rate_hz = config.animation.rate_hz;
   const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
   LockstepResult result;
   std::uint64_t followed_ticks = 0;
-  const std::optional<JudgeSettings>& judged_by = one_source.sensors[0].judge;
-  ReadingJudge judge(judged_by.value_or(JudgeSettings{}));
+  const std::optional<wind::judging::JudgeSettings>& judged_by = one_source.sensors[0].judge;
+  wind::judging::ReadingJudge judge(judged_by.value_or(wind::judging::JudgeSettings{}));
 
   for (std::uint64_t tick = 0; !player.is_finished(); ++tick) {
     const double now_s = static_cast<double>(tick) / rate_hz;
@@ -43,9 +44,9 @@ Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const s
 
     // Readings that are due by this tick, at their own log time.
     const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
-    const auto played = player.play(now, [&](const WindReading& reading) {
+    const auto played = player.play(now, [&](const wind::WindReading& reading) {
       // As in the daemon: readings that are not believed are left out.
-      if (judged_by && reading.quality != ReadingQuality::kSimulated && !judge.judge(reading)) return;
+      if (judged_by && reading.quality != wind::ReadingQuality::kSimulated && !judge.judge(reading)) return;
       if (!estimator.accept(0, reading)) return;
       ++result.readings;
       result.reading_mean_m_s += reading.speed_m_s;
@@ -54,14 +55,15 @@ Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const s
     if (!played) return played.error();
 
     // Opening hours do not apply: log time is not local time.
-    DrivingWind wind{estimator.advance(MonoTime(from_seconds(now_s))), estimator.ground(), estimator.stroke()};
+    wind::ground::DrivingWind wind{estimator.advance(MonoTime(from_seconds(now_s))), estimator.ground(),
+                                   estimator.stroke()};
     shaping.shape(wind, true);
-    const WindState& state = wind.state;
+    const wind::WindState& state = wind.state;
     animation.step(wind, 1.0 / rate_hz);
     result.pose_hash = hash_poses(result.pose_hash, animation.poses());
     if (use) use(now_s, animation);
     ++result.ticks;
-    if (state.source == WindSource::kLive) {
+    if (state.source == wind::WindSource::kLive) {
       const double speed_m_s = speed_of(state.wind);
       ++followed_ticks;
       result.wind_mean_m_s += speed_m_s;
@@ -76,4 +78,4 @@ Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const s
   return result;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

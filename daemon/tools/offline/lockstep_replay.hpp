@@ -8,7 +8,7 @@
 #include "daemon/settings/config.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 
 /// The result of a replay through estimator and scenes.
 struct LockstepResult {
@@ -23,15 +23,16 @@ struct LockstepResult {
 };
 
 /// Called at the end of each tick.
-using UseTick = std::function<void(double log_time_s, const Animation& animation)>;
+using UseTick = std::function<void(double log_time_s, const animation::Animation& animation)>;
 
 /// Replays in log time, tick by tick, with no clock and no thread, so that every run of the same seed and recording
 /// gives the same poses, bit for bit. Log time is that of the playback at rate 1, loops and their seams included.
 /// `progress` is called about once a second of work with the log time reached; it may be empty, and so may `use`. Ends
 /// after `duration_s` of log time, if above 0. Fails where the recording cannot be read.
-Result<LockstepResult, Failure> replay_in_lockstep(const Config& config, const std::filesystem::path& recording,
-                                                   const PlayerOptions& options, double duration_s,
+Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& config,
+                                                   const std::filesystem::path& recording,
+                                                   const drivers::windlog::PlayerOptions& options, double duration_s,
                                                    const std::function<void(double log_time_s)>& progress,
                                                    const UseTick& use = {});
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

@@ -10,7 +10,7 @@
 
 #include "daemon/settings/output_file.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they stand in memory");
@@ -41,7 +41,7 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   for (const std::size_t length : shape) count *= length;
   if (count != values.size()) throw std::logic_error("the shape does not hold the values");
 
-  OutputFile output(file, true);
+  settings::OutputFile output(file, true);
   std::ofstream out(output.working_path(), std::ios::binary);
   const std::string header = npy_header(shape);
   out.write(header.data(), static_cast<std::streamsize>(header.size()));
@@ -55,4 +55,4 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   output.commit().value();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

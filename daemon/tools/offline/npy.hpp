@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 
 /// Writes float32 values of the given shape (C order: the last index runs fastest) as a NumPy file, format 1.0,
 /// little-endian.
@@ -18,4 +18,4 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
 /// The header of such a file, for writing it piece by piece: the values follow as they are in memory.
 std::string npy_header(std::span<const std::size_t> shape);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

@@ -2,38 +2,38 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 namespace {
 
 /// The readings for the estimator: each at its log time, without those in the gaps, and averaged where a slower sensor
 /// is simulated.
 class PlayedReadings {
  public:
-  PlayedReadings(WindlogPlayback& playback, const OfflineWindOptions& options)
+  PlayedReadings(drivers::windlog::WindlogPlayback& playback, const OfflineWindOptions& options)
       : playback_(playback), options_(options) {}
 
   /// Nothing at the end, or where the recording cannot be read.
-  std::optional<WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
+  std::optional<wind::WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
 
   /// Why it cannot be read; nothing if it can.
   const std::optional<Failure>& failure() const { return failure_; }
 
  private:
-  std::optional<WindReading> next_single() {
+  std::optional<wind::WindReading> next_single() {
     for (;;) {
       const auto played = playback_.next();
       if (!played) failure_ = played.error();
       if (!played || !*played) return std::nullopt;
       const double log_time_s = (*played)->log_time_s;
       if (is_in_gap(log_time_s)) continue;
-      WindReading reading = (*played)->reading;
+      wind::WindReading reading = (*played)->reading;
       reading.time.mono = MonoTime(from_seconds(log_time_s));
       return reading;
     }
   }
 
   /// The mean over one block of time; blocks without readings are skipped.
-  std::optional<WindReading> next_mean() {
+  std::optional<wind::WindReading> next_mean() {
     if (!held_) held_ = next_single();
     if (!held_) return std::nullopt;
     // In whole nanoseconds, which may be off by one after conversion from seconds: a reading on the edge of two blocks
@@ -42,7 +42,7 @@ class PlayedReadings {
     const Nanoseconds edge = ((held_->time.mono.time_since_epoch() + Nanoseconds(1)) / interval + 1) * interval;
     const MonoTime end(from_seconds(seconds(edge)));
 
-    WindVector sum{};
+    wind::WindVector sum{};
     double speed_sum_m_s = 0.0;
     double gust_m_s = 0.0;
     std::size_t count = 0;
@@ -51,15 +51,15 @@ class PlayedReadings {
       speed_sum_m_s += held_->speed_m_s;
       gust_m_s = std::max(gust_m_s, held_->gust_m_s.value_or(held_->speed_m_s));
       if (!held_->direction_deg) continue;
-      sum = sum + wind_from(held_->speed_m_s, *held_->direction_deg);
+      sum = sum + wind::wind_from(held_->speed_m_s, *held_->direction_deg);
       ++directed;
     }
     const bool has_direction = directed == count;
-    const WindVector mean = (1.0 / static_cast<double>(count)) * sum;
-    WindReading reading;
+    const wind::WindVector mean = (1.0 / static_cast<double>(count)) * sum;
+    wind::WindReading reading;
     reading.time.mono = end;
     reading.speed_m_s = has_direction ? speed_of(mean) : speed_sum_m_s / static_cast<double>(count);
-    if (has_direction) reading.direction_deg = direction_from_deg(mean);
+    if (has_direction) reading.direction_deg = wind::direction_from_deg(mean);
     reading.gust_m_s = gust_m_s;
     return reading;
   }
@@ -69,26 +69,26 @@ class PlayedReadings {
                                [time_s](const OfflineGap& gap) { return time_s >= gap.from_s && time_s < gap.to_s; });
   }
 
-  WindlogPlayback& playback_;
+  drivers::windlog::WindlogPlayback& playback_;
   const OfflineWindOptions& options_;
-  std::optional<WindReading> held_;
+  std::optional<wind::WindReading> held_;
   std::optional<Failure> failure_;
 };
 
 /// One source of the estimator, and the judge of its readings.
 class OfflineSource {
  public:
-  OfflineSource(WindlogPlayback& playback, const OfflineWindOptions& options)
+  OfflineSource(drivers::windlog::WindlogPlayback& playback, const OfflineWindOptions& options)
       : readings_(playback, options),
         is_judged_(options.judge.has_value()),
-        judge_(options.judge.value_or(JudgeSettings{})),
+        judge_(options.judge.value_or(wind::judging::JudgeSettings{})),
         next_(readings_.next()) {}
 
   bool has_more() const { return next_.has_value(); }
   const std::optional<Failure>& failure() const { return readings_.failure(); }
 
   /// Passes the readings up to `now` to the estimator, as source `number`.
-  void feed(BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
+  void feed(wind::blend::BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
     for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
       if (!judge(*next_)) {
         ++result.withheld;
@@ -100,24 +100,25 @@ class OfflineSource {
 
  private:
   /// Is it believed?
-  bool judge(const WindReading& reading) {
-    return !is_judged_ || reading.quality == ReadingQuality::kSimulated || judge_.judge(reading);
+  bool judge(const wind::WindReading& reading) {
+    return !is_judged_ || reading.quality == wind::ReadingQuality::kSimulated || judge_.judge(reading);
   }
 
   PlayedReadings readings_;
   bool is_judged_;
-  ReadingJudge judge_;
-  std::optional<WindReading> next_;
+  wind::judging::ReadingJudge judge_;
+  std::optional<wind::WindReading> next_;
 };
 
 }  // namespace
 
-Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
+Result<OfflineWindResult, Failure> run_offline(std::span<drivers::windlog::WindlogPlayback> playbacks,
+                                               wind::blend::BlendedEstimator& estimator,
                                                const OfflineWindOptions& options,
-                                               const std::function<void(double time_s, const WindState&)>& use) {
+                                               const std::function<void(double time_s, const wind::WindState&)>& use) {
   OfflineWindResult result;
   std::vector<OfflineSource> sources;
-  for (WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
+  for (drivers::windlog::WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
   const auto has_more = [&] { return std::ranges::any_of(sources, &OfflineSource::has_more); };
   // The last tick is the first at or after the last reading.
   for (bool goes_on = has_more(); goes_on; ++result.states) {
@@ -134,4 +135,4 @@ Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playba
   return result;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

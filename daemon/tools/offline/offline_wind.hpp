@@ -11,7 +11,7 @@
 #include "engine/wind/blend/blended_estimator.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::offline {
 
 /// A stretch of log time, from `from_s` on and before `to_s`, whose readings are left out.
 struct OfflineGap {
@@ -26,7 +26,7 @@ struct OfflineWindOptions {
   std::vector<OfflineGap> gaps{};
   double until_s = std::numeric_limits<double>::infinity();  ///< the last tick; nothing is read beyond it
   /// Judges the readings as the daemon does; empty: all are believed.
-  std::optional<JudgeSettings> judge{};
+  std::optional<wind::judging::JudgeSettings> judge{};
 };
 
 struct OfflineWindResult {
@@ -39,15 +39,16 @@ struct OfflineWindResult {
 /// Runs an estimator over recordings, as fast as possible: source i takes each reading of `playbacks[i]` at its own log
 /// time, and `use` is called with the state of each tick, from log time 0 to the last reading or `until_s`. The options
 /// of the sensor apply to each source. Fails where a recording cannot be read.
-Result<OfflineWindResult, Failure> run_offline(std::span<WindlogPlayback> playbacks, BlendedEstimator& estimator,
+Result<OfflineWindResult, Failure> run_offline(std::span<drivers::windlog::WindlogPlayback> playbacks,
+                                               wind::blend::BlendedEstimator& estimator,
                                                const OfflineWindOptions& options,
-                                               const std::function<void(double time_s, const WindState&)>& use);
+                                               const std::function<void(double time_s, const wind::WindState&)>& use);
 
 /// The same over one recording.
-inline Result<OfflineWindResult, Failure> run_offline(WindlogPlayback& playback, BlendedEstimator& estimator,
-                                                      const OfflineWindOptions& options,
-                                                      const std::function<void(double time_s, const WindState&)>& use) {
+inline Result<OfflineWindResult, Failure> run_offline(
+    drivers::windlog::WindlogPlayback& playback, wind::blend::BlendedEstimator& estimator,
+    const OfflineWindOptions& options, const std::function<void(double time_s, const wind::WindState&)>& use) {
   return run_offline(std::span(&playback, 1), estimator, options, use);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::offline

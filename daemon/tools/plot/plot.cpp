@@ -12,7 +12,7 @@
 
 #include "daemon/tools/plot/plot_script.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::plot {
 namespace {
 
 std::string_view style_of(PlotStyle style) {
@@ -158,4 +158,4 @@ Result<void, Failure> draw_plot(const std::string& file, std::span<const PlotPan
   });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::plot

@@ -9,7 +9,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::plot {
 
 /// How a curve is drawn.
 enum class PlotStyle : std::uint8_t {
@@ -67,4 +67,4 @@ enum class PlotBackground : std::uint8_t { kWhite, kNone };
 Result<void, Failure> draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px = 1000,
                                 PlotBackground background = PlotBackground::kWhite);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::plot

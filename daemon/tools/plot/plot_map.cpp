@@ -9,7 +9,7 @@
 #include "daemon/tools/plot/plot.hpp"
 #include "daemon/tools/plot/plot_script.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::plot {
 namespace {
 
 constexpr int kMapWidth_px = 1000;
@@ -66,4 +66,4 @@ Result<void, Failure> draw_map(const std::string& file, const PlotMap& map) {
                      [&](const std::string& unfinished, bool is_svg) { return map_script(unfinished, is_svg, map); });
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::plot

@@ -6,7 +6,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::plot {
 
 /// An arrow from a place on a map, in the units of its axes.
 struct PlotArrow {
@@ -30,4 +30,4 @@ struct PlotMap {
 /// Draws it into `file`, to scale, as draw_plot() draws curves. Fails as that does.
 Result<void, Failure> draw_map(const std::string& file, const PlotMap& map);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::plot

@@ -11,7 +11,7 @@
 
 #include "daemon/settings/output_file.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::plot {
 namespace {
 
 /// Runs gnuplot on a script. False: it is not installed, or failed.
@@ -57,8 +57,8 @@ Result<void, Failure> draw_script(
   if (auto named = check_plot_name(file); !named) return named;
 
   // The script is an OutputFile without a commit(), so it is removed.
-  OutputFile picture(file, true);
-  const OutputFile script(file + ".gnuplot", true);
+  settings::OutputFile picture(file, true);
+  const settings::OutputFile script(file + ".gnuplot", true);
   std::ofstream(script.working_path(), std::ios::binary) << script_of(picture.working_path(), file.ends_with(".svg"));
   if (run_gnuplot(script.working_path())) return picture.commit();
   return Failure{file +
@@ -67,4 +67,4 @@ Result<void, Failure> draw_script(
                  FailureKind::kCannotCreate};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::plot

@@ -6,7 +6,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::plot {
 
 // Shared by all plots that gnuplot draws: plot.cpp (curves), plot_map.cpp (a map).
 
@@ -24,4 +24,4 @@ std::string plot_output(const std::string& file, bool is_svg, int width_px, int 
 Result<void, Failure> draw_script(
     const std::string& file, const std::function<std::string(const std::string& unfinished, bool is_svg)>& script_of);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::plot

@@ -5,7 +5,7 @@
 #include "daemon/tools/report/recording_survey.hpp"
 #include "daemon/tools/report/welch_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// Resamples readings at irregular times to runs of evenly spaced samples, by linear interpolation. Readings that are
 /// evenly spaced already are passed on unchanged. Thread-safe: no.
@@ -53,4 +53,4 @@ class EvenSeries {
   EvenSample last_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr double kGust_s = 3.0;
@@ -63,4 +63,4 @@ BlockNumbers TenMinuteBlocks::finish() {
   return numbers;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -7,7 +7,7 @@
 #include "daemon/tools/report/report_numbers.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// The mean speed of the last 3 s, whose maximum meteorologists call the gust (WMO No. 8, Guide to Instruments, part I,
 /// chapter 5). Thread-safe: no.
@@ -54,4 +54,4 @@ class TenMinuteBlocks {
   double factor_sum_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr std::uint64_t kReadingsBetweenWords = 50'000;
@@ -42,8 +42,8 @@ Result<std::vector<bool>, Failure> chosen_sensors(const RecordingSurvey& survey,
 
 }  // namespace
 
-Result<RecordingNumbers, Failure> measure_recording(WindlogReader& reader, const ReportSettings& settings,
-                                                    const ReadingProgress& progress) {
+Result<RecordingNumbers, Failure> measure_recording(drivers::windlog::WindlogReader& reader,
+                                                    const ReportSettings& settings, const ReadingProgress& progress) {
   // First the survey, then the numbers.
   const auto survey = survey_recording(reader, settings.range, progress);
   if (!survey) return survey.error();
@@ -70,7 +70,7 @@ Result<RecordingNumbers, Failure> measure_recording(WindlogReader& reader, const
   LogRange range = settings.range;
   if (survey->readings > 0) range.to = std::min(range.to, survey->end + Nanoseconds{1});
   std::uint64_t count = survey->readings;
-  const auto read = for_each_reading(reader, range, [&](const LoggedReading& logged) {
+  const auto read = for_each_reading(reader, range, [&](const drivers::windlog::LoggedReading& logged) {
     const std::size_t index = survey->sensor_of[logged.sensor];
     if (index != RecordingSurvey::kNone && tallies[index]) tallies[index]->add(logged.log_time, logged.reading);
     if (progress && ++count % kReadingsBetweenWords == 0) progress(count);
@@ -82,4 +82,4 @@ Result<RecordingNumbers, Failure> measure_recording(WindlogReader& reader, const
   return numbers;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

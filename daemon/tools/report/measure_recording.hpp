@@ -6,7 +6,7 @@
 #include "drivers/windlog/windlog_reader.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// The largest number of sensors in a report.
 inline constexpr std::size_t kMaxReportedSensors = 16;
@@ -14,7 +14,8 @@ inline constexpr std::size_t kMaxReportedSensors = 16;
 /// Computes the numbers of a recording, which it reads twice. A recording without readings has none, and no sensors.
 /// Fails as the reader does, and where a sensor of `settings.sensors` is missing or there are more than
 /// kMaxReportedSensors. Memory does not grow with the length of the recording. Thread-safe: no. Realtime-safe: no.
-Result<RecordingNumbers, Failure> measure_recording(WindlogReader& reader, const ReportSettings& settings,
+Result<RecordingNumbers, Failure> measure_recording(drivers::windlog::WindlogReader& reader,
+                                                    const ReportSettings& settings,
                                                     const ReadingProgress& progress = {});
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

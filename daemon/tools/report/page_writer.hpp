@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// Writes a page piece by piece. Its arguments are HTML: text from outside has to be escaped by page_text().
 /// Thread-safe: no.
@@ -31,4 +31,4 @@ class PageWriter {
   std::string html_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -5,7 +5,7 @@
 
 #include "engine/wind/blend/source_record.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr std::size_t kMaxIntervals = 100'000;
@@ -15,12 +15,12 @@ constexpr std::uint64_t kReadingsPerWord = 50'000;
 /// Surveys one sensor, reading by reading.
 class Surveyor {
  public:
-  explicit Surveyor(const LoggedSensor& sensor) {
+  explicit Surveyor(const drivers::windlog::LoggedSensor& sensor) {
     survey_.name = sensor.name;
     survey_.driver = sensor.driver;
   }
 
-  void add(Nanoseconds log_time, WindReading reading) {
+  void add(Nanoseconds log_time, wind::WindReading reading) {
     if (survey_.readings == 0) run_begin_ = last_ = log_time;
     const double interval_s = seconds(log_time - last_);
     if (survey_.readings > 0 && intervals_s_.size() < kMaxIntervals) intervals_s_.push_back(interval_s);
@@ -57,7 +57,7 @@ class Surveyor {
 
  private:
   SensorSurvey survey_;
-  SourceRecord record_;
+  wind::blend::SourceRecord record_;
   std::vector<double> intervals_s_;
   Nanoseconds last_{0};
   Nanoseconds run_begin_{0};
@@ -69,7 +69,7 @@ class Surveyor {
 /// Counts how often the recorder's clock was set: the difference of UTC and log time then changes.
 class ClockWatch {
  public:
-  void add(const LoggedReading& logged, RecordingSurvey& survey) {
+  void add(const drivers::windlog::LoggedReading& logged, RecordingSurvey& survey) {
     const double offset_s = seconds(logged.reading.time.utc.time_since_epoch()) - seconds(logged.log_time);
     const double step_s = has_begun_ ? offset_s - offset_s_ : 0.0;
     has_begun_ = true;
@@ -86,8 +86,8 @@ class ClockWatch {
 
 }  // namespace
 
-Result<void, Failure> for_each_reading(WindlogReader& reader, const LogRange& range,
-                                       const std::function<void(const LoggedReading&)>& use) {
+Result<void, Failure> for_each_reading(drivers::windlog::WindlogReader& reader, const LogRange& range,
+                                       const std::function<void(const drivers::windlog::LoggedReading&)>& use) {
   reader.seek(range.from);
   for (;;) {
     const auto logged = reader.next();
@@ -97,17 +97,17 @@ Result<void, Failure> for_each_reading(WindlogReader& reader, const LogRange& ra
   }
 }
 
-Result<RecordingSurvey, Failure> survey_recording(WindlogReader& reader, const LogRange& range,
+Result<RecordingSurvey, Failure> survey_recording(drivers::windlog::WindlogReader& reader, const LogRange& range,
                                                   const ReadingProgress& progress) {
   RecordingSurvey survey;
   survey.sensor_of.assign(reader.sensors().size(), RecordingSurvey::kNone);
   std::vector<Surveyor> surveyors;
   std::vector<std::string> names;
   ClockWatch clock;
-  const auto read = for_each_reading(reader, range, [&](const LoggedReading& logged) {
+  const auto read = for_each_reading(reader, range, [&](const drivers::windlog::LoggedReading& logged) {
     std::size_t& index = survey.sensor_of[logged.sensor];
     if (index == RecordingSurvey::kNone) {
-      const LoggedSensor& sensor = reader.sensors()[logged.sensor];
+      const drivers::windlog::LoggedSensor& sensor = reader.sensors()[logged.sensor];
       index = static_cast<std::size_t>(std::ranges::find(names, sensor.name) - names.begin());
       if (index == names.size()) {
         names.push_back(sensor.name);
@@ -131,4 +131,4 @@ Result<RecordingSurvey, Failure> survey_recording(WindlogReader& reader, const L
   return survey;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

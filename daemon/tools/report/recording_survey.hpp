@@ -9,7 +9,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// A part of a recording, in log time: from `from` on and before `to`.
 struct LogRange {
@@ -49,11 +49,11 @@ struct RecordingSurvey {
 using ReadingProgress = std::function<void(std::uint64_t readings)>;
 
 /// Reads `range` once. Sensors of the same name in several sessions are one sensor. Fails as the reader does.
-Result<RecordingSurvey, Failure> survey_recording(WindlogReader& reader, const LogRange& range,
+Result<RecordingSurvey, Failure> survey_recording(drivers::windlog::WindlogReader& reader, const LogRange& range,
                                                   const ReadingProgress& progress);
 
 /// Calls `use(reading)` for each reading of a range. Fails as the reader does.
-Result<void, Failure> for_each_reading(WindlogReader& reader, const LogRange& range,
-                                       const std::function<void(const LoggedReading&)>& use);
+Result<void, Failure> for_each_reading(drivers::windlog::WindlogReader& reader, const LogRange& range,
+                                       const std::function<void(const drivers::windlog::LoggedReading&)>& use);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -18,7 +18,7 @@
 #include "engine/wind/turbulence/von_karman.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -46,7 +46,7 @@ class Figures {
 
   Result<std::string, Failure> series() {
     if (sensor_.believed == 0) return {};
-    std::vector<PlotPanel> panels = {speed_panel()};
+    std::vector<plot::PlotPanel> panels = {speed_panel()};
     if (sensor_.directed > 0) panels.push_back(direction_panel());
     panels.push_back(state_panel());
     return draw(panels, "Speed, direction and state over time", kWidth_px, event_titles(height_of(panels)));
@@ -57,15 +57,15 @@ class Figures {
   Result<std::string, Failure> diurnal();
 
  private:
-  static int height_of(std::span<const PlotPanel> panels) {
+  static int height_of(std::span<const plot::PlotPanel> panels) {
     int height_px = 0;
-    for (const PlotPanel& panel : panels) height_px += panel.height_px;
+    for (const plot::PlotPanel& panel : panels) height_px += panel.height_px;
     return height_px;
   }
 
-  Result<std::string, Failure> draw(std::span<const PlotPanel> panels, std::string_view label, int width_px = kWidth_px,
-                                    std::string_view over = {}) {
-    const auto drawn = draw_plot(scratch_, panels, width_px, PlotBackground::kNone);
+  Result<std::string, Failure> draw(std::span<const plot::PlotPanel> panels, std::string_view label,
+                                    int width_px = kWidth_px, std::string_view over = {}) {
+    const auto drawn = plot::draw_plot(scratch_, panels, width_px, plot::PlotBackground::kNone);
     if (!drawn) return drawn.error();
     const std::string text = text_of_file(scratch_);
     std::error_code ignored;
@@ -75,10 +75,10 @@ class Figures {
 
   double axis_s(double time_s) const { return seconds(recording_.utc_at(time_s).time_since_epoch()); }
 
-  PlotPanel time_panel() const {
+  plot::PlotPanel time_panel() const {
     // One reading has no duration, and gnuplot cannot draw an axis of microseconds at times since 1970.
     const double margin_s = recording_.duration_s() < 1.0 ? 1.0 : 0.0;
-    PlotPanel panel;
+    plot::PlotPanel panel;
     panel.is_x_time = true;
     panel.x_range = {{axis_s(recording_.begin_s) - margin_s, axis_s(recording_.end_s) + margin_s}};
     // Silences are drawn behind the curves.
@@ -104,9 +104,9 @@ class Figures {
   }
 
   std::string event_titles(int height_px) const;
-  PlotPanel speed_panel() const;
-  PlotPanel direction_panel() const;
-  PlotPanel state_panel() const;
+  plot::PlotPanel speed_panel() const;
+  plot::PlotPanel direction_panel() const;
+  plot::PlotPanel state_panel() const;
 
   const RecordingNumbers& recording_;
   const SensorNumbers& sensor_;
@@ -116,34 +116,35 @@ class Figures {
 /// Invisible elements with a tooltip for each event.
 std::string Figures::event_titles(int height_px) const {
   constexpr double kLeastWidth_px = 3.0;
-  const double axis_px = kWidth_px - kTimeAxisLeft_px - kTimeAxisRight_px;
+  const double axis_px = kWidth_px - plot::kTimeAxisLeft_px - plot::kTimeAxisRight_px;
   std::string titles;
   const auto [axis_begin_s, axis_end_s] = *time_panel().x_range;
   const double px_per_s = axis_px / (axis_end_s - axis_begin_s);
   for (const StateEvent& event : sensor_.events) {
-    const double from_px = kTimeAxisLeft_px + (axis_s(event.from_s) - axis_begin_s) * px_per_s;
+    const double from_px = plot::kTimeAxisLeft_px + (axis_s(event.from_s) - axis_begin_s) * px_per_s;
     fmt::format_to(
         std::back_inserter(titles),
         "<rect x=\"{:.1f}\" y=\"0\" width=\"{:.1f}\" height=\"{}\" fill=\"transparent\"><title>{} for {}, from "
         "{}</title></rect>\n",
         from_px, std::max(event.length_s() * px_per_s, kLeastWidth_px), height_px,
-        kRecordedStateNames[static_cast<std::size_t>(event.state)], duration_text(event.length_s()),
+        kRecordedStateNames[static_cast<std::size_t>(event.state)], settings::duration_text(event.length_s()),
         utc_text(recording_.utc_at(event.from_s)));
   }
   return titles;
 }
 
-PlotPanel Figures::speed_panel() const {
-  PlotCurve band{.title = "lowest to highest", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
-  PlotCurve mean{.title = "speed", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
-  PlotCurve gust{.title = sensor_.reported_gust_m_s ? "gust reported by the sensor" : "3 s gust",
-                 .style = PlotStyle::kLine,
-                 .x = {},
-                 .y = {},
-                 .color = kGustColor};
+plot::PlotPanel Figures::speed_panel() const {
+  plot::PlotCurve band{
+      .title = "lowest to highest", .style = plot::PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
+  plot::PlotCurve mean{.title = "speed", .style = plot::PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  plot::PlotCurve gust{.title = sensor_.reported_gust_m_s ? "gust reported by the sensor" : "3 s gust",
+                       .style = plot::PlotStyle::kLine,
+                       .x = {},
+                       .y = {},
+                       .color = kGustColor};
   double highest_m_s = 1.0;
   bool has_band = false;
-  const auto add = [](PlotCurve& curve, double x, double y, double y2) {
+  const auto add = [](plot::PlotCurve& curve, double x, double y, double y2) {
     curve.x.push_back(x);
     curve.y.push_back(y);
     curve.y2.push_back(y2);
@@ -152,7 +153,7 @@ PlotPanel Figures::speed_panel() const {
     if (bin.count == 0) continue;
     const double x = axis_s(bin.time_s());
     if (bin.follows_silence) {
-      for (PlotCurve* curve : {&band, &mean, &gust}) add(*curve, kNothing, kNothing, kNothing);
+      for (plot::PlotCurve* curve : {&band, &mean, &gust}) add(*curve, kNothing, kNothing, kNothing);
     }
     add(band, x, bin.min_m_s, bin.max_m_s);
     add(mean, x, bin.mean_m_s(), 0.0);
@@ -161,9 +162,9 @@ PlotPanel Figures::speed_panel() const {
     highest_m_s = std::max({highest_m_s, bin.max_m_s, bin.gust_m_s.value_or(0.0)});
   }
   // A line through few readings would be invisible.
-  if (mean.x.size() < kFewReadings) mean.style = PlotStyle::kPoints;
+  if (mean.x.size() < kFewReadings) mean.style = plot::PlotStyle::kPoints;
 
-  PlotPanel panel = time_panel();
+  plot::PlotPanel panel = time_panel();
   panel.y_label = "speed, m/s";
   panel.y_range = {{0.0, 1.3 * highest_m_s}};
   panel.height_px = 360;
@@ -176,35 +177,35 @@ PlotPanel Figures::speed_panel() const {
   return panel;
 }
 
-PlotPanel Figures::direction_panel() const {
-  PlotCurve readings{.title = {}, .style = PlotStyle::kDots, .x = {}, .y = {}, .color = kPaleColor};
+plot::PlotPanel Figures::direction_panel() const {
+  plot::PlotCurve readings{.title = {}, .style = plot::PlotStyle::kDots, .x = {}, .y = {}, .color = kPaleColor};
   for (const DirectionPoint& point : sensor_.directions) {
     readings.x.push_back(axis_s(point.time_s));
     readings.y.push_back(point.direction_deg);
   }
   // Points, not lines: a wind passing through north would draw a line across the panel.
-  PlotCurve mean{.title = {}, .style = PlotStyle::kDots, .x = {}, .y = {}, .color = kWindColor};
+  plot::PlotCurve mean{.title = {}, .style = plot::PlotStyle::kDots, .x = {}, .y = {}, .color = kWindColor};
   for (const TimeBin& bin : sensor_.bins) {
-    const WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
+    const wind::WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
     if (bin.directed == 0 || speed_of(sum) == 0.0) continue;
     mean.x.push_back(axis_s(bin.time_s()));
-    mean.y.push_back(direction_from_deg(sum));
+    mean.y.push_back(wind::direction_from_deg(sum));
   }
-  if (readings.x.size() < kFewReadings) mean.style = PlotStyle::kPoints;
+  if (readings.x.size() < kFewReadings) mean.style = plot::PlotStyle::kPoints;
 
-  PlotPanel panel = time_panel();
+  plot::PlotPanel panel = time_panel();
   panel.y_label = "from, degrees";
   panel.y_range = {{0.0, 360.0}};
   panel.y_step = 90.0;
   panel.height_px = 260;
-  for (PlotCurve* curve : {&readings, &mean}) {
+  for (plot::PlotCurve* curve : {&readings, &mean}) {
     if (!curve->x.empty()) panel.curves.push_back(std::move(*curve));
   }
   return panel;
 }
 
-PlotPanel Figures::state_panel() const {
-  PlotPanel panel = time_panel();
+plot::PlotPanel Figures::state_panel() const {
+  plot::PlotPanel panel = time_panel();
   panel.spans = {{.from = panel.x_range->first,
                   .to = panel.x_range->second,
                   .color = std::string(kRecordedStateColors[static_cast<std::size_t>(RecordedState::kLive)])}};
@@ -225,21 +226,22 @@ PlotPanel Figures::state_panel() const {
 Result<std::string, Failure> Figures::distribution() {
   const SpeedDistribution& numbers = sensor_.distribution;
   if (numbers.share.empty()) return {};
-  PlotCurve measured{.title = "readings", .style = PlotStyle::kBars, .x = {}, .y = {}, .color = kWindColor};
+  plot::PlotCurve measured{.title = "readings", .style = plot::PlotStyle::kBars, .x = {}, .y = {}, .color = kWindColor};
   for (std::size_t i = 0; i < numbers.share.size(); ++i) {
     measured.x.push_back((static_cast<double>(i) + 0.5) * numbers.class_m_s);
     measured.y.push_back(100.0 * numbers.share[i]);
   }
   const double end_m_s = numbers.class_m_s * static_cast<double>(numbers.share.size() + 1);
-  PlotPanel panel{.title = {}, .x_label = "speed, m/s", .y_label = "share of the readings, %", .curves = {measured}};
+  plot::PlotPanel panel{
+      .title = {}, .x_label = "speed, m/s", .y_label = "share of the readings, %", .curves = {measured}};
   if (numbers.weibull_shape) {
     const double k = *numbers.weibull_shape;
     const double c = *numbers.weibull_scale_m_s;
-    PlotCurve fit{.title = fmt::format("Weibull, k = {:.2f}, c = {:.2f} m/s", k, c),
-                  .style = PlotStyle::kLine,
-                  .x = {},
-                  .y = {},
-                  .color = kFitColor};
+    plot::PlotCurve fit{.title = fmt::format("Weibull, k = {:.2f}, c = {:.2f} m/s", k, c),
+                        .style = plot::PlotStyle::kLine,
+                        .x = {},
+                        .y = {},
+                        .color = kFitColor};
     constexpr int kPoints = 200;
     for (int i = 1; i <= kPoints; ++i) {
       const double speed_m_s = end_m_s * i / kPoints;
@@ -260,7 +262,7 @@ Result<std::string, Failure> Figures::spectrum() {
   const SpectrumNumbers& numbers = *sensor_.spectrum;
 
   // Means over eighths of an octave: the same density of points at all frequencies.
-  PlotCurve measured{.title = "measured", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  plot::PlotCurve measured{.title = "measured", .style = plot::PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
   constexpr double kPerOctave = 8.0;
   // Without the line at the Nyquist frequency, which has half of the power.
   const std::size_t lines = numbers.density_m2_s2_hz.size() - 1;
@@ -283,37 +285,38 @@ Result<std::string, Failure> Figures::spectrum() {
   const double from_hz = measured.x.front();
   const double to_hz = measured.x.back();
 
-  PlotPanel panel{.title = {},
-                  .x_label = "frequency, Hz",
-                  .y_label = "S, m²/s²/Hz",
-                  .is_x_log = true,
-                  .is_y_log = true,
-                  .curves = {measured}};
+  plot::PlotPanel panel{.title = {},
+                        .x_label = "frequency, Hz",
+                        .y_label = "S, m²/s²/Hz",
+                        .is_x_log = true,
+                        .is_y_log = true,
+                        .curves = {measured}};
   if (numbers.von_karman) {
     const VonKarmanFit& fit = *numbers.von_karman;
-    PlotCurve curve{.title = fmt::format("von Karman, U = {:.2f} m/s, TI = {:.2f}{}", fit.speed_m_s, fit.intensity,
-                                         fit.length_m ? fmt::format(", L = {:.0f} m", *fit.length_m) : ""),
-                    .style = PlotStyle::kLine,
-                    .x = {},
-                    .y = {},
-                    .color = kFitColor};
+    plot::PlotCurve curve{
+        .title = fmt::format("von Karman, U = {:.2f} m/s, TI = {:.2f}{}", fit.speed_m_s, fit.intensity,
+                             fit.length_m ? fmt::format(", L = {:.0f} m", *fit.length_m) : ""),
+        .style = plot::PlotStyle::kLine,
+        .x = {},
+        .y = {},
+        .color = kFitColor};
     constexpr int kPoints = 200;
     for (int i = 0; i <= kPoints; ++i) {
       const double f = from_hz * std::pow(to_hz / from_hz, static_cast<double>(i) / kPoints);
       curve.x.push_back(f);
       curve.y.push_back(fit.sigma_m_s() * fit.sigma_m_s() * fit.time_scale_s *
-                        von_karman_density(f * fit.time_scale_s));
+                        wind::turbulence::von_karman_density(f * fit.time_scale_s));
     }
     panel.curves.push_back(std::move(curve));
   }
   if (numbers.power_law) {
     // Drawn above the measured curve, so that both can be seen.
     const PowerLawFit& fit = *numbers.power_law;
-    PlotCurve curve{.title = fmt::format("f to the power of {:.2f}, drawn twice as high", -fit.beta),
-                    .style = PlotStyle::kLine,
-                    .x = {},
-                    .y = {},
-                    .color = kSlopeColor};
+    plot::PlotCurve curve{.title = fmt::format("f to the power of {:.2f}, drawn twice as high", -fit.beta),
+                          .style = plot::PlotStyle::kLine,
+                          .x = {},
+                          .y = {},
+                          .color = kSlopeColor};
     for (const double f : {fit.from_hz, fit.to_hz}) {
       curve.x.push_back(f);
       curve.y.push_back(2.0 * std::exp(fit.log_level - fit.beta * std::log(f)));
@@ -328,8 +331,9 @@ Result<std::string, Failure> Figures::spectrum() {
 
 Result<std::string, Failure> Figures::diurnal() {
   if (!sensor_.diurnal) return {};
-  PlotCurve band{.title = "8 of 10 readings", .style = PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
-  PlotCurve mean{.title = "mean", .style = PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  plot::PlotCurve band{
+      .title = "8 of 10 readings", .style = plot::PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
+  plot::PlotCurve mean{.title = "mean", .style = plot::PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
   double highest_m_s = 1.0;
   for (std::size_t i = 0; i < sensor_.diurnal->size(); ++i) {
     const HourOfDay& hour = (*sensor_.diurnal)[i];
@@ -342,7 +346,7 @@ Result<std::string, Failure> Figures::diurnal() {
     mean.y.push_back(has_any ? hour.mean_m_s : kNothing);
     highest_m_s = std::max({highest_m_s, hour.p90_m_s, hour.mean_m_s});
   }
-  PlotPanel panel{
+  plot::PlotPanel panel{
       .title = {}, .x_label = "hour of the day, local time", .y_label = "speed, m/s", .curves = {band, mean}};
   panel.x_range = {{0.0, 24.0}};
   panel.x_step = 3.0;
@@ -390,4 +394,4 @@ Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, c
   return drawn;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -8,7 +8,7 @@
 #include "daemon/tools/report/report_numbers.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// Colours of the states, in the figures and in their legend; live has none.
 inline constexpr std::array<std::string_view, kRecordedStates> kRecordedStateColors = {"#3fa66b", "#9a9a9a", "#e0a100",
@@ -33,4 +33,4 @@ Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, c
 std::string embedded_plot(std::string_view svg, int width_px, int height_px, std::string_view label,
                           std::string_view over = {});
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

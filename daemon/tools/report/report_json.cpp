@@ -12,7 +12,7 @@
 #include "engine/base/version.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 using nlohmann::ordered_json;
@@ -93,9 +93,9 @@ ordered_json json_of_series(const RecordingNumbers& recording, const SensorNumbe
   ordered_json rows = ordered_json::array();
   for (const TimeBin& bin : sensor.bins) {
     if (bin.count == 0) continue;
-    const WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
+    const wind::WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
     std::optional<double> direction_deg;
-    if (bin.directed > 0 && speed_of(sum) > 0.0) direction_deg = direction_from_deg(sum);
+    if (bin.directed > 0 && speed_of(sum) > 0.0) direction_deg = wind::direction_from_deg(sum);
     rows.push_back({{"time_s", bin.time_s()},
                     {"utc", iso_text(recording.utc_at(bin.time_s()))},
                     {"readings", bin.count},
@@ -198,4 +198,4 @@ std::string report_json(const RecordingNumbers& recording, const std::string& so
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

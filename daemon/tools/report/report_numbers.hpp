@@ -15,7 +15,7 @@
 // (windlog_reader.hpp) since the recording's first reading. Speeds are as recorded, before calibration. All statistics
 // but counts are of the readings that ReadingJudge believes.
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// The state of a sensor, the most serious last.
 enum class RecordedState : std::uint8_t {
@@ -214,4 +214,4 @@ struct RecordingNumbers {
   double duration_s() const { return end_s - begin_s; }
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -12,14 +12,14 @@
 #include "engine/base/version.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 void add_warnings(PageWriter& page, const RecordingNumbers& recording) {
   std::uint64_t simulated = 0;
   std::uint64_t readings = 0;
   for (const SensorNumbers& sensor : recording.sensors) {
-    simulated += sensor.quality[static_cast<std::size_t>(ReadingQuality::kSimulated)];
+    simulated += sensor.quality[static_cast<std::size_t>(wind::ReadingQuality::kSimulated)];
     readings += sensor.readings;
   }
   if (simulated > 0) {
@@ -50,7 +50,7 @@ void add_recording(PageWriter& page, const RecordingNumbers& recording, const st
   page.row("Recording", page_text(source));
   page.row("From", both_times(recording.first));
   page.row("To", both_times(recording.last));
-  page.row("Length", duration_text(recording.duration_s()));
+  page.row("Length", settings::duration_text(recording.duration_s()));
   page.row("Readings", fmt::format("{} in {} {}", recording.readings, recording.sessions,
                                    recording.sessions == 1 ? "session" : "sessions"));
   page.add("</tbody></table>\n");
@@ -71,7 +71,7 @@ void add_recording(PageWriter& page, const RecordingNumbers& recording, const st
         "<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td "
         "class=\"n\">{}</td><td>{}</td></tr>\n",
         page_text(sensor.name), page_text(sensor.driver), sensor.readings,
-        sensor.readings > 1 ? duration_text(sensor.interval_s) : "–",
+        sensor.readings > 1 ? settings::duration_text(sensor.interval_s) : "–",
         sensor.states[static_cast<std::size_t>(RecordedState::kStale)].count, quality);
   }
   page.add("</tbody></table>\n");
@@ -107,4 +107,4 @@ std::string report_page(const RecordingNumbers& recording, std::span<const Senso
   return page.take();
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

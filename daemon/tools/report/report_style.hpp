@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// The style sheet: dark where the reader's system is, light in print.
 inline constexpr std::string_view kReportStyle = R"css(
@@ -56,4 +56,4 @@ footer { margin-top: 3rem; color: var(--quiet); font-size: .85rem; border-top: 1
 }
 )css";
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -9,7 +9,7 @@
 
 #include "engine/base/compass.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr std::size_t kMostBytes = 200;
@@ -102,4 +102,4 @@ std::string compass_text(double direction_deg) {
   return text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

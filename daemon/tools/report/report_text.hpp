@@ -6,7 +6,7 @@
 #include "daemon/settings/duration_text.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// Text from outside, escaped for HTML or SVG, between tags or in a quoted attribute: without special characters, valid
 /// UTF-8 (invalid bytes and control characters become U+FFFD), and truncated when very long.
@@ -24,4 +24,4 @@ Nanoseconds local_offset(UtcTime moment);
 /// The nearest point of the compass in words: "north-north-east".
 std::string compass_text(double direction_deg);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -12,7 +12,7 @@
 #include "daemon/tools/report/wind_rose.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 std::string percent(double part) {
@@ -185,10 +185,10 @@ void add_site(PageWriter& page, const SensorNumbers& sensor) {
       "<p>A sensor with an interval of several seconds does not measure quicker gusts: they are filled in by a model "
       "of open land. The table shows by how much the gusts that “{}” measured were stronger (+) or weaker (−) than the "
       "model would have given for a sensor of 14 s at its place, over {}:</p>\n",
-      page_text(sensor.name), duration_text(site.known_s));
+      page_text(sensor.name), settings::duration_text(site.known_s));
   page.add("<table><thead><tr><th>octave</th><th class=\"n\">dB</th></tr></thead><tbody>\n");
   for (std::size_t octave = 0; octave < site.octaves_db.size(); ++octave) {
-    const double from_hz = std::ldexp(SiteSpectrum::kFrom_hz, static_cast<int>(octave));
+    const double from_hz = std::ldexp(wind::turbulence::SiteSpectrum::kFrom_hz, static_cast<int>(octave));
     page.add("<tr><td>{:g} – {:g} Hz</td><td class=\"n\">{:+.1f}</td></tr>\n", from_hz, 2.0 * from_hz,
              site.octaves_db[octave]);
   }
@@ -200,7 +200,7 @@ void add_site(PageWriter& page, const SensorNumbers& sensor) {
       "<pre>[wind]\n"
       "site_octaves = \"{}\"\n"
       "</pre>\n",
-      site.length_m, site_octaves_text(site.octaves_db));
+      site.length_m, settings::site_octaves_text(site.octaves_db));
 }
 
 void add_spectrum(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor,
@@ -217,7 +217,7 @@ void add_spectrum(PageWriter& page, const RecordingNumbers& recording, const Sen
                           "detrended. Drawn as means over eighths of an octave.",
                           spectrum.is_of_speed ? "the speed" : "the wind along its mean direction", spectrum.segments,
                           spectrum.segment_readings,
-                          duration_text(static_cast<double>(spectrum.segment_readings) * spectrum.step_s)));
+                          settings::duration_text(static_cast<double>(spectrum.segment_readings) * spectrum.step_s)));
   page.add("<h3>Octave by octave</h3>\n");
   add_octaves(page, spectrum);
   add_default_wind(page, recording, sensor);
@@ -265,7 +265,7 @@ void add_events(PageWriter& page, const RecordingNumbers& recording, const Senso
         "<tr><td class=\"s\"><span class=\"key\" style=\"background:{}\"></span>{}</td><td>{}</td><td>{}</td>"
         "<td class=\"n\">{}</td></tr>\n",
         kRecordedStateColors[state], kRecordedStateNames[state], utc_text(recording.utc_at(event.from_s)),
-        utc_text(recording.utc_at(event.to_s)), duration_text(event.length_s()));
+        utc_text(recording.utc_at(event.to_s)), settings::duration_text(event.length_s()));
   }
   page.add("</tbody></table>\n");
 }
@@ -282,9 +282,10 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
         "<tr><td class=\"s\"><span class=\"key\" style=\"background:{}\"></span>{}</td><td class=\"n\">{}</td><td "
         "class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n",
-        kRecordedStateColors[i], kRecordedStateNames[i], total.count, has_any ? duration_text(total.time_s) : "–",
+        kRecordedStateColors[i], kRecordedStateNames[i], total.count,
+        has_any ? settings::duration_text(total.time_s) : "–",
         has_any ? percent(total.time_s / std::max(recording.duration_s(), 1e-9)) : "–",
-        has_any ? duration_text(total.longest_s) : "–", meaning_of(static_cast<RecordedState>(i)));
+        has_any ? settings::duration_text(total.longest_s) : "–", meaning_of(static_cast<RecordedState>(i)));
   }
   page.add(
       "</tbody></table>\n"
@@ -303,13 +304,14 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
 std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& sensor) {
   if (sensor.believed == 0) {
     return fmt::format("“{}” sent no plausible reading in {}.", page_text(sensor.name),
-                       duration_text(recording.duration_s()));
+                       settings::duration_text(recording.duration_s()));
   }
   if (sensor.readings == 1) {
     return fmt::format("“{}” sent one reading: {}.", page_text(sensor.name), speed_text(sensor.mean_m_s));
   }
-  std::string text = fmt::format("In {} “{}” measured a mean wind of {}", duration_text(sensor.last_s - sensor.first_s),
-                                 page_text(sensor.name), speed_text(sensor.mean_m_s));
+  std::string text =
+      fmt::format("In {} “{}” measured a mean wind of {}", settings::duration_text(sensor.last_s - sensor.first_s),
+                  page_text(sensor.name), speed_text(sensor.mean_m_s));
   if (sensor.direction_deg && sensor.steadiness.value_or(0.0) > 0.3) {
     text += fmt::format(" from the {}", compass_text(*sensor.direction_deg));
   }
@@ -317,7 +319,7 @@ std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& 
   const StateTotal& silence = sensor.states[static_cast<std::size_t>(RecordedState::kStale)];
   if (silence.count == 0) return text + " There was no gap.";
   return text + fmt::format(" It was silent {} {}, for {} in all.", silence.count,
-                            silence.count == 1 ? "time" : "times", duration_text(silence.time_s));
+                            silence.count == 1 ? "time" : "times", settings::duration_text(silence.time_s));
 }
 
 void add_sensor_section(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor,
@@ -338,4 +340,4 @@ void add_sensor_section(PageWriter& page, const RecordingNumbers& recording, con
   page.add("</section>\n");
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -6,7 +6,7 @@
 #include "daemon/tools/report/report_figures.hpp"
 #include "daemon/tools/report/report_numbers.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// One sentence, as HTML: the wind, and how long the sensor was live.
 std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& sensor);
@@ -15,4 +15,4 @@ std::string sentence_of(const RecordingNumbers& recording, const SensorNumbers& 
 void add_sensor_section(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor,
                         const SensorFigures& figures, bool is_first);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

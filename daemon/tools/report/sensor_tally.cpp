@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 /// The number of points in the scatter plot of directions.
@@ -25,17 +25,17 @@ constexpr double kMostCorrelationSamples = 1 << 17;
 /// With a smaller part of readings with a direction only the speed is analysed.
 constexpr double kMostlyDirected = 0.9;
 
-RecordedState state_of(ReadingFault fault) {
+RecordedState state_of(wind::judging::ReadingFault fault) {
   switch (fault) {
-    case ReadingFault::kNone:
+    case wind::judging::ReadingFault::kNone:
       return RecordedState::kLive;
-    case ReadingFault::kSpike:
+    case wind::judging::ReadingFault::kSpike:
       return RecordedState::kSpike;
-    case ReadingFault::kImplausible:
+    case wind::judging::ReadingFault::kImplausible:
       return RecordedState::kImplausible;
-    case ReadingFault::kFrozen:
+    case wind::judging::ReadingFault::kFrozen:
       return RecordedState::kFrozen;
-    case ReadingFault::kSeized:
+    case wind::judging::ReadingFault::kSeized:
       return RecordedState::kSeized;
   }
   return RecordedState::kLive;
@@ -49,7 +49,7 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
       end_s_(end_s),
       has_gusts_(survey.gusts > 0),
       judge_(settings.judge),
-      lesson_(settings.prior ? settings.prior(survey.name) : TurbulencePrior{}, survey.interval_s),
+      lesson_(settings.prior ? settings.prior(survey.name) : wind::turbulence::TurbulencePrior{}, survey.interval_s),
       three_seconds_(survey.interval_s),
       blocks_(survey.interval_s),
       next_direction_s_(begin_s) {
@@ -112,9 +112,9 @@ void SensorTally::mark(RecordedState state, double from_s, double to_s) {
   }
 }
 
-void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
+void SensorTally::add(Nanoseconds log_time, const wind::WindReading& reading) {
   const double time_s = seconds(log_time);
-  WindReading played = reading;
+  wind::WindReading played = reading;
   played.time.mono = MonoTime(log_time);
 
   // The state since the last reading. After a single reading the record has no interval yet.
@@ -135,13 +135,13 @@ void SensorTally::add(Nanoseconds log_time, const WindReading& reading) {
   ++numbers_.quality.at(static_cast<std::size_t>(reading.quality));
 
   // As in the daemon, simulated readings are not judged: they may be constant.
-  const bool is_judged = reading.quality != ReadingQuality::kSimulated;
+  const bool is_judged = reading.quality != wind::ReadingQuality::kSimulated;
   const bool is_believed = !is_judged || judge_.judge(played);
   state_ = is_judged ? state_of(judge_.fault()) : RecordedState::kLive;
   if (is_believed) add_believed(log_time, played);
 }
 
-void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading) {
+void SensorTally::add_believed(Nanoseconds log_time, const wind::WindReading& reading) {
   const double time_s = seconds(log_time);
   const double speed_m_s = reading.speed_m_s;
   if (numbers_.believed++ == 0) numbers_.min_m_s = numbers_.max_m_s = speed_m_s;
@@ -166,7 +166,7 @@ void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading)
     ++numbers_.directed;
     held_direction_deg_ = reading.direction_deg;
     rose_.add(speed_m_s, *reading.direction_deg);
-    wind_sum_ = wind_sum_ + wind_from(speed_m_s, *reading.direction_deg);
+    wind_sum_ = wind_sum_ + wind::wind_from(speed_m_s, *reading.direction_deg);
     directed_speed_sum_m_s_ += speed_m_s;
     if (time_s >= next_direction_s_) {
       numbers_.directions.push_back({time_s, *reading.direction_deg});
@@ -175,12 +175,12 @@ void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading)
     }
   }
   lesson_.add(time_s, speed_m_s,
-              held_direction_deg_ ? std::optional(wind_from(speed_m_s, *held_direction_deg_)) : std::nullopt);
+              held_direction_deg_ ? std::optional(wind::wind_from(speed_m_s, *held_direction_deg_)) : std::nullopt);
   add_to_bin(time_s, reading, has_gusts_ ? reading.gust_m_s : mean_m_s);
 
   if (!series_) return;
   EvenSample sample{.speed_m_s = speed_m_s, .wind = {}};
-  if (held_direction_deg_) sample.wind = wind_from(speed_m_s, *held_direction_deg_);
+  if (held_direction_deg_) sample.wind = wind::wind_from(speed_m_s, *held_direction_deg_);
   series_->add(
       time_s, sample,
       [this](const EvenSample& even) {
@@ -193,7 +193,7 @@ void SensorTally::add_believed(Nanoseconds log_time, const WindReading& reading)
       });
 }
 
-void SensorTally::add_to_bin(double time_s, const WindReading& reading, const std::optional<double>& gust_m_s) {
+void SensorTally::add_to_bin(double time_s, const wind::WindReading& reading, const std::optional<double>& gust_m_s) {
   TimeBin& bin = numbers_.bins[bin_of(time_s)];
   if (bin.count++ == 0) {
     bin.min_m_s = bin.max_m_s = reading.speed_m_s;
@@ -206,7 +206,7 @@ void SensorTally::add_to_bin(double time_s, const WindReading& reading, const st
   bin.max_m_s = std::max(bin.max_m_s, reading.speed_m_s);
   if (gust_m_s) bin.gust_m_s = std::max(bin.gust_m_s.value_or(0.0), *gust_m_s);
   if (!reading.direction_deg) return;
-  const WindVector wind = wind_from(reading.speed_m_s, *reading.direction_deg);
+  const wind::WindVector wind = wind::wind_from(reading.speed_m_s, *reading.direction_deg);
   ++bin.directed;
   bin.u_sum_m_s += wind.u_m_s;
   bin.v_sum_m_s += wind.v_m_s;
@@ -230,7 +230,7 @@ SensorNumbers SensorTally::finish() {
   numbers_.rose = rose_.finish();
   numbers_.blocks = blocks_.finish();
   if (directed_speed_sum_m_s_ > 0.0) {
-    numbers_.direction_deg = direction_from_deg(wind_sum_);
+    numbers_.direction_deg = wind::direction_from_deg(wind_sum_);
     numbers_.steadiness = speed_of(wind_sum_) / directed_speed_sum_m_s_;
   }
   if (spectrum_) {
@@ -242,4 +242,4 @@ SensorNumbers SensorTally::finish() {
   return std::move(numbers_);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -15,16 +15,16 @@
 #include "engine/wind/blend/source_record.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// How a recording is judged, and the zone of its local time.
 struct ReportSettings {
   LogRange range;
   std::vector<std::string> sensors;  ///< by name; none: all
   double stale_intervals = 5.0;      ///< [wind] stale_intervals
-  JudgeSettings judge;
+  wind::judging::JudgeSettings judge;
   /// The prior of the gusts for a sensor of this name; none: TurbulencePrior's default.
-  std::function<TurbulencePrior(const std::string& sensor)> prior;
+  std::function<wind::turbulence::TurbulencePrior(const std::string& sensor)> prior;
   /// Local time minus UTC at a moment; none: UTC.
   std::function<Nanoseconds(UtcTime)> utc_offset;
 };
@@ -36,7 +36,7 @@ class SensorTally {
   SensorTally(const SensorSurvey& survey, double begin_s, double end_s, const ReportSettings& settings);
 
   /// Takes the sensor's next reading, in the order of log time.
-  void add(Nanoseconds log_time, const WindReading& reading);
+  void add(Nanoseconds log_time, const wind::WindReading& reading);
 
   /// The numbers; to be called once, after the last reading.
   SensorNumbers finish();
@@ -44,8 +44,8 @@ class SensorTally {
  private:
   void plan_spectrum(const SensorSurvey& survey);
   void mark(RecordedState state, double from_s, double to_s);
-  void add_believed(Nanoseconds log_time, const WindReading& reading);
-  void add_to_bin(double time_s, const WindReading& reading, const std::optional<double>& gust_m_s);
+  void add_believed(Nanoseconds log_time, const wind::WindReading& reading);
+  void add_to_bin(double time_s, const wind::WindReading& reading, const std::optional<double>& gust_m_s);
   std::size_t bin_of(double time_s) const;
   std::size_t hour_of(UtcTime moment);
 
@@ -55,8 +55,8 @@ class SensorTally {
   bool has_gusts_;
   SensorNumbers numbers_;
 
-  SourceRecord record_;
-  ReadingJudge judge_;
+  wind::blend::SourceRecord record_;
+  wind::judging::ReadingJudge judge_;
   StateHistory states_;
   RecordedState state_ = RecordedState::kLive;
   SiteTally lesson_;
@@ -66,7 +66,7 @@ class SensorTally {
   RoseTally rose_;
   ThreeSecondMean three_seconds_;
   TenMinuteBlocks blocks_;
-  WindVector wind_sum_;
+  wind::WindVector wind_sum_;
   double directed_speed_sum_m_s_ = 0.0;
   double next_direction_s_ = 0.0;
   std::optional<double> held_direction_deg_;
@@ -79,4 +79,4 @@ class SensorTally {
   std::size_t known_hour_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

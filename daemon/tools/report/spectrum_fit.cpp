@@ -8,7 +8,7 @@
 #include "daemon/tools/report/welch_spectrum.hpp"
 #include "engine/wind/turbulence/turbulence_fit.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 /// The slope is fitted to the decade below two fifths of the Nyquist frequency: above it aliasing adds power, and
@@ -108,8 +108,8 @@ void fit_von_karman(SpectrumNumbers& spectrum, const std::vector<OctaveLines>& l
     double sum_of_squares = 0.0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (!spectrum.octaves[i].is_in_fit) continue;
-      const double ratio =
-          std::log(lines[i].variance_m2_s2 / von_karman_share(lines[i].from_hz, lines[i].to_hz, time_scale_s));
+      const double ratio = std::log(lines[i].variance_m2_s2 /
+                                    wind::turbulence::von_karman_share(lines[i].from_hz, lines[i].to_hz, time_scale_s));
       sum += ratio;
       sum_of_squares += ratio * ratio;
     }
@@ -127,8 +127,8 @@ void fit_von_karman(SpectrumNumbers& spectrum, const std::vector<OctaveLines>& l
   bool has_begun = false;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     OctaveBand& band = spectrum.octaves[i];
-    band.fitted_m2_s2 =
-        best.sigma_m_s() * best.sigma_m_s() * von_karman_share(lines[i].from_hz, lines[i].to_hz, best.time_scale_s);
+    band.fitted_m2_s2 = best.sigma_m_s() * best.sigma_m_s() *
+                        wind::turbulence::von_karman_share(lines[i].from_hz, lines[i].to_hz, best.time_scale_s);
     if (!band.is_in_fit) continue;
     if (!has_begun) best.from_hz = band.from_hz;
     has_begun = true;
@@ -150,4 +150,4 @@ void fit_spectrum(SpectrumNumbers& spectrum, double mean_square_speed_m2_s2) {
   fit_von_karman(spectrum, lines, std::sqrt(mean_square_speed_m2_s2));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

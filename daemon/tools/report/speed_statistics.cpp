@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 void SpeedHistogram::add(double speed_m_s) {
   // A speed with one decimal is on an edge, and belongs to the class above.
@@ -102,4 +102,4 @@ WindRose RoseTally::finish() const {
   return rose;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -8,7 +8,7 @@
 #include "daemon/tools/report/report_numbers.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// The distribution of speeds, in classes of 0.1 m/s. Thread-safe: no.
 class SpeedHistogram {
@@ -24,7 +24,7 @@ class SpeedHistogram {
 
  private:
   static constexpr double kClasses_per_m_s = 10.0;
-  static constexpr std::size_t kClasses = static_cast<std::size_t>(kMaxPlausibleSpeed_m_s * kClasses_per_m_s) + 1;
+  static constexpr std::size_t kClasses = static_cast<std::size_t>(wind::kMaxPlausibleSpeed_m_s * kClasses_per_m_s) + 1;
   std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(kClasses);
   std::uint64_t count_ = 0;
 };
@@ -60,4 +60,4 @@ class RoseTally {
   std::array<std::array<std::uint64_t, kRoseClasses_m_s.size()>, kRoseSectors> counts_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 bool is_longer(const StateEvent& a, const StateEvent& b) {
@@ -58,4 +58,4 @@ std::vector<StateEvent> StateHistory::events() {
   return all;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -5,7 +5,7 @@
 
 #include "daemon/tools/report/report_numbers.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// The history of a sensor's states in bounded memory: totals, and the longest events of each.
 /// Thread-safe: no.
@@ -25,4 +25,4 @@ class StateHistory {
   StateEvent open_{RecordedState::kLive, 0.0, 0.0};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -8,12 +8,12 @@
 #include "engine/fft/real_fft.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// A sample of an evenly spaced series.
 struct EvenSample {
   double speed_m_s = 0.0;
-  std::optional<WindVector> wind;  ///< nothing: its direction is not known
+  std::optional<wind::WindVector> wind;  ///< nothing: its direction is not known
 };
 
 /// Estimates a spectrum (SpectrumNumbers says how) from a series of any length, segment by segment, in bounded memory.
@@ -35,7 +35,7 @@ class WelchSpectrum {
  private:
   void take_segment();
 
-  RealFft fft_;
+  fft::RealFft fft_;
   std::vector<double> window_;
   double window_power_ = 0.0;
   double step_s_;
@@ -61,7 +61,7 @@ class IntegralTime {
  private:
   std::size_t block_;
   double step_s_;
-  RealFft fft_;
+  fft::RealFft fft_;
   std::vector<double> samples_;
   std::vector<double> sum_;
 };
@@ -69,4 +69,4 @@ class IntegralTime {
 /// The two fits and the octaves of a spectrum. `mean_square_speed_m2_s2`: U^2.
 void fit_spectrum(SpectrumNumbers& spectrum, double mean_square_speed_m2_s2);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

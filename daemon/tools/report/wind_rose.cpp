@@ -10,7 +10,7 @@
 #include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr double kSize_px = 480.0;
@@ -111,4 +111,4 @@ std::string draw_wind_rose(const WindRose& rose) {
   return svg;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

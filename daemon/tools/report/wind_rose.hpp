@@ -6,7 +6,7 @@
 
 #include "daemon/tools/report/report_numbers.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 
 /// Colours of the rose's speed classes, which go with kRoseClasses_m_s.
 inline constexpr std::array<std::string_view, kRoseClasses_m_s.size()> kRoseColors = {"#a6cee3", "#6db1d8", "#3690c0",
@@ -19,4 +19,4 @@ std::string rose_class_text(std::size_t speed_class);
 /// readings, in the colours of the speeds; each piece has a tooltip with its numbers. (gnuplot 5.4 has no wind rose.)
 std::string draw_wind_rose(const WindRose& rose);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

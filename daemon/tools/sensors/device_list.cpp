@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::sensors {
 namespace {
 
 std::string indented(const std::string& text, std::string_view margin) {
@@ -33,9 +33,9 @@ std::vector<std::vector<const DeviceFinding*>> by_device(std::span<const DeviceF
   return groups;
 }
 
-std::string names_of(std::span<const DriverDescription* const> drivers, bool that_can_search) {
+std::string names_of(std::span<const drivers::sensor::DriverDescription* const> drivers, bool that_can_search) {
   std::string names;
-  for (const DriverDescription* driver : drivers) {
+  for (const drivers::sensor::DriverDescription* driver : drivers) {
     if ((driver->find != nullptr) == that_can_search)
       names += fmt::format("{}{}", names.empty() ? "" : ", ", driver->name);
   }
@@ -44,14 +44,14 @@ std::string names_of(std::span<const DriverDescription* const> drivers, bool tha
 
 }  // namespace
 
-std::vector<DeviceFinding> find_devices(std::span<const DriverDescription* const> drivers) {
+std::vector<DeviceFinding> find_devices(std::span<const drivers::sensor::DriverDescription* const> drivers) {
   std::vector<DeviceFinding> findings;
-  for (const DriverDescription* driver : drivers) {
+  for (const drivers::sensor::DriverDescription* driver : drivers) {
     if (driver->find == nullptr) continue;
     try {
-      for (FoundDevice& device : driver->find()) findings.push_back({driver, std::move(device)});
+      for (drivers::sensor::FoundDevice& device : driver->find()) findings.push_back({driver, std::move(device)});
     } catch (const std::exception& error) {
-      FoundDevice none;
+      drivers::sensor::FoundDevice none;
       none.what = fmt::format("devices of driver {}", driver->name);
       none.trouble = fmt::format("search failed: {}", error.what());
       findings.push_back({driver, std::move(none)});
@@ -60,7 +60,8 @@ std::vector<DeviceFinding> find_devices(std::span<const DriverDescription* const
   return findings;
 }
 
-std::string device_list(std::span<const DeviceFinding> findings, std::span<const DriverDescription* const> drivers) {
+std::string device_list(std::span<const DeviceFinding> findings,
+                        std::span<const drivers::sensor::DriverDescription* const> drivers) {
   std::string text;
   const auto out = std::back_inserter(text);
   if (findings.empty()) {
@@ -75,7 +76,7 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
     fmt::format_to(out, "{}\n", group.front()->device.what);
     const DeviceFinding* shown = nullptr;
     for (const DeviceFinding* finding : group) {
-      const FoundDevice& device = finding->device;
+      const drivers::sensor::FoundDevice& device = finding->device;
       if (!device.settings.empty()) {
         const int count = ++count_of[finding->driver->name];
         const std::string number = count > 1 ? fmt::format("-{}", count) : "";
@@ -101,4 +102,4 @@ std::string device_list(std::span<const DeviceFinding> findings, std::span<const
   return text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::sensors

@@ -6,20 +6,21 @@
 
 #include "drivers/sensor/driver.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::sensors {
 
 /// A device that is plugged in, and one driver that could read it.
 struct DeviceFinding {
-  const DriverDescription* driver = nullptr;
-  FoundDevice device;
+  const drivers::sensor::DriverDescription* driver = nullptr;
+  drivers::sensor::FoundDevice device;
 };
 
 /// Searches for devices with every driver that can, in the order of the table. A search that fails is a finding with
 /// that trouble.
-std::vector<DeviceFinding> find_devices(std::span<const DriverDescription* const> drivers);
+std::vector<DeviceFinding> find_devices(std::span<const drivers::sensor::DriverDescription* const> drivers);
 
 /// The findings, for a person: each device with the TOML to paste into a configuration, and, where it cannot be opened,
 /// why and what to do. Says so where nothing was found. `drivers` are those that were searched with.
-std::string device_list(std::span<const DeviceFinding> findings, std::span<const DriverDescription* const> drivers);
+std::string device_list(std::span<const DeviceFinding> findings,
+                        std::span<const drivers::sensor::DriverDescription* const> drivers);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::sensors

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::sensors {
 namespace {
 
 /// Escapes text for a cell of a Markdown table.
@@ -28,15 +28,15 @@ std::string parameter_text(std::span<const Parameter> parameters) {
   return text;
 }
 
-std::string driver_names(std::span<const DriverDescription* const> drivers) {
+std::string driver_names(std::span<const drivers::sensor::DriverDescription* const> drivers) {
   std::string text;
-  for (const DriverDescription* driver : drivers) {
+  for (const drivers::sensor::DriverDescription* driver : drivers) {
     fmt::format_to(std::back_inserter(text), "{:<12} {}\n", driver->name, driver->summary);
   }
   return text;
 }
 
-std::string describe_driver(const DriverDescription& driver) {
+std::string describe_driver(const drivers::sensor::DriverDescription& driver) {
   std::string text = fmt::format(
       "{0}: {1}\n"
       "\n"
@@ -48,12 +48,12 @@ std::string describe_driver(const DriverDescription& driver) {
   return text + "\nIts keys:\n" + parameter_text(driver.parameters);
 }
 
-std::string driver_reference(std::span<const DriverDescription* const> drivers) {
+std::string driver_reference(std::span<const drivers::sensor::DriverDescription* const> drivers) {
   std::string text =
       "# Sensors\n\nA sensor is a `[[sensor]]` table of the configuration: a `name` of its own, its `driver`, and the\n"
       "driver's keys. This page is what `yuragi sensors describe --all` prints.\n";
   const auto out = std::back_inserter(text);
-  for (const DriverDescription* driver : drivers) {
+  for (const drivers::sensor::DriverDescription* driver : drivers) {
     fmt::format_to(out, "\n## {}\n\n{}\n", driver->name, cell(driver->summary));
     if (driver->parameters.empty()) continue;
     fmt::format_to(out, "\n| key | takes | what it is |\n| --- | --- | --- |\n");
@@ -65,4 +65,4 @@ std::string driver_reference(std::span<const DriverDescription* const> drivers) 
   return text;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::sensors

@@ -5,7 +5,7 @@
 
 #include "drivers/sensor/driver.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::sensors {
 
 // Pages about drivers, generated from their descriptions.
 
@@ -13,12 +13,12 @@ namespace yuragi {
 std::string parameter_text(std::span<const Parameter> parameters);
 
 /// A line for each driver: name and summary.
-std::string driver_names(std::span<const DriverDescription* const> drivers);
+std::string driver_names(std::span<const drivers::sensor::DriverDescription* const> drivers);
 
 /// The reference of one driver with all parameters, for a terminal.
-std::string describe_driver(const DriverDescription& driver);
+std::string describe_driver(const drivers::sensor::DriverDescription& driver);
 
 /// All drivers on one page, in Markdown.
-std::string driver_reference(std::span<const DriverDescription* const> drivers);
+std::string driver_reference(std::span<const drivers::sensor::DriverDescription* const> drivers);
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::sensors

@@ -9,7 +9,7 @@
 #include "daemon/sensing/refusal_text.hpp"
 #include "engine/base/compass.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::sensors {
 namespace {
 
 /// Are recordings the only live sensors?
@@ -21,23 +21,23 @@ bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
 
 std::string_view wind_source(const wire::Sensors& sensors) {
   switch (sensors.wind.source) {
-    case WindSource::kDefault:
+    case wind::WindSource::kDefault:
       return "default wind: no sensor is live";
-    case WindSource::kHandover:
+    case wind::WindSource::kHandover:
       return "handing over";
-    case WindSource::kLive:
+    case wind::WindSource::kLive:
       return is_replayed(sensors.sensors) ? "REPLAY of a recording" : "live";
   }
   return "?";
 }
 
 /// In capitals for trouble, and where it is not the present wind.
-std::string state_text(SensorState state) {
+std::string state_text(wind::judging::SensorState state) {
   std::string text(name_of(state));
-  const bool is_quiet =
-      state == SensorState::kLive || state == SensorState::kSimulated || state == SensorState::kConnecting;
+  const bool is_quiet = state == wind::judging::SensorState::kLive || state == wind::judging::SensorState::kSimulated ||
+                        state == wind::judging::SensorState::kConnecting;
   if (!is_quiet) std::ranges::transform(text, text.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
-  return state == SensorState::kReplayed ? "REPLAY" : text;
+  return state == wind::judging::SensorState::kReplayed ? "REPLAY" : text;
 }
 
 std::string direction_text(double direction_deg) {
@@ -54,7 +54,7 @@ std::string short_number(double value) {
 }
 
 /// The place of the wind on top of the table, and when its gusts reach the middle of the scenes; empty where that is 0.
-std::string place_of_wind(const WindState& wind) {
+std::string place_of_wind(const wind::WindState& wind) {
   if (!wind.is_place_configured && wind.upwind_m == 0.0) return {};
   std::string text = wind.is_place_configured ? "at the sensors, " : "at the windward edge, ";
   if (std::abs(wind.upwind_m) < 0.05) {
@@ -87,10 +87,10 @@ std::string wrapped(std::string_view text) {
 }  // namespace
 
 std::string sensor_table(const wire::Sensors& sensors) {
-  const WindVector wind = sensors.wind.wind;
-  std::string table =
-      fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n", speed_of(wind),
-                  direction_text(direction_from_deg(wind)), wind_source(sensors), sensors.clients, sensors.late_ticks);
+  const wind::WindVector wind = sensors.wind.wind;
+  std::string table = fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n", speed_of(wind),
+                                  direction_text(wind::direction_from_deg(wind)), wind_source(sensors), sensors.clients,
+                                  sensors.late_ticks);
   if (const std::string place = place_of_wind(sensors.wind); !place.empty()) table += wrapped(place);
   if (!sensors.shaping.text.empty()) table += wrapped("shaped: " + sensors.shaping.text);
   table += '\n';
@@ -111,9 +111,9 @@ std::string sensor_table(const wire::Sensors& sensors) {
     if (!sensor.detail.empty() && sensor.detail != sensor.state_reason) {
       table += wrapped(fmt::format("{}: {}", name_of(sensor.link), sensor.detail));
     }
-    if (!sensor.refused.empty()) table += wrapped("refused: " + refusal_text(sensor));
+    if (!sensor.refused.empty()) table += wrapped("refused: " + sensing::refusal_text(sensor));
   }
   return table;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::sensors

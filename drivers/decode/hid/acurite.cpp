@@ -4,7 +4,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 namespace {
 
 constexpr std::uint8_t kWithDirection = 1;
@@ -45,4 +45,4 @@ Result<DecodedWind, Refusal> decode_acurite(ByteSpan report) noexcept {
   return checked(wind);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

@@ -7,7 +7,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 
 // AcuRite 01025, 01035, 01036, 02032, 02064 (USB 24c0:0003).
 // Source: weewx drivers/acurite.py and issue 39; wxforum topic 27244 (speed); drivers/SOURCES.md S2.4.
@@ -32,4 +32,4 @@ inline constexpr std::size_t kAcuriteReport1 = 10;
 /// yes.
 Result<DecodedWind, Refusal> decode_acurite(ByteSpan report) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 namespace {
 
 constexpr std::array<std::uint16_t, 7> kFineOffsetMarks = {0x55AA, 0xFFFF, 0x5555, 0xC400, 0x44BF, 0x0001, 0x001E};
@@ -72,4 +72,4 @@ Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept 
   return checked(wind);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

@@ -9,7 +9,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 
 // Fine Offset WH1080, WH1090, WH2080, WH3080 and their many names (USB 1941:8021).
 // Source: weewx drivers/fousb.py and pywws weatherstation.py; drivers/SOURCES.md S2.3.
@@ -58,4 +58,4 @@ std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetMod
 /// realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

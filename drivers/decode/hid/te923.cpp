@@ -4,7 +4,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 namespace {
 
 constexpr std::uint8_t kTe923Header = 0x5A;
@@ -53,4 +53,4 @@ Result<DecodedWind, Refusal> decode_te923(ByteSpan block) noexcept {
   return checked(wind);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

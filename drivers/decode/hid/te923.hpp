@@ -9,7 +9,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 
 // Hideki TE923 (Meade, TFA Nexus, Mebus, IROX; USB 1130:6801).
 // Source: weewx drivers/te923.py, whose indices count from behind the header byte: ours count from the block's first
@@ -37,4 +37,4 @@ std::array<std::uint8_t, 8> encode_te923_acknowledgement(std::uint32_t address) 
 /// either: the block keeps an old one. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_te923(ByteSpan block) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

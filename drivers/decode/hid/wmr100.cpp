@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 namespace {
 
 constexpr std::uint8_t kWmr100Wind = 0x48;
@@ -80,4 +80,4 @@ Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept {
   return checked(wind);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

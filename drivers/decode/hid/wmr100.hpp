@@ -10,7 +10,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 
 // Oregon Scientific WMR100, WMR100N, WMR88, WMRS200, RMS300, RMS600 (USB 0fde:ca01).
 // Source: weewx drivers/wmr100.py, ejeklint/WLoggerDaemon's description of the protocol, and barnybug/wmr100;
@@ -61,4 +61,4 @@ std::optional<Result<DecodedWind, Refusal>> finish_wmr100(Wmr100Stream& stream) 
 /// passed on as the device sends it. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

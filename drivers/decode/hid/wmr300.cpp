@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 namespace {
 
 constexpr std::uint8_t kWmr300FirstData = 0xD1;
@@ -78,4 +78,4 @@ std::array<std::uint8_t, 6> encode_wmr300_acknowledgement(ByteSpan packet) noexc
   return {'A', 'C', 'K', kind, channel, 0};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

@@ -9,7 +9,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::hid {
 
 // Oregon Scientific WMR300 (USB 0fde:ca08).
 // Source: weewx drivers/wmr300.py; drivers/SOURCES.md S2.2.
@@ -54,4 +54,4 @@ bool wants_wmr300_acknowledgement(ByteSpan packet) noexcept;
 /// The acknowledgement of `packet`, for which wants_wmr300_acknowledgement() holds.
 std::array<std::uint8_t, 6> encode_wmr300_acknowledgement(ByteSpan packet) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::hid

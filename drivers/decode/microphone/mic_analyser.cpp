@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr double kShortestSegment_s = 0.125;
@@ -188,4 +188,4 @@ MicBlock MicAnalyser::finish_block() noexcept {
   return block;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

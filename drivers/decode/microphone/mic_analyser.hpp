@@ -11,7 +11,7 @@
 #include "drivers/decode/microphone/mic_block.hpp"
 #include "engine/fft/real_fft.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 struct MicAnalyserOptions {
   double rate_hz = 48000.0;  ///< above 0
@@ -54,7 +54,7 @@ class MicAnalyser {
   std::size_t high_begin_ = 0, high_end_ = 0;
   MicHello hello_;
 
-  RealFft fft_;
+  fft::RealFft fft_;
   std::vector<float> history_;  ///< the segment that is being filled, frames one after the other
   std::size_t filled_ = 0;      ///< frames
   std::vector<std::vector<std::complex<double>>> spectra_;
@@ -75,4 +75,4 @@ class MicAnalyser {
   std::uint64_t samples_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

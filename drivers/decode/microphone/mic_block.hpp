@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 // The features of a quarter of a second of sound: sums of Welch periodograms (Welch 1967, "The use of fast Fourier
 // transform for the estimation of power spectra"), small enough for a pipe, and all that the wind is computed from.
@@ -62,4 +62,4 @@ struct MicBlock {
   bool operator==(const MicBlock&) const = default;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

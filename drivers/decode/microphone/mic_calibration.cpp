@@ -10,7 +10,7 @@
 
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr std::size_t kFewestPairs = 8;
@@ -125,7 +125,7 @@ double mic_speed_m_s(const MicCalibration& calibration, double power, double noi
     const double level_db = power > 0.0 ? std::max(kSilence_db, 10.0 * std::log10(power)) : kSilence_db;
     speed_m_s = curve_speed(std::get<MicCurve>(calibration), level_db);
   }
-  return std::clamp(speed_m_s, 0.0, kMaxPlausibleSpeed_m_s);
+  return std::clamp(speed_m_s, 0.0, wind::kMaxPlausibleSpeed_m_s);
 }
 
 std::optional<double> mic_level_db(const MicCalibration& calibration, double speed_m_s, double noise_power) noexcept {
@@ -162,7 +162,7 @@ Result<MicCurve, Failure> parse_mic_curve(std::string_view text) {
 
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const MicLevelAndSpeed& point = curve.points[i];
-    if (point.speed_m_s < 0.0 || point.speed_m_s > kMaxPlausibleSpeed_m_s) {
+    if (point.speed_m_s < 0.0 || point.speed_m_s > wind::kMaxPlausibleSpeed_m_s) {
       return Failure{"a microphone's curve has an impossible speed"};
     }
     if (i > 0 && (point.level_db <= curve.points[i - 1].level_db || point.speed_m_s < curve.points[i - 1].speed_m_s)) {
@@ -228,7 +228,7 @@ Result<MicCurve, Failure> fit_mic_curve(Pairs pairs) {
     const double held_db = opens_upward          ? std::max(level_db, turn_db)
                            : parabola.c[2] < 0.0 ? std::min(level_db, turn_db)
                                                  : level_db;
-    highest_m_s = std::clamp(parabola.at(held_db), highest_m_s, kMaxPlausibleSpeed_m_s);
+    highest_m_s = std::clamp(parabola.at(held_db), highest_m_s, wind::kMaxPlausibleSpeed_m_s);
     curve.points.push_back({level_db, highest_m_s});
   }
   return curve;
@@ -292,4 +292,4 @@ Result<MicFit, Failure> fit_mic_calibration(Pairs pairs, double noise_power, Mic
   return *best;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

@@ -10,7 +10,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 // From the level of wind noise to wind speed (drivers/SOURCES.md S6.1). A bare microphone measures stagnation pressure,
 // whose root mean square in a low band goes as U^n; published exponents range from 1.3 to 3.2 with site and mount, so
@@ -82,4 +82,4 @@ enum class MicFitKind : std::uint8_t { kPowerLawOrCurve, kPowerLaw, kCurve };
 Result<MicFit, Failure> fit_mic_calibration(std::span<const MicLevelAndSpeed> pairs, double noise_power = 0.0,
                                             MicFitKind kind = MicFitKind::kPowerLawOrCurve);
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

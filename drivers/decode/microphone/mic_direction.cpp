@@ -9,7 +9,7 @@
 
 #include "drivers/decode/microphone/mic_block.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -92,4 +92,4 @@ std::optional<MicDirectionEstimate> MicDirection::add(std::span<const double> sp
                               std::min(1.0, length / length_) * modulation / (modulation + kHalfModulation)};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 struct MicDirectionEstimate {
   double direction_deg = 0.0;  ///< where the wind comes from, clockwise from north, [0, 360)
@@ -36,4 +36,4 @@ class MicDirection {
   double weight_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr double kBlockLength_s = 0.25;
@@ -220,4 +220,4 @@ std::optional<double> MicEstimator::add_gust(double speed_m_s, double duration_s
   return gusts_.front().speed_m_s;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

@@ -15,7 +15,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 struct MicEstimatorOptions {
   MicCalibration calibration = MicPowerLaw{};
@@ -102,4 +102,4 @@ class MicEstimator {
   std::deque<Gust> gusts_;   ///< falling from front to back: the front is the strongest of 10 min
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

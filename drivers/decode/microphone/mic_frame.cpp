@@ -7,7 +7,7 @@
 #include <concepts>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kMark = {'Y', 'M', 'I', 'C'};
@@ -261,4 +261,4 @@ Result<MicFrame, Refusal> MicFrameReader::decode(std::uint8_t kind, std::span<co
   return decode_block(PayloadReader(payload), *hello_);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

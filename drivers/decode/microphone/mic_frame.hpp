@@ -13,7 +13,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 // The frames that `yuragi mic-worker` writes to its pipe. All numbers little-endian, real ones IEEE 754.
 //
@@ -81,4 +81,4 @@ class MicFrameReader {
   std::optional<MicHello> hello_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr double kGainMemory_s = 300.0;
@@ -55,4 +55,4 @@ void MicGainWatch::add(double level_db, std::optional<double> high_db, double du
   suspects_ = now_.measured_s >= kBeforeSuspicion_s && (goes_against || follows_late || is_too_even);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

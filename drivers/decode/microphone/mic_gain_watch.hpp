@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 /// Means, variances and the covariance of two values that come together, with a memory; plain ones until that is full
 /// (West 1979, "Updating mean and variance estimates: an improved method").
@@ -50,4 +50,4 @@ class MicGainWatch {
   bool suspects_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

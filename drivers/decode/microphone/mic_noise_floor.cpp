@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr double kPercentile = 0.02;
@@ -30,4 +30,4 @@ std::optional<double> MicNoiseFloor::floor_db() const noexcept {
   return kLowest_db + (static_cast<double>(bin) + 0.5) * kBin_db + kBias_db;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

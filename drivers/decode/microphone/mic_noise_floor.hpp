@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 /// The level of a calm, as a low percentile of all levels of the recent past: the running minimum of a noise estimator
 /// (Martin 2001, "Noise power spectral density estimation based on optimal smoothing and minimum statistics"), made of
@@ -35,4 +35,4 @@ class MicNoiseFloor {
   std::array<double, kBins> weight_s_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr double kWideBand_hz = 1.0;
@@ -45,4 +45,4 @@ std::int64_t SampleClock::add(std::uint64_t end_sample, std::int64_t time_ns) no
   return last_ns_;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::microphone {
 
 /// When a sample was at the microphone. A sound system reports that once a buffer, with the scheduler's jitter; the
 /// converter's clock is steady, and this follows it: a second-order delay-locked loop (Adriaensen 2005, "Using a DLL to
@@ -30,4 +30,4 @@ class SampleClock {
   double locked_s_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::microphone

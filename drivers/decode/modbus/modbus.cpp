@@ -1,6 +1,6 @@
 #include "drivers/decode/modbus/modbus.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::modbus {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
@@ -150,4 +150,4 @@ bool is_gateway_silence(std::uint8_t exception) noexcept {
   return exception == kPathUnavailable || exception == kTargetFailedToRespond;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::modbus

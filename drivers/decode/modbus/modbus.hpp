@@ -9,7 +9,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::modbus {
 
 // Modbus messages as bytes, and nothing else: no connection, no time, no state.
 // Source: MODBUS Application Protocol Specification V1.1b3 (sections 4, 6.3, 6.4, 7); MODBUS Messaging on TCP/IP
@@ -81,4 +81,4 @@ std::string_view modbus_exception_name(std::uint8_t code) noexcept;
 /// Is this exception a gateway's report that the slave behind it does not reply?
 bool is_gateway_silence(std::uint8_t exception) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::modbus

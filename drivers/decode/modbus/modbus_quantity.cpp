@@ -7,7 +7,7 @@
 #include "engine/base/units.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::modbus {
 namespace {
 
 std::uint16_t swapped(std::uint16_t value) {
@@ -93,7 +93,7 @@ Result<double, Refusal> decode_speed_m_s(const ModbusQuantity& quantity,
   const auto number = decode_number(quantity, registers);
   if (!number) return number.error();
   const double speed_m_s = *number * metres_per_second(quantity.unit);
-  if (!is_plausible({.time = {}, .speed_m_s = speed_m_s, .direction_deg = {}, .gust_m_s = {}})) {
+  if (!wind::is_plausible({.time = {}, .speed_m_s = speed_m_s, .direction_deg = {}, .gust_m_s = {}})) {
     return Refusal::kImplausible;
   }
   return speed_m_s;
@@ -115,4 +115,4 @@ Result<double, Refusal> decode_direction_deg(const ModbusQuantity& quantity,
   return *number < 360.0 ? *number : 0.0;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::modbus

@@ -11,7 +11,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::modbus {
 
 /// How a device writes one number into its registers. The texts of these enums, in their order, are those of profiles.
 enum class RegisterType : std::uint8_t { kU16, kI16, kU32, kI32, kF32 };
@@ -59,4 +59,4 @@ Result<double, Refusal> decode_speed_m_s(const ModbusQuantity& quantity,
 Result<double, Refusal> decode_direction_deg(const ModbusQuantity& quantity,
                                              std::span<const std::uint16_t> registers) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::modbus

@@ -2,7 +2,7 @@
 
 #include "drivers/decode/text/nmea.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 
 Result<DecodedWind, Refusal> decode_ft(const FtOptions& options, std::string_view line) noexcept {
   const auto sentence = sentence_of(line, options.checksum);
@@ -34,4 +34,4 @@ Result<DecodedWind, Refusal> decode_ft(const FtOptions& options, std::string_vie
   return checked(wind);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

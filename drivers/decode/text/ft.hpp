@@ -5,7 +5,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 
 // FT Technologies FT7xx (and FT205): acoustic resonance anemometers, polled by "$<listener>,WV?*hh" or continuous.
 //
@@ -24,4 +24,4 @@ struct FtOptions {
 /// kMalformed, kInvalid (its status says so, or no value is there), kImplausible. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_ft(const FtOptions& options, std::string_view line) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

@@ -6,7 +6,7 @@
 #include "drivers/decode/text/nmea.hpp"
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 namespace {
 
 using GillResult = Result<DecodedWind, Refusal>;
@@ -109,4 +109,4 @@ GillResult decode_gill(const GillOptions& options, std::string_view line) noexce
   return decode_gill_values(options, fields, 1.0, wind);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

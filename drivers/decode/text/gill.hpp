@@ -6,7 +6,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 
 // Gill's own ASCII formats (WindSonic, WindObserver, MaxiMet):
 //
@@ -36,4 +36,4 @@ struct GillOptions {
 /// clockwise from the device's north mark. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_gill(const GillOptions& options, std::string_view line) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

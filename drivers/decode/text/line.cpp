@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 namespace {
 
 using LineValue = Result<std::optional<double>, Refusal>;
@@ -121,4 +121,4 @@ Result<DecodedWind, Refusal> decode_line(const LineOptions& options, std::string
   return checked(wind);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

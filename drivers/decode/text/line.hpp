@@ -9,7 +9,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 
 // Numbers that a microcontroller prints, one reading a line:
 //
@@ -48,4 +48,4 @@ struct LineOptions {
 /// there), kImplausible. Lines that end before a column leave it empty. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_line(const LineOptions& options, std::string_view line) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

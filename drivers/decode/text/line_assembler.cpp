@@ -1,6 +1,6 @@
 #include "drivers/decode/text/line_assembler.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 namespace {
 
 constexpr std::uint8_t kStartOfText = 0x02;
@@ -50,4 +50,4 @@ std::optional<LineAssembler::Line> LineAssembler::take() noexcept {
   return Line(line);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

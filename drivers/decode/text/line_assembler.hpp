@@ -10,7 +10,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 
 /// Where a line ends.
 enum class LineEnding : std::uint8_t {
@@ -55,4 +55,4 @@ class LineAssembler {
   LineEnding ending_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

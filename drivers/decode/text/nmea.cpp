@@ -8,7 +8,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 namespace {
 
 using NmeaResult = Result<DecodedWind, Refusal>;
@@ -187,4 +187,4 @@ NmeaResult decode_nmea(const NmeaOptions& options, std::string_view line) noexce
   return decode_side(fields, name == "VWR" ? WindReference::kRelative : WindReference::kTrue);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

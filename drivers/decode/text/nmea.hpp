@@ -5,7 +5,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 
 // The wind in sentences of NMEA 0183, of any talker (WI, II, a number):
 //
@@ -33,4 +33,4 @@ struct NmeaOptions {
 /// Where a sentence has the speed in several units, m/s is taken first. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_nmea(const NmeaOptions& options, std::string_view line) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

@@ -5,7 +5,7 @@
 
 #include "drivers/decode/text/nmea.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 namespace {
 
 /// Digits, five of them, up to 65535.
@@ -60,4 +60,4 @@ Result<DecodedWind, Refusal> decode_umb(const UmbOptions& options, std::string_v
   return decode_nmea({.checksum = options.checksum, .status = options.status, .xdr_first_id = 0}, text);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

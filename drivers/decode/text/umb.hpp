@@ -7,7 +7,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::text {
 
 // Lufft VENTUS, V200A and WS200-UMB to WS800-UMB in their two text modes:
 //
@@ -31,4 +31,4 @@ struct UmbOptions {
 /// device or channel), kMalformed, kInvalid (an error code), kImplausible. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_umb(const UmbOptions& options, std::string_view line) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::text

@@ -5,7 +5,7 @@
 
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 namespace {
 
 /// How much sooner than measured a value may have been read: USB and the scheduler delay one more than another.
@@ -13,7 +13,7 @@ constexpr double kReadJitter_s = 0.1;
 
 /// The most pulses that any wind makes in this time; one more falls on a boundary.
 double most_pulses(const CupCalibration& cup, double elapsed_s) {
-  const double fastest_m_s = kMaxPlausibleSpeed_m_s - std::min(cup.offset_m_s, 0.0);
+  const double fastest_m_s = wind::kMaxPlausibleSpeed_m_s - std::min(cup.offset_m_s, 0.0);
   return fastest_m_s * (elapsed_s + kReadJitter_s) / cup.metres_per_pulse + 1.0;
 }
 
@@ -43,8 +43,8 @@ std::optional<Result<double, Refusal>> advance_cup(CupState& state, const CupCal
   const double speed_m_s =
       state.pulses == 0 ? 0.0 : std::max(cup.metres_per_pulse * pulses_per_s + cup.offset_m_s, 0.0);
   state = {.last_count = count};
-  if (!(speed_m_s <= kMaxPlausibleSpeed_m_s)) return Result<double, Refusal>(Refusal::kImplausible);
+  if (!(speed_m_s <= wind::kMaxPlausibleSpeed_m_s)) return Result<double, Refusal>(Refusal::kImplausible);
   return Result<double, Refusal>(speed_m_s);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

@@ -6,7 +6,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 
 // A cup anemometer on a counter: speed from the number of pulses in a window of time.
 // Source: drivers/SOURCES.md S3.3.
@@ -41,4 +41,4 @@ struct CupState {
 std::optional<Result<double, Refusal>> advance_cup(CupState& state, const CupCalibration& cup, std::uint32_t count,
                                                    double elapsed_s) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

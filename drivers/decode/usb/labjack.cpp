@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 namespace {
 
 constexpr std::size_t kLabjackHeader = 6;
@@ -182,4 +182,4 @@ bool is_believable(const LabjackCalibration& calibration, LabjackInput input) no
          std::abs(calibration.offset_v - nominal.offset_v) <= 0.05 * full_scale_v;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

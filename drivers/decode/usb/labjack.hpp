@@ -8,7 +8,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 
 // LabJack U3 (USB 0cd5:0003): a counter for a cup, an ADC of 16 bits for a vane.
 // Source: labjack/exodriver examples/U3/u3.{h,c} (ehFeedback, ehConfigIO, getCalibrationInfo, checksums, nominal
@@ -104,4 +104,4 @@ LabjackCalibration nominal_labjack_calibration(LabjackInput input) noexcept;
 /// Is this what such an input can be off by, or a memory that holds something else?
 bool is_believable(const LabjackCalibration& calibration, LabjackInput input) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

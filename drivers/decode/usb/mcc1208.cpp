@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 namespace {
 
 constexpr std::uint16_t kMcc1208Steps = 4096;
@@ -49,4 +49,4 @@ double mcc1208_volts(std::uint16_t analog, const Mcc1208Calibration& calibration
   return (analog * calibration.slope + calibration.intercept_steps - kMiddle) * kMcc1208FullScale_v / kMiddle;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

@@ -6,7 +6,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 
 // Measurement Computing USB-1208FS-Plus (USB 09db:00e8): a counter for a cup, an ADC of 12 bits for a vane.
 // Source: wjasper/Linux_Drivers USB/mcc-libusb/usb-1208FS-Plus.{h,c} (usbCounter, usbAIn, usbReadCalMemory, volts) and
@@ -61,4 +61,4 @@ Result<Mcc1208Calibration, Refusal> decode_mcc1208_calibration(ByteSpan reply) n
 /// The voltage of an `analog` value.
 double mcc1208_volts(std::uint16_t analog, const Mcc1208Calibration& calibration) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

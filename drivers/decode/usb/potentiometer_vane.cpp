@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 
 std::optional<double> vane_direction_deg(const VaneCalibration& vane, double wiper_v, double reference_v) noexcept {
   if (!std::isfinite(wiper_v) || !std::isfinite(reference_v) || reference_v <= 0.0) return std::nullopt;
@@ -20,4 +20,4 @@ std::optional<double> vane_direction_deg(const VaneCalibration& vane, double wip
   return direction_deg;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-namespace yuragi {
+namespace yuragi::drivers::decode::usb {
 
 // A vane on a potentiometer: direction from the voltage of the wiper, as a share of the voltage over the track.
 // Source: drivers/SOURCES.md S3.4.
@@ -24,4 +24,4 @@ struct VaneCalibration {
 /// no reference voltage, and for anything not finite. Thread-safe and realtime-safe: yes.
 std::optional<double> vane_direction_deg(const VaneCalibration& vane, double wiper_v, double reference_v) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode::usb

@@ -6,7 +6,7 @@
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// The configuration of one source of a blend.
 struct BlendSourceSettings {
@@ -27,20 +27,21 @@ struct BlendSourceSettings {
 };
 
 struct BlendSettings {
-  SyntheticWindSettings climate;  ///< the wind without a sensor: mean, direction, turbulence intensity, seed
-  double length_m = 57.0;         ///< how far its gusts reach: the integral length scale
-  double gustiness = 0.0;         ///< 0 to 0.6: deviation of the logarithm of gusts' strength; 0: all of one strength
-  double handover_s = 3.0;        ///< about how long the way from one source to another takes
-  double stale_intervals = 5.0;   ///< silent for this many of its own intervals: stale
-  double return_after_s = 10.0;   ///< a source that failed is trusted again after so long; longer if it often fails
-  double fit_memory_s = 600.0;    ///< how long the fit of the turbulence remembers
-  double mean_memory_s = 600.0;   ///< how fast the mean of a silent sensor fades into the climate's
-  double reach_m = 0.0;           ///< from the middle of the scenes to the farthest place of any of them
-  double rate_hz = 60.0;          ///< how often the wind is shown: gusts too quick for that are left out
+  /// The wind without a sensor: mean, direction, turbulence intensity, seed.
+  turbulence::SyntheticWindSettings climate;
+  double length_m = 57.0;        ///< how far its gusts reach: the integral length scale
+  double gustiness = 0.0;        ///< 0 to 0.6: deviation of the logarithm of gusts' strength; 0: all of one strength
+  double handover_s = 3.0;       ///< about how long the way from one source to another takes
+  double stale_intervals = 5.0;  ///< silent for this many of its own intervals: stale
+  double return_after_s = 10.0;  ///< a source that failed is trusted again after so long; longer if it often fails
+  double fit_memory_s = 600.0;   ///< how long the fit of the turbulence remembers
+  double mean_memory_s = 600.0;  ///< how fast the mean of a silent sensor fades into the climate's
+  double reach_m = 0.0;          ///< from the middle of the scenes to the farthest place of any of them
+  double rate_hz = 60.0;         ///< how often the wind is shown: gusts too quick for that are left out
   /// The site's measured spectrum: corrects the noise of slow sources, and is updated by sources with `fits_site`.
   /// Used on the estimator's thread only. None: no correction.
-  std::shared_ptr<SiteSpectrum> site{};
+  std::shared_ptr<turbulence::SiteSpectrum> site{};
   std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

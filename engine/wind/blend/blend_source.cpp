@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// The weight of a band is 0.5 at this over the sensor's interval. With averaging, hold and the width of the bands the
@@ -53,16 +53,16 @@ std::complex<double> averaged_and_held(double frequency_hz, double averaging_s, 
 BandWeights full_trust_of(double interval_s) noexcept {
   BandWeights trust{};
   trust[0] = 1.0;
-  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-    trust[1 + band] = full_trust_at(OctaveFollower::centre_hz(band), interval_s);
+  for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
+    trust[1 + band] = full_trust_at(turbulence::OctaveFollower::centre_hz(band), interval_s);
   }
   return trust;
 }
 
 }  // namespace
 
-TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept {
-  TurbulencePrior prior{.intensity = blend.climate.turbulence_intensity, .length_m = blend.length_m};
+turbulence::TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept {
+  turbulence::TurbulencePrior prior{.intensity = blend.climate.turbulence_intensity, .length_m = blend.length_m};
   if (settings.length_m > 0.0) {
     prior.length_m = settings.length_m;
     prior.length_weight = kOwnLengthWeight;
@@ -71,7 +71,8 @@ TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSe
   return prior;
 }
 
-BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings, const GustNoise& noise)
+BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings,
+                         const turbulence::GustNoise& noise)
     : scale(blend.fit_memory_s),
       settings_(settings),
       mean_memory_s_(blend.mean_memory_s),
@@ -79,9 +80,10 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
       direction_(settings.direction_step_deg),
       measured_(turbulence_prior(blend, settings), blend.fit_memory_s),
       turbulence_(measured_.along().turbulence()),
-      along_(gust_variances(noise, blend.climate.turbulence_intensity, turbulence_prior(blend, settings).length_m)),
-      across_(gust_variances(noise, kAcrossPerAlong * blend.climate.turbulence_intensity,
-                             turbulence_prior(blend, settings).length_m)),
+      along_(turbulence::gust_variances(noise, blend.climate.turbulence_intensity,
+                                        turbulence_prior(blend, settings).length_m)),
+      across_(turbulence::gust_variances(noise, turbulence::kAcrossPerAlong * blend.climate.turbulence_intensity,
+                                         turbulence_prior(blend, settings).length_m)),
       site_(blend.site),
       site_fit_(turbulence_prior(blend, settings), blend.fit_memory_s) {}
 
@@ -148,8 +150,9 @@ void BlendSource::set_full_trust() noexcept {
   interval_s_ = expected_interval_s();
   full_trust_ = full_trust_of(slowness_s());
   passed_[0] = 1.0;
-  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-    passed_[1 + band] = std::abs(averaged_and_held(OctaveFollower::centre_hz(band), averaging_s(), interval_s_));
+  for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
+    passed_[1 + band] =
+        std::abs(averaged_and_held(turbulence::OctaveFollower::centre_hz(band), averaging_s(), interval_s_));
   }
 }
 
@@ -170,11 +173,12 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   measured_.fit(interval_s, speed_m_s);
   turbulence_ = measured_.along().turbulence();
-  const auto strengths = [&](const TurbulenceFit& fit) {
-    const Turbulence turbulence = fit.turbulence();
-    GustVariances variances = gust_variances(*noise_, turbulence.intensity, turbulence.time_scale_s * speed_m_s);
-    for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
-      const double frequency_hz = centre_hz(noise_->octaves()[i], advection_m_s);
+  const auto strengths = [&](const turbulence::TurbulenceFit& fit) {
+    const turbulence::Turbulence turbulence = fit.turbulence();
+    turbulence::GustVariances variances =
+        turbulence::gust_variances(*noise_, turbulence.intensity, turbulence.time_scale_s * speed_m_s);
+    for (std::size_t i = 0; i < turbulence::GustNoise::kOctaves; ++i) {
+      const double frequency_hz = turbulence::centre_hz(noise_->octaves()[i], advection_m_s);
       variances[i] *= fit.correction(frequency_hz);
       if (site_) variances[i] *= site_->power(frequency_hz, interval_s);
     }
@@ -186,12 +190,13 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
     across_ = strengths(measured_.across());
   } else {
     across_ = along_;
-    for (double& variance : across_) variance *= kAcrossPerAlong * kAcrossPerAlong;
+    for (double& variance : across_) variance *= turbulence::kAcrossPerAlong * turbulence::kAcrossPerAlong;
   }
-  direction_.expect(kAcrossPerAlong * turbulence_.intensity, turbulence_.time_scale_s, expected_interval_s());
+  direction_.expect(turbulence::kAcrossPerAlong * turbulence_.intensity, turbulence_.time_scale_s,
+                    expected_interval_s());
 }
 
-void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept {
+void BlendSource::step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept {
   follower_.step(wind_, parts);
 
   // The weight of a band decays as fast as its waves pass, and as the gusts do (W21).
@@ -207,7 +212,7 @@ void BlendSource::step(MonoTime now, double dt_s, const OctaveFollower::Parts& p
     double kept = 1.0;
     if (late_s > 0.0 && i == 0) kept = std::exp(-late_s / mean_memory_s_);
     if (late_s > 0.0 && i > 0) {
-      const double wave_s = 1.0 / (2.0 * std::numbers::pi * OctaveFollower::centre_hz(i - 1));
+      const double wave_s = 1.0 / (2.0 * std::numbers::pi * turbulence::OctaveFollower::centre_hz(i - 1));
       kept = std::exp(-late_s / std::min(turbulence_.time_scale_s, wave_s));
     }
     trusts_[i].step(kept * full_trust_[i], kTrustRate_rad_s, dt_s);
@@ -227,9 +232,9 @@ double blend_group_delay_s(double frequency_hz, double interval_s, double averag
   // The slope of the phase, over a hundredth of the frequency on either side.
   const double below_hz = 0.99 * frequency_hz;
   const double above_hz = 1.01 * frequency_hz;
-  const std::complex<double> turn = OctaveFollower::Response(above_hz).weighted(trust) *
-                                    std::conj(OctaveFollower::Response(below_hz).weighted(trust));
+  const std::complex<double> turn = turbulence::OctaveFollower::Response(above_hz).weighted(trust) *
+                                    std::conj(turbulence::OctaveFollower::Response(below_hz).weighted(trust));
   return 0.5 * (averaging_s + interval_s) - std::arg(turn) / (2.0 * std::numbers::pi * (above_hz - below_hz));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

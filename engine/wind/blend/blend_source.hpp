@@ -14,13 +14,13 @@
 #include "engine/wind/turbulence/octave_follower.hpp"
 #include "engine/wind/turbulence/wind_turbulence.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// Turbulence is measured as a part of the mean speed; of a weaker mean than this it is none.
 inline constexpr double kLeastSpeed_m_s = 0.5;
 
 /// A number for the mean (0) and each octave band (1 + band) of a source.
-using BandWeights = std::array<double, OctaveFollower::kBands + 1>;
+using BandWeights = std::array<double, turbulence::OctaveFollower::kBands + 1>;
 
 /// A complex response along the wind and across it.
 struct SourceResponse {
@@ -28,14 +28,14 @@ struct SourceResponse {
 };
 
 /// The prior of a source's turbulence, before it has sent readings. Pure.
-TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept;
+turbulence::TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept;
 
 /// One source of a blend: its readings split into octave bands (engine/wind/README.md W17), the weight of each band
 /// (W18, W21), and the turbulence fitted to its readings (W28, W29). Thread-safe: no. Realtime-safe after construction:
 /// yes.
 class BlendSource {
  public:
-  BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings, const GustNoise& noise);
+  BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings, const turbulence::GustNoise& noise);
 
   /// What a source without a vane needs to know, and the fit.
   struct Around {
@@ -48,7 +48,7 @@ class BlendSource {
   bool accept(const WindReading& reading, const Around& around) noexcept;
 
   /// Advances to `now`. Precondition: it has sent a reading.
-  void step(MonoTime now, double dt_s, const OctaveFollower::Parts& parts) noexcept;
+  void step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept;
 
   const SourceRecord& record() const noexcept { return record_; }
   bool has_vane() const noexcept { return direction_.has_vane(); }
@@ -70,9 +70,9 @@ class BlendSource {
   /// The weight of a wave of this frequency while readings are on time (W18).
   double trust_at(double frequency_hz) const noexcept;
 
-  const Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
-  const GustVariances& along() const noexcept { return along_; }
-  const GustVariances& across() const noexcept { return across_; }
+  const turbulence::Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
+  const turbulence::GustVariances& along() const noexcept { return along_; }
+  const turbulence::GustVariances& across() const noexcept { return across_; }
 
   RelativeScale scale;  ///< of a relative source
 
@@ -87,22 +87,22 @@ class BlendSource {
 
   BlendSourceSettings settings_;
   double mean_memory_s_;
-  const GustNoise* noise_;
+  const turbulence::GustNoise* noise_;
 
   SourceRecord record_;
   DirectionKeeper direction_;
   WindVector wind_;  ///< that is held
-  OctaveFollower follower_;
-  std::array<CriticallyDamped, OctaveFollower::kBands + 1> trusts_{};
+  turbulence::OctaveFollower follower_;
+  std::array<math::CriticallyDamped, turbulence::OctaveFollower::kBands + 1> trusts_{};
   BandWeights trust_{}, full_trust_{}, passed_{};
   double interval_s_ = 0.0;  ///< that the full trust is made for
   double speed_m_s_ = 0.0;
   double measured_s_ = 0.0;  ///< for so long, at most the memory of that speed
 
-  WindTurbulence measured_;
-  Turbulence turbulence_;
-  GustVariances along_, across_;  ///< what each octave of the noise has of it
-  std::shared_ptr<SiteSpectrum> site_;
+  turbulence::WindTurbulence measured_;
+  turbulence::Turbulence turbulence_;
+  turbulence::GustVariances along_, across_;  ///< what each octave of the noise has of it
+  std::shared_ptr<turbulence::SiteSpectrum> site_;
   SiteSpectrumFit site_fit_;
   std::size_t since_kept_ = 0;  ///< readings
   double fitted_s_ = 0.0;       ///< time since the last fit
@@ -113,4 +113,4 @@ class BlendSource {
 /// engine/wind/README.md W22.
 double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// Gusts go on changing in calm air as if it moved at this.
@@ -57,13 +57,13 @@ std::vector<BlendSourceSettings> completed(std::vector<BlendSourceSettings> sour
 }  // namespace
 
 BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings& settings,
-                                   std::shared_ptr<const GustNoise> noise)
+                                   std::shared_ptr<const turbulence::GustNoise> noise)
     : settings_(settings),
       climate_(wind_from(settings.climate.mean_speed_m_s, settings.climate.mean_direction_deg)),
       noise_(std::move(noise)),
-      climate_along_(gust_variances(*noise_, settings.climate.turbulence_intensity, settings.length_m)),
-      climate_across_(
-          gust_variances(*noise_, kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)),
+      climate_along_(turbulence::gust_variances(*noise_, settings.climate.turbulence_intensity, settings.length_m)),
+      climate_across_(turbulence::gust_variances(
+          *noise_, turbulence::kAcrossPerAlong * settings.climate.turbulence_intensity, settings.length_m)),
       choice_(completed(settings.sources, source_count), settings.handover_s, settings.return_after_s),
       plane_(completed(settings.sources, source_count)),
       places_(completed(settings.sources, source_count)),
@@ -81,7 +81,8 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
   ground_.gusts.gustiness = static_cast<float>(settings.gustiness);
   stroke_.pen_count = pens_.size();
   stroke_.coherence.longest_wave_m =
-      2.0 * std::numbers::pi / noise_->octaves()[GustNoise::kFirstTileOctave + GustNoise::kTileOctaves].from_rad_m;
+      2.0 * std::numbers::pi /
+      noise_->octaves()[turbulence::GustNoise::kFirstTileOctave + turbulence::GustNoise::kTileOctaves].from_rad_m;
   sources_.reserve(source_count);
   for (const BlendSourceSettings& source : settings_.sources) sources_.emplace_back(settings, source, *noise_);
 }
@@ -223,7 +224,7 @@ void BlendedEstimator::learn_scales(double dt_s) noexcept {
 
 BlendedEstimator::MeasuredMean BlendedEstimator::measure_mean() noexcept {
   MeasuredMean measured;
-  WindSlope& slope = ground_.slope;
+  ground::WindSlope& slope = ground_.slope;
   slope.per_m_east = slope.per_m_south = {};
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Share& share = shares_[i];
@@ -264,7 +265,7 @@ double BlendedEstimator::trust() const noexcept {
 }
 
 /// The sources at one place add up by amplitude.
-BlendedEstimator::Power BlendedEstimator::measured_power(const OctaveFollower::Response& bands,
+BlendedEstimator::Power BlendedEstimator::measured_power(const turbulence::OctaveFollower::Response& bands,
                                                          std::span<const BandWeights> shares) const noexcept {
   SourceResponse sum;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -285,10 +286,10 @@ void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) no
     ahead = turned_toward(ahead, (1.0 / speed_m_s) * measured.mean, part);
   }
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
-  const Turbulence now = turbulence();
+  const turbulence::Turbulence now = turbulence();
   const double length_m = now.time_scale_s * std::max(measured.speed_m_s, kLeastSpeed_m_s);
   noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
-                kTurnoverRate * eddy_turnover_m23_s(now.intensity * measured.speed_m_s, length_m));
+                kTurnoverRate * turbulence::eddy_turnover_m23_s(now.intensity * measured.speed_m_s, length_m));
 
   // The tapes go the same way.
   const double way_m = advection_m_s_ * dt_s;
@@ -296,11 +297,11 @@ void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) no
   stroke_.carried_east_m += way_m * ahead.u_m_s;
   stroke_.carried_south_m -= way_m * ahead.v_m_s;
   stroke_.ahead = ahead;
-  GustCoherence& coherence = stroke_.coherence;
+  ground::GustCoherence& coherence = stroke_.coherence;
   const double part = is_first_ ? 1.0 : -std::expm1(-dt_s / kCoherenceMemory_s);
   coherence.speed_m_s = advection_m_s_;
   coherence.length_m = gust_length_m(measured);
-  coherence.decay_along += part * (GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
+  coherence.decay_along += part * (ground::GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
   reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
 }
 
@@ -330,7 +331,7 @@ void BlendedEstimator::place_pens() noexcept {
   for (std::size_t i = 0; i < pens_.size(); ++i) {
     const PenPlaces::Place& place = places_.place(i);
     const double upwind_m = place.is_edge ? reach_m_ : place.lead_m;
-    WindPen& pen = stroke_.pens[i];
+    ground::WindPen& pen = stroke_.pens[i];
     pen.east_m = place.east_m - upwind_m * ahead.u_m_s;
     pen.south_m = place.south_m + upwind_m * ahead.v_m_s;
     pen.part = all > kLeastShare ? pens_[i].weight / all : 1.0 / static_cast<double>(pens_.size());
@@ -344,11 +345,11 @@ void BlendedEstimator::place_pens() noexcept {
 void BlendedEstimator::write_gusts() noexcept {
   is_fading_ = false;
   for (std::size_t band = 0; band < kBands; ++band) {
-    const double wave_m = advection_m_s_ / OctaveFollower::centre_hz(band);
-    fade_[1 + band] = part_of_octave(wave_m / (kLeastSamplesAWave * WindTape::kStep_m));
+    const double wave_m = advection_m_s_ / turbulence::OctaveFollower::centre_hz(band);
+    fade_[1 + band] = part_of_octave(wave_m / (kLeastSamplesAWave * ground::WindTape::kStep_m));
   }
   for (std::size_t p = 0; p < pens_.size(); ++p) {
-    WindPen& pen = stroke_.pens[p];
+    ground::WindPen& pen = stroke_.pens[p];
     pen.weights.fill(0.0);
     for (std::size_t level = 0; level <= kBands; ++level) {
       WindVector gust;
@@ -396,7 +397,7 @@ void BlendedEstimator::weigh_gusts(const MeasuredMean& measured, double dt_s) no
 }
 
 void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept {
-  const double frequency_hz = centre_hz(noise_->octaves()[octave], advection_m_s_);
+  const double frequency_hz = turbulence::centre_hz(noise_->octaves()[octave], advection_m_s_);
   // What would jitter from frame to frame is faded out over the octave before.
   const double shown = part_of_octave(0.5 * settings_.rate_hz / frequency_hz);
   double variance_along = (1.0 - measured.weight) * climate_along_[octave];
@@ -415,9 +416,9 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
 
   // Waves of a plane that run aslant pass more slowly than their length suggests: the frequencies of a tile's octave
   // are lower by about half an octave, and there it would add to what the sensors measure.
-  const bool is_way = octave < GustNoise::kFirstTileOctave;
+  const bool is_way = octave < turbulence::GustNoise::kFirstTileOctave;
   const double known_hz = is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2;
-  const OctaveFollower::Response bands(known_hz);
+  const turbulence::OctaveFollower::Response bands(known_hz);
   for (std::size_t i = 0; i < sources_.size(); ++i) passed_[i] = sources_[i].passed_of(known_hz);
   if (is_way) {
     Power known;
@@ -433,12 +434,12 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
 
   approach(along_m_s, deviation(variance_along));
   approach(across_m_s, deviation(variance_across));
-  const std::size_t lane = octave - GustNoise::kFirstTileOctave;
+  const std::size_t lane = octave - turbulence::GustNoise::kFirstTileOctave;
   stroke_.octave_hz[lane] = static_cast<float>(known_hz);
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     const Power now = measured_power(bands, pens_[p].shares);
     const Power written = is_fading_ ? measured_power(bands, pens_[p].written) : now;
-    WindPen& pen = stroke_.pens[p];
+    ground::WindPen& pen = stroke_.pens[p];
     approach(pen.now.known_along[lane], now.along);
     approach(pen.now.known_across[lane], now.across);
     approach(pen.written.known_along[lane], written.along);
@@ -446,8 +447,8 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
   }
 }
 
-GustNoise::Moment BlendedEstimator::gusts_at(std::size_t pen) const noexcept {
-  return ground_.left_of(WindTapes::at_pen(stroke_.pens[pen].now));
+turbulence::GustNoise::Moment BlendedEstimator::gusts_at(std::size_t pen) const noexcept {
+  return ground_.left_of(ground::WindTapes::at_pen(stroke_.pens[pen].now));
 }
 
 /// The wind that is shown, and the samples that go onto the tapes.
@@ -457,12 +458,12 @@ void BlendedEstimator::show(const MeasuredMean& measured) noexcept {
   state_.upwind_m = 0.0;
   double configured = 0.0;
   for (std::size_t p = 0; p < pens_.size(); ++p) {
-    WindPen& pen = stroke_.pens[p];
+    ground::WindPen& pen = stroke_.pens[p];
     if (!places_.place(p).is_edge) configured += pen.part;
     pen.now.mean = measured.mean;
     pen.now.way = way;
-    const OctaveLanes known_along = pen.written.known_along;
-    const OctaveLanes known_across = pen.written.known_across;
+    const ground::OctaveLanes known_along = pen.written.known_along;
+    const ground::OctaveLanes known_across = pen.written.known_across;
     pen.written = pen.now;
     pen.written.known_along = known_along;
     pen.written.known_across = known_across;
@@ -470,7 +471,7 @@ void BlendedEstimator::show(const MeasuredMean& measured) noexcept {
       pen.written.east_m_s[band] *= static_cast<float>(fade_[1 + band]);
       pen.written.north_m_s[band] *= static_cast<float>(fade_[1 + band]);
     }
-    ground_.everywhere = ground_.everywhere + pen.part * WindTapes::at_pen(pen.now).gusts;
+    ground_.everywhere = ground_.everywhere + pen.part * ground::WindTapes::at_pen(pen.now).gusts;
     state_.upwind_m -= pen.part * (pen.east_m * stroke_.ahead.u_m_s - pen.south_m * stroke_.ahead.v_m_s);
   }
   state_.wind = wind_where_measured(ground_, stroke_, *noise_);
@@ -495,7 +496,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   state_.time = now;
 
   // The weights of the sources, and their bands.
-  const OctaveFollower::Parts parts = OctaveFollower::parts(dt_s);
+  const turbulence::OctaveFollower::Parts parts = turbulence::OctaveFollower::parts(dt_s);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     choice_.set_live(i, sources_[i].record().is_live(now, settings_.stale_intervals));
   }
@@ -538,9 +539,9 @@ SourceReport BlendedEstimator::report(std::size_t index) const noexcept {
   return sources_[index].record().report(state_.time, settings_.stale_intervals);
 }
 
-Turbulence BlendedEstimator::turbulence() const noexcept {
+turbulence::Turbulence BlendedEstimator::turbulence() const noexcept {
   double left = 1.0;
-  Turbulence sum{.intensity = 0.0, .time_scale_s = 0.0};
+  turbulence::Turbulence sum{.intensity = 0.0, .time_scale_s = 0.0};
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const double weight = std::min(choice_.weight(i), left);
     left -= weight;
@@ -552,4 +553,4 @@ Turbulence BlendedEstimator::turbulence() const noexcept {
   return sum;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

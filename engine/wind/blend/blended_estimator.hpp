@@ -17,7 +17,7 @@
 #include "engine/wind/turbulence/gust_variances.hpp"
 #include "engine/wind/wind_state.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// The wind that moves things: the live signal where the sensors know, noise of the same spectrum where they do not,
 /// counted once.
@@ -56,7 +56,8 @@ class BlendedEstimator {
  public:
   /// `noise`: shared with whoever reads the wind at other places. The climate's seed selects where on it the gusts
   /// begin. Allocates.
-  BlendedEstimator(std::size_t source_count, const BlendSettings& settings, std::shared_ptr<const GustNoise> noise);
+  BlendedEstimator(std::size_t source_count, const BlendSettings& settings,
+                   std::shared_ptr<const turbulence::GustNoise> noise);
 
   /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored:
   /// false.
@@ -66,22 +67,22 @@ class BlendedEstimator {
   WindState advance(MonoTime now) noexcept;
 
   /// The same wind over the ground, as of the last advance(); without tapes.
-  const GroundWind& ground() const noexcept { return ground_; }
+  const ground::GroundWind& ground() const noexcept { return ground_; }
   /// What the last advance() adds to the tapes.
-  const WindStroke& stroke() const noexcept { return stroke_; }
+  const ground::WindStroke& stroke() const noexcept { return stroke_; }
 
   /// How `source` does, as of the last advance(). One that is not there is silent.
   SourceReport report(std::size_t source) const noexcept;
 
   /// The turbulence that is fitted at the moment, along the wind.
-  Turbulence turbulence() const noexcept;
+  turbulence::Turbulence turbulence() const noexcept;
 
   /// The noise that is left at the place of a sensor, where most is known.
-  GustNoise::Moment gusts_at(std::size_t pen) const noexcept;
+  turbulence::GustNoise::Moment gusts_at(std::size_t pen) const noexcept;
 
  private:
-  static constexpr std::size_t kBands = OctaveFollower::kBands;
-  static constexpr std::size_t kOctaves = GustNoise::kOctaves;
+  static constexpr std::size_t kBands = turbulence::OctaveFollower::kBands;
+  static constexpr std::size_t kOctaves = turbulence::GustNoise::kOctaves;
 
   /// The shares of a source at the moment: of the mean, and of the bands among all sources together.
   struct Share {
@@ -127,21 +128,22 @@ class BlendedEstimator {
   void write_gusts() noexcept;
   void weigh_gusts(const MeasuredMean& measured, double dt_s) noexcept;
   void weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept;
-  Power measured_power(const OctaveFollower::Response& bands, std::span<const BandWeights> shares) const noexcept;
+  Power measured_power(const turbulence::OctaveFollower::Response& bands,
+                       std::span<const BandWeights> shares) const noexcept;
   void show(const MeasuredMean& measured) noexcept;
   double variance_share(std::size_t source, double frequency_hz, const MeasuredMean& measured) const noexcept;
 
   BlendSettings settings_;
   WindVector climate_;
-  std::shared_ptr<const GustNoise> noise_;
-  GustVariances climate_along_, climate_across_;
+  std::shared_ptr<const turbulence::GustNoise> noise_;
+  turbulence::GustVariances climate_along_, climate_across_;
   std::vector<BlendSource> sources_;
   SourceChoice choice_;
   MeanWindPlane plane_;
   PenPlaces places_;
   std::vector<Pen> pens_;
-  GroundWind ground_;
-  WindStroke stroke_;
+  ground::GroundWind ground_;
+  ground::WindStroke stroke_;
   double advection_m_s_ = 0.0;
   WindState state_;
   double reach_m_ = 0.0;      ///< where the windward edge is
@@ -158,4 +160,4 @@ class BlendedEstimator {
   bool is_fading_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

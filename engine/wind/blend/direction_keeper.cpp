@@ -7,7 +7,7 @@
 #include "engine/base/units.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// Below this a vane's direction has less and less weight.
@@ -71,7 +71,7 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
   const double correlated_s = interval_s + time_scale_s * std::exp(-2.0 * steps * steps);
   // Von Karman's inertial range is as strong as the stairs at S(f) = sigma^2 T a (f T)^(-5/3) = step^2 / 12 * 2 dt.
   const double stairs = step_rad * step_rad / 12.0 * 2.0 * correlated_s;
-  const double swing = von_karman_inertial_factor() * swing_rad * swing_rad * time_scale_s;
+  const double swing = turbulence::von_karman_inertial_factor() * swing_rad * swing_rad * time_scale_s;
   const double corner_hz = std::pow(swing / stairs, 0.6) / time_scale_s;
   memory_s_ = std::min(1.0 / (2.0 * std::numbers::pi * corner_hz), kLongestMemory_s);
 }
@@ -88,4 +88,4 @@ void DirectionKeeper::note_step(double direction_deg) noexcept {
   if (turns_of_16_ >= kTurnsToDecideIfFine) was_fine_ = false;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -5,7 +5,7 @@
 #include "engine/wind/wind_reading.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// The direction of a source's wind, as a unit vector: that of its vane, held in a calm and smoothed where it is
 /// coarse.
@@ -60,4 +60,4 @@ class DirectionKeeper {
 /// A unit vector turned toward another by a part (0 to 1) of the angle between them, the shorter way round.
 WindVector turned_toward(WindVector unit, WindVector other, double part) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// The ridge, over the square of the sensors' extent: two sensors at its ends, whose own spread is 0.25, lose 1 % of
@@ -65,4 +65,4 @@ void MeanWindPlane::weigh(std::span<const double> shares, double part, std::span
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

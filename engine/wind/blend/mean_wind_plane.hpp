@@ -5,7 +5,7 @@
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// What a source's value counts for: in the middle of the scene, and in the slopes (1/m).
 struct PlaceWeights {
@@ -26,7 +26,7 @@ class MeanWindPlane {
   /// From corner to corner.
   double length_m() const noexcept { return length_m_; }
   /// Where it ends; without slopes.
-  const WindSlope& ends() const noexcept { return ends_; }
+  const ground::WindSlope& ends() const noexcept { return ends_; }
 
   /// The weights of sources that have these shares (at least 0; as many as there are sources). The sum of those in the
   /// middle is that of the shares. `part`, 0 to 1: how much of the slopes is wanted.
@@ -38,8 +38,8 @@ class MeanWindPlane {
   };
   std::vector<Place> places_;
   Place middle_;  ///< that of the scene, or the nearest that the plane has
-  WindSlope ends_;
+  ground::WindSlope ends_;
   double length_m_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -5,7 +5,7 @@
 
 #include "engine/wind/ground/wind_stroke.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 PenPlaces::PenPlaces(std::span<const BlendSourceSettings> sources) : pens_(sources.size()) {
   const bool has_absolute = std::ranges::any_of(sources, [](const auto& source) { return !source.is_relative; });
@@ -24,7 +24,7 @@ std::size_t PenPlaces::pen_for(const BlendSourceSettings& source) {
   };
   const auto same = std::ranges::find_if(places_, is_same);
   if (same != places_.end()) return static_cast<std::size_t>(same - places_.begin());
-  if (places_.size() == WindStroke::kMostPens) {
+  if (places_.size() == ground::WindStroke::kMostPens) {
     return static_cast<std::size_t>(std::ranges::min_element(places_, {}, distance_m) - places_.begin());
   }
   places_.push_back(
@@ -34,4 +34,4 @@ std::size_t PenPlaces::pen_for(const BlendSourceSettings& source) {
   return places_.size() - 1;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

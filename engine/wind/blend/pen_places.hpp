@@ -7,7 +7,7 @@
 
 #include "engine/wind/blend/blend_settings.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// The places where measured wind is written: one for all sensors without a configured position (the windward edge of
 /// the scenes), and one for each configured position. Sensors closer together than half a metre share one; of
@@ -37,4 +37,4 @@ class PenPlaces {
   std::vector<std::size_t> pens_;  ///< of each source
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

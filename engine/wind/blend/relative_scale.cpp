@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 constexpr double kLeastScale = 0.05;
@@ -39,4 +39,4 @@ void RelativeScale::learn(const Pair& pair, double dt_s) noexcept {
   gust_gain_ = std::exp(log_gust);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

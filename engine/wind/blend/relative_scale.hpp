@@ -1,6 +1,6 @@
 #pragma once
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// The gain of a relative source: a slow regression against the absolute sources at the same time.
 ///
@@ -35,4 +35,4 @@ class RelativeScale {
   double mean_gain_ = 1.0, gust_gain_ = 1.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

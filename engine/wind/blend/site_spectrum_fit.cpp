@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// The interval of the simulated slow sensor: it resolves no waves above 0.37 over this, 0.026 Hz.
@@ -18,7 +18,8 @@ constexpr double kBeyond_octaves = 0.5;
 
 }  // namespace
 
-SiteSpectrumFit::SiteSpectrumFit(const TurbulencePrior& prior, double fit_memory_s) : slow_(prior, fit_memory_s) {}
+SiteSpectrumFit::SiteSpectrumFit(const turbulence::TurbulencePrior& prior, double fit_memory_s)
+    : slow_(prior, fit_memory_s) {}
 
 void SiteSpectrumFit::break_off() noexcept {
   slow_.break_off();
@@ -26,9 +27,9 @@ void SiteSpectrumFit::break_off() noexcept {
   count_ = 0;
 }
 
-void SiteSpectrumFit::observe(const Observation& observation, const WindTurbulence& quick,
-                              SiteSpectrum& site) noexcept {
-  if (observation.interval_s > SiteSpectrum::kQuick_s || !(observation.interval_s > 0.0) ||
+void SiteSpectrumFit::observe(const Observation& observation, const turbulence::WindTurbulence& quick,
+                              turbulence::SiteSpectrum& site) noexcept {
+  if (observation.interval_s > turbulence::SiteSpectrum::kQuick_s || !(observation.interval_s > 0.0) ||
       !(observation.speed_m_s > 0.0))
     return;
   sum_ = sum_ + observation.wind;
@@ -45,23 +46,23 @@ void SiteSpectrumFit::observe(const Observation& observation, const WindTurbulen
     update(observation, quick, site);
 }
 
-void SiteSpectrumFit::update(const Observation& observation, const WindTurbulence& quick,
-                             SiteSpectrum& site) const noexcept {
-  const auto of_both = [&observation](const WindTurbulence& turbulence, const auto& power_of) {
+void SiteSpectrumFit::update(const Observation& observation, const turbulence::WindTurbulence& quick,
+                             turbulence::SiteSpectrum& site) const noexcept {
+  const auto of_both = [&observation](const turbulence::WindTurbulence& turbulence, const auto& power_of) {
     return power_of(turbulence.along()) + (observation.has_across ? power_of(turbulence.across()) : 0.0);
   };
-  for (std::size_t octave = 0; octave < SiteSpectrum::kOctaves; ++octave) {
+  for (std::size_t octave = 0; octave < turbulence::SiteSpectrum::kOctaves; ++octave) {
     // Where among the quick source's scales, means over interval * 2^scale, it is.
-    const double tau_s = kSeenTimesTau / SiteSpectrum::centre_hz(octave);
+    const double tau_s = kSeenTimesTau / turbulence::SiteSpectrum::centre_hz(octave);
     const double place = std::log2(tau_s / observation.interval_s);
-    if (place < -kBeyond_octaves || place > static_cast<double>(TurbulenceFit::kScales - 2)) continue;
+    if (place < -kBeyond_octaves || place > static_cast<double>(turbulence::TurbulenceFit::kScales - 2)) continue;
     const double inside = std::max(place, 0.0);
     const auto below = static_cast<std::size_t>(inside);
     const double t = inside - static_cast<double>(below);
     const auto measured = [&](std::size_t scale) {
       const double seen_tau_s = std::ldexp(observation.interval_s, static_cast<int>(scale));
-      return std::log10(of_both(quick, [&](const TurbulenceFit& fit) { return fit.measured(scale); }) /
-                        of_both(slow_, [&](const TurbulenceFit& fit) { return fit.expected(seen_tau_s); }));
+      return std::log10(of_both(quick, [&](const turbulence::TurbulenceFit& fit) { return fit.measured(scale); }) /
+                        of_both(slow_, [&](const turbulence::TurbulenceFit& fit) { return fit.expected(seen_tau_s); }));
     };
     const double low = measured(below);
     const double excess_db = 10.0 * (t > 0.0 ? low + t * (measured(below + 1) - low) : low);
@@ -69,4 +70,4 @@ void SiteSpectrumFit::update(const Observation& observation, const WindTurbulenc
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

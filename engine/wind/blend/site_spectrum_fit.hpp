@@ -5,7 +5,7 @@
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wind/turbulence/wind_turbulence.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// Updates a SiteSpectrum from a fast source: its means over 14 s are fitted as if they came from a slow sensor on the
 /// same mast, and the power of the fast readings at each octave (Haar's differences) is compared with that fit. Both
@@ -14,7 +14,7 @@ namespace yuragi {
 class SiteSpectrumFit {
  public:
   /// `prior` and `fit_memory_s`: of the slow source that is to be corrected.
-  SiteSpectrumFit(const TurbulencePrior& prior, double fit_memory_s);
+  SiteSpectrumFit(const turbulence::TurbulencePrior& prior, double fit_memory_s);
 
   struct Observation {
     WindVector wind;         ///< a reading: the mean over `interval_s`, which began `interval_s` ago
@@ -25,16 +25,18 @@ class SiteSpectrumFit {
   };
   /// Takes a reading of the source, and the turbulence of its own readings (`quick`, which has taken the reading).
   /// Sources slower than SiteSpectrum::kQuick_s and winds below 1 m/s change nothing.
-  void observe(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) noexcept;
+  void observe(const Observation& observation, const turbulence::WindTurbulence& quick,
+               turbulence::SiteSpectrum& site) noexcept;
   /// After a gap.
   void break_off() noexcept;
 
  private:
-  void update(const Observation& observation, const WindTurbulence& quick, SiteSpectrum& site) const noexcept;
+  void update(const Observation& observation, const turbulence::WindTurbulence& quick,
+              turbulence::SiteSpectrum& site) const noexcept;
 
-  WindTurbulence slow_;
+  turbulence::WindTurbulence slow_;
   WindVector sum_{};
   std::size_t count_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// A critically damped step has covered 91 % after 4 time constants (engine/METHOD.md M18).
@@ -94,4 +94,4 @@ void SourceChoice::step(double dt_s) noexcept {
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

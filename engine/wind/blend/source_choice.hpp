@@ -8,7 +8,7 @@
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// Selects among several sources and weights them: by role, priority and weight, with hysteresis, slewed.
 ///
@@ -47,7 +47,7 @@ class SourceChoice {
     double live_for_s = 0.0;
     int failures = 0;
     double weight_wanted = 0.0, gusts_wanted = 0.0;
-    CriticallyDamped weight, gusts;
+    math::CriticallyDamped weight, gusts;
   };
 
   template <class MayTake>
@@ -60,4 +60,4 @@ class SourceChoice {
   std::vector<Entry> entries_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

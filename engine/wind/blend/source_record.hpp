@@ -7,7 +7,7 @@
 
 #include "engine/wind/source_report.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 /// What an estimator remembers of one source: its last reading, and the interval between readings.
 /// Thread-safe: no. Realtime-safe: yes.
@@ -73,4 +73,4 @@ class SourceRecord {
   std::size_t intervals_seen_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

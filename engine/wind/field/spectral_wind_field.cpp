@@ -10,11 +10,11 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/wind/field/von_karman_modes.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::field {
 namespace {
 
-constexpr std::array<WindComponent, 3> kComponents = {WindComponent::kAlong, WindComponent::kAcross,
-                                                      WindComponent::kUpward};
+constexpr std::array<turbulence::WindComponent, 3> kComponents = {
+    turbulence::WindComponent::kAlong, turbulence::WindComponent::kAcross, turbulence::WindComponent::kUpward};
 /// Over those of u (IEC 61400-1:2005, annex B.2).
 constexpr std::array kDeviations = {1.0, 0.8, 0.5};
 constexpr std::array kLengths = {1.0, 2.7 / 8.1, 0.66 / 8.1};
@@ -22,7 +22,7 @@ constexpr std::array kLengths = {1.0, 2.7 / 8.1, 0.66 / 8.1};
 constexpr std::size_t kPeriodsPerWay = 256;
 constexpr std::size_t kFieldWaySamples = 16 * kPeriodsPerWay / 2;  // 16 in its shortest waves, which are two tiles long
 
-VonKarmanModes modes_of(const WindFieldSettings& settings, WindComponent component) {
+VonKarmanModes modes_of(const WindFieldSettings& settings, turbulence::WindComponent component) {
   const auto i = static_cast<std::size_t>(component);
   return {component, kDeviations[i] * settings.turbulence_intensity * settings.speed_m_s,
           kLengths[i] * settings.length_m};
@@ -31,7 +31,7 @@ VonKarmanModes modes_of(const WindFieldSettings& settings, WindComponent compone
 /// The variance of the wave vectors in the cell of a mode, whose wave numbers are in cycles of the tile.
 class CellPower {
  public:
-  CellPower(const WindFieldSettings& settings, WindComponent component)
+  CellPower(const WindFieldSettings& settings, turbulence::WindComponent component)
       : modes_(modes_of(settings, component)),
         is_space_(settings.dims == 3),
         ahead_(wind_from(1.0, settings.direction_deg)),
@@ -87,23 +87,23 @@ WindFieldSettings checked(const WindFieldSettings& settings) {
   return settings;
 }
 
-std::uint64_t seed_of(const WindFieldSettings& settings, WindComponent component) {
-  constexpr std::array kStreams = {stream_id("wind field along"), stream_id("wind field across"),
-                                   stream_id("wind field upward")};
+std::uint64_t seed_of(const WindFieldSettings& settings, turbulence::WindComponent component) {
+  constexpr std::array kStreams = {math::stream_id("wind field along"), math::stream_id("wind field across"),
+                                   math::stream_id("wind field upward")};
   return settings.seed ^ kStreams[static_cast<std::size_t>(component)];
 }
 
 }  // namespace
 
-SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& settings, WindComponent component,
-                                                   std::uint64_t seed) {
+SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& settings,
+                                                   turbulence::WindComponent component, std::uint64_t seed) {
   // What the tile has no mode for is in the cell about 0: waves longer than two tiles.
   const double way_m = static_cast<double>(kPeriodsPerWay * settings.samples) * settings.spacing_m;
   const double length_m = kLengths[static_cast<std::size_t>(component)] * settings.length_m;
-  return {make_noise_1d({.size = kFieldWaySamples,
-                         .seed = seed,
-                         .integral_scale = std::max(length_m / way_m, kMinNoiseIntegralScale),
-                         .to_cycles = kPeriodsPerWay / 2.0})
+  return {noise::make_noise_1d({.size = kFieldWaySamples,
+                                .seed = seed,
+                                .integral_scale = std::max(length_m / way_m, noise::kMinNoiseIntegralScale),
+                                .to_cycles = kPeriodsPerWay / 2.0})
               .value(),
           std::sqrt(CellPower(settings, component)(0.0, 0.0, 0.0))};
 }
@@ -112,12 +112,12 @@ SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& sett
 /// of 1 the stress would be 0.63 to 0.8, as the tile is long and fine.
 double SpectralWindField::likeness_of(const WindFieldSettings& settings) {
   if (settings.stress == 0.0 || settings.turbulence_intensity * settings.speed_m_s == 0.0) return 0.0;
-  const SharedVariance shared =
-      shared_variance(settings.dims, settings.samples, CellPower(settings, WindComponent::kAlong),
-                      CellPower(settings, WindComponent::kUpward));
-  const std::uint64_t seed = seed_of(settings, WindComponent::kAlong);
-  const Way along = make_way(settings, WindComponent::kAlong, seed);
-  const Way up = make_way(settings, WindComponent::kUpward, seed);
+  const noise::SharedVariance shared =
+      noise::shared_variance(settings.dims, settings.samples, CellPower(settings, turbulence::WindComponent::kAlong),
+                             CellPower(settings, turbulence::WindComponent::kUpward));
+  const std::uint64_t seed = seed_of(settings, turbulence::WindComponent::kAlong);
+  const Way along = make_way(settings, turbulence::WindComponent::kAlong, seed);
+  const Way up = make_way(settings, turbulence::WindComponent::kUpward, seed);
   double product = 0.0;
   for (std::size_t i = 0; i < along.noise.size(); ++i) {
     product += static_cast<double>(along.noise.values[i]) * static_cast<double>(up.noise.values[i]);
@@ -131,13 +131,13 @@ double SpectralWindField::likeness_of(const WindFieldSettings& settings) {
                               std::to_string(std::abs(settings.stress / likeness)));
 }
 
-std::vector<MovingField> SpectralWindField::fields_of(const WindFieldSettings& settings, double likeness) {
-  std::vector<MovingField> fields;
+std::vector<noise::MovingField> SpectralWindField::fields_of(const WindFieldSettings& settings, double likeness) {
+  std::vector<noise::MovingField> fields;
   for (std::size_t i = 0; i < static_cast<std::size_t>(settings.dims); ++i) {
     fields.push_back({.power = CellPower(settings, kComponents[i]),
                       .seed = seed_of(settings, kComponents[i]),
-                      .likeness = kComponents[i] == WindComponent::kUpward ? likeness : 0.0,
-                      .like_seed = seed_of(settings, WindComponent::kAlong)});
+                      .likeness = kComponents[i] == turbulence::WindComponent::kUpward ? likeness : 0.0,
+                      .like_seed = seed_of(settings, turbulence::WindComponent::kAlong)});
   }
   return fields;
 }
@@ -152,11 +152,12 @@ SpectralWindField::SpectralWindField(const WindFieldSettings& settings, double l
       ahead_(wind_from(1.0, settings.direction_deg)),
       noise_(settings.dims, settings.samples, fields_of(settings, likeness)) {
   for (int i = 0; i < settings.dims; ++i) {
-    const WindComponent component = kComponents[static_cast<std::size_t>(i)];
+    const turbulence::WindComponent component = kComponents[static_cast<std::size_t>(i)];
     ways_.push_back(make_way(settings, component, seed_of(settings, component)));
   }
   if (likeness != 0.0) {
-    const Way like = make_way(settings, WindComponent::kUpward, seed_of(settings, WindComponent::kAlong));
+    const Way like =
+        make_way(settings, turbulence::WindComponent::kUpward, seed_of(settings, turbulence::WindComponent::kAlong));
     const auto own_share = static_cast<float>(std::sqrt(1.0 - likeness * likeness));
     std::vector<float>& up = ways_[2].noise.values;
     for (std::size_t i = 0; i < up.size(); ++i) {
@@ -165,7 +166,7 @@ SpectralWindField::SpectralWindField(const WindFieldSettings& settings, double l
   }
   if (settings.evolves) {
     const double turnover_m23_s =
-        eddy_turnover_m23_s(settings.turbulence_intensity * settings.speed_m_s, settings.length_m);
+        turbulence::eddy_turnover_m23_s(settings.turbulence_intensity * settings.speed_m_s, settings.length_m);
     const double longest_rad_m = 2.0 * std::numbers::pi / period_m_;
     turning_rad_s_ = turnover_m23_s * std::cbrt(longest_rad_m * longest_rad_m);
   }
@@ -176,9 +177,9 @@ void SpectralWindField::go_to(double time_s) noexcept {
   const double way_m = speed_m_s_ * time_s;
   noise_.move_to({way_m * ahead_.u_m_s / period_m_, -way_m * ahead_.v_m_s / period_m_, 0.0}, turning_rad_s_ * time_s);
   // What is carried past comes from upwind: read at minus the way.
-  const std::uint32_t place = torus_phase(-way_m, static_cast<double>(kPeriodsPerWay) * period_m_);
+  const std::uint32_t place = noise::torus_phase(-way_m, static_cast<double>(kPeriodsPerWay) * period_m_);
   for (std::size_t i = 0; i < ways_.size(); ++i) {
-    now_m_s_[i] = ways_[i].deviation_m_s * static_cast<double>(read_noise(ways_[i].noise, place));
+    now_m_s_[i] = ways_[i].deviation_m_s * static_cast<double>(noise::read_noise(ways_[i].noise, place));
   }
 }
 
@@ -191,14 +192,15 @@ WindVector3 SpectralWindField::at(WindPlace place) const noexcept {
           up_m_s};
 }
 
-double SpectralWindField::variance_m2_s2(WindComponent component) const noexcept {
+double SpectralWindField::variance_m2_s2(turbulence::WindComponent component) const noexcept {
   const auto i = static_cast<std::size_t>(component);
   if (i >= ways_.size()) return 0.0;
   return noise_.variance(i) + ways_[i].deviation_m_s * ways_[i].deviation_m_s;
 }
 
 double SpectralWindField::along_up_covariance_m2_s2() const noexcept {
-  return stress_ * std::sqrt(variance_m2_s2(WindComponent::kAlong) * variance_m2_s2(WindComponent::kUpward));
+  return stress_ * std::sqrt(variance_m2_s2(turbulence::WindComponent::kAlong) *
+                             variance_m2_s2(turbulence::WindComponent::kUpward));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

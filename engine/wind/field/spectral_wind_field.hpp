@@ -10,7 +10,7 @@
 #include "engine/wind/field/wind_field.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::field {
 
 /// u and w have most of their power in different waves: if each were the same in both, the stress would be 0.63.
 inline constexpr double kLargestStress = 0.6;
@@ -61,7 +61,7 @@ class SpectralWindField final : public WindField {
   WindVector3 at(WindPlace place) const noexcept override;
 
   /// Of a component, on average over seeds and long times. The third is 0 in two dimensions.
-  double variance_m2_s2(WindComponent component) const noexcept;
+  double variance_m2_s2(turbulence::WindComponent component) const noexcept;
   /// Of u and w, on average over seeds: the stress times both standard deviations. 0 in two dimensions.
   double along_up_covariance_m2_s2() const noexcept;
   /// How long the tile is.
@@ -70,12 +70,12 @@ class SpectralWindField final : public WindField {
  private:
   /// The part of a component's gusts that is longer than the tile.
   struct Way {
-    NoiseTile1 noise;
+    noise::NoiseTile1 noise;
     double deviation_m_s = 0.0;
   };
-  static Way make_way(const WindFieldSettings& settings, WindComponent component, std::uint64_t seed);
+  static Way make_way(const WindFieldSettings& settings, turbulence::WindComponent component, std::uint64_t seed);
   static double likeness_of(const WindFieldSettings& settings);
-  static std::vector<MovingField> fields_of(const WindFieldSettings& settings, double likeness);
+  static std::vector<noise::MovingField> fields_of(const WindFieldSettings& settings, double likeness);
   SpectralWindField(const WindFieldSettings& settings, double likeness);
 
   double period_m_;
@@ -83,9 +83,9 @@ class SpectralWindField final : public WindField {
   double stress_;
   WindVector ahead_;                 ///< unit vector downwind
   double turning_rad_s_ = 0.0;       ///< of the eddies as long as the tile
-  MovingNoise noise_;                ///< a field a component
+  noise::MovingNoise noise_;         ///< a field a component
   std::vector<Way> ways_;            ///< one a component
   std::array<double, 3> now_m_s_{};  ///< what the ways add at this moment
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

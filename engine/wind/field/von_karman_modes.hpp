@@ -2,7 +2,7 @@
 
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::field {
 
 /// How one component of isotropic turbulence spreads its variance over wave vectors: von Karman's, in three dimensions
 /// and, what a level plane cuts out of those, in two. A straight line along the wind through it has von Karman's
@@ -18,7 +18,7 @@ class VonKarmanModes {
  public:
   /// Of a component with standard deviation `sigma_m_s` (0 or above) whose integral length scale along the mean wind is
   /// `length_m` (above 0).
-  VonKarmanModes(WindComponent component, double sigma_m_s, double length_m) noexcept;
+  VonKarmanModes(turbulence::WindComponent component, double sigma_m_s, double length_m) noexcept;
 
   /// Of a component in the plane (u or v), m^2/s^2 per (rad/m)^2: the integral over the plane is the variance.
   double plane_density(double along_rad_m, double across_rad_m) const noexcept;
@@ -26,7 +26,7 @@ class VonKarmanModes {
   double space_density(double along_rad_m, double across_rad_m, double up_rad_m) const noexcept;
 
  private:
-  WindComponent component_;
+  turbulence::WindComponent component_;
   double kappa_squared_;
   double scale_;
 };
@@ -37,4 +37,4 @@ class VonKarmanModes {
 /// d / U). Source: Harris 1971, The nature of the wind; IEC 61400-1, annex B (the coherence of the isotropic model).
 double von_karman_coherence(double along_rad_m, double distance_m, double length_m) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

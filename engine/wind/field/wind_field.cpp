@@ -1,6 +1,6 @@
 #include "engine/wind/field/wind_field.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::field {
 
 WindPlace FieldGrid::place(std::size_t i, std::size_t j, std::size_t k) const noexcept {
   const auto steps = [](std::size_t index, std::size_t middle) {
@@ -25,4 +25,4 @@ void sample_field(const WindField& field, const FieldGrid& grid, std::span<float
   }
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

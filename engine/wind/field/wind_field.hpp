@@ -6,7 +6,7 @@
 
 #include "engine/wind/ground/ground_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::field {
 
 /// A place in the world, metres from the middle of the scene on the ground: x toward east, y up, z toward south.
 struct WindPlace {
@@ -37,7 +37,8 @@ class WindField {
 /// live on.
 class GroundWindField final : public WindField {
  public:
-  GroundWindField(const GroundWind& ground, const GustNoise& noise) : ground_(ground), noise_(noise) {}
+  GroundWindField(const ground::GroundWind& ground, const turbulence::GustNoise& noise)
+      : ground_(ground), noise_(noise) {}
 
   int dims() const noexcept override { return 2; }
   WindVector3 at(WindPlace place) const noexcept override {
@@ -46,8 +47,8 @@ class GroundWindField final : public WindField {
   }
 
  private:
-  const GroundWind& ground_;
-  const GustNoise& noise_;
+  const ground::GroundWind& ground_;
+  const turbulence::GustNoise& noise_;
 };
 
 /// Places in rows: sample (i, j, k) stands i - count_x / 2 (rounded down) steps east of the middle, j up from the
@@ -68,4 +69,4 @@ struct FieldGrid {
 /// axis, then y, then x. `out` holds field.dims() times grid.size() values.
 void sample_field(const WindField& field, const FieldGrid& grid, std::span<float> out) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

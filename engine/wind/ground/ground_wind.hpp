@@ -9,7 +9,7 @@
 #include "engine/wind/wind_state.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 
 /// How the measured mean wind changes from place to place where several anemometers stand apart: a plane through their
 /// means, constant beyond the outermost of them. Without a slope: the same everywhere.
@@ -31,9 +31,9 @@ struct WindSlope {
 /// without them (nothing is measured, or a test) all places have the same but for their own gusts. Thread-safe and
 /// realtime-safe: reading, yes.
 struct GroundWind {
-  WindVector everywhere;    ///< without tapes: the wind of all places, less the gusts of the tiles
-  WindSlope slope;          ///< of the mean; none unless sensors stand at several places
-  GustNoise::Moment gusts;  ///< the noise, at its strength where nothing is measured
+  WindVector everywhere;                ///< without tapes: the wind of all places, less the gusts of the tiles
+  WindSlope slope;                      ///< of the mean; none unless sensors stand at several places
+  turbulence::GustNoise::Moment gusts;  ///< the noise, at its strength where nothing is measured
   const WindTapes* tapes = nullptr;
   double gain = 1.0;       ///< on all wind that is read from the tapes
   double gust_gain = 1.0;  ///< and on its gusts besides
@@ -55,7 +55,7 @@ struct GroundWind {
   }
 
   /// The wind at a place.
-  WindVector at(const GustNoise& noise, double east_m, double south_m) const noexcept {
+  WindVector at(const turbulence::GustNoise& noise, double east_m, double south_m) const noexcept {
     return tapes == nullptr ? untaped_at(east_m, south_m) + noise.local(gusts, east_m, south_m)
                             : at(noise, tapes->at(east_m, south_m), east_m, south_m);
   }
@@ -70,17 +70,17 @@ struct GroundWind {
   WindVector measured(const WindTapes::Known& reading, double east_m, double south_m) const noexcept {
     return smooth(reading, east_m, south_m) + (reading.gain * gain * gust_gain) * reading.gusts;
   }
-  WindVector at(const GustNoise& noise, const WindTapes::Reading& reading, double east_m,
+  WindVector at(const turbulence::GustNoise& noise, const WindTapes::Reading& reading, double east_m,
                 double south_m) const noexcept {
     return measured(reading, east_m, south_m) + reading.gain * noise.local(left_of(reading), east_m, south_m);
   }
 
   /// The noise where this is measured.
-  GustNoise::Moment left_of(const WindTapes::Reading& reading) const noexcept {
-    GustNoise::Moment left = gusts;
+  turbulence::GustNoise::Moment left_of(const WindTapes::Reading& reading) const noexcept {
+    turbulence::GustNoise::Moment left = gusts;
     for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
-      left.along_m_s[GustNoise::kFirstTileOctave + i] *= reading.noise_along[i];
-      left.across_m_s[GustNoise::kFirstTileOctave + i] *= reading.noise_across[i];
+      left.along_m_s[turbulence::GustNoise::kFirstTileOctave + i] *= reading.noise_along[i];
+      left.across_m_s[turbulence::GustNoise::kFirstTileOctave + i] *= reading.noise_across[i];
     }
     return left;
   }
@@ -106,7 +106,7 @@ inline GroundWind written_to(WindTapes& tapes, const DrivingWind& wind) noexcept
 /// The wind where it is measured at this moment (of several places their mean), or in the middle of the scenes where
 /// nothing can be measured.
 inline WindVector wind_where_measured(const GroundWind& ground, const WindStroke& stroke,
-                                      const GustNoise& noise) noexcept {
+                                      const turbulence::GustNoise& noise) noexcept {
   if (stroke.pen_count == 0) return ground.at(noise, 0.0, 0.0);
   WindVector wind;
   for (const WindPen& pen : std::span(stroke.pens).first(stroke.pen_count)) {
@@ -127,4 +127,4 @@ inline GroundWind operator*(double gain, GroundWind wind) noexcept {
   return wind;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -6,7 +6,7 @@
 
 #include "engine/noise/von_karman_corner.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 
 /// The part of a gust measured at one place that is still known at another (engine/wind/README.md W24): the root
 /// coherence
@@ -45,8 +45,8 @@ struct GustCoherence {
     const double wavenumber_rad_m = 2.0 * std::numbers::pi * frequency_hz / speed_m_s;
     const double longest_hz = speed_m_s / longest_wave_m;
     const double travels = std::clamp(std::log2(frequency_hz / std::max(longest_hz, kWeather_hz)), 0.0, 1.0);
-    return travels * std::hypot(wavenumber_rad_m, 1.0 / (kVonKarmanCorner * length_m));
+    return travels * std::hypot(wavenumber_rad_m, 1.0 / (noise::kVonKarmanCorner * length_m));
   }
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -8,7 +8,7 @@
 
 #include "engine/wind/ground/wind_stroke.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 
 /// The gusts at a place by sensors at several others: simple kriging, one octave at a time (Krige 1951; Chiles and
 /// Delfiner 2012, Geostatistics, 3.2; engine/wind/README.md W27). The weights of the sensors are
@@ -128,4 +128,4 @@ class GustKriging {
   std::array<std::array<Lanes, kMost>, kMost> coherence_{}, inverse_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -2,7 +2,7 @@
 
 #include "engine/base/kernel.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 namespace {
 
 constexpr std::size_t kNorth = kTapeBandLanes;
@@ -81,4 +81,4 @@ void many(const TapeKernelArguments& in) noexcept {
 
 const TapeKernels YURAGI_ROW_NAME(tape_kernels) = {gusts, octaves, many};
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

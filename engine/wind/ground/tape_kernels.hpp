@@ -4,7 +4,7 @@
 
 // Internal: between WindTapes and its kernel.
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 
 constexpr std::size_t kTapeBandLanes = 16;
 constexpr std::size_t kTapeOctaveLanes = 32;
@@ -48,4 +48,4 @@ extern const TapeKernels tape_kernels_x86_64;
 extern const TapeKernels tape_kernels_x86_64_v3;
 extern const TapeKernels tape_kernels_x86_64_v4;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

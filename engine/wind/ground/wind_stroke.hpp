@@ -8,14 +8,14 @@
 #include "engine/wind/turbulence/octave_follower.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 
 /// A number for each octave band of what is measured, and for each octave of the noise's tiles: padded to whole SIMD
 /// registers, with zeros behind the last.
 inline constexpr std::size_t kBandLanes = 16;
-inline constexpr std::size_t kTileOctaveCount = 2 * GustNoise::kTileOctaves;
+inline constexpr std::size_t kTileOctaveCount = 2 * turbulence::GustNoise::kTileOctaves;
 inline constexpr std::size_t kOctaveLanes = (kTileOctaveCount + 15) / 16 * 16;
-static_assert(OctaveFollower::kBands <= kBandLanes);
+static_assert(turbulence::OctaveFollower::kBands <= kBandLanes);
 using BandLanes = std::array<float, kBandLanes>;
 using OctaveLanes = std::array<float, kOctaveLanes>;
 
@@ -37,8 +37,8 @@ struct WindPen {
   double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
   double part = 1.0;                   ///< of the wind that is shown to people
   double presence = 0.0;  ///< of its sensors among those of other places: 0 they are gone, 1 they are there
-  std::array<double, OctaveFollower::kBands + 1>
-      weights{};       ///< of the mean (0) and each band, as they go onto the tape
+  /// Of the mean (0) and each band, as they go onto the tape.
+  std::array<double, turbulence::OctaveFollower::kBands + 1> weights{};
   WindSample now;      ///< at this place
   WindSample written;  ///< the same without waves that are too short for the tape
 };
@@ -56,4 +56,4 @@ struct WindStroke {
   std::array<WindPen, kMostPens> pens;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 namespace {
 
 double between_numbers(double first, double second, double fraction) noexcept {
@@ -60,4 +60,4 @@ void WindTape::write(const WindPen& pen, double way_m) noexcept {
   one_back_ = between(sample(number), sample(number + 1), place - below);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

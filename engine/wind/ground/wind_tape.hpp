@@ -6,7 +6,7 @@
 
 #include "engine/wind/ground/wind_stroke.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 
 /// The wind that was measured at one place, along the way that it has gone since: a ring of samples, one each kStep_m
 /// of the way. The pen writes where the sensor stands, the mean wind carries the tape on, and a place D downwind reads
@@ -59,4 +59,4 @@ class WindTape {
   WindSample now_, last_written_, one_back_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -8,7 +8,7 @@
 
 #include "engine/base/kernel.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 namespace {
 
 /// Less of a wave's power than this on the tape counts as none.
@@ -47,7 +47,7 @@ class OctaveResponses {
  public:
   explicit OctaveResponses(const OctaveLanes& octave_hz) noexcept {
     for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
-      const OctaveFollower::Response response(static_cast<double>(octave_hz[i]));
+      const turbulence::OctaveFollower::Response response(static_cast<double>(octave_hz[i]));
       for (std::size_t band = 0; band < response.real.size(); ++band) {
         real_[band][i] = response.real[band];
         imaginary_[band][i] = response.imaginary[band];
@@ -57,7 +57,7 @@ class OctaveResponses {
 
   /// Of each octave what the bands pass together, each with its weight, as a part of its power.
   using Octaves = std::array<double, kTileOctaveCount>;
-  Octaves power(const std::array<double, OctaveFollower::kBands + 1>& weights) const noexcept {
+  Octaves power(const std::array<double, turbulence::OctaveFollower::kBands + 1>& weights) const noexcept {
     Octaves real{};
     Octaves imaginary{};
     for (std::size_t band = 0; band < weights.size(); ++band) {
@@ -70,7 +70,7 @@ class OctaveResponses {
   }
 
  private:
-  std::array<Octaves, OctaveFollower::kBands + 1> real_, imaginary_;
+  std::array<Octaves, turbulence::OctaveFollower::kBands + 1> real_, imaginary_;
 };
 
 double dot_product(double east, double north, WindVector unit) noexcept {
@@ -109,8 +109,9 @@ void WindTapes::write(const WindStroke& stroke) noexcept {
   stroke_ = stroke;
   for (std::size_t i = 0; i < pen_count_; ++i) tapes_[i].write(stroke.pens[i], stroke.way_m);
 
-  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-    band_loss_per_m_[band] = static_cast<float>(stroke.coherence.loss_per_m(OctaveFollower::centre_hz(band)));
+  for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
+    band_loss_per_m_[band] =
+        static_cast<float>(stroke.coherence.loss_per_m(turbulence::OctaveFollower::centre_hz(band)));
   }
   for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
     octave_loss_per_m_[i] = static_cast<float>(stroke.coherence.loss_per_m(static_cast<double>(stroke.octave_hz[i])));
@@ -138,14 +139,14 @@ void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
   for (std::size_t row = first_row; row < first_row + count; ++row) {
     const double distance_m = distance_of(row);
     BandLanes bands{};
-    for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
+    for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
       bands[band] = static_cast<float>(std::exp(-distance_m * static_cast<double>(band_loss_per_m_[band])));
     }
     for (std::size_t tape = 0; tape < pen_count_; ++tape) {
       Kept& here = kept_[tape][row];
       here.bands = bands;
       auto left = stroke_.pens[tape].weights;
-      for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
+      for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
         left[1 + band] *= static_cast<double>(bands[band]);
       }
       const auto power = responses.power(left);
@@ -389,4 +390,4 @@ WindTapes::Reading WindTapes::at_several(double east_m, double south_m) const no
   return reading;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

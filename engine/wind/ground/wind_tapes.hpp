@@ -11,7 +11,7 @@
 #include "engine/wind/ground/wind_stroke.hpp"
 #include "engine/wind/ground/wind_tape.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 
 /// The measured wind, where it is by now: the tapes of all places that have a sensor, and how much of what is written
 /// on them is still valid at any place over the ground (engine/wind/README.md W24 to W27).
@@ -116,4 +116,4 @@ class WindTapes {
   GustKriging<kOctaveLanes> octave_kriging_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

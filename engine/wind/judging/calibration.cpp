@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 std::optional<double> number_of(std::string_view text) {
@@ -86,4 +86,4 @@ double height_factor(double from_m, double to_m, double roughness_m) noexcept {
   return above_ground(to_m) / above_ground(from_m);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

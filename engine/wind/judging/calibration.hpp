@@ -6,7 +6,7 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 
 /// One point of a calibration curve: a reading of `measured_m_s` means a wind of `true_m_s`.
 struct CalibrationPoint {
@@ -42,4 +42,4 @@ Result<std::vector<CalibrationPoint>, Failure> parse_calibration_curve(std::stri
 /// this roughness; heights at or below it count as ten times it. Above 0. Thread-safe and realtime-safe: yes.
 double height_factor(double from_m, double to_m, double roughness_m) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 constexpr std::size_t kFewestStillReadings = 10;
@@ -373,4 +373,4 @@ std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> indicated, 
   return pairs;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

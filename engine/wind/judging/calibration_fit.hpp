@@ -7,7 +7,7 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/judging/calibration.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 
 // Fits a calibration: from a sensor's readings beside a reference to gain, offset, curve and north offset
 // (engine/wind/README.md W34). The sensor's speeds are in m/s: its unit is applied, nothing else of its calibration.
@@ -105,4 +105,4 @@ struct TimedSpeed {
 std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> indicated, std::span<const TimedSpeed> truth,
                                          double block_s);
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 constexpr double kRobustDeviations = 5.0;
@@ -214,4 +214,4 @@ bool ReadingJudge::check_seized(double speed_m_s, double time_s, std::optional<d
   return is_seized_;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

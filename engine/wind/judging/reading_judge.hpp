@@ -9,7 +9,7 @@
 #include "engine/wind/wind_reading.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 
 /// A fault of a sensor, detected from its readings alone.
 enum class ReadingFault : std::uint8_t {
@@ -127,4 +127,4 @@ class ReadingJudge {
   std::uint64_t spikes_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 
 /// The state of a sensor, one word for a person. The stream (pose.fbs) has the same in the same order.
 enum class SensorState : std::uint8_t {
@@ -32,4 +32,4 @@ constexpr bool is_believed(SensorState state) {
   return state == SensorState::kLive || state == SensorState::kSimulated || state == SensorState::kReplayed;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 constexpr double kCountEvery_s = 1.0;
@@ -95,4 +95,4 @@ double SensorVote::median_without(const Voter* left_out) noexcept {
   return *middle;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

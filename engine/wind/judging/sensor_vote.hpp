@@ -7,7 +7,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 
 /// The result of comparing one sensor with the others.
 enum class Vote : std::uint8_t {
@@ -77,4 +77,4 @@ class SensorVote {
   std::optional<MonoTime> counted_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

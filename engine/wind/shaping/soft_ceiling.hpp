@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 
 /// How strong a wind may come through: up to `from_m_s` as it is, bit for bit; above, less and less of what is more, so
 /// that it never reaches `most_m_s` (which is the larger). A gust in a storm stays a gust: the curve is s + R x/(1 + x)
@@ -21,4 +21,4 @@ struct SoftCeiling {
   }
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

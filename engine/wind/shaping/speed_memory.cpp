@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 namespace {
 
 constexpr double kSlowest_m_s = 0.05;
@@ -59,4 +59,4 @@ bool SpeedMemory::restore(std::span<const double> times_s) noexcept {
   return true;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 
 /// How often which wind blows at a place: the time spent at each speed, forgotten exponentially.
 ///
@@ -36,4 +36,4 @@ class SpeedMemory {
   std::array<double, kBins> times_s_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

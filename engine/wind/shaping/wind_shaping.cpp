@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 namespace {
 
 /// A critically damped step has covered 95 % after 4.75 time constants (engine/METHOD.md M18).
@@ -28,19 +28,19 @@ constexpr double kStrong = 0.95;
 constexpr double kLeastMedian_m_s = 0.05;
 
 /// Advances the filter, and ends exactly at the target, not ever nearer to it.
-void follow_to_the_end(CriticallyDamped& value, double target, double over_s, double dt_s) noexcept {
+void follow_to_the_end(math::CriticallyDamped& value, double target, double over_s, double dt_s) noexcept {
   constexpr double kArrived = 1e-6;
   value.step(target, kPhaseOfArrival / over_s, dt_s);
   if (std::abs(value.value - target) < kArrived && std::abs(value.rate_per_s) < kArrived) value = {target, 0.0};
 }
 
 /// The breeze has carried the tapes farther, too.
-void carry_tapes(WindStroke& stroke, WindVector blown_m, double way_m) noexcept {
+void carry_tapes(ground::WindStroke& stroke, WindVector blown_m, double way_m) noexcept {
   stroke.way_m += way_m;
   stroke.carried_east_m += blown_m.u_m_s;
   stroke.carried_south_m -= blown_m.v_m_s;
-  for (WindPen& pen : stroke.pens) {
-    for (WindSample* sample : {&pen.now, &pen.written}) {
+  for (ground::WindPen& pen : stroke.pens) {
+    for (ground::WindSample* sample : {&pen.now, &pen.written}) {
       sample->east_m -= blown_m.u_m_s;
       sample->south_m += blown_m.v_m_s;
     }
@@ -48,16 +48,17 @@ void carry_tapes(WindStroke& stroke, WindVector blown_m, double way_m) noexcept 
 }
 
 /// Gusts become stronger by some that are not measured: the measured ones are then a smaller part of the power.
-void know_less(WindStroke& stroke, const GustNoise::Moment& real, const GustNoise::Moment& all) noexcept {
+void know_less(ground::WindStroke& stroke, const turbulence::GustNoise::Moment& real,
+               const turbulence::GustNoise::Moment& all) noexcept {
   const auto part = [](float of_m_s, float all_m_s) {
     return all_m_s > 0.0F ? of_m_s * of_m_s / (all_m_s * all_m_s) : 0.0F;
   };
-  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
-    const std::size_t octave = GustNoise::kFirstTileOctave + i;
+  for (std::size_t i = 0; i < ground::kTileOctaveCount; ++i) {
+    const std::size_t octave = turbulence::GustNoise::kFirstTileOctave + i;
     const float along = part(real.along_m_s[octave], all.along_m_s[octave]);
     const float across = part(real.across_m_s[octave], all.across_m_s[octave]);
-    for (WindPen& pen : stroke.pens) {
-      for (WindSample* sample : {&pen.now, &pen.written}) {
+    for (ground::WindPen& pen : stroke.pens) {
+      for (ground::WindSample* sample : {&pen.now, &pen.written}) {
         sample->known_along[i] *= along;
         sample->known_across[i] *= across;
       }
@@ -67,14 +68,15 @@ void know_less(WindStroke& stroke, const GustNoise::Moment& real, const GustNois
 
 }  // namespace
 
-WindShaping::WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise)
+WindShaping::WindShaping(const WindShapingSettings& settings, std::shared_ptr<const turbulence::GustNoise> noise)
     : settings_(settings),
       noise_(std::move(noise)),
-      along_(gust_variances(*noise_, settings.turbulence_intensity, settings.length_m)),
-      across_(gust_variances(*noise_, kAcrossPerAlong * settings.turbulence_intensity, settings.length_m)),
+      along_(turbulence::gust_variances(*noise_, settings.turbulence_intensity, settings.length_m)),
+      across_(turbulence::gust_variances(*noise_, turbulence::kAcrossPerAlong * settings.turbulence_intensity,
+                                         settings.length_m)),
       memory_(settings.site_memory_s) {}
 
-void WindShaping::shape(DrivingWind& wind, bool is_open, bool is_of_site) noexcept {
+void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site) noexcept {
   WindState& state = wind.state;
   const double dt_s = has_begun_ ? std::max(0.0, seconds(state.time - time_)) : 0.0;
   if (!has_begun_ || state.time > time_) time_ = state.time;
@@ -96,7 +98,7 @@ void WindShaping::shape(DrivingWind& wind, bool is_open, bool is_of_site) noexce
 }
 
 /// Site gain, floor and opening: on all wind that is over the ground now. And the gusts' own.
-void WindShaping::apply_gains(DrivingWind& wind) const noexcept {
+void WindShaping::apply_gains(ground::DrivingWind& wind) const noexcept {
   const double gain = site_.value * floor_.value * opening_.value;
   wind.state.wind = gain * wind.state.wind;
   wind.ground = gain * wind.ground;
@@ -110,12 +112,12 @@ void WindShaping::apply_gains(DrivingWind& wind) const noexcept {
 }
 
 /// The ceiling: on the wind measured now, for as long as it crosses the ground.
-void WindShaping::hold_back(DrivingWind& wind) noexcept {
+void WindShaping::hold_back(ground::DrivingWind& wind) noexcept {
   speed_m_s_ = speed_of(wind.state.wind);
   ceiling_gain_ = settings_.ceiling.gain(speed_m_s_);
   wind.state.wind = ceiling_gain_ * wind.state.wind;
   if (wind.stroke.pen_count == 0) wind.ground = ceiling_gain_ * wind.ground;
-  for (WindPen& pen : wind.stroke.pens) pen.now.gain = pen.written.gain = ceiling_gain_;
+  for (ground::WindPen& pen : wind.stroke.pens) pen.now.gain = pen.written.gain = ceiling_gain_;
 }
 
 bool WindShaping::restore(std::span<const double> times_s) noexcept {
@@ -179,20 +181,20 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
 
 /// Adds the floor's breeze: a mean from where the wind last came, and gusts of its own, which it carries along. Their
 /// power is the difference between a wind of the floor's strength and one without the breeze.
-void WindShaping::add_breeze(DrivingWind& wind, double dt_s) noexcept {
+void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
   const double breeze_m_s = std::clamp(breeze_.value, 0.0, settings_.floor_m_s);
   if (breeze_m_s <= 0.0 && blown_m_.u_m_s == 0.0 && blown_m_.v_m_s == 0.0) return;
-  GroundWind& ground = wind.ground;
-  GustNoise::Moment& gusts = ground.gusts;
+  ground::GroundWind& ground = wind.ground;
+  turbulence::GustNoise::Moment& gusts = ground.gusts;
   blown_m_ = blown_m_ + breeze_m_s * dt_s * gusts.ahead;
   blown_way_m_ += breeze_m_s * dt_s;
   noise_->carry(gusts.carried, blown_m_.u_m_s, -blown_m_.v_m_s, 1.0);
   carry_tapes(wind.stroke, blown_m_, blown_way_m_);
 
   const double scale = opening_.value * std::sqrt(breeze_m_s * (2.0 * settings_.floor_m_s - breeze_m_s));
-  GustNoise::Moment own = gusts;
-  const GustNoise::Moment real = gusts;
-  for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
+  turbulence::GustNoise::Moment own = gusts;
+  const turbulence::GustNoise::Moment real = gusts;
+  for (std::size_t i = 0; i < turbulence::GustNoise::kOctaves; ++i) {
     const double along_m_s = scale * std::sqrt(along_[i]);
     const double across_m_s = scale * std::sqrt(across_[i]);
     own.along_m_s[i] = static_cast<float>(along_m_s);
@@ -223,4 +225,4 @@ WindShapingReport WindShaping::report() const noexcept {
           .known_s = known_s_};
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

@@ -10,7 +10,7 @@
 #include "engine/wind/turbulence/gust_variances.hpp"
 #include "engine/wind/wind_state.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 
 /// The speeds that a site's own wind is to be brought to: its 50th and its 95th percentile.
 struct SiteRange {
@@ -68,11 +68,11 @@ class WindShaping {
   static constexpr double kMostFloorGain = 3.0;
 
   /// `noise`: the one that the estimator and the scenes have.
-  WindShaping(const WindShapingSettings& settings, std::shared_ptr<const GustNoise> noise);
+  WindShaping(const WindShapingSettings& settings, std::shared_ptr<const turbulence::GustNoise> noise);
 
   /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call begins where
   /// its wind and `is_open` say, without a way there. `is_of_site`: live wind is what the site has, and is remembered.
-  void shape(DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
+  void shape(ground::DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
 
   const WindShapingSettings& settings() const noexcept { return settings_; }
   WindShapingReport report() const noexcept;
@@ -86,19 +86,19 @@ class WindShaping {
   void look_at_memory() noexcept;
   double site_gain_of(double mean_m_s) const noexcept;
   void follow(double live_weight, bool is_open, double dt_s) noexcept;
-  void apply_gains(DrivingWind& wind) const noexcept;
-  void add_breeze(DrivingWind& wind, double dt_s) noexcept;
-  void hold_back(DrivingWind& wind) noexcept;
+  void apply_gains(ground::DrivingWind& wind) const noexcept;
+  void add_breeze(ground::DrivingWind& wind, double dt_s) noexcept;
+  void hold_back(ground::DrivingWind& wind) noexcept;
 
   WindShapingSettings settings_;
-  std::shared_ptr<const GustNoise> noise_;
-  GustVariances along_, across_;  ///< of the breeze
+  std::shared_ptr<const turbulence::GustNoise> noise_;
+  turbulence::GustVariances along_, across_;  ///< of the breeze
   SpeedMemory memory_;
   double live_s_ = 0.0;      ///< for how long the wind has been a sensor's
   double unstored_s_ = 0.0;  ///< time since the memory was updated
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
-  CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
-  CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0};
+  math::CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
+  math::CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0};
   WindVector blown_m_;        ///< how far the breeze has carried the gusts besides
   double blown_way_m_ = 0.0;  ///< and along how much of a way
   double speed_m_s_ = 0.0, ceiling_gain_ = 1.0;
@@ -106,4 +106,4 @@ class WindShaping {
   bool has_begun_ = false;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

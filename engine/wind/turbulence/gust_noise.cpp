@@ -14,7 +14,7 @@
 #include "engine/noise/turning_noise.hpp"
 #include "engine/noise/unit_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 /// The long tile, the middle one and the short one of a chain: their periods, in middle ones, and the cycles an edge of
@@ -45,7 +45,7 @@ WindVector turned(WindVector unit, double along, double across) noexcept {
 
 /// An octave of a chain's tiles. Tiles are as large as their waves need: 16 samples for the longest where that is no
 /// more than half the largest edge, else 8.
-NoiseSpec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
+noise::NoiseSpec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
   const std::size_t tile = GustNoise::torus_of(octave);
   const double cycles = std::ldexp(kFirstCycles[tile], static_cast<int>(octave - kFirstOctave[tile]));
   constexpr std::size_t kFewestSamples = 64;
@@ -58,24 +58,24 @@ NoiseSpec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t see
           .to_cycles = 2.0 * cycles};
 }
 
-NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
+noise::NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
   const double cycles = std::ldexp(1.0, static_cast<int>(octave));
-  NoiseTile1 tile =
-      make_noise_1d(
+  noise::NoiseTile1 tile =
+      noise::make_noise_1d(
           {.size = kWaySamples, .beta = kBeta, .seed = seed, .from_cycles = cycles, .to_cycles = 2.0 * cycles})
           .value();
-  scale_to_unit_reading(tile);
+  noise::scale_to_unit_reading(tile);
   return tile;
 }
 
-NoiseTile2 make_strength(std::uint64_t seed) {
-  NoiseTile2 tile = make_noise_2d({.size = kStrengthSamples,
-                                   .beta = kBeta,
-                                   .seed = seed ^ stream_id("how strong gusts are"),
-                                   .from_cycles = kStrengthFromCycles,
-                                   .to_cycles = kStrengthToCycles})
-                        .value();
-  scale_to_unit_reading(tile);
+noise::NoiseTile2 make_strength(std::uint64_t seed) {
+  noise::NoiseTile2 tile = noise::make_noise_2d({.size = kStrengthSamples,
+                                                 .beta = kBeta,
+                                                 .seed = seed ^ math::stream_id("how strong gusts are"),
+                                                 .from_cycles = kStrengthFromCycles,
+                                                 .to_cycles = kStrengthToCycles})
+                               .value();
+  noise::scale_to_unit_reading(tile);
   return tile;
 }
 
@@ -83,8 +83,8 @@ NoiseTile2 make_strength(std::uint64_t seed) {
 
 GustNoise::GustNoise(const GustNoiseSettings& settings)
     : evolves_(settings.evolves),
-      along_(make_octaves(settings, settings.seed ^ stream_id("gusts along the wind"))),
-      across_(make_octaves(settings, settings.seed ^ stream_id("gusts across the wind"))),
+      along_(make_octaves(settings, settings.seed ^ math::stream_id("gusts along the wind"))),
+      across_(make_octaves(settings, settings.seed ^ math::stream_id("gusts across the wind"))),
       strength_(make_strength(settings.seed)) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   for (std::size_t chain = 0; chain < 2; ++chain) {
@@ -113,22 +113,22 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
 
 GustNoise::Octaves GustNoise::make_octaves(const GustNoiseSettings& settings, std::uint64_t seed) {
   Octaves component;
-  TurningNoiseMaker turning;
+  noise::TurningNoiseMaker turning;
   for (std::size_t chain = 0; chain < 2; ++chain) {
     const std::uint64_t chain_seed = seed + 100 * chain;
     for (std::size_t i = 0; i < kTileOctaves; ++i) {
-      const NoiseSpec spec = tile_octave(i, settings.samples, chain_seed + i);
-      NoiseTile2& tile = component.tiles[chain * kTileOctaves + i];
+      const noise::NoiseSpec spec = tile_octave(i, settings.samples, chain_seed + i);
+      noise::NoiseTile2& tile = component.tiles[chain * kTileOctaves + i];
       if (settings.evolves) {
-        TurningNoise2 noise = turning.make(spec).value();
-        NoiseTile2& quarter = component.quarters[chain * kTileOctaves + i];
+        noise::TurningNoise2 noise = turning.make(spec).value();
+        noise::NoiseTile2& quarter = component.quarters[chain * kTileOctaves + i];
         tile = std::move(noise.first);
         quarter = std::move(noise.quarter);
-        scale_to_unit_reading(quarter);
+        noise::scale_to_unit_reading(quarter);
       } else {
-        tile = make_noise_2d(spec).value();
+        tile = noise::make_noise_2d(spec).value();
       }
-      scale_to_unit_reading(tile);
+      noise::scale_to_unit_reading(tile);
     }
     for (std::size_t i = 0; i < kWayOctaves; ++i) {
       component.ways[chain * kWayOctaves + i] = way_octave(i, chain_seed + i);
@@ -138,7 +138,7 @@ GustNoise::Octaves GustNoise::make_octaves(const GustNoiseSettings& settings, st
 }
 
 GustNoise::Carried GustNoise::begin(std::uint64_t seed) const noexcept {
-  const RandomStream random(seed, stream_id("where gusts begin"));
+  const math::RandomStream random(seed, math::stream_id("where gusts begin"));
   Carried carried;
   for (std::size_t i = 0; i < kTori; ++i) {
     const auto [x, z] = random.uniform_pair(i);
@@ -165,7 +165,7 @@ void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, doubl
   if (!evolves_ || turnover_m23_s == 0.0) return;
   constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
-    TorusTravel& turn = carried.eddies.turns[i];
+    noise::TorusTravel& turn = carried.eddies.turns[i];
     turn.add(turnover_m23_s * turn_rates_m_23_[i] * dt_s, kFullTurn_rad);
     const double angle_rad = kFullTurn_rad * 0x1p-32 * static_cast<double>(turn.phase());
     carried.eddies.cosine[i] = static_cast<float>(std::cos(angle_rad));
@@ -173,9 +173,9 @@ void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, doubl
   }
 }
 
-TorusPhase GustNoise::place_on(std::size_t torus, double east_m, double south_m) const noexcept {
+noise::TorusPhase GustNoise::place_on(std::size_t torus, double east_m, double south_m) const noexcept {
   const auto [x_m, z_m] = tori_[torus].turned(east_m, south_m);
-  return {torus_phase(x_m, tori_[torus].period_m), torus_phase(z_m, tori_[torus].period_m)};
+  return {noise::torus_phase(x_m, tori_[torus].period_m), noise::torus_phase(z_m, tori_[torus].period_m)};
 }
 
 GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m) const noexcept {
@@ -186,9 +186,9 @@ WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
   double along = 0.0;
   double across = 0.0;
   for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
-    const TorusTravel& way = i < kWayOctaves ? moment.carried.way_first : moment.carried.way_second;
-    along += static_cast<double>(moment.along_m_s[i] * read_noise(along_.ways[i], way.phase()));
-    across += static_cast<double>(moment.across_m_s[i] * read_noise(across_.ways[i], way.phase()));
+    const noise::TorusTravel& way = i < kWayOctaves ? moment.carried.way_first : moment.carried.way_second;
+    along += static_cast<double>(moment.along_m_s[i] * noise::read_noise(along_.ways[i], way.phase()));
+    across += static_cast<double>(moment.across_m_s[i] * noise::read_noise(across_.ways[i], way.phase()));
   }
   return turned(moment.ahead, along, across);
 }
@@ -203,7 +203,7 @@ std::size_t GustNoise::layers(const Moment& moment, Component component,
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
     const float weight_m_s = weights_m_s[2 * kWayOctaves + i];
     if (weight_m_s < kNothing_m_s) continue;
-    const TorusPhase offset = carried.tiles[torus_of(i)].phase();
+    const noise::TorusPhase offset = carried.tiles[torus_of(i)].phase();
     out[count++] = {&octaves.tiles[i], i, offset, carried.eddies.cosine[i] * weight_m_s};
     if (evolves_) out[count++] = {&octaves.quarters[i], i, offset, carried.eddies.sine[i] * weight_m_s};
   }
@@ -211,7 +211,7 @@ std::size_t GustNoise::layers(const Moment& moment, Component component,
 }
 
 WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
-  std::array<TorusPhase, kTori> places;
+  std::array<noise::TorusPhase, kTori> places;
   for (std::size_t i = 0; i < kTori; ++i) {
     places[i] = place_on(i, east_m, south_m) - moment.carried.tiles[i].phase();
   }
@@ -221,15 +221,15 @@ WindVector GustNoise::local(const Moment& moment, double east_m, double south_m)
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
     const float along_m_s = moment.along_m_s[2 * kWayOctaves + i];
     const float across_m_s = moment.across_m_s[2 * kWayOctaves + i];
-    const TorusPhase place = places[torus_of(i)];
+    const noise::TorusPhase place = places[torus_of(i)];
     const auto log2_size = static_cast<unsigned>(std::countr_zero(along_.tiles[i].size));
-    const TorusCorners corners = torus_corners(log2_size, place.x, place.z);
+    const noise::TorusCorners corners = noise::torus_corners(log2_size, place.x, place.z);
     const float cosine = moment.carried.eddies.cosine[i];
     const float sine = moment.carried.eddies.sine[i];
     const auto add = [&](const Octaves& octaves, float weight_m_s, float& sum) {
       if (weight_m_s < kNothing_m_s) return;
-      sum += cosine * weight_m_s * read_corners(octaves.tiles[i].values.data(), corners);
-      if (evolves_) sum += sine * weight_m_s * read_corners(octaves.quarters[i].values.data(), corners);
+      sum += cosine * weight_m_s * noise::read_corners(octaves.tiles[i].values.data(), corners);
+      if (evolves_) sum += sine * weight_m_s * noise::read_corners(octaves.quarters[i].values.data(), corners);
     };
     add(along_, along_m_s, along);
     add(across_, across_m_s, across);
@@ -241,23 +241,25 @@ WindVector GustNoise::local(const Moment& moment, double east_m, double south_m)
 float GustNoise::envelope(const Moment& moment, double east_m, double south_m) const noexcept {
   const float g = moment.gustiness;
   if (g == 0.0F) return 1.0F;
-  return std::exp(g * read_noise(strength_, place_on(0, east_m, south_m) - moment.carried.tiles[0].phase()) - g * g);
+  return std::exp(g * noise::read_noise(strength_, place_on(0, east_m, south_m) - moment.carried.tiles[0].phase()) -
+                  g * g);
 }
 
 std::array<float, GustNoise::kOctaves> GustNoise::read(const Octaves& component, const Carried& carried, double east_m,
                                                        double south_m) const noexcept {
   std::array<float, kOctaves> values{};
   for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
-    values[i] = read_noise(component.ways[i], (i < kWayOctaves ? carried.way_first : carried.way_second).phase());
+    values[i] =
+        noise::read_noise(component.ways[i], (i < kWayOctaves ? carried.way_first : carried.way_second).phase());
   }
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
     // A field that has moved by X is read at x - X; its eddies as far turned as they are.
     const std::size_t torus = torus_of(i);
-    const TorusPhase place = place_on(torus, east_m, south_m) - carried.tiles[torus].phase();
+    const noise::TorusPhase place = place_on(torus, east_m, south_m) - carried.tiles[torus].phase();
     float& value = values[2 * kWayOctaves + i];
-    value = read_noise(component.tiles[i], place);
+    value = noise::read_noise(component.tiles[i], place);
     if (!evolves_) continue;
-    value = carried.eddies.cosine[i] * value + carried.eddies.sine[i] * read_noise(component.quarters[i], place);
+    value = carried.eddies.cosine[i] * value + carried.eddies.sine[i] * noise::read_noise(component.quarters[i], place);
   }
   return values;
 }
@@ -267,4 +269,4 @@ double eddy_turnover_m23_s(double sigma_m_s, double length_m) noexcept {
   return kDissipation * sigma_m_s / std::cbrt(length_m);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -10,7 +10,7 @@
 #include "engine/noise/torus.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 /// Parameters of the noise of gusts.
 struct GustNoiseSettings {
@@ -73,7 +73,7 @@ class GustNoise {
 
   /// How far the eddies of each octave of the tiles, the first chain's and the second's, have turned.
   struct EddyPhases {
-    std::array<TorusTravel, 2 * kTileOctaves> turns;
+    std::array<noise::TorusTravel, 2 * kTileOctaves> turns;
     std::array<float, 2 * kTileOctaves> cosine, sine;
     EddyPhases() noexcept {
       cosine.fill(1.0F);
@@ -92,8 +92,8 @@ class GustNoise {
 
   /// How far the pattern has been carried, and its eddies have turned.
   struct Carried {
-    std::array<TorusOffset, kTori> tiles;
-    TorusTravel way_first, way_second;
+    std::array<noise::TorusOffset, kTori> tiles;
+    noise::TorusTravel way_first, way_second;
     EddyPhases eddies;
   };
   /// A place to begin at; far from that of another seed.
@@ -134,9 +134,9 @@ class GustNoise {
   /// far it has been carried, and its weight in m/s. A place is read at place_on(torus_of(layer.octave), ...) - offset.
   /// An octave that evolves has two layers.
   struct Layer {
-    const NoiseTile2* tile = nullptr;
+    const noise::NoiseTile2* tile = nullptr;
     std::size_t octave = 0;  ///< of the tiles, counted from the first chain's longest
-    TorusPhase offset;
+    noise::TorusPhase offset;
     float weight_m_s = 0.0F;
   };
   enum class Component : std::uint8_t { kAlong, kAcross };
@@ -146,7 +146,7 @@ class GustNoise {
   std::size_t layers(const Moment& moment, Component component, std::span<Layer, kMaxLayers> out) const noexcept;
 
   /// A place on a torus.
-  TorusPhase place_on(std::size_t torus, double east_m, double south_m) const noexcept;
+  noise::TorusPhase place_on(std::size_t torus, double east_m, double south_m) const noexcept;
 
  private:
   /// A tile's torus on the ground.
@@ -160,9 +160,10 @@ class GustNoise {
   };
   /// One component of the wind: both chains' octaves.
   struct Octaves {
-    std::array<NoiseTile1, 2 * kWayOctaves> ways;
-    std::array<NoiseTile2, 2 * kTileOctaves> tiles;
-    std::array<NoiseTile2, 2 * kTileOctaves> quarters;  ///< the same, a quarter turn on; empty if nothing evolves
+    std::array<noise::NoiseTile1, 2 * kWayOctaves> ways;
+    std::array<noise::NoiseTile2, 2 * kTileOctaves> tiles;
+    /// The tiles, a quarter turn on; empty if nothing evolves.
+    std::array<noise::NoiseTile2, 2 * kTileOctaves> quarters;
   };
 
   static Octaves make_octaves(const GustNoiseSettings& settings, std::uint64_t seed);
@@ -175,7 +176,7 @@ class GustNoise {
   std::array<double, 2 * kTileOctaves> turn_rates_m_23_{};  ///< |k|^(2/3) in the middle of each octave of the tiles
   bool evolves_;
   Octaves along_, across_;
-  NoiseTile2 strength_;  ///< the envelope's G, on the first torus
+  noise::NoiseTile2 strength_;  ///< the envelope's G, on the first torus
 };
 
 /// How fast eddies turn over in a wind of standard deviation `sigma_m_s` (along it) and integral length scale
@@ -185,4 +186,4 @@ class GustNoise {
 /// Boundary Layer Flows, 2.5). Thread-safe and realtime-safe: yes.
 double eddy_turnover_m23_s(double sigma_m_s, double length_m) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

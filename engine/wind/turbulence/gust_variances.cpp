@@ -6,7 +6,7 @@
 #include "engine/noise/von_karman_corner.hpp"
 #include "engine/wind/turbulence/turbulence_fit.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept {
   return std::numbers::sqrt2 * octave.from_rad_m * advection_m_s / (2.0 * std::numbers::pi);
@@ -15,7 +15,7 @@ double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept
 GustVariances gust_variances(const GustNoise& noise, double intensity, double length_m) noexcept {
   // On the ground, in two dimensions: what is left of von Karman's variance above |k|.
   const auto above = [length_m](double rad_m) {
-    const double reduced = kVonKarmanCorner * length_m * rad_m;
+    const double reduced = noise::kVonKarmanCorner * length_m * rad_m;
     return std::pow(1.0 + reduced * reduced, -1.0 / 3.0);
   };
   // Along the way, in one: at a wind of 1 m/s a wavenumber k is a frequency k / 2 pi.
@@ -44,4 +44,4 @@ GustVariances gust_variances(const GustNoise& noise, double intensity, double le
   return shares;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -4,7 +4,7 @@
 
 #include "engine/wind/turbulence/gust_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 /// A variance for each octave of the noise, over the square of the mean speed.
 using GustVariances = std::array<double, GustNoise::kOctaves>;
@@ -21,4 +21,4 @@ double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept
 /// share the rest, by the spectrum along a line. Pure, and slow: some ten thousand multiplications.
 GustVariances gust_variances(const GustNoise& noise, double intensity, double length_m) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -8,7 +8,7 @@
 
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 /// Splits a signal of vectors into octave bands as it arrives (engine/wind/README.md W17): a bank of one-pole low
 /// passes an octave apart, all fed with the last reading; a band is the difference between two neighbours, and the slow
@@ -86,4 +86,4 @@ class OctaveFollower {
   std::array<WindVector, kBands + 1> passed_{};  ///< what each low pass lets through
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

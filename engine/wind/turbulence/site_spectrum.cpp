@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kMemory_s = 3.0 * 86400.0;
@@ -80,4 +80,4 @@ double SiteSpectrum::power(double frequency_hz, double interval_s) const noexcep
   return std::pow(10.0, 0.1 * (level_db(frequency_hz) - level_db(resolved_hz)));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

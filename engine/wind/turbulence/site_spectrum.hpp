@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 /// How much more power gusts have at a site than slow readings let expect, octave by octave of frequency.
 ///
@@ -54,4 +54,4 @@ class SiteSpectrum {
   Decibels expected_db_{};
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -6,7 +6,7 @@
 
 #include "engine/noise/spectral_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr std::size_t kTileSize = 4096;
@@ -14,14 +14,15 @@ constexpr double kFastSample_s = 0.25;  // frequencies from 1/1024 to 2 Hz
 constexpr double kSlowSample_s = kFastSample_s * std::numbers::phi;
 constexpr double kAcrossToAlong = 0.8;
 
-NoiseTile1 make_tile(std::uint64_t seed) {
-  auto tile = make_noise_1d({.size = kTileSize, .beta = 5.0 / 3.0, .meaning = BetaMeaning::kTransect, .seed = seed});
+noise::NoiseTile1 make_tile(std::uint64_t seed) {
+  auto tile = noise::make_noise_1d(
+      {.size = kTileSize, .beta = 5.0 / 3.0, .meaning = noise::BetaMeaning::kTransect, .seed = seed});
   if (!tile) throw std::logic_error("the synthetic wind's noise tile has a size or slope that is not allowed");
   return std::move(*tile);
 }
 
 /// The periodic tile at a place between samples, by the cubic through the four nearest (Catmull and Rom, 1974).
-double sample_smoothly(const NoiseTile1& tile, double position) noexcept {
+double sample_smoothly(const noise::NoiseTile1& tile, double position) noexcept {
   const auto size = static_cast<double>(tile.size());
   const double wrapped = position - size * std::floor(position / size);
   const auto index = static_cast<std::size_t>(wrapped);
@@ -57,4 +58,4 @@ WindVector SyntheticWind::at(double time_s) const noexcept {
   return along_m_s * along_ + across_m_s * across_;
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -5,7 +5,7 @@
 #include "engine/noise/noise_tile.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 /// The wind of a place without a sensor: its mean and its turbulence.
 struct SyntheticWindSettings {
@@ -31,7 +31,7 @@ class SyntheticWind {
 
  private:
   struct Component {
-    NoiseTile1 fast, slow;
+    noise::NoiseTile1 fast, slow;
     double at(double time_s) const noexcept;  ///< unit variance
   };
 
@@ -40,4 +40,4 @@ class SyntheticWind {
   Component along_noise_, across_noise_;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -7,7 +7,7 @@
 
 #include "engine/wind/turbulence/von_karman.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 /// Scales are used up to this, or up to 32 readings if that is longer.
@@ -203,4 +203,4 @@ double TurbulenceFit::correction(double frequency_hz) const noexcept {
   return std::exp((1.0 - t) * log_correction_[below] + t * log_correction_[next]);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

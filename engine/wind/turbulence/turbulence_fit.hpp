@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 /// The turbulence of one component of the wind: the parameters of von Karman's spectrum.
 struct Turbulence {
@@ -79,4 +79,4 @@ double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexc
 /// neighbouring means over tau, for tau / time scale. Tabled and interpolated, within 1 % from 1e-3 to 1e3.
 double von_karman_haar_variance(double tau_over_time_scale) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

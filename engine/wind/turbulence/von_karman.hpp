@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 // Von Karman's spectrum of the wind's component along the mean wind, at one place. x = f T is without unit: f the
 // frequency, T = L / U the integral length scale over the mean speed. Times variance and T it is the one-sided spectral
@@ -22,4 +22,4 @@ inline double von_karman_inertial_factor() noexcept {
   return 4.0 / std::pow(kVonKarmanBend, 5.0 / 6.0);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

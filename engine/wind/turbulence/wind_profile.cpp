@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 double log_profile_m_s(double friction_velocity_m_s, double height_m, double roughness_m) noexcept {
   return friction_velocity_m_s / kVonKarmanConstant * std::log(std::max(height_m / roughness_m, 1.0));
@@ -45,4 +45,4 @@ double iec_coherence(double frequency_hz, double distance_m, double speed_m_s, d
   return std::exp(-12.0 * std::hypot(reduced, separation));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

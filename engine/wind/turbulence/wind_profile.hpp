@@ -4,7 +4,7 @@
 
 #include "engine/wind/turbulence/wind_component.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 // How the mean wind and its turbulence change with height and from place to place. All functions here are pure.
 // Thread-safe and realtime-safe: yes.
@@ -43,4 +43,4 @@ double davenport_coherence(double frequency_hz, double distance_m, double speed_
 /// The same by IEC 61400-1:2005, annex B.2: exp(-12 sqrt((f d / U)^2 + (0.12 d / L_c)^2)), L_c = 8.1 Lambda.
 double iec_coherence(double frequency_hz, double distance_m, double speed_m_s, double height_m) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

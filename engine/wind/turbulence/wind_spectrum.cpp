@@ -6,7 +6,7 @@
 #include "engine/wind/turbulence/von_karman.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kOpenCountryRoughness_m = 0.03;
@@ -208,4 +208,4 @@ double iec_kaimal_energy_m2_s2(double sigma_m_s, double time_scale_s, double fro
   return sigma_m_s * sigma_m_s * (above(from_hz) - above(to_hz));
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

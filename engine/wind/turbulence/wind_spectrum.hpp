@@ -10,7 +10,7 @@
 #include "engine/base/result.hpp"
 #include "engine/wind/turbulence/wind_component.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 // How the energy of the wind's fluctuations is spread over frequency: the named models, for analysis, fitting and
 // tests. All are one-sided densities S(f) in m^2/s^2/Hz: their integral over f from 0 on is the component's variance.
@@ -96,4 +96,4 @@ class WindSpectrum {
 /// standard deviation `sigma_m_s` and time scale T = L / U.
 double iec_kaimal_energy_m2_s2(double sigma_m_s, double time_scale_s, double from_hz, double to_hz) noexcept;
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

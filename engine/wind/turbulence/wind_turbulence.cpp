@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kLargestDifference = 1.0;
@@ -52,4 +52,4 @@ void WindTurbulence::fit(double interval_s, double speed_m_s) noexcept {
   across_.fit(interval_s, speed_m_s);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -7,7 +7,7 @@
 #include "engine/wind/turbulence/turbulence_fit.hpp"
 #include "engine/wind/wind_vector.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 
 /// The turbulence that the readings of one source show, along the wind and across it: of the last readings the
 /// differences between the mean of 2^s and that of as many before, each a part of the mean speed.
@@ -42,4 +42,4 @@ class WindTurbulence {
   std::size_t next_ = 0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -43,7 +43,7 @@ void operator delete[](void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 namespace {
 
 class AnimationLoopTest : public ::testing::Test {
@@ -66,20 +66,20 @@ class AnimationLoopTest : public ::testing::Test {
 
   static std::size_t value_bytes(const wire::Frame& frame) {
     std::size_t bytes = 0;
-    for_each_array(frame.poses.at(0), [&bytes](std::span<const float> values) { bytes += values.size_bytes(); });
+    pose::for_each_array(frame.poses.at(0), [&bytes](std::span<const float> values) { bytes += values.size_bytes(); });
     return bytes;
   }
 
-  SystemClock clock_;
-  Latest<DrivingWind> wind_;
-  Animation animation_{default_config(), make_gust_noise(default_config())};
+  sensing::SystemClock clock_;
+  Latest<wind::ground::DrivingWind> wind_;
+  Animation animation_{settings::default_config(), sensing::make_gust_noise(settings::default_config())};
   AnimationLoop loop_{animation_, wind_, clock_, 240.0};
 };
 
 TEST_F(AnimationLoopTest, MakesFrameAfterFrameThatShowTheNewestWind) {
-  WindState blowing;
+  wind::WindState blowing;
   blowing.wind = {7.0, 0.0};
-  blowing.source = WindSource::kLive;
+  blowing.source = wind::WindSource::kLive;
   wind_.publish({blowing, blowing.wind});
   loop_.start();
 
@@ -93,7 +93,7 @@ TEST_F(AnimationLoopTest, MakesFrameAfterFrameThatShowTheNewestWind) {
     ASSERT_EQ(frame.poses.size(), 1U);
     previous = std::move(frame);
   }
-  const auto& pose = std::get<StrandPose>(previous.poses[0]);
+  const auto& pose = std::get<pose::StrandPose>(previous.poses[0]);
   double sum_east_rad = 0.0;
   for (const float bend_rad : pose.bend_east_rad) sum_east_rad += static_cast<double>(bend_rad);
   EXPECT_GT(sum_east_rad, 0.0) << "a wind from the west bends the meadow to the east";
@@ -147,4 +147,4 @@ TEST_F(AnimationLoopTest, EndsAtOnceAndTwice) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -11,34 +11,34 @@
 #include "engine/pose/pose_hash.hpp"
 #include "tests/support/stroke_run.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 namespace {
 
 constexpr double kTick_s = 1.0 / 60.0;
 
 /// A wind that nobody measures: the same everywhere.
-DrivingWind everywhere(WindVector wind) {
+wind::ground::DrivingWind everywhere(wind::WindVector wind) {
   return {.state = {.wind = wind}, .ground = wind};
 }
-const DrivingWind kBreeze = everywhere({5.0, 1.0});
+const wind::ground::DrivingWind kBreeze = everywhere({5.0, 1.0});
 
-Config installation(const std::string& first, const std::string& second) {
+settings::Config installation(const std::string& first, const std::string& second) {
   const std::string small = "[[scene]]\nkind = \"grass\"\nblades_across = 12\nblades_deep = 8\n";
-  return parse_config(small + "name = \"first\"\n" + first + "\n" + small + "name = \"second\"\n" + second,
-                      "test.toml");
+  return settings::parse_config(small + "name = \"first\"\n" + first + "\n" + small + "name = \"second\"\n" + second,
+                                "test.toml");
 }
 
-Animation animation_of(const Config& config) {
-  return {config, make_gust_noise(config)};
+Animation animation_of(const settings::Config& config) {
+  return {config, sensing::make_gust_noise(config)};
 }
 
 wire::Frame shown_by(Animation& animation) {
   return std::get<wire::Frame>(wire::decode(animation.encode({}).subspan(wire::kSizePrefixBytes)).value());
 }
 
-float largest(const Pose& pose) {
+float largest(const pose::Pose& pose) {
   float most = 0.0F;
-  for_each_array(pose, [&most](std::span<const float> values) {
+  pose::for_each_array(pose, [&most](std::span<const float> values) {
     for (const float value : values) most = std::max(most, std::abs(value));
   });
   return most;
@@ -47,18 +47,18 @@ float largest(const Pose& pose) {
 TEST(AnimationTest, ASceneStandsWhereTheConfigurationSays) {
   const Animation here = animation_of(installation("", "shown = false"));
   const Animation there = animation_of(installation("x = 30\ny = 2\nz = -4\n", "heading = 90"));
-  const auto& a = std::get<StrandSkeleton>(*here.skeletons()[0]);
-  const auto& b = std::get<StrandSkeleton>(*there.skeletons()[0]);
+  const auto& a = std::get<pose::StrandSkeleton>(*here.skeletons()[0]);
+  const auto& b = std::get<pose::StrandSkeleton>(*there.skeletons()[0]);
   EXPECT_NEAR(b.root_x_m[7], a.root_x_m[7] + 30.0F, 1e-4);
   EXPECT_NEAR(b.root_y_m[7], a.root_y_m[7] + 2.0F, 1e-4);
   EXPECT_NEAR(b.root_z_m[7], a.root_z_m[7] - 4.0F, 1e-4);
 
   // What was north, -z, is east.
-  const auto& c = std::get<StrandSkeleton>(*here.skeletons()[1]);
-  const auto& d = std::get<StrandSkeleton>(*there.skeletons()[1]);
+  const auto& c = std::get<pose::StrandSkeleton>(*here.skeletons()[1]);
+  const auto& d = std::get<pose::StrandSkeleton>(*there.skeletons()[1]);
   EXPECT_NEAR(d.root_x_m[7], -c.root_z_m[7], 1e-4);
   EXPECT_NEAR(d.root_z_m[7], c.root_x_m[7], 1e-4);
-  EXPECT_EQ(here.node_count(), 2 * node_count(*here.skeletons()[0]));
+  EXPECT_EQ(here.node_count(), 2 * pose::node_count(*here.skeletons()[0]));
 }
 
 TEST(AnimationTest, GainIsAFactorOnTheWindThatASceneFeels) {
@@ -68,26 +68,27 @@ TEST(AnimationTest, GainIsAFactorOnTheWindThatASceneFeels) {
     one.step(kBreeze, kTick_s);
     other.step(everywhere({10.0, 2.0}), kTick_s);
   }
-  EXPECT_EQ(pose_hash(kPoseHashSeed, *one.poses()[0]), pose_hash(kPoseHashSeed, *other.poses()[0]));
+  EXPECT_EQ(pose::pose_hash(pose::kPoseHashSeed, *one.poses()[0]),
+            pose::pose_hash(pose::kPoseHashSeed, *other.poses()[0]));
   EXPECT_GT(largest(*one.poses()[0]), 0.1F);
   EXPECT_EQ(largest(*one.poses()[1]), 0.0F) << "no wind, no bend";
 }
 
 TEST(AnimationTest, PosesDoNotDependOnHowManyThreadsShareATick) {
   const auto hash_with = [](std::size_t threads) {
-    Config config = installation("", "");
+    settings::Config config = installation("", "");
     config.animation.threads = threads;
     Animation animation = animation_of(config);
     for (int tick = 0; tick < 30; ++tick) animation.step(everywhere({6.0, 2.0}), kTick_s);
-    std::uint64_t hash = kPoseHashSeed;
-    for (const Pose* pose : animation.poses()) hash = pose_hash(hash, *pose);
+    std::uint64_t hash = pose::kPoseHashSeed;
+    for (const pose::Pose* pose : animation.poses()) hash = pose::pose_hash(hash, *pose);
     return hash;
   };
   EXPECT_EQ(hash_with(3), hash_with(1));
 }
 
 TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
-  const Config config = installation("", "shown = false");
+  const settings::Config config = installation("", "shown = false");
   Animation animation = animation_of(config);
   for (int tick = 0; tick < 60; ++tick) animation.step(kBreeze, kTick_s);
   EXPECT_GT(largest(*animation.poses()[0]), 0.0F);
@@ -95,13 +96,13 @@ TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
   const std::size_t bytes = animation.encode({}).size();
   const wire::Frame frame = shown_by(animation);
   EXPECT_EQ(frame.opacities, (std::vector{1.0F, 0.0F}));
-  EXPECT_TRUE(std::get<StrandPose>(frame.poses[1]).bend_east_rad.empty());
+  EXPECT_TRUE(std::get<pose::StrandPose>(frame.poses[1]).bend_east_rad.empty());
   EXPECT_LT(bytes, animation.largest_frame_bytes() * 2 / 3);
   EXPECT_TRUE(wire::fits(frame, animation.describe()));
 }
 
 TEST(AnimationTest, ACrossFadeTakesItsTimeAndNeverJumps) {
-  const Config config = installation("", "shown = false");
+  const settings::Config config = installation("", "shown = false");
   Animation animation = animation_of(config);
   animation.step(kBreeze, kTick_s);
   animation.cue({.scene = 1, .shown = true, .hide_others = true, .over_s = 2.0});
@@ -123,7 +124,7 @@ TEST(AnimationTest, ACrossFadeTakesItsTimeAndNeverJumps) {
 }
 
 TEST(AnimationTest, AFadeThatIsTurnedRoundGoesOnFromWhereItIs) {
-  const Config config = installation("", "");
+  const settings::Config config = installation("", "");
   Animation animation = animation_of(config);
   animation.cue({.scene = 0, .shown = false, .over_s = 1.0});
   for (int tick = 0; tick < 24; ++tick) animation.step(kBreeze, kTick_s);
@@ -139,7 +140,7 @@ TEST(AnimationTest, AFadeThatIsTurnedRoundGoesOnFromWhereItIs) {
 }
 
 TEST(AnimationTest, AFadeOfNoTimeIsDoneAtTheNextTickAndASceneThatIsNotThereIsIgnored) {
-  const Config config = installation("", "");
+  const settings::Config config = installation("", "");
   Animation animation = animation_of(config);
   animation.cue({.scene = 7, .shown = true, .hide_others = true, .over_s = 0.0});
   animation.cue({.scene = 1, .shown = false, .over_s = 0.0});
@@ -152,9 +153,9 @@ TEST(AnimationTest, AFadeOfNoTimeIsDoneAtTheNextTickAndASceneThatIsNotThereIsIgn
 class MeasuredGust {
  public:
   MeasuredGust() { run_.blow({0.0, 6.0}); }
-  DrivingWind next() {
+  wind::ground::DrivingWind next() {
     const bool is_gust = ++tick_ > 20 * 60;
-    run_.step([is_gust](std::size_t, WindSample& now) { now.north_m_s[3] = is_gust ? 4.0F : 0.0F; });
+    run_.step([is_gust](std::size_t, wind::ground::WindSample& now) { now.north_m_s[3] = is_gust ? 4.0F : 0.0F; });
     return {.state = {.wind = run_.wind()}, .ground = run_.wind(), .stroke = run_.stroke()};
   }
 
@@ -186,13 +187,13 @@ TEST(AnimationTest, AMeasuredGustReachesASceneAfterItsWay) {
 
 TEST(AnimationTest, WhatIsMeasuredMovesScenesAlikeHoweverManyThreadsThereAre) {
   const auto hash_with = [](std::size_t threads) {
-    Config config = installation("z = 16", "z = -14");
+    settings::Config config = installation("z = 16", "z = -14");
     config.animation.threads = threads;
     Animation animation = animation_of(config);
     MeasuredGust wind;
     for (int tick = 0; tick < 22 * 60; ++tick) animation.step(wind.next(), kTick_s);
-    std::uint64_t hash = kPoseHashSeed;
-    for (const Pose* pose : animation.poses()) hash = pose_hash(hash, *pose);
+    std::uint64_t hash = pose::kPoseHashSeed;
+    for (const pose::Pose* pose : animation.poses()) hash = pose::pose_hash(hash, *pose);
     return hash;
   };
   EXPECT_EQ(hash_with(3), hash_with(1));
@@ -207,4 +208,4 @@ TEST(AnimationTest, GainIsAFactorOnTheWindThatIsMeasured) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

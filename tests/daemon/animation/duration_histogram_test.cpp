@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 namespace {
 
 using std::chrono::hours;
@@ -31,4 +31,4 @@ TEST(DurationHistogram, TakesWhatIsNegativeAndWhatIsTooLong) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 namespace {
 
 using ::testing::HasSubstr;
@@ -11,10 +11,11 @@ using ::testing::HasSubstr;
 class SceneDirectorTest : public testing::Test {
  protected:
   SceneDirector director(const std::string& control) {
-    const Config config = parse_config("[stream]\ncontrol = \"" + control +
-                                           "\"\n[[scene]]\nkind = \"grass\"\nname = \"bank\"\n[[scene]]\nkind = "
-                                           "\"grass\"\nname = \"meadow\"\nshown = false\n",
-                                       "test.toml");
+    const settings::Config config =
+        settings::parse_config("[stream]\ncontrol = \"" + control +
+                                   "\"\n[[scene]]\nkind = \"grass\"\nname = \"bank\"\n[[scene]]\nkind = "
+                                   "\"grass\"\nname = \"meadow\"\nshown = false\n",
+                               "test.toml");
     return {config, [this](const SceneCue& cue) {
               if (is_full_) return false;
               cues_.push_back(cue);
@@ -76,4 +77,4 @@ TEST_F(SceneDirectorTest, SaysWhichScenesThereAreAndWhenThereIsNoRoom) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::animation {
 namespace {
 
 using std::chrono::milliseconds;
@@ -44,4 +44,4 @@ TEST(TickSchedule, AHaltOfADayCostsOneTick) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::animation

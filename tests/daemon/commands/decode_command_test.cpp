@@ -11,7 +11,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 using Arguments = std::vector<std::string>;
@@ -192,4 +192,4 @@ TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

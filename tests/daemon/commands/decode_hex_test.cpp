@@ -10,7 +10,7 @@
 #include "tests/daemon/commands/decode_run.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 using Arguments = std::vector<std::string>;
@@ -56,7 +56,7 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
   std::ranges::copy(wind, te923.begin() + 26);
   te923[33] = 0;
   for (std::size_t i = 0; i < 33; ++i) te923[33] ^= te923[i];
-  json block = one(to_hex(te923) + "\n", {"te923", "--hex"});
+  json block = one(tools::decode::to_hex(te923) + "\n", {"te923", "--hex"});
   EXPECT_TRUE(is_value(block["speed_m_s"], 8.7 * 0.44704, 1e-9));
   EXPECT_TRUE(is_value(block["gust_m_s"], 12.3 * 0.44704, 1e-9));
   EXPECT_TRUE(is_value(block["direction_deg"], 270.0));
@@ -69,7 +69,7 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
   for (const std::uint8_t byte : wmr300) sum += byte;
   wmr300[52] = static_cast<std::uint8_t>(sum >> 8U);
   wmr300[53] = static_cast<std::uint8_t>(sum & 0xFFU);
-  json packet = one(to_hex(wmr300) + "\n", {"wmr300", "--hex"});
+  json packet = one(tools::decode::to_hex(wmr300) + "\n", {"wmr300", "--hex"});
   EXPECT_TRUE(is_value(packet["speed_m_s"], 2.9, 1e-9));
   EXPECT_TRUE(is_value(packet["gust_m_s"], 1.4, 1e-9));
   EXPECT_TRUE(is_value(packet["direction_deg"], 13.0));
@@ -105,7 +105,7 @@ TEST_F(DecodeCommand, PutsReportsTogetherAsTheyComeOverUsb) {
     std::vector<std::uint8_t> report(8, 0xEE);
     report[0] = static_cast<std::uint8_t>(count);
     std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
-    lines += to_hex(report) + "\n";
+    lines += tools::decode::to_hex(report) + "\n";
   }
   const auto te923 = run(lines, {"te923", "--hex", "--reports", "--refused"});
   ASSERT_EQ(te923.objects.size(), 1U) << te923.text;
@@ -183,10 +183,11 @@ TEST_F(DecodeCommand, TakesACountersReplyForWhatWasAsked) {
   reply[0] = static_cast<std::uint8_t>(head);
   reply.insert(reply.end(), data.begin(), data.end());
   const std::string command = "00 f8 05 00 00 00 09 01 00 1f 01 01 1f 37 00 00 | ";
-  json labjack = one(command + to_hex(reply) + "\n", {"labjack", "--hex"});
+  json labjack = one(command + tools::decode::to_hex(reply) + "\n", {"labjack", "--hex"});
   EXPECT_EQ(labjack["count"], 1234);
   EXPECT_TRUE(is_value(labjack["direction_deg"], 178.0, 0.01)) << labjack;
-  EXPECT_EQ(run(to_hex(reply) + "\n", {"labjack", "--hex"}).objects.size(), 0U) << "what was asked cannot be guessed";
+  EXPECT_EQ(run(tools::decode::to_hex(reply) + "\n", {"labjack", "--hex"}).objects.size(), 0U)
+      << "what was asked cannot be guessed";
 }
 
 TEST_F(DecodeCommand, BeginsAnewAfterAReplyThatIsNoUse) {
@@ -223,4 +224,4 @@ TEST_F(DecodeCommand, ReadsAModbusResponseByItsRequestAndProfile) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -15,7 +15,7 @@
 #include "daemon/commands/exit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kDecodeCommand;
 
@@ -83,4 +83,4 @@ inline testing::AssertionResult is_value(const nlohmann::json& value, std::optio
                 : testing::AssertionFailure() << value << ", not " << testing::PrintToString(expected);
 }
 
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

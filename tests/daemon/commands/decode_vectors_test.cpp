@@ -13,7 +13,7 @@
 #include "tests/support/decoded_text.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 namespace {
 
 using Arguments = std::vector<std::string>;
@@ -54,7 +54,7 @@ TEST_F(DecodeCommand, DecodesEverySharedGillFrame) {
     const std::string body = vector["body"];
     SCOPED_TRACE(body);
     json decoded = one(vector["frame_hex"].get<std::string>() + "\n", {"gill", "--hex", "--refused"});
-    const TextFields fields = split_fields(body, ',');
+    const drivers::decode::TextFields fields = drivers::decode::split_fields(body, ',');
     if (body.find(",04,") != std::string::npos) {
       EXPECT_EQ(decoded["refused"], "invalid");
       continue;
@@ -238,4 +238,4 @@ TEST_F(DecodeCommand, ReadsALogWithoutStatusFieldsByPolicy) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

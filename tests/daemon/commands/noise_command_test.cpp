@@ -14,7 +14,7 @@
 #include "daemon/tools/offline/npy.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
 extern const Command kNoiseCommand;
 
@@ -85,21 +85,22 @@ std::vector<float> values_of(const std::string& file, const std::string& shape) 
 TEST_F(NoiseCommand, WritesALineAsTheLibraryMakesIt) {
   const auto file = path("line.npy");
   run({"--dims", "1", "--size", "64", "--beta", "1.5", "--seed", "9", "--out", file});
-  EXPECT_EQ(values_of(bytes_of(file), "64,"), make_noise_1d({.size = 64, .beta = 1.5, .seed = 9}).value().values);
+  EXPECT_EQ(values_of(bytes_of(file), "64,"),
+            noise::make_noise_1d({.size = 64, .beta = 1.5, .seed = 9}).value().values);
 }
 
 TEST_F(NoiseCommand, WritesASquareOfEitherMeaning) {
-  for (const BetaMeaning meaning : {BetaMeaning::kRadial, BetaMeaning::kTransect}) {
+  for (const noise::BetaMeaning meaning : {noise::BetaMeaning::kRadial, noise::BetaMeaning::kTransect}) {
     const auto file = path("square.npy");
     run({"--dims", "2", "--size", "16", "--meaning", std::string(name_of(meaning)), "--seed", "3", "--out", file});
     EXPECT_EQ(values_of(bytes_of(file), "16,16,"),
-              make_noise_2d({.size = 16, .meaning = meaning, .seed = 3}).value().values);
+              noise::make_noise_2d({.size = 16, .meaning = meaning, .seed = 3}).value().values);
   }
 }
 
 TEST_F(NoiseCommand, NeedsNothingButAFile) {
   run({"--out", path("tile.npy")});
-  EXPECT_EQ(values_of(bytes_of(path("tile.npy")), "512,512,"), make_noise_2d({.size = 512}).value().values);
+  EXPECT_EQ(values_of(bytes_of(path("tile.npy")), "512,512,"), noise::make_noise_2d({.size = 512}).value().values);
 }
 
 TEST_F(NoiseCommand, RefusesWhatItCannotMakeAsAUsageErrorAndLeavesNoFile) {
@@ -175,9 +176,9 @@ TEST_F(NoiseCommand, ReplacesAFileThroughALinkAndLeavesNoPartBesideIt) {
 TEST_F(NoiseCommand, AShapeThatDoesNotFitIsAProgrammingError) {
   const std::vector<std::size_t> shape{3};
   const std::vector<float> values(2);
-  EXPECT_THROW(write_npy(path("x.npy"), shape, values), std::logic_error);
+  EXPECT_THROW(tools::offline::write_npy(path("x.npy"), shape, values), std::logic_error);
   EXPECT_EQ(files(), 0U);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands

@@ -9,17 +9,19 @@
 int main(int argc, char** argv) {
   using namespace yuragi;
   if (argc != 2) return 64;
-  Recorder recorder(argv[1],
-                    {.started = {}, .software = "yuragi test", .configuration = "", .sensors = {{"mast", "", ""}}});
+  daemon::recording::Recorder recorder(
+      argv[1], {.started = {}, .software = "yuragi test", .configuration = "", .sensors = {{"mast", "", ""}}});
 
   for (std::int64_t i = 0;; ++i) {
-    WindReading reading;
+    wind::WindReading reading;
     reading.time.mono += std::chrono::milliseconds(5 * i);
     reading.speed_m_s = 0.001 * static_cast<double>(i % 100'000);
     recorder.push(0, reading);
     if (i % 100 != 0) continue;
     const auto pushed = static_cast<std::uint64_t>(i + 1);
-    const auto is_written = [pushed](const RecorderStatus& status) { return status.written == pushed; };
+    const auto is_written = [pushed](const daemon::recording::RecorderStatus& status) {
+      return status.written == pushed;
+    };
     if (!recorder.wait_until(is_written, std::chrono::seconds(60))) return 1;
     std::printf("%llu\n", static_cast<unsigned long long>(pushed));
     std::fflush(stdout);

@@ -14,7 +14,7 @@
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::recording {
 namespace {
 
 using test::numbered_readings;
@@ -35,15 +35,15 @@ void wait_for(const Recorder& recorder, const std::function<bool(const RecorderS
 
 TEST(Recorder, WritesEverythingByItsEndAndLeavesOneFile) {
   const test::TemporaryFolder folder;
-  const auto readings = numbered_readings(5000);
+  const auto readings = test::numbered_readings(5000);
   {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "modbus", "host = \"sim\""}, {"roof", "synthetic", ""}}));
     for (std::size_t i = 0; i < readings.size(); ++i) EXPECT_TRUE(recorder.push(i % 2, readings[i]));
   }
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   EXPECT_EQ(reader->configuration(reader->sessions()[0].id).value(), "[wind]\nspeed = 4\n");
-  const auto logged = read_all(folder / "a.windlog");
+  const auto logged = test::read_all(folder / "a.windlog");
   ASSERT_EQ(logged.size(), readings.size());
   for (std::size_t i = 0; i < readings.size(); ++i) {
     test::expect_same(logged[i].reading, readings[i]);
@@ -55,9 +55,9 @@ TEST(Recorder, WritesEverythingByItsEndAndLeavesOneFile) {
 TEST(Recorder, CommitsByItself) {
   const test::TemporaryFolder folder;
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
-  recorder.push(0, reading_at(1, 1.0));
+  recorder.push(0, test::reading_at(1, 1.0));
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
-  EXPECT_EQ(read_all(folder / "a.windlog").size(), 1U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 1U);
   static_assert(Recorder::kCommitInterval <= std::chrono::milliseconds(500));
 }
 
@@ -65,16 +65,16 @@ TEST(Recorder, AppendsASessionAtEachStart) {
   const test::TemporaryFolder folder;
   for (int run = 0; run < 3; ++run) {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
-    recorder.push(0, reading_at(1000 * std::int64_t{run}, 1.0));
+    recorder.push(0, test::reading_at(1000 * std::int64_t{run}, 1.0));
   }
-  EXPECT_EQ(WindlogReader::open(folder / "a.windlog")->sessions().size(), 3U);
+  EXPECT_EQ(drivers::windlog::WindlogReader::open(folder / "a.windlog")->sessions().size(), 3U);
 }
 
 TEST(Recorder, CountsWhatCannotBeRecorded) {
   const test::TemporaryFolder folder;
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
-  EXPECT_FALSE(recorder.push(0, reading_at(1, -3.0)));
-  EXPECT_FALSE(recorder.push(1, reading_at(1, 3.0)));
+  EXPECT_FALSE(recorder.push(0, test::reading_at(1, -3.0)));
+  EXPECT_FALSE(recorder.push(1, test::reading_at(1, 3.0)));
   EXPECT_EQ(recorder.status().lost, 2U);
 }
 
@@ -91,7 +91,7 @@ TEST(Recorder, RefusesToStartWhereItCannotWrite) {
 TEST(Recorder, SurvivesAFullDiskAndGoesOnWhenThereIsRoom) {
   const test::TemporaryFolder folder;
   std::vector<std::string> reports;
-  const auto readings = numbered_readings(20'000);
+  const auto readings = test::numbered_readings(20'000);
   {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}),
                       [&](std::string_view report) { reports.emplace_back(report); });
@@ -111,7 +111,7 @@ TEST(Recorder, SurvivesAFullDiskAndGoesOnWhenThereIsRoom) {
   ASSERT_EQ(reports.size(), 2U);
   EXPECT_NE(reports[0].find("interrupted"), std::string::npos);
   EXPECT_NE(reports[1].find("resumed"), std::string::npos);
-  EXPECT_EQ(read_all(folder / "a.windlog").size(), 10'000U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 10'000U);
 }
 
 TEST(Recorder, CountsWhatADiskThatStaysFullTakesAway) {
@@ -121,17 +121,17 @@ TEST(Recorder, CountsWhatADiskThatStaysFullTakesAway) {
   {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}),
                       [&](std::string_view report) { last_report = report; });
-    for (const WindReading& reading : numbered_readings(10'000)) recorder.push(0, reading);
+    for (const wind::WindReading& reading : test::numbered_readings(10'000)) recorder.push(0, reading);
   }
   EXPECT_NE(last_report.find("10000 readings that could not be written"), std::string::npos) << last_report;
-  EXPECT_EQ(read_all(folder / "a.windlog").size(), 0U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 0U);
 }
 
 TEST(Recorder, ThatCannotWriteForLongHoldsABoundedNumberAndRefusesTheRest) {
   const test::TemporaryFolder folder;
   const test::FileSizeLimit full(150'000);
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
-  const WindReading reading = reading_at(1, 1.0);
+  const wind::WindReading reading = test::reading_at(1, 1.0);
   std::uint64_t refused = 0;
   std::uint64_t pushed = 0;
   for (; refused < 1000; ++pushed) {
@@ -145,12 +145,12 @@ TEST(Recorder, ThatCannotWriteForLongHoldsABoundedNumberAndRefusesTheRest) {
 TEST(Recorder, BeginsTheFileAnewWhereItWasRemoved) {
   const test::TemporaryFolder folder;
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
-  recorder.push(0, reading_at(1, 1.0));
+  recorder.push(0, test::reading_at(1, 1.0));
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) std::filesystem::remove(entry.path());
-  recorder.push(0, reading_at(2, 2.0));
+  recorder.push(0, test::reading_at(2, 2.0));
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
-  const auto logged = read_all(folder / "a.windlog");
+  const auto logged = test::read_all(folder / "a.windlog");
   ASSERT_EQ(logged.size(), 1U);
   EXPECT_EQ(logged[0].reading.speed_m_s, 2.0);
 }
@@ -184,7 +184,7 @@ TEST(Recorder, KilledAtAnyMomentLeavesARecordingOfAllThatWasCommitted) {
   std::fclose(lines);
 
   // Everything that it said is there, in order, with nothing missing in between.
-  const auto logged = read_all(file);
+  const auto logged = test::read_all(file);
   EXPECT_GE(logged.size(), committed);
   for (std::size_t i = 0; i < logged.size(); ++i) {
     EXPECT_EQ(logged[i].reading.speed_m_s, 0.001 * static_cast<double>(i));
@@ -192,9 +192,9 @@ TEST(Recorder, KilledAtAnyMomentLeavesARecordingOfAllThatWasCommitted) {
 
   // The next start mends the file and appends.
   { Recorder recorder(file, info_of({{"mast", "", ""}})); }
-  EXPECT_EQ(read_all(file).size(), logged.size());
+  EXPECT_EQ(test::read_all(file).size(), logged.size());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::recording

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 MonoTime gate_time(double time_s) {
@@ -73,4 +73,4 @@ TEST(ChangeGate, AClockThatGoesBackTellsNothingTwice) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

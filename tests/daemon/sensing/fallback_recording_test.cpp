@@ -11,7 +11,7 @@
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 using namespace std::chrono_literals;
@@ -20,12 +20,12 @@ using test::write_session;
 /// A sensor that speaks ten times a second while `is_sending`.
 std::atomic<bool> is_sending{false};
 
-class WilfulSensor final : public Sensor {
+class WilfulSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
     const Instant now = clock.now();
     if (is_sending && now.mono - last_ >= 100ms) {
-      WindReading reading;
+      wind::WindReading reading;
       reading.time = now;
       reading.speed_m_s = 12.0;
       reading.direction_deg = 270.0;
@@ -39,8 +39,11 @@ class WilfulSensor final : public Sensor {
   MonoTime last_{};
 };
 
-const DriverDescription kWilfulDriver{
-    .name = "wilful", .summary = "", .parameters = {}, .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> {
+const drivers::sensor::DriverDescription kWilfulDriver{
+    .name = "wilful",
+    .summary = "",
+    .parameters = {},
+    .open = [](const ParameterValues&) -> std::unique_ptr<drivers::sensor::Sensor> {
       return std::make_unique<WilfulSensor>();
     }};
 
@@ -48,15 +51,16 @@ class FallbackRecordingTest : public ::testing::Test {
  protected:
   FallbackRecordingTest() {
     is_sending = false;
-    std::vector<WindReading> readings;
+    std::vector<wind::WindReading> readings;
     readings.reserve(1500);
     for (std::int64_t i = 0; i < 1500; ++i) {
       readings.push_back(test::reading_at(20 * i, 4.0));
       readings.back().direction_deg = 270.0;
     }
-    write_session(file(), readings, "mast");
-    config_ = default_config();
-    config_.sensors = {default_sensor("roof", kWilfulDriver, {}), default_sensor("yard", kWilfulDriver, {})};
+    test::write_session(file(), readings, "mast");
+    config_ = settings::default_config();
+    config_.sensors = {settings::default_sensor("roof", kWilfulDriver, {}),
+                       settings::default_sensor("yard", kWilfulDriver, {})};
     config_.wind.default_speed_m_s = 1.0;
     config_.wind.default_direction_deg = 270.0;
     config_.wind.default_turbulence_intensity = 0.0;
@@ -72,7 +76,7 @@ class FallbackRecordingTest : public ::testing::Test {
       if (condition()) return true;
       clock_.advance(from_seconds(1.0 / 60.0));
       if (!clock_.wait_for_waiters(hub.status().size())) return false;
-      const WindVector wind = hub.advance().wind;
+      const wind::WindVector wind = hub.advance().wind;
       if (tick > 0 || has_ticked_) largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(wind - last_));
       last_ = wind;
       has_ticked_ = true;
@@ -86,8 +90,8 @@ class FallbackRecordingTest : public ::testing::Test {
 
   test::TemporaryFolder folder_;
   ManualClock clock_;
-  Config config_;
-  WindVector last_{};
+  settings::Config config_;
+  wind::WindVector last_{};
   double largest_step_m_s_ = 0.0;
   bool has_ticked_ = false;
 };
@@ -95,7 +99,7 @@ class FallbackRecordingTest : public ::testing::Test {
 TEST_F(FallbackRecordingTest, PlaysWhileEverySensorIsSilentAndEndsWhenOneIsLiveAgain) {
   std::vector<double> recorded;
   SensorHub hub(config_, clock_, make_gust_noise(config_),
-                [&](std::size_t, const WindReading& reading) { recorded.push_back(reading.speed_m_s); });
+                [&](std::size_t, const wind::WindReading& reading) { recorded.push_back(reading.speed_m_s); });
   is_sending = true;
   ASSERT_TRUE(tick_until(hub, [&] { return last_.u_m_s > 11.0; })) << "the sensors' wind";
   EXPECT_EQ(hub.status().size(), 2U);
@@ -129,11 +133,11 @@ TEST_F(FallbackRecordingTest, GetsTheCalibrationOfTheSensorThatWasRecorded) {
 }
 
 TEST_F(FallbackRecordingTest, ASpikeThatWasRecordedMovesNothing) {
-  std::vector<WindReading> readings;
+  std::vector<wind::WindReading> readings;
   readings.reserve(1500);
   for (std::int64_t i = 0; i < 1500; ++i) readings.push_back(test::reading_at(20 * i, i % 40 == 39 ? 60.0 : 4.0));
   std::filesystem::remove(file());
-  write_session(file(), readings, "mast");
+  test::write_session(file(), readings, "mast");
   SensorHub hub(config_, clock_, make_gust_noise(config_));
   ASSERT_TRUE(tick_until(hub, [&] { return plays(hub) && hub.status()[2].readings > 400; }));
   EXPECT_LT(hub.status()[2].speed_m_s, 5.0);
@@ -149,17 +153,17 @@ TEST_F(FallbackRecordingTest, ThatVanishedGivesWayToTheDefaultWind) {
   EXPECT_NEAR(last_.u_m_s, 1.0, 0.2);
 
   // And is played when it is there again.
-  write_session(file(), {test::reading_at(0, 4.0), test::reading_at(1000, 4.0)}, "mast");
+  test::write_session(file(), {test::reading_at(0, 4.0), test::reading_at(1000, 4.0)}, "mast");
   EXPECT_TRUE(tick_until(hub, [&] { return plays(hub); }));
 }
 
 TEST_F(FallbackRecordingTest, ThatCannotBePlayedIsAMistakeOfTheConfiguration) {
   const auto complaint = [&](const std::string& text) -> std::string {
     try {
-      const Config config = parse_config(text, "wall.toml");
+      const settings::Config config = settings::parse_config(text, "wall.toml");
       SensorHub hub(config, clock_, make_gust_noise(config));
       return "";
-    } catch (const ConfigError& error) {
+    } catch (const settings::ConfigError& error) {
       return error.what();
     }
   };
@@ -169,11 +173,11 @@ TEST_F(FallbackRecordingTest, ThatCannotBePlayedIsAMistakeOfTheConfiguration) {
             "wall.toml:2:22: wind.fallback_recording: /no/such.windlog: there is no such recording");
   std::ofstream(folder_ / "damaged.windlog") << "not a recording";
   EXPECT_NE(complaint("[wind]\nfallback_recording = \"" + (folder_ / "damaged.windlog").string() + "\"\n"), "");
-  write_session(folder_ / "empty.windlog", {});
+  test::write_session(folder_ / "empty.windlog", {});
   EXPECT_NE(
       complaint("[wind]\nfallback_recording = \"" + (folder_ / "empty.windlog").string() + "\"\n").find("no reading"),
       std::string::npos);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

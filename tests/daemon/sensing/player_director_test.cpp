@@ -3,28 +3,28 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 using ::testing::HasSubstr;
 
 /// Keeps its orders, and tells what the test wants it to.
-struct NotedPlayer final : RecordingPlayer {
-  std::optional<std::uint64_t> order(const PlayerOrder& order) override {
+struct NotedPlayer final : drivers::recording::RecordingPlayer {
+  std::optional<std::uint64_t> order(const drivers::recording::PlayerOrder& order) override {
     if (is_full) return std::nullopt;
     orders.push_back(order);
     return orders.size();
   }
-  PlayerReport report() const override { return reported; }
+  drivers::recording::PlayerReport report() const override { return reported; }
 
-  std::vector<PlayerOrder> orders;
-  PlayerReport reported;
+  std::vector<drivers::recording::PlayerOrder> orders;
+  drivers::recording::PlayerReport reported;
   bool is_full = false;
 };
 
 class PlayerDirectorTest : public testing::Test {
  protected:
-  PlayerDirector director(ControlPermission control) {
+  PlayerDirector director(settings::ControlPermission control) {
     return {control, {{"roof", &roof_, [this] { ++woken_; }}, {"yard", &yard_, [this] { ++woken_; }}}};
   }
 
@@ -33,7 +33,7 @@ class PlayerDirectorTest : public testing::Test {
 };
 
 TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
-  PlayerDirector here = director(ControlPermission::kLoopback);
+  PlayerDirector here = director(settings::ControlPermission::kLoopback);
   const auto one = here.handle({.action = wire::PlayerAction::kSeek, .sensor = "yard", .place = "+30"}, true);
   EXPECT_TRUE(one.done);
   EXPECT_EQ(one.message, "yard was asked to seek to +30");
@@ -41,7 +41,7 @@ TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
   EXPECT_EQ(one.players[0].order, 1U);
   EXPECT_TRUE(roof_.orders.empty());
   ASSERT_EQ(yard_.orders.size(), 1U);
-  EXPECT_EQ(yard_.orders[0].kind, PlayerOrder::Kind::kSeek);
+  EXPECT_EQ(yard_.orders[0].kind, drivers::recording::PlayerOrder::Kind::kSeek);
   EXPECT_EQ(yard_.orders[0].place, "+30");
   EXPECT_EQ(woken_, 1);
 
@@ -52,21 +52,21 @@ TEST_F(PlayerDirectorTest, GivesOrdersToTheSensorThatIsNamedOrToAll) {
   here.handle({.action = wire::PlayerAction::kPause}, true);
   here.handle({.action = wire::PlayerAction::kResume}, true);
   here.handle({.action = wire::PlayerAction::kRate, .rate = 0.5}, true);
-  EXPECT_EQ(roof_.orders.at(1).kind, PlayerOrder::Kind::kPause);
-  EXPECT_EQ(roof_.orders.at(2).kind, PlayerOrder::Kind::kResume);
+  EXPECT_EQ(roof_.orders.at(1).kind, drivers::recording::PlayerOrder::Kind::kPause);
+  EXPECT_EQ(roof_.orders.at(2).kind, drivers::recording::PlayerOrder::Kind::kResume);
   EXPECT_EQ(roof_.orders.at(3).rate, 0.5);
 }
 
 TEST_F(PlayerDirectorTest, TellsEveryoneHowThingsAreAndChangesNothing) {
   roof_.reported = {.file = "storm.windlog",
-                    .position = PlayerPosition{.log_time = std::chrono::seconds(90),
-                                               .length = std::chrono::seconds(3600),
-                                               .rate = 2.0,
-                                               .is_paused = true,
-                                               .rounds = 3},
+                    .position = drivers::windlog::PlayerPosition{.log_time = std::chrono::seconds(90),
+                                                                 .length = std::chrono::seconds(3600),
+                                                                 .rate = 2.0,
+                                                                 .is_paused = true,
+                                                                 .rounds = 3},
                     .orders_done = 4,
                     .refusal = "no"};
-  const auto reply = director(ControlPermission::kNobody).handle({}, false);
+  const auto reply = director(settings::ControlPermission::kNobody).handle({}, false);
   EXPECT_TRUE(reply.done);
   ASSERT_EQ(reply.players.size(), 2U);
   EXPECT_EQ(reply.players[0].sensor, "roof");
@@ -84,26 +84,28 @@ TEST_F(PlayerDirectorTest, TellsEveryoneHowThingsAreAndChangesNothing) {
 
 TEST_F(PlayerDirectorTest, TakesOrdersOnlyFromThoseWhoMay) {
   const wire::PlayerCommand pause{.action = wire::PlayerAction::kPause};
-  EXPECT_FALSE(director(ControlPermission::kNobody).handle(pause, true).done);
-  EXPECT_FALSE(director(ControlPermission::kLoopback).handle(pause, false).done);
+  EXPECT_FALSE(director(settings::ControlPermission::kNobody).handle(pause, true).done);
+  EXPECT_FALSE(director(settings::ControlPermission::kLoopback).handle(pause, false).done);
   EXPECT_TRUE(roof_.orders.empty());
-  EXPECT_THAT(director(ControlPermission::kLoopback).handle(pause, false).message, HasSubstr("[stream] control"));
-  EXPECT_TRUE(director(ControlPermission::kAnywhere).handle(pause, false).done);
+  EXPECT_THAT(director(settings::ControlPermission::kLoopback).handle(pause, false).message,
+              HasSubstr("[stream] control"));
+  EXPECT_TRUE(director(settings::ControlPermission::kAnywhere).handle(pause, false).done);
 }
 
 TEST_F(PlayerDirectorTest, SaysWhatThereIsWhereNothingFits) {
-  const auto unknown = director(ControlPermission::kLoopback).handle({.sensor = "cellar"}, true);
+  const auto unknown = director(settings::ControlPermission::kLoopback).handle({.sensor = "cellar"}, true);
   EXPECT_FALSE(unknown.done);
   EXPECT_TRUE(unknown.players.empty());
   EXPECT_THAT(unknown.message, HasSubstr("roof, yard"));
-  const auto none = PlayerDirector(ControlPermission::kLoopback, {}).handle({}, true);
+  const auto none = PlayerDirector(settings::ControlPermission::kLoopback, {}).handle({}, true);
   EXPECT_FALSE(none.done);
   EXPECT_THAT(none.message, HasSubstr("no sensor of this daemon"));
   roof_.is_full = true;
-  const auto full = director(ControlPermission::kLoopback).handle({.action = wire::PlayerAction::kPause}, true);
+  const auto full =
+      director(settings::ControlPermission::kLoopback).handle({.action = wire::PlayerAction::kPause}, true);
   EXPECT_FALSE(full.done);
   EXPECT_EQ(full.players[0].order, 0U);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

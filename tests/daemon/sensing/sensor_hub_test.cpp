@@ -7,20 +7,20 @@
 
 #include "tests/support/manual_clock.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 /// What the sensor under test does when it is polled; set before the hub is made.
 struct Script {
-  std::function<void(const Clock&, SensorSink&)> first_poll;
+  std::function<void(const drivers::sensor::Clock&, drivers::sensor::SensorSink&)> first_poll;
   std::promise<void> polled, interrupted;
   bool wait_for_interrupt = false;
 };
 Script* script = nullptr;
 
-class ScriptedSensor final : public Sensor {
+class ScriptedSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
     if (!done_) {
       done_ = true;
       script->first_poll(clock, sink);
@@ -37,8 +37,11 @@ class ScriptedSensor final : public Sensor {
   bool done_ = false;
 };
 
-const DriverDescription kScriptedDriver{
-    .name = "scripted", .summary = "", .parameters = {}, .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> {
+const drivers::sensor::DriverDescription kScriptedDriver{
+    .name = "scripted",
+    .summary = "",
+    .parameters = {},
+    .open = [](const ParameterValues&) -> std::unique_ptr<drivers::sensor::Sensor> {
       return std::make_unique<ScriptedSensor>();
     }};
 
@@ -46,17 +49,17 @@ class SensorHubTest : public ::testing::Test {
  protected:
   SensorHubTest() {
     script = &script_;
-    config_ = default_config();
-    config_.sensors = {default_sensor("roof", kScriptedDriver, {}, "wall.toml:3:1")};
+    config_ = settings::default_config();
+    config_.sensors = {settings::default_sensor("roof", kScriptedDriver, {}, "wall.toml:3:1")};
   }
 
   ManualClock clock_;
   Script script_;
-  Config config_;
+  settings::Config config_;
 };
 
-WindReading reading_at(const Clock& clock, double speed_m_s) {
-  WindReading reading;
+wind::WindReading reading_at(const drivers::sensor::Clock& clock, double speed_m_s) {
+  wind::WindReading reading;
   reading.time = clock.now();
   reading.speed_m_s = speed_m_s;
   reading.direction_deg = 90.0;
@@ -64,7 +67,7 @@ WindReading reading_at(const Clock& clock, double speed_m_s) {
 }
 
 /// The wind of a hub after 10 s of ticks.
-WindState wind_after_a_while(SensorHub& hub, ManualClock& clock) {
+wind::WindState wind_after_a_while(SensorHub& hub, ManualClock& clock) {
   for (int tick = 0; tick < 600; ++tick) {
     hub.advance();
     clock.advance(from_seconds(1.0 / 60.0));
@@ -74,12 +77,14 @@ WindState wind_after_a_while(SensorHub& hub, ManualClock& clock) {
 
 TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid) {
   config_.wind.default_turbulence_intensity = 0.0;
-  script_.first_poll = [](const Clock& clock, SensorSink& sink) { sink.reading(reading_at(clock, 6.0)); };
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+    sink.reading(reading_at(clock, 6.0));
+  };
   config_.sensors[0].calibration.gain = 1.5;
   config_.sensors[0].calibration.north_offset_deg = 180.0;
   std::vector<double> received;
   SensorHub hub(config_, clock_, make_gust_noise(config_),
-                [&](std::size_t, const WindReading& reading) { received.push_back(reading.speed_m_s); });
+                [&](std::size_t, const wind::WindReading& reading) { received.push_back(reading.speed_m_s); });
   script_.polled.get_future().wait();
   EXPECT_NEAR(wind_after_a_while(hub, clock_).wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
   EXPECT_EQ(received, std::vector{6.0});
@@ -90,20 +95,20 @@ TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid
 
 TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
   config_.wind.default_turbulence_intensity = 0.0;
-  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
-    sink.link(LinkState::kConnected, "here");
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+    sink.link(wind::LinkState::kConnected, "here");
     sink.reading(reading_at(clock, 6.0));
   };
   std::vector<double> received;
-  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t sensor, const WindReading& reading) {
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t sensor, const wind::WindReading& reading) {
     EXPECT_EQ(sensor, 0U);
     received.push_back(reading.speed_m_s);
   });
   script_.polled.get_future().wait();
 
-  const WindState state = wind_after_a_while(hub, clock_);
+  const wind::WindState state = wind_after_a_while(hub, clock_);
   EXPECT_EQ(received, std::vector{6.0});
-  EXPECT_NE(state.source, WindSource::kDefault);
+  EXPECT_NE(state.source, wind::WindSource::kDefault);
   EXPECT_NEAR(state.wind.u_m_s, -6.0, 0.2);
 
   const std::vector<wire::SensorStatus> status = hub.status();
@@ -116,9 +121,9 @@ TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
 }
 
 /// Says one reading, and then ten times a second that it still holds.
-class HoldingSensor final : public Sensor {
+class HoldingSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
     const Instant now = clock.now();
     if (now.mono - reading_.time.mono >= std::chrono::milliseconds(100)) {
       reading_.is_held = reading_.speed_m_s > 0.0;
@@ -130,18 +135,21 @@ class HoldingSensor final : public Sensor {
   }
 
  private:
-  WindReading reading_;
+  wind::WindReading reading_;
 };
 
-const DriverDescription kHoldingDriver{
-    .name = "holding", .summary = "", .parameters = {}, .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> {
+const drivers::sensor::DriverDescription kHoldingDriver{
+    .name = "holding",
+    .summary = "",
+    .parameters = {},
+    .open = [](const ParameterValues&) -> std::unique_ptr<drivers::sensor::Sensor> {
       return std::make_unique<HoldingSensor>();
     }};
 
 TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
   config_.sensors[0].driver = &kHoldingDriver;
   std::atomic<int> received = 0;
-  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { ++received; });
+  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const wind::WindReading&) { ++received; });
   // Two minutes: a sensor that measured the same for so long would be frozen.
   for (int tick = 0; tick < 1200; ++tick) {
     clock_.advance(std::chrono::milliseconds(100));
@@ -150,18 +158,19 @@ TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
   }
   EXPECT_EQ(received, 1);
   EXPECT_EQ(hub.status()[0].readings, 1U);
-  EXPECT_EQ(hub.status()[0].state, SensorState::kLive) << "two minutes after it was first said";
+  EXPECT_EQ(hub.status()[0].state, wind::judging::SensorState::kLive) << "two minutes after it was first said";
 }
 
 TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
-  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
-    sink.refused(Refusal::kTimeout);
-    sink.refused(Refusal::kTimeout);
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+    sink.refused(drivers::decode::Refusal::kTimeout);
+    sink.refused(drivers::decode::Refusal::kTimeout);
     sink.reading(reading_at(clock, std::numeric_limits<double>::quiet_NaN()));
     sink.reading(reading_at(clock, -3.0));
   };
   bool received = false;
-  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const WindReading&) { received = true; });
+  SensorHub hub(config_, clock_, make_gust_noise(config_),
+                [&](std::size_t, const wind::WindReading&) { received = true; });
   script_.polled.get_future().wait();
   hub.advance();
 
@@ -175,7 +184,7 @@ TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
 
 TEST_F(SensorHubTest, ASensorThatWaitsForItsDeviceDoesNotHoldUpTheEnd) {
   script_.wait_for_interrupt = true;
-  script_.first_poll = [](const Clock&, SensorSink&) {};
+  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink&) {};
   {
     const SensorHub hub(config_, clock_, make_gust_noise(config_));
     script_.polled.get_future().wait();
@@ -184,7 +193,7 @@ TEST_F(SensorHubTest, ASensorThatWaitsForItsDeviceDoesNotHoldUpTheEnd) {
 }
 
 TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
-  script_.first_poll = [](const Clock& clock, SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
     for (int count = 0; count < 2000; ++count) sink.reading(reading_at(clock, 1.0));
   };
   SensorHub hub(config_, clock_, make_gust_noise(config_));
@@ -197,12 +206,12 @@ TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
 }
 
 TEST_F(SensorHubTest, CountsFramesAndHowOftenTheDeviceCameAgain) {
-  script_.first_poll = [](const Clock&, SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
     const std::vector<std::uint8_t> message = {1, 2, 3};
-    sink.raw(RawDirection::kSent, message);
-    for (int i = 0; i < 5; ++i) sink.raw(RawDirection::kReceived, message);
-    for (const auto state : {LinkState::kConnected, LinkState::kConnecting, LinkState::kConnected,
-                             LinkState::kConnecting, LinkState::kConnected, LinkState::kConnected}) {
+    sink.raw(drivers::sensor::RawDirection::kSent, message);
+    for (int i = 0; i < 5; ++i) sink.raw(drivers::sensor::RawDirection::kReceived, message);
+    for (const auto state : {wind::LinkState::kConnected, wind::LinkState::kConnecting, wind::LinkState::kConnected,
+                             wind::LinkState::kConnecting, wind::LinkState::kConnected, wind::LinkState::kConnected}) {
       sink.link(state, "");
     }
   };
@@ -218,10 +227,10 @@ TEST_F(SensorHubTest, CountsFramesAndHowOftenTheDeviceCameAgain) {
 
 TEST_F(SensorHubTest, HandsOnTheMessagesOfATracedSensorInTheirOrder) {
   std::promise<void> is_traced;
-  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
     is_traced.get_future().wait();
-    sink.raw(RawDirection::kSent, std::vector<std::uint8_t>{1, 3, 0});
-    sink.raw(RawDirection::kReceived, std::vector<std::uint8_t>(700, 0x5A));
+    sink.raw(drivers::sensor::RawDirection::kSent, std::vector<std::uint8_t>{1, 3, 0});
+    sink.raw(drivers::sensor::RawDirection::kReceived, std::vector<std::uint8_t>(700, 0x5A));
   };
   SensorHub hub(config_, clock_, make_gust_noise(config_));
   clock_.advance(std::chrono::seconds(2));
@@ -245,13 +254,13 @@ TEST_F(SensorHubTest, HandsOnTheMessagesOfATracedSensorInTheirOrder) {
 
 TEST_F(SensorHubTest, MessagesThatFindNoRoomAreCountedInTheNextOne) {
   std::promise<void> is_traced, is_drained, is_flooded;
-  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
     const std::vector<std::uint8_t> message = {1};
     is_traced.get_future().wait();
-    for (int i = 0; i < 1000; ++i) sink.raw(RawDirection::kReceived, message);
+    for (int i = 0; i < 1000; ++i) sink.raw(drivers::sensor::RawDirection::kReceived, message);
     is_flooded.set_value();
     is_drained.get_future().wait();
-    sink.raw(RawDirection::kReceived, message);
+    sink.raw(drivers::sensor::RawDirection::kReceived, message);
   };
   SensorHub hub(config_, clock_, make_gust_noise(config_));
   hub.trace([](std::string_view) { return true; });
@@ -274,9 +283,9 @@ TEST_F(SensorHubTest, MessagesThatFindNoRoomAreCountedInTheNextOne) {
 
 TEST_F(SensorHubTest, ATraceThatBeginsAgainHasNothingOfTheOneBefore) {
   std::promise<void> is_traced;
-  script_.first_poll = [&](const Clock&, SensorSink& sink) {
+  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
     is_traced.get_future().wait();
-    sink.raw(RawDirection::kReceived, std::vector<std::uint8_t>{1});
+    sink.raw(drivers::sensor::RawDirection::kReceived, std::vector<std::uint8_t>{1});
   };
   SensorHub hub(config_, clock_, make_gust_noise(config_));
   hub.trace([](std::string_view) { return true; });
@@ -290,25 +299,29 @@ TEST_F(SensorHubTest, ATraceThatBeginsAgainHasNothingOfTheOneBefore) {
 }
 
 TEST_F(SensorHubTest, IsFinishedWhenEveryRecordingIs) {
-  script_.first_poll = [](const Clock&, SensorSink& sink) { sink.link(LinkState::kFinished, "the end"); };
+  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
+    sink.link(wind::LinkState::kFinished, "the end");
+  };
   const SensorHub hub(config_, clock_, make_gust_noise(config_));
   script_.polled.get_future().wait();
   EXPECT_TRUE(hub.is_finished());
 }
 
 TEST(SensorHub, ASensorThatCannotBeMadeIsAMistakeAtItsPlaceInTheFile) {
-  const DriverDescription refusing{
+  const drivers::sensor::DriverDescription refusing{
       .name = "refusing",
       .summary = "",
       .parameters = {},
-      .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { throw std::runtime_error("no such profile"); }};
+      .open = [](const ParameterValues&) -> std::unique_ptr<drivers::sensor::Sensor> {
+        throw std::runtime_error("no such profile");
+      }};
   try {
-    open_sensor(default_sensor("roof", refusing, {}, "wall.toml:3:1"));
+    settings::open_sensor(settings::default_sensor("roof", refusing, {}, "wall.toml:3:1"));
     FAIL() << "it was made";
-  } catch (const ConfigError& error) {
+  } catch (const settings::ConfigError& error) {
     EXPECT_STREQ(error.what(), "wall.toml:3:1: sensor: no such profile");
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

@@ -18,7 +18,7 @@
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 #include "tests/support/manual_clock.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::sensing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -27,16 +27,16 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What a sensor's thread hands to the test, which speaks in its place while the thread waits.
 struct SensorControl {
-  std::promise<SensorSink*> sink;
+  std::promise<drivers::sensor::SensorSink*> sink;
   std::promise<void> end;
 };
 std::deque<SensorControl>* controls = nullptr;
 std::size_t controls_given = 0;
 
-class ControlledSensor final : public Sensor {
+class ControlledSensor final : public drivers::sensor::Sensor {
  public:
   ControlledSensor() : control_(controls->at(controls_given++)) {}
-  MonoTime poll(const Clock&, SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) override {
     control_.sink.set_value(&sink);
     control_.end.get_future().wait();
     return MonoTime::max();
@@ -47,17 +47,18 @@ class ControlledSensor final : public Sensor {
   SensorControl& control_;
 };
 
-std::unique_ptr<Sensor> open_controlled(const ParameterValues&) {
+std::unique_ptr<drivers::sensor::Sensor> open_controlled(const ParameterValues&) {
   return std::make_unique<ControlledSensor>();
 }
-const DriverDescription kControlledDriver{.name = "spoken", .summary = "", .parameters = {}, .open = open_controlled};
-const DriverDescription kPlayedDriver{
+const drivers::sensor::DriverDescription kControlledDriver{
+    .name = "spoken", .summary = "", .parameters = {}, .open = open_controlled};
+const drivers::sensor::DriverDescription kPlayedDriver{
     .name = "played", .summary = "", .parameters = {}, .open = open_controlled, .plays_recordings = true};
 
 class SensorJudgement : public ::testing::Test {
  protected:
   explicit SensorJudgement(std::size_t sensor_count = 1) {
-    config_ = default_config();
+    config_ = settings::default_config();
     config_.wind.default_speed_m_s = 2.0;
     config_.sensors.clear();
     for (std::size_t i = 0; i < sensor_count; ++i) add_sensor(kControlledDriver);
@@ -70,26 +71,26 @@ class SensorJudgement : public ::testing::Test {
   SensorJudgement(const SensorJudgement&) = delete;
   SensorJudgement& operator=(const SensorJudgement&) = delete;
 
-  void add_sensor(const DriverDescription& driver) {
+  void add_sensor(const drivers::sensor::DriverDescription& driver) {
     const std::string name = std::string(driver.name) + std::to_string(config_.sensors.size());
-    config_.sensors.push_back(default_sensor(name, driver, {}, "wall.toml:3:1"));
+    config_.sensors.push_back(settings::default_sensor(name, driver, {}, "wall.toml:3:1"));
   }
 
   void start() {
-    static const auto noise = make_gust_noise(default_config());
+    static const auto noise = make_gust_noise(settings::default_config());
     controls_.resize(config_.sensors.size());
     controls = &controls_;
     controls_given = 0;
-    hub_ =
-        std::make_unique<SensorHub>(config_, clock_, noise, [this](std::size_t, const WindReading&) { ++recorded_; });
+    hub_ = std::make_unique<SensorHub>(config_, clock_, noise,
+                                       [this](std::size_t, const wind::WindReading&) { ++recorded_; });
     for (SensorControl& control : controls_) {
       sinks_.push_back(control.sink.get_future().get());
-      sinks_.back()->link(LinkState::kConnected, "here");
+      sinks_.back()->link(wind::LinkState::kConnected, "here");
     }
   }
 
   void publish(std::size_t sensor, double speed_m_s, double direction_deg = 250.0, double late_s = 0.0) {
-    WindReading reading;
+    wind::WindReading reading;
     reading.time = clock_.now();
     reading.time.mono -= from_seconds(late_s);
     reading.speed_m_s = speed_m_s;
@@ -109,14 +110,14 @@ class SensorJudgement : public ::testing::Test {
     for (int tick = 0; tick < ticks; ++tick) {
       clock_.advance(from_seconds(1.0 / kTicksPerSecond));
       if (tick % kTicksPerSecond == 0) each();
-      const WindVector before = hub_->wind().wind;
-      const WindState& state = hub_->advance();
+      const wind::WindVector before = hub_->wind().wind;
+      const wind::WindState& state = hub_->advance();
       ASSERT_TRUE(std::isfinite(state.wind.u_m_s) && std::isfinite(state.wind.v_m_s));
       largest_wind_m_s_ = std::max(largest_wind_m_s_, speed_of(state.wind));
       largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(state.wind - before));
     }
   }
-  SensorState state(std::size_t sensor = 0) const { return hub_->status().at(sensor).state; }
+  wind::judging::SensorState state(std::size_t sensor = 0) const { return hub_->status().at(sensor).state; }
   std::string reason(std::size_t sensor = 0) const { return hub_->status().at(sensor).state_reason; }
 
   int lines_of_log_with(const std::string& text) const {
@@ -129,11 +130,11 @@ class SensorJudgement : public ::testing::Test {
   static constexpr int kTicksPerSecond = 5;
 
   ManualClock clock_;
-  Config config_;
+  settings::Config config_;
   std::deque<SensorControl> controls_;
-  std::vector<SensorSink*> sinks_;
+  std::vector<drivers::sensor::SensorSink*> sinks_;
   std::unique_ptr<SensorHub> hub_;
-  ReadingQuality quality_ = ReadingQuality::kGood;
+  wind::ReadingQuality quality_ = wind::ReadingQuality::kGood;
   int recorded_ = 0;
   double largest_wind_m_s_ = 0.0;
   double largest_step_m_s_ = 0.0;
@@ -153,21 +154,21 @@ class SensorJudgementOfThree : public SensorJudgement {
 TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenItMoves) {
   start();
   go_on(120, [&] { publish(0, breeze()); });
-  EXPECT_EQ(state(), SensorState::kLive);
-  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
   const double normal_step_m_s = std::exchange(largest_step_m_s_, 0.0);
 
   go_on(60, [&] { publish(0, 6.5); });
-  EXPECT_EQ(state(), SensorState::kFrozen);
+  EXPECT_EQ(state(), wind::judging::SensorState::kFrozen);
   EXPECT_THAT(reason(), HasSubstr("the same reading, 6.50 m/s, 60 times"));
-  EXPECT_EQ(hub_->status()[0].health, SourceHealth::kLive) << "it speaks";
+  EXPECT_EQ(hub_->status()[0].health, wind::SourceHealth::kLive) << "it speaks";
   EXPECT_EQ(hub_->status()[0].speed_m_s, 6.5) << "what it says is shown";
   go_on(60, [&] { publish(0, 6.5); });
-  EXPECT_NE(hub_->wind().source, WindSource::kLive);
+  EXPECT_NE(hub_->wind().source, wind::WindSource::kLive);
 
   go_on(30, [&] { publish(0, breeze()); });
-  EXPECT_EQ(state(), SensorState::kLive);
-  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
   EXPECT_LT(largest_step_m_s_, 2.0 * normal_step_m_s) << "neither loss nor return is a jump";
   EXPECT_EQ(recorded_, 270) << "a recording keeps everything";
 
@@ -182,7 +183,7 @@ TEST_F(SensorJudgement, SpikesDoNotReachTheWind) {
   const double normal_wind_m_s = std::exchange(largest_wind_m_s_, 0.0);
   int second = 0;
   go_on(300, [&] { publish(0, second++ % 20 == 0 ? 55.0 : breeze()); });
-  EXPECT_EQ(state(), SensorState::kLive) << "one in twenty is no fault";
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive) << "one in twenty is no fault";
   EXPECT_LT(largest_wind_m_s_, 1.5 * normal_wind_m_s);
   EXPECT_EQ(recorded_, 360);
   EXPECT_THAT(hub_->status()[0].refused, ::testing::Contains(std::pair<std::string, std::uint64_t>("rejected", 15)));
@@ -192,19 +193,19 @@ TEST_F(SensorJudgement, ASensorThatSaysNonsenseAgainAndAgainIsImplausibleUntilIt
   start();
   go_on(60, [&] { publish(0, breeze()); });
   go_on(30, [&] { publish(0, kNan); });
-  EXPECT_EQ(state(), SensorState::kImplausible);
+  EXPECT_EQ(state(), wind::judging::SensorState::kImplausible);
   EXPECT_THAT(reason(), HasSubstr("of its last readings"));
   go_on(90, [&] { publish(0, breeze()); });
-  EXPECT_EQ(state(), SensorState::kLive);
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
   EXPECT_EQ(lines_of_log_with("implausible: "), 1) << log_.str();
 }
 
 TEST_F(SensorJudgement, ASimulationMayBeAsSteadyAsItLikesAndSoMayOneThatIsNotJudged) {
-  quality_ = ReadingQuality::kSimulated;
+  quality_ = wind::ReadingQuality::kSimulated;
   start();
   go_on(900, [&] { publish(0, 6.0); });
-  EXPECT_EQ(state(), SensorState::kSimulated);
-  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_EQ(state(), wind::judging::SensorState::kSimulated);
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
 }
 
 TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
@@ -212,8 +213,8 @@ TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
   start();
   go_on(60, [&] { publish(0, breeze()); });
   go_on(300, [&] { publish(0, 6.0); });
-  EXPECT_EQ(state(), SensorState::kLive);
-  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
 }
 
 TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
@@ -222,11 +223,11 @@ TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
   start();
   go_on(60, [&] { publish(0, breeze()); });
   go_on(95, [&] { publish(0, 6.0); });
-  EXPECT_EQ(state(), SensorState::kLive);
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
   go_on(10, [&] { publish(0, 6.0); });
-  EXPECT_EQ(state(), SensorState::kFrozen);
+  EXPECT_EQ(state(), wind::judging::SensorState::kFrozen);
   go_on(30, [&] { publish(0, 41.0 + 0.1 * breeze()); });
-  EXPECT_EQ(state(), SensorState::kImplausible);
+  EXPECT_EQ(state(), wind::judging::SensorState::kImplausible);
 }
 
 TEST_F(SensorJudgement, ARecordingIsJudgedAsTheSensorWasAndNeverTakenForLive) {
@@ -234,25 +235,25 @@ TEST_F(SensorJudgement, ARecordingIsJudgedAsTheSensorWasAndNeverTakenForLive) {
   add_sensor(kPlayedDriver);
   start();
   go_on(60, [&] { publish(0, breeze()); });
-  EXPECT_EQ(state(), SensorState::kReplayed);
+  EXPECT_EQ(state(), wind::judging::SensorState::kReplayed);
   go_on(60, [&] { publish(0, 5.0); });
-  EXPECT_EQ(state(), SensorState::kFrozen);
+  EXPECT_EQ(state(), wind::judging::SensorState::kFrozen);
   EXPECT_TRUE(hub_->status()[0].replayed);
-  sinks_[0]->link(LinkState::kFinished, "the end");
+  sinks_[0]->link(wind::LinkState::kFinished, "the end");
   go_on(30, [] {});
-  EXPECT_EQ(state(), SensorState::kDisconnected);
+  EXPECT_EQ(state(), wind::judging::SensorState::kDisconnected);
 }
 
 TEST_F(SensorJudgement, SilenceIsStaleAndADeviceThatGoesIsDisconnected) {
   start();
-  EXPECT_EQ(state(), SensorState::kConnecting);
+  EXPECT_EQ(state(), wind::judging::SensorState::kConnecting);
   go_on(30, [&] { publish(0, breeze()); });
   go_on(10, [] {});
-  EXPECT_EQ(state(), SensorState::kStale);
+  EXPECT_EQ(state(), wind::judging::SensorState::kStale);
   EXPECT_THAT(reason(), HasSubstr("no reading for 10"));
-  sinks_[0]->link(LinkState::kConnecting, "its cable is out");
+  sinks_[0]->link(wind::LinkState::kConnecting, "its cable is out");
   go_on(1, [] {});
-  EXPECT_EQ(state(), SensorState::kDisconnected);
+  EXPECT_EQ(state(), wind::judging::SensorState::kDisconnected);
   EXPECT_EQ(reason(), "its cable is out");
 }
 
@@ -275,15 +276,15 @@ TEST_F(SensorJudgementOfThree, TheOneThatIsOutvotedLosesTheWindToTheNext) {
   };
   go_on(60, [&] { all_say(5.5); });
   go_on(1000, [&] { all_say(33.0); });
-  EXPECT_EQ(state(0), SensorState::kImplausible);
+  EXPECT_EQ(state(0), wind::judging::SensorState::kImplausible);
   EXPECT_THAT(reason(0), HasSubstr("m/s, that of the other sensors 5"));
-  EXPECT_EQ(state(1), SensorState::kLive);
-  EXPECT_EQ(state(2), SensorState::kLive);
+  EXPECT_EQ(state(1), wind::judging::SensorState::kLive);
+  EXPECT_EQ(state(2), wind::judging::SensorState::kLive);
   go_on(60, [&] { all_say(33.0); });
-  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
   EXPECT_LT(speed_of(hub_->wind().wind), 12.0) << "the next one's";
   go_on(1000, [&] { all_say(5.5); });
-  EXPECT_EQ(state(0), SensorState::kLive);
+  EXPECT_EQ(state(0), wind::judging::SensorState::kLive);
 }
 
 TEST_F(SensorJudgementOfThree, WhoIsNotToBeComparedIsNeverOutvoted) {
@@ -294,7 +295,7 @@ TEST_F(SensorJudgementOfThree, WhoIsNotToBeComparedIsNeverOutvoted) {
     publish(1, breeze(5.0));
     publish(2, breeze(6.0));
   });
-  EXPECT_EQ(state(0), SensorState::kLive);
+  EXPECT_EQ(state(0), wind::judging::SensorState::kLive);
 }
 
 TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
@@ -304,7 +305,7 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
     publish(1, breeze(25.0));
   });
   for (const std::size_t sensor : {0U, 1U}) {
-    EXPECT_EQ(state(sensor), SensorState::kLive);
+    EXPECT_EQ(state(sensor), wind::judging::SensorState::kLive);
     EXPECT_THAT(reason(sensor), HasSubstr("Check each sensor"));
   }
   EXPECT_EQ(lines_of_log_with("warning sensor spoken0: live: a reading every 1 s; but its mean of 5 min is"), 1)
@@ -318,11 +319,11 @@ TEST_F(SensorJudgementOfTwo, ACupThatStandsStillWhereTheOtherHasWindIsSeized) {
   const auto publish_other = [&] { publish(1, breeze(7.0)); };
   go_on(60, [&] { publish(0, breeze()), publish_other(); });
   go_on(1400, [&] { publish(0, 0.0), publish_other(); });
-  EXPECT_EQ(state(0), SensorState::kSeized);
+  EXPECT_EQ(state(0), wind::judging::SensorState::kSeized);
   EXPECT_THAT(reason(0), HasSubstr("while the other sensors measure 7"));
   EXPECT_GT(speed_of(hub_->wind().wind), 3.0) << "the other's wind";
   go_on(20, [&] { publish(0, breeze()), publish_other(); });
-  EXPECT_EQ(state(0), SensorState::kLive);
+  EXPECT_EQ(state(0), wind::judging::SensorState::kLive);
 }
 
 /// Whatever happens, the wind stays one, and in the end everything is as it should be.
@@ -354,7 +355,7 @@ TEST_F(SensorJudgementOfTwo, RandomFaultsLeaveTheWindFiniteAndBoundedAndTheState
           for (int i = 0; i < 12; ++i) publish(sensor, breeze(), static_cast<double>(random() % 360));
           return;
         case 7:
-          sinks_[sensor]->link(chance(2) ? LinkState::kConnected : LinkState::kConnecting, "flaps");
+          sinks_[sensor]->link(chance(2) ? wind::LinkState::kConnected : wind::LinkState::kConnecting, "flaps");
           return;
         case 8:
           return publish(sensor, 0.0);
@@ -366,21 +367,21 @@ TEST_F(SensorJudgementOfTwo, RandomFaultsLeaveTheWindFiniteAndBoundedAndTheState
     if (chance(20)) clock_.advance(from_seconds(chance(3) ? kTenYears_s : 3600.0));  // the machine slept
     if (chance(20)) clock_.advance(-from_seconds(2.0));
   }
-  EXPECT_LE(largest_wind_m_s_, kMaxPlausibleSpeed_m_s);
+  EXPECT_LE(largest_wind_m_s_, wind::kMaxPlausibleSpeed_m_s);
 
-  for (SensorSink* sink : sinks_) sink->link(LinkState::kConnected, "here");
-  WindVector sum{};
+  for (drivers::sensor::SensorSink* sink : sinks_) sink->link(wind::LinkState::kConnected, "here");
+  wind::WindVector sum{};
   int seconds_seen = 0;
   go_on(180, [&] {
     publish(0, breeze());
     publish(1, breeze());
     if (++seconds_seen > 120) sum = sum + hub_->wind().wind;
   });
-  EXPECT_EQ(state(0), SensorState::kLive) << reason(0);
-  EXPECT_EQ(state(1), SensorState::kLive) << reason(1);
-  EXPECT_EQ(hub_->wind().source, WindSource::kLive);
+  EXPECT_EQ(state(0), wind::judging::SensorState::kLive) << reason(0);
+  EXPECT_EQ(state(1), wind::judging::SensorState::kLive) << reason(1);
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
   EXPECT_NEAR(speed_of(sum) / 60.0, 6.0, 2.0);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::sensing

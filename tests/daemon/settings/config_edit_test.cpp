@@ -8,7 +8,7 @@
 
 #include "daemon/settings/config.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 using ::testing::HasSubstr;
@@ -239,4 +239,4 @@ TEST(ConfigEdit, AnyLayoutIsChangedOnlyWhereItShould) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -9,7 +9,7 @@
 #include "daemon/settings/config.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 using ::testing::HasSubstr;
@@ -82,4 +82,4 @@ TEST_F(ConfigFile, ThatIsNotThereIsTold) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

@@ -7,7 +7,7 @@
 #include "daemon/settings/site_octaves.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 using ::testing::HasSubstr;
@@ -99,10 +99,10 @@ driver = "synthetic"
 name = "other"
 )",
                                      "wall.toml");
-  const Calibration& calibration = config.sensors[0].calibration;
+  const wind::judging::Calibration& calibration = config.sensors[0].calibration;
   EXPECT_EQ(calibration.gain, 1.05);
   EXPECT_EQ(calibration.curve.size(), 2U);
-  EXPECT_EQ(calibration.height_factor, height_factor(2.0, 10.0, 0.03));
+  EXPECT_EQ(calibration.height_factor, wind::judging::height_factor(2.0, 10.0, 0.03));
   EXPECT_EQ(config.sensors[0].heights.sensor_m, 2.0);
   EXPECT_EQ(config.sensors[0].heights.scene_m, 10.0);
   EXPECT_FALSE(config.sensors[1].heights.sensor_m.has_value());
@@ -135,7 +135,8 @@ TEST(Config, GustsReachAsFarAsTheHeightOfASensorSaysUnlessTheirLengthIsSet) {
   EXPECT_NEAR(gust_length_m(derived.wind, derived.sensors[0]), 25.0, 0.1);
   EXPECT_NEAR(gust_length_m(derived.wind, derived.sensors[1]), 85.0, 0.1);
   // Brought to 10 m, speed and length by the same factor: it passes in the same time.
-  EXPECT_NEAR(gust_length_m(derived.wind, derived.sensors[2]), 24.95 * height_factor(4.4, 10.0, 0.03), 0.1);
+  EXPECT_NEAR(gust_length_m(derived.wind, derived.sensors[2]), 24.95 * wind::judging::height_factor(4.4, 10.0, 0.03),
+              0.1);
   EXPECT_EQ(gust_length_m(derived.wind, derived.sensors[3]), 57.0);
   EXPECT_EQ(derived.wind.gust_length_m(), 57.0);
 
@@ -147,9 +148,9 @@ TEST(Config, GustsReachAsFarAsTheHeightOfASensorSaysUnlessTheirLengthIsSet) {
 TEST(Config, TheOctavesOfASiteAreARowOfDecibels) {
   const Config config = parse_config("[wind]\nsite_octaves = \"+1.2 -0.4 3\"\n", "test");
   EXPECT_EQ(config.wind.site_octaves_db, (std::vector{1.2, -0.4, 3.0}));
-  SiteSpectrum site;
+  wind::turbulence::SiteSpectrum site;
   site.expect(config.wind.site_octaves_db);
-  const SiteSpectrum::Decibels octaves_db = site.octaves_db();
+  const wind::turbulence::SiteSpectrum::Decibels octaves_db = site.octaves_db();
   EXPECT_NEAR(octaves_db[0], 1.2, 1e-9);
   EXPECT_NEAR(octaves_db[1], -0.4, 1e-9);
   EXPECT_NEAR(octaves_db[2], 3.0, 1e-9);
@@ -190,11 +191,11 @@ TEST(Config, ASensorHasItsPartAmongSeveral) {
       "priority = 3\nweight = 2\nx = -4.5\nz = 2\naveraging = 600\ndirection_step = 22.5\n",
       "wall.toml");
   EXPECT_EQ(config.wind.return_after_s, 20.0);
-  const BlendSourceSettings& roof = config.sensors[0].blend;
+  const wind::blend::BlendSourceSettings& roof = config.sensors[0].blend;
   EXPECT_FALSE(roof.is_relative);
   EXPECT_EQ(roof.priority, 0);
   EXPECT_EQ(roof.weight, 1.0);
-  const BlendSourceSettings& microphone = config.sensors[1].blend;
+  const wind::blend::BlendSourceSettings& microphone = config.sensors[1].blend;
   EXPECT_TRUE(microphone.is_relative);
   EXPECT_EQ(microphone.priority, 3);
   EXPECT_EQ(microphone.weight, 2.0);
@@ -232,7 +233,7 @@ TEST(Config, WhereASensorStandsIsToldOrNotAndStaysSoWhenWrittenOut) {
     const std::string written = to_toml(config);
     const Config again = parse_config(written, "again.toml");
     EXPECT_EQ(to_toml(again), written) << one.blend;
-    for (const BlendSourceSettings& source : {source_of(config), source_of(again)}) {
+    for (const wind::blend::BlendSourceSettings& source : {source_of(config), source_of(again)}) {
       EXPECT_EQ(source.has_place, one.has_place) << one.blend;
       EXPECT_EQ(source.east_m, one.east_m) << one.blend;
       EXPECT_EQ(source.south_m, one.south_m) << one.blend;
@@ -273,7 +274,7 @@ TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
 }
 
 TEST(Config, NoKindOfSceneHasAParameterOfTheCommonNames) {
-  for (const SceneDescription* scene : scene_table()) {
+  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
     for (const Parameter& own : scene->parameters) {
       for (const Parameter& common : common_scene_parameters()) EXPECT_NE(own.name, common.name) << scene->name;
       EXPECT_NE(own.name, "name") << scene->name;
@@ -310,15 +311,15 @@ TEST(Config, ASensorsJudgeHasLimitsOfItsOwnAndDefaults) {
       "[[sensor]]\nname = \"free\"\ndriver = \"synthetic\"\n[sensor.judge]\nenabled = false\n"
       "[[sensor]]\nname = \"usual\"\ndriver = \"synthetic\"\n",
       "wall.toml");
-  const std::optional<JudgeSettings>& strict = config.sensors[0].judge;
+  const std::optional<wind::judging::JudgeSettings>& strict = config.sensors[0].judge;
   ASSERT_TRUE(strict.has_value());
   EXPECT_EQ(strict->frozen_s, 120.0);
   EXPECT_EQ(strict->seized_s, 600.0);
   EXPECT_EQ(strict->seized_alone_s, 3600.0);
   EXPECT_FALSE(config.sensors[1].judge.has_value());
-  const std::optional<JudgeSettings>& usual = config.sensors[2].judge;
+  const std::optional<wind::judging::JudgeSettings>& usual = config.sensors[2].judge;
   ASSERT_TRUE(usual.has_value());
-  const JudgeSettings defaults;
+  const wind::judging::JudgeSettings defaults;
   EXPECT_EQ(usual->max_speed_m_s, defaults.max_speed_m_s);
   EXPECT_EQ(usual->slew_m_s2, defaults.slew_m_s2);
   EXPECT_EQ(usual->least_spike_m_s, defaults.least_spike_m_s);
@@ -385,7 +386,7 @@ fade = 30
   EXPECT_FALSE(default_config().wind.fallback);
   EXPECT_FALSE(default_config().wind.default_length_m);
 
-  const WindShapingSettings& shaping = config.shaping.settings;
+  const wind::shaping::WindShapingSettings& shaping = config.shaping.settings;
   EXPECT_EQ(shaping.floor_m_s, 1.5);
   EXPECT_EQ(shaping.site.median_m_s, 3.0);
   EXPECT_EQ(shaping.site.strong_m_s, 9.0);
@@ -451,9 +452,10 @@ TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
   check("sensor.calibration", calibration_parameters());
   check("sensor.blend", sensor_blend_parameters());
   check("sensor.judge", judge_parameters());
-  for (const DriverDescription* driver : driver_table()) check(driver->name, driver->parameters);
-  for (const SceneDescription* scene : scene_table()) check(scene->name, scene->parameters);
+  for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table())
+    check(driver->name, driver->parameters);
+  for (const scenes::SceneDescription* scene : scenes::scene_table()) check(scene->name, scene->parameters);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

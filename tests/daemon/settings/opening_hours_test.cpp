@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 using namespace std::chrono_literals;
@@ -138,4 +138,4 @@ TEST(OpeningHours, SaysWhatIsNoSuchText) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

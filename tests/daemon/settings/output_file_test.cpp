@@ -9,7 +9,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::settings {
 namespace {
 
 class OutputFileTest : public testing::Test {
@@ -73,4 +73,4 @@ TEST_F(OutputFileTest, RefusesWhatItMustNotReplace) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::settings

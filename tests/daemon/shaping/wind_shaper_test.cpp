@@ -15,7 +15,7 @@
 #include "daemon/settings/config.hpp"
 #include "tests/support/gusty_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::shaping {
 namespace {
 
 using namespace std::chrono_literals;
@@ -52,7 +52,7 @@ class CapturedLog {
 class ShaperBench {
  public:
   explicit ShaperBench(const std::string& shaping)
-      : config_(parse_config("[shaping]\n" + shaping, "wall.toml")), shaper(config_, shared_gusts()) {}
+      : config_(settings::parse_config("[shaping]\n" + shaping, "wall.toml")), shaper(config_, shared_gusts()) {}
 
   /// The speed that moves the scenes, after so long of this wind.
   double after(double speed_m_s, double duration_s = kShaperTick_s, double step_s = kShaperTick_s) {
@@ -60,8 +60,8 @@ class ShaperBench {
     for (double left_s = duration_s; left_s > 0.5 * step_s; left_s -= step_s) {
       mono += from_seconds(step_s);
       utc += from_seconds(step_s);
-      DrivingWind wind{.state = {.time = mono, .wind = {speed_m_s, 0.0}, .live_weight = 1.0},
-                       .ground = WindVector{speed_m_s, 0.0}};
+      wind::ground::DrivingWind wind{.state = {.time = mono, .wind = {speed_m_s, 0.0}, .live_weight = 1.0},
+                                     .ground = wind::WindVector{speed_m_s, 0.0}};
       shaper.shape(wind, utc, is_any_live);
       shaped_m_s = speed_of(wind.state.wind);
       largest_step_m_s = std::max(largest_step_m_s, has_begun_ ? std::abs(shaped_m_s - last_m_s_) : 0.0);
@@ -73,7 +73,7 @@ class ShaperBench {
   std::string text() const { return shaper.status().text; }
 
  private:
-  Config config_;
+  settings::Config config_;
   bool has_begun_ = false;
   double last_m_s_ = 0.0;
 
@@ -94,8 +94,9 @@ TEST(WindShaper, NothingButTheCeilingIsOnByDefault) {
 }
 
 TEST(WindShaper, TellsHowStrongGustsAreWhereTheyAreNotTheRealOnes) {
-  EXPECT_EQ(parse_config("", "wall.toml").shaping.settings.gusts, 1.0);
-  const WindShapingSettings settings = parse_config("[shaping]\ngusts = 1.5\n", "wall.toml").shaping.settings;
+  EXPECT_EQ(settings::parse_config("", "wall.toml").shaping.settings.gusts, 1.0);
+  const wind::shaping::WindShapingSettings settings =
+      settings::parse_config("[shaping]\ngusts = 1.5\n", "wall.toml").shaping.settings;
   EXPECT_EQ(settings.gusts, 1.5);
   EXPECT_EQ(shaping_text({.gusts = 1.5}, settings, {}), "gusts 1.50 times the real ones");
   EXPECT_EQ(shaping_text({.gusts = 1.0}, settings, {}), "");
@@ -188,7 +189,7 @@ TEST_F(SiteFileTest, TheSiteIsRememberedOverARestart) {
 }
 
 TEST_F(SiteFileTest, TheSitesGustsAreRememberedOverARestart) {
-  const auto learnt = std::make_shared<SiteSpectrum>();
+  const auto learnt = std::make_shared<wind::turbulence::SiteSpectrum>();
   for (int i = 0; i < 1000; ++i) learnt->learn(1, 3.0, 14.0);
   {
     // A gain is not needed for that.
@@ -197,7 +198,7 @@ TEST_F(SiteFileTest, TheSitesGustsAreRememberedOverARestart) {
     wall.after(2.0);
   }
   const CapturedLog log;
-  const auto known = std::make_shared<SiteSpectrum>();
+  const auto known = std::make_shared<wind::turbulence::SiteSpectrum>();
   ShaperBench wall("site_file = \"" + file_.string() + "\"\n");
   wall.shaper.keep_site_file(known);
   EXPECT_EQ(known->octaves_db(), learnt->octaves_db());
@@ -206,14 +207,14 @@ TEST_F(SiteFileTest, TheSitesGustsAreRememberedOverARestart) {
 
 TEST_F(SiteFileTest, AFileFromBeforeGustsWereLearntIsStillRead) {
   std::string times;
-  for (std::size_t bin = 0; bin < SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
+  for (std::size_t bin = 0; bin < wind::shaping::SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
   std::ofstream(file_) << "{\"seconds_at_each_speed\": [" << times << "]}";
   const CapturedLog log;
-  const auto gusts = std::make_shared<SiteSpectrum>();
+  const auto gusts = std::make_shared<wind::turbulence::SiteSpectrum>();
   ShaperBench wall(with_file());
   wall.shaper.keep_site_file(gusts);
   EXPECT_EQ(log.count("of the site's wind"), 1);
-  EXPECT_EQ(gusts->octaves_db(), SiteSpectrum::Decibels{});
+  EXPECT_EQ(gusts->octaves_db(), wind::turbulence::SiteSpectrum::Decibels{});
 }
 
 TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
@@ -261,17 +262,17 @@ TEST(WindShaper, NothingIsLearntOfTheSiteFromAFallBack) {
 }
 
 TEST(ShapingText, SaysEverythingThatIsAtWork) {
-  const WindShapingSettings settings{.floor_m_s = 1.5, .site = {.median_m_s = 3.0}, .closed_level = 0.2};
-  const WindShapingReport report{.mean_m_s = 0.4,
-                                 .shaped_mean_m_s = 1.5,
-                                 .site_gain = 1.5,
-                                 .floor_gain = 2.5,
-                                 .opening = 0.6,
-                                 .speed_m_s = 30.0,
-                                 .ceiling_gain = 0.75,
-                                 .median_m_s = 1.2,
-                                 .strong_m_s = 3.9,
-                                 .known_s = 450'000.0};
+  const wind::shaping::WindShapingSettings settings{.floor_m_s = 1.5, .site = {.median_m_s = 3.0}, .closed_level = 0.2};
+  const wind::shaping::WindShapingReport report{.mean_m_s = 0.4,
+                                                .shaped_mean_m_s = 1.5,
+                                                .site_gain = 1.5,
+                                                .floor_gain = 2.5,
+                                                .opening = 0.6,
+                                                .speed_m_s = 30.0,
+                                                .ceiling_gain = 0.75,
+                                                .median_m_s = 1.2,
+                                                .strong_m_s = 3.9,
+                                                .known_s = 450'000.0};
   EXPECT_EQ(shaping_text(report, settings, {.has_hours = true, .is_open = false, .until = "until Tue 10:00"}),
             "site gain 1.50 (in 5 days 5 h median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; "
             "closed until Tue 10:00, fading out: 60 % of the wind; ceiling: 30.0 limited to 22.5 m/s");
@@ -282,4 +283,4 @@ TEST(ShapingText, SaysEverythingThatIsAtWork) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::shaping

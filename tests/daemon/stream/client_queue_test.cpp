@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 namespace {
 
 using namespace std::chrono_literals;
@@ -182,4 +182,4 @@ TEST_F(ClientQueueTest, ASlowClientThatTakesAByteNowAndThenMayStay) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

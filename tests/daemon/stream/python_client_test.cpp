@@ -12,7 +12,7 @@
 #include "tests/engine/wire/samples.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 namespace {
 
 namespace asio = boost::asio;
@@ -47,12 +47,12 @@ TEST(PythonClient, ItFindsNothingWrongWithALiveStreamOfAHundredThousandNodes) {
   read();
 
   // A frame every few milliseconds, for a minute at most.
-  const Skeleton& skeleton = settings.scenes.scenes[0].skeleton;
-  const std::vector<const Skeleton*> skeletons{&skeleton};
+  const pose::Skeleton& skeleton = settings.scenes.scenes[0].skeleton;
+  const std::vector<const pose::Skeleton*> skeletons{&skeleton};
   wire::FrameEncoder encoder;
   for (std::uint64_t tick = 1; tick < 12'000 && !ended; ++tick) {
-    const Pose pose = samples::bent(kStrands, 0.01f * static_cast<float>(tick % 100));
-    const std::vector<const Pose*> poses{&pose};
+    const pose::Pose pose = samples::bent(kStrands, 0.01f * static_cast<float>(tick % 100));
+    const std::vector<const pose::Pose*> poses{&pose};
     wire::FrameInfo info = samples::frame_info();
     info.sequence = info.tick = tick;
     info.time_s = static_cast<double>(tick) / 60.0;
@@ -69,4 +69,4 @@ TEST(PythonClient, ItFindsNothingWrongWithALiveStreamOfAHundredThousandNodes) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

@@ -10,7 +10,7 @@
 #include "daemon/stream/tcp_stream.hpp"
 #include "tests/engine/wire/samples.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 namespace {
 
 namespace asio = boost::asio;
@@ -86,4 +86,4 @@ TEST_F(StreamClientTest, WhereNobodyListensTheFailureNamesTheAddress) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

@@ -19,7 +19,7 @@
 // Real sockets on loopback; server and clients share one I/O context, which the tests turn by hand until what they wait
 // for has happened.
 
-namespace yuragi {
+namespace yuragi::daemon::stream {
 namespace {
 
 namespace asio = boost::asio;
@@ -38,15 +38,15 @@ class FrameMaker {
   SharedBytes make(std::uint64_t sequence) {
     wire::FrameInfo info = samples::frame_info();
     info.sequence = sequence;
-    const std::array<const Skeleton*, 1> skeletons{&skeleton_};
-    const std::array<const Pose*, 1> poses{&pose_};
+    const std::array<const pose::Skeleton*, 1> skeletons{&skeleton_};
+    const std::array<const pose::Pose*, 1> poses{&pose_};
     const auto bytes = encoder_.encode(info, skeletons, poses);
     return std::make_shared<const wire::Bytes>(bytes.begin(), bytes.end());
   }
 
  private:
-  Skeleton skeleton_;
-  Pose pose_;
+  pose::Skeleton skeleton_;
+  pose::Pose pose_;
   wire::FrameEncoder encoder_;
 };
 
@@ -466,4 +466,4 @@ TEST_F(TcpStreamTest, AnInvalidControlEndsTheConnection) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::stream

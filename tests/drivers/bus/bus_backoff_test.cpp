@@ -4,7 +4,7 @@
 
 #include "drivers/bus/backoff.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,4 +27,4 @@ TEST(Backoff, DoublesUpToItsCapAndIsTheSameForASeed) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

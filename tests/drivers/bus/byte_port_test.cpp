@@ -22,7 +22,7 @@
 #include "tests/support/scripted_server.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -438,4 +438,4 @@ TEST(BytePortAddress, IsDescribedForPeople) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -20,7 +20,7 @@
 #include "tests/support/live_sensor.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -164,10 +164,11 @@ class MicrophoneWatchdog : public ProcessPortTest {
 
   /// What the sensor says of a worker, when it has been started so often.
   std::string detail_after(const std::string& worker_text, int attempts = 3) {
-    MicrophoneSettings settings;
+    microphone::MicrophoneSettings settings;
     settings.start_timeout = 300ms;
     settings.sound_timeout = 300ms;
-    test::LiveSensor sensor(std::make_unique<MicrophoneSensor>(settings, 1, make_process_port({script(worker_text)})));
+    test::LiveSensor sensor(
+        std::make_unique<microphone::MicrophoneSensor>(settings, 1, make_process_port({script(worker_text)})));
     for (int attempt = 0; attempt < attempts; ++attempt) {
       pollfd wait{attempts_.get(), POLLIN, 0};
       char newline = 0;
@@ -200,18 +201,18 @@ TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatCrashes) {
 
 TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatBabbles) {
   EXPECT_THAT(detail_after(count() + "yes YMIC | head -c 100000; exec sleep 1000"), HasSubstr("has not started"));
-  EXPECT_GT(sink_.count(Refusal::kMalformed), 0);
+  EXPECT_GT(sink_.count(decode::Refusal::kMalformed), 0);
   EXPECT_TRUE(sink_.readings.empty());
 }
 
 TEST_F(MicrophoneWatchdog, InterruptEndsItsWaitForTheWorker) {
-  MicrophoneSettings settings;
+  microphone::MicrophoneSettings settings;
   settings.start_timeout = 1h;
   test::LiveSensor sensor(
-      std::make_unique<MicrophoneSensor>(settings, 1, make_process_port({script("exec sleep 10000")})));
+      std::make_unique<microphone::MicrophoneSensor>(settings, 1, make_process_port({script("exec sleep 10000")})));
   sensor.end();  // hangs if it waits for the worker
-  EXPECT_EQ(sensor.sink.count(Refusal::kTimeout), 0);
+  EXPECT_EQ(sensor.sink.count(decode::Refusal::kTimeout), 0);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

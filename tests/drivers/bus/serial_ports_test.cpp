@@ -10,7 +10,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::bus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST_F(SerialPortsTest, ThatBelongToAGroupNameItAndHowToJoin) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus

@@ -6,10 +6,10 @@
 #include "drivers/decode/text/gill.hpp"
 #include "tests/support/decoded_text.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 namespace {
 
-const GillOptions kGill;
+const text::GillOptions kGill;
 
 /// STX body ETX and the right checksum.
 std::string gill_frame(std::string_view body) {
@@ -17,8 +17,8 @@ std::string gill_frame(std::string_view body) {
   return '\x02' + std::string(body) + '\x03' + sum + "\r\n";
 }
 
-Result<DecodedWind, Refusal> decode_gill_body(std::string_view body, const GillOptions& options = kGill) {
-  return decode_gill(options, gill_frame(body));
+Result<DecodedWind, Refusal> decode_gill_body(std::string_view body, const text::GillOptions& options = kGill) {
+  return text::decode_gill(options, gill_frame(body));
 }
 
 TEST(GillPolar, GivesSpeedInEachUnit) {
@@ -68,30 +68,31 @@ TEST(GillMaxiMet, HasSpeedAndDirectionInFront) {
 }
 
 TEST(GillFrame, NeedsItsChecksumUnlessThePolicySaysOtherwise) {
-  EXPECT_TRUE(reads(decode_gill(kGill,
-                                "Q,229,002.74,M,00,\x03"
-                                "16"),
+  EXPECT_TRUE(reads(text::decode_gill(kGill,
+                                      "Q,229,002.74,M,00,\x03"
+                                      "16"),
                     2.74, 229.0));
-  EXPECT_TRUE(is_refused(decode_gill(kGill,
-                                     "\x02Q,229,002.74,M,00,\x03"
-                                     "17"),
+  EXPECT_TRUE(is_refused(text::decode_gill(kGill,
+                                           "\x02Q,229,002.74,M,00,\x03"
+                                           "17"),
                          Refusal::kBadChecksum));
-  EXPECT_TRUE(is_refused(decode_gill(kGill,
-                                     "\x02Q,229,002.74,M,00,\x03"
-                                     "1"),
+  EXPECT_TRUE(is_refused(text::decode_gill(kGill,
+                                           "\x02Q,229,002.74,M,00,\x03"
+                                           "1"),
                          Refusal::kTooShort));
-  EXPECT_TRUE(is_refused(decode_gill(kGill, "\x02Q,229,002.74,M,00,"), Refusal::kTooShort));
-  EXPECT_TRUE(reads(decode_gill({.checksum = WhenMissing::kAccept, .node = {}}, "Q,229,002.74,M,00,"), 2.74, 229.0));
-  EXPECT_TRUE(is_refused(decode_gill(kGill, ""), Refusal::kTooShort));
+  EXPECT_TRUE(is_refused(text::decode_gill(kGill, "\x02Q,229,002.74,M,00,"), Refusal::kTooShort));
+  EXPECT_TRUE(
+      reads(text::decode_gill({.checksum = WhenMissing::kAccept, .node = {}}, "Q,229,002.74,M,00,"), 2.74, 229.0));
+  EXPECT_TRUE(is_refused(text::decode_gill(kGill, ""), Refusal::kTooShort));
 }
 
 TEST(GillFrame, OfAnotherNodeOrFormatIsNotMine) {
-  GillOptions options;
+  text::GillOptions options;
   options.node = 'Q';
   EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,M,00,", options), 2.74, 229.0));
   EXPECT_TRUE(is_refused(decode_gill_body("A,229,002.74,M,00,", options), Refusal::kNotMine));
   EXPECT_TRUE(is_refused(decode_gill_body("WINDSONIC (Gill Instruments Ltd)"), Refusal::kNotMine));
-  EXPECT_TRUE(reads(decode_gill(kGill, "$IIMWV,120,R,002.10,M,00*51"), 2.1, 120.0));
+  EXPECT_TRUE(reads(text::decode_gill(kGill, "$IIMWV,120,R,002.10,M,00*51"), 2.1, 120.0));
 }
 
 TEST(GillVectors, OfTheManualReadWithTheRightChecksumOnly) {
@@ -101,11 +102,11 @@ TEST(GillVectors, OfTheManualReadWithTheRightChecksumOnly) {
     const std::string body = vector["body"];
     SCOPED_TRACE(body);
     const bool is_error = body.find(",04,") != std::string::npos;
-    const auto decoded = decode_gill(kGill, '\x02' + body + '\x03' + vector["computed"].get<std::string>());
+    const auto decoded = text::decode_gill(kGill, '\x02' + body + '\x03' + vector["computed"].get<std::string>());
     EXPECT_EQ(decoded.has_value(), !is_error);
     EXPECT_EQ(gill_frame(body).substr(body.size() + 2, 2), vector["computed"]);
     if (!vector["printed_is_right"]) {
-      EXPECT_TRUE(is_refused(decode_gill(kGill, '\x02' + body + '\x03' + vector["printed"].get<std::string>()),
+      EXPECT_TRUE(is_refused(text::decode_gill(kGill, '\x02' + body + '\x03' + vector["printed"].get<std::string>()),
                              Refusal::kBadChecksum));
     }
   }
@@ -127,4 +128,4 @@ TEST(GillDecoder, GivesNothingUnphysicalWhateverComes) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

@@ -12,92 +12,93 @@
 #include "drivers/decode/text/umb.hpp"
 #include "tests/support/decoded_text.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 namespace {
 
 using testing::ElementsAre;
 
 TEST(FtAnswer, IsSpeedAngleAndStatus) {
-  const FtOptions options;
-  EXPECT_TRUE(reads(decode_ft(options, "$WI,WVP=020.0,045,0*73\r\n"), 20.0, 45.0));
-  EXPECT_TRUE(is_refused(decode_ft(options, "$WI,WVP=020.0,045,0*74"), Refusal::kBadChecksum));
-  EXPECT_TRUE(is_refused(decode_ft(options, sentence("WI,WVP=020.0,045,1")), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused(decode_ft(options, sentence("WI,WVP=020.0,045")), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused(decode_ft(options, sentence("WI,WVP=020.0,045,0,0")), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused(decode_ft(options, sentence("WI,DF=P")), Refusal::kNotMine));
-  EXPECT_TRUE(reads(decode_ft(options, sentence("WIMWV,045,R,020.0,M,A")), 20.0, 45.0));
+  const text::FtOptions options;
+  EXPECT_TRUE(reads(text::decode_ft(options, "$WI,WVP=020.0,045,0*73\r\n"), 20.0, 45.0));
+  EXPECT_TRUE(is_refused(text::decode_ft(options, "$WI,WVP=020.0,045,0*74"), Refusal::kBadChecksum));
+  EXPECT_TRUE(is_refused(text::decode_ft(options, sentence("WI,WVP=020.0,045,1")), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused(text::decode_ft(options, sentence("WI,WVP=020.0,045")), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_ft(options, sentence("WI,WVP=020.0,045,0,0")), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_ft(options, sentence("WI,DF=P")), Refusal::kNotMine));
+  EXPECT_TRUE(reads(text::decode_ft(options, sentence("WIMWV,045,R,020.0,M,A")), 20.0, 45.0));
 }
 
 TEST(FtAnswer, WithItsChecksumSwitchedOffIsReadByPolicy) {
-  EXPECT_TRUE(is_refused(decode_ft({}, "$WI,WVP=020.0,045,0*//"), Refusal::kBadChecksum));
-  EXPECT_TRUE(reads(decode_ft({.checksum = WhenMissing::kAccept}, "$WI,WVP=020.0,045,0*//"), 20.0, 45.0));
+  EXPECT_TRUE(is_refused(text::decode_ft({}, "$WI,WVP=020.0,045,0*//"), Refusal::kBadChecksum));
+  EXPECT_TRUE(reads(text::decode_ft({.checksum = WhenMissing::kAccept}, "$WI,WVP=020.0,045,0*//"), 20.0, 45.0));
 }
 
 TEST(UmbAnswer, InNmeaModeIsMwv) {
-  EXPECT_TRUE(reads(decode_umb({}, "$WIMWV,230.6,R,003.4,N,A*23"), 1.7491, 230.6));
-  EXPECT_TRUE(is_refused(decode_umb({}, sentence("WIMWV,,R,,M,V")), Refusal::kInvalid));
+  EXPECT_TRUE(reads(text::decode_umb({}, "$WIMWV,230.6,R,003.4,N,A*23"), 1.7491, 230.6));
+  EXPECT_TRUE(is_refused(text::decode_umb({}, sentence("WIMWV,,R,,M,V")), Refusal::kInvalid));
 }
 
 TEST(UmbAnswer, InAsciiModeIsAShareOfTheRange) {
-  const UmbOptions options;
-  EXPECT_TRUE(reads(decode_umb(options, "$ 28673 M 00400 06552\r"), 7.5, {}));
-  EXPECT_TRUE(reads(decode_umb(options, "$ 28673 M 00405 06552"), 7.5, {}));
-  EXPECT_TRUE(reads(decode_umb(options, "$ 28673 M 00500 32760"), {}, 179.95));
-  EXPECT_NEAR(decode_umb(options, "$ 28673 M 00440 65520")->gust_m_s.value_or(0.0), 75.0, 1e-9);
-  EXPECT_TRUE(is_refused(decode_umb(options, "$ 28673 M 00400 65521"), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused(decode_umb(options, "$ 28673 M 00100 34785"), Refusal::kNotMine));  // a temperature
-  EXPECT_TRUE(is_refused(decode_umb(options, "$ 28673 M 00400 6552"), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused(decode_umb(options, "$ 28673 M 00400 99999"), Refusal::kMalformed));
-  UmbOptions other;
+  const text::UmbOptions options;
+  EXPECT_TRUE(reads(text::decode_umb(options, "$ 28673 M 00400 06552\r"), 7.5, {}));
+  EXPECT_TRUE(reads(text::decode_umb(options, "$ 28673 M 00405 06552"), 7.5, {}));
+  EXPECT_TRUE(reads(text::decode_umb(options, "$ 28673 M 00500 32760"), {}, 179.95));
+  EXPECT_NEAR(text::decode_umb(options, "$ 28673 M 00440 65520")->gust_m_s.value_or(0.0), 75.0, 1e-9);
+  EXPECT_TRUE(is_refused(text::decode_umb(options, "$ 28673 M 00400 65521"), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused(text::decode_umb(options, "$ 28673 M 00100 34785"), Refusal::kNotMine));  // a temperature
+  EXPECT_TRUE(is_refused(text::decode_umb(options, "$ 28673 M 00400 6552"), Refusal::kTooShort));
+  EXPECT_TRUE(is_refused(text::decode_umb(options, "$ 28673 M 00400 99999"), Refusal::kMalformed));
+  text::UmbOptions other;
   other.device = 28674;
-  EXPECT_TRUE(is_refused(decode_umb(other, "$ 28673 M 00400 06552"), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(text::decode_umb(other, "$ 28673 M 00400 06552"), Refusal::kNotMine));
 }
 
 TEST(NumberLine, IsColumnsOrKeys) {
-  const LineOptions options;
-  EXPECT_TRUE(reads(decode_line(options, "4.2,270,6.1\r\n"), 4.2, 270.0));
-  EXPECT_EQ(decode_line(options, "4.2,270,6.1")->gust_m_s, 6.1);
-  EXPECT_TRUE(reads(decode_line(options, "4.2"), 4.2, {}));
-  EXPECT_TRUE(reads(decode_line(options, "4.2,,"), 4.2, {}));
-  EXPECT_TRUE(reads(decode_line(options, "speed=4.2 direction=270; gust=6.1"), 4.2, 270.0));
-  EXPECT_TRUE(reads(decode_line(options, "speed: 4.2, direction: 360"), 4.2, 0.0));
-  EXPECT_TRUE(reads(decode_line(options, "temperature:21.5\tspeed:0"), 0.0, {}));
+  const text::LineOptions options;
+  EXPECT_TRUE(reads(text::decode_line(options, "4.2,270,6.1\r\n"), 4.2, 270.0));
+  EXPECT_EQ(text::decode_line(options, "4.2,270,6.1")->gust_m_s, 6.1);
+  EXPECT_TRUE(reads(text::decode_line(options, "4.2"), 4.2, {}));
+  EXPECT_TRUE(reads(text::decode_line(options, "4.2,,"), 4.2, {}));
+  EXPECT_TRUE(reads(text::decode_line(options, "speed=4.2 direction=270; gust=6.1"), 4.2, 270.0));
+  EXPECT_TRUE(reads(text::decode_line(options, "speed: 4.2, direction: 360"), 4.2, 0.0));
+  EXPECT_TRUE(reads(text::decode_line(options, "temperature:21.5\tspeed:0"), 0.0, {}));
 }
 
 TEST(NumberLine, IsReadAsTheOptionsSay) {
-  LineOptions options;
+  text::LineOptions options;
   options.separator = ' ';
   options.speed = {.column = 2, .key = "w", .scale = 1.0 / 3.6};
   options.direction = {.column = 0, .key = "", .offset = 10.0};
   options.gust = {};
   options.invalid = -999.0;
-  EXPECT_TRUE(reads(decode_line(options, "  80   x\t36 "), 10.0, 90.0));
-  EXPECT_TRUE(reads(decode_line(options, "-999 x 36"), 10.0, {}));
-  EXPECT_TRUE(reads(decode_line(options, "w=18 direction=7"), 5.0, {}));
+  EXPECT_TRUE(reads(text::decode_line(options, "  80   x\t36 "), 10.0, 90.0));
+  EXPECT_TRUE(reads(text::decode_line(options, "-999 x 36"), 10.0, {}));
+  EXPECT_TRUE(reads(text::decode_line(options, "w=18 direction=7"), 5.0, {}));
 }
 
 TEST(NumberLine, WithoutAValueIsNeverZero) {
-  const LineOptions options;
-  EXPECT_TRUE(reads(decode_line(options, "nan,270"), {}, 270.0));
-  EXPECT_TRUE(is_refused(decode_line(options, "nan,nan,nan"), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused(decode_line(options, ",,"), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused(decode_line(options, "speed="), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused(decode_line(options, ""), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused(decode_line(options, "# speed,direction"), Refusal::kNotMine));
-  EXPECT_TRUE(is_refused(decode_line(options, "volts=3.3"), Refusal::kNotMine));
-  EXPECT_TRUE(is_refused(decode_line(options, "ready"), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused(decode_line(options, "4.2.1,270"), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused(decode_line(options, "speed=4 speed=5"), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused(decode_line(options, "-4,270"), Refusal::kImplausible));
-  EXPECT_TRUE(is_refused(decode_line(options, "4,-1"), Refusal::kImplausible));
-  EXPECT_TRUE(is_refused(decode_line(options, "1" + std::string(400, '0')), Refusal::kMalformed));
+  const text::LineOptions options;
+  EXPECT_TRUE(reads(text::decode_line(options, "nan,270"), {}, 270.0));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "nan,nan,nan"), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused(text::decode_line(options, ",,"), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "speed="), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused(text::decode_line(options, ""), Refusal::kTooShort));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "# speed,direction"), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "volts=3.3"), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "ready"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "4.2.1,270"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "speed=4 speed=5"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "-4,270"), Refusal::kImplausible));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "4,-1"), Refusal::kImplausible));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "1" + std::string(400, '0')), Refusal::kMalformed));
 }
 
 /// All lines, and "!" and the reason for each refusal, of bytes that come in pieces of `size`.
-std::vector<std::string> assembled(std::string_view text, std::size_t size, LineEnding ending = LineEnding::kNewline) {
-  LineAssembler assembler(ending);
+std::vector<std::string> assembled(std::string_view text, std::size_t size,
+                                   text::LineEnding ending = text::LineEnding::kNewline) {
+  text::LineAssembler assembler(ending);
   std::vector<std::string> lines;
-  const auto keep = [&](const std::optional<LineAssembler::Line>& line) {
+  const auto keep = [&](const std::optional<text::LineAssembler::Line>& line) {
     if (line) lines.push_back(*line ? std::string(**line) : "!" + std::string(name_of(line->error())));
   };
   while (!text.empty()) {
@@ -123,7 +124,7 @@ TEST(LineAssembler, EndsLinesAtEveryKindOfEndWhereverTheBytesAreSplit) {
     EXPECT_THAT(assembled("\x02"
                           "A\x03\x02"
                           "B\r\x03",
-                          size, LineEnding::kEtx),
+                          size, text::LineEnding::kEtx),
                 ElementsAre("A", "B"))
         << size;
     EXPECT_THAT(assembled("cut\x02whole\r\x03next\n", size), ElementsAre("!too short", "whole", "next")) << size;
@@ -131,7 +132,7 @@ TEST(LineAssembler, EndsLinesAtEveryKindOfEndWhereverTheBytesAreSplit) {
 }
 
 TEST(LineAssembler, RefusesAnOverlongLineOnceAndGoesOnBehindIt) {
-  const std::string longest(LineAssembler::kMaxLine, 'x');
+  const std::string longest(text::LineAssembler::kMaxLine, 'x');
   EXPECT_THAT(assembled(longest + "\nb\n", 7), ElementsAre(longest, "b"));
   EXPECT_THAT(assembled(longest + "x" + longest + longest + "\nb\n", 7), ElementsAre("!malformed", "b"));
   EXPECT_THAT(assembled(longest + longest +
@@ -142,7 +143,7 @@ TEST(LineAssembler, RefusesAnOverlongLineOnceAndGoesOnBehindIt) {
 }
 
 TEST(LineAssembler, ForgetsWhenItIsCleared) {
-  LineAssembler assembler;
+  text::LineAssembler assembler;
   const std::vector<std::uint8_t> half = {'$', 'W'};
   std::span<const std::uint8_t> bytes(half);
   EXPECT_FALSE(assembler.next(bytes));
@@ -160,7 +161,8 @@ TEST(SmallTextDecoders, GiveNothingUnphysicalWhateverComes) {
     for (auto changes = random() % 6; changes > 0; --changes) {
       text[random() % text.size()] = kAlphabet[random() % kAlphabet.size()];
     }
-    for (const auto& decoded : {decode_ft({}, sentence(text)), decode_umb({}, text), decode_line({}, text)}) {
+    for (const auto& decoded :
+         {text::decode_ft({}, sentence(text)), text::decode_umb({}, text), text::decode_line({}, text)}) {
       if (decoded) {
         ASSERT_TRUE(is_physical(*decoded)) << text;
       }
@@ -169,4 +171,4 @@ TEST(SmallTextDecoders, GiveNothingUnphysicalWhateverComes) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

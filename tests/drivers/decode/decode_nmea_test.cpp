@@ -8,14 +8,15 @@
 #include "drivers/decode/text/nmea.hpp"
 #include "tests/support/decoded_text.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 namespace {
 
-const NmeaOptions kStrict;
-const NmeaOptions kLenient = {.checksum = WhenMissing::kAccept, .status = WhenMissing::kAccept, .xdr_first_id = 0};
+const text::NmeaOptions kStrict;
+const text::NmeaOptions kLenient = {
+    .checksum = WhenMissing::kAccept, .status = WhenMissing::kAccept, .xdr_first_id = 0};
 
-Result<DecodedWind, Refusal> decode_body(std::string_view body, const NmeaOptions& options = kStrict) {
-  return decode_nmea(options, sentence(body));
+Result<DecodedWind, Refusal> decode_body(std::string_view body, const text::NmeaOptions& options = kStrict) {
+  return text::decode_nmea(options, sentence(body));
 }
 
 TEST(NmeaMwv, GivesSpeedInEachUnitAndItsReference) {
@@ -59,35 +60,36 @@ TEST(NmeaPolicy, DecidesAboutAMissingStatus) {
 }
 
 TEST(NmeaPolicy, DecidesAboutAMissingChecksum) {
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "$WIMWV,214.8,R,0.1,K,A"), Refusal::kBadChecksum));
-  EXPECT_TRUE(reads(decode_nmea(kLenient, "$WIMWV,214.8,R,0.1,K"), 0.1 / 3.6, 214.8));
-  EXPECT_TRUE(is_refused(decode_nmea(kLenient, "$WIMWV,214.8,R,0.1,K,A*00"), Refusal::kBadChecksum));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, "$WIMWV,214.8,R,0.1,K,A"), Refusal::kBadChecksum));
+  EXPECT_TRUE(reads(text::decode_nmea(kLenient, "$WIMWV,214.8,R,0.1,K"), 0.1 / 3.6, 214.8));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kLenient, "$WIMWV,214.8,R,0.1,K,A*00"), Refusal::kBadChecksum));
 }
 
 TEST(NmeaLine, MayHaveALowerCaseChecksumAndOnlyARightOne) {
-  EXPECT_TRUE(reads(decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2e"), 3.0095, 74.0));
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2F"), Refusal::kBadChecksum));
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2"), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2E0"), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*xy"), Refusal::kBadChecksum));
+  EXPECT_TRUE(reads(text::decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2e"), 3.0095, 74.0));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2F"), Refusal::kBadChecksum));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2"), Refusal::kTooShort));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*2E0"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, "$IIMWV,074,T,05.85,N,A*xy"), Refusal::kBadChecksum));
 }
 
 TEST(NmeaLine, MayHaveSomethingInFront) {
   const std::string good = sentence("WIMWV,074,R,05.85,M,A");
   for (const std::string& front : {std::string(3, '\0'), std::string("\\s:GPS,c:1534758457*00\\"),
                                    std::string("12:00:01 "), std::string("$WIMWV,0"), std::string(" \t")}) {
-    EXPECT_TRUE(reads(decode_nmea(kStrict, front + good + "\r\n"), 5.85, 74.0)) << front;
+    EXPECT_TRUE(reads(text::decode_nmea(kStrict, front + good + "\r\n"), 5.85, 74.0)) << front;
   }
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "# " + good), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, "# " + good), Refusal::kNotMine));
 }
 
 TEST(NmeaLine, ThatIsNoWindSentenceIsNotMine) {
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "!AIVDM,1,1,,A,13u?etPv2;0n:dDPwUM1U1Cb069D,0*24"), Refusal::kNotMine));
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, "Calypso ready"), Refusal::kNotMine));
+  EXPECT_TRUE(
+      is_refused(text::decode_nmea(kStrict, "!AIVDM,1,1,,A,13u?etPv2;0n:dDPwUM1U1Cb069D,0*24"), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, "Calypso ready"), Refusal::kNotMine));
   EXPECT_TRUE(is_refused(decode_body("SDHDG,229.8,,,1.3,E"), Refusal::kNotMine));
   EXPECT_TRUE(is_refused(decode_body("PMWV,1,R,1,M,A"), Refusal::kNotMine));
   EXPECT_TRUE(is_refused(decode_body("IIXDR,C,,C,AIRTEMP,A,-1.0,D,HEEL,A,2.9,D,TRIM"), Refusal::kNotMine));
-  EXPECT_TRUE(is_refused(decode_nmea(kStrict, ""), Refusal::kTooShort));
+  EXPECT_TRUE(is_refused(text::decode_nmea(kStrict, ""), Refusal::kTooShort));
 }
 
 TEST(NmeaLine, WithFieldsThatTheSentenceDoesNotHaveIsMalformed) {
@@ -150,7 +152,7 @@ TEST(NmeaVectors, OfTheSharedCollectionDecodeAsTheySay) {
     const std::string line = vector["sentence"];
     const auto& expect = vector["expect"];
     SCOPED_TRACE(line);
-    const auto decoded = decode_nmea(kLenient, line);
+    const auto decoded = text::decode_nmea(kLenient, line);
     if (!vector["checksum_ok"]) {
       EXPECT_TRUE(is_refused(decoded, Refusal::kBadChecksum));
     } else if (expect.contains("drop")) {
@@ -184,7 +186,7 @@ TEST(NmeaLog, OfTheZeusReadsAllItsWindAsGpsdDoes) {
   std::vector<DecodedWind> apparent;
   std::vector<DecodedWind> north;
   for (const std::string& line : lines) {
-    const auto decoded = decode_nmea(kStrict, line);
+    const auto decoded = text::decode_nmea(kStrict, line);
     const bool is_wind = line.starts_with("$WIMW");
     EXPECT_EQ(decoded.has_value(), is_wind) << line;
     if (!decoded) continue;
@@ -230,9 +232,9 @@ TEST(NmeaLog, OfN2kdReadsByPolicy) {
   int by_policy = 0;
   for (const std::string& line : lines) {
     wind += line.find("MWV,") == 3 ? 1 : 0;
-    strict += decode_nmea(kStrict, line).has_value() ? 1 : 0;
+    strict += text::decode_nmea(kStrict, line).has_value() ? 1 : 0;
     const auto decoded =
-        decode_nmea({.checksum = WhenMissing::kRefuse, .status = WhenMissing::kAccept, .xdr_first_id = 0}, line);
+        text::decode_nmea({.checksum = WhenMissing::kRefuse, .status = WhenMissing::kAccept, .xdr_first_id = 0}, line);
     by_policy += decoded.has_value() ? 1 : 0;
   }
   EXPECT_EQ(wind, 147);
@@ -251,16 +253,16 @@ TEST(NmeaDecoder, GivesNothingUnphysicalWhateverComes) {
     for (auto changes = random() % 6; changes > 0; --changes) {
       body[random() % body.size()] = kAlphabet[random() % kAlphabet.size()];
     }
-    const auto decoded = decode_nmea(kLenient, round % 4 == 0 ? body : sentence(body));
+    const auto decoded = text::decode_nmea(kLenient, round % 4 == 0 ? body : sentence(body));
     if (decoded) {
       ASSERT_TRUE(is_physical(*decoded)) << body;
     }
 
     std::string bytes(random() % 40, '\0');
     for (char& byte : bytes) byte = static_cast<char>(random());
-    EXPECT_FALSE(decode_nmea(kStrict, bytes).has_value());
+    EXPECT_FALSE(text::decode_nmea(kStrict, bytes).has_value());
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

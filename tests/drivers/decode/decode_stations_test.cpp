@@ -17,7 +17,7 @@
 #include "tests/support/byte_vectors.hpp"
 #include "tests/support/decoded_winds.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::decode {
 namespace {
 
 using test::hex_bytes;
@@ -41,7 +41,7 @@ StationBytes bytes_from(const Array& array) {
 
 /// A packet D4 with its length and sum; numbers as in the byte map.
 StationBytes wmr300_packet(std::uint16_t gust, std::uint16_t average, std::uint16_t direction) {
-  StationBytes packet(kWmr300WindPacket);
+  StationBytes packet(hid::kWmr300WindPacket);
   const auto put = [&packet](std::size_t at, std::uint16_t value) {
     packet[at] = static_cast<std::uint8_t>(value >> 8U);
     packet[at + 1] = static_cast<std::uint8_t>(value & 0xFFU);
@@ -57,74 +57,74 @@ StationBytes wmr300_packet(std::uint16_t gust, std::uint16_t average, std::uint1
 }
 
 TEST(Wmr300Packet, GivesAverageItsDirectionAndGust) {
-  const auto decoded = decode_wmr300(wmr300_packet(301, 256, 359));
+  const auto decoded = hid::decode_wmr300(wmr300_packet(301, 256, 359));
   ASSERT_TRUE(decoded.has_value());
   EXPECT_EQ(*decoded, (DecodedWind{.speed_m_s = 25.6, .direction_deg = 359.0, .gust_m_s = 30.1}));
-  EXPECT_EQ(decode_wmr300(wmr300_packet(0, 0, 360))->direction_deg, 0.0);
+  EXPECT_EQ(hid::decode_wmr300(wmr300_packet(0, 0, 360))->direction_deg, 0.0);
 }
 
 TEST(Wmr300Packet, MayBePaddedToItsReport) {
   auto report = wmr300_packet(20, 10, 90);
   report.resize(64, 0xEE);
-  EXPECT_TRUE(decode_wmr300(report).has_value());
+  EXPECT_TRUE(hid::decode_wmr300(report).has_value());
 }
 
 TEST(Wmr300Packet, LeavesOutWhatTheConsoleDoesNotHave) {
-  const auto decoded = decode_wmr300(wmr300_packet(0x7FFF, 12, 0x7FFD));
+  const auto decoded = hid::decode_wmr300(wmr300_packet(0x7FFF, 12, 0x7FFD));
   ASSERT_TRUE(decoded.has_value());
   EXPECT_EQ(*decoded, (DecodedWind{.speed_m_s = 1.2, .direction_deg = {}, .gust_m_s = {}}));
-  EXPECT_TRUE(is_refused_as(decode_wmr300(wmr300_packet(0x7FFF, 0x7FFF, 0x7FFF)), Refusal::kInvalid));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(wmr300_packet(0x7FFF, 0x7FFF, 0x7FFF)), Refusal::kInvalid));
 }
 
 TEST(Wmr300Packet, IsRefusedInGrades) {
-  EXPECT_TRUE(is_refused_as(decode_wmr300({}), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused_as(decode_wmr300(kWmr300Heartbeat), Refusal::kNotMine));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300({}), Refusal::kTooShort));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(hid::kWmr300Heartbeat), Refusal::kNotMine));
   const auto packet = wmr300_packet(20, 10, 90);
-  EXPECT_TRUE(is_refused_as(decode_wmr300(ByteSpan(packet).first(53)), Refusal::kTooShort));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(ByteSpan(packet).first(53)), Refusal::kTooShort));
   for (std::size_t bit = 16; bit < 8 * packet.size(); ++bit) {
     auto damaged = packet;
     damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (1U << (bit % 8)));
-    EXPECT_TRUE(is_refused_as(decode_wmr300(damaged), Refusal::kBadChecksum)) << bit;
+    EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(damaged), Refusal::kBadChecksum)) << bit;
   }
   auto longer = packet;
   longer[1] = 55;
-  EXPECT_TRUE(is_refused_as(decode_wmr300(longer), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_wmr300(wmr300_packet(20, 10, 361)), Refusal::kImplausible));
-  EXPECT_TRUE(is_refused_as(decode_wmr300(wmr300_packet(20, 1201, 90)), Refusal::kImplausible));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(longer), Refusal::kMalformed));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(wmr300_packet(20, 10, 361)), Refusal::kImplausible));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(wmr300_packet(20, 1201, 90)), Refusal::kImplausible));
 }
 
 TEST(Wmr300Identity, IsAnsweredByItsOwnTwoBytes) {
   // weewx wmr300.py: 57 ... 88 8b 00 00 and the packet 73 e5 0a 26 88 8b.
-  const auto identity = hex_bytes("57 4d 52 33 30 30 2c 41 30 30 32 2c 88 8b 00 00 2c 2f b5 2c 4b 2c 52 2c");
-  ASSERT_TRUE(is_wmr300_identity(identity));
-  EXPECT_EQ(bytes_from(encode_wmr300_begin(identity)), hex_bytes("73 e5 0a 26 88 8b"));
-  EXPECT_FALSE(is_wmr300_identity(ByteSpan(identity).first(13)));
-  EXPECT_FALSE(is_wmr300_identity(wmr300_packet(20, 10, 90)));
+  const auto identity = test::hex_bytes("57 4d 52 33 30 30 2c 41 30 30 32 2c 88 8b 00 00 2c 2f b5 2c 4b 2c 52 2c");
+  ASSERT_TRUE(hid::is_wmr300_identity(identity));
+  EXPECT_EQ(bytes_from(hid::encode_wmr300_begin(identity)), test::hex_bytes("73 e5 0a 26 88 8b"));
+  EXPECT_FALSE(hid::is_wmr300_identity(ByteSpan(identity).first(13)));
+  EXPECT_FALSE(hid::is_wmr300_identity(wmr300_packet(20, 10, 90)));
 }
 
 TEST(Wmr300Packet, IsSoundIfItsSumIsRight) {
   auto packet = wmr300_packet(20, 10, 90);
-  EXPECT_TRUE(is_sound_wmr300(packet));
-  EXPECT_FALSE(is_sound_wmr300(ByteSpan(packet).first(53)));
+  EXPECT_TRUE(hid::is_sound_wmr300(packet));
+  EXPECT_FALSE(hid::is_sound_wmr300(ByteSpan(packet).first(53)));
   packet[20] = 1;
-  EXPECT_FALSE(is_sound_wmr300(packet));
-  EXPECT_TRUE(is_sound_wmr300(hex_bytes("41 43 4b 73 e5 0a 26 0e c1")));
-  EXPECT_FALSE(is_sound_wmr300(hex_bytes("41 43 4c")));
-  EXPECT_FALSE(is_sound_wmr300({}));
+  EXPECT_FALSE(hid::is_sound_wmr300(packet));
+  EXPECT_TRUE(hid::is_sound_wmr300(test::hex_bytes("41 43 4b 73 e5 0a 26 0e c1")));
+  EXPECT_FALSE(hid::is_sound_wmr300(test::hex_bytes("41 43 4c")));
+  EXPECT_FALSE(hid::is_sound_wmr300({}));
 }
 
 TEST(Wmr300Vectors, OfTheSharedCollectionDecodeAsTheySay) {
   const auto vectors = test::load_byte_vectors(kStationVectors, "WMR300");
   if (vectors.empty()) GTEST_SKIP() << "../shared/data/vectors/hid_vectors.json is not here";
   for (const auto& vector : vectors) {
-    const auto packet = hex_bytes(vector["bytes"]);
-    const auto decoded = decode_wmr300(packet);
+    const auto packet = test::hex_bytes(vector["bytes"]);
+    const auto decoded = hid::decode_wmr300(packet);
     ASSERT_TRUE(decoded.has_value());
     EXPECT_EQ(decoded->speed_m_s, expected_number(vector, "avg_ms"));
     EXPECT_EQ(decoded->direction_deg, expected_number(vector, "avg_dir"));
     EXPECT_EQ(decoded->gust_m_s, expected_number(vector, "gust_ms"));
-    EXPECT_TRUE(wants_wmr300_acknowledgement(packet));
-    EXPECT_EQ(bytes_from(encode_wmr300_acknowledgement(packet)), hex_bytes(vector["expect"]["ack"]));
+    EXPECT_TRUE(hid::wants_wmr300_acknowledgement(packet));
+    EXPECT_EQ(bytes_from(hid::encode_wmr300_acknowledgement(packet)), test::hex_bytes(vector["expect"]["ack"]));
   }
 }
 
@@ -136,25 +136,25 @@ StationBytes fineoffset_record(std::uint8_t average, std::uint8_t gust, std::uin
 }
 
 TEST(FineOffsetRecord, HasTwelveBitsOfAverageAndGust) {
-  const auto decoded = decode_fineoffset_record(fineoffset_record(0x01, 0x03, 0x21, 15, 0));
+  const auto decoded = hid::decode_fineoffset_record(fineoffset_record(0x01, 0x03, 0x21, 15, 0));
   ASSERT_TRUE(decoded.has_value());
   EXPECT_EQ(*decoded, (DecodedWind{.speed_m_s = 25.7, .direction_deg = 337.5, .gust_m_s = 51.5}));
 }
 
 TEST(FineOffsetRecord, OfTwentyBytesOrAWholeBlockIsReadAlike) {
   auto record = fineoffset_record(10, 20, 0, 4, 0);
-  const auto shortest = decode_fineoffset_record(record);
+  const auto shortest = hid::decode_fineoffset_record(record);
   ASSERT_TRUE(shortest.has_value());
   for (const std::size_t size : {20U, 32U}) {
     record.resize(size, 0xFF);
-    EXPECT_EQ(*decode_fineoffset_record(record), *shortest);
+    EXPECT_EQ(*hid::decode_fineoffset_record(record), *shortest);
   }
 }
 
 TEST(FineOffsetRecord, LeavesOutWhatIsMarkedAsNone) {
-  EXPECT_EQ(*decode_fineoffset_record(fineoffset_record(10, 0xFF, 0xF0, 0x80, 0)),
+  EXPECT_EQ(*hid::decode_fineoffset_record(fineoffset_record(10, 0xFF, 0xF0, 0x80, 0)),
             (DecodedWind{.speed_m_s = 1.0, .direction_deg = {}, .gust_m_s = {}}));
-  const auto odd_direction = decode_fineoffset_record(fineoffset_record(10, 20, 0, 16, 0));
+  const auto odd_direction = hid::decode_fineoffset_record(fineoffset_record(10, 20, 0, 16, 0));
   ASSERT_TRUE(odd_direction.has_value());
   EXPECT_FALSE(odd_direction->direction_deg.has_value());
   EXPECT_EQ(odd_direction->status, DecodedStatus::kUncertain);
@@ -162,12 +162,14 @@ TEST(FineOffsetRecord, LeavesOutWhatIsMarkedAsNone) {
 
 TEST(FineOffsetRecord, IsRefusedInGrades) {
   const auto record = fineoffset_record(10, 20, 0, 4, 0);
-  EXPECT_TRUE(is_refused_as(decode_fineoffset_record(ByteSpan(record).first(15)), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused_as(decode_fineoffset_record(StationBytes(33, 1)), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_fineoffset_record(StationBytes(16, 0)), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_fineoffset_record(StationBytes(16, 0xFF)), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused_as(decode_fineoffset_record(fineoffset_record(10, 20, 0, 4, 0x40)), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused_as(decode_fineoffset_record(fineoffset_record(0xFE, 20, 0x0F, 4, 0)), Refusal::kImplausible));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_fineoffset_record(ByteSpan(record).first(15)), Refusal::kTooShort));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_fineoffset_record(StationBytes(33, 1)), Refusal::kMalformed));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_fineoffset_record(StationBytes(16, 0)), Refusal::kMalformed));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_fineoffset_record(StationBytes(16, 0xFF)), Refusal::kInvalid));
+  EXPECT_TRUE(
+      test::is_refused_as(hid::decode_fineoffset_record(fineoffset_record(10, 20, 0, 4, 0x40)), Refusal::kInvalid));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_fineoffset_record(fineoffset_record(0xFE, 20, 0x0F, 4, 0)),
+                                  Refusal::kImplausible));
 }
 
 TEST(FineOffsetFixedBlock, SaysWhereTheCurrentRecordStands) {
@@ -177,14 +179,14 @@ TEST(FineOffsetFixedBlock, SaysWhereTheCurrentRecordStands) {
   block[16] = 5;
   block[30] = 0xD0;
   block[31] = 0x56;
-  const auto fixed = decode_fineoffset_fixed_block(block, FineOffsetModel::kWh1080);
+  const auto fixed = hid::decode_fineoffset_fixed_block(block, hid::FineOffsetModel::kWh1080);
   ASSERT_TRUE(fixed.has_value());
   EXPECT_EQ(fixed->current_position, 0x56D0);
-  EXPECT_EQ(decode_fineoffset_fixed_block(block, FineOffsetModel::kWh3080).error(), Refusal::kImplausible);
-  EXPECT_EQ(decode_fineoffset_fixed_block(ByteSpan(block).first(31), FineOffsetModel::kWh1080).error(),
+  EXPECT_EQ(hid::decode_fineoffset_fixed_block(block, hid::FineOffsetModel::kWh3080).error(), Refusal::kImplausible);
+  EXPECT_EQ(hid::decode_fineoffset_fixed_block(ByteSpan(block).first(31), hid::FineOffsetModel::kWh1080).error(),
             Refusal::kTooShort);
   block[1] = 0xAB;
-  EXPECT_EQ(decode_fineoffset_fixed_block(block, FineOffsetModel::kWh1080).error(), Refusal::kMalformed);
+  EXPECT_EQ(hid::decode_fineoffset_fixed_block(block, hid::FineOffsetModel::kWh1080).error(), Refusal::kMalformed);
 }
 
 TEST(FineOffsetFixedBlock, OfARealConsoleDecodes) {
@@ -193,11 +195,11 @@ TEST(FineOffsetFixedBlock, OfARealConsoleDecodes) {
   StationBytes block;
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || line[0] == '#') continue;
-    const auto bytes = hex_bytes(line.substr(line.find(' ') + 1));
+    const auto bytes = test::hex_bytes(line.substr(line.find(' ') + 1));
     block.insert(block.end(), bytes.begin(), bytes.end());
   }
   ASSERT_EQ(block.size(), 256U);
-  const auto fixed = decode_fineoffset_fixed_block(block, FineOffsetModel::kWh1080);
+  const auto fixed = hid::decode_fineoffset_fixed_block(block, hid::FineOffsetModel::kWh1080);
   ASSERT_TRUE(fixed.has_value());
   EXPECT_EQ(fixed->read_period_min, 5);
   EXPECT_EQ(fixed->record_count, 0x0107);
@@ -205,19 +207,19 @@ TEST(FineOffsetFixedBlock, OfARealConsoleDecodes) {
 }
 
 TEST(FineOffsetRing, GoesRoundBackwards) {
-  EXPECT_EQ(previous_fineoffset_position(0x110, FineOffsetModel::kWh1080), 0x100);
-  EXPECT_EQ(previous_fineoffset_position(0x100, FineOffsetModel::kWh1080), 0xFFF0);
-  EXPECT_EQ(previous_fineoffset_position(0x100, FineOffsetModel::kWh3080), 0xFFEC);
-  EXPECT_EQ(bytes_from(encode_fineoffset_read(0x56D0)), hex_bytes("a1 56 d0 20 a1 56 d0 20"));
+  EXPECT_EQ(hid::previous_fineoffset_position(0x110, hid::FineOffsetModel::kWh1080), 0x100);
+  EXPECT_EQ(hid::previous_fineoffset_position(0x100, hid::FineOffsetModel::kWh1080), 0xFFF0);
+  EXPECT_EQ(hid::previous_fineoffset_position(0x100, hid::FineOffsetModel::kWh3080), 0xFFEC);
+  EXPECT_EQ(bytes_from(hid::encode_fineoffset_read(0x56D0)), test::hex_bytes("a1 56 d0 20 a1 56 d0 20"));
 }
 
 TEST(FineOffsetVectors, OfTheSharedCollectionDecodeAsTheySay) {
   const auto vectors = test::load_byte_vectors(kStationVectors, "Fine Offset WH1080 1941");
   if (vectors.empty()) GTEST_SKIP() << "../shared/data/vectors/hid_vectors.json is not here";
   for (const auto& vector : vectors) {
-    const auto decoded = decode_fineoffset_record(hex_bytes(vector["bytes"]));
+    const auto decoded = hid::decode_fineoffset_record(test::hex_bytes(vector["bytes"]));
     if (vector["expect"]["status_lost"].get<bool>()) {
-      EXPECT_TRUE(is_refused_as(decoded, Refusal::kInvalid));
+      EXPECT_TRUE(test::is_refused_as(decoded, Refusal::kInvalid));
       continue;
     }
     ASSERT_TRUE(decoded.has_value());
@@ -230,31 +232,38 @@ TEST(FineOffsetVectors, OfTheSharedCollectionDecodeAsTheySay) {
 // --- AcuRite
 
 TEST(AcuriteReport, HasADirectionInEverySecondOne) {
-  const auto with_direction = decode_acurite(hex_bytes("01 11 22 71 01 2e 00 00 02 00"));
+  const auto with_direction = hid::decode_acurite(test::hex_bytes("01 11 22 71 01 2e 00 00 02 00"));
   ASSERT_TRUE(with_direction.has_value());
   EXPECT_NEAR(*with_direction->speed_m_s, (0.8278 * 10 + 1.0) / 3.6, 1e-12);
   EXPECT_EQ(with_direction->direction_deg, 22.5);
-  const auto without = decode_acurite(hex_bytes("01 11 22 78 01 2e 00 00 02 00"));
+  const auto without = hid::decode_acurite(test::hex_bytes("01 11 22 78 01 2e 00 00 02 00"));
   ASSERT_TRUE(without.has_value());
   EXPECT_EQ(without->speed_m_s, with_direction->speed_m_s);
   EXPECT_FALSE(without->direction_deg.has_value());
 }
 
 TEST(AcuriteReport, OfALowBatteryIsUncertain) {
-  EXPECT_EQ(decode_acurite(hex_bytes("01 11 22 b1 01 2e 00 00 02 00"))->status, DecodedStatus::kUncertain);
+  EXPECT_EQ(hid::decode_acurite(test::hex_bytes("01 11 22 b1 01 2e 00 00 02 00"))->status, DecodedStatus::kUncertain);
 }
 
 TEST(AcuriteReport, IsRefusedInGrades) {
-  const auto report = hex_bytes("01 11 22 71 01 2e 00 00 02 00");
-  EXPECT_TRUE(is_refused_as(decode_acurite(ByteSpan(report).first(9)), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused_as(decode_acurite({}), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused_as(decode_acurite(hex_bytes("02 11 22 71 01 2e 00 00 02 00")), Refusal::kNotMine));
-  EXPECT_TRUE(is_refused_as(decode_acurite(hex_bytes("01 11 22 71 01 2e 00 00 02 00 00")), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_acurite(hex_bytes("01 11 22 73 01 2e 00 00 02 00")), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_acurite(hex_bytes("01 11 22 71 01 2e 00 00 02 01")), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_acurite(hex_bytes("01 11 22 71 01 2e 00 00 04 00")), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_acurite(hex_bytes("01 17 f5 e3 01 81 21 c9 09 00")), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused_as(decode_acurite(hex_bytes("01 11 22 71 01 2e 00 00 00 00")), Refusal::kInvalid));
+  const auto report = test::hex_bytes("01 11 22 71 01 2e 00 00 02 00");
+  EXPECT_TRUE(test::is_refused_as(hid::decode_acurite(ByteSpan(report).first(9)), Refusal::kTooShort));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_acurite({}), Refusal::kTooShort));
+  EXPECT_TRUE(
+      test::is_refused_as(hid::decode_acurite(test::hex_bytes("02 11 22 71 01 2e 00 00 02 00")), Refusal::kNotMine));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_acurite(test::hex_bytes("01 11 22 71 01 2e 00 00 02 00 00")),
+                                  Refusal::kMalformed));
+  EXPECT_TRUE(
+      test::is_refused_as(hid::decode_acurite(test::hex_bytes("01 11 22 73 01 2e 00 00 02 00")), Refusal::kMalformed));
+  EXPECT_TRUE(
+      test::is_refused_as(hid::decode_acurite(test::hex_bytes("01 11 22 71 01 2e 00 00 02 01")), Refusal::kMalformed));
+  EXPECT_TRUE(
+      test::is_refused_as(hid::decode_acurite(test::hex_bytes("01 11 22 71 01 2e 00 00 04 00")), Refusal::kMalformed));
+  EXPECT_TRUE(
+      test::is_refused_as(hid::decode_acurite(test::hex_bytes("01 17 f5 e3 01 81 21 c9 09 00")), Refusal::kMalformed));
+  EXPECT_TRUE(
+      test::is_refused_as(hid::decode_acurite(test::hex_bytes("01 11 22 71 01 2e 00 00 00 00")), Refusal::kInvalid));
 }
 
 TEST(AcuriteVectors, OfTheSharedCollectionDecodeAsTheySay) {
@@ -262,9 +271,9 @@ TEST(AcuriteVectors, OfTheSharedCollectionDecodeAsTheySay) {
   if (vectors.empty()) GTEST_SKIP() << "../shared/data/vectors/hid_vectors.json is not here";
   for (const auto& vector : vectors) {
     SCOPED_TRACE(vector["bytes"].get<std::string>());
-    const auto decoded = decode_acurite(hex_bytes(vector["bytes"]));
+    const auto decoded = hid::decode_acurite(test::hex_bytes(vector["bytes"]));
     if (!vector["expect"]["valid"].get<bool>()) {
-      EXPECT_TRUE(is_refused_as(decoded, Refusal::kInvalid));
+      EXPECT_TRUE(test::is_refused_as(decoded, Refusal::kInvalid));
       continue;
     }
     ASSERT_TRUE(decoded.has_value());
@@ -277,9 +286,9 @@ TEST(AcuriteVectors, OfTheSharedCollectionDecodeAsTheySay) {
 
 /// A block with these six bytes from 26 on (gust, speed, direction) and its check byte.
 StationBytes te923_block(const std::string& wind_hex) {
-  StationBytes block(kTe923Block, 0x11);
+  StationBytes block(hid::kTe923Block, 0x11);
   block[0] = 0x5A;
-  const auto wind = hex_bytes(wind_hex);
+  const auto wind = test::hex_bytes(wind_hex);
   std::ranges::copy(wind, block.begin() + 26);
   block[33] = 0;
   block[33] = xor_8(block);
@@ -287,41 +296,42 @@ StationBytes te923_block(const std::string& wind_hex) {
 }
 
 TEST(Te923Block, GivesMilesAnHourInDecimalDigits) {
-  const auto decoded = decode_te923(te923_block("23 01 87 00 fc"));
+  const auto decoded = hid::decode_te923(te923_block("23 01 87 00 fc"));
   ASSERT_TRUE(decoded.has_value());
   EXPECT_NEAR(*decoded->gust_m_s, 12.3 * 0.44704, 1e-12);
   EXPECT_NEAR(*decoded->speed_m_s, 8.7 * 0.44704, 1e-12);
   EXPECT_EQ(decoded->direction_deg, 270.0);
-  EXPECT_NEAR(*decode_te923(te923_block("00 00 50 12 00"))->speed_m_s, 125.0 * 0.44704, 1e-12);
+  EXPECT_NEAR(*hid::decode_te923(te923_block("00 00 50 12 00"))->speed_m_s, 125.0 * 0.44704, 1e-12);
 }
 
 TEST(Te923Block, WithoutAGustIsStillWindAndWithoutASpeedNone) {
-  const auto decoded = decode_te923(te923_block("ee 8e 87 00 04"));
+  const auto decoded = hid::decode_te923(te923_block("ee 8e 87 00 04"));
   ASSERT_TRUE(decoded.has_value());
   EXPECT_FALSE(decoded->gust_m_s.has_value());
-  EXPECT_TRUE(is_refused_as(decode_te923(te923_block("23 01 ee 8e 04")), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused_as(decode_te923(te923_block("23 01 ff ff 04")), Refusal::kInvalid));
-  EXPECT_TRUE(is_refused_as(decode_te923(te923_block("23 01 1a 00 04")), Refusal::kInvalid));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_te923(te923_block("23 01 ee 8e 04")), Refusal::kInvalid));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_te923(te923_block("23 01 ff ff 04")), Refusal::kInvalid));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_te923(te923_block("23 01 1a 00 04")), Refusal::kInvalid));
 }
 
 TEST(Te923Block, IsRefusedInGrades) {
   const auto block = te923_block("23 01 87 00 0c");
-  EXPECT_TRUE(is_refused_as(decode_te923({}), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused_as(decode_te923(ByteSpan(block).first(33)), Refusal::kTooShort));
-  EXPECT_TRUE(is_refused_as(decode_te923(ByteSpan(block).subspan(1)), Refusal::kMalformed));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_te923({}), Refusal::kTooShort));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_te923(ByteSpan(block).first(33)), Refusal::kTooShort));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_te923(ByteSpan(block).subspan(1)), Refusal::kMalformed));
   auto longer = block;
   longer.push_back(0);
-  EXPECT_TRUE(is_refused_as(decode_te923(longer), Refusal::kMalformed));
+  EXPECT_TRUE(test::is_refused_as(hid::decode_te923(longer), Refusal::kMalformed));
   for (std::size_t bit = 8; bit < 8 * block.size(); ++bit) {
     auto damaged = block;
     damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (1U << (bit % 8)));
-    EXPECT_TRUE(is_refused_as(decode_te923(damaged), Refusal::kBadChecksum)) << bit;
+    EXPECT_TRUE(test::is_refused_as(hid::decode_te923(damaged), Refusal::kBadChecksum)) << bit;
   }
 }
 
 TEST(Te923Request, CarriesAddressAndCheckByte) {
-  EXPECT_EQ(bytes_from(encode_te923_request(kTe923Readings)), hex_bytes("05 af 01 00 02 ac 00 00"));
-  EXPECT_EQ(bytes_from(encode_te923_acknowledgement(kTe923Readings)), hex_bytes("24 af 01 00 02 ac 00 00"));
+  EXPECT_EQ(bytes_from(hid::encode_te923_request(hid::kTe923Readings)), test::hex_bytes("05 af 01 00 02 ac 00 00"));
+  EXPECT_EQ(bytes_from(hid::encode_te923_acknowledgement(hid::kTe923Readings)),
+            test::hex_bytes("24 af 01 00 02 ac 00 00"));
 }
 
 // --- all
@@ -334,24 +344,24 @@ TEST(StationDecoders, GiveNoWindOutOfRangeForRandomBytes) {
     const bool is_mended = random() % 2 == 0;
     for (const int head : {0xD4, 0x5A, 0x01}) {
       if (is_mended && bytes.size() >= 2) bytes[0] = static_cast<std::uint8_t>(head);
-      if (is_mended && head == 0xD4 && bytes.size() >= kWmr300WindPacket) {
+      if (is_mended && head == 0xD4 && bytes.size() >= hid::kWmr300WindPacket) {
         bytes[1] = 54;
         const auto sum = sum_16(ByteSpan(bytes).first(52));
         bytes[52] = static_cast<std::uint8_t>(sum >> 8U);
         bytes[53] = static_cast<std::uint8_t>(sum & 0xFFU);
       }
-      if (is_mended && head == 0x5A && bytes.size() >= kTe923Block) {
-        bytes.resize(kTe923Block);
+      if (is_mended && head == 0x5A && bytes.size() >= hid::kTe923Block) {
+        bytes.resize(hid::kTe923Block);
         bytes[33] = static_cast<std::uint8_t>(bytes[33] ^ xor_8(bytes));
       }
-      if (is_mended && head == 0x01 && bytes.size() >= kAcuriteReport1) bytes.resize(kAcuriteReport1);
-      EXPECT_TRUE(test::is_refused_or_physical(decode_wmr300(bytes)));
-      EXPECT_TRUE(test::is_refused_or_physical(decode_te923(bytes)));
-      EXPECT_TRUE(test::is_refused_or_physical(decode_acurite(bytes)));
-      EXPECT_TRUE(test::is_refused_or_physical(decode_fineoffset_record(bytes)));
+      if (is_mended && head == 0x01 && bytes.size() >= hid::kAcuriteReport1) bytes.resize(hid::kAcuriteReport1);
+      EXPECT_TRUE(test::is_refused_or_physical(hid::decode_wmr300(bytes)));
+      EXPECT_TRUE(test::is_refused_or_physical(hid::decode_te923(bytes)));
+      EXPECT_TRUE(test::is_refused_or_physical(hid::decode_acurite(bytes)));
+      EXPECT_TRUE(test::is_refused_or_physical(hid::decode_fineoffset_record(bytes)));
     }
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::decode

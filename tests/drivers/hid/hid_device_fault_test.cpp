@@ -15,10 +15,10 @@
 #include "tests/support/running_sensor.hpp"
 #include "tests/support/simulator_thread.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
-using sim::FaultKind;
+using simulators::FaultKind;
 
 constexpr double kFaultPace = 20.0;
 constexpr double kSplitPace = 6.0;  // a block that comes in pieces takes a second, and must hold still for so long
@@ -33,7 +33,7 @@ struct Read {
   bool suffers(FaultKind kind) const {
     return kind == FaultKind::kUnplug || std::ranges::count(known_faults, kind) > 0;
   }
-  bool waits_for(LinkState state) {
+  bool waits_for(wind::LinkState state) {
     return sensor->wait_until([state](const RecordingSink& sink) { return sink.last_state() == state; }, kAtMost);
   }
   bool waits_for_readings(std::size_t count, std::chrono::seconds at_most = kAtMost) {
@@ -52,14 +52,15 @@ class HidFault : public testing::TestWithParam<std::vector<std::string_view>> {
  protected:
   /// All are in the wind, and read.
   void plug_in(double pace) {
-    std::vector<std::unique_ptr<sim::UsbPort>> ports;
+    std::vector<std::unique_ptr<simulators::usb::UsbPort>> ports;
     for (const std::string_view model : GetParam()) {
-      auto device = sim::make_hid_station(model, pace);
+      auto device = simulators::usb::make_hid_station(model, pace);
       const auto known = device->known_faults();
       reads_.push_back({.model = std::string(model), .known_faults = {known.begin(), known.end()}});
-      ports.push_back(std::make_unique<sim::UsbPort>(std::move(device), sim::steady_wind(8.6, 225.0)));
+      ports.push_back(
+          std::make_unique<simulators::usb::UsbPort>(std::move(device), simulators::usb::steady_wind(8.6, 225.0)));
     }
-    bus_ = std::make_unique<SimulatorThread>(std::make_unique<sim::UmockdevSimulator>(std::move(ports)));
+    bus_ = std::make_unique<SimulatorThread>(std::make_unique<simulators::usb::UmockdevSimulator>(std::move(ports)));
     for (std::size_t i = 0; i < reads_.size(); ++i) {
       const std::string port = "1-" + std::to_string(i + 1);
       reads_[i].sensor = std::make_unique<RunningSensor>(
@@ -74,7 +75,7 @@ class HidFault : public testing::TestWithParam<std::vector<std::string_view>> {
   void expect_true_winds(double or_speed_m_s) {
     for (Read& read : reads_) {
       read.sensor->look([&](const RecordingSink& sink) {
-        for (const WindReading& reading : sink.readings) {
+        for (const wind::WindReading& reading : sink.readings) {
           const double error_m_s =
               std::min(std::abs(reading.speed_m_s - 8.6), std::abs(reading.speed_m_s - or_speed_m_s));
           EXPECT_LT(error_m_s, 0.13) << read.model;
@@ -90,7 +91,7 @@ class HidFault : public testing::TestWithParam<std::vector<std::string_view>> {
     plug_in(kFaultPace);
     bus_->set_fault(kind);
     for (Read& read : reads_) {
-      EXPECT_TRUE(!read.suffers(kind) || read.waits_for(LinkState::kConnecting)) << read.model;
+      EXPECT_TRUE(!read.suffers(kind) || read.waits_for(wind::LinkState::kConnecting)) << read.model;
     }
     std::vector<std::size_t> before;
     for (Read& read : reads_) before.push_back(read.readings());
@@ -106,7 +107,7 @@ class HidFault : public testing::TestWithParam<std::vector<std::string_view>> {
     bus_->set_fault(std::nullopt);
     for (std::size_t i = 0; i < reads_.size(); ++i) {
       EXPECT_TRUE(reads_[i].waits_for_readings(before[i] + 1)) << reads_[i].model << ": " << reads_[i].detail();
-      EXPECT_TRUE(reads_[i].waits_for(LinkState::kConnected)) << reads_[i].model;
+      EXPECT_TRUE(reads_[i].waits_for(wind::LinkState::kConnected)) << reads_[i].model;
     }
     expect_true_winds(8.6);
   }
@@ -146,11 +147,11 @@ TEST_P(HidFault, Split) {
 TEST_P(HidFault, Spike) {
   plug_in(kFaultPace);
   bus_->set_fault(FaultKind::kSpike);
-  const auto is_spike = [](const WindReading& reading) { return std::abs(reading.speed_m_s - 55.0) < 0.13; };
+  const auto is_spike = [](const wind::WindReading& reading) { return std::abs(reading.speed_m_s - 55.0) < 0.13; };
   for (Read& read : reads_) {
     EXPECT_TRUE(read.sensor->wait_until(
         [&](const RecordingSink& sink) {
-          return std::ranges::any_of(sink.readings, is_spike) && sink.last_state() == LinkState::kConnected;
+          return std::ranges::any_of(sink.readings, is_spike) && sink.last_state() == wind::LinkState::kConnected;
         },
         kAtMost))
         << read.model;
@@ -158,8 +159,8 @@ TEST_P(HidFault, Spike) {
   expect_true_winds(55.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Hidapi, HidFault, testing::Values(sim::hid_station_names()),
+INSTANTIATE_TEST_SUITE_P(Hidapi, HidFault, testing::Values(simulators::usb::hid_station_names()),
                          [](const auto&) { return std::string("AllAtOnce"); });
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

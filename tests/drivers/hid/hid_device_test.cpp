@@ -19,26 +19,27 @@
 #include "tests/support/live_sensor.hpp"
 #include "tests/support/simulator_thread.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
 using namespace std::chrono_literals;
-using sim::FaultKind;
+using simulators::FaultKind;
 using testing::HasSubstr;
 
-constexpr std::array kIds = {HidId{0x0FDE, 0xCA01}, HidId{0x24C0, 0x0003}};
+constexpr std::array kIds = {bus::HidId{0x0FDE, 0xCA01}, bus::HidId{0x24C0, 0x0003}};
 constexpr Nanoseconds kPatience = 60s;  // only a hang takes so long
 constexpr double kPace = 20.0;
 
 /// The stations in the sockets 1-1, 1-2 ... of a bus. "echo" is a device that is none.
 std::unique_ptr<SimulatorThread> plug_in(std::initializer_list<std::string_view> names) {
-  std::vector<std::unique_ptr<sim::UsbPort>> ports;
+  std::vector<std::unique_ptr<simulators::usb::UsbPort>> ports;
   for (const std::string_view name : names) {
-    ports.push_back(name == "echo" ? sim::echo_port()
-                                   : std::make_unique<sim::UsbPort>(sim::make_hid_station(name, kPace),
-                                                                    sim::steady_wind(8.6, 225.0)));
+    ports.push_back(name == "echo"
+                        ? simulators::usb::echo_port()
+                        : std::make_unique<simulators::usb::UsbPort>(simulators::usb::make_hid_station(name, kPace),
+                                                                     simulators::usb::steady_wind(8.6, 225.0)));
   }
-  return std::make_unique<SimulatorThread>(std::make_unique<sim::UmockdevSimulator>(std::move(ports)));
+  return std::make_unique<SimulatorThread>(std::make_unique<simulators::usb::UmockdevSimulator>(std::move(ports)));
 }
 
 /// Takes the node away, so that nobody can open it, whoever it is.
@@ -50,10 +51,10 @@ void take_node_away(const std::string& node) {
 
 class HidDeviceTest : public testing::Test {
  protected:
-  std::unique_ptr<HidDevice> device_ = make_hid_device();
+  std::unique_ptr<bus::HidDevice> device_ = bus::make_hid_device();
   std::array<std::uint8_t, 64> buffer_{};
 
-  std::string failure_of(const HidPlace& place, std::span<const HidId> ids = kIds) {
+  std::string failure_of(const bus::HidPlace& place, std::span<const bus::HidId> ids = kIds) {
     const auto opened = device_->open(ids, place);
     return opened ? "" : opened.error().message;
   }
@@ -62,12 +63,12 @@ class HidDeviceTest : public testing::Test {
 TEST_F(HidDeviceTest, SaysWhatIsMissing) {
   const auto bus = plug_in({"echo"});
   EXPECT_THAT(failure_of({}), HasSubstr("no device 0fde:ca01 or 24c0:0003 on USB: plug it in"));
-  EXPECT_TRUE(list_hid_devices(kIds).empty());
+  EXPECT_TRUE(bus::list_hid_devices(kIds).empty());
 }
 
 TEST_F(HidDeviceTest, ListsWhatIsPluggedInByPort) {
   const auto bus = plug_in({"acurite", "echo", "wmr100"});
-  const auto listings = list_hid_devices(kIds);
+  const auto listings = bus::list_hid_devices(kIds);
   ASSERT_EQ(listings.size(), 2U);
   EXPECT_EQ(listings[0].info.port, "1-1");
   EXPECT_EQ(listings[0].info.node, "/dev/hidraw0");
@@ -87,7 +88,7 @@ TEST_F(HidDeviceTest, TellsTwoAlikeApartByPortOrNode) {
     const auto opened = device_->open(kIds, {.serial = "", .path = path});
     ASSERT_TRUE(opened.has_value()) << opened.error().message;
     EXPECT_EQ(opened->node, "/dev/hidraw1");
-    EXPECT_EQ(where_is(*opened), "USB port 1-2");
+    EXPECT_EQ(bus::where_is(*opened), "USB port 1-2");
   }
   EXPECT_THAT(failure_of({.serial = "", .path = "1-9"}), HasSubstr("at 1-9 on USB: plug it in"));
   EXPECT_THAT(failure_of({.serial = "", .path = "/dev/null"}), HasSubstr("at /dev/null"));
@@ -95,7 +96,8 @@ TEST_F(HidDeviceTest, TellsTwoAlikeApartByPortOrNode) {
 
 TEST_F(HidDeviceTest, TellsThemApartBySerialNumber) {
   const auto bus = plug_in({"echo"});
-  constexpr std::array kEcho = {HidId{sim::EchoDevice::kVendor, sim::EchoDevice::kProduct}};
+  constexpr std::array kEcho = {
+      bus::HidId{simulators::usb::EchoDevice::kVendor, simulators::usb::EchoDevice::kProduct}};
   EXPECT_EQ(failure_of({.serial = "E0001", .path = ""}, kEcho), "");
   EXPECT_THAT(failure_of({.serial = "E0002", .path = ""}, kEcho), HasSubstr("serial number E0002"));
 }
@@ -104,7 +106,7 @@ TEST_F(HidDeviceTest, SaysWhatToDoAboutANodeThatItMayNotOpen) {
   const auto bus = plug_in({"wmr100"});
   take_node_away("/dev/hidraw0");
   EXPECT_THAT(failure_of({}), HasSubstr("70-yuragi.rules"));
-  const auto listings = list_hid_devices(kIds);
+  const auto listings = bus::list_hid_devices(kIds);
   ASSERT_EQ(listings.size(), 1U);
   EXPECT_NE(listings[0].trouble, "");
 }
@@ -112,33 +114,33 @@ TEST_F(HidDeviceTest, SaysWhatToDoAboutANodeThatItMayNotOpen) {
 TEST_F(HidDeviceTest, SendsAndReadsReportsAndIsSilentWithoutThem) {
   const auto bus = plug_in({"wmr100"});
   ASSERT_EQ(failure_of({}), "");
-  EXPECT_EQ(device_->read(buffer_, 0ms).status, HidStatus::kSilence);
-  EXPECT_EQ(device_->read(buffer_, 120ms).status, HidStatus::kSilence) << "it was not told to start";
+  EXPECT_EQ(device_->read(buffer_, 0ms).status, bus::HidStatus::kSilence);
+  EXPECT_EQ(device_->read(buffer_, 120ms).status, bus::HidStatus::kSilence) << "it was not told to start";
   EXPECT_TRUE(device_->write(std::array<std::uint8_t, 9>{0, 0x20, 0x00, 0x08, 0x01, 0, 0, 0, 0}));
-  const HidArrival arrival = device_->read(buffer_, kPatience);
-  ASSERT_EQ(arrival.status, HidStatus::kReport);
+  const bus::HidArrival arrival = device_->read(buffer_, kPatience);
+  ASSERT_EQ(arrival.status, bus::HidStatus::kReport);
   EXPECT_EQ(arrival.size, 8U);
 }
 
 TEST_F(HidDeviceTest, GetsAnInputReportOrARefusal) {
   const auto bus = plug_in({"acurite"});
   ASSERT_EQ(failure_of({}), "");
-  const HidArrival arrival = device_->get_input_report(1, std::span(buffer_).first(10));
-  ASSERT_EQ(arrival.status, HidStatus::kReport);
+  const bus::HidArrival arrival = device_->get_input_report(1, std::span(buffer_).first(10));
+  ASSERT_EQ(arrival.status, bus::HidStatus::kReport);
   EXPECT_EQ(arrival.size, 10U);
   EXPECT_EQ(buffer_[0], 1);
-  EXPECT_EQ(device_->get_input_report(9, std::span(buffer_).first(10)).status, HidStatus::kSilence);
+  EXPECT_EQ(device_->get_input_report(9, std::span(buffer_).first(10)).status, bus::HidStatus::kSilence);
 }
 
 TEST_F(HidDeviceTest, SeesADeviceThatIsGone) {
   const auto bus = plug_in({"acurite"});
   ASSERT_EQ(failure_of({}), "");
   bus->set_fault(FaultKind::kUnplug);
-  EXPECT_EQ(device_->read(buffer_, kPatience).status, HidStatus::kLost);
-  EXPECT_EQ(device_->get_input_report(1, buffer_).status, HidStatus::kLost);
+  EXPECT_EQ(device_->read(buffer_, kPatience).status, bus::HidStatus::kLost);
+  EXPECT_EQ(device_->get_input_report(1, buffer_).status, bus::HidStatus::kLost);
   EXPECT_FALSE(device_->write(std::array<std::uint8_t, 9>{0, 1}));
   device_->close();
-  EXPECT_EQ(device_->read(buffer_, kPatience).status, HidStatus::kLost);
+  EXPECT_EQ(device_->read(buffer_, kPatience).status, bus::HidStatus::kLost);
   bus->set_fault(std::nullopt);
   EXPECT_EQ(failure_of({}), "");
 }
@@ -147,7 +149,7 @@ TEST_F(HidDeviceTest, EndsAReadThatIsInterruptedFromAnotherThread) {
   const auto bus = plug_in({"acurite"});
   ASSERT_EQ(failure_of({}), "");
   std::atomic<bool> is_reading = false;
-  HidArrival arrival;
+  bus::HidArrival arrival;
   std::thread reader([&] {
     is_reading = true;
     arrival = device_->read(buffer_, 60s);
@@ -155,8 +157,8 @@ TEST_F(HidDeviceTest, EndsAReadThatIsInterruptedFromAnotherThread) {
   while (!is_reading) std::this_thread::yield();
   device_->interrupt();
   reader.join();
-  EXPECT_EQ(arrival.status, HidStatus::kInterrupted);
-  EXPECT_EQ(device_->read(buffer_, 60s).status, HidStatus::kInterrupted) << "and all later ones";
+  EXPECT_EQ(arrival.status, bus::HidStatus::kInterrupted);
+  EXPECT_EQ(device_->read(buffer_, 60s).status, bus::HidStatus::kInterrupted) << "and all later ones";
 }
 
 // --- the driver
@@ -178,7 +180,7 @@ TEST(HidDriverTest, WaitsForAStationThatIsNotThere) {
   const auto bus = plug_in({"wmr300"});
   test::LiveSensor sensor(driver_named("hid").open(values_for("hid", {{"station", std::string("wmr100")}})));
   ASSERT_TRUE(sensor.wait_until([&] { return !sensor.sink.links.empty(); }));
-  EXPECT_EQ(sensor.sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sensor.sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(sensor.sink.last_detail(), HasSubstr("no device 0fde:ca01 on USB"));
 }
 
@@ -194,7 +196,8 @@ std::string suffix_of_station(const testing::TestParamInfo<std::string_view>& pa
   std::ranges::replace(name, '-', '_');
   return name;
 }
-INSTANTIATE_TEST_SUITE_P(Hid, HidDriverOfEveryStation, testing::ValuesIn(sim::hid_station_names()), suffix_of_station);
+INSTANTIATE_TEST_SUITE_P(Hid, HidDriverOfEveryStation, testing::ValuesIn(simulators::usb::hid_station_names()),
+                         suffix_of_station);
 
 TEST_P(HidDriverOfEveryStation, ReadsItsWindAndComesBackAfterThePlugWasPulled) {
   const auto bus = plug_in({"echo", GetParam()});
@@ -205,12 +208,12 @@ TEST_P(HidDriverOfEveryStation, ReadsItsWindAndComesBackAfterThePlugWasPulled) {
   EXPECT_THAT(sink.last_detail(), HasSubstr("at USB port 1-2"));
 
   bus->set_fault(FaultKind::kUnplug);
-  EXPECT_TRUE(sensor.wait_until([&] { return sink.last_state() == LinkState::kConnecting; }));
+  EXPECT_TRUE(sensor.wait_until([&] { return sink.last_state() == wind::LinkState::kConnecting; }));
   bus->set_fault(std::nullopt);
   EXPECT_TRUE(sensor.wait_for_readings(1)) << sink.last_detail();
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
   EXPECT_NEAR(sink.readings.back().speed_m_s, 8.6, 0.12);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

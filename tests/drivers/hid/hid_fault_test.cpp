@@ -8,10 +8,10 @@
 
 #include "tests/support/hid_bench.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
-using sim::FaultKind;
+using simulators::FaultKind;
 using test::HidBench;
 
 constexpr double kFaultBegins_s = 300.0;
@@ -37,7 +37,7 @@ constexpr std::array<Patience, 6> kPatience = {{{"wmr100", 95.0, 40.0},
 /// A station that suffers `kind` from minute 5 to minute 9.
 class FaultyBench : public HidBench {
  public:
-  FaultyBench(std::string_view model, FaultKind kind) : HidBench(model) {
+  FaultyBench(std::string_view model, FaultKind kind) : test::HidBench(model) {
     bus.fault = [kind](double time_s) {
       return time_s >= kFaultBegins_s && time_s < kFaultEnds_s ? std::optional(kind) : std::nullopt;
     };
@@ -46,23 +46,23 @@ class FaultyBench : public HidBench {
   /// Runs until that time, or a little longer: what waits for the station is not cut off.
   void run_until(double time_s) { run_for(time_s - bus.now_s()); }
 
-  std::size_t refusals(Refusal why) const { return static_cast<std::size_t>(sink.count(why)); }
+  std::size_t refusals(decode::Refusal why) const { return static_cast<std::size_t>(sink.count(why)); }
 };
 
 bool suffers(std::string_view model, FaultKind kind) {
-  const auto device = sim::make_hid_station(model);
+  const auto device = simulators::usb::make_hid_station(model);
   return std::ranges::count(device->known_faults(), kind) > 0;
 }
 
 void expect_the_steady_wind(const RecordingSink& sink) {
-  for (const WindReading& reading : sink.readings) {
+  for (const wind::WindReading& reading : sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, kSteady_m_s, 0.12);
     EXPECT_EQ(reading.direction_deg.value_or(225.0), 225.0);
   }
 }
 
 /// The fault leaves nothing to publish: said so in time, counted as `why` (any, if empty), back by itself.
-void expect_silence_and_return(FaultKind kind, std::optional<Refusal> why) {
+void expect_silence_and_return(FaultKind kind, std::optional<decode::Refusal> why) {
   int stations = 0;
   for (const Patience& patience : kPatience) {
     if (!suffers(patience.model, kind)) continue;
@@ -71,15 +71,15 @@ void expect_silence_and_return(FaultKind kind, std::optional<Refusal> why) {
     FaultyBench bench(patience.model, kind);
     bench.run_until(kFaultBegins_s - kOvershoot_s);
     ASSERT_GT(bench.readings(), 5U);
-    ASSERT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    ASSERT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     const std::size_t refusals_before = bench.sink.refusals.size();
-    const std::size_t such_before = bench.refusals(why.value_or(Refusal::kTimeout));
+    const std::size_t such_before = bench.refusals(why.value_or(decode::Refusal::kTimeout));
 
     // What was said before the fault may still come, once.
     bench.run_until(kFaultBegins_s + 1.0);
     const std::size_t before = bench.readings();
     bench.run_until(kFaultBegins_s + patience.notices_s);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
     EXPECT_FALSE(bench.sink.last_detail().empty());
     bench.run_until(kFaultEnds_s - kOvershoot_s);
     EXPECT_LE(bench.readings(), before);
@@ -87,19 +87,19 @@ void expect_silence_and_return(FaultKind kind, std::optional<Refusal> why) {
     if (why) {
       EXPECT_GT(bench.refusals(*why), such_before) << name_of(*why);
     }
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
 
     const std::size_t during = bench.readings();
     bench.run_until(kFaultEnds_s + patience.returns_s);
     EXPECT_GT(bench.readings(), during);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     expect_the_steady_wind(bench.sink);
   }
   EXPECT_GE(stations, 1);
 }
 
 TEST(HidFault, Silence) {
-  expect_silence_and_return(FaultKind::kSilence, Refusal::kTimeout);
+  expect_silence_and_return(FaultKind::kSilence, decode::Refusal::kTimeout);
 }
 
 TEST(HidFault, Garbage) {
@@ -107,15 +107,15 @@ TEST(HidFault, Garbage) {
 }
 
 TEST(HidFault, Partial) {
-  expect_silence_and_return(FaultKind::kPartial, Refusal::kTooShort);
+  expect_silence_and_return(FaultKind::kPartial, decode::Refusal::kTooShort);
 }
 
 TEST(HidFault, BadChecksum) {
-  expect_silence_and_return(FaultKind::kBadChecksum, Refusal::kBadChecksum);
+  expect_silence_and_return(FaultKind::kBadChecksum, decode::Refusal::kBadChecksum);
 }
 
 TEST(HidFault, Late) {
-  expect_silence_and_return(FaultKind::kLate, Refusal::kTimeout);
+  expect_silence_and_return(FaultKind::kLate, decode::Refusal::kTimeout);
 }
 
 TEST(HidFault, Split) {
@@ -128,11 +128,11 @@ TEST(HidFault, Split) {
     FaultyBench bench(patience.model, FaultKind::kSplit);
     bench.run_until(kFaultBegins_s - kOvershoot_s);
     const std::size_t before = bench.readings();
-    const std::size_t refusals_before = bench.sink.refusals.size() - bench.refusals(Refusal::kNotMine);
+    const std::size_t refusals_before = bench.sink.refusals.size() - bench.refusals(decode::Refusal::kNotMine);
     bench.run_until(kFaultEnds_s - kOvershoot_s);
     EXPECT_GE(bench.readings(), before + 3U);
-    EXPECT_EQ(bench.sink.refusals.size() - bench.refusals(Refusal::kNotMine), refusals_before);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(bench.sink.refusals.size() - bench.refusals(decode::Refusal::kNotMine), refusals_before);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     EXPECT_EQ(bench.bus.opened, 1);
     expect_the_steady_wind(bench.sink);
   }
@@ -146,7 +146,7 @@ void expect_unchanged(FaultKind kind, double sent_m_s, double tolerance_m_s) {
     FaultyBench bench(patience.model, kind);
     // It freezes at 8.6 m/s; the true wind goes on and is 3 m/s.
     bench.bus.wind = [](double time_s) {
-      return sim::PlayedMoment{time_s < kFaultBegins_s ? kSteady_m_s : 3.0, 225.0};
+      return simulators::PlayedMoment{time_s < kFaultBegins_s ? kSteady_m_s : 3.0, 225.0};
     };
     bench.run_until(kFaultBegins_s + 60.0);
     const std::size_t before = bench.readings();
@@ -155,7 +155,7 @@ void expect_unchanged(FaultKind kind, double sent_m_s, double tolerance_m_s) {
     for (std::size_t i = before; i < bench.readings(); ++i) {
       EXPECT_NEAR(bench.sink.readings[i].speed_m_s, sent_m_s, tolerance_m_s);
     }
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     bench.run_until(kFaultEnds_s + 60.0);
     EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 3.0, 0.13);
     EXPECT_EQ(bench.bus.opened, 1);
@@ -175,19 +175,19 @@ TEST(HidFault, Unplug) {
     SCOPED_TRACE(patience.model);
     FaultyBench bench(patience.model, FaultKind::kUnplug);
     bench.run_until(kFaultBegins_s - kOvershoot_s);
-    ASSERT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    ASSERT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     bench.run_until(kFaultBegins_s + 2.0);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
     const std::size_t before = bench.readings();
     bench.run_until(kFaultEnds_s - kOvershoot_s);
     EXPECT_EQ(bench.readings(), before);
     bench.run_until(kFaultEnds_s + patience.returns_s);
     EXPECT_GT(bench.readings(), before);
     EXPECT_EQ(bench.bus.opened, 2);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     expect_the_steady_wind(bench.sink);
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

@@ -9,11 +9,11 @@
 #include "simulators/usb/fineoffset.hpp"
 #include "tests/support/hid_bench.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::hid {
 namespace {
 
-using sim::FaultKind;
-using sim::PlayedMoment;
+using simulators::FaultKind;
+using simulators::PlayedMoment;
 using test::HidBench;
 using testing::HasSubstr;
 
@@ -47,7 +47,7 @@ TEST_P(EveryStation, GivesTheWindAsOftenAsTheStationHasOne) {
   const double expected = kHour_s / GetParam().every_s;
   EXPECT_NEAR(static_cast<double>(bench.readings()), expected, 0.1 * expected);
   EXPECT_EQ(bench.bus.opened, 1);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
   EXPECT_THAT(bench.sink.last_detail(), HasSubstr("at USB port 1-1.2"));
 }
 
@@ -57,7 +57,7 @@ TEST_P(EveryStation, TellsTheWindAsItIs) {
   bench.run_for(300.0);
   ASSERT_GT(bench.readings(), 4U);
   int with_direction = 0;
-  for (const WindReading& reading : bench.sink.readings) {
+  for (const wind::WindReading& reading : bench.sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 8.6, GetParam().tolerance_m_s);
     EXPECT_NEAR(reading.gust_m_s.value_or(8.6), 8.6, GetParam().tolerance_m_s);
     if (reading.direction_deg) {
@@ -85,7 +85,7 @@ TEST_P(EveryStation, KnowsAllSixteenPointsOfTheCompass) {
     bench.run_for(120.0);
     const auto last =
         std::ranges::find_if(bench.sink.readings.rbegin(), bench.sink.readings.rend(),
-                             [](const WindReading& reading) { return reading.direction_deg.has_value(); });
+                             [](const wind::WindReading& reading) { return reading.direction_deg.has_value(); });
     ASSERT_NE(last, bench.sink.readings.rend());
     EXPECT_NEAR(*last->direction_deg, 22.5 * point, 0.51);  // WMR300 has whole degrees
   }
@@ -94,7 +94,7 @@ TEST_P(EveryStation, KnowsAllSixteenPointsOfTheCompass) {
 TEST_P(EveryStation, ShowsEveryReportToTheSink) {
   HidBench bench(GetParam().model);
   bench.run_for(120.0);
-  const auto sent = std::ranges::count(bench.sink.raws, RawDirection::kSent, &RecordingSink::Raw::direction);
+  const auto sent = std::ranges::count(bench.sink.raws, sensor::RawDirection::kSent, &RecordingSink::Raw::direction);
   const auto received = static_cast<std::ptrdiff_t>(bench.sink.raws.size()) - sent;
   EXPECT_GE(received, static_cast<std::ptrdiff_t>(bench.readings()));
   const bool sends_nothing = GetParam().model == "acurite";  // it is asked by control transfers
@@ -104,7 +104,8 @@ TEST_P(EveryStation, ShowsEveryReportToTheSink) {
 TEST_P(EveryStation, NeverSpins) {
   HidBench bench(GetParam().model);
   bench.run_for(kHour_s);
-  const auto received = std::ranges::count(bench.sink.raws, RawDirection::kReceived, &RecordingSink::Raw::direction);
+  const auto received =
+      std::ranges::count(bench.sink.raws, sensor::RawDirection::kReceived, &RecordingSink::Raw::direction);
   EXPECT_LT(bench.polls, 3 * kHour_s + 3.0 * static_cast<double>(received));
 }
 
@@ -114,13 +115,13 @@ TEST_P(EveryStation, SeesAPulledPlugWithinSecondsAndComesBackByItself) {
     return time_s > 100.0 && time_s < 200.0 ? std::optional(FaultKind::kUnplug) : std::nullopt;
   };
   bench.run_for(102.0);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
   bench.run_for(97.0);
   const std::size_t before = bench.readings();
   bench.run_for(80.0);
   EXPECT_GT(bench.readings(), before);
   EXPECT_EQ(bench.bus.opened, 2);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_P(EveryStation, RunsAtAnotherPaceWithItsSimulation) {
@@ -159,7 +160,7 @@ TEST(Wmr300Station, TellsAnIdleConsoleToBeginOnce) {
   bench.run_for(600.0);
   EXPECT_EQ(std::ranges::count_if(bench.sink.raws,
                                   [](const RecordingSink::Raw& raw) {
-                                    return raw.direction == RawDirection::kSent && raw.message[0] == 0x73;
+                                    return raw.direction == sensor::RawDirection::kSent && raw.message[0] == 0x73;
                                   }),
             1);
 }
@@ -171,7 +172,7 @@ TEST(Wmr300Station, SendsAHeartbeatEvery20SecondsAndAcknowledgesEachPacket) {
   int acknowledgements = 0;
   int packets = 0;
   for (const RecordingSink::Raw& raw : bench.sink.raws) {
-    if (raw.direction == RawDirection::kReceived) {
+    if (raw.direction == sensor::RawDirection::kReceived) {
       packets += raw.message[0] >= 0xD1 && raw.message[0] <= 0xDC;
     } else {
       heartbeats += raw.message[0] == 0xA6;
@@ -185,9 +186,10 @@ TEST(Wmr300Station, SendsAHeartbeatEvery20SecondsAndAcknowledgesEachPacket) {
 
 /// A Fine Offset console that counts who comes near its writing, in a wind that changes all the time.
 struct CountedConsole {
-  explicit CountedConsole(const sim::HidModelOptions& options)
-      : CountedConsole(std::make_unique<sim::FineOffset>(sim::FineOffsetRecord::kWh1080, options)) {}
-  explicit CountedConsole(std::unique_ptr<sim::FineOffset> console)
+  explicit CountedConsole(const simulators::usb::HidModelOptions& options)
+      : CountedConsole(
+            std::make_unique<simulators::usb::FineOffset>(simulators::usb::FineOffsetRecord::kWh1080, options)) {}
+  explicit CountedConsole(std::unique_ptr<simulators::usb::FineOffset> console)
       : counted(*console), bench(std::move(console), test::kind_of_model("fineoffset")) {
     bench.bus.wind = [](double time_s) { return PlayedMoment{std::floor(std::fmod(time_s, 997.0)) / 50.0, 0.0}; };
   }
@@ -200,14 +202,14 @@ struct CountedConsole {
     return static_cast<double>(counted.reads_near_writing() - near_before) / (counted.blocks_read() - before);
   }
 
-  const sim::FineOffset& counted;
+  const simulators::usb::FineOffset& counted;
   HidBench bench;
 };
 
 TEST(FineOffsetStation, KeepsAwayFromTheConsolesWritingOnceItKnowsWhenThatIs) {
   for (int seventh = 0; seventh < 9; ++seventh) {
     const double begins_s = 7.0 * seventh;
-    CountedConsole console(sim::HidModelOptions{});
+    CountedConsole console(simulators::usb::HidModelOptions{});
     console.bench.bus.begin();
     console.bench.bus.run_to(console.bench.bus.clock.now().mono + from_seconds(begins_s));
     console.bench.run_for(kHour_s);  // it learns
@@ -218,14 +220,15 @@ TEST(FineOffsetStation, KeepsAwayFromTheConsolesWritingOnceItKnowsWhenThatIs) {
 
 TEST(FineOffsetStation, KeepsAwayForDaysWhileTheClocksDriftApart) {
   for (const double pace : {0.99995, 1.00005}) {  // 4 s a day, as quartzes do
-    CountedConsole console(sim::HidModelOptions{.pace = pace});
+    CountedConsole console(simulators::usb::HidModelOptions{.pace = pace});
     EXPECT_LT(console.part_near_writing(48.0 * kHour_s), 0.02) << pace;
   }
 }
 
 TEST(FineOffsetStation, ReadsEachMeasurementOnce) {
-  auto console = std::make_unique<sim::FineOffset>(sim::FineOffsetRecord::kWh3080, sim::HidModelOptions{});
-  const sim::FineOffset& counted = *console;
+  auto console = std::make_unique<simulators::usb::FineOffset>(simulators::usb::FineOffsetRecord::kWh3080,
+                                                               simulators::usb::HidModelOptions{});
+  const simulators::usb::FineOffset& counted = *console;
   HidBench bench(std::move(console), test::kind_of_model("fineoffset"));
   bench.bus.wind = [](double time_s) { return PlayedMoment{std::round(std::fmod(time_s, 997.0)) / 100.0, 0.0}; };
   bench.run_for(2.0 * kHour_s);
@@ -246,31 +249,32 @@ TEST(FineOffsetStation, IsNotAskedMoreOftenThanItMeasures) {
 
 TEST(FineOffsetStation, SaysSoWhenTheConsoleDoesNotMeasureAnyMore) {
   /// A console that has locked up: it answers, and its memory never changes.
-  class Stuck final : public sim::UsbDevice {
+  class Stuck final : public simulators::usb::UsbDevice {
    public:
-    const sim::UsbDescriptors& descriptors() const override { return inner_.descriptors(); }
+    const simulators::usb::UsbDescriptors& descriptors() const override { return inner_.descriptors(); }
     std::span<const FaultKind> known_faults() const override { return inner_.known_faults(); }
     void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) override {
       // A time that hardly moves: enough for its answers, too little for its next measurement.
       inner_.advance(time_s < 300.0 ? time_s : 300.0 + std::min(time_s - 300.0, 5000.0) / 1000.0, wind, fault);
     }
-    std::optional<sim::UsbBytes> control(const sim::UsbSetup& setup, std::span<const std::uint8_t> data) override {
+    std::optional<simulators::usb::UsbBytes> control(const simulators::usb::UsbSetup& setup,
+                                                     std::span<const std::uint8_t> data) override {
       return inner_.control(setup, data);
     }
-    std::optional<sim::UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) override {
+    std::optional<simulators::usb::UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) override {
       if (auto report = inner_.in(endpoint, max_size)) return report;
       return std::nullopt;
     }
     bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) override { return inner_.out(endpoint, data); }
 
    private:
-    sim::FineOffset inner_{sim::FineOffsetRecord::kWh1080, {}};
+    simulators::usb::FineOffset inner_{simulators::usb::FineOffsetRecord::kWh1080, {}};
   };
   HidBench bench(std::make_unique<Stuck>(), test::kind_of_model("fineoffset"));
   bench.run_for(299.0);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
   bench.run_for(900.0);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
 }
 
 TEST(AcuriteStation, PublishesAReportOnceAndLeavesOutAnOldDirection) {
@@ -287,7 +291,7 @@ TEST(Te923Station, AcknowledgesEachBlock) {
   bench.run_for(330.0);
   std::vector<int> commands;
   for (const RecordingSink::Raw& raw : bench.sink.raws) {
-    if (raw.direction == RawDirection::kSent) commands.push_back(raw.message[0]);
+    if (raw.direction == sensor::RawDirection::kSent) commands.push_back(raw.message[0]);
   }
   ASSERT_GE(commands.size(), 20U);
   for (std::size_t i = 0; i < commands.size(); ++i) EXPECT_EQ(commands[i], i % 2 == 0 ? 0x05 : 0x24);
@@ -307,15 +311,15 @@ TEST_P(EveryStation, NeverTellsAFalseWindAndAlwaysComesBackUnderRandomFaults) {
     for (const FaultKind kind : bench.bus.device().known_faults()) {
       if (kind != FaultKind::kFreeze && kind != FaultKind::kSpike) kinds.push_back(kind);
     }
-    sim::Faults faults(kinds);
-    faults.add(sim::RandomFaults{.every_s = 300.0, .duration_s = 60.0, .seed = seed});
+    simulators::Faults faults(kinds);
+    faults.add(simulators::RandomFaults{.every_s = 300.0, .duration_s = 60.0, .seed = seed});
     constexpr double kFaultsEnd_s = 6.0 * kHour_s;
     bench.bus.wind = wind_of;
     bench.bus.fault = [&faults](double time_s) { return time_s < kFaultsEnd_s ? faults.at(time_s) : std::nullopt; };
     bench.run_for(kFaultsEnd_s);
 
     const double start_s = seconds(bench.bus.clock.now().mono.time_since_epoch()) - bench.bus.now_s();
-    for (const WindReading& reading : bench.sink.readings) {
+    for (const wind::WindReading& reading : bench.sink.readings) {
       const double time_s = seconds(reading.time.mono.time_since_epoch()) - start_s;
       const double now_m_s = wind_of(time_s).speed_m_s;
       const double before_m_s = wind_of(std::max(0.0, time_s - 60.0)).speed_m_s;
@@ -330,47 +334,49 @@ TEST_P(EveryStation, NeverTellsAFalseWindAndAlwaysComesBackUnderRandomFaults) {
     const std::size_t before = bench.readings();
     bench.run_for(200.0);
     EXPECT_GT(bench.readings(), before) << "seed " << seed;
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
   }
 }
 
 // --- devices that are none
 
 /// Says anything, always.
-class Babbler final : public sim::UsbDevice {
+class Babbler final : public simulators::usb::UsbDevice {
  public:
-  Babbler(std::unique_ptr<sim::UsbDevice> shown, std::uint64_t seed) : shown_(std::move(shown)), random_(seed) {}
+  Babbler(std::unique_ptr<simulators::usb::UsbDevice> shown, std::uint64_t seed)
+      : shown_(std::move(shown)), random_(seed) {}
 
-  const sim::UsbDescriptors& descriptors() const override { return shown_->descriptors(); }
+  const simulators::usb::UsbDescriptors& descriptors() const override { return shown_->descriptors(); }
   std::span<const FaultKind> known_faults() const override { return {}; }
   void advance(double, const PlayedMoment&, std::optional<FaultKind>) override {}
-  std::optional<sim::UsbBytes> control(const sim::UsbSetup& setup, std::span<const std::uint8_t>) override {
+  std::optional<simulators::usb::UsbBytes> control(const simulators::usb::UsbSetup& setup,
+                                                   std::span<const std::uint8_t>) override {
     if (random_() % 8 == 0) return std::nullopt;
     return babble(setup.length);
   }
-  std::optional<sim::UsbBytes> in(std::uint8_t, std::size_t max_size) override {
+  std::optional<simulators::usb::UsbBytes> in(std::uint8_t, std::size_t max_size) override {
     if (random_() % 4 == 0) return std::nullopt;
     return babble(max_size);
   }
   bool out(std::uint8_t, std::span<const std::uint8_t>) override { return random_() % 8 != 0; }
 
  private:
-  sim::UsbBytes babble(std::size_t max_size) {
-    sim::UsbBytes bytes(1 + random_() % std::max<std::size_t>(1, max_size));
+  simulators::usb::UsbBytes babble(std::size_t max_size) {
+    simulators::usb::UsbBytes bytes(1 + random_() % std::max<std::size_t>(1, max_size));
     std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
     return bytes;
   }
 
-  std::unique_ptr<sim::UsbDevice> shown_;
+  std::unique_ptr<simulators::usb::UsbDevice> shown_;
   std::mt19937_64 random_;
 };
 
 TEST_P(EveryStation, OutlivesADeviceThatSaysAnything) {
-  HidBench bench(std::make_unique<Babbler>(sim::make_hid_station(GetParam().model), 7),
+  HidBench bench(std::make_unique<Babbler>(simulators::usb::make_hid_station(GetParam().model), 7),
                  test::kind_of_model(GetParam().model));
   bench.run_for(1800.0);
   EXPECT_GT(bench.sink.refusals.size(), 10U);
-  EXPECT_TRUE(std::ranges::all_of(bench.sink.readings, is_plausible));
+  EXPECT_TRUE(std::ranges::all_of(bench.sink.readings, wind::is_plausible));
   EXPECT_LE(bench.readings(), 2U) << "sums of 8 bits and marks can be met by chance";
 }
 
@@ -423,4 +429,4 @@ TEST(WriteClockTest, BelievesANewLookRatherThanAnOldOne) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::hid

@@ -9,7 +9,7 @@
 #include "drivers/decode/microphone/sample_clock.hpp"
 #include "tests/support/mic_sounds.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 test::Sound sine(double rate_hz, std::size_t channels, double seconds, double frequency_hz, double amplitude,
@@ -25,7 +25,7 @@ test::Sound sine(double rate_hz, std::size_t channels, double seconds, double fr
   return sound;
 }
 
-double band_power(const MicHello& hello, const MicChannel& channel) {
+double band_power(const decode::microphone::MicHello& hello, const decode::microphone::MicChannel& channel) {
   double sum = 0.0;
   for (std::size_t band = 0; band < hello.bands; ++band) sum += static_cast<double>(channel.power[band]);
   return sum;
@@ -36,7 +36,7 @@ TEST(MicAnalyser, MeasuresTheMeanSquareOfASineInItsBandAtEveryRate) {
     SCOPED_TRACE(rate_hz);
     const auto [hello, blocks] = test::blocks_of(sine(rate_hz, 1, 2.0, 60.0, 0.5));
     ASSERT_GE(blocks.size(), 5U);
-    for (const MicBlock& block : blocks) {
+    for (const decode::microphone::MicBlock& block : blocks) {
       EXPECT_NEAR(band_power(hello, block.channels[0]), 0.125, 0.006);
       EXPECT_NEAR(static_cast<double>(block.channels[0].total_power), 0.125, 0.006);
       EXPECT_NEAR(static_cast<double>(block.channels[0].peak), 0.5, 0.02);
@@ -48,13 +48,14 @@ TEST(MicAnalyser, HearsNothingOfWhatLiesOutsideTheBand) {
   for (const double frequency_hz : {3.0, 400.0, 1000.0}) {
     SCOPED_TRACE(frequency_hz);
     const auto [hello, blocks] = test::blocks_of(sine(48000.0, 1, 2.0, frequency_hz, 0.5));
-    for (const MicBlock& block : blocks) EXPECT_LT(band_power(hello, block.channels[0]), 0.125 * 1e-2);
+    for (const decode::microphone::MicBlock& block : blocks)
+      EXPECT_LT(band_power(hello, block.channels[0]), 0.125 * 1e-2);
   }
 }
 
 TEST(MicAnalyser, BlocksTheOffsetOfACheapConverter) {
   const auto [hello, blocks] = test::blocks_of(sine(48000.0, 1, 2.0, 60.0, 0.1, 0.5));
-  for (const MicBlock& block : blocks) {
+  for (const decode::microphone::MicBlock& block : blocks) {
     EXPECT_NEAR(band_power(hello, block.channels[0]), 0.005, 0.0003);
     EXPECT_NEAR(static_cast<double>(block.channels[0].peak), 0.1, 0.01);
   }
@@ -64,7 +65,7 @@ TEST(MicAnalyser, BlocksTheOffsetOfACheapConverter) {
 
 TEST(MicAnalyser, CrossPowerOfEqualChannelsIsTheirPowerAndOfIndependentOnesSmall) {
   const auto [hello, same] = test::blocks_of(sine(16000.0, 2, 2.0, 60.0, 0.5));
-  for (const MicBlock& block : same) {
+  for (const decode::microphone::MicBlock& block : same) {
     for (std::size_t band = 0; band < hello.bands; ++band) {
       EXPECT_NEAR(static_cast<double>(block.cross[0][band].real()), static_cast<double>(block.channels[0].power[band]),
                   1e-6);
@@ -75,7 +76,7 @@ TEST(MicAnalyser, CrossPowerOfEqualChannelsIsTheirPowerAndOfIndependentOnesSmall
   const auto [wind_hello, wind] = test::blocks_of(test::wind_noise(16000.0, 2, 20.0, 0.1));
   std::complex<double> cross;
   double power = 0.0;
-  for (const MicBlock& block : wind) {
+  for (const decode::microphone::MicBlock& block : wind) {
     cross += std::complex<double>(block.cross[0][1]);
     power += static_cast<double>(block.channels[0].power[1]);
   }
@@ -83,7 +84,7 @@ TEST(MicAnalyser, CrossPowerOfEqualChannelsIsTheirPowerAndOfIndependentOnesSmall
 }
 
 TEST(MicAnalyser, SaysFourTimesASecondHowManySamplesThereWere) {
-  MicAnalyser analyser({.rate_hz = 48000.0, .channels = 1});
+  decode::microphone::MicAnalyser analyser({.rate_hz = 48000.0, .channels = 1});
   std::vector<std::uint64_t> ends;
   const float sample = 0.1F;
   for (std::uint64_t i = 1; i <= 480000; ++i) {
@@ -106,7 +107,7 @@ TEST(MicAnalyser, CountsWhatClipsAndWhatIsNoSound) {
 
   const auto [hello, blocks] = test::blocks_of(sound);
   std::uint32_t invalid = 0;
-  for (const MicBlock& block : blocks) {
+  for (const decode::microphone::MicBlock& block : blocks) {
     invalid += block.invalid_samples;
     EXPECT_NEAR(static_cast<double>(block.channels[0].clipped), 0.25, 0.01);
     EXPECT_EQ(block.channels[1].clipped, 0.0F);
@@ -117,15 +118,17 @@ TEST(MicAnalyser, CountsWhatClipsAndWhatIsNoSound) {
 }
 
 TEST(MicAnalyser, RefusesABandThatTheRateCannotShow) {
-  EXPECT_THROW(MicAnalyser({.rate_hz = 250.0, .channels = 1, .low_hz = 90.0, .high_hz = 200.0}), std::invalid_argument);
-  EXPECT_THROW(MicAnalyser({.rate_hz = 48000.0, .channels = 5}), std::invalid_argument);
-  EXPECT_THROW(MicAnalyser({.rate_hz = std::numeric_limits<double>::quiet_NaN()}), std::invalid_argument);
+  EXPECT_THROW(decode::microphone::MicAnalyser({.rate_hz = 250.0, .channels = 1, .low_hz = 90.0, .high_hz = 200.0}),
+               std::invalid_argument);
+  EXPECT_THROW(decode::microphone::MicAnalyser({.rate_hz = 48000.0, .channels = 5}), std::invalid_argument);
+  EXPECT_THROW(decode::microphone::MicAnalyser({.rate_hz = std::numeric_limits<double>::quiet_NaN()}),
+               std::invalid_argument);
 }
 
 TEST(SampleClockTest, TakesTheJitterOutAndFindsTheTrueRate) {
   // 48 kHz that is 80 ppm fast; buffers of 10 ms, each up to 8 ms late.
   const double true_ns = 1e9 / (48000.0 * 1.00008);
-  SampleClock clock(48000.0);
+  decode::microphone::SampleClock clock(48000.0);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> lateness_ns(0.0, 8e6);
   double worst_ns = 0.0;
@@ -149,7 +152,7 @@ TEST(SampleClockTest, TakesTheJitterOutAndFindsTheTrueRate) {
 }
 
 TEST(SampleClockTest, BeginsAnewAfterAGap) {
-  SampleClock clock(48000.0);
+  decode::microphone::SampleClock clock(48000.0);
   EXPECT_EQ(clock.add(480, 10'000'000), 10'000'000);
   EXPECT_NEAR(static_cast<double>(clock.add(960, 21'000'000)), 20.5e6, 0.6e6);
   EXPECT_EQ(clock.add(1440, 9'000'000'000), 9'000'000'000) << "suspended for nine seconds";
@@ -157,4 +160,4 @@ TEST(SampleClockTest, BeginsAnewAfterAGap) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

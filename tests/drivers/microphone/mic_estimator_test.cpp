@@ -10,7 +10,7 @@
 
 #include "tests/support/mic_sounds.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 using test::Sound;
@@ -18,27 +18,27 @@ using test::Sound;
 constexpr double kRate_hz = 16000.0;
 
 struct Heard {
-  std::vector<MicEstimate> estimates;
-  std::vector<Refusal> refusals;
+  std::vector<decode::microphone::MicEstimate> estimates;
+  std::vector<decode::Refusal> refusals;
 
   double mean_speed_m_s() const {
     double sum = 0.0;
-    for (const MicEstimate& estimate : estimates) sum += estimate.speed_m_s;
+    for (const decode::microphone::MicEstimate& estimate : estimates) sum += estimate.speed_m_s;
     return sum / static_cast<double>(estimates.size());
   }
   double mean_level_db() const {
     double sum = 0.0;
-    for (const MicEstimate& estimate : estimates) sum += estimate.level_db;
+    for (const decode::microphone::MicEstimate& estimate : estimates) sum += estimate.level_db;
     return sum / static_cast<double>(estimates.size());
   }
 };
 
 /// Through analyser and estimator.
-Heard hear(const Sound& sound, const MicEstimatorOptions& options = {}) {
+Heard hear(const Sound& sound, const decode::microphone::MicEstimatorOptions& options = {}) {
   const auto [hello, blocks] = test::blocks_of(sound);
-  MicEstimator estimator(options, hello);
+  decode::microphone::MicEstimator estimator(options, hello);
   Heard heard;
-  for (const MicBlock& block : blocks) {
+  for (const decode::microphone::MicBlock& block : blocks) {
     const auto estimate = estimator.add(block);
     if (!estimate) {
       heard.refusals.push_back(estimate.error());
@@ -50,8 +50,9 @@ Heard hear(const Sound& sound, const MicEstimatorOptions& options = {}) {
 }
 
 /// A block without sound, to be filled by hand: one that is loud in the band and soft above it.
-MicBlock steady_block(const MicHello& hello, std::uint64_t index, double band_power, double high_power = 1e-9) {
-  MicBlock block;
+decode::microphone::MicBlock steady_block(const decode::microphone::MicHello& hello, std::uint64_t index,
+                                          double band_power, double high_power = 1e-9) {
+  decode::microphone::MicBlock block;
   block.end_sample = (index + 1) * static_cast<std::uint64_t>(0.25 * hello.rate_hz);
   block.segments = 4;
   for (std::size_t channel = 0; channel < hello.channels; ++channel) {
@@ -65,18 +66,18 @@ MicBlock steady_block(const MicHello& hello, std::uint64_t index, double band_po
   return block;
 }
 
-MicHello hello_of(std::size_t channels) {
-  return MicAnalyser({.rate_hz = kRate_hz, .channels = channels}).hello();
+decode::microphone::MicHello hello_of(std::size_t channels) {
+  return decode::microphone::MicAnalyser({.rate_hz = kRate_hz, .channels = channels}).hello();
 }
 
 TEST(MicEstimatorTest, AKnownLevelIsAKnownSpeedForEveryExponent) {
-  const MicHello hello = hello_of(1);
+  const decode::microphone::MicHello hello = hello_of(1);
   for (const double exponent : {1.3, 2.0, 3.2}) {
-    const MicPowerLaw law{20.0, exponent};
+    const decode::microphone::MicPowerLaw law{20.0, exponent};
     for (const double speed_m_s : {1.0, 4.0, 10.0}) {
-      MicEstimator estimator({.calibration = law, .noise_floor_db = -120.0}, hello);
+      decode::microphone::MicEstimator estimator({.calibration = law, .noise_floor_db = -120.0}, hello);
       const double power = std::pow(speed_m_s / law.gain_m_s, 2.0 * exponent);
-      std::optional<MicEstimate> last;
+      std::optional<decode::microphone::MicEstimate> last;
       for (std::uint64_t i = 0; i < 20; ++i) last = *estimator.add(steady_block(hello, i, power));
       ASSERT_TRUE(last);
       EXPECT_NEAR(last->speed_m_s, speed_m_s, 1e-3 * speed_m_s);
@@ -89,8 +90,8 @@ TEST(MicEstimatorTest, AKnownLevelIsAKnownSpeedForEveryExponent) {
 }
 
 TEST(MicEstimatorTest, SaysNothingBeforeItHasHeardAWindow) {
-  const MicHello hello = hello_of(1);
-  MicEstimator estimator({}, hello);
+  const decode::microphone::MicHello hello = hello_of(1);
+  decode::microphone::MicEstimator estimator({}, hello);
   for (std::uint64_t i = 0; i < 3; ++i) EXPECT_FALSE(estimator.add(steady_block(hello, i, 1e-3))->has_value());
   EXPECT_TRUE(estimator.add(steady_block(hello, 3, 1e-3))->has_value());
   estimator.restart();
@@ -98,11 +99,11 @@ TEST(MicEstimatorTest, SaysNothingBeforeItHasHeardAWindow) {
 }
 
 TEST(MicEstimatorTest, AGustIsTheStrongestThreeSecondsOfTenMinutes) {
-  const MicHello hello = hello_of(1);
-  const MicPowerLaw law{20.0, 2.0};
-  MicEstimator estimator({.calibration = law, .noise_floor_db = -120.0}, hello);
+  const decode::microphone::MicHello hello = hello_of(1);
+  const decode::microphone::MicPowerLaw law{20.0, 2.0};
+  decode::microphone::MicEstimator estimator({.calibration = law, .noise_floor_db = -120.0}, hello);
   const auto power = [&](double speed_m_s) { return std::pow(speed_m_s / law.gain_m_s, 4.0); };
-  std::optional<MicEstimate> last;
+  std::optional<decode::microphone::MicEstimate> last;
   // 3 m/s, a gust of 9 m/s for five seconds in the second minute, 3 m/s again.
   for (std::uint64_t i = 0; i < 3120; ++i) {
     const double time_s = 0.25 * static_cast<double>(i);
@@ -121,9 +122,9 @@ TEST(MicEstimatorTest, AGustIsTheStrongestThreeSecondsOfTenMinutes) {
 
 TEST(MicEstimatorTest, FindsTheNoiseOfACalmAndTakesItOff) {
   // A minute of calm at -60 dB in the band, a minute of wind 3 dB above that, and again.
-  const MicHello hello = hello_of(1);
-  const MicPowerLaw law{20.0, 2.0};
-  MicEstimator estimator({.calibration = law, .noise_memory_s = 600.0}, hello);
+  const decode::microphone::MicHello hello = hello_of(1);
+  const decode::microphone::MicPowerLaw law{20.0, 2.0};
+  decode::microphone::MicEstimator estimator({.calibration = law, .noise_memory_s = 600.0}, hello);
   const double noise_power = 1e-6;
   std::mt19937_64 random(1);
   std::normal_distribution<double> scatter(0.0, 0.5);
@@ -149,9 +150,9 @@ TEST(MicEstimatorTest, FindsTheNoiseOfACalmAndTakesItOff) {
 
 TEST(MicEstimatorTest, TakesNoWindForTheNoiseOfACalm) {
   // An hour of a wind of 10 % turbulence from the first moment on: what the quietest moments have is wind.
-  const MicHello hello = hello_of(1);
-  const MicPowerLaw law{20.0, 2.0};
-  MicEstimator estimator({.calibration = law}, hello);
+  const decode::microphone::MicHello hello = hello_of(1);
+  const decode::microphone::MicPowerLaw law{20.0, 2.0};
+  decode::microphone::MicEstimator estimator({.calibration = law}, hello);
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   double gust = 0.0;
@@ -169,9 +170,9 @@ TEST(MicEstimatorTest, TakesNoWindForTheNoiseOfACalm) {
 }
 
 TEST(MicEstimatorTest, AGivenFloorIsUsedAtOnce) {
-  const MicHello hello = hello_of(1);
-  MicEstimator estimator({.noise_floor_db = -40.0}, hello);
-  std::optional<MicEstimate> last;
+  const decode::microphone::MicHello hello = hello_of(1);
+  decode::microphone::MicEstimator estimator({.noise_floor_db = -40.0}, hello);
+  std::optional<decode::microphone::MicEstimate> last;
   for (std::uint64_t i = 0; i < 4; ++i) last = *estimator.add(steady_block(hello, i, 0.9e-4));
   EXPECT_EQ(last->speed_m_s, 0.0);
   EXPECT_EQ(last->floor_db, -40.0);
@@ -188,7 +189,7 @@ TEST(MicEstimatorTest, ClippingRaisesTheReadingAndNeverLowersIt) {
     for (float& sample : sound.samples) sample = std::clamp(sample, -1.0F, 1.0F);
     const Heard heard = hear(sound, {.noise_floor_db = -120.0});
     const double speed_m_s = heard.mean_speed_m_s();
-    const auto clipping = std::ranges::count_if(heard.estimates, &MicEstimate::is_clipping);
+    const auto clipping = std::ranges::count_if(heard.estimates, &decode::microphone::MicEstimate::is_clipping);
     std::printf("rms %.2f: %5.2f m/s, without clipping %5.2f m/s, %3.0f %% of the estimates say that it clips\n", rms,
                 speed_m_s, true_m_s,
                 100.0 * static_cast<double>(clipping) / static_cast<double>(heard.estimates.size()));
@@ -245,9 +246,9 @@ TEST(MicEstimatorTest, DigitalSilenceIsNoCalm) {
     sound.at(i, 0) = sound.at(i, 1) = 0.0F;
   }
   const Heard heard = hear(sound);
-  EXPECT_GE(std::ranges::count(heard.refusals, Refusal::kInvalid), 6);
+  EXPECT_GE(std::ranges::count(heard.refusals, decode::Refusal::kInvalid), 6);
   EXPECT_GE(heard.estimates.size(), 6U);
-  for (const MicEstimate& estimate : heard.estimates) EXPECT_GT(estimate.speed_m_s, 1.0);
+  for (const decode::microphone::MicEstimate& estimate : heard.estimates) EXPECT_GT(estimate.speed_m_s, 1.0);
 }
 
 TEST(MicEstimatorTest, ADeadChannelIsNamedAndTheOthersGoOn) {
@@ -267,18 +268,19 @@ TEST(MicEstimatorTest, RefusesFullScaleNoiseAndSamplesThatAreNone) {
   for (int i = 0; i < 64000; ++i) sound.samples.push_back(full_scale(random));
   const Heard heard = hear(sound);
   EXPECT_TRUE(heard.estimates.empty());
-  EXPECT_EQ(std::ranges::count(heard.refusals, Refusal::kImplausible), static_cast<long>(heard.refusals.size()));
+  EXPECT_EQ(std::ranges::count(heard.refusals, decode::Refusal::kImplausible),
+            static_cast<long>(heard.refusals.size()));
 
   Sound broken = test::wind_noise(kRate_hz, 1, 3.0, 0.1);
   for (std::size_t i = 0; i < broken.frames(); i += 100) broken.at(i, 0) = std::nanf("");
   const Heard nothing = hear(broken);
   EXPECT_TRUE(nothing.estimates.empty());
-  EXPECT_GE(std::ranges::count(nothing.refusals, Refusal::kInvalid), 8);
+  EXPECT_GE(std::ranges::count(nothing.refusals, decode::Refusal::kInvalid), 8);
 }
 
 /// Ten minutes of levels as a gusty wind makes them, through a device with or without automatic gain.
 bool is_suspected(double gain_ratio, double turbulence, bool somebody_speaks) {
-  MicGainWatch watch;
+  decode::microphone::MicGainWatch watch;
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
   double gust = 0.0;
@@ -334,16 +336,18 @@ TEST(MicEstimatorTest, HearsAnAmplifierThatLevelsTheGusts) {
 }
 
 /// Blocks of faces that hear a wind from `direction_deg`, louder on its side.
-std::vector<MicEstimate> turn(const std::vector<double>& faces_deg, const std::vector<double>& wind_from_deg,
-                              double effect, double scatter_db = 0.3) {
-  const MicHello hello = hello_of(faces_deg.size());
-  const MicPowerLaw law{20.0, 2.0};
-  MicEstimator estimator({.calibration = law, .noise_floor_db = -120.0, .faces_deg = faces_deg}, hello);
+std::vector<decode::microphone::MicEstimate> turn(const std::vector<double>& faces_deg,
+                                                  const std::vector<double>& wind_from_deg, double effect,
+                                                  double scatter_db = 0.3) {
+  const decode::microphone::MicHello hello = hello_of(faces_deg.size());
+  const decode::microphone::MicPowerLaw law{20.0, 2.0};
+  decode::microphone::MicEstimator estimator({.calibration = law, .noise_floor_db = -120.0, .faces_deg = faces_deg},
+                                             hello);
   std::mt19937_64 random(2);
   std::normal_distribution<double> scatter(0.0, scatter_db);
-  std::vector<MicEstimate> estimates;
+  std::vector<decode::microphone::MicEstimate> estimates;
   for (std::size_t i = 0; i < wind_from_deg.size(); ++i) {
-    MicBlock block = steady_block(hello, i, 1.0);
+    decode::microphone::MicBlock block = steady_block(hello, i, 1.0);
     for (std::size_t face = 0; face < faces_deg.size(); ++face) {
       const double angle = (faces_deg[face] - wind_from_deg[i]) / 180.0 * std::numbers::pi;
       const double power = std::pow(6.0 * (1.0 + effect * std::cos(angle)) / law.gain_m_s, 4.0);
@@ -381,7 +385,7 @@ TEST(MicEstimatorTest, TellsEveryDirectionFromThreeFacesAndFromFour) {
 TEST(MicEstimatorTest, GoesThroughNorthAndNotAround) {
   std::vector<double> wind_from_deg(80, 350.0);
   for (int i = 0; i < 200; ++i) wind_from_deg.push_back(10.0);
-  for (const MicEstimate& estimate : turn({0.0, 120.0, 240.0}, wind_from_deg, 0.3)) {
+  for (const decode::microphone::MicEstimate& estimate : turn({0.0, 120.0, 240.0}, wind_from_deg, 0.3)) {
     if (!estimate.direction_deg) continue;
     EXPECT_LT(turned_apart_deg(*estimate.direction_deg, 0.0), 18.0);
   }
@@ -394,7 +398,8 @@ TEST(MicEstimatorTest, GoesThroughNorthAndNotAround) {
 
 TEST(MicEstimatorTest, HasNoDirectionWhereAllFacesHearTheSame) {
   int with = 0;
-  for (const MicEstimate& estimate : turn({0.0, 120.0, 240.0}, std::vector<double>(400, 90.0), 0.0)) {
+  for (const decode::microphone::MicEstimate& estimate :
+       turn({0.0, 120.0, 240.0}, std::vector<double>(400, 90.0), 0.0)) {
     EXPECT_LT(estimate.direction_confidence, 0.3);
     with += estimate.direction_deg ? 1 : 0;
   }
@@ -402,11 +407,11 @@ TEST(MicEstimatorTest, HasNoDirectionWhereAllFacesHearTheSame) {
 }
 
 TEST(MicEstimatorTest, RefusesFacesThatAreNoDirections) {
-  const MicHello three = hello_of(3);
-  EXPECT_THROW(MicEstimator({.faces_deg = {0.0, 120.0}}, three), std::invalid_argument);
-  EXPECT_THROW(MicEstimator({.faces_deg = {0.0, 0.0, 180.0}}, three), std::invalid_argument);
-  EXPECT_THROW(MicEstimator({.faces_deg = {0.0, 5.0, 10.0}}, three), std::invalid_argument);
+  const decode::microphone::MicHello three = hello_of(3);
+  EXPECT_THROW(decode::microphone::MicEstimator({.faces_deg = {0.0, 120.0}}, three), std::invalid_argument);
+  EXPECT_THROW(decode::microphone::MicEstimator({.faces_deg = {0.0, 0.0, 180.0}}, three), std::invalid_argument);
+  EXPECT_THROW(decode::microphone::MicEstimator({.faces_deg = {0.0, 5.0, 10.0}}, three), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

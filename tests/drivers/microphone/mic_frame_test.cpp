@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
-MicHello a_hello(std::uint8_t channels = 2) {
-  MicHello hello;
+decode::microphone::MicHello a_hello(std::uint8_t channels = 2) {
+  decode::microphone::MicHello hello;
   hello.rate_hz = 48000.0;
   hello.channels = channels;
   hello.bands = 3;
@@ -20,22 +20,22 @@ MicHello a_hello(std::uint8_t channels = 2) {
   return hello;
 }
 
-MicBlock a_block(const MicHello& hello) {
-  MicBlock block;
+decode::microphone::MicBlock a_block(const decode::microphone::MicHello& hello) {
+  decode::microphone::MicBlock block;
   block.end_sample = 123456789012345;
   block.end_mono_ns = -5;
   block.lost_samples = 7;
   block.segments = 12;
   float value = 0.25F;
   for (std::size_t channel = 0; channel < hello.channels; ++channel) {
-    MicChannel& heard = block.channels[channel];
+    decode::microphone::MicChannel& heard = block.channels[channel];
     for (std::size_t band = 0; band < hello.bands; ++band) heard.power[band] = value *= 0.5F;
     heard.high_power = value;
     heard.total_power = 0.5F;
     heard.clipped = 0.125F;
     heard.peak = 1.0F;
   }
-  for (std::size_t pair = 0; pair < mic_pair_count(hello.channels); ++pair) {
+  for (std::size_t pair = 0; pair < decode::microphone::mic_pair_count(hello.channels); ++pair) {
     for (std::size_t band = 0; band < hello.bands; ++band) block.cross[pair][band] = {value, 2.0F * value};
   }
   return block;
@@ -47,54 +47,57 @@ std::vector<std::uint8_t> joined(std::initializer_list<std::vector<std::uint8_t>
   return all;
 }
 
-std::vector<Result<MicFrame, Refusal>> frames_of(MicFrameReader& reader) {
-  std::vector<Result<MicFrame, Refusal>> frames;
+std::vector<Result<decode::microphone::MicFrame, decode::Refusal>> frames_of(
+    decode::microphone::MicFrameReader& reader) {
+  std::vector<Result<decode::microphone::MicFrame, decode::Refusal>> frames;
   while (auto item = reader.next()) frames.push_back(item->frame);
   return frames;
 }
 
 TEST(MicFrameReader, ReadsWhatWasWrittenInPiecesOfAnySize) {
   for (std::uint8_t channels = 1; channels <= 4; ++channels) {
-    const MicHello hello = a_hello(channels);
-    const MicBlock block = a_block(hello);
-    const auto bytes = joined({encode_mic_frame(hello), encode_mic_frame(block, hello), encode_mic_frame(block, hello),
-                               encode_mic_frame(MicTrouble{"unplugged"})});
+    const decode::microphone::MicHello hello = a_hello(channels);
+    const decode::microphone::MicBlock block = a_block(hello);
+    const auto bytes =
+        joined({decode::microphone::encode_mic_frame(hello), decode::microphone::encode_mic_frame(block, hello),
+                decode::microphone::encode_mic_frame(block, hello),
+                decode::microphone::encode_mic_frame(decode::microphone::MicTrouble{"unplugged"})});
     for (const std::size_t piece : {1U, 3U, 16U, 100000U}) {
-      MicFrameReader reader;
-      std::vector<Result<MicFrame, Refusal>> frames;
+      decode::microphone::MicFrameReader reader;
+      std::vector<Result<decode::microphone::MicFrame, decode::Refusal>> frames;
       for (std::size_t at = 0; at < bytes.size(); at += piece) {
         reader.push(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)));
         for (auto& frame : frames_of(reader)) frames.push_back(frame);
       }
       ASSERT_EQ(frames.size(), 4U);
-      EXPECT_EQ(std::get<MicHello>(*frames[0]), hello);
-      EXPECT_EQ(std::get<MicBlock>(*frames[1]), block);
-      EXPECT_EQ(std::get<MicBlock>(*frames[2]), block);
-      EXPECT_EQ(std::get<MicTrouble>(*frames[3]).message, "unplugged");
+      EXPECT_EQ(std::get<decode::microphone::MicHello>(*frames[0]), hello);
+      EXPECT_EQ(std::get<decode::microphone::MicBlock>(*frames[1]), block);
+      EXPECT_EQ(std::get<decode::microphone::MicBlock>(*frames[2]), block);
+      EXPECT_EQ(std::get<decode::microphone::MicTrouble>(*frames[3]).message, "unplugged");
     }
   }
 }
 
 TEST(MicFrameReader, SkipsWhatALibraryPrintsInBetween) {
-  const MicHello hello = a_hello();
+  const decode::microphone::MicHello hello = a_hello();
   const std::string words = "Cannot connect to server YMI YM\n";
-  MicFrameReader reader;
+  decode::microphone::MicFrameReader reader;
   reader.push(std::vector<std::uint8_t>(words.begin(), words.end()));
-  reader.push(encode_mic_frame(hello));
+  reader.push(decode::microphone::encode_mic_frame(hello));
   const auto frames = frames_of(reader);
   ASSERT_FALSE(frames.empty());
-  EXPECT_EQ(std::get<MicHello>(*frames.back()), hello);
-  for (std::size_t i = 0; i + 1 < frames.size(); ++i) EXPECT_EQ(frames[i].error(), Refusal::kMalformed);
+  EXPECT_EQ(std::get<decode::microphone::MicHello>(*frames.back()), hello);
+  for (std::size_t i = 0; i + 1 < frames.size(); ++i) EXPECT_EQ(frames[i].error(), decode::Refusal::kMalformed);
 }
 
 TEST(MicFrameReader, RefusesEveryFlippedBitAndFindsTheNextFrame) {
-  const MicHello hello = a_hello();
-  const auto good = encode_mic_frame(a_block(hello), hello);
+  const decode::microphone::MicHello hello = a_hello();
+  const auto good = decode::microphone::encode_mic_frame(a_block(hello), hello);
   for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
     auto bad = good;
     bad[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
-    MicFrameReader reader;
-    reader.push(joined({encode_mic_frame(hello), bad}));
+    decode::microphone::MicFrameReader reader;
+    reader.push(joined({decode::microphone::encode_mic_frame(hello), bad}));
     // A size that grew waits for so many bytes more, which come.
     for (int i = 0; i < 40; ++i) reader.push(good);
     const auto frames = frames_of(reader);
@@ -102,8 +105,8 @@ TEST(MicFrameReader, RefusesEveryFlippedBitAndFindsTheNextFrame) {
     bool is_refused = false;
     for (const auto& frame : frames) {
       is_refused = is_refused || !frame;
-      if (!frame || !std::holds_alternative<MicBlock>(*frame)) continue;
-      EXPECT_EQ(std::get<MicBlock>(*frame), a_block(hello)) << "bit " << bit;
+      if (!frame || !std::holds_alternative<decode::microphone::MicBlock>(*frame)) continue;
+      EXPECT_EQ(std::get<decode::microphone::MicBlock>(*frame), a_block(hello)) << "bit " << bit;
       ++blocks;
     }
     // The two bytes that mean nothing may be anything; an altered kind is a frame of that kind, with this checksum.
@@ -114,50 +117,59 @@ TEST(MicFrameReader, RefusesEveryFlippedBitAndFindsTheNextFrame) {
 }
 
 TEST(MicFrameReader, RefusesBlocksThatCannotBe) {
-  const MicHello hello = a_hello();
+  const decode::microphone::MicHello hello = a_hello();
   const auto refusal_of = [&](auto&& spoil) {
-    MicBlock block = a_block(hello);
+    decode::microphone::MicBlock block = a_block(hello);
     spoil(block);
-    MicFrameReader reader;
-    reader.push(joined({encode_mic_frame(hello), encode_mic_frame(block, hello)}));
+    decode::microphone::MicFrameReader reader;
+    reader.push(
+        joined({decode::microphone::encode_mic_frame(hello), decode::microphone::encode_mic_frame(block, hello)}));
     const auto frames = frames_of(reader);
     return frames.size() == 2 && !frames[1] ? std::optional(frames[1].error()) : std::nullopt;
   };
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(refusal_of([](MicBlock& block) { block.channels[1].power[2] = kNan; }), Refusal::kInvalid);
-  EXPECT_EQ(refusal_of([](MicBlock& block) { block.channels[0].power[0] = -1.0F; }), Refusal::kInvalid);
-  EXPECT_EQ(refusal_of([](MicBlock& block) { block.channels[0].clipped = 1.5F; }), Refusal::kInvalid);
-  EXPECT_EQ(refusal_of([](MicBlock& block) { block.cross[0][1] = {0.0F, kNan}; }), Refusal::kInvalid);
-  EXPECT_EQ(refusal_of([](MicBlock& block) { block.segments = 0; }), Refusal::kInvalid);
-  EXPECT_EQ(refusal_of([](MicBlock&) {}), std::nullopt);
+  EXPECT_EQ(refusal_of([](decode::microphone::MicBlock& block) { block.channels[1].power[2] = kNan; }),
+            decode::Refusal::kInvalid);
+  EXPECT_EQ(refusal_of([](decode::microphone::MicBlock& block) { block.channels[0].power[0] = -1.0F; }),
+            decode::Refusal::kInvalid);
+  EXPECT_EQ(refusal_of([](decode::microphone::MicBlock& block) { block.channels[0].clipped = 1.5F; }),
+            decode::Refusal::kInvalid);
+  EXPECT_EQ(refusal_of([](decode::microphone::MicBlock& block) {
+              block.cross[0][1] = {0.0F, kNan};
+            }),
+            decode::Refusal::kInvalid);
+  EXPECT_EQ(refusal_of([](decode::microphone::MicBlock& block) { block.segments = 0; }), decode::Refusal::kInvalid);
+  EXPECT_EQ(refusal_of([](decode::microphone::MicBlock&) {}), std::nullopt);
 }
 
 TEST(MicFrameReader, RefusesABlockThatAgreesWithNoHello) {
-  const MicHello two = a_hello(2);
-  const MicHello one = a_hello(1);
-  MicFrameReader reader;
-  reader.push(encode_mic_frame(a_block(two), two));
-  EXPECT_EQ(frames_of(reader).at(0).error(), Refusal::kNotMine);
-  reader.push(joined({encode_mic_frame(one), encode_mic_frame(a_block(two), two)}));
-  EXPECT_EQ(frames_of(reader).at(1).error(), Refusal::kNotMine);
+  const decode::microphone::MicHello two = a_hello(2);
+  const decode::microphone::MicHello one = a_hello(1);
+  decode::microphone::MicFrameReader reader;
+  reader.push(decode::microphone::encode_mic_frame(a_block(two), two));
+  EXPECT_EQ(frames_of(reader).at(0).error(), decode::Refusal::kNotMine);
+  reader.push(
+      joined({decode::microphone::encode_mic_frame(one), decode::microphone::encode_mic_frame(a_block(two), two)}));
+  EXPECT_EQ(frames_of(reader).at(1).error(), decode::Refusal::kNotMine);
   reader.clear();
-  reader.push(encode_mic_frame(a_block(one), one));
-  EXPECT_EQ(frames_of(reader).at(0).error(), Refusal::kNotMine) << "a new worker has to say hello";
+  reader.push(decode::microphone::encode_mic_frame(a_block(one), one));
+  EXPECT_EQ(frames_of(reader).at(0).error(), decode::Refusal::kNotMine) << "a new worker has to say hello";
 }
 
 TEST(MicFrameReader, MakesTroubleFitForALog) {
-  MicFrameReader reader;
-  reader.push(encode_mic_frame(MicTrouble{"a\x1b[31m\nb" + std::string(5000, 'x')}));
+  decode::microphone::MicFrameReader reader;
+  reader.push(
+      decode::microphone::encode_mic_frame(decode::microphone::MicTrouble{"a\x1b[31m\nb" + std::string(5000, 'x')}));
   const auto frames = frames_of(reader);
-  const std::string& message = std::get<MicTrouble>(*frames.at(0)).message;
+  const std::string& message = std::get<decode::microphone::MicTrouble>(*frames.at(0)).message;
   EXPECT_LE(message.size(), 1024U);
   EXPECT_EQ(message.substr(0, 8), "a [31m b");
 }
 
 TEST(MicFrameReader, StaysBoundedUnderRandomBytes) {
   std::mt19937_64 random(1);
-  MicFrameReader reader;
-  reader.push(encode_mic_frame(a_hello()));
+  decode::microphone::MicFrameReader reader;
+  reader.push(decode::microphone::encode_mic_frame(a_hello()));
   constexpr std::array<std::uint64_t, 4> mark = {'Y', 'M', 'I', 'C'};
   for (int i = 0; i < 2000; ++i) {
     std::vector<std::uint8_t> bytes(random() % 200);
@@ -165,12 +177,12 @@ TEST(MicFrameReader, StaysBoundedUnderRandomBytes) {
     reader.push(bytes);
     for (const auto& frame : frames_of(reader)) {
       if (frame) {
-        EXPECT_FALSE(std::holds_alternative<MicBlock>(*frame));
+        EXPECT_FALSE(std::holds_alternative<decode::microphone::MicBlock>(*frame));
       }
     }
   }
-  EXPECT_LE(reader.waiting_bytes(), kMicMaxPayload + 16);
+  EXPECT_LE(reader.waiting_bytes(), decode::microphone::kMicMaxPayload + 16);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

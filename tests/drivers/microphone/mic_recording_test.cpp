@@ -12,7 +12,7 @@
 #include "tests/support/mic_sounds.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 using test::Sound;
@@ -50,14 +50,14 @@ class MicRecording : public testing::Test {
     cup_ = read_cup(test::source_path(folder + "labels.csv"), sound_.frames());
   }
 
-  Windows windows_of(const Sound& sound, const MicCalibration& calibration) const {
+  Windows windows_of(const Sound& sound, const decode::microphone::MicCalibration& calibration) const {
     const auto [hello, blocks] = test::blocks_of(sound);
     // The floor that a calm of this recording has is not known: none is taken off.
-    MicEstimator estimator({.calibration = calibration, .noise_floor_db = -200.0}, hello);
+    decode::microphone::MicEstimator estimator({.calibration = calibration, .noise_floor_db = -200.0}, hello);
     const auto frames_per_window = static_cast<std::size_t>(kScored_s * sound.rate_hz);
     Windows windows;
     std::vector<double> count;
-    for (const MicBlock& block : blocks) {
+    for (const decode::microphone::MicBlock& block : blocks) {
       const auto estimate = estimator.add(block);
       if (!estimate || !*estimate) continue;
       const std::size_t window = (block.end_sample - 1) / frames_per_window;
@@ -84,13 +84,13 @@ class MicRecording : public testing::Test {
 
   /// Calibrated on the windows that `taught` says, without looking at the others.
   template <class Choice>
-  MicFit calibrate(Choice&& taught) const {
-    const Windows windows = windows_of(sound_, MicPowerLaw{});
-    std::vector<MicLevelAndSpeed> pairs;
+  decode::microphone::MicFit calibrate(Choice&& taught) const {
+    const Windows windows = windows_of(sound_, decode::microphone::MicPowerLaw{});
+    std::vector<decode::microphone::MicLevelAndSpeed> pairs;
     for (std::size_t i = 0; i < windows.size(); ++i) {
       if (taught(i, windows.size())) pairs.push_back({windows.level_db[i], windows.cup_m_s[i]});
     }
-    auto fit = fit_mic_calibration(pairs);
+    auto fit = decode::microphone::fit_mic_calibration(pairs);
     EXPECT_TRUE(fit) << (fit ? "" : fit.error().message);
     return *fit;
   }
@@ -118,15 +118,15 @@ bool is_even(std::size_t i, std::size_t) {
   return i % 2 == 0;
 }
 
-std::string described(const MicCalibration& calibration) {
-  if (const auto* law = std::get_if<MicPowerLaw>(&calibration)) {
+std::string described(const decode::microphone::MicCalibration& calibration) {
+  if (const auto* law = std::get_if<decode::microphone::MicPowerLaw>(&calibration)) {
     return "power law, gain " + std::to_string(law->gain_m_s) + " m/s, exponent " + std::to_string(law->exponent);
   }
-  return "curve " + format_mic_curve(std::get<MicCurve>(calibration));
+  return "curve " + decode::microphone::format_mic_curve(std::get<decode::microphone::MicCurve>(calibration));
 }
 
 TEST_F(MicRecording, AgreesWithTheCupOnWindowsThatItWasNotCalibratedOn) {
-  const MicFit fit = calibrate(is_odd);
+  const decode::microphone::MicFit fit = calibrate(is_odd);
   const Windows windows = windows_of(sound_, fit.calibration);
   const double error_m_s = mean_error_m_s(windows, is_even);
   std::printf("calibrated on the odd windows of 5 s, scored on the even: mean absolute error %.3f m/s (%s)\n",
@@ -164,7 +164,7 @@ TEST_F(MicRecording, CarriesFromTheCalmHalfToTheWindyOne) {
 }
 
 TEST_F(MicRecording, HardlyMovesWhenSomebodySpeaksOrPlays) {
-  const MicCalibration calibration = calibrate(is_odd).calibration;
+  const decode::microphone::MicCalibration calibration = calibrate(is_odd).calibration;
   const Windows before = windows_of(sound_, calibration);
   double squares = 0.0;
   for (const float sample : sound_.samples) squares += static_cast<double>(sample) * static_cast<double>(sample);
@@ -194,4 +194,4 @@ TEST_F(MicRecording, HardlyMovesWhenSomebodySpeaksOrPlays) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

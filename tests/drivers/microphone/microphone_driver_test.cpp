@@ -10,14 +10,14 @@
 #include "tests/support/driver_named.hpp"
 #include "tests/support/microphone_rig.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-std::unique_ptr<Sensor> open_with(const ParameterValues::Map& given) {
+std::unique_ptr<sensor::Sensor> open_with(const ParameterValues::Map& given) {
   return driver_named("microphone").open(values_for("microphone", given));
 }
 
@@ -55,7 +55,7 @@ class MicrophoneFault : public testing::Test {
   }
 
   RecordingSink& sink() { return rig_.sink; }
-  bool becomes(LinkState state) {
+  bool becomes(wind::LinkState state) {
     return rig_.wait_until([&] { return sink().last_state() == state; });
   }
   /// Listens for a while, in which nothing may be published.
@@ -67,7 +67,7 @@ class MicrophoneFault : public testing::Test {
     simulator_.recover();
     sink().readings.clear();
     EXPECT_NEAR(rig_.next_speed_m_s(4), usual_m_s_, 0.25 * usual_m_s_);
-    EXPECT_EQ(sink().last_state(), LinkState::kConnected);
+    EXPECT_EQ(sink().last_state(), wind::LinkState::kConnected);
   }
 
   test::MicrophoneRig rig_;
@@ -77,7 +77,7 @@ class MicrophoneFault : public testing::Test {
 
 TEST_F(MicrophoneFault, Silence) {
   simulator_.suffer("silence");
-  EXPECT_TRUE(becomes(LinkState::kConnecting));
+  EXPECT_TRUE(becomes(wind::LinkState::kConnecting));
   EXPECT_THAT(sink().last_detail(), HasSubstr("nothing"));
   expect_no_reading_for(2s);
   expect_usual_readings_again();
@@ -89,9 +89,9 @@ TEST_F(MicrophoneFault, Freeze) {
   sink().readings.clear();
   sink().refusals.clear();
   rig_.next_speed_m_s(4);
-  const auto [slowest, fastest] = std::ranges::minmax(sink().readings, {}, &WindReading::speed_m_s);
+  const auto [slowest, fastest] = std::ranges::minmax(sink().readings, {}, &wind::WindReading::speed_m_s);
   EXPECT_LT(fastest.speed_m_s - slowest.speed_m_s, 0.15 * usual_m_s_) << "the same second again and again";
-  EXPECT_EQ(sink().last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink().last_state(), wind::LinkState::kConnected);
   EXPECT_TRUE(sink().refusals.empty());
   expect_usual_readings_again();
 }
@@ -99,7 +99,7 @@ TEST_F(MicrophoneFault, Freeze) {
 TEST_F(MicrophoneFault, Spike) {
   simulator_.suffer("spike");
   EXPECT_TRUE(rig_.wait_until([&] { return sink().readings.back().speed_m_s > 2.0 * usual_m_s_; }));
-  EXPECT_EQ(sink().last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink().last_state(), wind::LinkState::kConnected);
   EXPECT_TRUE(sink().refusals.empty());
   simulator_.recover();
   EXPECT_TRUE(rig_.wait_until([&] { return sink().readings.back().speed_m_s < 1.25 * usual_m_s_; }));
@@ -109,9 +109,9 @@ TEST_F(MicrophoneFault, Spike) {
 TEST_F(MicrophoneFault, Garbage) {
   sink().readings.clear();
   simulator_.suffer("garbage");
-  EXPECT_TRUE(rig_.wait_until([&] { return sink().count(Refusal::kImplausible) >= 4; }));
-  for (const WindReading& reading : sink().readings) EXPECT_LT(reading.speed_m_s, 1.5 * usual_m_s_);
-  EXPECT_EQ(sink().last_state(), LinkState::kConnecting);
+  EXPECT_TRUE(rig_.wait_until([&] { return sink().count(decode::Refusal::kImplausible) >= 4; }));
+  for (const wind::WindReading& reading : sink().readings) EXPECT_LT(reading.speed_m_s, 1.5 * usual_m_s_);
+  EXPECT_EQ(sink().last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(sink().last_detail(), HasSubstr("noise at full scale"));
   expect_no_reading_for(1500ms);
   expect_usual_readings_again();
@@ -121,14 +121,14 @@ TEST_F(MicrophoneFault, Split) {
   sink().refusals.clear();
   simulator_.suffer("split");
   EXPECT_NEAR(rig_.next_speed_m_s(4), usual_m_s_, 0.25 * usual_m_s_);
-  EXPECT_EQ(sink().last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink().last_state(), wind::LinkState::kConnected);
   EXPECT_TRUE(sink().refusals.empty());
   expect_usual_readings_again();
 }
 
 TEST_F(MicrophoneFault, Disconnect) {
   simulator_.suffer("disconnect");
-  EXPECT_TRUE(becomes(LinkState::kConnecting));
+  EXPECT_TRUE(becomes(wind::LinkState::kConnecting));
   expect_no_reading_for(2s);
   expect_usual_readings_again();
 }
@@ -138,7 +138,7 @@ TEST_F(MicrophoneFault, Unplug) {
   EXPECT_TRUE(rig_.wait_until([&] { return sink().last_detail().find("there is no input") != std::string::npos; }))
       << sink().last_detail();
   EXPECT_THAT(sink().last_detail(), HasSubstr("(\"default\")")) << "what there is instead";
-  EXPECT_EQ(sink().last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink().last_state(), wind::LinkState::kConnecting);
   expect_no_reading_for(1s);
   expect_usual_readings_again();
 }
@@ -152,7 +152,7 @@ TEST_F(MicrophoneFault, InterruptEndsTheWaitForSound) {
 TEST_F(MicrophoneFault, TheInputIsFoundByItsName) {
   const auto found = find_microphones(test::built_path("bin/yuragi"));
   const auto windmic = std::ranges::find_if(
-      found, [](const FoundDevice& device) { return device.what.starts_with("microphone windmic"); });
+      found, [](const sensor::FoundDevice& device) { return device.what.starts_with("microphone windmic"); });
   ASSERT_NE(windmic, found.end());
   EXPECT_EQ(windmic->what, "microphone windmic (ALSA), 2 channels, 48000 Hz");
   EXPECT_EQ(windmic->settings, "device = \"windmic\"\nchannels = 2");
@@ -160,4 +160,4 @@ TEST_F(MicrophoneFault, TheInputIsFoundByItsName) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

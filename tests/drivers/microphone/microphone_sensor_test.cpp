@@ -12,17 +12,17 @@
 #include "tests/support/mic_sounds.hpp"
 #include "tests/support/recording_sink.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::microphone {
 namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 /// Plays what was put into it; then nothing comes until the time-out, which it lets pass.
-class PlayedPort final : public BytePort {
+class PlayedPort final : public bus::BytePort {
  public:
   struct Played {
-    std::deque<std::variant<std::vector<std::uint8_t>, ByteStatus>> next;
+    std::deque<std::variant<std::vector<std::uint8_t>, bus::ByteStatus>> next;
     bool opens = true;
     int opened = 0;
     int closed = 0;
@@ -35,14 +35,14 @@ class PlayedPort final : public BytePort {
     return {};
   }
   void close() noexcept override { ++played_.closed; }
-  ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
+  bus::ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {
     if (played_.next.empty()) {
       clock_.advance(timeout);
-      return {.status = ByteStatus::kSilence};
+      return {.status = bus::ByteStatus::kSilence};
     }
     auto next = played_.next.front();
     played_.next.pop_front();
-    if (const auto* status = std::get_if<ByteStatus>(&next)) return {.status = *status};
+    if (const auto* status = std::get_if<bus::ByteStatus>(&next)) return {.status = *status};
     const auto& bytes = std::get<0>(next);
     const std::size_t size = std::min(bytes.size(), buffer.size());
     std::copy_n(bytes.begin(), size, buffer.begin());
@@ -51,10 +51,10 @@ class PlayedPort final : public BytePort {
           std::vector<std::uint8_t>(bytes.begin() + static_cast<std::ptrdiff_t>(size), bytes.end()));
     }
     clock_.advance(1ms);
-    return {.status = ByteStatus::kBytes, .size = size};
+    return {.status = bus::ByteStatus::kBytes, .size = size};
   }
   bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
-  void interrupt() noexcept override { played_.next.emplace_front(ByteStatus::kInterrupted); }
+  void interrupt() noexcept override { played_.next.emplace_front(bus::ByteStatus::kInterrupted); }
 
  private:
   Played& played_;
@@ -64,7 +64,7 @@ class PlayedPort final : public BytePort {
 class MicrophoneSensorTest : public testing::Test {
  protected:
   MicrophoneSensorTest() {
-    MicAnalyser analyser({.rate_hz = 8000.0, .channels = 2});
+    decode::microphone::MicAnalyser analyser({.rate_hz = 8000.0, .channels = 2});
     std::tie(hello_, blocks_) = test::blocks_of(test::wind_noise(8000.0, 2, 20.0, 0.05));
     hello_.device = "windmic";
   }
@@ -77,10 +77,11 @@ class MicrophoneSensorTest : public testing::Test {
     return *sensor_;
   }
   void say(const std::vector<std::uint8_t>& bytes) { port_.next.emplace_back(bytes); }
-  void say(ByteStatus status) { port_.next.emplace_back(status); }
-  void send_hello() { say(encode_mic_frame(hello_)); }
+  void say(bus::ByteStatus status) { port_.next.emplace_back(status); }
+  void send_hello() { say(decode::microphone::encode_mic_frame(hello_)); }
   void send_blocks(std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) say(encode_mic_frame(blocks_.at(next_block_++), hello_));
+    for (std::size_t i = 0; i < count; ++i)
+      say(decode::microphone::encode_mic_frame(blocks_.at(next_block_++), hello_));
   }
 
   /// Polls as the daemon would, until all that was said has been heard, and no further.
@@ -94,8 +95,8 @@ class MicrophoneSensorTest : public testing::Test {
   ManualClock clock_;
   RecordingSink sink_;
   PlayedPort::Played port_;
-  MicHello hello_;
-  std::vector<MicBlock> blocks_;
+  decode::microphone::MicHello hello_;
+  std::vector<decode::microphone::MicBlock> blocks_;
   std::size_t next_block_ = 0;
   std::optional<MicrophoneSensor> sensor_;
 };
@@ -108,14 +109,14 @@ TEST_F(MicrophoneSensorTest, PublishesAReadingABlockOnceAWindowIsFull) {
   send_blocks(12);
   hear();
   ASSERT_EQ(sink_.readings.size(), 9U);
-  for (const WindReading& reading : sink_.readings) {
+  for (const wind::WindReading& reading : sink_.readings) {
     EXPECT_NEAR(reading.speed_m_s, 2.5, 0.6);
-    EXPECT_EQ(reading.quality, ReadingQuality::kGood);
+    EXPECT_EQ(reading.quality, wind::ReadingQuality::kGood);
     EXPECT_FALSE(reading.direction_deg);
-    EXPECT_TRUE(is_plausible(reading));
+    EXPECT_TRUE(wind::is_plausible(reading));
   }
   EXPECT_EQ(sink_.raws.size(), 13U);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
   EXPECT_EQ(sink_.last_detail(), "windmic");
   EXPECT_TRUE(sink_.refusals.empty());
 }
@@ -145,28 +146,29 @@ TEST_F(MicrophoneSensorTest, IsUncertainUntilItIsCalibrated) {
   send_blocks(5);
   hear();
   ASSERT_FALSE(sink_.readings.empty());
-  EXPECT_EQ(sink_.readings.back().quality, ReadingQuality::kUncertain);
+  EXPECT_EQ(sink_.readings.back().quality, wind::ReadingQuality::kUncertain);
   EXPECT_THAT(sink_.last_detail(), HasSubstr("not calibrated"));
 }
 
 TEST_F(MicrophoneSensorTest, IsUncertainWhileItClipsAndSaysSo) {
-  for (MicBlock& block : blocks_) block.channels[0].clipped = 0.1F;
+  for (decode::microphone::MicBlock& block : blocks_) block.channels[0].clipped = 0.1F;
   poll();
   send_hello();
   send_blocks(5);
   hear();
   ASSERT_FALSE(sink_.readings.empty());
-  EXPECT_EQ(sink_.readings.back().quality, ReadingQuality::kUncertain);
+  EXPECT_EQ(sink_.readings.back().quality, wind::ReadingQuality::kUncertain);
   EXPECT_THAT(sink_.last_detail(), HasSubstr("clips"));
 }
 
 TEST_F(MicrophoneSensorTest, SaysWhatTheWorkerSaysIsWrongAndBeginsItAgain) {
   for (int i = 0; i < 3; ++i) {
     poll();
-    say(encode_mic_frame(MicTrouble{"there is no input called \"foo\": plug it in"}));
-    say(ByteStatus::kLost);
+    say(decode::microphone::encode_mic_frame(
+        decode::microphone::MicTrouble{"there is no input called \"foo\": plug it in"}));
+    say(bus::ByteStatus::kLost);
     hear();
-    EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
     EXPECT_EQ(sink_.last_detail(), "there is no input called \"foo\": plug it in");
     EXPECT_EQ(port_.closed, i + 1);
   }
@@ -180,7 +182,7 @@ TEST_F(MicrophoneSensorTest, KillsAWorkerThatNeverBegins) {
   poll();
   EXPECT_GE(seconds(clock_.now().mono - begun), 15.0);
   EXPECT_EQ(port_.closed, 1);
-  EXPECT_EQ(sink_.count(Refusal::kTimeout), 1);
+  EXPECT_EQ(sink_.count(decode::Refusal::kTimeout), 1);
   EXPECT_THAT(sink_.last_detail(), HasSubstr("has not started"));
 }
 
@@ -207,7 +209,7 @@ TEST_F(MicrophoneSensorTest, KeepsWhatItKnowsOfTheMicrophoneFromWorkerToWorker) 
   send_blocks(20);
   hear();
   ASSERT_TRUE(sink_.readings.back().gust_m_s);
-  say(ByteStatus::kLost);
+  say(bus::ByteStatus::kLost);
   hear();
   poll();
   send_hello();
@@ -233,17 +235,17 @@ TEST_F(MicrophoneFault, BadChecksum) {
   hear();
   const auto before = sink_.readings.size();
   for (int i = 0; i < 3; ++i) {
-    auto bytes = encode_mic_frame(blocks_.at(next_block_++), hello_);
+    auto bytes = decode::microphone::encode_mic_frame(blocks_.at(next_block_++), hello_);
     bytes.back() ^= 1U;
     say(bytes);
   }
   hear();
-  EXPECT_GE(sink_.count(Refusal::kBadChecksum), 3);
+  EXPECT_GE(sink_.count(decode::Refusal::kBadChecksum), 3);
   EXPECT_EQ(sink_.readings.size(), before);
   send_blocks(2);
   hear();
   EXPECT_EQ(sink_.readings.size(), before + 2);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(MicrophoneFault, Partial) {
@@ -252,13 +254,13 @@ TEST_F(MicrophoneFault, Partial) {
   send_blocks(6);
   hear();
   const auto before = sink_.readings.size();
-  auto bytes = encode_mic_frame(blocks_.at(next_block_++), hello_);
+  auto bytes = decode::microphone::encode_mic_frame(blocks_.at(next_block_++), hello_);
   bytes.resize(bytes.size() / 2);
   say(bytes);
-  say(ByteStatus::kLost);
+  say(bus::ByteStatus::kLost);
   hear();
   EXPECT_EQ(sink_.readings.size(), before);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(sink_.last_detail(), HasSubstr("ended without a message"));
 
   poll();
@@ -266,14 +268,14 @@ TEST_F(MicrophoneFault, Partial) {
   send_blocks(5);
   hear();
   EXPECT_EQ(sink_.readings.size(), before + 2) << "half a frame of the old worker is not put before the new one's";
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(MicrophoneFault, SplitInThePipe) {
   poll();
-  std::vector<std::uint8_t> bytes = encode_mic_frame(hello_);
+  std::vector<std::uint8_t> bytes = decode::microphone::encode_mic_frame(hello_);
   for (int i = 0; i < 8; ++i) {
-    const auto block = encode_mic_frame(blocks_.at(next_block_++), hello_);
+    const auto block = decode::microphone::encode_mic_frame(blocks_.at(next_block_++), hello_);
     bytes.insert(bytes.end(), block.begin(), block.end());
   }
   for (const std::uint8_t byte : bytes) say({byte});
@@ -283,4 +285,4 @@ TEST_F(MicrophoneFault, SplitInThePipe) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::microphone

@@ -20,7 +20,7 @@
 #include "tests/support/recording_sink.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -30,34 +30,36 @@ using Kind = ModbusTrouble::Kind;
 constexpr auto kHang = 60s;  // so long waits only who waits for something that hangs
 
 /// A device that answers when the test lets it, and remembers when it was asked.
-class HeldConnection final : public ModbusConnection {
+class HeldConnection final : public bus::ModbusConnection {
  public:
-  Result<void, Failure> open(const Interruption&) override {
+  Result<void, Failure> open(const bus::Interruption&) override {
     is_open_ = true;
     return {};
   }
   bool is_open() const noexcept override { return is_open_; }
   void close() noexcept override { is_open_ = false; }
-  std::size_t settle(std::span<std::uint8_t, kModbusMaxMessage>, const ModbusPatience&, const Interruption&) override {
+  std::size_t settle(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage>, const bus::ModbusPatience&,
+                     const bus::Interruption&) override {
     return 0;
   }
-  bool send(const ModbusRequest& request, const ModbusPatience&) override {
+  bool send(const decode::modbus::ModbusRequest& request, const bus::ModbusPatience&) override {
     const std::lock_guard lock(mutex_);
     requested_.push_back(request);
     requested_at_.push_back(std::chrono::steady_clock::now());
     changed_.notify_all();
     return true;
   }
-  BusMessage receive(std::span<std::uint8_t, kModbusMaxMessage> buffer, const Interruption& interruption) override {
-    if (interruption.wait(may_reply_.get(), WaitFor::kReadable, kHang) != WaitEnd::kReady) {
-      return {BusStatus::kInterrupted};
+  bus::BusMessage receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
+                          const bus::Interruption& interruption) override {
+    if (interruption.wait(may_reply_.get(), bus::WaitFor::kReadable, kHang) != bus::WaitEnd::kReady) {
+      return {bus::BusStatus::kInterrupted};
     }
     eventfd_t one = 0;
     eventfd_read(may_reply_.get(), &one);
     const std::lock_guard lock(mutex_);
     const auto bytes = reply_with(requested_.back(), {86});
     std::ranges::copy(bytes, buffer.begin());
-    return {BusStatus::kMessage, bytes.size()};
+    return {bus::BusStatus::kMessage, bytes.size()};
   }
 
   void let_reply(int count) { eventfd_write(may_reply_.get(), static_cast<eventfd_t>(count)); }
@@ -68,7 +70,7 @@ class HeldConnection final : public ModbusConnection {
   std::vector<int> requested_units() {
     const std::lock_guard lock(mutex_);
     std::vector<int> units;
-    for (const ModbusRequest& request : requested_) units.push_back(request.unit);
+    for (const decode::modbus::ModbusRequest& request : requested_) units.push_back(request.unit);
     return units;
   }
   std::vector<std::chrono::steady_clock::time_point> requested_at() {
@@ -81,12 +83,12 @@ class HeldConnection final : public ModbusConnection {
   std::condition_variable changed_;
   bool is_open_ = false;
   Descriptor may_reply_{eventfd(0, EFD_CLOEXEC | EFD_SEMAPHORE)};
-  std::vector<ModbusRequest> requested_;
+  std::vector<decode::modbus::ModbusRequest> requested_;
   std::vector<std::chrono::steady_clock::time_point> requested_at_;
 };
 
-ModbusLine line_named(const std::string& host) {
-  ModbusLine line;
+bus::ModbusLine line_named(const std::string& host) {
+  bus::ModbusLine line;
   line.host = host;
   return line;
 }
@@ -95,7 +97,7 @@ ModbusLine line_named(const std::string& host) {
 class ModbusBusTest : public testing::Test {
  protected:
   struct Caller {
-    Interruption interruption;
+    bus::Interruption interruption;
     RecordingSink sink;
     std::optional<ModbusBus::Reply> reply;
     std::thread thread;
@@ -104,7 +106,7 @@ class ModbusBusTest : public testing::Test {
     auto connection = std::make_unique<HeldConnection>();
     connection_ = connection.get();
     bus_ = std::make_unique<ModbusBus>(line_named("held"), std::move(connection));
-    const Interruption interruption;
+    const bus::Interruption interruption;
     EXPECT_TRUE(bus_->open(interruption, clock_));
   }
   ~ModbusBusTest() override {
@@ -126,7 +128,7 @@ class ModbusBusTest : public testing::Test {
     ASSERT_EQ(bus_->waiting_count(), count);
   }
 
-  SystemClock clock_;
+  daemon::sensing::SystemClock clock_;
   HeldConnection* connection_ = nullptr;
   std::unique_ptr<ModbusBus> bus_;
   std::vector<std::unique_ptr<Caller>> callers_;
@@ -197,11 +199,11 @@ TEST_F(ModbusBusTest, EndsAWaitForTheGapToo) {
 class ModbusBusByHandTest : public testing::Test {
  protected:
   ModbusBusByHandTest() {
-    line_.statuses = [this](const ModbusRequest&) { return std::deque{status_}; };
-    line_.message = [](const ModbusRequest& request) { return reply_with(request, {86}); };
+    line_.statuses = [this](const decode::modbus::ModbusRequest&) { return std::deque{status_}; };
+    line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {86}); };
   }
-  void make(ModbusFraming framing) {
-    ModbusLine line = line_named("fake");
+  void make(decode::modbus::ModbusFraming framing) {
+    bus::ModbusLine line = line_named("fake");
     line.framing = framing;
     line.device = "fake";
     bus_ = std::make_unique<ModbusBus>(line, std::make_unique<FakeConnection>(line_));
@@ -212,35 +214,35 @@ class ModbusBusByHandTest : public testing::Test {
   }
 
   FakeLine line_;
-  BusStatus status_ = BusStatus::kMessage;
+  bus::BusStatus status_ = bus::BusStatus::kMessage;
   ManualClock clock_;
-  Interruption interruption_;
+  bus::Interruption interruption_;
   RecordingSink sink_;
   std::unique_ptr<ModbusBus> bus_;
 };
 
 TEST_F(ModbusBusByHandTest, LetsASilentSlaveOfASerialLineBeForOneTimeOutMore) {
-  make(ModbusFraming::kRtu);
-  status_ = BusStatus::kSilence;
+  make(decode::modbus::ModbusFraming::kRtu);
+  status_ = bus::BusStatus::kSilence;
   exchange(5);
   EXPECT_EQ(bus_->ready_at(5), clock_.now().mono + 500ms);
   EXPECT_LE(bus_->ready_at(6), clock_.now().mono);
 }
 
 TEST_F(ModbusBusByHandTest, NeedNotWaitOverTcpWhereALateAnswerIsKnownByItsNumber) {
-  make(ModbusFraming::kTcp);
-  status_ = BusStatus::kSilence;
+  make(decode::modbus::ModbusFraming::kTcp);
+  status_ = bus::BusStatus::kSilence;
   exchange(5);
   EXPECT_LE(bus_->ready_at(5), clock_.now().mono);
 }
 
 TEST_F(ModbusBusByHandTest, LetsTheLineSettleAfterTroubleAndNotAfterAnAnswer) {
-  make(ModbusFraming::kTcp);
+  make(decode::modbus::ModbusFraming::kTcp);
   exchange(1);
   EXPECT_EQ(line_.settled, 1);  // it had just been opened
   exchange(1);
   EXPECT_EQ(line_.settled, 1);
-  status_ = BusStatus::kSilence;
+  status_ = bus::BusStatus::kSilence;
   exchange(1);
   EXPECT_EQ(line_.settled, 1);
   exchange(1);
@@ -248,9 +250,9 @@ TEST_F(ModbusBusByHandTest, LetsTheLineSettleAfterTroubleAndNotAfterAnAnswer) {
 }
 
 TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
-  make(ModbusFraming::kTcp);
-  line_.statuses = [](const ModbusRequest& request) {
-    return std::deque{request.unit == 1 ? BusStatus::kMessage : BusStatus::kSilence};
+  make(decode::modbus::ModbusFraming::kTcp);
+  line_.statuses = [](const decode::modbus::ModbusRequest& request) {
+    return std::deque{request.unit == 1 ? bus::BusStatus::kMessage : bus::BusStatus::kSilence};
   };
   for (int i = 0; i < 10; ++i) {
     exchange(1);
@@ -261,12 +263,12 @@ TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
 }
 
 TEST_F(ModbusBusByHandTest, ShowsEachMessageThatWentOrCame) {
-  make(ModbusFraming::kTcp);
+  make(decode::modbus::ModbusFraming::kTcp);
   exchange(7);
   ASSERT_EQ(sink_.raws.size(), 2U);
-  EXPECT_EQ(sink_.raws[0].direction, RawDirection::kSent);
+  EXPECT_EQ(sink_.raws[0].direction, sensor::RawDirection::kSent);
   EXPECT_THAT(sink_.raws[0].message, testing::ElementsAre(0, 1, 0, 0, 0, 6, 7, 3, 0, 0, 0, 1));
-  EXPECT_EQ(sink_.raws[1].direction, RawDirection::kReceived);
+  EXPECT_EQ(sink_.raws[1].direction, sensor::RawDirection::kReceived);
   EXPECT_THAT(sink_.raws[1].message, testing::ElementsAre(0, 1, 0, 0, 0, 5, 7, 3, 2, 0, 86));
 }
 
@@ -274,10 +276,10 @@ TEST(SharedModbusBus, IsOneForAllNamesOfALineForAsLongAsSomebodyHoldsIt) {
   const test::TemporaryFolder folder;
   const std::string link = folder / "stable-name";
   std::filesystem::create_symlink("/dev/null", link);
-  ModbusLine by_link;
-  by_link.framing = ModbusFraming::kRtu;
+  bus::ModbusLine by_link;
+  by_link.framing = decode::modbus::ModbusFraming::kRtu;
   by_link.device = link;
-  ModbusLine by_node = by_link;
+  bus::ModbusLine by_node = by_link;
   by_node.device = "/dev/null";
 
   auto one = shared_modbus_bus(by_link);
@@ -296,4 +298,4 @@ TEST(SharedModbusBus, IsOneForAllNamesOfALineForAsLongAsSomebodyHoldsIt) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

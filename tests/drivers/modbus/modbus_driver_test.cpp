@@ -15,7 +15,7 @@
 #include "tests/support/recording_sink.hpp"
 #include "tests/support/scripted_server.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,14 +27,14 @@ using testing::HasSubstr;
 constexpr double kPatient_s = 5.0;
 constexpr double kImpatient_s = 0.2;
 
-std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
+std::unique_ptr<sensor::Sensor> open_sensor(ParameterValues::Map given) {
   given.try_emplace("response_timeout", kPatient_s);
   given.try_emplace("profile_dir", test::source_path("drivers/modbus/profiles"));
   return driver_named("modbus").open(values_for("modbus", given));
 }
 
-std::unique_ptr<Sensor> open_tcp(std::uint16_t port, const std::string& profile = "renke-rs-fsjt-rs-fxjt-n01",
-                                 double timeout_s = kPatient_s) {
+std::unique_ptr<sensor::Sensor> open_tcp(std::uint16_t port, const std::string& profile = "renke-rs-fsjt-rs-fxjt-n01",
+                                         double timeout_s = kPatient_s) {
   return open_sensor({{"port", std::int64_t{port}}, {"profile", profile}, {"response_timeout", timeout_s}});
 }
 
@@ -59,18 +59,18 @@ struct Bench {
   RecordingSink sink;
   MonoTime due{};
 
-  void poll(Sensor& sensor) {
+  void poll(sensor::Sensor& sensor) {
     clock.advance_to(due);
     due = sensor.poll(clock, sink);
   }
   /// Polls until a new reading is there; false if it never comes.
-  bool poll_for_reading(Sensor& sensor) {
+  bool poll_for_reading(sensor::Sensor& sensor) {
     const auto before = sink.readings.size();
     for (int i = 0; i < 40 && sink.readings.size() == before; ++i) poll(sensor);
     return sink.readings.size() > before;
   }
   /// Polls until something was refused twice for this reason, and publishes nothing meanwhile.
-  void expect_refusals(Sensor& sensor, Refusal why, bool and_no_others) {
+  void expect_refusals(sensor::Sensor& sensor, decode::Refusal why, bool and_no_others) {
     sink.refusals.clear();
     const auto before = sink.readings.size();
     for (int i = 0; i < 40 && sink.count(why) < 2; ++i) poll(sensor);
@@ -103,10 +103,10 @@ TEST(ModbusDriver, ReachesAServerByItsName) {
 /// One way for a device to fail, and what it must be counted as.
 struct Fault {
   const char* name;
-  Refusal why;
+  decode::Refusal why;
   std::function<std::optional<Bytes>(const Bytes& request)> reply;
   double timeout_s = kPatient_s;
-  LinkState state = LinkState::kConnecting;
+  wind::LinkState state = wind::LinkState::kConnecting;
 
   friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 };
@@ -128,55 +128,55 @@ TEST_P(ModbusFaultTest, IsCountedNeverPublishedAndTheReadingReturnsByItself) {
   is_broken = false;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
   EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 8.6, 1e-9);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, ModbusFaultTest,
-                         testing::Values(Fault{"Silence", Refusal::kTimeout, [](const Bytes&) { return Bytes{}; },
-                                               kImpatient_s},
-                                         Fault{"Exception", Refusal::kException,
+                         testing::Values(Fault{"Silence", decode::Refusal::kTimeout,
+                                               [](const Bytes&) { return Bytes{}; }, kImpatient_s},
+                                         Fault{"Exception", decode::Refusal::kException,
                                                [](const Bytes& request) {
                                                  return Bytes{request[0], request[1], 0, 0, 0, 3, request[6], 0x83, 4};
                                                }},
-                                         Fault{"WrongId", Refusal::kNotMine,
+                                         Fault{"WrongId", decode::Refusal::kNotMine,
                                                [](const Bytes& request) {
                                                  Bytes reply = right_reply(request);
                                                  ++reply[6];
                                                  return reply;
                                                },
                                                kImpatient_s},
-                                         Fault{"WrongTransaction", Refusal::kNotMine,
+                                         Fault{"WrongTransaction", decode::Refusal::kNotMine,
                                                [](const Bytes& request) {
                                                  Bytes reply = right_reply(request);
                                                  --reply[1];
                                                  return reply;
                                                },
                                                kImpatient_s},
-                                         Fault{"CutOff", Refusal::kTooShort,
+                                         Fault{"CutOff", decode::Refusal::kTooShort,
                                                [](const Bytes& request) {
                                                  Bytes reply = right_reply(request);
                                                  reply.pop_back();
                                                  return reply;
                                                },
                                                kImpatient_s},
-                                         Fault{"OtherFunction", Refusal::kMalformed,
+                                         Fault{"OtherFunction", decode::Refusal::kMalformed,
                                                [](const Bytes& request) {
                                                  Bytes reply = right_reply(request);
                                                  reply[7] = 4;
                                                  return reply;
                                                }},
-                                         Fault{"NotModbus", Refusal::kMalformed,
+                                         Fault{"NotModbus", decode::Refusal::kMalformed,
                                                [](const Bytes&) {
                                                  const std::string text = "login: user unknown";
                                                  return Bytes(text.begin(), text.end());
                                                }},
-                                         Fault{"TooFast", Refusal::kImplausible,
+                                         Fault{"TooFast", decode::Refusal::kImplausible,
                                                [](const Bytes& request) {
                                                  Bytes reply = right_reply(request);
                                                  reply[9] = 0x7F;
                                                  return reply;
                                                },
-                                               kPatient_s, LinkState::kConnected}),
+                                               kPatient_s, wind::LinkState::kConnected}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(ModbusDriver, NeverTakesTheAnswerToAnEarlierRequestForTheNextOne) {
@@ -190,7 +190,7 @@ TEST(ModbusDriver, NeverTakesTheAnswerToAnEarlierRequestForTheNextOne) {
   });
   const auto sensor = open_tcp(server.port(), "renke-rs-fsjt-n01", kImpatient_s);
   Bench bench;
-  bench.expect_refusals(*sensor, Refusal::kNotMine, false);
+  bench.expect_refusals(*sensor, decode::Refusal::kNotMine, false);
 }
 
 TEST(ModbusDriver, TakesTheRightAnswerBehindALateOne) {
@@ -206,7 +206,7 @@ TEST(ModbusDriver, TakesTheRightAnswerBehindALateOne) {
   Bench bench;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
   EXPECT_NEAR(bench.sink.readings[0].speed_m_s, 8.6, 1e-9);
-  EXPECT_THAT(bench.sink.refusals, testing::ElementsAre(Refusal::kNotMine));
+  EXPECT_THAT(bench.sink.refusals, testing::ElementsAre(decode::Refusal::kNotMine));
 }
 
 TEST(ModbusDriver, ComesBackAfterTheServerDroppedItsConnections) {
@@ -235,18 +235,18 @@ TEST(ModbusDriver, FindsARestartedServerAgainAndSaysSoMeanwhile) {
 
   server.reset();
   for (int i = 0; i < 10; ++i) bench.poll(*sensor);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(bench.sink.last_detail(), HasSubstr("cannot connect to 127.0.0.1:" + std::to_string(port)));
   EXPECT_LE(bench.due - bench.clock.now().mono, 10s);
 
   server = std::make_unique<ScriptedServer>(script, port);
   EXPECT_TRUE(bench.poll_for_reading(*sensor));
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST(ModbusDriver, EndsAPollThatWaitsWhenItIsInterrupted) {
   // The server interrupts while the driver waits for its answer, for which it would give it ten seconds.
-  std::unique_ptr<Sensor> sensor;
+  std::unique_ptr<sensor::Sensor> sensor;
   const ScriptedServer server([&](const Bytes&) {
     sensor->interrupt();
     return Bytes{};
@@ -304,7 +304,7 @@ class ScriptedSerial {
 
 struct SerialFault {
   const char* name;
-  Refusal why;
+  decode::Refusal why;
   Bytes reply;
   double timeout_s = kPatient_s;
 
@@ -333,14 +333,15 @@ TEST_P(ModbusSerialFaultTest, IsCountedNeverPublishedAndTheReadingReturnsByItsel
 
 INSTANTIATE_TEST_SUITE_P(
     Every, ModbusSerialFaultTest,
-    testing::Values(SerialFault{"Silence", Refusal::kTimeout, {}, kImpatient_s},
-                    SerialFault{"Exception", Refusal::kException, {0x01, 0x83, 0x02, 0xC0, 0xF1}},
-                    SerialFault{
-                        "AnotherSlave", Refusal::kNotMine, {0x02, 0x03, 0x02, 0x00, 0x25, 0x3D, 0x9F}, kImpatient_s},
-                    SerialFault{"CutOff", Refusal::kTooShort, {0x01, 0x03, 0x02, 0x00, 0x56, 0x38}, kImpatient_s},
-                    SerialFault{"WrongSum", Refusal::kBadChecksum, {0x01, 0x03, 0x02, 0x00, 0x57, 0x38, 0x7A}},
-                    SerialFault{"Noise", Refusal::kBadChecksum, {0x5A, 0x13, 0xFF, 0x00, 0x77, 0xFE, 0x00}},
-                    SerialFault{"NoiseThatClaimsToBeLong", Refusal::kMalformed, {0x5A, 0x00, 0xFF, 0x13, 0x77, 0xFE}}),
+    testing::Values(
+        SerialFault{"Silence", decode::Refusal::kTimeout, {}, kImpatient_s},
+        SerialFault{"Exception", decode::Refusal::kException, {0x01, 0x83, 0x02, 0xC0, 0xF1}},
+        SerialFault{
+            "AnotherSlave", decode::Refusal::kNotMine, {0x02, 0x03, 0x02, 0x00, 0x25, 0x3D, 0x9F}, kImpatient_s},
+        SerialFault{"CutOff", decode::Refusal::kTooShort, {0x01, 0x03, 0x02, 0x00, 0x56, 0x38}, kImpatient_s},
+        SerialFault{"WrongSum", decode::Refusal::kBadChecksum, {0x01, 0x03, 0x02, 0x00, 0x57, 0x38, 0x7A}},
+        SerialFault{"Noise", decode::Refusal::kBadChecksum, {0x5A, 0x13, 0xFF, 0x00, 0x77, 0xFE, 0x00}},
+        SerialFault{"NoiseThatClaimsToBeLong", decode::Refusal::kMalformed, {0x5A, 0x00, 0xFF, 0x13, 0x77, 0xFE}}),
     [](const auto& test) { return test.param.name; });
 
 TEST(ModbusDriver, ReadsThroughTheStrayByteOfAnRs485Transceiver) {
@@ -367,7 +368,7 @@ TEST(ModbusDriver, TakesTheRightAnswerBehindAnotherSlavesLateOneOnASerialLine) {
   Bench bench;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
   EXPECT_NEAR(bench.sink.readings[0].speed_m_s, 8.6, 1e-9);
-  EXPECT_THAT(bench.sink.refusals, testing::ElementsAre(Refusal::kNotMine));
+  EXPECT_THAT(bench.sink.refusals, testing::ElementsAre(decode::Refusal::kNotMine));
 }
 
 TEST(ModbusDriver, SaysWhatToDoWhenTheSerialPortIsGone) {
@@ -379,7 +380,7 @@ TEST(ModbusDriver, SaysWhatToDoWhenTheSerialPortIsGone) {
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
   bus.reset();
   for (int i = 0; i < 6; ++i) bench.poll(*sensor);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(bench.sink.last_detail(), HasSubstr("cannot open " + device));
   EXPECT_THAT(bench.sink.last_detail(), HasSubstr("group dialout"));
 }
@@ -464,4 +465,4 @@ TEST(ModbusDriver, SaysWhoElseHasThePort) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

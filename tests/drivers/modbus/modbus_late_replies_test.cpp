@@ -14,7 +14,7 @@
 #include "tests/support/modbus_servers.hpp"
 #include "tests/support/recording_sink.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,8 +27,8 @@ const Bytes kRight = {0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};  // 86
 class ModbusLateAnswerTest : public testing::Test {
  protected:
   ModbusLateAnswerTest() {
-    ModbusLine line;
-    line.framing = ModbusFraming::kRtu;
+    bus::ModbusLine line;
+    line.framing = decode::modbus::ModbusFraming::kRtu;
     line.device = port_.device();
     bus_ = shared_modbus_bus(line);
     EXPECT_TRUE(bus_->open(interruption_, clock_));
@@ -65,7 +65,7 @@ class ModbusLateAnswerTest : public testing::Test {
   Nanoseconds byte_timeout_ = 100ms;
   SerialPort port_;
   ManualClock clock_;
-  Interruption interruption_;
+  bus::Interruption interruption_;
   RecordingSink sink_;
   std::shared_ptr<ModbusBus> bus_;
 };
@@ -81,7 +81,7 @@ TEST_F(ModbusLateAnswerTest, ThatIsThereBeforeTheNextRequestIsDroppedAndCounted)
   device.join();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->values[0], 86);
-  EXPECT_THAT(sink_.refusals, testing::ElementsAre(Refusal::kTimeout, Refusal::kNotMine));
+  EXPECT_THAT(sink_.refusals, testing::ElementsAre(decode::Refusal::kTimeout, decode::Refusal::kNotMine));
 }
 
 TEST_F(ModbusLateAnswerTest, ThatComesWhileTheNextRequestIsAboutToBeSentIsWaitedOut) {
@@ -103,7 +103,7 @@ TEST_F(ModbusLateAnswerTest, ThatComesWhileTheNextRequestIsAboutToBeSentIsWaited
   device.join();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->values[0], 86);
-  EXPECT_EQ(sink_.count(Refusal::kNotMine), 1);
+  EXPECT_EQ(sink_.count(decode::Refusal::kNotMine), 1);
 }
 
 TEST_F(ModbusLateAnswerTest, FallsIntoTheTimeForWhichItsSlaveIsLetBe) {
@@ -121,7 +121,7 @@ TEST_F(ModbusLateAnswerTest, OfAnotherSlaveIsKnownByItsIdAndPassedOver) {
   device.join();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->values[0], 86);
-  EXPECT_THAT(sink_.refusals, testing::ElementsAre(Refusal::kNotMine));
+  EXPECT_THAT(sink_.refusals, testing::ElementsAre(decode::Refusal::kNotMine));
 }
 
 TEST_F(ModbusLateAnswerTest, DoesNotHoldUpALineThatNeverGetsQuietForLongerThanATimeOut) {
@@ -149,4 +149,4 @@ TEST_F(ModbusLateAnswerTest, CannotKeepAnInterruptedSensorWaiting) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 using testing::ElementsAre;
@@ -15,9 +15,9 @@ using enum ModbusMeasure;
 ModbusProfile three_quantities() {
   ModbusProfile profile;
   profile.speed.address = 10;
-  profile.direction = ModbusQuantity{};
+  profile.direction = decode::modbus::ModbusQuantity{};
   profile.direction->address = 11;
-  profile.gust = ModbusQuantity{};
+  profile.gust = decode::modbus::ModbusQuantity{};
   profile.gust->address = 14;
   return profile;
 }
@@ -83,7 +83,8 @@ TEST(ModbusPlan, NeverAsksForMoreThanOneRequestMay) {
   profile.block_gap = 100;
   profile.direction->address = 105;
   profile.gust->address = 200;
-  for (const ModbusRead& read : plan_modbus_reads(profile)) EXPECT_LE(read.request.count, kModbusMaxRegisters);
+  for (const ModbusRead& read : plan_modbus_reads(profile))
+    EXPECT_LE(read.request.count, decode::modbus::kModbusMaxRegisters);
 }
 
 TEST(ModbusPlan, LeavesADirectionOnItsOwnLineToItself) {
@@ -96,7 +97,7 @@ TEST(ModbusPlan, FindsEachQuantityInTheAnswer) {
   ModbusProfile profile = three_quantities();
   profile.block_gap = 2;
   const ModbusRead read = plan_modbus_reads(profile).front();
-  ModbusRegisters registers;
+  decode::modbus::ModbusRegisters registers;
   registers.values = {1, 2, 3, 4, 5};
   registers.count = 5;
   EXPECT_EQ(registers_of(quantity_of(profile, kSpeed), read.request, registers)[0], 1);
@@ -105,4 +106,4 @@ TEST(ModbusPlan, FindsEachQuantityInTheAnswer) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -9,7 +9,7 @@
 
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 using testing::HasSubstr;
@@ -42,12 +42,12 @@ TEST(ModbusProfile, OfTheRenkePairIsWhatItsRegisterMapSays) {
   EXPECT_EQ(profile.speed.slave, 1);
   EXPECT_EQ(profile.speed.function, 3);
   EXPECT_EQ(profile.speed.address, 0);
-  EXPECT_NEAR(*decode_speed_m_s(profile.speed, std::vector<std::uint16_t>{86}), 8.6, 1e-12);
+  EXPECT_NEAR(*decode::modbus::decode_speed_m_s(profile.speed, std::vector<std::uint16_t>{86}), 8.6, 1e-12);
 
   ASSERT_TRUE(profile.direction.has_value());
   EXPECT_EQ(profile.direction->slave, 2);
   EXPECT_EQ(profile.direction->address, 1);
-  EXPECT_EQ(*decode_direction_deg(*profile.direction, std::vector<std::uint16_t>{360}), 0.0);
+  EXPECT_EQ(*decode::modbus::decode_direction_deg(*profile.direction, std::vector<std::uint16_t>{360}), 0.0);
 }
 
 TEST(ModbusProfile, OfTheCupAloneHasNoDirection) {
@@ -127,11 +127,11 @@ unit = "km/h"
   EXPECT_EQ(profile.speed.slave, 17);
   EXPECT_EQ(profile.speed.function, 4);
   EXPECT_EQ(profile.speed.address, 4);
-  EXPECT_EQ(profile.speed.type, RegisterType::kF32);
-  EXPECT_EQ(profile.speed.order, ByteOrder::kCDAB);
+  EXPECT_EQ(profile.speed.type, decode::modbus::RegisterType::kF32);
+  EXPECT_EQ(profile.speed.order, decode::modbus::ByteOrder::kCDAB);
   EXPECT_EQ(profile.speed.scale, 0.5);
   EXPECT_EQ(profile.speed.offset, 1.0);
-  EXPECT_EQ(profile.speed.unit, QuantityUnit::kKnots);
+  EXPECT_EQ(profile.speed.unit, decode::modbus::QuantityUnit::kKnots);
   EXPECT_EQ(profile.speed.invalid, (std::vector<std::int64_t>{0x7FFFFFFF, 1}));
   EXPECT_EQ(profile.speed.min, 0.0);
   EXPECT_EQ(profile.speed.max, 100.5);
@@ -139,19 +139,19 @@ unit = "km/h"
   ASSERT_TRUE(profile.direction.has_value());
   EXPECT_EQ(profile.direction->slave, 18);
   EXPECT_EQ(profile.direction->address, 2);
-  EXPECT_EQ(profile.direction->type, RegisterType::kI16);
-  EXPECT_EQ(profile.direction->map, DirectionMap::kPoint16);
+  EXPECT_EQ(profile.direction->type, decode::modbus::RegisterType::kI16);
+  EXPECT_EQ(profile.direction->map, decode::modbus::DirectionMap::kPoint16);
   EXPECT_EQ(profile.block_gap, 3);
   ASSERT_TRUE(profile.gust.has_value());
   EXPECT_EQ(profile.gust->address, 6);
-  EXPECT_EQ(profile.gust->unit, QuantityUnit::kKmh);
+  EXPECT_EQ(profile.gust->unit, decode::modbus::QuantityUnit::kKmh);
 }
 
 TEST(ModbusProfile, ThatIsMovedToAnotherSlaveTakesAlongWhatWasOnTheSame) {
   ModbusProfile profile;
-  profile.direction = ModbusQuantity{};
+  profile.direction = decode::modbus::ModbusQuantity{};
   profile.direction->slave = 2;
-  profile.gust = ModbusQuantity{};
+  profile.gust = decode::modbus::ModbusQuantity{};
   set_slave(profile, 7);
   EXPECT_EQ(profile.speed.slave, 7);
   EXPECT_EQ(profile.direction->slave, 2);
@@ -240,4 +240,4 @@ TEST(ModbusProfileSearch, LooksInTheGivenDirectoryFirst) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -12,7 +12,7 @@
 #include "tests/support/modbus_vectors.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 /// What a device has in its registers, as the wire counts them.
@@ -20,9 +20,9 @@ using DeviceRegisters = std::map<int, std::uint16_t>;
 
 /// What a profile reads in them.
 struct ProfileReading {
-  Result<double, Refusal> speed_m_s = Refusal::kTimeout;
-  Result<double, Refusal> direction_deg = Refusal::kTimeout;
-  Result<double, Refusal> gust_m_s = Refusal::kTimeout;
+  Result<double, decode::Refusal> speed_m_s = decode::Refusal::kTimeout;
+  Result<double, decode::Refusal> direction_deg = decode::Refusal::kTimeout;
+  Result<double, decode::Refusal> gust_m_s = decode::Refusal::kTimeout;
 };
 
 ModbusProfile shipped_profile(const std::string& name) {
@@ -30,8 +30,9 @@ ModbusProfile shipped_profile(const std::string& name) {
 }
 
 /// Registers as a request brings them; nothing if the device lacks one.
-std::optional<ModbusRegisters> answer_of(const DeviceRegisters& device, const ModbusRequest& request) {
-  ModbusRegisters registers;
+std::optional<decode::modbus::ModbusRegisters> answer_of(const DeviceRegisters& device,
+                                                         const decode::modbus::ModbusRequest& request) {
+  decode::modbus::ModbusRegisters registers;
   for (int i = 0; i < request.count; ++i) {
     const auto found = device.find(request.address + i);
     if (found == device.end()) return std::nullopt;
@@ -46,11 +47,12 @@ ProfileReading read_with(const ModbusProfile& profile, const DeviceRegisters& de
     const auto registers = answer_of(device, read.request);
     if (!registers) continue;
     for (const ModbusMeasure measure : read.measures) {
-      const ModbusQuantity& quantity = quantity_of(profile, measure);
+      const decode::modbus::ModbusQuantity& quantity = quantity_of(profile, measure);
       const auto part = registers_of(quantity, read.request, *registers);
-      if (measure == ModbusMeasure::kSpeed) reading.speed_m_s = decode_speed_m_s(quantity, part);
-      if (measure == ModbusMeasure::kGust) reading.gust_m_s = decode_speed_m_s(quantity, part);
-      if (measure == ModbusMeasure::kDirection) reading.direction_deg = decode_direction_deg(quantity, part);
+      if (measure == ModbusMeasure::kSpeed) reading.speed_m_s = decode::modbus::decode_speed_m_s(quantity, part);
+      if (measure == ModbusMeasure::kGust) reading.gust_m_s = decode::modbus::decode_speed_m_s(quantity, part);
+      if (measure == ModbusMeasure::kDirection)
+        reading.direction_deg = decode::modbus::decode_direction_deg(quantity, part);
     }
   }
   return reading;
@@ -189,12 +191,13 @@ TEST(ShippedProfiles, AreAllTestedAndSayWhereTheyWereRead) {
 
 TEST(ShippedProfiles, TakeTheMarksForNoValueAsNone) {
   EXPECT_EQ(read_with(shipped_profile("lufft-umb"), {{44, 98}, {45, 0}, {46, 0}, {47, 0x7FFF}}).speed_m_s.error(),
-            Refusal::kInvalid);
-  EXPECT_EQ(read_with(shipped_profile("lambrecht-industry"), {{30001, 0xD8F1}}).speed_m_s.error(), Refusal::kInvalid);
+            decode::Refusal::kInvalid);
+  EXPECT_EQ(read_with(shipped_profile("lambrecht-industry"), {{30001, 0xD8F1}}).speed_m_s.error(),
+            decode::Refusal::kInvalid);
   const ProfileReading gill =
       read_with(shipped_profile("gill-maximet-gmx"), {{2, 0x7FFF}, {3, 0xFFFF}, {4, 0x40B0}, {5, 0}});
   EXPECT_TRUE(gill.speed_m_s.has_value());
-  EXPECT_EQ(gill.direction_deg.error(), Refusal::kInvalid);
+  EXPECT_EQ(gill.direction_deg.error(), decode::Refusal::kInvalid);
 }
 
 TEST(ShippedProfiles, NeverReadARegisterThatClearsOthers) {
@@ -216,7 +219,7 @@ TEST(ShippedProfiles, KeepTheirSerialLinesAndPaces) {
 }
 
 /// The registers that a published frame carries.
-DeviceRegisters registers_of(const ModbusVector& vector) {
+DeviceRegisters device_registers_of(const ModbusVector& vector) {
   DeviceRegisters registers;
   const int from = (vector.request[2] << 8) | vector.request[3];
   for (std::size_t i = 0; 3 + 2 * i + 1 < vector.response.size() - 2; ++i) {
@@ -234,7 +237,7 @@ TEST(ShippedProfiles, ReadTheSharedCollectionsFramesAsItSays) {
     const auto found = std::ranges::find(vectors, device, &ModbusVector::device);
     EXPECT_NE(found, vectors.end()) << device;
     ++checked;
-    return found != vectors.end() ? read_with(shipped_profile(profile), registers_of(*found)) : ProfileReading{};
+    return found != vectors.end() ? read_with(shipped_profile(profile), device_registers_of(*found)) : ProfileReading{};
   };
 
   EXPECT_NEAR(*reading_of("Renke RS-FSJT-N01 / PR-3000-FSJT-N01", "renke-rs-fsjt-n01").speed_m_s, 8.6, 1e-9);
@@ -247,7 +250,7 @@ TEST(ShippedProfiles, ReadTheSharedCollectionsFramesAsItSays) {
   EXPECT_NEAR(*seeed.direction_deg, 95.0, 1e-9);
   EXPECT_NEAR(*seeed.gust_m_s, 5.0, 1e-9);
   const ProfileReading lufft = reading_of("Lufft WS-UMB / VENTUS", "lufft-umb");
-  EXPECT_EQ(lufft.speed_m_s.error(), Refusal::kInvalid);
+  EXPECT_EQ(lufft.speed_m_s.error(), decode::Refusal::kInvalid);
   EXPECT_NEAR(*lufft.gust_m_s, 9.8, 1e-9);
 
   // The frame of the WM80 ends before the gust, which this profile reads along.
@@ -255,11 +258,11 @@ TEST(ShippedProfiles, ReadTheSharedCollectionsFramesAsItSays) {
   wm80.gust.reset();
   const auto found = std::ranges::find(vectors, "Vaisala WM80", &ModbusVector::device);
   ASSERT_NE(found, vectors.end());
-  const ProfileReading vaisala = read_with(wm80, registers_of(*found));
+  const ProfileReading vaisala = read_with(wm80, device_registers_of(*found));
   EXPECT_NEAR(*vaisala.speed_m_s, 5.5, 1e-9);
   EXPECT_NEAR(*vaisala.direction_deg, 90.5, 1e-9);
   EXPECT_EQ(checked, 6);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

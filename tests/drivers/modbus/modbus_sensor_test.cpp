@@ -9,7 +9,7 @@
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::modbus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,24 +23,24 @@ ModbusProfile pair_profile() {
   profile.poll_interval = 250ms;
   profile.min_gap = 20ms;
   profile.speed.scale = 0.1;
-  profile.direction = ModbusQuantity{};
+  profile.direction = decode::modbus::ModbusQuantity{};
   profile.direction->slave = 2;
   profile.direction->address = 1;
-  profile.direction->unit = QuantityUnit::kDegrees;
+  profile.direction->unit = decode::modbus::QuantityUnit::kDegrees;
   return profile;
 }
 
 class ModbusSensorTest : public testing::Test {
  protected:
   ModbusSensorTest() {
-    line_.statuses = [](const ModbusRequest&) { return std::deque{BusStatus::kMessage}; };
-    line_.message = [](const ModbusRequest& request) {
+    line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kMessage}; };
+    line_.message = [](const decode::modbus::ModbusRequest& request) {
       return reply_with(request, {static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270)});
     };
   }
 
   void make(const ModbusProfile& profile) {
-    ModbusLine where;
+    bus::ModbusLine where;
     where.host = "here";
     auto bus = std::make_shared<ModbusBus>(where, std::make_unique<FakeConnection>(line_));
     sensor_ = std::make_unique<ModbusSensor>(profile, std::move(bus), nullptr, 1);
@@ -72,9 +72,9 @@ TEST_F(ModbusSensorTest, PublishesOneReadingARoundFromBothSlaves) {
   ASSERT_EQ(sink_.readings.size(), 1U);
   EXPECT_DOUBLE_EQ(sink_.readings[0].speed_m_s, 8.6);
   EXPECT_EQ(sink_.readings[0].direction_deg, 270.0);
-  EXPECT_EQ(sink_.readings[0].quality, ReadingQuality::kGood);
+  EXPECT_EQ(sink_.readings[0].quality, wind::ReadingQuality::kGood);
   EXPECT_TRUE(sink_.refusals.empty());
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(ModbusSensorTest, TimesAReadingWhenItsSpeedArrived) {
@@ -115,9 +115,11 @@ TEST_F(ModbusSensorTest, GivesEachRequestATransactionOfItsOwn) {
 
 TEST_F(ModbusSensorTest, PassesOverALateAnswerAndTakesTheRightOne) {
   make(pair_profile());
-  line_.statuses = [](const ModbusRequest&) { return std::deque{BusStatus::kMessage, BusStatus::kMessage}; };
+  line_.statuses = [](const decode::modbus::ModbusRequest&) {
+    return std::deque{bus::BusStatus::kMessage, bus::BusStatus::kMessage};
+  };
   bool is_late = true;
-  line_.message = [&is_late](ModbusRequest request) {
+  line_.message = [&is_late](decode::modbus::ModbusRequest request) {
     std::vector<std::uint16_t> registers = {86};
     if (std::exchange(is_late, !is_late)) {
       --request.transaction;
@@ -132,41 +134,42 @@ TEST_F(ModbusSensorTest, PassesOverALateAnswerAndTakesTheRightOne) {
   poll();
   ASSERT_EQ(sink_.readings.size(), 1U);
   EXPECT_DOUBLE_EQ(sink_.readings[0].speed_m_s, 8.6);
-  EXPECT_THAT(sink_.refusals, ElementsAre(Refusal::kNotMine));
+  EXPECT_THAT(sink_.refusals, ElementsAre(decode::Refusal::kNotMine));
 }
 
 TEST_F(ModbusSensorTest, CountsAnAnswerOfAnotherSlaveOnceAndNotItsSilenceBesides) {
   make(pair_profile());
-  line_.message = [](ModbusRequest request) {
+  line_.message = [](decode::modbus::ModbusRequest request) {
     request.unit = 9;
     return reply_with(request, {86});
   };
   poll();
   poll();
   EXPECT_TRUE(sink_.readings.empty());
-  EXPECT_THAT(sink_.refusals, ElementsAre(Refusal::kNotMine));
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+  EXPECT_THAT(sink_.refusals, ElementsAre(decode::Refusal::kNotMine));
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
 }
 
 TEST_F(ModbusSensorTest, CountsEachFailureAsWhatItIsAndPublishesNothing) {
-  const std::vector<std::pair<BusStatus, Refusal>> failures = {{BusStatus::kSilence, Refusal::kTimeout},
-                                                               {BusStatus::kCutOff, Refusal::kTooShort},
-                                                               {BusStatus::kGarbled, Refusal::kMalformed}};
+  const std::vector<std::pair<bus::BusStatus, decode::Refusal>> failures = {
+      {bus::BusStatus::kSilence, decode::Refusal::kTimeout},
+      {bus::BusStatus::kCutOff, decode::Refusal::kTooShort},
+      {bus::BusStatus::kGarbled, decode::Refusal::kMalformed}};
   for (const auto& [status, why] : failures) {
     make(pair_profile());
     sink_ = {};
-    line_.statuses = [one = status](const ModbusRequest&) { return std::deque{one}; };
+    line_.statuses = [one = status](const decode::modbus::ModbusRequest&) { return std::deque{one}; };
     poll();
     poll();
     EXPECT_THAT(sink_.refusals, ElementsAre(why));
     EXPECT_TRUE(sink_.readings.empty());
-    EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
   }
 }
 
 TEST_F(ModbusSensorTest, SaysWhichExceptionAndWhatToDo) {
   make(pair_profile());
-  line_.message = [](const ModbusRequest& request) {
+  line_.message = [](const decode::modbus::ModbusRequest& request) {
     auto bytes = reply_with(request, {});
     bytes[7] = 0x83;
     bytes[8] = 2;
@@ -174,7 +177,7 @@ TEST_F(ModbusSensorTest, SaysWhichExceptionAndWhatToDo) {
   };
   poll();
   poll();
-  EXPECT_THAT(sink_.refusals, ElementsAre(Refusal::kException));
+  EXPECT_THAT(sink_.refusals, ElementsAre(decode::Refusal::kException));
   EXPECT_THAT(sink_.last_detail(),
               HasSubstr("slave 1 at here:502 refuses the request (exception 2, illegal data address)"));
   EXPECT_TRUE(sink_.readings.empty());
@@ -182,24 +185,24 @@ TEST_F(ModbusSensorTest, SaysWhichExceptionAndWhatToDo) {
 
 TEST_F(ModbusSensorTest, RefusesAnImplausibleSpeedAndAsksNoDirectionForIt) {
   make(pair_profile());
-  line_.message = [](const ModbusRequest& request) { return reply_with(request, {9999}); };
+  line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {9999}); };
   poll();
   poll();
-  EXPECT_THAT(sink_.refusals, ElementsAre(Refusal::kImplausible));
+  EXPECT_THAT(sink_.refusals, ElementsAre(decode::Refusal::kImplausible));
   EXPECT_TRUE(sink_.readings.empty());
   EXPECT_EQ(line_.requests.size(), 1U);
 }
 
 TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhileTheVaneIsSilentAndAsksItLessOften) {
   make(pair_profile());
-  line_.statuses = [](const ModbusRequest& request) {
-    return request.unit == 1 ? std::deque{BusStatus::kMessage} : std::deque<BusStatus>{};
+  line_.statuses = [](const decode::modbus::ModbusRequest& request) {
+    return request.unit == 1 ? std::deque{bus::BusStatus::kMessage} : std::deque<bus::BusStatus>{};
   };
   poll_for(60s);
   EXPECT_GE(sink_.readings.size(), 235U);
-  for (const WindReading& reading : sink_.readings) EXPECT_FALSE(reading.direction_deg.has_value());
-  const auto vane_requests = std::ranges::count(line_.requests, 2, &ModbusRequest::unit);
-  EXPECT_EQ(sink_.count(Refusal::kTimeout), vane_requests);
+  for (const wind::WindReading& reading : sink_.readings) EXPECT_FALSE(reading.direction_deg.has_value());
+  const auto vane_requests = std::ranges::count(line_.requests, 2, &decode::modbus::ModbusRequest::unit);
+  EXPECT_EQ(sink_.count(decode::Refusal::kTimeout), vane_requests);
   EXPECT_GE(vane_requests, 6);
   EXPECT_LE(vane_requests, 15);
   EXPECT_EQ(line_.opened, 1);
@@ -209,8 +212,8 @@ TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhileTheVaneIsSilentAndAsksItLess
 TEST_F(ModbusSensorTest, HasTheDirectionAgainWhenTheVaneIsBack) {
   make(pair_profile());
   bool vane_replies = false;
-  line_.statuses = [&](const ModbusRequest& request) {
-    return request.unit == 1 || vane_replies ? std::deque{BusStatus::kMessage} : std::deque<BusStatus>{};
+  line_.statuses = [&](const decode::modbus::ModbusRequest& request) {
+    return request.unit == 1 || vane_replies ? std::deque{bus::BusStatus::kMessage} : std::deque<bus::BusStatus>{};
   };
   poll_for(30s);
   vane_replies = true;
@@ -226,7 +229,7 @@ TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhereTheDirectionIsInvalid) {
   poll_for(1s);
   ASSERT_FALSE(sink_.readings.empty());
   EXPECT_FALSE(sink_.readings.back().direction_deg.has_value());
-  EXPECT_EQ(sink_.count(Refusal::kInvalid), std::ssize(sink_.readings));
+  EXPECT_EQ(sink_.count(decode::Refusal::kInvalid), std::ssize(sink_.readings));
 }
 
 TEST_F(ModbusSensorTest, TriesToOpenForEverWithWaitsThatGrowTo10Seconds) {
@@ -235,7 +238,7 @@ TEST_F(ModbusSensorTest, TriesToOpenForEverWithWaitsThatGrowTo10Seconds) {
   std::vector<Nanoseconds> waits(100);
   for (Nanoseconds& wait : waits) wait = poll();
   EXPECT_EQ(line_.opened, 100);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
   EXPECT_EQ(sink_.last_detail(), "cannot open the fake");
   EXPECT_LE(waits.front(), 250ms);
   for (const Nanoseconds wait : waits) {
@@ -251,31 +254,31 @@ TEST_F(ModbusSensorTest, TriesToOpenForEverWithWaitsThatGrowTo10Seconds) {
 
 TEST_F(ModbusSensorTest, OpensAgainAfterThreeSilentRequestsInARow) {
   make(pair_profile());
-  line_.statuses = [](const ModbusRequest&) { return std::deque<BusStatus>{}; };
+  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque<bus::BusStatus>{}; };
   for (int i = 0; i < 4; ++i) poll();
   EXPECT_EQ(line_.opened, 1);
   poll();
   EXPECT_EQ(line_.opened, 2);
-  EXPECT_EQ(sink_.count(Refusal::kTimeout), 3);
+  EXPECT_EQ(sink_.count(decode::Refusal::kTimeout), 3);
 }
 
 TEST_F(ModbusSensorTest, OpensAgainWhenTheConnectionIsLostAndPublishesOn) {
   make(pair_profile());
   poll_for(1s);
-  line_.statuses = [](const ModbusRequest&) { return std::deque{BusStatus::kLost}; };
+  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kLost}; };
   poll();
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
-  line_.statuses = [](const ModbusRequest&) { return std::deque{BusStatus::kMessage}; };
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
+  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kMessage}; };
   const auto before = sink_.readings.size();
   poll_for(1s);
   EXPECT_EQ(line_.opened, 2);
   EXPECT_GT(sink_.readings.size(), before);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(ModbusSensorTest, ReopeningAServerThatOnlyAcceptsGetsRarer) {
   make(pair_profile());
-  line_.statuses = [](const ModbusRequest&) { return std::deque{BusStatus::kLost}; };
+  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kLost}; };
   poll_for(60s);
   EXPECT_LE(line_.opened, 13);
   EXPECT_GE(line_.opened, 9);
@@ -301,7 +304,7 @@ TEST_F(ModbusSensorTest, ReadsAdjoiningRegistersOfOneSlaveAtOnce) {
   ModbusProfile profile = pair_profile();
   profile.direction->slave = 1;
   make(profile);
-  line_.message = [](const ModbusRequest& request) { return reply_with(request, {86, 270}); };
+  line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {86, 270}); };
   poll();
   poll();
   ASSERT_EQ(line_.requests.size(), 1U);
@@ -317,9 +320,9 @@ TEST_F(ModbusSensorTest, ReadsABlockThatBeginsWithTheDirection) {
   profile.direction->slave = 1;
   profile.direction->address = 2;
   profile.speed.address = 3;
-  profile.speed.type = RegisterType::kU32;
+  profile.speed.type = decode::modbus::RegisterType::kU32;
   make(profile);
-  line_.message = [](const ModbusRequest& request) { return reply_with(request, {270, 0, 86}); };
+  line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {270, 0, 86}); };
   poll();
   poll();
   ASSERT_EQ(line_.requests.size(), 1U);
@@ -379,7 +382,7 @@ TEST_F(ModbusSensorTest, PublishesAGustThatComesAlongOrByItself) {
     profile.gust->address = address;
     make(profile);
     sink_ = {};
-    line_.message = [](const ModbusRequest& request) {
+    line_.message = [](const decode::modbus::ModbusRequest& request) {
       std::vector<std::uint16_t> registers(request.count, static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270));
       if (request.unit == 1 && (request.count == 2 || request.address == 40)) registers.back() = 121;
       return reply_with(request, registers);
@@ -402,13 +405,13 @@ TEST_F(ModbusSensorTest, GoesOnWithoutAGustThatIsNoneAndSaysSo) {
   poll_for(1s);
   ASSERT_FALSE(sink_.readings.empty());
   EXPECT_FALSE(sink_.readings.back().gust_m_s.has_value());
-  EXPECT_EQ(sink_.count(Refusal::kImplausible), std::ssize(sink_.readings));
+  EXPECT_EQ(sink_.count(decode::Refusal::kImplausible), std::ssize(sink_.readings));
   EXPECT_EQ(sink_.last_detail(), "pair at here:502; without gust: it is implausible");
 }
 
 TEST_F(ModbusSensorTest, AsksADeadSpeedSlaveLessAndLessOften) {
   make(pair_profile());
-  line_.statuses = [](const ModbusRequest&) { return std::deque<BusStatus>{}; };
+  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque<bus::BusStatus>{}; };
   poll_for(60s);
   EXPECT_GE(line_.requests.size(), 6U);
   EXPECT_LE(line_.requests.size(), 15U);
@@ -416,18 +419,18 @@ TEST_F(ModbusSensorTest, AsksADeadSpeedSlaveLessAndLessOften) {
 
 TEST_F(ModbusSensorTest, KeepsItsPaceThroughNoiseThatCostsNoTime) {
   make(pair_profile());
-  line_.message = [](const ModbusRequest& request) {
+  line_.message = [](const decode::modbus::ModbusRequest& request) {
     auto bytes = reply_with(request, {86});
     bytes[7] = 4;  // another function
     return bytes;
   };
   poll_for(10s);
-  EXPECT_GE(sink_.count(Refusal::kMalformed), 20);
+  EXPECT_GE(sink_.count(decode::Refusal::kMalformed), 20);
 }
 
 TEST_F(ModbusSensorTest, TellsAGatewaysSilentSlaveFromARefusal) {
   make(pair_profile());
-  line_.message = [](const ModbusRequest& request) {
+  line_.message = [](const decode::modbus::ModbusRequest& request) {
     auto bytes = reply_with(request, {});
     bytes[7] = 0x83;
     bytes[8] = 11;
@@ -439,7 +442,7 @@ TEST_F(ModbusSensorTest, TellsAGatewaysSilentSlaveFromARefusal) {
 }
 
 TEST_F(ModbusSensorTest, OpensTheLineAgainThatAnotherSensorHasLost) {
-  ModbusLine where;
+  bus::ModbusLine where;
   where.host = "here";
   auto bus = std::make_shared<ModbusBus>(where, std::make_unique<FakeConnection>(line_));
   ModbusProfile cup = pair_profile();
@@ -456,15 +459,15 @@ TEST_F(ModbusSensorTest, OpensTheLineAgainThatAnotherSensorHasLost) {
   EXPECT_EQ(line_.opened, 1);
 
   bool loses = true;
-  line_.statuses = [&loses](const ModbusRequest&) {
-    return std::deque{std::exchange(loses, false) ? BusStatus::kLost : BusStatus::kMessage};
+  line_.statuses = [&loses](const decode::modbus::ModbusRequest&) {
+    return std::deque{std::exchange(loses, false) ? bus::BusStatus::kLost : bus::BusStatus::kMessage};
   };
   for (int i = 0; i < 8; ++i) poll_both();
   EXPECT_EQ(line_.opened, 2);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
-  EXPECT_EQ(other_sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
+  EXPECT_EQ(other_sink.last_state(), wind::LinkState::kConnected);
   EXPECT_EQ(other_sink.links.size(), 1U) << "nothing was wrong with the other one";
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::modbus

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::drivers::mqtt {
 namespace {
 
 /// Passes if a number was found there.
@@ -19,7 +19,7 @@ testing::AssertionResult finds_none(std::string_view payload, const std::string&
   if (number && !*number) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "a number" : name_of(number.error()));
 }
-testing::AssertionResult refuses(std::string_view payload, const std::string& pointer, Refusal why) {
+testing::AssertionResult refuses(std::string_view payload, const std::string& pointer, decode::Refusal why) {
   const auto number = number_in(payload, {pointer});
   if (!number && number.error() == why) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "accepted" : name_of(number.error()));
@@ -33,13 +33,13 @@ TEST(MqttPayload, ThatIsANumber) {
 
 TEST(MqttPayload, ThatStandsForNoValue) {
   for (const std::string_view payload : {"", " ", "unavailable", "unknown", "None", "null", "nan"}) {
-    EXPECT_TRUE(refuses(payload, "", Refusal::kInvalid)) << payload;
+    EXPECT_TRUE(refuses(payload, "", decode::Refusal::kInvalid)) << payload;
   }
 }
 
 TEST(MqttPayload, ThatIsSomethingElse) {
   for (const std::string_view payload : {"4.2 m/s", "NNE", "0x10", "4,2", "1e999", "inf", "{\"a\":1}", "\xff\xfe"}) {
-    EXPECT_TRUE(refuses(payload, "", Refusal::kMalformed)) << payload;
+    EXPECT_TRUE(refuses(payload, "", decode::Refusal::kMalformed)) << payload;
   }
 }
 
@@ -61,13 +61,13 @@ TEST(MqttPayload, InJsonMayBeAbsent) {
 }
 
 TEST(MqttPayload, InJsonIsRefusedWhereItIsNoNumber) {
-  EXPECT_TRUE(refuses(R"({"a":{}})", "/a", Refusal::kMalformed));
-  EXPECT_TRUE(refuses(R"({"a":true})", "/a", Refusal::kMalformed));
-  EXPECT_TRUE(refuses(R"({"a":"NNE"})", "/a", Refusal::kMalformed));
-  EXPECT_TRUE(refuses(R"({"a":"unavailable"})", "/a", Refusal::kInvalid));
-  EXPECT_TRUE(refuses(R"({"a":1)", "/a", Refusal::kMalformed));
-  EXPECT_TRUE(refuses(R"({"a":1e999})", "/a", Refusal::kMalformed));
-  EXPECT_TRUE(refuses("", "/a", Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":{}})", "/a", decode::Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":true})", "/a", decode::Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":"NNE"})", "/a", decode::Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":"unavailable"})", "/a", decode::Refusal::kInvalid));
+  EXPECT_TRUE(refuses(R"({"a":1)", "/a", decode::Refusal::kMalformed));
+  EXPECT_TRUE(refuses(R"({"a":1e999})", "/a", decode::Refusal::kMalformed));
+  EXPECT_TRUE(refuses("", "/a", decode::Refusal::kMalformed));
 }
 
 TEST(MqttPayload, StandsAnyBytes) {
@@ -86,7 +86,7 @@ TEST(MqttPayload, StandsAnyBytes) {
 }
 
 TEST(MqttPayload, StandsALotOfBrackets) {
-  EXPECT_TRUE(refuses(std::string(60'000, '['), "/a", Refusal::kMalformed));
+  EXPECT_TRUE(refuses(std::string(60'000, '['), "/a", decode::Refusal::kMalformed));
   EXPECT_TRUE(finds_none(std::string(30'000, '[') + std::string(30'000, ']'), "/1"));
 }
 
@@ -98,4 +98,4 @@ TEST(JsonPointer, BeginsWithASlash) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::mqtt

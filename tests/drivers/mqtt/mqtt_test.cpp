@@ -17,14 +17,14 @@
 #include "tests/support/running_sensor.hpp"
 #include "tests/support/scripted_server.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::mqtt {
 namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-std::unique_ptr<Sensor> open_mqtt_sensor(const ParameterValues::Map& given) {
+std::unique_ptr<sensor::Sensor> open_mqtt_sensor(const ParameterValues::Map& given) {
   return driver_named("mqtt").open(values_for("mqtt", given));
 }
 
@@ -38,17 +38,17 @@ class MqttRun {
   bool reads_after(const std::function<void()>& publish) {
     const bool listens = sensor_.wait_until([](const RecordingSink& sink) {
       const std::string detail = sink.last_detail();
-      return sink.last_state() == LinkState::kConnected || detail.find("waits for") != std::string::npos ||
+      return sink.last_state() == wind::LinkState::kConnected || detail.find("waits for") != std::string::npos ||
              detail.find("no wind has been received") != std::string::npos;
     });
     const std::size_t before = count();
     publish();
     return listens && has_read(before + 1);
   }
-  bool has_refused(Refusal why, std::ptrdiff_t times = 1) {
+  bool has_refused(decode::Refusal why, std::ptrdiff_t times = 1) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.count(why) >= times; });
   }
-  bool is_in(LinkState state) {
+  bool is_in(wind::LinkState state) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.last_state() == state; });
   }
   bool reports(const std::string& text) {
@@ -61,7 +61,7 @@ class MqttRun {
   std::size_t count() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.size(); });
   }
-  WindReading last() {
+  wind::WindReading last() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.back(); });
   }
   /// Ends it; what it says at last.
@@ -69,12 +69,12 @@ class MqttRun {
     sensor_.end();
     return sensor_.look([](const RecordingSink& sink) { return sink.last_detail(); });
   }
-  LinkState state() {
+  wind::LinkState state() {
     return sensor_.look([](const RecordingSink& sink) { return sink.last_state(); });
   }
 
  private:
-  static std::unique_ptr<Sensor> make(std::uint16_t port, ParameterValues::Map given) {
+  static std::unique_ptr<sensor::Sensor> make(std::uint16_t port, ParameterValues::Map given) {
     given.try_emplace("port", std::int64_t{port});
     given.try_emplace("topic", std::string("garden/speed"));
     return open_mqtt_sensor(given);
@@ -93,13 +93,13 @@ struct RunningGarden {
   }
 
   /// What comes next is refused for this reason, and is no reading; then the wind is read again.
-  void expect_refused(const std::string& topic, const std::string& payload, Refusal why,
+  void expect_refused(const std::string& topic, const std::string& payload, decode::Refusal why,
                       const std::vector<std::string>& more = {}) {
     const std::size_t before = run.count();
     broker.publish(topic, payload, more);
     EXPECT_TRUE(run.has_refused(why));
     EXPECT_EQ(run.count(), before);
-    EXPECT_EQ(run.state(), LinkState::kConnected);
+    EXPECT_EQ(run.state(), wind::LinkState::kConnected);
     broker.publish("garden/speed", "6");
     EXPECT_TRUE(run.has_read(before + 1));
     EXPECT_EQ(run.last().speed_m_s, 6.0);
@@ -225,10 +225,10 @@ TEST(MqttDriver, SaysWhichFileOfCertificatesIsMissing) {
 TEST(MqttDriver, NoticesABrokerThatHangs) {
   RunningGarden garden({{"keep_alive", std::int64_t{5}}});
   garden.broker.hold();
-  EXPECT_TRUE(garden.run.is_in(LinkState::kConnecting)) << "within two keep-alives";
+  EXPECT_TRUE(garden.run.is_in(wind::LinkState::kConnecting)) << "within two keep-alives";
   garden.broker.go_on();
   EXPECT_TRUE(garden.run.reads_after([&] { garden.broker.publish("garden/speed", "5"); }));
-  EXPECT_EQ(garden.run.state(), LinkState::kConnected);
+  EXPECT_EQ(garden.run.state(), wind::LinkState::kConnected);
 }
 
 TEST(MqttDriver, IsInterruptedWhateverItWaitsFor) {
@@ -300,7 +300,7 @@ TEST(MqttDriver, RefusesWhatCannotWork) {
 
 TEST(MqttFault, Silence) {
   RunningGarden garden({{"silence", 1.0}});
-  EXPECT_TRUE(garden.run.is_in(LinkState::kConnecting));
+  EXPECT_TRUE(garden.run.is_in(wind::LinkState::kConnecting));
   EXPECT_TRUE(garden.run.reports("no wind has been received on topic garden/speed"));
   EXPECT_TRUE(garden.run.reads_after([&] { garden.broker.publish("garden/speed", "5"); }));
   EXPECT_EQ(garden.run.last().speed_m_s, 5.0);
@@ -312,7 +312,7 @@ TEST(MqttFault, Freeze) {
   for (int i = 0; i < 5; ++i) garden.broker.publish("garden/speed", "4");
   EXPECT_TRUE(garden.run.has_read(6));
   EXPECT_EQ(garden.run.last().speed_m_s, 4.0);
-  EXPECT_EQ(garden.run.state(), LinkState::kConnected);
+  EXPECT_EQ(garden.run.state(), wind::LinkState::kConnected);
 }
 
 TEST(MqttFault, Spike) {
@@ -321,13 +321,13 @@ TEST(MqttFault, Spike) {
   garden.broker.publish("garden/speed", "55");
   EXPECT_TRUE(garden.run.has_read(2));
   EXPECT_EQ(garden.run.last().speed_m_s, 55.0);
-  garden.expect_refused("garden/speed", "200", Refusal::kImplausible);
+  garden.expect_refused("garden/speed", "200", decode::Refusal::kImplausible);
 }
 
 TEST(MqttFault, Garbage) {
   RunningGarden garden;
-  garden.expect_refused("garden/speed", "\xfe\x01\x80garbage", Refusal::kMalformed);
-  garden.expect_refused("garden/speed", std::string(100'000, '7'), Refusal::kMalformed);
+  garden.expect_refused("garden/speed", "\xfe\x01\x80garbage", decode::Refusal::kMalformed);
+  garden.expect_refused("garden/speed", std::string(100'000, '7'), decode::Refusal::kMalformed);
 }
 
 TEST(MqttFault, Partial) {
@@ -336,7 +336,7 @@ TEST(MqttFault, Partial) {
   ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", R"({"wind":{"speed":4.0}})"); }));
   const std::size_t before = run.count();
   broker.publish("garden/speed", R"({"wind":{"speed":4.)");
-  EXPECT_TRUE(run.has_refused(Refusal::kMalformed));
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kMalformed));
   EXPECT_EQ(run.count(), before);
   EXPECT_TRUE(run.reads_after([&] { broker.publish("garden/speed", R"({"wind":{"speed":4.5}})"); }));
 }
@@ -349,7 +349,7 @@ TEST(MqttFault, WrongId) {
   ASSERT_TRUE(run.reads_after([&] { broker.publish("rtl_433/attic/events", wind); }));
   const std::size_t before = run.count();
   broker.publish("rtl_433/attic/events", R"({"model":"Acurite-Tower","temperature_C":21.5})");
-  EXPECT_TRUE(run.has_refused(Refusal::kNotMine));
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kNotMine));
   EXPECT_EQ(run.count(), before);
   EXPECT_TRUE(run.reads_after([&] { broker.publish("rtl_433/attic/events", wind); }));
 }
@@ -359,9 +359,9 @@ TEST(MqttFault, Late) {
   const MosquittoBroker broker;
   broker.publish("garden/speed", "25", {"-r"});
   MqttRun run(broker, {});
-  EXPECT_TRUE(run.has_refused(Refusal::kInvalid));
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kInvalid));
   EXPECT_EQ(run.count(), 0U);
-  EXPECT_EQ(run.state(), LinkState::kConnecting);
+  EXPECT_EQ(run.state(), wind::LinkState::kConnecting);
   ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); }));
   EXPECT_EQ(run.last().speed_m_s, 4.0);
 }
@@ -375,7 +375,7 @@ TEST(MqttFault, Exception) {
   MosquittoBroker broker("allow_anonymous false\npassword_file " + passwords + "\n");
   MqttRun run(broker, {{"user", std::string("garden")}, {"password", std::string("wrong")}});
   EXPECT_TRUE(run.reports("check `user` and `password`"));
-  EXPECT_EQ(run.state(), LinkState::kConnecting);
+  EXPECT_EQ(run.state(), wind::LinkState::kConnecting);
 
   run_program({"mosquitto_passwd", "-b", passwords, "garden", "wrong"});
   broker.stop();
@@ -386,13 +386,13 @@ TEST(MqttFault, Exception) {
 TEST(MqttFault, Disconnect) {
   RunningGarden garden;
   garden.broker.stop();
-  EXPECT_TRUE(garden.run.is_in(LinkState::kConnecting));
+  EXPECT_TRUE(garden.run.is_in(wind::LinkState::kConnecting));
   EXPECT_EQ(garden.run.count(), 1U);
   garden.broker.start();
   EXPECT_TRUE(garden.run.reads_after([&] { garden.broker.publish("garden/speed", "5"); }));
   EXPECT_EQ(garden.run.last().speed_m_s, 5.0);
-  EXPECT_EQ(garden.run.state(), LinkState::kConnected);
+  EXPECT_EQ(garden.run.state(), wind::LinkState::kConnected);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::mqtt

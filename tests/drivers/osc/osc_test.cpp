@@ -14,7 +14,7 @@
 #include "tests/support/free_port.hpp"
 #include "tests/support/running_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::osc {
 namespace {
 
 using namespace std::chrono_literals;
@@ -22,7 +22,7 @@ using namespace std::string_literals;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-std::unique_ptr<Sensor> open_osc_sensor(const ParameterValues::Map& given) {
+std::unique_ptr<sensor::Sensor> open_osc_sensor(const ParameterValues::Map& given) {
   return driver_named("osc").open(values_for("osc", given));
 }
 
@@ -71,7 +71,7 @@ class OscRun {
   bool reads_after(const std::function<void()>& send) {
     const bool listens = sensor_.wait_until([](const RecordingSink& sink) {
       const std::string detail = sink.last_detail();
-      return sink.last_state() == LinkState::kConnected || detail.find("waits for") != std::string::npos ||
+      return sink.last_state() == wind::LinkState::kConnected || detail.find("waits for") != std::string::npos ||
              detail.find("no wind has been received") != std::string::npos;
     });
     const std::size_t before = count();
@@ -85,13 +85,13 @@ class OscRun {
   bool reads_wind() {
     return reads_after([this] { send_bytes(kWindOf5From90); });
   }
-  bool has_refused(Refusal why, std::ptrdiff_t times = 1) {
+  bool has_refused(decode::Refusal why, std::ptrdiff_t times = 1) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.count(why) >= times; });
   }
   bool has_read(std::size_t readings) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.readings.size() >= readings; });
   }
-  bool is_in(LinkState state) {
+  bool is_in(wind::LinkState state) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.last_state() == state; });
   }
   bool reports(const std::string& text) {
@@ -101,7 +101,7 @@ class OscRun {
   std::size_t count() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.size(); });
   }
-  WindReading last() {
+  wind::WindReading last() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.back(); });
   }
   /// Ends it; what it says at last.
@@ -114,7 +114,7 @@ class OscRun {
   }
 
   /// A datagram is refused for this reason, and is no reading; then the wind is read again.
-  void expect_refused(const std::string& bytes, Refusal why) {
+  void expect_refused(const std::string& bytes, decode::Refusal why) {
     const std::size_t before = count();
     const auto times = sensor_.look([why](const RecordingSink& sink) { return sink.count(why); });
     send_bytes(bytes);
@@ -125,7 +125,7 @@ class OscRun {
   }
 
  private:
-  static std::unique_ptr<Sensor> make(std::uint16_t port, ParameterValues::Map given) {
+  static std::unique_ptr<sensor::Sensor> make(std::uint16_t port, ParameterValues::Map given) {
     given.try_emplace("port", std::int64_t{port});
     given.try_emplace("host", std::string("127.0.0.1"));
     return open_osc_sensor(given);
@@ -142,7 +142,7 @@ TEST(OscDriver, ReadsWhatOscsendSends) {
   EXPECT_EQ(run.last().speed_m_s, 4.5);
   EXPECT_EQ(run.last().direction_deg, 270.0);
   EXPECT_FALSE(run.last().gust_m_s.has_value());
-  EXPECT_EQ(run.all().last_state(), LinkState::kConnected);
+  EXPECT_EQ(run.all().last_state(), wind::LinkState::kConnected);
 }
 
 TEST(OscDriver, TakesNumbersOfAnyTypeInAnyOrder) {
@@ -178,7 +178,7 @@ TEST(OscDriver, ShowsEveryDatagramAsItCame) {
   OscRun run;
   ASSERT_TRUE(run.reads_wind());
   run.send_bytes("abc");
-  ASSERT_TRUE(run.has_refused(Refusal::kMalformed));
+  ASSERT_TRUE(run.has_refused(decode::Refusal::kMalformed));
   const RecordingSink sink = run.all();
   EXPECT_EQ(std::string(sink.raws.front().message.begin(), sink.raws.front().message.end()), kWindOf5From90);
   EXPECT_EQ(std::string(sink.raws.back().message.begin(), sink.raws.back().message.end()), "abc");
@@ -200,13 +200,13 @@ TEST(OscDriver, StandsAnyDatagram) {
   while (nested.size() < 60'000) nested = bundle_of(nested);
   run.send_bytes(nested);
   EXPECT_TRUE(run.reads_wind());
-  for (const WindReading& reading : run.all().readings) EXPECT_TRUE(is_plausible(reading));
+  for (const wind::WindReading& reading : run.all().readings) EXPECT_TRUE(wind::is_plausible(reading));
 }
 
 TEST(OscDriver, TakesNoMessageOfAnotherSender) {
   OscRun run({{"sender", std::string("127.0.0.9")}});
   run.send_when_it_listens(kWindOf5From90);
-  EXPECT_TRUE(run.has_refused(Refusal::kNotMine));
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kNotMine));
   EXPECT_EQ(run.count(), 0U);
 }
 
@@ -226,7 +226,7 @@ TEST(OscDriver, RefusesAnAddressThatIsNone) {
 
 TEST(OscDatagram, HoldsOneMessageOrThoseOfABundle) {
   const auto bytes_of = [](const std::string& text) { return std::vector<std::uint8_t>(text.begin(), text.end()); };
-  const auto one = decode_osc(bytes_of(kWindOf5From90));
+  const auto one = bus::decode_osc(bytes_of(kWindOf5From90));
   ASSERT_TRUE(one.has_value());
   ASSERT_EQ(one->size(), 1U);
   EXPECT_EQ((*one)[0].address, "/wind");
@@ -234,28 +234,29 @@ TEST(OscDatagram, HoldsOneMessageOrThoseOfABundle) {
 
   const std::string head = "#bundle\0\0\0\0\0\0\0\0\1"s;
   const std::string element = "\0\0\0\x14"s + kWindOf5From90;
-  EXPECT_EQ(decode_osc(bytes_of(head))->size(), 0U) << "an empty bundle is one";
-  EXPECT_EQ(decode_osc(bytes_of(head + element + element))->size(), 2U);
-  EXPECT_EQ(decode_osc(bytes_of(head + "\0\0\0\x28"s + head + element + element))->size(), 2U);
-  EXPECT_FALSE(decode_osc(bytes_of(head + element + "\0\0"s)).has_value());
-  EXPECT_FALSE(decode_osc(bytes_of(head + "\0\0\0\x18"s + kWindOf5From90)).has_value()) << "longer than the datagram";
-  EXPECT_EQ(decode_osc({}).error(), Refusal::kTooShort);
+  EXPECT_EQ(bus::decode_osc(bytes_of(head))->size(), 0U) << "an empty bundle is one";
+  EXPECT_EQ(bus::decode_osc(bytes_of(head + element + element))->size(), 2U);
+  EXPECT_EQ(bus::decode_osc(bytes_of(head + "\0\0\0\x28"s + head + element + element))->size(), 2U);
+  EXPECT_FALSE(bus::decode_osc(bytes_of(head + element + "\0\0"s)).has_value());
+  EXPECT_FALSE(bus::decode_osc(bytes_of(head + "\0\0\0\x18"s + kWindOf5From90)).has_value())
+      << "longer than the datagram";
+  EXPECT_EQ(bus::decode_osc({}).error(), decode::Refusal::kTooShort);
 }
 
 TEST(OscAddress, MatchesOscPatterns) {
-  EXPECT_TRUE(osc_address_matches("/wind", "/wind"));
-  EXPECT_FALSE(osc_address_matches("/wind2", "/wind"));
-  EXPECT_TRUE(osc_address_matches("/a/b/wind", "/a/?/wind"));
-  EXPECT_TRUE(osc_address_matches("/gust", "/{wind,gust}"));
+  EXPECT_TRUE(bus::osc_address_matches("/wind", "/wind"));
+  EXPECT_FALSE(bus::osc_address_matches("/wind2", "/wind"));
+  EXPECT_TRUE(bus::osc_address_matches("/a/b/wind", "/a/?/wind"));
+  EXPECT_TRUE(bus::osc_address_matches("/gust", "/{wind,gust}"));
 }
 
 TEST(OscFault, Silence) {
   OscRun run({{"silence", 1.0}});
   ASSERT_TRUE(run.reads_wind());
-  EXPECT_TRUE(run.is_in(LinkState::kConnecting));
+  EXPECT_TRUE(run.is_in(wind::LinkState::kConnecting));
   EXPECT_THAT(run.all().last_detail(), HasSubstr("no wind has been received on UDP"));
   EXPECT_TRUE(run.reads_wind());
-  EXPECT_TRUE(run.is_in(LinkState::kConnected));
+  EXPECT_TRUE(run.is_in(wind::LinkState::kConnected));
 }
 
 TEST(OscFault, Freeze) {
@@ -263,7 +264,7 @@ TEST(OscFault, Freeze) {
   OscRun run;
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(run.reads_wind());
   EXPECT_EQ(run.last().speed_m_s, 5.0);
-  EXPECT_EQ(run.all().last_state(), LinkState::kConnected);
+  EXPECT_EQ(run.all().last_state(), wind::LinkState::kConnected);
 }
 
 TEST(OscFault, Spike) {
@@ -271,32 +272,32 @@ TEST(OscFault, Spike) {
   OscRun run;
   ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "ff", "55", "90"}); }));
   EXPECT_EQ(run.last().speed_m_s, 55.0);
-  run.expect_refused("/wind\0\0\0,ff\0\x44\x7a\0\0\x42\xb4\0\0"s, Refusal::kImplausible);
+  run.expect_refused("/wind\0\0\0,ff\0\x44\x7a\0\0\x42\xb4\0\0"s, decode::Refusal::kImplausible);
 }
 
 TEST(OscFault, Garbage) {
   OscRun run;
   ASSERT_TRUE(run.reads_wind());
   for (const std::string& bytes : {"xyz"s, "\xff\xfe\xfd\xfc"s, "no osc here!"s, "/wind\0\0\0,zz\0aaaa"s}) {
-    run.expect_refused(bytes, Refusal::kMalformed);
+    run.expect_refused(bytes, decode::Refusal::kMalformed);
   }
-  run.expect_refused("/wind\0\0\0,ff\0\x7f\xc0\0\0\x42\xb4\0\0"s, Refusal::kInvalid);  // not a number
-  run.expect_refused("/wind\0\0\0,sf\0fast\0\0\0\0\x42\xb4\0\0"s, Refusal::kInvalid);  // a text for the speed
+  run.expect_refused("/wind\0\0\0,ff\0\x7f\xc0\0\0\x42\xb4\0\0"s, decode::Refusal::kInvalid);  // not a number
+  run.expect_refused("/wind\0\0\0,sf\0fast\0\0\0\0\x42\xb4\0\0"s, decode::Refusal::kInvalid);  // a text for the speed
 }
 
 TEST(OscFault, Partial) {
   OscRun run;
   ASSERT_TRUE(run.reads_wind());
   for (std::size_t size = 1; size < kWindOf5From90.size(); ++size) {
-    run.expect_refused(kWindOf5From90.substr(0, size), Refusal::kMalformed);
+    run.expect_refused(kWindOf5From90.substr(0, size), decode::Refusal::kMalformed);
   }
-  run.expect_refused("/wind\0\0\0,\0\0\0"s, Refusal::kTooShort);  // whole, but without arguments
+  run.expect_refused("/wind\0\0\0,\0\0\0"s, decode::Refusal::kTooShort);  // whole, but without arguments
 }
 
 TEST(OscFault, WrongId) {
   OscRun run;
   ASSERT_TRUE(run.reads_wind());
-  run.expect_refused("/rain\0\0\0,ff\0\x40\xa0\0\0\x42\xb4\0\0"s, Refusal::kNotMine);
+  run.expect_refused("/rain\0\0\0,ff\0\x40\xa0\0\0\x42\xb4\0\0"s, decode::Refusal::kNotMine);
 }
 
 TEST(OscFault, Disconnect) {
@@ -304,11 +305,11 @@ TEST(OscFault, Disconnect) {
   auto other = std::make_unique<LoopbackPort>(SOCK_DGRAM);
   OscRun run(other->port(), {});
   EXPECT_TRUE(run.reports("cannot listen at UDP"));
-  EXPECT_EQ(run.all().last_state(), LinkState::kConnecting);
+  EXPECT_EQ(run.all().last_state(), wind::LinkState::kConnecting);
   other.reset();
   EXPECT_TRUE(run.reads_wind());
-  EXPECT_TRUE(run.is_in(LinkState::kConnected));
+  EXPECT_TRUE(run.is_in(wind::LinkState::kConnected));
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::osc

@@ -9,7 +9,7 @@
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::sensor {
 namespace {
 
 /// A device that a test can take away.
@@ -64,7 +64,7 @@ TEST_F(ReopeningSensorTest, OpensOnceAndWorksAsOftenAsItAsks) {
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(poll_s(), 1.0, 1e-9);
   EXPECT_EQ(sensor_.opened, 1);
   EXPECT_EQ(sensor_.worked, 5);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
   EXPECT_EQ(sink_.links.size(), 1U) << "what has not changed is told once";
 }
 
@@ -96,12 +96,12 @@ TEST_F(ReopeningSensorTest, ClosesOnceWhatFailedAndFindsItAgain) {
   sensor_.is_there = false;
   for (int i = 0; i < 3; ++i) poll_s();
   EXPECT_EQ(sensor_.closed, 1);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
   sensor_.is_there = true;
   poll_s();
   poll_s();
   EXPECT_EQ(sensor_.opened, 2);
-  EXPECT_EQ(sink_.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(ReopeningSensorTest, DoesNotTakeAnOpenedDeviceForOneThatIsWell) {
@@ -111,7 +111,7 @@ TEST_F(ReopeningSensorTest, DoesNotTakeAnOpenedDeviceForOneThatIsWell) {
     sensor_.is_there = true;
     poll_s();
     poll_s();
-    EXPECT_EQ(sink_.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
     sensor_.is_there = false;
     last_s = poll_s();
   }
@@ -139,4 +139,4 @@ TEST_F(ReopeningSensorTest, WaitsLittleAgainForADeviceThatIsBackButNotYetToBeOpe
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::sensor

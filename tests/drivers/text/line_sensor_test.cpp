@@ -5,7 +5,7 @@
 
 #include "tests/support/scripted_text.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 using namespace std::chrono_literals;
@@ -52,7 +52,7 @@ TEST_F(LineSensorTest, ReadsWhatItsParametersSay) {
   EXPECT_FALSE(sink.readings[1].direction_deg.has_value());
   receive("2;21.5;-999\n");
   EXPECT_EQ(sink.readings.size(), 2U);
-  EXPECT_EQ(sink.count(Refusal::kInvalid), 1);
+  EXPECT_EQ(sink.count(decode::Refusal::kInvalid), 1);
 }
 
 TEST_F(LineSensorTest, KnowsEachUnit) {
@@ -73,7 +73,7 @@ TEST_F(LineSensorTest, DoubtsTheLineInWhoseMiddleItBegan) {
 
   // A datagram is whole.
   make_line({{"transport", std::string("udp")}});
-  far_end.incoming.push_back({ByteStatus::kBytes, "12.5,180", true});
+  far_end.incoming.push_back({bus::ByteStatus::kBytes, "12.5,180", true});
   run(1s);
   EXPECT_EQ(sink.readings.size(), 2U);
 }
@@ -84,7 +84,7 @@ TEST_F(LineSensorTest, RefusesALineOfAnotherShapeUntilItComesAgain) {
   receive("4.2,274.3,270\n");  // two, run into each other
   receive("4\n");
   EXPECT_EQ(sink.readings.size(), 1U);
-  EXPECT_EQ(sink.count(Refusal::kMalformed), 2);
+  EXPECT_EQ(sink.count(decode::Refusal::kMalformed), 2);
   receive("4.2,270\n");
   EXPECT_EQ(sink.readings.size(), 2U);
 
@@ -112,7 +112,7 @@ TEST_F(LineSensorTest, DropsALineThatPausesInTheMiddle) {
   ASSERT_EQ(sink.readings.size(), 2U);
   EXPECT_EQ(sink.readings[1].speed_m_s, 4.3);
   EXPECT_EQ(sink.readings[1].direction_deg, 271.0);
-  EXPECT_EQ(sink.count(Refusal::kTooShort), 1);
+  EXPECT_EQ(sink.count(decode::Refusal::kTooShort), 1);
 }
 
 TEST_F(LineSensorTest, ForgetsWhatAnArduinoSaysAsItStarts) {
@@ -143,4 +143,4 @@ TEST(LineSettings, RefuseWhatCannotWork) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

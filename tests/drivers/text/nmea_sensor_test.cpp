@@ -8,7 +8,7 @@
 #include "tests/support/decoded_text.hpp"
 #include "tests/support/scripted_text.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 using namespace std::chrono_literals;
@@ -55,7 +55,7 @@ TEST_F(NmeaSensorTest, ReadsEachFormatByItsLook) {
     EXPECT_EQ(sink.readings.size(), 1U);
     expect_last(7.0, 123.0);
     EXPECT_TRUE(sink.refusals.empty());
-    EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
   }
 }
 
@@ -68,7 +68,7 @@ TEST_F(NmeaSensorTest, PublishesOneWindOfABurstOnceAndPrefersNorth) {
     run(750ms);
   }
   EXPECT_EQ(sink.readings.size(), 10U);
-  for (const WindReading& reading : sink.readings) {
+  for (const wind::WindReading& reading : sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 5.8, 1e-9);
     EXPECT_EQ(reading.direction_deg, 328.2);
   }
@@ -87,7 +87,7 @@ TEST_F(NmeaSensorTest, TakesTheReferenceThatItIsTold) {
     }
     EXPECT_EQ(sink.readings.size(), 3U);
     expect_last(speed_m_s, std::string(reference) == "relative" ? 57.5 : 96.6);
-    EXPECT_EQ(sink.count(Refusal::kNotMine), 6);
+    EXPECT_EQ(sink.count(decode::Refusal::kNotMine), 6);
   }
 }
 
@@ -106,7 +106,7 @@ TEST_F(NmeaSensorTest, NeverMixesFramesOfDirection) {
     run(750ms);
   }
   EXPECT_GE(sink.readings.size(), 5U);
-  for (const WindReading& reading : sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
+  for (const wind::WindReading& reading : sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
 
   receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
   run(750ms);
@@ -131,12 +131,12 @@ TEST_F(NmeaSensorTest, TakesTheTalkersAndSentencesThatItIsTold) {
   EXPECT_TRUE(sink.readings.empty());
   receive(nmea_line("24MWV,88.8,R,0.36,N"));
   expect_last(0.1852, 88.8);
-  EXPECT_EQ(sink.readings.back().quality, ReadingQuality::kUncertain) << "it says nothing of its status";
+  EXPECT_EQ(sink.readings.back().quality, wind::ReadingQuality::kUncertain) << "it says nothing of its status";
 
   sink = {};
   make_nmea({{"sentences", std::string("VWR, MWV")}});
   receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
-  EXPECT_THAT(sink.refusals, ElementsAre(Refusal::kNotMine));
+  EXPECT_THAT(sink.refusals, ElementsAre(decode::Refusal::kNotMine));
   receive(nmea_line("WIMWV,57.5,R,13.0,N,A"));
   expect_last(6.6878, 57.5);
 
@@ -164,7 +164,7 @@ TEST_F(NmeaSensorTest, TakesLinesWithoutAChecksumWhereTheWireHasOneOfItsOwn) {
   make_nmea();
   for (int i = 0; i < 20; ++i) receive("$WIMWV,214.8,R,0.1,K\r\n");
   EXPECT_TRUE(sink.readings.empty());
-  EXPECT_EQ(sink.count(Refusal::kBadChecksum), 20);
+  EXPECT_EQ(sink.count(decode::Refusal::kBadChecksum), 20);
   EXPECT_THAT(sink.last_detail(), HasSubstr("missing_checksum to \"accept\""));
 
   for (const ParameterValues::Map& given : {ParameterValues::Map{{"missing_checksum", std::string("accept")}},
@@ -173,9 +173,9 @@ TEST_F(NmeaSensorTest, TakesLinesWithoutAChecksumWhereTheWireHasOneOfItsOwn) {
     make_nmea(given);
     receive("$WIMWV,214.8,R,0.1,K\r\n");
     expect_last(0.1 / 3.6, 214.8);
-    EXPECT_EQ(sink.readings.back().quality, ReadingQuality::kUncertain);
+    EXPECT_EQ(sink.readings.back().quality, wind::ReadingQuality::kUncertain);
     receive("$WIMWV,214.8,R,0.1,K*00\r\n");
-    EXPECT_EQ(sink.count(Refusal::kBadChecksum), 1) << "a wrong one is wrong everywhere";
+    EXPECT_EQ(sink.count(decode::Refusal::kBadChecksum), 1) << "a wrong one is wrong everywhere";
   }
 
   sink = {};
@@ -194,9 +194,9 @@ TEST_F(NmeaSensorTest, ReadsOnWhereOthersTalkOnTheSameLine) {
     run(1s);
   }
   EXPECT_GE(sink.readings.size(), 19U);
-  EXPECT_EQ(sink.count(Refusal::kNotMine), 60);
+  EXPECT_EQ(sink.count(decode::Refusal::kNotMine), 60);
   EXPECT_EQ(std::ssize(sink.refusals), 60);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(NmeaSensorTest, JoinsADirectionAndASpeedThatComeApart) {
@@ -223,7 +223,7 @@ TEST_F(NmeaSensorTest, AsksADeviceThatOnlyAnswers) {
   EXPECT_EQ(far_end.written.front(), "01TR4\r");
   EXPECT_GE(sink.readings.size(), 9U);
   expect_last(1.749, 230.6);
-  EXPECT_EQ(std::ranges::count(sink.raws, RawDirection::kSent, &RecordingSink::Raw::direction),
+  EXPECT_EQ(std::ranges::count(sink.raws, sensor::RawDirection::kSent, &RecordingSink::Raw::direction),
             std::ssize(far_end.written));
 
   far_end = {};
@@ -257,8 +257,8 @@ TEST_F(NmeaSensorTest, SaysThatTheDeviceCannotMeasure) {
   make_nmea();
   for (int i = 0; i < 20; ++i) receive(nmea_line("WIMWV,,R,,M,V"));
   EXPECT_TRUE(sink.readings.empty());
-  EXPECT_EQ(sink.count(Refusal::kInvalid), 20);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected) << "it is there and speaks";
+  EXPECT_EQ(sink.count(decode::Refusal::kInvalid), 20);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected) << "it is there and speaks";
   EXPECT_THAT(sink.last_detail(), HasSubstr("reports that it cannot measure"));
 }
 
@@ -285,4 +285,4 @@ TEST(NmeaSettings, RefuseWhatCannotWork) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

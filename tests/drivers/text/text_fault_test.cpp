@@ -15,10 +15,10 @@
 #include "simulators/text/nmea_device.hpp"
 #include "tests/support/text_fault_bench.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
-using sim::FaultKind;
+using simulators::FaultKind;
 using testing::HasSubstr;
 using Wire = TextFaultBench::Wire;
 
@@ -31,11 +31,11 @@ struct PolledDevice {
 /// A driver, and the formats in which its device suffers each fault.
 struct TextDriver {
   std::string name;
-  sim::PlayedMoment wind;
+  simulators::PlayedMoment wind;
   double speed_tolerance_m_s = 0.0;
   double direction_tolerance_deg = 0.0;
-  std::unique_ptr<sim::TextDevice> (*make_device)(const std::string& format);
-  std::unique_ptr<Sensor> (*make_sensor)(const ParameterValues& values, TextBench& bench);
+  std::unique_ptr<simulators::text::TextDevice> (*make_device)(const std::string& format);
+  std::unique_ptr<sensor::Sensor> (*make_sensor)(const ParameterValues& values, TextBench& bench);
 
   bool checks_lines =
       false;  ///< a line that was cut is always refused; without that it may be taken for the beginning of the next one
@@ -60,8 +60,8 @@ TextDriver line_driver() {
       .name = "line",
       // To the last digit: a cut number is nearly right.
       .wind = {.speed_m_s = 7.25, .direction_deg = 123.5},
-      .make_device = [](const std::string& format) { return sim::make_line_device(format); },
-      .make_sensor = [](const ParameterValues& values, TextBench& bench) -> std::unique_ptr<Sensor> {
+      .make_device = [](const std::string& format) { return simulators::text::make_line_device(format); },
+      .make_sensor = [](const ParameterValues& values, TextBench& bench) -> std::unique_ptr<sensor::Sensor> {
         const LineSensorSettings settings = line_sensor_settings_of(values);
         return std::make_unique<LineSensor>(settings, bench.port(settings.text.address));
       },
@@ -85,8 +85,8 @@ TextDriver nmea_driver() {
       .wind = {.speed_m_s = 7.0, .direction_deg = 123.0},
       .speed_tolerance_m_s = 0.06,
       .direction_tolerance_deg = 0.6,
-      .make_device = [](const std::string& format) { return sim::make_nmea_device({format}); },
-      .make_sensor = [](const ParameterValues& values, TextBench& bench) -> std::unique_ptr<Sensor> {
+      .make_device = [](const std::string& format) { return simulators::text::make_nmea_device({format}); },
+      .make_sensor = [](const ParameterValues& values, TextBench& bench) -> std::unique_ptr<sensor::Sensor> {
         const NmeaSensorSettings settings = nmea_sensor_settings_of(values);
         return std::make_unique<NmeaSensor>(settings, bench.port(settings.text.address));
       },
@@ -114,7 +114,7 @@ class TextDriverBench : public TextFaultBench {
     connect(wire, driver_.make_device(format), rate_hz, std::move(given), driver_.make_sensor);
   }
   void expect_only_the_wind() override {
-    for (const WindReading& reading : bench_.sink.readings) {
+    for (const wind::WindReading& reading : bench_.sink.readings) {
       EXPECT_LE(std::abs(reading.speed_m_s - driver_.wind.speed_m_s), driver_.speed_tolerance_m_s);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_LE(std::abs(*reading.direction_deg - driver_.wind.direction_deg), driver_.direction_tolerance_deg);
@@ -143,12 +143,12 @@ TEST_P(Fault, Silence) {
     bench_.run(1.0);
     bench_.run(3.5, FaultKind::kSilence);
     EXPECT_LE(bench_.sink.readings.size(), 1U) << "one may have been on its way";
-    EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
     EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("is open, but silent"));
 
     // At some time the port itself is doubted, and opened again.
     bench_.run(5.0, FaultKind::kSilence);
-    EXPECT_GE(bench_.sink.count(Refusal::kTimeout), 1) << bench_.sink.last_detail();
+    EXPECT_GE(bench_.sink.count(decode::Refusal::kTimeout), 1) << bench_.sink.last_detail();
     EXPECT_TRUE(bench_.sink.readings.empty());
     expect_return();
   }
@@ -159,7 +159,7 @@ TEST_P(Fault, Freeze) {
   ASSERT_TRUE(is_live());
   bench_.run(5.0, FaultKind::kFreeze);
   EXPECT_GE(bench_.sink.readings.size(), 18U) << "the driver publishes what the device says; the hub judges it";
-  EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
   expect_return();
 }
 
@@ -170,12 +170,12 @@ TEST_P(Fault, Spike) {
   ASSERT_FALSE(bench_.sink.believed.empty());
   bench_.run(2.0, FaultKind::kSpike);
   EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 0.01);
-  EXPECT_EQ(bench_.sink.judge.fault(), ReadingFault::kSpike);
-  for (const WindReading& believed : bench_.sink.believed) {
+  EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
+  for (const wind::WindReading& believed : bench_.sink.believed) {
     EXPECT_LE(std::abs(believed.speed_m_s - driver_.wind.speed_m_s), driver_.speed_tolerance_m_s)
         << "the hub keeps it from the wind";
   }
-  EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
   expect_return();
 }
 
@@ -187,7 +187,7 @@ TEST_P(Fault, Garbage) {
       bench_.run(wire == Wire::kPty ? driver_.garbage_on_pty_s : driver_.garbage_s, FaultKind::kGarbage);
       EXPECT_TRUE(bench_.sink.readings.empty()) << "among random bytes there are numbers, but no reading";
       EXPECT_FALSE(bench_.sink.refusals.empty());
-      EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+      EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
       EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("but no lines: check"));
       if (wire == Wire::kPty) {
         EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("baud"));
@@ -209,7 +209,7 @@ TEST_P(Fault, Split) {
       EXPECT_GE(bench_.sink.readings.size(), 18U);
       EXPECT_TRUE(bench_.sink.refusals.empty());
       expect_only_the_wind();
-      EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnected);
+      EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
       expect_return();
     }
   }
@@ -225,13 +225,13 @@ TEST_P(Fault, Partial) {
         bench_.run(12.0, FaultKind::kPartial);
         EXPECT_TRUE(bench_.sink.readings.empty());
         EXPECT_TRUE(!driver_.checks_lines || !bench_.sink.refusals.empty());
-        EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting) << bench_.sink.last_detail();
+        EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting) << bench_.sink.last_detail();
 
         // The first line end after it belongs to what was cut.
         bench_.run(10.0);
         EXPECT_GE(static_cast<double>(bench_.sink.readings.size()), 6.0 * rate_hz);
         expect_only_the_wind();
-        EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnected);
+        EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
         if (rate_hz == 4.0) expect_return();
       }
     }
@@ -244,9 +244,9 @@ TEST_P(Fault, Late) {
     ASSERT_TRUE(is_live());
     bench_.run(15.0, FaultKind::kLate);
     EXPECT_TRUE(bench_.sink.readings.empty()) << "an answer to an earlier question was taken for the one to this";
-    EXPECT_GE(bench_.sink.count(Refusal::kTimeout), 2);
-    EXPECT_GE(bench_.sink.count(Refusal::kNotMine), 2);
-    EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+    EXPECT_GE(bench_.sink.count(decode::Refusal::kTimeout), 2);
+    EXPECT_GE(bench_.sink.count(decode::Refusal::kNotMine), 2);
+    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
     EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("increase response_timeout"));
     ASSERT_TRUE(is_live());
     expect_return();
@@ -285,8 +285,8 @@ TEST_F(NmeaFault, BadChecksum) {
     ASSERT_TRUE(is_live());
     bench_.run(5.0, FaultKind::kBadChecksum);
     EXPECT_TRUE(bench_.sink.readings.empty());
-    EXPECT_GE(bench_.sink.count(Refusal::kBadChecksum), 18);
-    EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+    EXPECT_GE(bench_.sink.count(decode::Refusal::kBadChecksum), 18);
+    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
     EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("wrong checksums: check its cable and baud"));
     expect_return();
   }
@@ -299,12 +299,12 @@ TEST_F(NmeaFault, WrongId) {
     ASSERT_TRUE(is_live());
     bench_.run(5.0, FaultKind::kWrongId);
     EXPECT_TRUE(bench_.sink.readings.empty());
-    EXPECT_GE(bench_.sink.count(Refusal::kNotMine), 18);
-    EXPECT_EQ(bench_.sink.last_state(), LinkState::kConnecting);
+    EXPECT_GE(bench_.sink.count(decode::Refusal::kNotMine), 18);
+    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
     EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("talker"));
     expect_return();
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

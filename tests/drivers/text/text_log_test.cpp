@@ -20,23 +20,23 @@
 #include "tests/support/recording_sink.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 struct Log {
   std::string file;
   ParameterValues::Map settings;
-  std::vector<DecodedWind> expected;
+  std::vector<decode::DecodedWind> expected;
 };
 
 /// What the log says of one sentence of one talker, line by line; empty where the log is missing.
-std::vector<DecodedWind> winds_in(const std::string& path, std::string_view beginning) {
+std::vector<decode::DecodedWind> winds_in(const std::string& path, std::string_view beginning) {
   std::ifstream in(path);
-  std::vector<DecodedWind> winds;
+  std::vector<decode::DecodedWind> winds;
   for (std::string line; std::getline(in, line);) {
-    const auto wind =
-        decode_nmea({.checksum = WhenMissing::kRefuse, .status = WhenMissing::kAccept, .xdr_first_id = 0}, line);
-    const bool is_wanted = line.starts_with(beginning) && (!wind || wind->reference != WindReference::kTrue);
+    const auto wind = decode::text::decode_nmea(
+        {.checksum = decode::WhenMissing::kRefuse, .status = decode::WhenMissing::kAccept, .xdr_first_id = 0}, line);
+    const bool is_wanted = line.starts_with(beginning) && (!wind || wind->reference != decode::WindReference::kTrue);
     if (wind && is_wanted) winds.push_back(*wind);
   }
   return winds;
@@ -45,10 +45,10 @@ std::vector<DecodedWind> winds_in(const std::string& path, std::string_view begi
 /// A minute of an anemometer at sea, with other instruments on the same line and a few damaged sentences.
 void write_log(const std::string& path) {
   std::ofstream out(path, std::ios::binary);
-  SyntheticWind wind({.mean_speed_m_s = 7.0, .mean_direction_deg = 50.0});
+  wind::turbulence::SyntheticWind wind({.mean_speed_m_s = 7.0, .mean_direction_deg = 50.0});
   for (int number = 0; number < 120; ++number) {
-    const WindVector now = wind.at(0.5 * number);
-    std::string line = sentence(fmt::format("WIMWV,{:.1f},R,{:.1f},M,A", direction_from_deg(now), speed_of(now)));
+    const wind::WindVector now = wind.at(0.5 * number);
+    std::string line = sentence(fmt::format("WIMWV,{:.1f},R,{:.1f},M,A", wind::direction_from_deg(now), speed_of(now)));
     if (number % 17 == 5) line[8] = '#';
     if (number % 23 == 7) line.resize(11);
     out << line << "\r\n";
@@ -77,7 +77,7 @@ std::vector<Log> logs_here(const test::TemporaryFolder& folder) {
 }
 
 /// Everything of the log but the first reading, which a better one of its burst may overtake.
-void expect_the_log(const std::vector<WindReading>& readings, const std::vector<DecodedWind>& expected) {
+void expect_the_log(const std::vector<wind::WindReading>& readings, const std::vector<decode::DecodedWind>& expected) {
   ASSERT_GE(readings.size(), expected.size() - 1);
   ASSERT_LE(readings.size(), expected.size());
   const std::size_t ahead = expected.size() - readings.size();
@@ -100,10 +100,10 @@ TEST(TextLog, IsReadFromAFileToItsLastReading) {
     const auto sensor = driver_named("nmea").open(values_for("nmea", log.settings));
     ManualClock clock;
     RecordingSink sink;
-    for (int i = 0; i < 100'000 && sink.last_state() != LinkState::kFinished; ++i) {
+    for (int i = 0; i < 100'000 && sink.last_state() != wind::LinkState::kFinished; ++i) {
       clock.advance_to(sensor->poll(clock, sink));
     }
-    EXPECT_EQ(sink.last_state(), LinkState::kFinished);
+    EXPECT_EQ(sink.last_state(), wind::LinkState::kFinished);
     EXPECT_GT(log.expected.size(), 20U);
     expect_the_log(sink.readings, log.expected);
   }
@@ -168,4 +168,4 @@ TEST(TextLog, IsReadOverTcpToItsLastReading) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -12,7 +12,7 @@
 #include "tests/support/scripted_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::text {
 namespace {
 
 using namespace std::chrono_literals;
@@ -44,7 +44,7 @@ TEST_F(TextSensorTest, GivesTheSameReadingsHoweverBytesAreSplit) {
     for (std::size_t i = 0; i < sink.readings.size(); ++i) {
       ASSERT_DOUBLE_EQ(sink.readings[i].speed_m_s, 0.25 * static_cast<double>(i + 1));
     }
-    ASSERT_EQ(sink.count(Refusal::kNotMine), 8);
+    ASSERT_EQ(sink.count(decode::Refusal::kNotMine), 8);
     ASSERT_EQ(std::ssize(sink.refusals), 8);
   }
 }
@@ -61,7 +61,7 @@ TEST_F(TextSensorTest, KeepsNothingOfALineWithoutEnd) {
     most = std::max<std::size_t>(most, mallinfo2().uordblks);
   }
   EXPECT_LT(most - before, 1024U * 1024U) << "10 MB have passed";
-  EXPECT_EQ(sink.count(Refusal::kMalformed), 1) << "refused once, and skipped";
+  EXPECT_EQ(sink.count(decode::Refusal::kMalformed), 1) << "refused once, and skipped";
   receive("\r\n" + mwv_line(2.0));
   EXPECT_EQ(sink.readings.back().speed_m_s, 2.0);
 }
@@ -83,13 +83,13 @@ TEST_F(TextSensorTest, OpensADeviceAgainAfterTenTimesItsUsualSilence) {
   EXPECT_EQ(far_end.opened, 1);
   run(14s);
   EXPECT_EQ(far_end.opened, 1);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnecting) << "it is silent for longer than usual";
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting) << "it is silent for longer than usual";
   run(10s);
   EXPECT_GE(far_end.opened, 2);
   EXPECT_EQ(far_end.closed, far_end.opened - 1);
-  EXPECT_GE(sink.count(Refusal::kTimeout), 1);
+  EXPECT_GE(sink.count(decode::Refusal::kTimeout), 1);
   receive(mwv_line(1.0));
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
 }
 
 /// It says a few words whenever it starts, which is whenever it is opened, and a reading a minute.
@@ -118,9 +118,9 @@ TEST_F(TextSensorTest, DoesNotGetUsedToOutages) {
   make_nmea({{"silence_timeout", 3600.0}});
   for (int outage = 0; outage < 20; ++outage) {
     for (int i = 0; i < 5; ++i) receive(mwv_line(1.0));
-    EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
     run(3500ms);
-    EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
     run(20s);
   }
 }
@@ -139,7 +139,7 @@ TEST_F(TextSensorTest, GetsUsedToASlowerPace) {
     receive(mwv_line(1.0));
   }
   EXPECT_EQ(sink.links.size(), reported);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(TextSensorTest, IsPatientWithASlowDevice) {
@@ -150,7 +150,7 @@ TEST_F(TextSensorTest, IsPatientWithASlowDevice) {
   }
   EXPECT_EQ(far_end.opened, 1);
   EXPECT_EQ(sink.readings.size(), 20U);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(TextSensorTest, OpensAgainAfterTheSilenceThatItIsTold) {
@@ -170,15 +170,15 @@ TEST_F(TextSensorTest, SaysThatBytesComeButNoLine) {
     receive(noise);
   }
   EXPECT_THAT(sink.last_detail(), HasSubstr("bytes arrive from /dev/script at 9600 8N1, but no lines: check baud"));
-  EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
   receive("\r\n" + mwv_line(3.0));
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(TextSensorTest, SaysWhichLinesItCannotUse) {
   make_nmea();
   for (int i = 0; i < 20; ++i) receive("$GPGGA,094736,5251.0094,N*00\r\n# hello\r\n");
-  EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(sink.last_detail(), HasSubstr("wrong checksums"));
   make_nmea();
   sink = {};
@@ -200,41 +200,41 @@ TEST_F(TextSensorTest, TriesAgainForEverWhatCannotBeOpenedReadOrWritten) {
   far_end.can_write = true;
   far_end.on_request = [this](const std::string&) { far_end.send(mwv_line(1.0)); };
   run(15s);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
-  far_end.incoming.push_front({ByteStatus::kLost, "", false});
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
+  far_end.incoming.push_front({bus::ByteStatus::kLost, "", false});
   run(100ms);
   EXPECT_THAT(sink.last_detail(), HasSubstr("is gone"));
   run(15s);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_F(TextSensorTest, PlaysAFileAtItsPaceAndFinishes) {
   make_nmea({{"transport", std::string("file")}, {"file", std::string("script")}, {"play_rate", 2.0}});
   for (int i = 0; i < 20; ++i) far_end.send(mwv_line(i));
-  far_end.incoming.push_back({ByteStatus::kEnd, "", false});
+  far_end.incoming.push_back({bus::ByteStatus::kEnd, "", false});
   const MonoTime begin = clock.now().mono;
   run(60s);
   ASSERT_EQ(sink.readings.size(), 19U);
   EXPECT_NEAR(seconds(sink.readings.back().time.mono - begin), 9.0, 0.1);
-  EXPECT_EQ(sink.last_state(), LinkState::kFinished);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kFinished);
   EXPECT_EQ(far_end.opened, 1);
 }
 
 TEST_F(TextSensorTest, SaysThatOnlyOthersSend) {
   make_nmea({{"transport", std::string("udp")}, {"sender", std::string("192.0.2.7")}});
   for (int i = 0; i < 50; ++i) {
-    far_end.incoming.push_back({ByteStatus::kForeign, "", false});
+    far_end.incoming.push_back({bus::ByteStatus::kForeign, "", false});
     run(200ms);
   }
   EXPECT_THAT(sink.last_detail(), HasSubstr("none from 192.0.2.7: check sender"));
-  EXPECT_EQ(sink.count(Refusal::kNotMine), 50);
+  EXPECT_EQ(sink.count(decode::Refusal::kNotMine), 50);
 }
 
 TEST_F(TextSensorTest, TakesTheEndOfADatagramForTheEndOfALine) {
   make_nmea({{"transport", std::string("udp")}});
   for (const double speed_m_s : {1.0, 2.0}) {
     const std::string line = mwv_line(speed_m_s);
-    far_end.incoming.push_back({ByteStatus::kBytes, line.substr(0, line.size() - 2), true});
+    far_end.incoming.push_back({bus::ByteStatus::kBytes, line.substr(0, line.size() - 2), true});
   }
   run(1s);
   EXPECT_EQ(sink.readings.size(), 1U) << "the first is overtaken in its burst";
@@ -254,20 +254,20 @@ TEST_F(TextSensorTest, SurvivesWhateverComes) {
       std::string bytes(random() % 400, '\0');
       constexpr std::string_view kAlphabet = "0123456789.,-+MNKSRTLAVDWQ$*=:e \x02\x03\r\n\xff";
       for (char& byte : bytes) byte = kAlphabet[random() % kAlphabet.size()];
-      const auto status = static_cast<ByteStatus>(random() % 8 == 0 ? random() % 6 : 0);
-      far_end.incoming.push_back({status, status == ByteStatus::kBytes ? bytes : "", random() % 2 == 0});
+      const auto status = static_cast<bus::ByteStatus>(random() % 8 == 0 ? random() % 6 : 0);
+      far_end.incoming.push_back({status, status == bus::ByteStatus::kBytes ? bytes : "", random() % 2 == 0});
     }
     run(120s);
   }
-  for (const WindReading& reading : sink.readings) ASSERT_TRUE(is_plausible(reading));
+  for (const wind::WindReading& reading : sink.readings) ASSERT_TRUE(wind::is_plausible(reading));
   EXPECT_FALSE(sink.refusals.empty());
 }
 
 TEST(TextSensorFind, ListsSerialPortsAsTheyCanBeWrittenIntoAConfiguration) {
   for (const std::string name : {"nmea", "line"}) {
-    const DriverDescription& driver = driver_named(name);
+    const sensor::DriverDescription& driver = driver_named(name);
     ASSERT_NE(driver.find, nullptr);
-    for (const FoundDevice& found : driver.find()) {
+    for (const sensor::FoundDevice& found : driver.find()) {
       EXPECT_THAT(found.settings, HasSubstr("transport = \"serial\"\ndevice = \"/dev/"));
       EXPECT_EQ(found.trouble.empty(), found.remedy.empty());
     }
@@ -275,4 +275,4 @@ TEST(TextSensorFind, ListsSerialPortsAsTheyCanBeWrittenIntoAConfiguration) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::text

@@ -13,7 +13,7 @@
 #include "drivers/usb/usb_daq.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 using testing::UnorderedElementsAreArray;
@@ -88,9 +88,9 @@ TEST(UdevRules, MatchUsbDevicesAndNotTheirInterfaces) {
 
 TEST(UdevRules, NameTheStationsOfTheDriverHid) {
   std::vector<std::string> ids;
-  for (const StationKind& kind : station_kinds()) ids.push_back(describe(kind.id));
+  for (const hid::StationKind& kind : hid::station_kinds()) ids.push_back(describe(kind.id));
   EXPECT_THAT(ids_of_subsystem("hidraw", "ATTRS"), UnorderedElementsAreArray(ids));
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -11,13 +11,13 @@
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-std::unique_ptr<Sensor> open_usb_sensor(const ParameterValues::Map& given) {
+std::unique_ptr<sensor::Sensor> open_usb_sensor(const ParameterValues::Map& given) {
   return driver_named("usb").open(values_for("usb", given));
 }
 
@@ -54,13 +54,13 @@ TEST(UsbDriver, LooksForADeviceThatNobodyHasAndSaysSo) {
     clock.advance_to(due);
     due = sensor->poll(clock, sink);
   }
-  EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(sink.last_detail(),
               testing::AnyOf(HasSubstr("is not plugged in: plug it in"), HasSubstr("/dev/bus/usb")));
 }
 
 TEST(UsbDriver, FindsWithoutOpeningAnything) {
-  for (const FoundDevice& device : driver_named("usb").find()) {
+  for (const sensor::FoundDevice& device : driver_named("usb").find()) {
     EXPECT_THAT(device.what, HasSubstr("at USB port"));
     EXPECT_THAT(device.settings, HasSubstr("device = "));
     EXPECT_EQ(device.trouble.empty(), device.remedy.empty());
@@ -68,22 +68,22 @@ TEST(UsbDriver, FindsWithoutOpeningAnything) {
 }
 
 TEST(LibusbDevice, ThatIsNotOpenHasNoTransfers) {
-  const auto device = make_usb_device({{0x1209, 0x0001}});
+  const auto device = bus::make_usb_device({{0x1209, 0x0001}});
   std::array<std::uint8_t, 4> bytes{};
   const auto timeout = std::chrono::milliseconds(10);
-  EXPECT_EQ(device->control({0xC0, 0x20, 0, 0}, bytes, timeout).status, UsbStatus::kGone);
-  EXPECT_EQ(device->read(1, bytes, timeout).status, UsbStatus::kGone);
-  EXPECT_EQ(device->write(1, bytes, timeout).status, UsbStatus::kGone);
+  EXPECT_EQ(device->control({0xC0, 0x20, 0, 0}, bytes, timeout).status, bus::UsbStatus::kGone);
+  EXPECT_EQ(device->read(1, bytes, timeout).status, bus::UsbStatus::kGone);
+  EXPECT_EQ(device->write(1, bytes, timeout).status, bus::UsbStatus::kGone);
   EXPECT_FALSE(device->take_arrival());
   EXPECT_FALSE(device->open({.id = {0x1209, 0x0001}, .port = "1-1", .serial = "", .node = ""}));
 }
 
 TEST(LibusbDevice, CanBeInterruptedFromAnotherThreadAtAnyTime) {
-  const auto device = make_usb_device({{0x1209, 0x0001}});
+  const auto device = bus::make_usb_device({{0x1209, 0x0001}});
   std::jthread other([&device] { device->interrupt(); });
   static_cast<void>(device->plugged());
   static_cast<void>(device->take_arrival());
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -5,10 +5,10 @@
 
 #include "tests/support/usb_bench.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
-using sim::FaultKind;
+using simulators::FaultKind;
 using testing::Contains;
 using testing::Each;
 using testing::HasSubstr;
@@ -21,7 +21,7 @@ constexpr double kSeenWithin_s = 2.1;
 class UsbFault : public testing::Test {
  protected:
   static void expect_true_readings(const UsbBench& bench) {
-    for (const WindReading& reading : bench.sink.readings) {
+    for (const wind::WindReading& reading : bench.sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_NEAR(*reading.direction_deg, 90.0, 0.5);
@@ -30,27 +30,28 @@ class UsbFault : public testing::Test {
 
   /// The device fails so for half a minute. It is seen in time and counted as `why`, nothing false is published, and
   /// the reading returns.
-  static void expect_silence_until_it_ends(const std::string& device, FaultKind kind, std::optional<Refusal> why) {
+  static void expect_silence_until_it_ends(const std::string& device, FaultKind kind,
+                                           std::optional<decode::Refusal> why) {
     SCOPED_TRACE(device);
     UsbBench bench(device);
     bench.poll_for(5.0);
-    ASSERT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    ASSERT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 
     bench.sink.refusals.clear();
     bench.bus.fault = kind;
     bench.poll_for(kSeenWithin_s);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
     if (why) {
       EXPECT_THAT(bench.sink.refusals, Contains(*why));
     }
     const auto before = bench.sink.readings.size();
     bench.poll_for(30.0);
     EXPECT_EQ(bench.sink.readings.size(), before);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
 
     bench.bus.fault.reset();
     EXPECT_TRUE(bench.poll_for_reading(kBackWithin_s));
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     bench.poll_for(5.0);
     expect_true_readings(bench);
   }
@@ -64,57 +65,57 @@ class UsbFault : public testing::Test {
     bench.poll_for(1.0);
     bench.bus.fault.reset();
     bench.poll_for(12.0);
-    EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
     EXPECT_GE(seconds(bench.sink.readings.back().time.mono - bench.bus.start), 17.0);
     expect_true_readings(bench);
   }
 };
 
 TEST_F(UsbFault, Silence) {
-  for (const std::string& device : sim::daq_names()) {
-    expect_silence_until_it_ends(device, FaultKind::kSilence, Refusal::kTimeout);
+  for (const std::string& device : simulators::usb::daq_names()) {
+    expect_silence_until_it_ends(device, FaultKind::kSilence, decode::Refusal::kTimeout);
     expect_no_harm_of_one_second(device, FaultKind::kSilence);
   }
 }
 
 TEST_F(UsbFault, Garbage) {
-  for (const std::string& device : sim::daq_names()) {
+  for (const std::string& device : simulators::usb::daq_names()) {
     expect_silence_until_it_ends(device, FaultKind::kGarbage, std::nullopt);
     expect_no_harm_of_one_second(device, FaultKind::kGarbage);
   }
 }
 
 TEST_F(UsbFault, Partial) {
-  for (const std::string& device : sim::daq_names()) {
-    expect_silence_until_it_ends(device, FaultKind::kPartial, Refusal::kTooShort);
+  for (const std::string& device : simulators::usb::daq_names()) {
+    expect_silence_until_it_ends(device, FaultKind::kPartial, decode::Refusal::kTooShort);
     expect_no_harm_of_one_second(device, FaultKind::kPartial);
   }
 }
 
 TEST_F(UsbFault, BadChecksum) {
-  expect_silence_until_it_ends("labjack-u3", FaultKind::kBadChecksum, Refusal::kBadChecksum);
+  expect_silence_until_it_ends("labjack-u3", FaultKind::kBadChecksum, decode::Refusal::kBadChecksum);
   expect_no_harm_of_one_second("labjack-u3", FaultKind::kBadChecksum);
 }
 
 TEST_F(UsbFault, WrongTransaction) {
-  expect_silence_until_it_ends("labjack-u3", FaultKind::kWrongTransaction, Refusal::kNotMine);
+  expect_silence_until_it_ends("labjack-u3", FaultKind::kWrongTransaction, decode::Refusal::kNotMine);
   expect_no_harm_of_one_second("labjack-u3", FaultKind::kWrongTransaction);
 }
 
 TEST_F(UsbFault, Late) {
-  expect_silence_until_it_ends("labjack-u3", FaultKind::kLate, Refusal::kNotMine);
+  expect_silence_until_it_ends("labjack-u3", FaultKind::kLate, decode::Refusal::kNotMine);
   expect_no_harm_of_one_second("labjack-u3", FaultKind::kLate);
 }
 
 TEST_F(UsbFault, Exception) {
-  for (const std::string& device : sim::daq_names()) {
-    expect_silence_until_it_ends(device, FaultKind::kException, Refusal::kException);
+  for (const std::string& device : simulators::usb::daq_names()) {
+    expect_silence_until_it_ends(device, FaultKind::kException, decode::Refusal::kException);
     expect_no_harm_of_one_second(device, FaultKind::kException);
   }
 }
 
 TEST_F(UsbFault, Unplug) {
-  for (const std::string& device : sim::daq_names()) {
+  for (const std::string& device : simulators::usb::daq_names()) {
     expect_silence_until_it_ends(device, FaultKind::kUnplug, std::nullopt);
     expect_no_harm_of_one_second(device, FaultKind::kUnplug);
   }
@@ -126,7 +127,7 @@ TEST_F(UsbFault, WrongId) {
   bench.settings.serial = "111";
   bench.poll_for(30.0);
   EXPECT_TRUE(bench.sink.readings.empty());
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(bench.sink.last_detail(), HasSubstr("has serial number 320012345, not 111"));
 
   bench.plug("mcc1208", "1-3", "111");
@@ -136,7 +137,7 @@ TEST_F(UsbFault, WrongId) {
 
 TEST_F(UsbFault, Freeze) {
   // The cup jams: to the counter that is a calm, and the hub has to judge it. What it missed makes no gust afterwards.
-  for (const std::string& device : sim::daq_names()) {
+  for (const std::string& device : simulators::usb::daq_names()) {
     SCOPED_TRACE(device);
     UsbBench bench(device);
     bench.poll_for(5.0);
@@ -144,7 +145,7 @@ TEST_F(UsbFault, Freeze) {
     bench.poll_for(2.0);
     bench.sink = {};
     bench.poll_for(10.0);
-    EXPECT_THAT(bench.sink.readings, Each(testing::Field(&WindReading::speed_m_s, 0.0)));
+    EXPECT_THAT(bench.sink.readings, Each(testing::Field(&wind::WindReading::speed_m_s, 0.0)));
     EXPECT_GE(bench.sink.readings.size(), 9U);
     bench.bus.fault.reset();
     bench.poll_for(2.0);
@@ -158,7 +159,7 @@ TEST_F(UsbFault, Freeze) {
 
 TEST_F(UsbFault, Spike) {
   // 55 m/s is a wind: the driver says what the device says, and the hub has to judge it.
-  for (const std::string& device : sim::daq_names()) {
+  for (const std::string& device : simulators::usb::daq_names()) {
     SCOPED_TRACE(device);
     UsbBench bench(device);
     bench.poll_for(5.0);
@@ -166,7 +167,7 @@ TEST_F(UsbFault, Spike) {
     bench.bus.fault = FaultKind::kSpike;
     bench.poll_for(1.0);
     EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 55.0, 2.0);
-    EXPECT_THAT(bench.sink.believed, Each(testing::Field(&WindReading::speed_m_s, testing::Lt(10.0))))
+    EXPECT_THAT(bench.sink.believed, Each(testing::Field(&wind::WindReading::speed_m_s, testing::Lt(10.0))))
         << "the hub keeps it from the wind";
     EXPECT_TRUE(bench.sink.refusals.empty());
     bench.bus.fault.reset();
@@ -179,4 +180,4 @@ TEST_F(UsbFault, Spike) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

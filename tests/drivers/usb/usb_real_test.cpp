@@ -18,64 +18,66 @@
 #include "tests/support/live_sensor.hpp"
 #include "tests/support/simulator_thread.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 using namespace std::chrono_literals;
-using sim::FaultKind;
-using sim::steady_wind;
+using simulators::FaultKind;
+using simulators::usb::steady_wind;
 
 constexpr double kPlayed_m_s = 8.6;
 constexpr double kPlayed_deg = 225.0;
 constexpr double kPace = 40.0;  // of the stations: a Fine Offset says its wind every 1.2 s and not every 48 s
 
-std::unique_ptr<Sensor> open_real(std::string_view driver_name, const ParameterValues::Map& given) {
-  const DriverDescription& driver = driver_named(driver_name);
+std::unique_ptr<sensor::Sensor> open_real(std::string_view driver_name, const ParameterValues::Map& given) {
+  const sensor::DriverDescription& driver = driver_named(driver_name);
   return driver.open(*ParameterValues::resolve(driver.parameters, given));
 }
 
-std::unique_ptr<sim::Simulator> plugged_in(std::unique_ptr<sim::UsbDevice> device) {
-  std::vector<std::unique_ptr<sim::UsbPort>> ports;
-  ports.push_back(std::make_unique<sim::UsbPort>(std::move(device), steady_wind(kPlayed_m_s, kPlayed_deg)));
-  return std::make_unique<sim::UmockdevSimulator>(std::move(ports));
+std::unique_ptr<simulators::Simulator> plugged_in(std::unique_ptr<simulators::usb::UsbDevice> device) {
+  std::vector<std::unique_ptr<simulators::usb::UsbPort>> ports;
+  ports.push_back(std::make_unique<simulators::usb::UsbPort>(std::move(device),
+                                                             simulators::usb::steady_wind(kPlayed_m_s, kPlayed_deg)));
+  return std::make_unique<simulators::usb::UmockdevSimulator>(std::move(ports));
 }
 
-bool can_suffer(const sim::UsbDevice& device, FaultKind kind) {
+bool can_suffer(const simulators::usb::UsbDevice& device, FaultKind kind) {
   return kind == FaultKind::kSilence || kind == FaultKind::kUnplug ||
          std::ranges::count(device.known_faults(), kind) != 0;
 }
 
 struct PluggedIn {
-  explicit PluggedIn(std::unique_ptr<sim::UsbDevice> device) : simulator(plugged_in(std::move(device))) {}
+  explicit PluggedIn(std::unique_ptr<simulators::usb::UsbDevice> device) : simulator(plugged_in(std::move(device))) {}
   SimulatorThread simulator;
 };
 
 /// One device, its driver, and how far a reading may be from the wind that is played. The driver ends before the
 /// device.
 struct RealBench : PluggedIn, test::LiveSensor {
-  RealBench(std::unique_ptr<sim::UsbDevice> device, std::unique_ptr<Sensor> sensor, double tolerance)
+  RealBench(std::unique_ptr<simulators::usb::UsbDevice> device, std::unique_ptr<sensor::Sensor> sensor,
+            double tolerance)
       : PluggedIn(std::move(device)), test::LiveSensor(std::move(sensor)), tolerance_m_s(tolerance) {}
 
   void expect_the_played_wind() const {
     ASSERT_FALSE(sink.readings.empty());
     double sum_m_s = 0.0;
-    for (const WindReading& reading : sink.readings) {
+    for (const wind::WindReading& reading : sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, kPlayed_m_s, tolerance_m_s);
       EXPECT_NEAR(reading.direction_deg.value_or(kPlayed_deg), kPlayed_deg, 2.0);
       sum_m_s += reading.speed_m_s;
     }
     EXPECT_NEAR(sum_m_s / static_cast<double>(sink.readings.size()), kPlayed_m_s, 0.1 * kPlayed_m_s);
     EXPECT_TRUE(
-        std::ranges::any_of(sink.readings, [](const WindReading& one) { return one.direction_deg.has_value(); }));
+        std::ranges::any_of(sink.readings, [](const wind::WindReading& one) { return one.direction_deg.has_value(); }));
   }
 
   /// The device suffers, which is told in time; nothing false is published; the readings return by themselves.
   void expect_it_suffers_and_returns(FaultKind kind) {
     ASSERT_TRUE(wait_for_readings(2));
-    ASSERT_EQ(sink.last_state(), LinkState::kConnected);
+    ASSERT_EQ(sink.last_state(), wind::LinkState::kConnected);
     const std::size_t refusals_before = sink.refusals.size();
     simulator.set_fault(kind);
-    ASSERT_TRUE(wait_until([&] { return sink.last_state() == LinkState::kConnecting; }));
+    ASSERT_TRUE(wait_until([&] { return sink.last_state() == wind::LinkState::kConnecting; }));
     EXPECT_FALSE(sink.last_detail().empty());
     const std::size_t readings_before = sink.readings.size();
     listen_for(300ms);
@@ -84,7 +86,7 @@ struct RealBench : PluggedIn, test::LiveSensor {
 
     simulator.set_fault(std::nullopt);
     ASSERT_TRUE(wait_for_readings(2));
-    EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
     expect_the_played_wind();
   }
 
@@ -94,14 +96,14 @@ struct RealBench : PluggedIn, test::LiveSensor {
 // ---- hid ----
 
 RealBench station_bench(std::string_view name) {
-  return {sim::make_hid_station(name, kPace), open_real("hid", {{"pace", kPace}}), 0.15};
+  return {simulators::usb::make_hid_station(name, kPace), open_real("hid", {{"pace", kPace}}), 0.15};
 }
 
 /// A fault, with those of the stations that can suffer it.
 void expect_stations_suffer(FaultKind kind, const std::vector<std::string_view>& names) {
   for (const std::string_view name : names) {
     SCOPED_TRACE(name);
-    ASSERT_TRUE(can_suffer(*sim::make_hid_station(name), kind));
+    ASSERT_TRUE(can_suffer(*simulators::usb::make_hid_station(name), kind));
     RealBench bench = station_bench(name);
     bench.expect_it_suffers_and_returns(kind);
   }
@@ -117,8 +119,8 @@ TEST_P(HidReal, SaysTheWindThatIsPlayed) {
 }
 
 TEST_P(HidReal, IsFoundAndCanBeOpened) {
-  const SimulatorThread simulator(plugged_in(sim::make_hid_station(GetParam())));
-  const std::vector<FoundDevice> found = driver_named("hid").find();
+  const SimulatorThread simulator(plugged_in(simulators::usb::make_hid_station(GetParam())));
+  const std::vector<sensor::FoundDevice> found = driver_named("hid").find();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].trouble, "");
   EXPECT_THAT(found[0].settings, testing::HasSubstr("path = \"1-1\""));
@@ -129,7 +131,7 @@ std::string test_name(std::string name) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, HidReal, testing::ValuesIn(sim::hid_station_names()),
+INSTANTIATE_TEST_SUITE_P(Every, HidReal, testing::ValuesIn(simulators::usb::hid_station_names()),
                          [](const auto& test) { return test_name(std::string(test.param)); });
 
 // Two that speak by themselves and two that are asked, over the interrupt end point and by GET_REPORT; every fault of
@@ -155,13 +157,13 @@ TEST(HidRealFault, Unplug) {
 
 /// A cup says a whole number of pulses in the time between two samples, which is never quite the same.
 RealBench daq_bench(const std::string& name) {
-  return {sim::make_daq(name), open_real("usb", {{"window_pulses", std::int64_t{16}}}), 2.5};
+  return {simulators::usb::make_daq(name), open_real("usb", {{"window_pulses", std::int64_t{16}}}), 2.5};
 }
 
 void expect_daqs_suffer(FaultKind kind) {
   int suffering = 0;
-  for (const std::string& name : sim::daq_names()) {
-    if (!can_suffer(*sim::make_daq(name), kind)) continue;
+  for (const std::string& name : simulators::usb::daq_names()) {
+    if (!can_suffer(*simulators::usb::make_daq(name), kind)) continue;
     SCOPED_TRACE(name);
     ++suffering;
     RealBench bench = daq_bench(name);
@@ -179,13 +181,13 @@ TEST_P(UsbReal, SaysTheWindThatIsPlayed) {
 }
 
 TEST_P(UsbReal, IsFoundAndCanBeOpened) {
-  const SimulatorThread simulator(plugged_in(sim::make_daq(GetParam())));
-  const std::vector<FoundDevice> found = driver_named("usb").find();
+  const SimulatorThread simulator(plugged_in(simulators::usb::make_daq(GetParam())));
+  const std::vector<sensor::FoundDevice> found = driver_named("usb").find();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].trouble, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, UsbReal, testing::ValuesIn(sim::daq_names()),
+INSTANTIATE_TEST_SUITE_P(Every, UsbReal, testing::ValuesIn(simulators::usb::daq_names()),
                          [](const auto& test) { return test_name(test.param); });
 
 TEST(UsbRealFault, Silence) {
@@ -221,4 +223,4 @@ TEST(UsbRealFault, Unplug) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -8,7 +8,7 @@
 
 #include "tests/support/usb_bench.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::usb {
 namespace {
 
 using testing::AllOf;
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 class UsbSensorTest : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Every, UsbSensorTest, testing::ValuesIn(sim::daq_names()),
+INSTANTIATE_TEST_SUITE_P(Every, UsbSensorTest, testing::ValuesIn(simulators::usb::daq_names()),
                          [](const auto& name) { return name.param == "mcc1208" ? "Mcc1208" : "LabjackU3"; });
 
 TEST_P(UsbSensorTest, ReadsTheSpeedAndTheDirectionOfTheWind) {
@@ -29,7 +29,7 @@ TEST_P(UsbSensorTest, ReadsTheSpeedAndTheDirectionOfTheWind) {
       bench.poll_for(20.0);
       ASSERT_GE(bench.sink.readings.size(), 18U) << speed_m_s;
       double sum_m_s = 0.0;
-      for (const WindReading& reading : bench.sink.readings) {
+      for (const wind::WindReading& reading : bench.sink.readings) {
         sum_m_s += reading.speed_m_s;
         ASSERT_TRUE(reading.direction_deg.has_value());
         EXPECT_NEAR(*reading.direction_deg, direction_deg, 0.5);
@@ -47,7 +47,7 @@ TEST_P(UsbSensorTest, IsCalmWithoutPulsesAfterTheLongestWindow) {
   bench.settings.cup.offset_m_s = 0.4;
   bench.poll_for(5.0);
   ASSERT_GE(bench.sink.readings.size(), 4U);
-  for (const WindReading& reading : bench.sink.readings) EXPECT_EQ(reading.speed_m_s, 0.0);
+  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_EQ(reading.speed_m_s, 0.0);
 }
 
 TEST_P(UsbSensorTest, HasNoDirectionWhereTheVaneHasNoTrack) {
@@ -55,8 +55,8 @@ TEST_P(UsbSensorTest, HasNoDirectionWhereTheVaneHasNoTrack) {
   bench.bus.wind = {5.0, 358.0};
   bench.poll_for(2.0);
   ASSERT_FALSE(bench.sink.readings.empty());
-  for (const WindReading& reading : bench.sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST_P(UsbSensorTest, HasNoDirectionWithoutAVane) {
@@ -97,7 +97,7 @@ TEST_P(UsbSensorTest, MakesNoGustOfAThreadThatIsHeldUp) {
     bench.poll_for(0.7);
   }
   EXPECT_GE(bench.sink.readings.size(), 60U);
-  for (const WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
 }
 
 TEST_P(UsbSensorTest, ReadsASlowBusLessOften) {
@@ -107,13 +107,13 @@ TEST_P(UsbSensorTest, ReadsASlowBusLessOften) {
   bench.sink.readings.clear();
   bench.poll_for(20.0);
   EXPECT_GE(bench.sink.readings.size(), 20U);
-  for (const WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
 }
 
 TEST_P(UsbSensorTest, ShowsEveryMessageBothWays) {
   UsbBench bench(GetParam());
   bench.poll_for(1.0);
-  const auto sent = std::ranges::count(bench.sink.raws, RawDirection::kSent, &RecordingSink::Raw::direction);
+  const auto sent = std::ranges::count(bench.sink.raws, sensor::RawDirection::kSent, &RecordingSink::Raw::direction);
   EXPECT_GE(sent, 10);
   EXPECT_EQ(2 * sent, std::ssize(bench.sink.raws)) << "each question was answered";
 }
@@ -121,13 +121,13 @@ TEST_P(UsbSensorTest, ShowsEveryMessageBothWays) {
 TEST_P(UsbSensorTest, SaysWhichDeviceItReads) {
   UsbBench bench(GetParam());
   bench.poll_for(1.0);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
   EXPECT_THAT(bench.sink.last_detail(), HasSubstr("at USB port 1-2"));
 }
 
 TEST_P(UsbSensorTest, IsThereAsSoonAsItIsPluggedInAgain) {
   UsbBench bench(GetParam());
-  bench.bus.fault = sim::FaultKind::kUnplug;
+  bench.bus.fault = simulators::FaultKind::kUnplug;
   bench.poll_for(120.0);  // by now it looks for it every ten seconds
   bench.bus.fault.reset();
   bench.bus.has_arrived = true;
@@ -175,7 +175,7 @@ TEST(UsbSensor, SaysWhatIsMissing) {
   UsbBench bench;
   bench.settings.serial = "BBBB";
   bench.poll_for(1.0);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(bench.sink.last_detail(),
               AllOf(HasSubstr("MCC USB-1208FS-Plus (09db:00e8) or LabJack U3 (0cd5:0003) with serial number BBBB"),
                     HasSubstr("is not plugged in")));
@@ -194,19 +194,19 @@ TEST(UsbSensor, BeginsANewWindowWhenTheCounterWasReset) {
   bench.sink = {};
   static_cast<void>(bench.bus.sockets[0].device->control({0x40, 0x20, 0, 0, 0}, {}));
   bench.poll_for(3.0);
-  EXPECT_EQ(bench.sink.count(Refusal::kImplausible), 1);
+  EXPECT_EQ(bench.sink.count(decode::Refusal::kImplausible), 1);
   ASSERT_GE(bench.sink.readings.size(), 25U);
-  for (const WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST(UsbSensor, SetsALabjackUpAgainWhoseCounterAnotherProgramHasTurnedOff) {
   UsbBench bench("labjack-u3");
   bench.poll_for(3.0);
   static_cast<void>(bench.bus.sockets[0].device->out(
-      1, sim::UsbBytes{0x57, 0xF8, 0x03, 0x0B, 0x50, 0x00, 0x01, 0x00, 0x40, 0x00, 0x0F, 0x00}));
+      1, simulators::usb::UsbBytes{0x57, 0xF8, 0x03, 0x0B, 0x50, 0x00, 0x01, 0x00, 0x40, 0x00, 0x0F, 0x00}));
   bench.poll_for(0.3);
-  EXPECT_THAT(bench.sink.refusals, testing::Contains(Refusal::kException));
+  EXPECT_THAT(bench.sink.refusals, testing::Contains(decode::Refusal::kException));
   EXPECT_TRUE(bench.poll_for_reading(2.0));
   EXPECT_EQ(bench.bus.opened, 2);
 }
@@ -240,4 +240,4 @@ TEST(MeanDirection, CrossesNorthWithoutHarm) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::usb

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 using namespace std::chrono_literals;
@@ -57,4 +57,4 @@ TEST(IsoTime, RefusesWhatIsNoTime) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

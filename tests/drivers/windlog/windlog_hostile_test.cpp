@@ -14,7 +14,7 @@
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 using test::numbered_readings;
@@ -64,7 +64,7 @@ std::size_t read_warily(const std::filesystem::path& file) {
       break;
     }
     if (!*logged) break;
-    EXPECT_TRUE(is_plausible((*logged)->reading));
+    EXPECT_TRUE(wind::is_plausible((*logged)->reading));
     EXPECT_GE((*logged)->log_time.count(), 0);
     EXPECT_LT((*logged)->sensor, reader->sensors().size());
     ++count;
@@ -87,7 +87,7 @@ TEST(HostileWindlog, OfRandomBytesIsRefused) {
 
 TEST(HostileWindlog, CutAtAnyLengthIsRefusedOrReadInPart) {
   const test::TemporaryFolder folder;
-  write_session(folder / "whole.windlog", numbered_readings(3000));
+  test::write_session(folder / "whole.windlog", test::numbered_readings(3000));
   const std::string whole = bytes_of(folder / "whole.windlog");
   std::size_t most = 0;
   for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 150) {
@@ -99,7 +99,7 @@ TEST(HostileWindlog, CutAtAnyLengthIsRefusedOrReadInPart) {
 
 TEST(HostileWindlog, WithAnyByteChangedIsRefusedOrReadInPart) {
   const test::TemporaryFolder folder;
-  write_session(folder / "whole.windlog", numbered_readings(500));
+  test::write_session(folder / "whole.windlog", test::numbered_readings(500));
   const std::string whole = bytes_of(folder / "whole.windlog");
   std::mt19937 random(3);
   for (int i = 0; i < 200; ++i) {
@@ -115,7 +115,7 @@ TEST(HostileWindlog, WithAnyByteChangedIsRefusedOrReadInPart) {
 TEST(HostileWindlog, RowsThatCannotBeReadingsArePassedOverAndCounted) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  write_session(file, {reading_at(1000, 1.0), reading_at(9000, 2.0)});
+  test::write_session(file, {test::reading_at(1000, 1.0), test::reading_at(9000, 2.0)});
   loosen(file);
   const std::vector<std::string> bad_rows = {
       "1, 1, 5, 2000, 'fast', NULL, NULL, 0",  // types
@@ -157,7 +157,7 @@ TEST(HostileWindlog, RowsThatCannotBeReadingsArePassedOverAndCounted) {
 TEST(HostileWindlog, RowsAtTimesBeyondAllMeasureChangeNothing) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  write_session(file, {reading_at(1000, 1.0), reading_at(9000, 2.0)});
+  test::write_session(file, {test::reading_at(1000, 1.0), test::reading_at(9000, 2.0)});
   loosen(file);
   for (const char* mono_ns : {"-1", "-9223372036854775808", "9223372036854775807", "'noon'", "NULL"}) {
     tamper(file, std::string("INSERT INTO reading VALUES (1, 1, 5, ") + mono_ns + ", 1.0, NULL, NULL, 0)");
@@ -169,9 +169,9 @@ TEST(HostileWindlog, RowsAtTimesBeyondAllMeasureChangeNothing) {
 TEST(HostileWindlog, SessionsWhoseTimesAddUpToTooMuchAreRefused) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  WindReading last = reading_at(0, 1.0);
-  last.time.mono = MonoTime(Nanoseconds(windlog::kMaxTime_ns));
-  for (int i = 0; i < 3; ++i) write_session(file, {reading_at(0, 1.0), last});
+  wind::WindReading last = test::reading_at(0, 1.0);
+  last.time.mono = MonoTime(Nanoseconds(kMaxTime_ns));
+  for (int i = 0; i < 3; ++i) test::write_session(file, {test::reading_at(0, 1.0), last});
   const auto reader = WindlogReader::open(file);
   ASSERT_FALSE(reader);
   EXPECT_NE(reader.error().message.find("session 2"), std::string::npos) << reader.error().message;
@@ -180,7 +180,7 @@ TEST(HostileWindlog, SessionsWhoseTimesAddUpToTooMuchAreRefused) {
 TEST(HostileWindlog, AViewInPlaceOfATableIsNotRun) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  write_session(file, {reading_at(1000, 1.0)});
+  test::write_session(file, {test::reading_at(1000, 1.0)});
   tamper(file,
          "DROP TABLE reading; CREATE VIEW reading AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) "
          "SELECT 1 AS session, 1 AS sensor, x AS utc_ns, x AS mono_ns, 1.0 AS speed_m_s, NULL AS direction_deg, "
@@ -194,7 +194,7 @@ TEST(HostileWindlog, AFileThatLacksATableOrAColumnIsRefused) {
                           "ALTER TABLE reading DROP COLUMN gust_m_s", "PRAGMA user_version = 0"}) {
     const auto file = folder / "a.windlog";
     std::filesystem::remove(file);
-    write_session(file, {reading_at(1000, 1.0)});
+    test::write_session(file, {test::reading_at(1000, 1.0)});
     tamper(file, std::string("PRAGMA foreign_keys = OFF; ") + sql);
     EXPECT_FALSE(WindlogReader::open(file)) << sql;
   }
@@ -203,9 +203,9 @@ TEST(HostileWindlog, AFileThatLacksATableOrAColumnIsRefused) {
 TEST(HostileWindlog, OfARecordingWithoutItsIndexIsReadAllTheSame) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  write_session(file, numbered_readings(2000));
+  test::write_session(file, test::numbered_readings(2000));
   tamper(file, "DROP INDEX reading_by_time");
-  EXPECT_EQ(read_all(file).size(), 2000U);
+  EXPECT_EQ(test::read_all(file).size(), 2000U);
 }
 
 /// Does something as a user who may not write to anything of root's; answers what it answered.
@@ -223,12 +223,12 @@ int as_nobody(const std::function<int()>& act) {
 
 TEST(HostileWindlog, InAReadOnlyFolderIsReadIfItWasClosedAndRefusedInWordsIfNot) {
   const test::TemporaryFolder folder;
-  write_session(folder / "closed.windlog", numbered_readings(10));
+  test::write_session(folder / "closed.windlog", test::numbered_readings(10));
 
   // One whose recorder was killed, as it lies on the disk.
   auto writer = WindlogWriter::open(folder / "live.windlog");
-  ASSERT_TRUE(writer->begin_session({reading_at(0, 0).time, "yuragi test", ""}));
-  ASSERT_TRUE(writer->append(*writer->add_sensor("mast", "", ""), reading_at(1, 1.0)));
+  ASSERT_TRUE(writer->begin_session({test::reading_at(0, 0).time, "yuragi test", ""}));
+  ASSERT_TRUE(writer->append(*writer->add_sensor("mast", "", ""), test::reading_at(1, 1.0)));
   ASSERT_TRUE(writer->commit());
   std::filesystem::copy_file(folder / "live.windlog", folder / "killed.windlog");
   std::filesystem::copy_file(folder / "live.windlog-wal", folder / "killed.windlog-wal");
@@ -247,4 +247,4 @@ TEST(HostileWindlog, InAReadOnlyFolderIsReadIfItWasClosedAndRefusedInWordsIfNot)
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -5,7 +5,7 @@
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 using test::numbered_readings;
@@ -24,7 +24,7 @@ std::string complaint(const std::filesystem::path& file, const PlaybackOptions& 
 
 TEST(WindlogPlayback, GivesEveryReadingInLogTime) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(1500));
+  test::write_session(folder / "a.windlog", test::numbered_readings(1500));
   WindlogPlayback playback = playback_of(folder / "a.windlog");
   for (int i = 0; i < 1500; ++i) {
     const auto played = playback.next().value();
@@ -40,7 +40,7 @@ TEST(WindlogPlayback, GivesEveryReadingInLogTime) {
 
 TEST(WindlogPlayback, StartsWhereItIsTold) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(100));
+  test::write_session(folder / "a.windlog", test::numbered_readings(100));
 
   // Log time begins at the start that was asked for, not at the reading that happens to come first.
   EXPECT_NEAR(playback_of(folder / "a.windlog", {.start = "2.05"}).next().value()->log_time_s, 0.05, 1e-9);
@@ -62,7 +62,7 @@ TEST(WindlogPlayback, SaysWhatIsWrongWithAStart) {
   }
 
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(100));
+  test::write_session(folder / "a.windlog", test::numbered_readings(100));
   EXPECT_NE(complaint(folder / "a.windlog", {.start = "9.95"}).find("9.9"), std::string::npos);
   EXPECT_NE(complaint(folder / "a.windlog", {.start = "2019-01-01"}).find("ends before"), std::string::npos);
 }
@@ -71,12 +71,12 @@ TEST(WindlogPlayback, PlaysTheSensorThatIsAskedFor) {
   const test::TemporaryFolder folder;
   {
     auto writer = WindlogWriter::open(folder / "a.windlog");
-    ASSERT_TRUE(writer->begin_session({reading_at(0, 0).time, "yuragi test", ""}));
+    ASSERT_TRUE(writer->begin_session({test::reading_at(0, 0).time, "yuragi test", ""}));
     const auto roof = writer->add_sensor("roof", "modbus", "");
     const auto mast = writer->add_sensor("mast", "modbus", "");
     for (int i = 0; i < 10; ++i) {
-      ASSERT_TRUE(writer->append(*mast, reading_at(1000 + 100 * i, 1.0)));
-      ASSERT_TRUE(writer->append(*roof, reading_at(1050 + 100 * i, 2.0)));
+      ASSERT_TRUE(writer->append(*mast, test::reading_at(1000 + 100 * i, 1.0)));
+      ASSERT_TRUE(writer->append(*roof, test::reading_at(1050 + 100 * i, 2.0)));
     }
   }
   const auto count = [&](const std::string& sensor, double speed_m_s) {
@@ -97,7 +97,8 @@ TEST(WindlogPlayback, PlaysTheSensorThatIsAskedFor) {
 
 TEST(WindlogPlayback, LoopsWithTheMeanIntervalAtTheSeam) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", {reading_at(0, 0.0), reading_at(100, 1.0), reading_at(400, 2.0)});
+  test::write_session(folder / "a.windlog",
+                      {test::reading_at(0, 0.0), test::reading_at(100, 1.0), test::reading_at(400, 2.0)});
   WindlogPlayback playback = playback_of(folder / "a.windlog", {.loop = true});
   const std::vector<double> expected = {0.0, 0.1, 0.4, 0.6, 0.7, 1.0, 1.2, 1.3, 1.6, 1.8};
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -110,7 +111,7 @@ TEST(WindlogPlayback, LoopsWithTheMeanIntervalAtTheSeam) {
 
 TEST(WindlogPlayback, LoopsFromItsStart) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(20));
+  test::write_session(folder / "a.windlog", test::numbered_readings(20));
   WindlogPlayback playback = playback_of(folder / "a.windlog", {.start = "1.85", .loop = true});
   for (const double expected : {0.05, 1.05, 2.05}) {
     EXPECT_NEAR(playback.next().value()->log_time_s, expected, 1e-9);
@@ -119,14 +120,14 @@ TEST(WindlogPlayback, LoopsFromItsStart) {
 
 TEST(WindlogPlayback, OfOneReadingLoopsOnceASecond) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", {reading_at(700, 3.0)});
+  test::write_session(folder / "a.windlog", {test::reading_at(700, 3.0)});
   WindlogPlayback playback = playback_of(folder / "a.windlog", {.loop = true});
   for (const double expected : {0.0, 1.0, 2.0}) EXPECT_EQ(playback.next().value()->log_time_s, expected);
 }
 
 TEST(WindlogPlayback, OfReadingsAtOneMomentMovesOnWhenItLoops) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", {reading_at(700, 3.0), reading_at(700, 4.0)});
+  test::write_session(folder / "a.windlog", {test::reading_at(700, 3.0), test::reading_at(700, 4.0)});
   WindlogPlayback playback = playback_of(folder / "a.windlog", {.loop = true});
   double last_s = 0.0;
   for (int i = 0; i < 2000; ++i) last_s = playback.next().value()->log_time_s;
@@ -135,11 +136,11 @@ TEST(WindlogPlayback, OfReadingsAtOneMomentMovesOnWhenItLoops) {
 
 TEST(WindlogPlayback, RefusesWhatHasNothingToPlay) {
   const test::TemporaryFolder folder;
-  write_session(folder / "empty.windlog", {});
+  test::write_session(folder / "empty.windlog", {});
   EXPECT_NE(complaint(folder / "empty.windlog", {}).find("no reading"), std::string::npos);
   EXPECT_NE(complaint(folder / "absent.windlog", {}).find("no such recording"), std::string::npos);
   EXPECT_NE(complaint(folder.path(), {}).find("is not a file"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -13,7 +13,7 @@
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 using namespace std::chrono_literals;
@@ -24,26 +24,26 @@ using test::write_session;
 using ::testing::HasSubstr;
 
 /// 600 readings in a minute, whose wind swings slowly between 2 and 10 m/s and comes from 350 to 10 degrees.
-std::vector<WindReading> swinging_wind() {
-  std::vector<WindReading> readings;
+std::vector<wind::WindReading> swinging_wind() {
+  std::vector<wind::WindReading> readings;
   for (int i = 0; i < 600; ++i) {
     const double phase = 2.0 * std::numbers::pi * i / 450.0;
-    WindReading reading = reading_at(100 * i, 6.0 - 4.0 * std::cos(phase));
+    wind::WindReading reading = test::reading_at(100 * i, 6.0 - 4.0 * std::cos(phase));
     reading.direction_deg = std::fmod(360.0 + 10.0 * std::sin(phase), 360.0);
     readings.push_back(reading);
   }
   return readings;
 }
 
-WindVector vector_of(const WindReading& reading) {
-  return wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
+wind::WindVector vector_of(const wind::WindReading& reading) {
+  return wind::wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
 }
 
 /// A player with a clock of its own, and all that it has said.
 class Playing {
  public:
-  Playing(const std::vector<WindReading>& readings, PlayerOptions options) {
-    write_session(folder_ / "a.windlog", readings);
+  Playing(const std::vector<wind::WindReading>& readings, PlayerOptions options) {
+    test::write_session(folder_ / "a.windlog", readings);
     player_.emplace(WindlogPlayer::open(folder_ / "a.windlog", std::move(options), clock_.now()).value());
   }
 
@@ -56,7 +56,7 @@ class Playing {
     for (MonoTime next = look(); clock_.now().mono < end; next = look()) clock_.advance_to(std::min(next, end));
   }
   MonoTime look() {
-    return player_->play(clock_.now(), [this](const WindReading& reading) { said.push_back(reading); }).value();
+    return player_->play(clock_.now(), [this](const wind::WindReading& reading) { said.push_back(reading); }).value();
   }
   void halt(Nanoseconds duration) { clock_.advance(duration); }
 
@@ -69,7 +69,7 @@ class Playing {
     return largest;
   }
   bool is_in_order() const {
-    return std::ranges::is_sorted(said, {}, [](const WindReading& reading) { return reading.time.mono; });
+    return std::ranges::is_sorted(said, {}, [](const wind::WindReading& reading) { return reading.time.mono; });
   }
   double place_s() const { return seconds(player_->position(clock_.now().mono).log_time); }
   std::string refusal(const std::function<Result<void, Failure>(WindlogPlayer&)>& order) {
@@ -77,7 +77,7 @@ class Playing {
     return done ? "" : done.error().message;
   }
 
-  std::vector<WindReading> said;
+  std::vector<wind::WindReading> said;
 
  private:
   test::TemporaryFolder folder_;
@@ -88,7 +88,7 @@ class Playing {
 // ---- pause and step ----
 
 TEST(WindlogPlayer, PausedItSaysTheSameAgainAtItsUsualIntervalAndGoesOnWhereItStood) {
-  Playing playing(numbered_readings(100), {});
+  Playing playing(test::numbered_readings(100), {});
   playing.run(2s);
   const std::size_t before = playing.said.size();
   const double held_m_s = playing.said.back().speed_m_s;
@@ -115,7 +115,7 @@ TEST(WindlogPlayer, PausedItSaysTheSameAgainAtItsUsualIntervalAndGoesOnWhereItSt
 }
 
 TEST(WindlogPlayer, PausedFromTheBeginningItStandsAtItsFirstReading) {
-  Playing playing(numbered_readings(10), {.is_paused = true});
+  Playing playing(test::numbered_readings(10), {.is_paused = true});
   playing.run(1s);
   ASSERT_GT(playing.said.size(), 5U);
   EXPECT_FALSE(playing.said[0].is_held);
@@ -125,7 +125,7 @@ TEST(WindlogPlayer, PausedFromTheBeginningItStandsAtItsFirstReading) {
 }
 
 TEST(WindlogPlayer, AStepPausesAndMovesSoManyReadingsOn) {
-  Playing playing(numbered_readings(100), {});
+  Playing playing(test::numbered_readings(100), {});
   playing.run(1s);
   const double before_m_s = playing.said.back().speed_m_s;
   playing->step(playing.now(), 1);
@@ -146,7 +146,7 @@ TEST(WindlogPlayer, AStepPausesAndMovesSoManyReadingsOn) {
 }
 
 TEST(WindlogPlayer, StepsEndAtTheLastReadingAndInALoopBeginAgain) {
-  Playing once(numbered_readings(10), {});
+  Playing once(test::numbered_readings(10), {});
   once->step(once.now(), 500);
   once.look();
   EXPECT_DOUBLE_EQ(once.said.back().speed_m_s, 0.009);
@@ -155,7 +155,7 @@ TEST(WindlogPlayer, StepsEndAtTheLastReadingAndInALoopBeginAgain) {
   once.run(1s);
   EXPECT_FALSE(once->is_finished()) << "it stands, and does not end";
 
-  Playing looping(numbered_readings(10), {.playback = {.loop = true}, .seam_s = 0.0});
+  Playing looping(test::numbered_readings(10), {.playback = {.loop = true}, .seam_s = 0.0});
   looping->step(looping.now(), 13);
   looping.look();
   EXPECT_DOUBLE_EQ(looping.said.back().speed_m_s, 0.002);
@@ -163,7 +163,7 @@ TEST(WindlogPlayer, StepsEndAtTheLastReadingAndInALoopBeginAgain) {
 }
 
 TEST(WindlogPlayer, AMachineThatWasSuspendedFindsAPausedPlayerAsItWas) {
-  Playing playing(numbered_readings(100), {});
+  Playing playing(test::numbered_readings(100), {});
   playing.run(1s);
   playing->pause(playing.now());
   playing.halt(8h);
@@ -177,7 +177,7 @@ TEST(WindlogPlayer, AMachineThatWasSuspendedFindsAPausedPlayerAsItWas) {
 // ---- seek and rate ----
 
 TEST(WindlogPlayer, SeeksToSecondsMomentsAndSoMuchFurther) {
-  Playing playing(numbered_readings(1000), {.seam_s = 0.0});
+  Playing playing(test::numbered_readings(1000), {.seam_s = 0.0});
   const auto at = [&](const std::string& place) {
     playing->seek(playing.now(), place);
     playing.look();
@@ -193,7 +193,7 @@ TEST(WindlogPlayer, SeeksToSecondsMomentsAndSoMuchFurther) {
 }
 
 TEST(WindlogPlayer, ASeekToNowhereIsRefusedAndChangesNothing) {
-  Playing playing(numbered_readings(1000), {});
+  Playing playing(test::numbered_readings(1000), {});
   playing.run(2s);
   for (const char* place : {"100", "+98", "2019-01-01", "soon", "", "+", "+x", "-nan", "+1e99", "nan", "--1"}) {
     const std::string refusal =
@@ -206,7 +206,7 @@ TEST(WindlogPlayer, ASeekToNowhereIsRefusedAndChangesNothing) {
 }
 
 TEST(WindlogPlayer, GoesOnAfterItsEndWhereItIsToldTo) {
-  Playing playing(numbered_readings(20), {});
+  Playing playing(test::numbered_readings(20), {});
   playing.run(5s);
   EXPECT_TRUE(playing->is_finished());
   EXPECT_DOUBLE_EQ(playing.place_s(), 1.9);
@@ -219,7 +219,7 @@ TEST(WindlogPlayer, GoesOnAfterItsEndWhereItIsToldTo) {
 }
 
 TEST(WindlogPlayer, ARateThatChangesKeepsThePlace) {
-  Playing playing(numbered_readings(1000), {});
+  Playing playing(test::numbered_readings(1000), {});
   playing.run(2s);
   playing->set_rate(playing.now(), 10.0);
   playing.run(3s);
@@ -235,17 +235,17 @@ TEST(WindlogPlayer, ARateThatChangesKeepsThePlace) {
 
 TEST(WindlogPlayer, BetweenTwoWindsLiesTheirVector) {
   const auto blow = [](double speed_m_s, std::optional<double> from_deg) {
-    WindReading reading = reading_at(0, speed_m_s);
+    wind::WindReading reading = test::reading_at(0, speed_m_s);
     reading.direction_deg = from_deg;
     return reading;
   };
-  const WindReading through_north = between(blow(5.0, 350.0), blow(5.0, 10.0), 0.5);
+  const wind::WindReading through_north = between(blow(5.0, 350.0), blow(5.0, 10.0), 0.5);
   EXPECT_NEAR(std::remainder(*through_north.direction_deg, 360.0), 0.0, 1e-9);
   EXPECT_NEAR(through_north.speed_m_s, 5.0 * std::cos(10.0 * std::numbers::pi / 180.0), 1e-9);
   EXPECT_NEAR(between(blow(2.0, 90.0), blow(6.0, 90.0), 0.25).speed_m_s, 3.0, 1e-12);
   EXPECT_NEAR(between(blow(2.0, {}), blow(6.0, 90.0), 0.25).speed_m_s, 3.0, 1e-12);
   EXPECT_EQ(between(blow(2.0, 80.0), blow(6.0, {}), 0.25).direction_deg, std::nullopt);
-  EXPECT_TRUE(is_plausible(between(blow(5.0, 0.0), blow(5.0, 180.0), 0.5)));
+  EXPECT_TRUE(wind::is_plausible(between(blow(5.0, 0.0), blow(5.0, 180.0), 0.5)));
 }
 
 TEST(WindlogPlayer, TheSeamOfALoopIsNoStep) {
@@ -273,8 +273,8 @@ TEST(WindlogPlayer, ASeekFadesFromWhatTheOldPlaceGoesOnToSay) {
   EXPECT_LT(playing.largest_step_m_s(), 0.4);
   EXPECT_LT(playing.said[begun].speed_m_s, 2.5);
   // In the middle both count half: at 3 s of the old place, and 22 s of the new.
-  const std::vector<WindReading> recorded = swinging_wind();
-  const WindVector middle = 0.5 * (vector_of(recorded[30]) + vector_of(recorded[220]));
+  const std::vector<wind::WindReading> recorded = swinging_wind();
+  const wind::WindVector middle = 0.5 * (vector_of(recorded[30]) + vector_of(recorded[220]));
   EXPECT_LT(speed_of(vector_of(playing.said[begun + 20]) - middle), 0.15);
   // After it the new place alone.
   EXPECT_NEAR(playing.said.back().speed_m_s, recorded[260].speed_m_s, 0.1);
@@ -292,11 +292,11 @@ TEST(WindlogPlayer, PausedASeekFadesTooAndThenHolds) {
 }
 
 TEST(WindlogPlayer, AShortRecordingLoopsWithAShortSeamAndOneReadingWithNone) {
-  Playing few(numbered_readings(4), {.playback = {.loop = true}, .seam_s = 600.0});
+  Playing few(test::numbered_readings(4), {.playback = {.loop = true}, .seam_s = 600.0});
   few.run(10s);
   EXPECT_GT(few.said.size(), 60U);
   EXPECT_TRUE(few.is_in_order());
-  Playing one({reading_at(0, 3.0)}, {.playback = {.loop = true}});
+  Playing one({test::reading_at(0, 3.0)}, {.playback = {.loop = true}});
   one.run(10s);
   EXPECT_NEAR(static_cast<double>(one.said.size()), 11.0, 1.0);
 }
@@ -329,7 +329,7 @@ TEST(WindlogPlayer, WhateverIsDoneTimeNeverGoesBackAndTheWindNeverJumps) {
     }
     EXPECT_TRUE(playing.is_in_order()) << "seed " << seed;
     EXPECT_LT(playing.said.back().time.mono - playing.now().mono, 1ms);
-    EXPECT_TRUE(std::ranges::all_of(playing.said, is_plausible)) << "seed " << seed;
+    EXPECT_TRUE(std::ranges::all_of(playing.said, wind::is_plausible)) << "seed " << seed;
     // A fade of 3 s from one end of the swing to the other: 8 m/s, 1.5 times as fast in the middle; at 5 readings a
     // second (rate 0.5), and twice that interval where it was paused between two: 1.6 m/s, and the swing of both.
     EXPECT_LT(playing.largest_step_m_s(), 1.8) << "seed " << seed;
@@ -394,9 +394,9 @@ TEST(TimeOfDay, TakesHoursAheadOfUtc) {
 TEST(WindlogPlayer, BeginsAndLoopsAtTheTimeOfDay) {
   // A day and a half from 14:00 UTC on, a reading a minute that tells its minute of the day; the wall's clock shows
   // midnight UTC (tests/support/manual_clock.hpp), which is 10 h after the beginning.
-  std::vector<WindReading> readings;
+  std::vector<wind::WindReading> readings;
   for (int minute = 0; minute < 36 * 60; ++minute) {
-    readings.push_back(reading_at(60'000LL * minute, 0.01 * ((14 * 60 + minute) % 1440)));
+    readings.push_back(test::reading_at(60'000LL * minute, 0.01 * ((14 * 60 + minute) % 1440)));
   }
   const UtcOffset utc = *parse_utc_offset("0");
   Playing playing(
@@ -405,7 +405,7 @@ TEST(WindlogPlayer, BeginsAndLoopsAtTheTimeOfDay) {
   EXPECT_DOUBLE_EQ(playing.place_s(), 36'000.0);
   playing.run(std::chrono::hours(24 * 4));
   EXPECT_GE(playing->position(playing.now().mono).rounds, 2U);
-  for (const WindReading& reading : playing.said) {
+  for (const wind::WindReading& reading : playing.said) {
     const double minute = seconds(time_of_day(reading.time.utc, utc)) / 60.0;
     const double apart = std::remainder(100.0 * reading.speed_m_s - minute, 1440.0);
     EXPECT_LT(std::abs(apart), 1.1) << "at minute " << minute;
@@ -413,4 +413,4 @@ TEST(WindlogPlayer, BeginsAndLoopsAtTheTimeOfDay) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

@@ -18,30 +18,30 @@ inline Instant at_ms(std::int64_t mono_ms, std::int64_t utc_ms) {
 
 inline constexpr std::int64_t kSampleUtc_ms = 1'532'095'200'000;  // 2018-07-20T14:00:00Z
 
-inline WindReading reading_at(std::int64_t mono_ms, double speed_m_s) {
-  WindReading reading;
+inline wind::WindReading reading_at(std::int64_t mono_ms, double speed_m_s) {
+  wind::WindReading reading;
   reading.time = at_ms(mono_ms, kSampleUtc_ms + mono_ms);
   reading.speed_m_s = speed_m_s;
   return reading;
 }
 
 /// Writes a session of one sensor and closes the file.
-inline void write_session(const std::filesystem::path& file, const std::vector<WindReading>& readings,
+inline void write_session(const std::filesystem::path& file, const std::vector<wind::WindReading>& readings,
                           const std::string& sensor = "mast") {
-  auto writer = WindlogWriter::open(file);
+  auto writer = drivers::windlog::WindlogWriter::open(file);
   ASSERT_TRUE(writer) << writer.error().message;
   const Instant started = readings.empty() ? at_ms(0, kSampleUtc_ms) : readings.front().time;
   ASSERT_TRUE(writer->begin_session({started, "yuragi test", "[wind]\n"}));
   const auto id = writer->add_sensor(sensor, "synthetic", "speed = 5");
   ASSERT_TRUE(id);
-  for (const WindReading& reading : readings) ASSERT_TRUE(writer->append(*id, reading));
+  for (const wind::WindReading& reading : readings) ASSERT_TRUE(writer->append(*id, reading));
   const auto closed = writer->close();
   ASSERT_TRUE(closed) << closed.error().message;
 }
 
 /// `count` readings, ten a second from 1 s on, each with a speed that tells which one it is.
-inline std::vector<WindReading> numbered_readings(std::size_t count) {
-  std::vector<WindReading> readings;
+inline std::vector<wind::WindReading> numbered_readings(std::size_t count) {
+  std::vector<wind::WindReading> readings;
   for (std::size_t i = 0; i < count; ++i) {
     readings.push_back(reading_at(1000 + 100 * static_cast<std::int64_t>(i), 0.001 * static_cast<double>(i)));
   }
@@ -49,9 +49,9 @@ inline std::vector<WindReading> numbered_readings(std::size_t count) {
 }
 
 /// All that a recording gives, or a test that fails.
-inline std::vector<LoggedReading> read_all(const std::filesystem::path& file) {
-  std::vector<LoggedReading> all;
-  auto reader = WindlogReader::open(file);
+inline std::vector<drivers::windlog::LoggedReading> read_all(const std::filesystem::path& file) {
+  std::vector<drivers::windlog::LoggedReading> all;
+  auto reader = drivers::windlog::WindlogReader::open(file);
   EXPECT_TRUE(reader) << (reader ? "" : reader.error().message);
   while (reader) {
     const auto logged = reader->next();
@@ -62,7 +62,7 @@ inline std::vector<LoggedReading> read_all(const std::filesystem::path& file) {
   return all;
 }
 
-inline void expect_same(const WindReading& a, const WindReading& b) {
+inline void expect_same(const wind::WindReading& a, const wind::WindReading& b) {
   EXPECT_EQ(a.time.mono, b.time.mono);
   EXPECT_EQ(a.time.utc, b.time.utc);
   EXPECT_EQ(a.speed_m_s, b.speed_m_s);

@@ -10,7 +10,7 @@
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::windlog {
 namespace {
 
 using namespace std::chrono_literals;
@@ -26,24 +26,24 @@ std::size_t count_files(const std::filesystem::path& folder) {
 
 TEST(Windlog, GivesBackEveryReadingExactly) {
   std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> speed(0.0, kMaxPlausibleSpeed_m_s);
+  std::uniform_real_distribution<double> speed(0.0, wind::kMaxPlausibleSpeed_m_s);
   std::uniform_real_distribution<double> direction(0.0, 360.0);
   std::uniform_int_distribution<std::int64_t> step_ns(1, 2'000'000'000);
-  std::vector<WindReading> readings(3000);
-  Instant time = at_ms(5, test::kSampleUtc_ms);
-  for (WindReading& reading : readings) {
+  std::vector<wind::WindReading> readings(3000);
+  Instant time = test::at_ms(5, test::kSampleUtc_ms);
+  for (wind::WindReading& reading : readings) {
     const Nanoseconds step(step_ns(random));
     time = {time.mono + step, time.utc + step};
     reading.time = time;
     reading.speed_m_s = speed(random);
     if (random() % 2 == 0) reading.direction_deg = direction(random);
     if (random() % 3 == 0) reading.gust_m_s = speed(random);
-    reading.quality = static_cast<ReadingQuality>(random() % 3);
+    reading.quality = static_cast<wind::ReadingQuality>(random() % 3);
   }
 
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", readings);
-  const auto logged = read_all(folder / "a.windlog");
+  test::write_session(folder / "a.windlog", readings);
+  const auto logged = test::read_all(folder / "a.windlog");
   ASSERT_EQ(logged.size(), readings.size());
   for (std::size_t i = 0; i < readings.size(); ++i) {
     test::expect_same(logged[i].reading, readings[i]);
@@ -53,7 +53,7 @@ TEST(Windlog, GivesBackEveryReadingExactly) {
 
 TEST(Windlog, IsOneFileOnceItIsClosed) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(100));
+  test::write_session(folder / "a.windlog", test::numbered_readings(100));
   EXPECT_EQ(count_files(folder.path()), 1U);
 }
 
@@ -61,73 +61,73 @@ TEST(Windlog, IsReadWhileItIsWritten) {
   const test::TemporaryFolder folder;
   auto writer = WindlogWriter::open(folder / "a.windlog");
   ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->begin_session({at_ms(0, 0), "yuragi test", ""}));
+  ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
-  ASSERT_TRUE(writer->append(*sensor, reading_at(1, 1.0)));
+  ASSERT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
   ASSERT_TRUE(writer->commit());
 
   // The reader sees what is committed, and what is committed later.
   auto reader = WindlogReader::open(folder / "a.windlog");
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_TRUE(reader->next()->has_value());
-  ASSERT_TRUE(writer->append(*sensor, reading_at(2, 2.0)));
+  ASSERT_TRUE(writer->append(*sensor, test::reading_at(2, 2.0)));
   EXPECT_FALSE(reader->next()->has_value());
   ASSERT_TRUE(writer->commit());
   EXPECT_EQ(reader->next()->value().reading.speed_m_s, 2.0);
 
   // Closing goes well although somebody reads.
   EXPECT_TRUE(writer->close());
-  EXPECT_EQ(read_all(folder / "a.windlog").size(), 2U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 2U);
 }
 
 TEST(Windlog, LosesWhatIsNotCommittedAndNothingElse) {
   const test::TemporaryFolder folder;
   auto writer = WindlogWriter::open(folder / "a.windlog");
-  ASSERT_TRUE(writer->begin_session({at_ms(0, 0), "yuragi test", ""}));
+  ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
-  ASSERT_TRUE(writer->append(*sensor, reading_at(1, 1.0)));
+  ASSERT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
   ASSERT_TRUE(writer->commit());
-  ASSERT_TRUE(writer->append(*sensor, reading_at(2, 2.0)));
+  ASSERT_TRUE(writer->append(*sensor, test::reading_at(2, 2.0)));
 
   // A copy of the files as they are on the disk at this moment is what a power cut leaves.
   std::filesystem::create_directory(folder / "cut");
   for (const char* name : {"a.windlog", "a.windlog-wal"}) {
     std::filesystem::copy_file(folder / name, folder.path() / "cut" / name);
   }
-  EXPECT_EQ(read_all(folder.path() / "cut" / "a.windlog").size(), 1U);
+  EXPECT_EQ(test::read_all(folder.path() / "cut" / "a.windlog").size(), 1U);
 
   // A recorder that starts again appends, and leaves one file.
-  write_session(folder.path() / "cut" / "a.windlog", {reading_at(5, 5.0)});
-  EXPECT_EQ(read_all(folder.path() / "cut" / "a.windlog").size(), 2U);
+  test::write_session(folder.path() / "cut" / "a.windlog", {test::reading_at(5, 5.0)});
+  EXPECT_EQ(test::read_all(folder.path() / "cut" / "a.windlog").size(), 2U);
   EXPECT_EQ(count_files(folder / "cut"), 1U);
 }
 
 TEST(Windlog, RefusesAReadingThatIsNoneAndGoesOn) {
   const test::TemporaryFolder folder;
   auto writer = WindlogWriter::open(folder / "a.windlog");
-  ASSERT_TRUE(writer->begin_session({at_ms(0, 0), "yuragi test", ""}));
+  ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
-  EXPECT_TRUE(writer->append(*sensor, reading_at(1, 1.0)));
-  EXPECT_FALSE(writer->append(*sensor, reading_at(2, std::numeric_limits<double>::quiet_NaN())));
-  EXPECT_FALSE(writer->append(*sensor, reading_at(-5, 1.0)));
+  EXPECT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
+  EXPECT_FALSE(writer->append(*sensor, test::reading_at(2, std::numeric_limits<double>::quiet_NaN())));
+  EXPECT_FALSE(writer->append(*sensor, test::reading_at(-5, 1.0)));
   EXPECT_TRUE(writer->close());
-  EXPECT_EQ(read_all(folder / "a.windlog").size(), 1U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 1U);
 }
 
 TEST(Windlog, KeepsSessionsApartAndCountsTheGapInUtc) {
   const test::TemporaryFolder folder;
   // The second session's machine was started anew: its monotonic clock begins again. UTC says 60 s went by.
-  write_session(folder / "a.windlog", {reading_at(500'000, 1.0), reading_at(501'000, 2.0)});
-  WindReading later = reading_at(3000, 3.0);
+  test::write_session(folder / "a.windlog", {test::reading_at(500'000, 1.0), test::reading_at(501'000, 2.0)});
+  wind::WindReading later = test::reading_at(3000, 3.0);
   later.time.utc = UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms + 561'000));
-  write_session(folder / "a.windlog", {later});
+  test::write_session(folder / "a.windlog", {later});
 
   // The third one's clock was set back by a day: no gap at all.
-  WindReading earlier = reading_at(9000, 4.0);
+  wind::WindReading earlier = test::reading_at(9000, 4.0);
   earlier.time.utc -= 24h;
-  write_session(folder / "a.windlog", {earlier});
+  test::write_session(folder / "a.windlog", {earlier});
 
-  const auto logged = read_all(folder / "a.windlog");
+  const auto logged = test::read_all(folder / "a.windlog");
   ASSERT_EQ(logged.size(), 4U);
   EXPECT_EQ(logged[1].log_time, 1s);
   EXPECT_EQ(logged[2].log_time, 61s);
@@ -136,15 +136,15 @@ TEST(Windlog, KeepsSessionsApartAndCountsTheGapInUtc) {
 
 TEST(Windlog, FollowsTheMonotonicClockWhenUtcJumps) {
   const test::TemporaryFolder folder;
-  std::vector<WindReading> readings = numbered_readings(20);
+  std::vector<wind::WindReading> readings = test::numbered_readings(20);
   for (std::size_t i = 10; i < readings.size(); ++i) readings[i].time.utc += 1h;
-  write_session(folder / "a.windlog", readings);
-  EXPECT_EQ(read_all(folder / "a.windlog").back().log_time, 1900ms);
+  test::write_session(folder / "a.windlog", readings);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").back().log_time, 1900ms);
 }
 
 TEST(Windlog, SeeksByLogTimeAndByUtc) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(2000));
+  test::write_session(folder / "a.windlog", test::numbered_readings(2000));
   auto reader = WindlogReader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   EXPECT_EQ(reader->duration(), 199'900ms);
@@ -167,7 +167,7 @@ TEST(Windlog, SeeksByLogTimeAndByUtc) {
 
 TEST(Windlog, RemembersWhatMadeIt) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(1));
+  test::write_session(folder / "a.windlog", test::numbered_readings(1));
   auto reader = WindlogReader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   ASSERT_EQ(reader->sessions().size(), 1U);
@@ -181,7 +181,7 @@ TEST(Windlog, RemembersWhatMadeIt) {
 
 TEST(Windlog, SumsUpWhatItHolds) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(1001));
+  test::write_session(folder / "a.windlog", test::numbered_readings(1001));
   const auto summary = summarize(folder / "a.windlog");
   ASSERT_TRUE(summary);
   EXPECT_EQ(summary->count, 1001U);
@@ -197,8 +197,8 @@ TEST(Windlog, SumsUpWhatItHolds) {
 
 TEST(Windlog, OfNoReadingsIsARecordingToo) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", {});
-  EXPECT_TRUE(read_all(folder / "a.windlog").empty());
+  test::write_session(folder / "a.windlog", {});
+  EXPECT_TRUE(test::read_all(folder / "a.windlog").empty());
   EXPECT_EQ(summarize(folder / "a.windlog")->count, 0U);
 }
 
@@ -229,7 +229,7 @@ TEST(Windlog, WriterRefusesAFileThatIsNoDatabase) {
 
 TEST(Windlog, ANewerFormatIsRefusedByWriterAndReader) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(1));
+  test::write_session(folder / "a.windlog", test::numbered_readings(1));
   {
     auto database = sqlite::Database::open(folder / "a.windlog", sqlite::Access::kReadWrite);
     ASSERT_TRUE(database->run("PRAGMA user_version = 2"));
@@ -253,16 +253,16 @@ TEST(Windlog, AFullDiskUndoesToTheLastCommitAndTheWriterLivesOn) {
   const test::TemporaryFolder folder;
   auto writer = WindlogWriter::open(folder / "a.windlog");
   ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->begin_session({at_ms(0, 0), "yuragi test", ""}));
+  ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
-  ASSERT_TRUE(writer->append(*sensor, reading_at(1, 1.0)));
+  ASSERT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
   ASSERT_TRUE(writer->commit());
 
   std::string failure;
   {
     const test::FileSizeLimit limit(200'000);
     for (int i = 2; i < 100'000 && failure.empty(); ++i) {
-      if (const auto done = writer->append(*sensor, reading_at(i, 1.0)); !done) failure = done.error().message;
+      if (const auto done = writer->append(*sensor, test::reading_at(i, 1.0)); !done) failure = done.error().message;
       if (i % 500 != 0 || !failure.empty()) continue;
       if (const auto done = writer->commit(); !done) failure = done.error().message;
     }
@@ -270,13 +270,13 @@ TEST(Windlog, AFullDiskUndoesToTheLastCommitAndTheWriterLivesOn) {
   EXPECT_NE(failure.find("a.windlog"), std::string::npos) << failure;
 
   // What was committed before is there, and there is room again.
-  EXPECT_TRUE(writer->append(*sensor, reading_at(1'000'000, 2.0)));
+  EXPECT_TRUE(writer->append(*sensor, test::reading_at(1'000'000, 2.0)));
   EXPECT_TRUE(writer->close());
-  const auto logged = read_all(folder / "a.windlog");
+  const auto logged = test::read_all(folder / "a.windlog");
   ASSERT_GE(logged.size(), 2U);
   EXPECT_EQ(logged.size() % 500, 1U);
   EXPECT_EQ(logged.back().reading.speed_m_s, 2.0);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::windlog

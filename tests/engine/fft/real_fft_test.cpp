@@ -11,11 +11,11 @@
 
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::fft {
 namespace {
 
 void fill_with_normals(std::span<double> samples, std::uint64_t seed) {
-  const RandomStream random(seed, stream_id("real fft test"));
+  const math::RandomStream random(seed, math::stream_id("real fft test"));
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = random.normal(i);
 }
 
@@ -124,4 +124,4 @@ TEST(RealFft, RefusesWhatItCannotHold) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::fft

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::math {
 namespace {
 
 TEST(CriticallyDamped, FollowsTheClosedFormOfAStep) {
@@ -107,4 +107,4 @@ TEST(CriticallyDamped, WithoutStiffnessItCoasts) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::math

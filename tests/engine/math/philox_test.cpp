@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::math {
 namespace {
 
 using Words = std::array<std::uint32_t, 4>;
@@ -100,4 +100,4 @@ TEST(StreamId, IsThePublishedFnv1aAndTellsNamesApart) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::math

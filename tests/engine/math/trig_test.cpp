@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::math {
 namespace {
 
 TEST(SinCosTest, IsWithin15e8OfTheTruthUpTo50Radians) {
@@ -43,4 +43,4 @@ TEST(SinCosTest, HasTheSymmetriesOfSineAndCosine) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::math

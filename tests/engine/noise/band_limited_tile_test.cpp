@@ -10,7 +10,7 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "tests/engine/noise/periodogram.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr std::size_t kTileSize = 128;
@@ -121,4 +121,4 @@ TEST(BandLimitedTileTest, RefusesWhatIsNoTileAndTooManyLevels) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -10,7 +10,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr NoiseSpec kSpec{.size = 64, .seed = 5};
@@ -90,7 +90,7 @@ TEST(EvolvingNoiseTest, SmallEddiesTurnFasterThanLargeOnes) {
   // are as 4 to 1.
   EvolvingNoise noise = evolving({.size = 64, .beta = 1.0, .meaning = BetaMeaning::kRadial, .seed = 1}, 0.2);
   const auto modes_of = [](const NoiseTile2& tile) {
-    RealFft fft(2, tile.size);
+    fft::RealFft fft(2, tile.size);
     for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
     fft.forward();
     return std::vector<std::complex<double>>(fft.spectrum().begin(), fft.spectrum().end());
@@ -170,4 +170,4 @@ TEST(EvolvingNoiseTest, RefusesWhatThePlainNoiseRefusesAndATurnOutOfRange) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -9,7 +9,7 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "tests/engine/noise/periodogram.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr double kLinePeriod_m = 256.0;
@@ -98,7 +98,7 @@ TEST(LineCutTest, HasTheSpectrumThatTransectAsksFor) {
     for (std::uint64_t seed = 0; seed < 2; ++seed) {
       const NoiseTile2 tile = make_noise_2d({.size = 1024, .beta = beta, .seed = seed}).value();
       const std::vector<float> line = along(tile, 32 * kWindow, kLinePeriod_m / 1024.0);
-      RealFft fft(1, kWindow);
+      fft::RealFft fft(1, kWindow);
       for (std::size_t begin = 0; begin < line.size(); begin += kWindow) {
         for (std::size_t i = 0; i < kWindow; ++i) {
           const double turn = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kWindow);
@@ -113,4 +113,4 @@ TEST(LineCutTest, HasTheSpectrumThatTransectAsksFor) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

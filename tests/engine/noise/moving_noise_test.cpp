@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 /// Unequal along the axes, so that a mixed-up axis shows.
@@ -109,4 +109,4 @@ TEST(MovingNoise, RefusesSizesThatNoNoiseHas) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -10,7 +10,7 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "tests/engine/noise/periodogram.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr double kBetas[] = {0.0, 1.0, 5.0 / 3.0, 3.0};
@@ -144,7 +144,7 @@ TEST(NoiseSlope, TransectCubeFallsAsBetaAlongItsRows) {
 /// The integral of the correlation along rows over five times the scale that is expected, as a part of the edge.
 double integral_scale_of(const std::vector<double>& row_power, double expected) {
   const std::size_t size = 2 * (row_power.size() - 1);
-  RealFft fft(1, size);
+  fft::RealFft fft(1, size);
   for (std::size_t k = 0; k < row_power.size(); ++k) fft.spectrum()[k] = row_power[k];
   fft.inverse();
   const double variance = fft.samples()[0];
@@ -201,4 +201,4 @@ TEST(NoiseSlope, RadialSquareOfFiveThirdsIsFarRougherAlongItsRowsThanWind) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

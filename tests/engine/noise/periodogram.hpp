@@ -10,8 +10,8 @@
 namespace yuragi::test {
 
 /// |F(k)|^2 of a periodic line, k = 0 .. size / 2, unnormalised.
-inline std::vector<double> line_power(const NoiseTile1& tile) {
-  RealFft fft(1, tile.size());
+inline std::vector<double> line_power(const noise::NoiseTile1& tile) {
+  fft::RealFft fft(1, tile.size());
   for (std::size_t i = 0; i < tile.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
   fft.forward();
   std::vector<double> power;
@@ -20,8 +20,8 @@ inline std::vector<double> line_power(const NoiseTile1& tile) {
 }
 
 /// |F(kx, kz)|^2 of a square, in the half spectrum's layout (kz outer, size / 2 + 1 columns).
-inline std::vector<double> square_power(const NoiseTile2& tile) {
-  RealFft fft(2, tile.size);
+inline std::vector<double> square_power(const noise::NoiseTile2& tile) {
+  fft::RealFft fft(2, tile.size);
   for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
   fft.forward();
   std::vector<double> power;
@@ -30,7 +30,7 @@ inline std::vector<double> square_power(const NoiseTile2& tile) {
 }
 
 /// The mean of |F|^2 in the integer rings round(|k|) = 0 .. size / 2, each mode of the full spectrum counted once.
-inline std::vector<double> ring_power(const NoiseTile2& tile) {
+inline std::vector<double> ring_power(const noise::NoiseTile2& tile) {
   const std::vector<double> power = square_power(tile);
   const std::size_t half = tile.size / 2;
   std::vector<double> sums(half + 1, 0.0);
@@ -50,9 +50,9 @@ inline std::vector<double> ring_power(const NoiseTile2& tile) {
 }
 
 /// The mean periodogram of a square's rows (along x).
-inline std::vector<double> row_power(const NoiseTile2& tile) {
+inline std::vector<double> row_power(const noise::NoiseTile2& tile) {
   std::vector<double> mean(tile.size / 2 + 1, 0.0);
-  RealFft fft(1, tile.size);
+  fft::RealFft fft(1, tile.size);
   for (std::size_t z = 0; z < tile.size; ++z) {
     for (std::size_t x = 0; x < tile.size; ++x) fft.samples()[x] = static_cast<double>(tile.at(x, z));
     fft.forward();
@@ -63,8 +63,8 @@ inline std::vector<double> row_power(const NoiseTile2& tile) {
 }
 
 /// The mean of |F|^2 of a cube in the integer shells round(|k|) = 0 .. size / 2, each mode of the full spectrum once.
-inline std::vector<double> shell_power(const NoiseTile3& tile) {
-  RealFft fft(3, tile.size);
+inline std::vector<double> shell_power(const noise::NoiseTile3& tile) {
+  fft::RealFft fft(3, tile.size);
   for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
   fft.forward();
   const std::size_t half = tile.size / 2;
@@ -86,9 +86,9 @@ inline std::vector<double> shell_power(const NoiseTile3& tile) {
 }
 
 /// The mean periodogram of a cube's rows (along x).
-inline std::vector<double> row_power(const NoiseTile3& tile) {
+inline std::vector<double> row_power(const noise::NoiseTile3& tile) {
   std::vector<double> mean(tile.size / 2 + 1, 0.0);
-  RealFft fft(1, tile.size);
+  fft::RealFft fft(1, tile.size);
   for (std::size_t row = 0; row < tile.size * tile.size; ++row) {
     for (std::size_t x = 0; x < tile.size; ++x)
       fft.samples()[x] = static_cast<double>(tile.values[row * tile.size + x]);

@@ -8,7 +8,7 @@
 
 #include "tests/engine/noise/periodogram.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 struct Moments {
@@ -165,7 +165,7 @@ TEST(SpectralNoise, NoModeOfACubeLosesPowerToASpectrumThatIsNotHermitian) {
   constexpr int kSeeds = 64;
   double plane = 0.0;
   double inner = 0.0;
-  RealFft fft(3, kSize);
+  fft::RealFft fft(3, kSize);
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const auto tile =
         make_noise_3d({.size = kSize, .beta = 0.0, .meaning = BetaMeaning::kRadial, .seed = seed}).value();
@@ -315,4 +315,4 @@ TEST(SpectralNoise, EveryErrorHasANameAndAnExplanationThatAnUncheckedCallerGets)
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

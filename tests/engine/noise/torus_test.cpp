@@ -7,7 +7,7 @@
 
 #include "engine/noise/spectral_noise.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr double kPeriod_m = 256.0;
@@ -141,4 +141,4 @@ TEST(IsReadableTest, AsksForAPowerOfTwoWithAllItsValues) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

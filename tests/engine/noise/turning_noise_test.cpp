@@ -8,7 +8,7 @@
 
 #include "tests/engine/noise/periodogram.hpp"
 
-namespace yuragi {
+namespace yuragi::noise {
 namespace {
 
 constexpr NoiseSpec kOctaveSpec{.size = 64, .seed = 11, .from_cycles = 4.0, .to_cycles = 8.0};
@@ -66,4 +66,4 @@ TEST(TurningNoise, RefusesWhatThePlainNoiseRefuses) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::noise

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 TEST(BendShareTest, IsHalfAtTheHalfBendSpeedAndNeverAboveOne) {
@@ -40,4 +40,4 @@ TEST(BendShareTest, IsNowhereSteeperThanItSays) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

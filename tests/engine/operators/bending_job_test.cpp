@@ -11,7 +11,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr double kHalfBendSpeed_m_s = 7.0;
@@ -20,7 +20,7 @@ constexpr double kMaxBend_rad = 1.4;
 /// Strands of many strengths and flexibilities, and room for their bends.
 struct Strands {
   explicit Strands(std::size_t count, std::uint64_t seed = 1) : east(count), south(count) {
-    const RandomStream random(seed, stream_id("bending job test"));
+    const math::RandomStream random(seed, math::stream_id("bending job test"));
     for (std::size_t i = 0; i < count; ++i) {
       strength.push_back(static_cast<float>(2.5 * random.uniform(2 * i)));
       flexibility.push_back(static_cast<float>(0.3 + 1.5 * random.uniform(2 * i + 1)));
@@ -202,4 +202,4 @@ TEST(BendingJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

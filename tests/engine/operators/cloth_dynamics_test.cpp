@@ -12,7 +12,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr double kDynamicsTick_s = 1.0 / 60.0;
@@ -29,17 +29,17 @@ struct CoarseSetup {
         south(coarse.stride(), 0.0F) {}
 
   static std::vector<float> folds() {
-    std::vector<float> lean(2 * padded_to_blocks(kFineColumns));
+    std::vector<float> lean(2 * pose::padded_to_blocks(kFineColumns));
     for (std::size_t i = 0; i < lean.size(); ++i) lean[i] = 0.08F * std::sin(0.3F * static_cast<float>(i));
     return lean;
   }
   static std::vector<float> edge(float pitch_m) {
-    std::vector<float> places_m(padded_to_blocks(kFineColumns));
+    std::vector<float> places_m(pose::padded_to_blocks(kFineColumns));
     for (std::size_t i = 0; i < places_m.size(); ++i) places_m[i] = pitch_m * static_cast<float>(i);
     return places_m;
   }
   void blow(float east_m_s, float south_m_s, std::uint64_t gust = 0) {
-    const RandomStream random(gust, stream_id("cloth dynamics test"));
+    const math::RandomStream random(gust, math::stream_id("cloth dynamics test"));
     for (std::size_t i = 0; i < east.size(); ++i) {
       const float factor = gust == 0 ? 1.0F : static_cast<float>(0.5 + random.uniform(i));
       east[i] = factor * east_m_s;
@@ -103,7 +103,7 @@ TEST_P(ClothDynamicsOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
   expected_spline.spread(expected.coarse.lean(), SimdRow::kX86_64);
   spline.spread(cloth.coarse.lean(), GetParam());
-  std::vector<float> expected_out(kFineLinks * 2 * padded_to_blocks(kFineColumns), 0.5F);
+  std::vector<float> expected_out(kFineLinks * 2 * pose::padded_to_blocks(kFineColumns), 0.5F);
   std::vector<float> out = expected_out;
   ClothSplineJob{.spline = &expected_spline, .share = 0.7F, .row = SimdRow::kX86_64, .out = expected_out}.run();
   ClothSplineJob{.spline = &spline, .share = 0.7F, .row = GetParam(), .out = out}.run();
@@ -169,7 +169,7 @@ TEST(ClothDynamicsTest, CoarseThreadsKeepTheirLengthToAFewHundredthsInAGustyWind
 
 TEST(ClothDynamicsTest, IsFiniteAndNoFasterThanItMayBeWhateverBlowsAndHoweverLongTheTicks) {
   CoarseSetup cloth;
-  const RandomStream random(4, stream_id("cloth dynamics nasty"));
+  const math::RandomStream random(4, math::stream_id("cloth dynamics nasty"));
   std::vector<float> before(cloth.coarse.lean().begin(), cloth.coarse.lean().end());
   for (std::uint64_t tick = 0; tick < 600; ++tick) {
     const double dt_s = tick % 50 == 0 ? 3.0 : 0.03 * random.uniform(3 * tick) + 1e-6;
@@ -202,7 +202,7 @@ TEST(ClothDynamicsTest, FixedEdgesDoNotMove) {
   // Nor does the fixed column of what is made from it.
   ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
   spline.spread(cloth.coarse.lean(), SimdRow::kX86_64);
-  const std::size_t stride = padded_to_blocks(kFineColumns);
+  const std::size_t stride = pose::padded_to_blocks(kFineColumns);
   std::vector<float> out(kFineLinks * 2 * stride);
   EXPECT_EQ((ClothSplineJob{.spline = &spline, .out = out}.run()), ClothSplineJob::Problem::kNone);
   for (std::size_t line = 0; line < 2 * kFineLinks; ++line) EXPECT_EQ(out[line * stride], 0.0F);
@@ -215,7 +215,7 @@ TEST(ClothSplineTest, StaysBetweenTheCoarseLeansAndFollowsThem) {
   cloth.go_on(200);
   ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
   spline.spread(cloth.coarse.lean(), SimdRow::kX86_64);
-  const std::size_t stride = padded_to_blocks(kFineColumns);
+  const std::size_t stride = pose::padded_to_blocks(kFineColumns);
   std::vector<float> out(kFineLinks * 2 * stride);
   ClothSplineJob{.spline = &spline, .out = out}.run();
   const auto lean = cloth.coarse.lean();
@@ -254,7 +254,7 @@ TEST(ClothSplineTest, GoesThroughTheLeansOfAnyKnots) {
   const EvenLeans even;
   ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
   spline.spread(even.leans, SimdRow::kX86_64);
-  const std::size_t stride = padded_to_blocks(EvenLeans::kColumns);
+  const std::size_t stride = pose::padded_to_blocks(EvenLeans::kColumns);
   std::vector<float> curved(EvenLeans::kLinks * 2 * stride, 0.5F);
   std::vector<float> straight(curved.size());
   const std::vector<float> base(2 * stride, 0.5F);
@@ -277,7 +277,7 @@ TEST(ClothSplineTest, GoesThroughTheLeansOfAnyKnots) {
 TEST(ClothSplineTest, LinesOfNoLeanAreTheBaseOnEveryRow) {
   const EvenLeans even;
   ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
-  const std::size_t width = 2 * padded_to_blocks(EvenLeans::kColumns);
+  const std::size_t width = 2 * pose::padded_to_blocks(EvenLeans::kColumns);
   std::vector<float> base(width);
   for (std::size_t i = 0; i < width; ++i) base[i] = 0.01F * static_cast<float>(i) - 0.2F;
   std::vector<float> out(3 * width);
@@ -299,7 +299,7 @@ TEST(ClothSplineTest, ALineJobSaysWhatIsWrong) {
   using Problem = ClothLineJob::Problem;
   const EvenLeans even;
   const ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
-  std::vector<float> out(2 * padded_to_blocks(EvenLeans::kColumns));
+  std::vector<float> out(2 * pose::padded_to_blocks(EvenLeans::kColumns));
   const std::vector<float> base = out;
   EXPECT_EQ((ClothLineJob{.base = base, .out = out}.run()), Problem::kNoSpline);
   EXPECT_EQ((ClothLineJob{.spline = &spline, .base = {}, .out = out}.run()), Problem::kSizesDiffer);
@@ -332,7 +332,7 @@ TEST(ClothDynamicsTest, SaysWhatIsWrongAndThenDoesNothing) {
   EXPECT_TRUE(cloth.is_at_rest());
 
   ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
-  std::vector<float> out(2 * padded_to_blocks(kFineColumns));
+  std::vector<float> out(2 * pose::padded_to_blocks(kFineColumns));
   EXPECT_EQ((ClothSplineJob{.out = out}.run()), ClothSplineJob::Problem::kNoSpline);
   EXPECT_EQ((ClothSplineJob{.spline = &spline, .share = NAN, .out = out}.run()),
             ClothSplineJob::Problem::kShareNotFinite);
@@ -341,4 +341,4 @@ TEST(ClothDynamicsTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -9,7 +9,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr std::size_t kClothLinks = 40;
@@ -25,7 +25,7 @@ struct HangingCloth {
     }
   }
   static std::vector<float> anything(std::size_t count, float strength, std::uint64_t seed) {
-    const RandomStream random(seed, stream_id("cloth projection job test"));
+    const math::RandomStream random(seed, math::stream_id("cloth projection job test"));
     std::vector<float> values(count);
     for (std::size_t i = 0; i < count; ++i) values[i] = strength * static_cast<float>(2.0 * random.uniform(i) - 1.0);
     return values;
@@ -45,7 +45,7 @@ struct HangingCloth {
 
   ClothThreads threads;
   std::vector<float> lean;
-  GridPose pose;
+  pose::GridPose pose;
 };
 
 class ClothProjectionJobOnEachRow : public EachSimdRow {};
@@ -180,4 +180,4 @@ TEST(ClothProjectionJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

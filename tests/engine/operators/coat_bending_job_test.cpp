@@ -10,13 +10,13 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// Hairs on skins that face everywhere, and room for their bends.
 struct BlownHairs {
   explicit BlownHairs(std::size_t count) : bend_east(count), bend_south(count) {
-    const RandomStream random(1, stream_id("coat bending test"));
+    const math::RandomStream random(1, math::stream_id("coat bending test"));
     for (std::size_t i = 0; i < count; ++i) {
       const double up = 2.0 * random.uniform(5 * i) - 1.0;
       const double turn_rad = 2.0 * M_PI * random.uniform(5 * i + 1);
@@ -125,4 +125,4 @@ TEST(CoatBendingJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -19,19 +19,19 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<float> normal_numbers(std::size_t count, double scale, std::uint64_t seed) {
-  const RandomStream random(seed, stream_id("crown jobs test"));
+  const math::RandomStream random(seed, math::stream_id("crown jobs test"));
   std::vector<float> values;
   for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<float>(scale * random.normal(i)));
   return values;
 }
 std::vector<float> uniform_numbers(std::size_t count, double low, double high, std::uint64_t seed) {
-  const RandomStream random(seed, stream_id("crown jobs test"));
+  const math::RandomStream random(seed, math::stream_id("crown jobs test"));
   std::vector<float> values;
   for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<float>(low + (high - low) * random.uniform(i)));
   return values;
@@ -664,4 +664,4 @@ TEST(FlutterJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -12,7 +12,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// A grid's axes as phases.
@@ -24,10 +24,10 @@ struct GridAxes {
 GridAxes grid_axes(std::size_t columns, std::size_t rows, double first, double pitch) {
   GridAxes axes;
   for (std::size_t i = 0; i < columns; ++i) {
-    axes.column_x.push_back(torus_phase(first + pitch * static_cast<double>(i), 1.0));
+    axes.column_x.push_back(noise::torus_phase(first + pitch * static_cast<double>(i), 1.0));
   }
   for (std::size_t i = 0; i < rows; ++i) {
-    axes.row_z.push_back(torus_phase(0.3 + 0.9 * pitch * static_cast<double>(i), 1.0));
+    axes.row_z.push_back(noise::torus_phase(0.3 + 0.9 * pitch * static_cast<double>(i), 1.0));
   }
   return axes;
 }
@@ -59,9 +59,9 @@ class GridSampleJobOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(GridSampleJobOnEachRow);
 
 TEST_P(GridSampleJobOnEachRow, ReadsTheSameBitsAsPlaceByPlace) {
-  const NoiseTile2 fine = make_noise_2d({.size = 256, .seed = 1}).value();
-  const NoiseTile2 coarse = make_noise_2d({.size = 16, .seed = 2}).value();
-  const RandomStream random(3, stream_id("grids to read"));
+  const noise::NoiseTile2 fine = noise::make_noise_2d({.size = 256, .seed = 1}).value();
+  const noise::NoiseTile2 coarse = noise::make_noise_2d({.size = 16, .seed = 2}).value();
+  const math::RandomStream random(3, math::stream_id("grids to read"));
   std::uint64_t drawn = 0;
   const auto any_phase = [&] { return static_cast<std::uint32_t>(random.uniform(drawn++) * 4294967296.0); };
   // Pitches from a small part of a sample to many samples, from west to east and back; the seam is in most of them.
@@ -86,7 +86,7 @@ TEST_P(GridSampleJobOnEachRow, ReadsTheSameBitsAsPlaceByPlace) {
 
 TEST_P(GridSampleJobOnEachRow, ReadsNothingBehindTheLastSample) {
   // A tile in a vector of its own, so that a sanitizer sees; all columns in its last samples, all rows in its last two.
-  const NoiseTile2 tile = make_noise_2d({.size = 64, .seed = 5}).value();
+  const noise::NoiseTile2 tile = noise::make_noise_2d({.size = 64, .seed = 5}).value();
   for (std::uint32_t first = 0; first < 64; ++first) {
     GridAxes axes;
     for (std::uint32_t i = 0; i < 32; ++i) axes.column_x.push_back((first << 26U) + (i << 23U));
@@ -100,7 +100,7 @@ TEST_P(GridSampleJobOnEachRow, ReadsNothingBehindTheLastSample) {
 }
 
 TEST(GridSampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
-  const NoiseTile2 tile = make_noise_2d({.size = 16, .seed = 1}).value();
+  const noise::NoiseTile2 tile = noise::make_noise_2d({.size = 16, .seed = 1}).value();
   const GridAxes axes = grid_axes(20, 3, 0.0, 0.01);
   std::vector<float> out(60, -7.0F);
   const GridNoiseLayer good_layer{&tile, axes.column_x, axes.row_z};
@@ -132,4 +132,4 @@ TEST(GridSampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

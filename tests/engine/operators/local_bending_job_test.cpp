@@ -11,13 +11,13 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 /// Strands, each in a wind of its own, and room for their bends.
 struct BlownStrands {
   explicit BlownStrands(std::size_t count) : bend_east(count), bend_south(count) {
-    const RandomStream random(1, stream_id("local bending test"));
+    const math::RandomStream random(1, math::stream_id("local bending test"));
     for (std::size_t i = 0; i < count; ++i) {
       east.push_back(static_cast<float>(40.0 * (random.uniform(3 * i) - 0.5)));
       south.push_back(static_cast<float>(40.0 * (random.uniform(3 * i + 1) - 0.5)));
@@ -109,4 +109,4 @@ TEST(LocalBendingJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -11,7 +11,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr double kOscillatorTick_s = 1.0 / 60.0;
@@ -39,7 +39,7 @@ class OscillatorOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(OscillatorOnEachRow);
 
 TEST_P(OscillatorOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
-  const RandomStream random(5, stream_id("oscillator"));
+  const math::RandomStream random(5, math::stream_id("oscillator"));
   const auto drive = [&random](int tick, std::size_t i) {
     return static_cast<float>(random.uniform(static_cast<std::uint64_t>(tick) * 100 + i) - 0.5);
   };
@@ -80,7 +80,7 @@ TEST(OscillatorTest, ItsVarianceIsTheIntegralOfItsResponseTimesTheSpectrum) {
   const double zeta = 0.2;
   constexpr int kTicks = 20'000;
   constexpr std::size_t kCount = 64;
-  const RandomStream random(9, stream_id("white"));
+  const math::RandomStream random(9, math::stream_id("white"));
   const OscillatorJob job{.step = OscillatorStep::exact(natural_hz, zeta, kOscillatorTick_s)};
   const auto q = swing(job, kCount, kTicks, [&random](int tick, std::size_t i) {
     return static_cast<float>(random.normal_pair(static_cast<std::uint64_t>(tick) * kCount + i)[0]);
@@ -213,4 +213,4 @@ TEST(OscillatorTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -10,7 +10,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr std::size_t kWidth = 19;
@@ -107,7 +107,7 @@ TEST(PropagationJobTest, ABandIsThoseRowsOfTheWhole) {
 
 TEST(PropagationJobTest, WhatIsReadMovesNoFasterThanWhatIsWritten) {
   // Ticks of any length, a signal that always moves by as much as it may: 2 a second.
-  const RandomStream random(5, stream_id("propagation job test"));
+  const math::RandomStream random(5, math::stream_id("propagation job test"));
   PropagationHistory history(1, 1.0);
   const std::vector<float> base(1), growth(kLinks, 1.0F);
   std::vector<float> out(kLinks), before(kLinks);
@@ -190,4 +190,4 @@ TEST(PropagationJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

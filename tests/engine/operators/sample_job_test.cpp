@@ -14,15 +14,15 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr double kFieldPeriod_m = 64.0;
 constexpr std::size_t kTileSize = 128;
 constexpr double kCell_m = kFieldPeriod_m / static_cast<double>(kTileSize);
 
-NoiseTile2 wind_tile() {
-  return make_noise_2d({.size = kTileSize, .seed = 7}).value();
+noise::NoiseTile2 wind_tile() {
+  return noise::make_noise_2d({.size = kTileSize, .seed = 7}).value();
 }
 
 /// Places of a meadow, or of something else that reads the field.
@@ -30,8 +30,8 @@ struct Places {
   std::vector<std::uint32_t> x, z;
 
   void add(double x_m, double z_m) {
-    x.push_back(torus_phase(x_m, kFieldPeriod_m));
-    z.push_back(torus_phase(z_m, kFieldPeriod_m));
+    x.push_back(noise::torus_phase(x_m, kFieldPeriod_m));
+    z.push_back(noise::torus_phase(z_m, kFieldPeriod_m));
   }
 };
 
@@ -44,7 +44,7 @@ Places grid(double x_m, double z_m) {
   return places;
 }
 
-std::vector<float> read(const NoiseTile2& tile, const Places& places, TorusPhase offset) {
+std::vector<float> read(const noise::NoiseTile2& tile, const Places& places, noise::TorusPhase offset) {
   std::vector<float> values(places.x.size());
   const NoiseLayer layer{.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = offset};
   const SampleJob job{.layers = {&layer, 1}, .out = values};
@@ -67,9 +67,9 @@ class SampleJobOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(SampleJobOnEachRow);
 
 TEST_P(SampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
-  const NoiseTile2 tile = wind_tile();
-  const RandomStream random(1, stream_id("places"));
-  const TorusPhase offset{123'456'789U, 3'210'987'654U};
+  const noise::NoiseTile2 tile = wind_tile();
+  const math::RandomStream random(1, math::stream_id("places"));
+  const noise::TorusPhase offset{123'456'789U, 3'210'987'654U};
   for (const std::size_t count : {0U, 1U, 15U, 16U, 17U, 64U, 1000U}) {
     std::vector<std::uint32_t> x;
     std::vector<std::uint32_t> z;
@@ -77,7 +77,7 @@ TEST_P(SampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
     for (std::size_t i = 0; i < count; ++i) {
       x.push_back(static_cast<std::uint32_t>(random.uniform(2 * i) * 4294967296.0));
       z.push_back(static_cast<std::uint32_t>(random.uniform(2 * i + 1) * 4294967296.0));
-      expected.push_back(read_noise(tile, TorusPhase{x.back(), z.back()} - offset));
+      expected.push_back(noise::read_noise(tile, noise::TorusPhase{x.back(), z.back()} - offset));
     }
     std::vector<float> out(count);
     const NoiseLayer layer{.tile = &tile, .place_x = x, .place_z = z, .offset = offset};
@@ -87,7 +87,7 @@ TEST_P(SampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
 }
 
 TEST_P(SampleJobOnEachRow, ScalesAndKeepsWithinTheRange) {
-  const NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 tile = wind_tile();
   const Places places = grid(0.0, 0.0);
   const std::vector<float> plain = read(tile, places, {});
   std::vector<float> out(plain.size());
@@ -110,9 +110,9 @@ TEST_P(SampleJobOnEachRow, ScalesAndKeepsWithinTheRange) {
 }
 
 TEST_P(SampleJobOnEachRow, APlacesWeightMultipliesTheLayers) {
-  const NoiseTile2 tile = wind_tile();
-  const RandomStream random(2, stream_id("weights of places"));
-  const TorusPhase offset{987'654'321U, 123'456'789U};
+  const noise::NoiseTile2 tile = wind_tile();
+  const math::RandomStream random(2, math::stream_id("weights of places"));
+  const noise::TorusPhase offset{987'654'321U, 123'456'789U};
   for (const std::size_t count : {1U, 15U, 16U, 17U, 1000U}) {
     std::vector<std::uint32_t> x;
     std::vector<std::uint32_t> z;
@@ -122,9 +122,9 @@ TEST_P(SampleJobOnEachRow, APlacesWeightMultipliesTheLayers) {
       x.push_back(static_cast<std::uint32_t>(random.uniform(3 * i) * 4294967296.0));
       z.push_back(static_cast<std::uint32_t>(random.uniform(3 * i + 1) * 4294967296.0));
       weights.push_back(static_cast<float>(random.uniform(3 * i + 2)));
-      const TorusPhase at{x.back(), z.back()};
-      const float plain = 0.5F * read_noise(tile, at);
-      expected.push_back(plain + 0.7F * weights.back() * read_noise(tile, at - offset));
+      const noise::TorusPhase at{x.back(), z.back()};
+      const float plain = 0.5F * noise::read_noise(tile, at);
+      expected.push_back(plain + 0.7F * weights.back() * noise::read_noise(tile, at - offset));
     }
     std::vector<float> out(count);
     const std::vector<NoiseLayer> layers = {
@@ -136,7 +136,7 @@ TEST_P(SampleJobOnEachRow, APlacesWeightMultipliesTheLayers) {
 }
 
 TEST_P(SampleJobOnEachRow, AWeightOfOneAtEachPlaceChangesNoBit) {
-  const NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 tile = wind_tile();
   const Places places = grid(0.3, 0.2);
   const std::vector<float> ones(places.x.size(), 1.0F);
   std::vector<float> out(places.x.size());
@@ -146,7 +146,7 @@ TEST_P(SampleJobOnEachRow, AWeightOfOneAtEachPlaceChangesNoBit) {
 }
 
 TEST(SampleJobTest, RefusesWeightsThatAreNotOneForEachPlace) {
-  const NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 tile = wind_tile();
   const Places places = grid(0.0, 0.0);
   const std::vector<float> too_few(places.x.size() - 1, 1.0F);
   std::vector<float> out(places.x.size());
@@ -155,14 +155,14 @@ TEST(SampleJobTest, RefusesWeightsThatAreNotOneForEachPlace) {
 }
 
 TEST(SampleJobTest, AFieldThatHasMovedByXIsReadAtXBack) {
-  const NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 tile = wind_tile();
   const std::vector<float> at_first = read(tile, grid(0.0, 0.0), {});
   for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 30) {
     // The wind blows toward the azimuth for 2 s: the field goes 12 m that way.
     const double azimuth_rad = azimuth_deg * std::numbers::pi / 180.0;
     const double x_m = 12.0 * std::sin(azimuth_rad);
     const double z_m = -12.0 * std::cos(azimuth_rad);
-    TorusOffset offset;
+    noise::TorusOffset offset;
     for (int i = 0; i < 120; ++i) {
       ShiftJob{.wind_east_m_s = x_m / 2.0,
                .wind_south_m_s = z_m / 2.0,
@@ -179,14 +179,14 @@ TEST(SampleJobTest, AFieldThatHasMovedByXIsReadAtXBack) {
 }
 
 TEST(SampleJobTest, TheCorrelationPeaksDownwind) {
-  const NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 tile = wind_tile();
   const std::vector<float> at_first = read(tile, grid(0.0, 0.0), {});
   for (int wind = 0; wind < 8; ++wind) {
     const auto downwind = [](int eighth) {
       const double azimuth_rad = eighth * std::numbers::pi / 4.0;
       return std::pair{5.0 * std::sin(azimuth_rad), -5.0 * std::cos(azimuth_rad)};
     };
-    TorusOffset offset;
+    noise::TorusOffset offset;
     offset.x.add(downwind(wind).first, kFieldPeriod_m);
     offset.z.add(downwind(wind).second, kFieldPeriod_m);
 
@@ -204,7 +204,7 @@ TEST(SampleJobTest, TheCorrelationPeaksDownwind) {
 }
 
 TEST(SampleJobTest, NoTurnOfTheWindMovesTheFieldFasterThanTheWindItself) {
-  const NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 tile = wind_tile();
   float steepest = 0.0F;
   for (std::size_t z = 0; z < kTileSize; ++z) {
     for (std::size_t x = 0; x < kTileSize; ++x) {
@@ -216,7 +216,7 @@ TEST(SampleJobTest, NoTurnOfTheWindMovesTheFieldFasterThanTheWindItself) {
   // Far places too: a field that turned would sweep them sideways.
   Places places = grid(0.0, 0.0);
   for (int i = 0; i < 100; ++i) places.add(10'000.0 + 13.7 * i, -20'000.0 + 7.1 * i);
-  TorusOffset offset;
+  noise::TorusOffset offset;
   std::vector<float> before = read(tile, places, offset.phase());
   for (int tick = 0; tick < 300; ++tick) {
     // A wind that leaps to another direction every tick.
@@ -239,8 +239,8 @@ TEST(SampleJobTest, NoTurnOfTheWindMovesTheFieldFasterThanTheWindItself) {
 }
 
 TEST_P(SampleJobOnEachRow, AddsItsLayersInTheirOrder) {
-  const NoiseTile2 tile = wind_tile();
-  const NoiseTile2 other = make_noise_2d({.size = 64, .seed = 8}).value();
+  const noise::NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 other = noise::make_noise_2d({.size = 64, .seed = 8}).value();
   const Places places = grid(0.0, 0.0);
   const Places elsewhere = grid(5.0, -3.0);
   const std::vector<NoiseLayer> layers = {
@@ -249,14 +249,15 @@ TEST_P(SampleJobOnEachRow, AddsItsLayersInTheirOrder) {
   std::vector<float> out(places.x.size());
   EXPECT_EQ((SampleJob{.layers = layers, .row = GetParam(), .out = out}.run()), SampleJob::Problem::kNone);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const float first = 0.75F * read_noise(tile, TorusPhase{places.x[i], places.z[i]} - layers[0].offset);
-    const float second = -0.5F * read_noise(other, TorusPhase{elsewhere.x[i], elsewhere.z[i]} - layers[1].offset);
+    const float first = 0.75F * noise::read_noise(tile, noise::TorusPhase{places.x[i], places.z[i]} - layers[0].offset);
+    const float second =
+        -0.5F * noise::read_noise(other, noise::TorusPhase{elsewhere.x[i], elsewhere.z[i]} - layers[1].offset);
     EXPECT_EQ(out[i], first + second) << i;
   }
 }
 
 TEST(SampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
-  const NoiseTile2 tile = wind_tile();
+  const noise::NoiseTile2 tile = wind_tile();
   const Places places = grid(0.0, 0.0);
   std::vector<float> out(places.x.size(), -7.0F);
   const NoiseLayer good_layer{.tile = &tile, .place_x = places.x, .place_z = places.z};
@@ -274,7 +275,7 @@ TEST(SampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   job.layers = {&layer, 1};
   layer.tile = nullptr;
   EXPECT_EQ(job.run(), SampleJob::Problem::kTileNotReadable);
-  const NoiseTile2 odd{3, std::vector<float>(9)};
+  const noise::NoiseTile2 odd{3, std::vector<float>(9)};
   layer.tile = &odd;
   EXPECT_EQ(job.run(), SampleJob::Problem::kTileNotReadable);
   layer = good_layer;
@@ -297,4 +298,4 @@ TEST(SampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -14,13 +14,13 @@
 
 // The operators that make surfaces: threshold ramp, color mapping, displacement.
 
-namespace yuragi {
+namespace yuragi::operators {
 namespace {
 
 constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<float> normals(std::size_t count, std::string_view stream) {
-  const RandomStream random(3, stream_id(stream));
+  const math::RandomStream random(3, math::stream_id(stream));
   std::vector<float> values;
   for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<float>(random.normal(i)));
   return values;
@@ -201,4 +201,4 @@ TEST(DisplacementJobTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::operators

@@ -5,7 +5,7 @@
 #include "engine/pose/kinematics.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 /// Two rings, one within another, in each of three rows.
@@ -76,4 +76,4 @@ TEST(SurfaceKinematics, RowsMoveWhereTheSkeletonSaysSoAndNowhereElse) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::pose

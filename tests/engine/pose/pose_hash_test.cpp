@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 TEST(PoseHashTest, IsFnv1aOfTheBytes) {
@@ -30,4 +30,4 @@ TEST(PoseHashTest, OfAPoseTakesBothOfItsParts) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::pose

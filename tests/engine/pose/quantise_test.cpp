@@ -15,7 +15,7 @@
 #include "tests/support/each_simd_row.hpp"
 #include "tests/support/random_strands.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 std::int16_t quantised(float angle_rad) {
@@ -147,7 +147,7 @@ TEST_P(QuantiseOnEachRow, GivesTheSameUnitsAsOneValueAlone) {
                             std::nextafter(std::numbers::pi_v<float>, 4.0F)};
 
   // Any bits that a float can have, and those of the usual range; whole registers, and what is left over.
-  const RandomStream random(5, stream_id("values to quantise"));
+  const math::RandomStream random(5, math::stream_id("values to quantise"));
   std::uint64_t drawn = 0;
   for (const std::size_t count : {0U, 1U, 2U, 7U, 15U, 16U, 31U, 33U, 63U, 65U, 127U, 1001U, 4099U}) {
     std::vector<float> values;
@@ -206,4 +206,4 @@ TEST(QuantiseTest, AClothOfTwoMetresIsWithinATenthOfAMillimetre) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::pose

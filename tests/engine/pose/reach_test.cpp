@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 /// Strands with their roots at these places; the padding behind them stands far away and must not count.
@@ -75,4 +75,4 @@ TEST(ScenesReach, GoesToTheFarthestPointOfAllScenes) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -12,7 +12,7 @@
 #include "tests/support/each_simd_row.hpp"
 #include "tests/support/random_strands.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 using Problem = StrandKinematicsJob::Problem;
@@ -257,4 +257,4 @@ TEST(StrandKinematicsTest, SaysWhatIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::pose

@@ -11,7 +11,7 @@
 #include "tests/support/each_simd_row.hpp"
 #include "tests/support/random_strands.hpp"
 
-namespace yuragi {
+namespace yuragi::pose {
 namespace {
 
 using TreeProblem = TreeKinematicsJob::Problem;
@@ -146,7 +146,7 @@ TreeSkeleton wild_tree() {
     if (i == 0) continue;
     level.parent_level = parent_level[i];
     const StrandSkeleton& parents = tree.levels[level.parent_level].strands;
-    const RandomStream random(i, stream_id("wild tree"));
+    const math::RandomStream random(i, math::stream_id("wild tree"));
     for (std::size_t s = 0; s < level.strands.padded_count(); ++s) {
       const auto below = [&](std::size_t index, std::size_t count) {
         return static_cast<std::uint32_t>(random.uniform(index) * static_cast<double>(count));
@@ -346,4 +346,4 @@ TEST(TreeKinematicsTest, SaysWhatElseIsWrongAndThenDoesNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::pose

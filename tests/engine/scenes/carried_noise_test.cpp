@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr std::size_t kPlaces = 20'000;
@@ -70,4 +70,4 @@ TEST(CarriedNoise, ABandIsCarriedWithoutLossAtAnySpeed) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -13,7 +13,7 @@
 #include "engine/scenes/cloth_swing.hpp"
 #include "engine/scenes/cloth_waves.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kPartTick_s = 1.0 / 60.0;
@@ -120,7 +120,7 @@ TEST(ClothStrength, FollowsTheWindNoFasterThanItSaysAndComesToRest) {
 TEST(ClothSwing, SwingsAsTheExactOscillatorDoes) {
   constexpr double kHz = 0.5;
   constexpr double kDamping = 0.2;
-  const OscillatorStep exact = OscillatorStep::exact(kHz, kDamping, kPartTick_s);
+  const operators::OscillatorStep exact = operators::OscillatorStep::exact(kHz, kDamping, kPartTick_s);
   ClothSwing swing;
   double value = 0.0;
   double rate = 0.0;
@@ -151,4 +151,4 @@ TEST(ClothSwing, StaysWithinItsLimitsAndComesToRest) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

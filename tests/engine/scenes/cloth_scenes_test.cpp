@@ -12,7 +12,7 @@
 #include "engine/scenes/scene.hpp"
 #include "tests/support/bits.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 extern const SceneDescription kBannerScene;
 extern const SceneDescription kCurtainScene;
@@ -34,18 +34,18 @@ std::unique_ptr<Scene> held_cloth(const SceneDescription& kind, ParameterValues:
   return cloth(kind, given, placement);
 }
 
-const GridSkeleton& grid_of(const Scene& scene) {
-  return std::get<GridSkeleton>(scene.skeleton());
+const pose::GridSkeleton& grid_of(const Scene& scene) {
+  return std::get<pose::GridSkeleton>(scene.skeleton());
 }
-const GridPose& offsets_of(const Scene& scene) {
-  return std::get<GridPose>(scene.pose());
+const pose::GridPose& offsets_of(const Scene& scene) {
+  return std::get<pose::GridPose>(scene.pose());
 }
 
-WindVector cloth_wind(double azimuth_deg, double speed_m_s) {
+wind::WindVector cloth_wind(double azimuth_deg, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_deg * kRadPerDeg), speed_m_s * std::cos(azimuth_deg * kRadPerDeg)};
 }
 
-void blow_on(Scene& scene, WindVector wind, int ticks) {
+void blow_on(Scene& scene, wind::WindVector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kClothTick_s);
 }
 
@@ -57,13 +57,13 @@ struct Place {
 };
 
 Place rest_at(const Scene& scene, std::size_t column, std::size_t row) {
-  const GridSkeleton& grid = grid_of(scene);
+  const pose::GridSkeleton& grid = grid_of(scene);
   const std::size_t at = row * grid.stride() + column;
   return {static_cast<double>(grid.rest_x_m[at]), static_cast<double>(grid.rest_y_m[at]),
           static_cast<double>(grid.rest_z_m[at])};
 }
 Place offset_at(const Scene& scene, std::size_t column, std::size_t row) {
-  const GridPose& pose = offsets_of(scene);
+  const pose::GridPose& pose = offsets_of(scene);
   const std::size_t at = row * grid_of(scene).stride() + column;
   return {static_cast<double>(pose.offset_x_m[at]), static_cast<double>(pose.offset_y_m[at]),
           static_cast<double>(pose.offset_z_m[at])};
@@ -75,9 +75,9 @@ Place place_at(const Scene& scene, std::size_t column, std::size_t row) {
 }
 
 /// The free edge's offset, averaged over its columns and over some ticks.
-Place mean_free_edge(Scene& scene, WindVector wind, int ticks) {
+Place mean_free_edge(Scene& scene, wind::WindVector wind, int ticks) {
   Place mean;
-  const GridSkeleton& grid = grid_of(scene);
+  const pose::GridSkeleton& grid = grid_of(scene);
   const double share = 1.0 / static_cast<double>(grid.columns) / ticks;
   for (int tick = 0; tick < ticks; ++tick) {
     scene.tick(wind, kClothTick_s);
@@ -122,7 +122,7 @@ TEST_P(ClothScene, CalmIsExactlyTheRestPoseAndComesBackAfterAStorm) {
   const auto scene = held_cloth(*GetParam());
   const auto is_at_rest = [&] {
     bool same = true;
-    const PoseArrays<const float> now(scene->pose());
+    const pose::PoseArrays<const float> now(scene->pose());
     for (const auto array : now) {
       same = same && std::all_of(array.begin(), array.end(), [](float offset_m) { return offset_m == 0.0F; });
     }
@@ -138,7 +138,7 @@ TEST_P(ClothScene, CalmIsExactlyTheRestPoseAndComesBackAfterAStorm) {
 
 TEST_P(ClothScene, ThreadsKeepTheirLengthAndFixedEdgesDoNotMove) {
   const auto scene = held_cloth(*GetParam());
-  const GridSkeleton& grid = grid_of(*scene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
   for (int storm = 0; storm < 6; ++storm) {
     blow_on(*scene, cloth_wind(80.0 * storm, 12.0 * storm), 40);
     for (std::size_t column = 0; column < grid.columns; ++column) {
@@ -158,7 +158,7 @@ TEST_P(ClothScene, ThreadsKeepTheirLengthAndFixedEdgesDoNotMove) {
 
 TEST_P(ClothScene, MovesMoreTowardTheFreeEdge) {
   const auto scene = held_cloth(*GetParam());
-  const GridSkeleton& grid = grid_of(*scene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
   const std::size_t column = grid.columns - 1;
   blow_on(*scene, cloth_wind(30.0, 8.0), 200);
   std::vector<double> sum(10), square(10);
@@ -206,13 +206,13 @@ TEST_P(ClothScene, ATurnedWindTurnsTheResponse) {
 TEST(ClothSceneTest, WavesRunAlongFlagAndBannerAtTheirPartOfTheWind) {
   for (const SceneDescription* kind : {&kFlagScene, &kBannerScene}) {
     const auto scene = held_cloth(*kind, {{"wave_speed", 0.5}});
-    const GridSkeleton& grid = grid_of(*scene);
+    const pose::GridSkeleton& grid = grid_of(*scene);
     const std::size_t column = grid.columns - 1;
     const std::size_t early = grid.rows / 2;
     const std::size_t late = grid.rows - 10;
     const double way_m = (rest_at(*scene, column, late) - rest_at(*scene, column, early)).length();
     for (const double speed_m_s : {3.0, 6.0, 12.0}) {
-      const WindVector wind = cloth_wind(90.0, speed_m_s);  // along the banner, so that it has no belly
+      const wind::WindVector wind = cloth_wind(90.0, speed_m_s);  // along the banner, so that it has no belly
       blow_on(*scene, wind, 300);
       std::vector<double> early_m, late_m;
       for (int tick = 0; tick < 3000; ++tick) {
@@ -238,18 +238,18 @@ TEST_P(ClothScene, HybridZeroIsTheNoiseAloneBitForBitAndMoreIsNot) {
 
 TEST_P(ClothScene, TheHybridKeepsWhatTheNoiseKeeps) {
   const auto scene = held_cloth(*GetParam(), {{"hybrid", 1.0}});
-  const GridSkeleton& grid = grid_of(*scene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
   const double bound_m = scene->largest_joint_step_m(kClothTick_s);
   blow_on(*scene, {}, 100);
   for (const float offset_m : offsets_of(*scene).offset_z_m) ASSERT_EQ(offset_m, 0.0F);
 
   // Steps, gaps, reversals: threads keep their length, fixed edges stay, and no joint moves beyond the bound.
-  GridPose before = offsets_of(*scene);
+  pose::GridPose before = offsets_of(*scene);
   for (int tick = 0; tick < 400; ++tick) {
     const int round = tick / 70;
     const double speed_m_s = tick % 70 < 50 ? 10.0 * round : 0.0;
     scene->tick(cloth_wind(tick / 35 % 2 == 0 ? 30.0 : 200.0, speed_m_s), kClothTick_s);
-    const GridPose& now = offsets_of(*scene);
+    const pose::GridPose& now = offsets_of(*scene);
     for (std::size_t i = 0; i < now.offset_x_m.size(); ++i) {
       const double x = static_cast<double>(now.offset_x_m[i] - before.offset_x_m[i]);
       const double y = static_cast<double>(now.offset_y_m[i] - before.offset_y_m[i]);
@@ -289,18 +289,18 @@ TEST_P(ClothScene, EveryRowComputesTheSameBitsNoiseAndHybrid) {
 
 TEST(ClothSceneTest, CurtainAndFlagHaveThePapers30000Joints) {
   for (const SceneDescription* kind : {&kCurtainScene, &kFlagScene}) {
-    EXPECT_EQ(node_count(cloth(*kind)->skeleton()), 30'000U);
+    EXPECT_EQ(pose::node_count(cloth(*kind)->skeleton()), 30'000U);
   }
 }
 
 TEST(CurtainTest, AWindAlongTheCurtainRunsAlongIt) {
   const auto scene = cloth(kCurtainScene, {{"wave_speed", 0.5}});
-  const GridSkeleton& grid = grid_of(*scene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
   const std::size_t row = grid.rows / 4;
   const double way_m = (rest_at(*scene, 150, 0) - rest_at(*scene, 100, 0)).x;
   for (const double speed_m_s : {3.0, 6.0}) {
     for (const double azimuth_deg : {90.0, 270.0}) {  // toward east, and back
-      const WindVector wind = cloth_wind(azimuth_deg, speed_m_s);
+      const wind::WindVector wind = cloth_wind(azimuth_deg, speed_m_s);
       blow_on(*scene, wind, 400);
       std::vector<double> west_m, east_m;
       for (int tick = 0; tick < 3000; ++tick) {
@@ -337,7 +337,7 @@ TEST(CurtainTest, SwingsOnAsAHangingChainDoes) {
   std::vector<int> crossings;
   double before_m = hem_m(*scene);
   for (int tick = 0; tick < 360; ++tick) {
-    scene->tick(WindVector{}, kClothTick_s);
+    scene->tick(wind::WindVector{}, kClothTick_s);
     if (hem_m(*scene) * before_m < 0.0) crossings.push_back(tick);
     before_m = hem_m(*scene);
   }
@@ -357,7 +357,7 @@ TEST(FlagTest, DragAndWeightLiftIt) {
 
 TEST(FlagTest, HangsLimpInCalmAirAndFliesDownwind) {
   const auto scene = cloth(kFlagScene);
-  const GridSkeleton& grid = grid_of(*scene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
   const std::size_t middle = grid.columns / 2;
   const auto fly = [&] { return place_at(*scene, middle, grid.rows - 1) - rest_at(*scene, middle, 0); };
   EXPECT_LT(fly().y, -0.9 * 1.8);
@@ -378,7 +378,7 @@ TEST(FlagTest, HangsLimpInCalmAirAndFliesDownwind) {
 
 TEST(BannerTest, ItsArmIsAVane) {
   const auto scene = cloth(kBannerScene);
-  const GridSkeleton& grid = grid_of(*scene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
   const auto arm = [&] { return place_at(*scene, grid.columns - 1, 0) - place_at(*scene, 0, 0); };
   for (const double azimuth_deg : {60.0, 200.0, 350.0, 170.0}) {  // the last turns it right about
     blow_on(*scene, cloth_wind(azimuth_deg, 5.0), 600);
@@ -408,7 +408,7 @@ TEST(BannerTest, TheHybridTurnsWithItsArmToo) {
   const auto there = cloth(kBannerScene, {{"hybrid", 1.0}, {"max_flutter", 0.0}});
   blow_on(*here, cloth_wind(90.0, 6.0), 1200);
   blow_on(*there, cloth_wind(0.0, 6.0), 1200);
-  const GridSkeleton& grid = grid_of(*here);
+  const pose::GridSkeleton& grid = grid_of(*here);
   const Place a = place_at(*here, grid.columns - 1, grid.rows - 1) - place_at(*here, 0, 0);
   const Place b = place_at(*there, grid.columns - 1, grid.rows - 1) - place_at(*there, 0, 0);
   EXPECT_NEAR(b.x, a.z, 0.05);  // a quarter turn back
@@ -417,4 +417,4 @@ TEST(BannerTest, TheHybridTurnsWithItsArmToo) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kAxisTick_s = 1.0 / 60.0;
@@ -132,4 +132,4 @@ TEST(FlameAxisTest, NoWindMovesARowFartherThanItsBound) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -14,7 +14,7 @@
 #include "tests/support/each_simd_row.hpp"
 #include "tests/support/scripted_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 extern const SceneDescription kFlameScene;
 
@@ -30,14 +30,14 @@ std::unique_ptr<Scene> flame(const std::string& form, ParameterValues::Map given
   return kFlameScene.make(ParameterValues::resolve(kFlameScene.parameters, given).value(), setup);
 }
 
-const SurfaceSkeleton& body_of(const Scene& scene) {
-  return std::get<SurfaceSkeleton>(scene.skeleton());
+const pose::SurfaceSkeleton& body_of(const Scene& scene) {
+  return std::get<pose::SurfaceSkeleton>(scene.skeleton());
 }
-const SurfacePose& flame_pose_of(const Scene& scene) {
-  return std::get<SurfacePose>(scene.pose());
+const pose::SurfacePose& flame_pose_of(const Scene& scene) {
+  return std::get<pose::SurfacePose>(scene.pose());
 }
 
-void run_flame(Scene& scene, WindVector wind, int ticks) {
+void run_flame(Scene& scene, wind::WindVector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kFlameTick_s);
 }
 
@@ -46,13 +46,13 @@ struct Heat {
   double east_m, up_m, south_m, mean;
 };
 Heat heat_of(const Scene& scene) {
-  PointPositions points(body_of(scene));
-  const SurfaceKinematicsJob job{.skeleton = &body_of(scene), .pose = &flame_pose_of(scene), .points = &points};
-  EXPECT_EQ(job.run(), SurfaceKinematicsJob::Problem::kNone);
+  pose::PointPositions points(body_of(scene));
+  const pose::SurfaceKinematicsJob job{.skeleton = &body_of(scene), .pose = &flame_pose_of(scene), .points = &points};
+  EXPECT_EQ(job.run(), pose::SurfaceKinematicsJob::Problem::kNone);
   Heat heat{};
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto here = static_cast<double>(flame_pose_of(scene).heat[i]);
-    const JointPosition at = points.point(i);
+    const pose::JointPosition at = points.point(i);
     heat.east_m += here * static_cast<double>(at.x_m);
     heat.up_m += here * static_cast<double>(at.y_m);
     heat.south_m += here * static_cast<double>(at.z_m);
@@ -63,7 +63,7 @@ Heat heat_of(const Scene& scene) {
 }
 
 /// The mean of it over twenty seconds of a wind.
-Heat mean_heat(Scene& scene, WindVector wind) {
+Heat mean_heat(Scene& scene, wind::WindVector wind) {
   run_flame(scene, wind, 180);
   Heat mean{};
   for (int i = 0; i < 80; ++i) {
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Forms, FlameForms, testing::Values("texture", "shape"),
 
 TEST_P(FlameForms, IsUnlitAndUprightAtRestAndThenCatchesFireWithoutAJump) {
   const auto scene = flame(GetParam());
-  EXPECT_EQ(pose_hash(0, scene->pose()), pose_hash(0, rest_pose(scene->skeleton())));
+  EXPECT_EQ(pose::pose_hash(0, scene->pose()), pose::pose_hash(0, pose::rest_pose(scene->skeleton())));
   std::vector<float> before = flame_pose_of(*scene).heat;
   double total = 0.0;
   for (int tick = 0; tick < 180; ++tick) {
@@ -103,7 +103,7 @@ TEST_P(FlameForms, IsUnlitAndUprightAtRestAndThenCatchesFireWithoutAJump) {
 TEST_P(FlameForms, HeatIsFromNoneToFullAndDiesOutTowardTheTop) {
   const auto scene = flame(GetParam());
   run_flame(*scene, {}, 180);
-  const SurfaceSkeleton& body = body_of(*scene);
+  const pose::SurfaceSkeleton& body = body_of(*scene);
   std::vector<double> of_row(body.rows, 0.0);
   for (int moment = 0; moment < 100; ++moment) {
     run_flame(*scene, {}, 12);
@@ -171,7 +171,7 @@ TEST_P(FlameForms, StandsUprightInCalmAirAndLeansFurtherTheMoreItBlows) {
 
 TEST_P(FlameForms, BreathesTwiceASecondAndTheLessTheMoreItBlows) {
   // The whole heat by 1.5 / sqrt(0.5 m) = 2.12 Hz, against frequencies beside it; 40 s, by Hann's window.
-  const auto breath = [](const std::string& form, double puffing, WindVector wind, double hz) {
+  const auto breath = [](const std::string& form, double puffing, wind::WindVector wind, double hz) {
     const auto scene = flame(form, {{"puffing", puffing}});
     run_flame(*scene, wind, 300);
     double cosine = 0.0;
@@ -187,7 +187,7 @@ TEST_P(FlameForms, BreathesTwiceASecondAndTheLessTheMoreItBlows) {
     }
     return std::hypot(cosine, sine) / total;
   };
-  const auto strongest = [&](double puffing, WindVector wind, double from_hz) {
+  const auto strongest = [&](double puffing, wind::WindVector wind, double from_hz) {
     double most = 0.0;
     for (int i = 0; i < 16; ++i) most = std::max(most, breath(GetParam(), puffing, wind, from_hz + 0.025 * i));
     return most;
@@ -201,7 +201,7 @@ TEST_P(FlameForms, BreathesTwiceASecondAndTheLessTheMoreItBlows) {
 
 TEST(FlameTest, ItsInnerShellsAreHotterAndNarrower) {
   const auto scene = flame("shape");
-  const SurfaceSkeleton& body = body_of(*scene);
+  const pose::SurfaceSkeleton& body = body_of(*scene);
   ASSERT_EQ(body.shells, 3U);
   const std::size_t around = body.columns / 3;
   std::array<double, 3> heat{};
@@ -275,11 +275,11 @@ TEST(FlameTest, APanelDoesNotMoveAndFeelsOnlyTheWindAlongIt) {
   const auto calm = flame("texture");
   for (int tick = 0; tick < 200; ++tick) {
     scene->tick(scripted_wind(static_cast<std::uint64_t>(tick)), kFlameTick_s);
-    across->tick(WindVector{0.0, 20.0}, kFlameTick_s);
-    calm->tick(WindVector{}, kFlameTick_s);
+    across->tick(wind::WindVector{0.0, 20.0}, kFlameTick_s);
+    calm->tick(wind::WindVector{}, kFlameTick_s);
     for (const float moved_m : flame_pose_of(*scene).displacement_m) ASSERT_EQ(moved_m, 0.0F);
   }
-  EXPECT_EQ(pose_hash(0, across->pose()), pose_hash(0, calm->pose()));
+  EXPECT_EQ(pose::pose_hash(0, across->pose()), pose::pose_hash(0, calm->pose()));
 
   // Turned by a quarter, the panel stands from north to south: that wind is along it.
   const auto turned = flame("texture", {}, {.seed = 1, .placement = {.heading_deg = 90.0}});
@@ -290,7 +290,7 @@ TEST(FlameTest, APanelDoesNotMoveAndFeelsOnlyTheWindAlongIt) {
 
 TEST(FlameTest, ABodyIsClosedRoundAndTaperedAndItsNormalsPointOut) {
   const auto scene = flame("shape");
-  const SurfaceSkeleton& body = body_of(*scene);
+  const pose::SurfaceSkeleton& body = body_of(*scene);
   EXPECT_TRUE(body.is_closed);
   EXPECT_EQ(body.ramp_rgba.size(), 1024U);
   double widest_m = 0.0;
@@ -329,7 +329,7 @@ TEST(FlameTest, ABodyHasNoSeamWhereItCloses) {
 
 TEST(FlameTest, APointIsNeverMovedThroughTheAxis) {
   const auto scene = flame("shape", {{"flicker", 0.8}});
-  const SurfaceSkeleton& body = body_of(*scene);
+  const pose::SurfaceSkeleton& body = body_of(*scene);
   for (std::uint64_t tick = 0; tick < 300; ++tick) {
     scene->tick(5.0 * scripted_wind(tick), kFlameTick_s);
     for (std::size_t i = 0; i < body.rest_x_m.size(); ++i) {
@@ -346,7 +346,7 @@ TEST(FlameTest, HeatGoesOnWithoutAJumpWhateverTheWindDoes) {
     float largest = 0.0F;
     std::vector<float> before = flame_pose_of(*scene).heat;
     for (int tick = 0; tick < 4 * ticks_per_s; ++tick) {
-      scene->tick(WindVector{tick * 4 / ticks_per_s % 2 == 0 ? 40.0 : -40.0, 5.0}, 1.0 / ticks_per_s);
+      scene->tick(wind::WindVector{tick * 4 / ticks_per_s % 2 == 0 ? 40.0 : -40.0, 5.0}, 1.0 / ticks_per_s);
       const std::vector<float>& now = flame_pose_of(*scene).heat;
       for (std::size_t i = 0; i < now.size(); ++i) largest = std::max(largest, std::abs(now[i] - before[i]));
       before = now;
@@ -370,10 +370,10 @@ TEST_P(FlameOnEachRow, BurnsTheSameBitForBit) {
     for (std::uint64_t tick = 0; tick < 200; ++tick) {
       base->tick(scripted_wind(tick), kFlameTick_s);
       scene->tick(scripted_wind(tick), kFlameTick_s);
-      ASSERT_EQ(pose_hash(0, scene->pose()), pose_hash(0, base->pose())) << form;
+      ASSERT_EQ(pose::pose_hash(0, scene->pose()), pose::pose_hash(0, base->pose())) << form;
     }
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -8,7 +8,7 @@
 #include "engine/scenes/coat.hpp"
 #include "engine/scenes/scene.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 extern const SceneDescription kFurScene;
 
@@ -20,13 +20,13 @@ std::unique_ptr<Scene> fur(const ParameterValues::Map& given = {}) {
 
 TEST(FurTest, HasThePapers300000NodesByDefault) {
   const auto scene = fur();
-  const auto& skeleton = std::get<StrandSkeleton>(scene->skeleton());
+  const auto& skeleton = std::get<pose::StrandSkeleton>(scene->skeleton());
   EXPECT_EQ(skeleton.strand_count * skeleton.links_per_strand, 300'000U);
 }
 
 TEST(FurTest, RootsAreOnTheBodyAndHairsLeaveItOutward) {
   const Coat coat = make_coat({.seed = 4});
-  const StrandSkeleton& hairs = coat.skeleton;
+  const pose::StrandSkeleton& hairs = coat.skeleton;
   for (std::size_t i = 0; i < hairs.strand_count; ++i) {
     const double x = static_cast<double>(hairs.root_x_m[i]) / 0.8;
     const double y = (static_cast<double>(hairs.root_y_m[i]) - 0.4) / 0.4;
@@ -49,7 +49,7 @@ TEST(FurTest, RootsAreOnTheBodyAndHairsLeaveItOutward) {
 
 TEST(FurTest, NeighboursLieAlike) {
   const Coat coat = make_coat({.seed = 4});
-  const StrandSkeleton& hairs = coat.skeleton;
+  const pose::StrandSkeleton& hairs = coat.skeleton;
   const auto alike = [&hairs](std::size_t i, std::size_t j) {
     return static_cast<double>(hairs.rest_x[i] * hairs.rest_x[j] + hairs.rest_y[i] * hairs.rest_y[j] +
                                hairs.rest_z[i] * hairs.rest_z[j]);
@@ -67,18 +67,18 @@ TEST(FurTest, NeighboursLieAlike) {
 
 TEST(FurTest, LinksKeepTheirLengthTo1e5) {
   const auto scene = fur();
-  const auto& skeleton = std::get<StrandSkeleton>(scene->skeleton());
-  JointPositions joints(skeleton);
+  const auto& skeleton = std::get<pose::StrandSkeleton>(scene->skeleton());
+  pose::JointPositions joints(skeleton);
   for (const double speed_m_s : {0.0, 5.0, 40.0}) {
-    for (int tick = 0; tick < 30; ++tick) scene->tick(WindVector{speed_m_s, -0.5 * speed_m_s}, 1.0 / 60.0);
-    ASSERT_EQ(
-        (StrandKinematicsJob{.skeleton = &skeleton, .pose = &std::get<StrandPose>(scene->pose()), .joints = &joints}
-             .run()),
-        StrandKinematicsJob::Problem::kNone);
+    for (int tick = 0; tick < 30; ++tick) scene->tick(wind::WindVector{speed_m_s, -0.5 * speed_m_s}, 1.0 / 60.0);
+    ASSERT_EQ((pose::StrandKinematicsJob{
+                  .skeleton = &skeleton, .pose = &std::get<pose::StrandPose>(scene->pose()), .joints = &joints}
+                   .run()),
+              pose::StrandKinematicsJob::Problem::kNone);
     for (std::size_t i = 0; i < skeleton.strand_count; i += 7) {
-      JointPosition from{skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
+      pose::JointPosition from{skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
       for (std::size_t link = 0; link < skeleton.links_per_strand; ++link) {
-        const JointPosition to = joints.joint(i, link);
+        const pose::JointPosition to = joints.joint(i, link);
         const double length_m = std::hypot(static_cast<double>(to.x_m) - static_cast<double>(from.x_m),
                                            static_cast<double>(to.y_m) - static_cast<double>(from.y_m),
                                            static_cast<double>(to.z_m) - static_cast<double>(from.z_m));
@@ -92,8 +92,8 @@ TEST(FurTest, LinksKeepTheirLengthTo1e5) {
 
 TEST(FurTest, StrokesRunOverTheRidgeWithoutASeam) {
   const auto scene = fur();
-  for (int tick = 0; tick < 600; ++tick) scene->tick(WindVector{0.0, -8.0}, 1.0 / 60.0);
-  const auto& pose = std::get<StrandPose>(scene->pose());
+  for (int tick = 0; tick < 600; ++tick) scene->tick(wind::WindVector{0.0, -8.0}, 1.0 / 60.0);
+  const auto& pose = std::get<pose::StrandPose>(scene->pose());
   double largest_rad = 0.0;
   // The first and the last hair of a ring stand to either side of the ridge.
   for (std::size_t ring = 40; ring < 160; ++ring) {
@@ -108,8 +108,8 @@ TEST(FurTest, StrokesRunOverTheRidgeWithoutASeam) {
 TEST(FurTest, PartingsOpenInTheWind) {
   const auto spread_deg = [](double speed_m_s) {
     const auto scene = fur();
-    for (int tick = 0; tick < 600; ++tick) scene->tick(WindVector{0.0, -speed_m_s}, 1.0 / 60.0);
-    const auto& pose = std::get<StrandPose>(scene->pose());
+    for (int tick = 0; tick < 600; ++tick) scene->tick(wind::WindVector{0.0, -speed_m_s}, 1.0 / 60.0);
+    const auto& pose = std::get<pose::StrandPose>(scene->pose());
     double sum = 0.0;
     double squares = 0.0;
     // Near the ridge, where the skin is level and the bend would be the same.
@@ -134,8 +134,8 @@ TEST(FurTest, IsStrokedMoreByMoreWindUntilItLiesFlat) {
     const auto scene = fur({{"hairs_along", std::int64_t{40}}, {"hairs_around", std::int64_t{32}}});
     double mean_rad = 0.0;
     for (int tick = 0; tick < 900; ++tick) {
-      scene->tick(WindVector{speed_m_s, 0.0}, 1.0 / 60.0);
-      const auto& pose = std::get<StrandPose>(scene->pose());
+      scene->tick(wind::WindVector{speed_m_s, 0.0}, 1.0 / 60.0);
+      const auto& pose = std::get<pose::StrandPose>(scene->pose());
       if (tick >= 300) {
         for (std::size_t i = 0; i < 1280; ++i)
           mean_rad += static_cast<double>(pose.bend_east_rad[i]) / (1280.0 * 600.0);
@@ -148,4 +148,4 @@ TEST(FurTest, IsStrokedMoreByMoreWindUntilItLiesFlat) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

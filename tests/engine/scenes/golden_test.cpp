@@ -15,15 +15,15 @@
 // pose, and the joint positions of every 20th. A change of the motion, however small, shows here; where it is meant,
 // the new hash goes to tests/golden/<scene>.txt, and the CHANGELOG says that poses have changed.
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 std::string hash_of_600_ticks(Scene& scene, SimdRow row) {
-  Kinematics kinematics(scene.skeleton(), row);
-  std::uint64_t hash = kPoseHashSeed;
+  pose::Kinematics kinematics(scene.skeleton(), row);
+  std::uint64_t hash = pose::kPoseHashSeed;
   for (std::uint64_t tick = 0; tick < 600; ++tick) {
     scene.tick(scripted_wind(tick), 1.0 / 60.0);
-    hash = pose_hash(hash, scene.pose());
+    hash = pose::pose_hash(hash, scene.pose());
     if (tick % 20 != 0) continue;
     EXPECT_TRUE(kinematics.run(scene.pose()));
     hash = kinematics.hash(hash);
@@ -55,4 +55,4 @@ TEST_P(GoldenOnEachRow, EverySceneMovesAsItDidWhenItsHashWasWritten) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

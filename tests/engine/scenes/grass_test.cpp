@@ -12,7 +12,7 @@
 #include "tests/support/gusty_wind.hpp"
 #include "tests/support/scripted_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 extern const SceneDescription kGrassScene;
 
@@ -31,35 +31,35 @@ ParameterValues::Map small(ParameterValues::Map also = {}) {
   return also;
 }
 
-const StrandSkeleton& skeleton_of(const Scene& scene) {
-  return std::get<StrandSkeleton>(scene.skeleton());
+const pose::StrandSkeleton& skeleton_of(const Scene& scene) {
+  return std::get<pose::StrandSkeleton>(scene.skeleton());
 }
-const StrandPose& pose_of(const Scene& scene) {
-  return std::get<StrandPose>(scene.pose());
+const pose::StrandPose& pose_of(const Scene& scene) {
+  return std::get<pose::StrandPose>(scene.pose());
 }
 
-double bend_rad(const StrandPose& pose, std::size_t i) {
+double bend_rad(const pose::StrandPose& pose, std::size_t i) {
   return static_cast<double>(std::hypot(pose.bend_east_rad[i], pose.bend_south_rad[i]));
 }
 
 /// Where a blade leans to, clockwise from north.
-double lean_azimuth_rad(const StrandPose& pose, std::size_t i) {
+double lean_azimuth_rad(const pose::StrandPose& pose, std::size_t i) {
   return static_cast<double>(std::atan2(pose.bend_east_rad[i], -pose.bend_south_rad[i]));
 }
 
 /// The wind that blows toward an azimuth.
-WindVector toward(double azimuth_rad, double speed_m_s) {
+wind::WindVector toward(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
-void run(Scene& scene, WindVector wind, int ticks) {
+void run(Scene& scene, wind::WindVector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kTick_s);
 }
 
-JointPositions joints_of(const Scene& scene) {
-  JointPositions joints(skeleton_of(scene));
-  const StrandKinematicsJob job{.skeleton = &skeleton_of(scene), .pose = &pose_of(scene), .joints = &joints};
-  EXPECT_EQ(job.run(), StrandKinematicsJob::Problem::kNone);
+pose::JointPositions joints_of(const Scene& scene) {
+  pose::JointPositions joints(skeleton_of(scene));
+  const pose::StrandKinematicsJob job{.skeleton = &skeleton_of(scene), .pose = &pose_of(scene), .joints = &joints};
+  EXPECT_EQ(job.run(), pose::StrandKinematicsJob::Problem::kNone);
   return joints;
 }
 
@@ -86,14 +86,14 @@ TEST(GrassTest, StandsInItsRestPoseBeforeTheWindComesAndBitForBitAgainInCalmAir)
 
 TEST(GrassTest, LinksKeepTheirLengthTo1e5) {
   const auto scene = grass();
-  const StrandSkeleton& skeleton = skeleton_of(*scene);
+  const pose::StrandSkeleton& skeleton = skeleton_of(*scene);
   for (int storm = 0; storm < 5; ++storm) {
     run(*scene, toward(storm, 8.0 * storm), 30);
-    const JointPositions joints = joints_of(*scene);
+    const pose::JointPositions joints = joints_of(*scene);
     for (std::size_t i = 0; i < skeleton.strand_count; ++i) {
-      JointPosition from{skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
+      pose::JointPosition from{skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
       for (std::size_t link = 0; link < skeleton.links_per_strand; ++link) {
-        const JointPosition to = joints.joint(i, link);
+        const pose::JointPosition to = joints.joint(i, link);
         const double length_m = std::hypot(static_cast<double>(to.x_m) - static_cast<double>(from.x_m),
                                            static_cast<double>(to.y_m) - static_cast<double>(from.y_m),
                                            static_cast<double>(to.z_m) - static_cast<double>(from.z_m));
@@ -148,9 +148,9 @@ TEST(GrassTest, LeansToWhereTheWindBlows) {
   for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 45) {
     const double azimuth_rad = azimuth_deg * kRadPerDeg;
     const auto scene = grass(small());
-    const JointPositions rest = joints_of(*scene);
+    const pose::JointPositions rest = joints_of(*scene);
     run(*scene, toward(azimuth_rad, 8.0), 30);
-    const JointPositions joints = joints_of(*scene);
+    const pose::JointPositions joints = joints_of(*scene);
 
     // On average the tips go downwind (x east, z south), and not sideways.
     double downwind_m = 0.0;
@@ -169,7 +169,7 @@ TEST(GrassTest, LeansToWhereTheWindBlows) {
 TEST(GrassTest, TurningTheWindTurnsTheLeanByTheSameAngle) {
   const auto scene = grass(even());
   run(*scene, toward(0.4, 6.0), 1200);
-  const StrandPose before = pose_of(*scene);
+  const pose::StrandPose before = pose_of(*scene);
   run(*scene, toward(1.1, 6.0), 1200);
   for (std::size_t i = 0; i < 400; ++i) {
     EXPECT_NEAR(lean_azimuth_rad(pose_of(*scene), i) - lean_azimuth_rad(before, i), 0.7, 1e-4);
@@ -210,8 +210,8 @@ TEST(GrassTest, StandsWhereItIsPlacedAndTurned) {
   const auto here = grass(even());
   const auto there = kGrassScene.make(ParameterValues::resolve(kGrassScene.parameters, even()).value(),
                                       {.seed = 1, .placement = {10.0, 2.0, -5.0, 90.0}});
-  const StrandSkeleton& a = skeleton_of(*here);
-  const StrandSkeleton& b = skeleton_of(*there);
+  const pose::StrandSkeleton& a = skeleton_of(*here);
+  const pose::StrandSkeleton& b = skeleton_of(*there);
   for (std::size_t i = 0; i < a.strand_count; ++i) {  // what was to the north (-z) is now to the east (+x)
     EXPECT_NEAR(b.root_x_m[i], 10.0F - a.root_z_m[i], 1e-5F);
     EXPECT_NEAR(b.root_y_m[i], 2.0F, 1e-6F);
@@ -276,7 +276,7 @@ TEST(GrassTest, AMillionNodesWork) {
   const auto scene = grass({{"blades_across", std::int64_t{400}}, {"blades_deep", std::int64_t{250}}});
   EXPECT_EQ(skeleton_of(*scene).strand_count * skeleton_of(*scene).links_per_strand, 1'000'000U);
   run(*scene, toward(1.0, 10.0), 3);
-  const JointPositions joints = joints_of(*scene);
+  const pose::JointPositions joints = joints_of(*scene);
   for (const float coordinate : joints.data()) ASSERT_TRUE(std::isfinite(coordinate));
 }
 
@@ -289,7 +289,7 @@ std::vector<std::vector<double>> rows_in_gusts(double wind_m_s, int ticks) {
                                                                         {"hybrid", 0.0}})
                           .value();
   const auto scene = kGrassScene.make(values, {.seed = 1, .gusts = shared_gusts()});
-  const StrandSkeleton& skeleton = skeleton_of(*scene);
+  const pose::StrandSkeleton& skeleton = skeleton_of(*scene);
   GustyWind wind({wind_m_s, 0.0}, 0.35F);
   std::vector<std::vector<double>> rows(2);
   for (int tick = 0; tick < ticks; ++tick) {
@@ -338,4 +338,4 @@ TEST(GrassTest, AGustFromOutsideTravelsOverTheMeadowAsFastAsTheWind) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -9,7 +9,7 @@
 
 #include "tests/support/gusty_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 /// 60 m by 7 m, the nodes half a metre apart.
@@ -17,13 +17,14 @@ constexpr GroundNodes kFieldNodes{
     .west_m = -30.0, .north_m = 4.0, .cell_x_m = 0.5, .cell_z_m = 0.5, .columns = 121, .lines = 15};
 
 /// Gusts of all lengths that the nodes hold wholly.
-GustNoise::Moment gusts_at_nodes(float gustiness = 0.0F) {
+wind::turbulence::GustNoise::Moment gusts_at_nodes(float gustiness = 0.0F) {
   GustyWind gusty({6.0, 3.0}, 0.5F);
-  GustNoise::Moment gusts = gusty.step(100.0).gusts;
-  for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
-    const bool is_held = i % GustNoise::kTileOctaves < GustNoise::kTileOctaves - GustNoise::kShortOctaves;
-    if (!is_held) gusts.along_m_s[GustNoise::kFirstTileOctave + i] = 0.0F;
-    if (!is_held) gusts.across_m_s[GustNoise::kFirstTileOctave + i] = 0.0F;
+  wind::turbulence::GustNoise::Moment gusts = gusty.step(100.0).gusts;
+  for (std::size_t i = 0; i < 2 * wind::turbulence::GustNoise::kTileOctaves; ++i) {
+    const bool is_held = i % wind::turbulence::GustNoise::kTileOctaves <
+                         wind::turbulence::GustNoise::kTileOctaves - wind::turbulence::GustNoise::kShortOctaves;
+    if (!is_held) gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i] = 0.0F;
+    if (!is_held) gusts.across_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i] = 0.0F;
   }
   gusts.gustiness = gustiness;
   return gusts;
@@ -33,13 +34,13 @@ TEST(GustNodes, HasTheGustsOfEachNode) {
   GustNodes nodes(shared_gusts(), kFieldNodes, best_simd_row());
   ASSERT_EQ(nodes.x_m().size(), kFieldNodes.size());
   for (const float gustiness : {0.0F, 0.3F}) {
-    GustNoise::Moment gusts = gusts_at_nodes(gustiness);
+    wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes(gustiness);
     gusts.ahead = {0.0, 1.0};  // so that local() is not turned: v along, -u across
     nodes.read(gusts);
     double squares = 0.0;
     double scatter = 0.0;
     for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
-      const WindVector there = shared_gusts()->local(gusts, nodes.x_m()[i], nodes.z_m()[i]);
+      const wind::WindVector there = shared_gusts()->local(gusts, nodes.x_m()[i], nodes.z_m()[i]);
       squares += std::pow(static_cast<double>(nodes.along_m_s()[i]) - there.v_m_s, 2) +
                  std::pow(static_cast<double>(nodes.across_m_s()[i]) + there.u_m_s, 2);
       scatter += there.u_m_s * there.u_m_s + there.v_m_s * there.v_m_s;
@@ -52,10 +53,10 @@ TEST(GustNodes, HasTheGustsOfEachNode) {
 
 TEST(GustNodes, WithoutSlowGustsItIsExact) {
   GustNodes nodes(shared_gusts(), kFieldNodes, best_simd_row());
-  GustNoise::Moment gusts = gusts_at_nodes();
+  wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes();
   gusts.ahead = {0.0, 1.0};
-  for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
-    if (GustNodes::is_coarse(i)) gusts.along_m_s[GustNoise::kFirstTileOctave + i] = 0.0F;
+  for (std::size_t i = 0; i < 2 * wind::turbulence::GustNoise::kTileOctaves; ++i) {
+    if (GustNodes::is_coarse(i)) gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i] = 0.0F;
   }
   nodes.read(gusts);
   for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
@@ -67,19 +68,19 @@ TEST(GustNodes, WithoutSlowGustsItIsExact) {
 TEST(GustNodes, WeightsWeakenAnOctavePlaceByPlace) {
   GustNodes weighted(shared_gusts(), kFieldNodes, best_simd_row());
   GustNodes plain(shared_gusts(), kFieldNodes, best_simd_row());
-  for (const std::size_t octave : {std::size_t{1}, std::size_t{7}, GustNoise::kTileOctaves + 5}) {
+  for (const std::size_t octave : {std::size_t{1}, std::size_t{7}, wind::turbulence::GustNoise::kTileOctaves + 5}) {
     // None of it in the west, all of it in the east, 16 m about the middle aside; across, nothing changes.
     const std::span<const double> x_m = GustNodes::is_coarse(octave) ? weighted.coarse_x_m() : weighted.x_m();
     std::vector<float> weights;
     for (const double x : x_m) weights.push_back(x < 0.0 ? 0.0F : 1.0F);
     GustWeights weakened;
     weakened.along[octave] = weights;
-    GustNoise::Moment gusts = gusts_at_nodes();
+    wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes();
     weighted.read(gusts, weakened);
     plain.read(gusts);
     const std::vector<float> with(plain.along_m_s().begin(), plain.along_m_s().end());
     const std::vector<float> across(plain.across_m_s().begin(), plain.across_m_s().end());
-    gusts.along_m_s[GustNoise::kFirstTileOctave + octave] = 0.0F;
+    gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + octave] = 0.0F;
     plain.read(gusts);
     for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
       EXPECT_EQ(weighted.across_m_s()[i], across[i]);
@@ -91,7 +92,7 @@ TEST(GustNodes, WeightsWeakenAnOctavePlaceByPlace) {
 }
 
 TEST(GustNodes, WavesThatTheNodesCannotHoldAreNotRead) {
-  GustNoise::Moment gusts = gusts_at_nodes();
+  wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes();
   gusts.along_m_s.fill(0.0F);
   gusts.across_m_s.fill(0.0F);
   gusts.along_m_s.back() = 1.0F;  // waves of 0.8 to 0.4 m
@@ -109,4 +110,4 @@ TEST(GustNodes, WavesThatTheNodesCannotHoldAreNotRead) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -8,7 +8,7 @@
 
 #include "tests/support/bits.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 double mean_of(const std::vector<float>& values, std::size_t count) {
@@ -32,7 +32,7 @@ TEST(MeadowTest, HasItsBladesOnTheFieldAroundTheOrigin) {
 
 TEST(MeadowTest, RestAndCurlAreUnitVectorsAcrossEachOther) {
   const Meadow meadow = make_meadow({.seed = 2});
-  const StrandSkeleton& skeleton = meadow.skeleton;
+  const pose::StrandSkeleton& skeleton = meadow.skeleton;
   for (std::size_t i = 0; i < skeleton.padded_count(); ++i) {
     const float rest = std::hypot(skeleton.rest_x[i], skeleton.rest_y[i], skeleton.rest_z[i]);
     const float curl = std::hypot(skeleton.curl_x[i], skeleton.curl_y[i], skeleton.curl_z[i]);
@@ -47,7 +47,7 @@ TEST(MeadowTest, RestAndCurlAreUnitVectorsAcrossEachOther) {
 TEST(MeadowTest, BladesStandAsTheSpecSaysOnAverageAndDifferAmongThemselves) {
   const MeadowSpec spec{.seed = 3};
   const Meadow meadow = make_meadow(spec);
-  const StrandSkeleton& skeleton = meadow.skeleton;
+  const pose::StrandSkeleton& skeleton = meadow.skeleton;
   const std::size_t count = skeleton.strand_count;
   EXPECT_NEAR(mean_of(skeleton.link_length_m, count) * 10.0, spec.length_m, 0.02);
   EXPECT_NEAR(mean_of(skeleton.rest_curl_rad, count) * 10.0, spec.curl_deg * 3.14159265 / 180.0, 0.03);
@@ -73,4 +73,4 @@ TEST(MeadowTest, TheSameSeedGivesTheSameMeadowAndAnotherSeedAnother) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

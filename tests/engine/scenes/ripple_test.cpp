@@ -15,7 +15,7 @@
 #include "tests/support/gusty_wind.hpp"
 #include "tests/support/scripted_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 extern const SceneDescription kRippleScene;
 
@@ -33,7 +33,7 @@ std::unique_ptr<Scene> ripple(ParameterValues::Map given = {}, const SceneSetup&
 }
 
 const std::vector<float>& heights_of(const Scene& scene) {
-  return std::get<SurfacePose>(scene.pose()).displacement_m;
+  return std::get<pose::SurfacePose>(scene.pose()).displacement_m;
 }
 
 double rms(const std::vector<float>& values) {
@@ -42,11 +42,11 @@ double rms(const std::vector<float>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-WindVector over_water(double azimuth_rad, double speed_m_s) {
+wind::WindVector over_water(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
-void run_ripple(Scene& scene, WindVector wind, int ticks) {
+void run_ripple(Scene& scene, wind::WindVector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kRippleTick_s);
 }
 
@@ -71,18 +71,18 @@ double likeness(const std::vector<float>& before, const std::vector<float>& now,
 
 TEST(RippleTest, HasThePapers40000PointsByDefaultAndNoHeat) {
   const auto scene = kRippleScene.make(ParameterValues::resolve(kRippleScene.parameters, {}).value(), {.seed = 1});
-  EXPECT_EQ(node_count(scene->skeleton()), 40'000U);
-  EXPECT_TRUE(std::get<SurfaceSkeleton>(scene->skeleton()).ramp_rgba.empty());
+  EXPECT_EQ(pose::node_count(scene->skeleton()), 40'000U);
+  EXPECT_TRUE(std::get<pose::SurfaceSkeleton>(scene->skeleton()).ramp_rgba.empty());
 }
 
 TEST(RippleTest, IsFlatInCalmAirAndGrowsFlatAgain) {
   const auto scene = ripple();
   run_ripple(*scene, {}, 100);
-  EXPECT_EQ(pose_hash(0, scene->pose()), pose_hash(0, rest_pose(scene->skeleton())));
+  EXPECT_EQ(pose::pose_hash(0, scene->pose()), pose::pose_hash(0, pose::rest_pose(scene->skeleton())));
   run_ripple(*scene, over_water(1.0, 8.0), 300);
   EXPECT_GT(rms(heights_of(*scene)), 0.01);
   run_ripple(*scene, {}, 60 * 60);
-  EXPECT_EQ(pose_hash(0, scene->pose()), pose_hash(0, rest_pose(scene->skeleton())));
+  EXPECT_EQ(pose::pose_hash(0, scene->pose()), pose::pose_hash(0, pose::rest_pose(scene->skeleton())));
 }
 
 /// The mean square of the slope of a surface of `columns` points a row, `pitch_m` apart.
@@ -273,9 +273,9 @@ TEST_P(RippleOnEachRow, MovesTheSameBitForBit) {
   for (std::uint64_t tick = 0; tick < 200; ++tick) {
     base->tick(scripted_wind(tick), kRippleTick_s);
     scene->tick(scripted_wind(tick), kRippleTick_s);
-    ASSERT_EQ(pose_hash(0, scene->pose()), pose_hash(0, base->pose()));
+    ASSERT_EQ(pose::pose_hash(0, scene->pose()), pose::pose_hash(0, base->pose()));
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

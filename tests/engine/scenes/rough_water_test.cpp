@@ -8,7 +8,7 @@
 
 #include "engine/math/critically_damped.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kWaterTick_s = 1.0 / 60.0;
@@ -28,7 +28,7 @@ TEST(RoughWaterTest, EachNodeFollowsItsWindAndPointsReadBetweenThem) {
   ASSERT_EQ(water.node_rows(), 3U);
   std::vector<float> wind_m_s(15);
   for (std::size_t i = 0; i < 15; ++i) wind_m_s[i] = 2.0F + static_cast<float>(i);
-  CriticallyDamped reference;
+  math::CriticallyDamped reference;
   std::vector<float> slope(45);
   for (int tick = 0; tick < 120; ++tick) {
     water.step(wind_m_s, kWaterTick_s);
@@ -82,4 +82,4 @@ TEST(RoughWaterTest, NoWindMakesItChangeFasterThanItSays) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

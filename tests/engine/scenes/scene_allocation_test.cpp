@@ -47,7 +47,7 @@ void* counted(std::size_t bytes, std::size_t alignment) {
   std::free(memory);
 }
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
@@ -56,8 +56,8 @@ TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
                                          {.seed = 1, .gusts = shared_gusts()});
     GustyWind wind({5.0, 2.0}, 0.4F);
     MeasuredWind measured(shared_gusts(), {5.0, 2.0});
-    WindTapes tapes(1);
-    Kinematics kinematics(scene->skeleton());
+    wind::ground::WindTapes tapes(1);
+    pose::Kinematics kinematics(scene->skeleton());
     EXPECT_GT(allocations, 0U) << "the counter does not count";
 
     const std::size_t before = allocations;
@@ -72,8 +72,8 @@ TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
 
 TEST(SceneAllocationTest, NoSceneAllocatesInATickUnderAWindThatIsMeasuredAtOneOrSeveralPlaces) {
   for (const std::size_t pens : {1U, 3U}) {
-    StrokeRun run(std::vector<WindVector>(pens, WindVector{0.0, 20.0}));
-    WindTapes tapes;
+    StrokeRun run(std::vector<wind::WindVector>(pens, wind::WindVector{0.0, 20.0}));
+    wind::ground::WindTapes tapes;
     const StrokeRun::Set measure = steady_gusts(0.3, 0.7);
     for (const SceneDescription* description : scene_table()) {
       const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(),
@@ -82,7 +82,7 @@ TEST(SceneAllocationTest, NoSceneAllocatesInATickUnderAWindThatIsMeasuredAtOneOr
       const std::size_t before = allocations;
       for (std::uint64_t tick = 0; tick < 20; ++tick) {
         run.step(measure);
-        const GroundWind ground =
+        const wind::ground::GroundWind ground =
             written_to(tapes, {.state = {}, .ground = wind.step(1.0 / 60.0), .stroke = run.stroke()});
         scene->tick(ground, 1.0 / 60.0);
       }
@@ -92,4 +92,4 @@ TEST(SceneAllocationTest, NoSceneAllocatesInATickUnderAWindThatIsMeasuredAtOneOr
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -16,7 +16,7 @@
 #include "tests/support/gusty_wind.hpp"
 #include "tests/support/scripted_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kContractTick_s = 1.0 / 60.0;
@@ -26,11 +26,11 @@ std::unique_ptr<Scene> make(const SceneDescription& kind, const SceneSetup& setu
 }
 
 /// A wind that no sensor and no estimator should give, and any may.
-WindVector nasty_wind(std::uint64_t tick) {
-  const RandomStream random(3, stream_id("nasty wind"));
+wind::WindVector nasty_wind(std::uint64_t tick) {
+  const math::RandomStream random(3, math::stream_id("nasty wind"));
   const auto toward = [](double speed_m_s, double azimuth_deg) {
     const double azimuth_rad = azimuth_deg * std::numbers::pi / 180.0;
-    return WindVector{speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
+    return wind::WindVector{speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
   };
   switch (tick / 60) {
     case 0:  // out of nothing
@@ -52,10 +52,10 @@ WindVector nasty_wind(std::uint64_t tick) {
 constexpr std::uint64_t kNastyTicks = 420;
 
 /// The same with gusts as nasty.
-GroundWind nasty_gusts(std::uint64_t tick) {
-  const RandomStream random(3, stream_id("nasty gusts"));
-  GroundWind wind(nasty_wind(tick));
-  for (std::size_t i = 0; i < GustNoise::kOctaves; ++i) {
+wind::ground::GroundWind nasty_gusts(std::uint64_t tick) {
+  const math::RandomStream random(3, math::stream_id("nasty gusts"));
+  wind::ground::GroundWind wind(nasty_wind(tick));
+  for (std::size_t i = 0; i < wind::turbulence::GustNoise::kOctaves; ++i) {
     wind.gusts.along_m_s[i] = static_cast<float>(10.0 * random.uniform(64 * (tick / 7) + i));
     wind.gusts.across_m_s[i] = static_cast<float>(10.0 * random.uniform(64 * (tick / 7) + 32 + i));
   }
@@ -63,15 +63,15 @@ GroundWind nasty_gusts(std::uint64_t tick) {
   return wind;
 }
 
-std::vector<JointPosition> all_joints(const Kinematics& kinematics, std::size_t count) {
-  std::vector<JointPosition> joints;
+std::vector<pose::JointPosition> all_joints(const pose::Kinematics& kinematics, std::size_t count) {
+  std::vector<pose::JointPosition> joints;
   joints.reserve(count);
   for (std::size_t i = 0; i < count; ++i) joints.push_back(kinematics.joint(i));
   return joints;
 }
 
 /// How far the joint that moved farthest went. NaN where a joint is no place.
-double largest_step_m(const std::vector<JointPosition>& from, const std::vector<JointPosition>& to) {
+double largest_step_m(const std::vector<pose::JointPosition>& from, const std::vector<pose::JointPosition>& to) {
   double largest_square = 0.0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double x = static_cast<double>(to[i].x_m) - static_cast<double>(from[i].x_m);
@@ -99,18 +99,18 @@ TEST_P(SceneContract, TellsWhatItIs) {
 
 TEST_P(SceneContract, ItsPoseFitsItsSkeletonAndBeginsAtRest) {
   const auto scene = make(*GetParam());
-  EXPECT_GT(node_count(scene->skeleton()), 0U);
-  EXPECT_TRUE(fits(scene->pose(), scene->skeleton()));
-  scene->tick(WindVector{3.0, 1.0}, kContractTick_s);
-  EXPECT_TRUE(fits(scene->pose(), scene->skeleton()));
+  EXPECT_GT(pose::node_count(scene->skeleton()), 0U);
+  EXPECT_TRUE(pose::fits(scene->pose(), scene->skeleton()));
+  scene->tick(wind::WindVector{3.0, 1.0}, kContractTick_s);
+  EXPECT_TRUE(pose::fits(scene->pose(), scene->skeleton()));
 }
 
 TEST_P(SceneContract, CalmIsTheRestPoseUnlessItSaysThatItMovesInCalmAirToo) {
   const auto scene = make(*GetParam());
-  for (int tick = 0; tick < 120; ++tick) scene->tick(WindVector{}, kContractTick_s);
-  const Pose rest = rest_pose(scene->skeleton());
-  Kinematics at_rest(scene->skeleton());
-  Kinematics in_calm(scene->skeleton());
+  for (int tick = 0; tick < 120; ++tick) scene->tick(wind::WindVector{}, kContractTick_s);
+  const pose::Pose rest = pose::rest_pose(scene->skeleton());
+  pose::Kinematics at_rest(scene->skeleton());
+  pose::Kinematics in_calm(scene->skeleton());
   ASSERT_TRUE(at_rest.run(rest));
   ASSERT_TRUE(in_calm.run(scene->pose()));
   EXPECT_EQ(in_calm.hash(0) == at_rest.hash(0), GetParam()->is_still_in_calm);
@@ -123,15 +123,15 @@ TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
     const auto scene = make(*GetParam(), {.seed = 1, .gusts = has_gusts ? shared_gusts() : nullptr});
     const double bound_m = scene->largest_joint_step_m(dt_s);
     ASSERT_TRUE(std::isfinite(bound_m));
-    Kinematics kinematics(scene->skeleton());
-    const std::size_t count = node_count(scene->skeleton());
+    pose::Kinematics kinematics(scene->skeleton());
+    const std::size_t count = pose::node_count(scene->skeleton());
     ASSERT_TRUE(kinematics.run(scene->pose()));
-    std::vector<JointPosition> before = all_joints(kinematics, count);
+    std::vector<pose::JointPosition> before = all_joints(kinematics, count);
     double largest_m = 0.0;
     for (std::uint64_t tick = 0; tick < kNastyTicks; ++tick) {
-      scene->tick(has_gusts ? nasty_gusts(tick) : GroundWind(nasty_wind(tick)), dt_s);
+      scene->tick(has_gusts ? nasty_gusts(tick) : wind::ground::GroundWind(nasty_wind(tick)), dt_s);
       ASSERT_TRUE(kinematics.run(scene->pose()));
-      std::vector<JointPosition> now = all_joints(kinematics, count);
+      std::vector<pose::JointPosition> now = all_joints(kinematics, count);
       const double step_m = largest_step_m(before, now);
       ASSERT_LE(step_m, bound_m * (1.0 + 1e-5) + 1e-5) << "at tick " << tick;  // and with it: finite
       largest_m = std::max(largest_m, step_m);
@@ -145,10 +145,10 @@ TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
 
 TEST_P(SceneContract, CalmWithGustsThatHaveNoStrengthIsTheRestPose) {
   const auto scene = make(*GetParam(), {.seed = 1, .gusts = shared_gusts()});
-  for (int tick = 0; tick < 60; ++tick) scene->tick(WindVector{}, kContractTick_s);
-  const Pose rest = rest_pose(scene->skeleton());
-  Kinematics at_rest(scene->skeleton());
-  Kinematics in_calm(scene->skeleton());
+  for (int tick = 0; tick < 60; ++tick) scene->tick(wind::WindVector{}, kContractTick_s);
+  const pose::Pose rest = pose::rest_pose(scene->skeleton());
+  pose::Kinematics at_rest(scene->skeleton());
+  pose::Kinematics in_calm(scene->skeleton());
   ASSERT_TRUE(at_rest.run(rest));
   ASSERT_TRUE(in_calm.run(scene->pose()));
   EXPECT_EQ(in_calm.hash(0) == at_rest.hash(0), GetParam()->is_still_in_calm);
@@ -156,10 +156,10 @@ TEST_P(SceneContract, CalmWithGustsThatHaveNoStrengthIsTheRestPose) {
 
 TEST_P(SceneContract, TheSameSeedAndWindGiveTheSameBitsAndAnotherSeedOthers) {
   const auto run = [](Scene& scene) {
-    std::uint64_t hash = kPoseHashSeed;
+    std::uint64_t hash = pose::kPoseHashSeed;
     for (std::uint64_t tick = 0; tick < 60; ++tick) {
       scene.tick(scripted_wind(tick), kContractTick_s);
-      hash = pose_hash(hash, scene.pose());
+      hash = pose::pose_hash(hash, scene.pose());
     }
     return hash;
   };
@@ -171,14 +171,14 @@ TEST_P(SceneContract, TheSameSeedAndWindGiveTheSameBitsAndAnotherSeedOthers) {
 TEST_P(SceneContract, StandsWhereItIsPlaced) {
   const auto here = make(*GetParam());
   const auto there = make(*GetParam(), {.seed = 1, .placement = {100.0, 3.0, -50.0, 90.0}});
-  Kinematics here_joints(here->skeleton());
-  Kinematics there_joints(there->skeleton());
+  pose::Kinematics here_joints(here->skeleton());
+  pose::Kinematics there_joints(there->skeleton());
   ASSERT_TRUE(here_joints.run(here->pose()));
   ASSERT_TRUE(there_joints.run(there->pose()));
-  const std::size_t count = node_count(here->skeleton());
+  const std::size_t count = pose::node_count(here->skeleton());
   for (std::size_t i = 0; i < count; i += 97) {  // a quarter turn clockwise: north (-z) becomes east (+x)
-    const JointPosition a = here_joints.joint(i);
-    const JointPosition b = there_joints.joint(i);
+    const pose::JointPosition a = here_joints.joint(i);
+    const pose::JointPosition b = there_joints.joint(i);
     // 100 m off a float is rounded by 4e-6 m, and a leaf stands on the sum of up to 3 x 256 links.
     ASSERT_NEAR(b.x_m, 100.0F - a.z_m, 1e-3F);
     ASSERT_NEAR(b.y_m, 3.0F + a.y_m, 1e-3F);
@@ -187,4 +187,4 @@ TEST_P(SceneContract, StandsWhereItIsPlaced) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -15,7 +15,7 @@
 #include "tests/support/gusty_wind.hpp"
 #include "tests/support/measured_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kTapeTick_s = MeasuredWind::kTick_s;
@@ -24,8 +24,8 @@ constexpr double kTapeTick_s = MeasuredWind::kTick_s;
 constexpr GroundNodes kTapeField{
     .west_m = -20.0, .north_m = -3.0, .cell_x_m = 0.5, .cell_z_m = 0.5, .columns = 121, .lines = 15};
 
-std::vector<BlendSourceSettings> sensors_at(std::size_t count) {
-  std::vector<BlendSourceSettings> sensors(count);
+std::vector<wind::blend::BlendSourceSettings> sensors_at(std::size_t count) {
+  std::vector<wind::blend::BlendSourceSettings> sensors(count);
   for (std::size_t i = 0; i < count; ++i) {
     sensors[i].priority = 1;
     sensors[i].has_place = true;
@@ -36,9 +36,9 @@ std::vector<BlendSourceSettings> sensors_at(std::size_t count) {
 }
 
 /// Ten seconds of a wind that turns, on the tapes.
-DrivingWind fill(WindTapes& tapes, std::size_t sensors) {
+wind::ground::DrivingWind fill(wind::ground::WindTapes& tapes, std::size_t sensors) {
   MeasuredWind measured(shared_gusts(), {6.0, 2.0}, sensors_at(sensors));
-  DrivingWind wind;
+  wind::ground::DrivingWind wind;
   for (int tick = 0; tick < 600; ++tick) {
     wind = measured.step();
     tapes.write(wind.stroke);
@@ -49,15 +49,15 @@ DrivingWind fill(WindTapes& tapes, std::size_t sensors) {
 
 TEST(TapeNodes, HasTheMeasuredWindAndWhatIsLeftOfTheNoiseAtEachNode) {
   for (const std::size_t sensors : {1U, 2U}) {
-    WindTapes tapes(sensors);
-    const GroundWind wind = fill(tapes, sensors).ground;
+    wind::ground::WindTapes tapes(sensors);
+    const wind::ground::GroundWind wind = fill(tapes, sensors).ground;
     const GustNodes nodes(shared_gusts(), kTapeField, best_simd_row());
     TapeNodes at_nodes(nodes);
     at_nodes.read(wind, nodes);
     float least = 1.0F;
     float most = 0.0F;
-    const auto expect_weights = [&](const WindTapes::Reading& there, bool is_coarse, std::size_t node) {
-      for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+    const auto expect_weights = [&](const wind::ground::WindTapes::Reading& there, bool is_coarse, std::size_t node) {
+      for (std::size_t i = 0; i < wind::ground::kTileOctaveCount; ++i) {
         if (GustNodes::is_coarse(i) != is_coarse || !nodes.is_held(i)) continue;
         ASSERT_EQ(at_nodes.weights().along[i][node], there.noise_along[i]) << node << ", octave " << i;
         ASSERT_EQ(at_nodes.weights().across[i][node], there.noise_across[i]) << node << ", octave " << i;
@@ -67,8 +67,8 @@ TEST(TapeNodes, HasTheMeasuredWindAndWhatIsLeftOfTheNoiseAtEachNode) {
     };
     double scatter_m_s = 0.0;
     for (std::size_t i = 0; i < nodes.x_m().size(); ++i) {
-      const WindTapes::Reading there = tapes.at(nodes.x_m()[i], nodes.z_m()[i]);
-      const WindVector measured = wind.measured_at(nodes.x_m()[i], nodes.z_m()[i]);
+      const wind::ground::WindTapes::Reading there = tapes.at(nodes.x_m()[i], nodes.z_m()[i]);
+      const wind::WindVector measured = wind.measured_at(nodes.x_m()[i], nodes.z_m()[i]);
       ASSERT_EQ(at_nodes.known(i).u_m_s, measured.u_m_s) << i;
       ASSERT_EQ(at_nodes.known(i).v_m_s, measured.v_m_s) << i;
       ASSERT_EQ(at_nodes.gain(i), there.gain);
@@ -89,7 +89,7 @@ TEST(TapeNodes, OctavesThatTheNodesCannotHoldAreNotReadFromTheTape) {
   const GustNodes nodes(shared_gusts(), kTapeField, best_simd_row());
   const TapeNodes at_nodes(nodes);
   std::size_t left_out = 0;
-  for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+  for (std::size_t i = 0; i < wind::ground::kTileOctaveCount; ++i) {
     EXPECT_EQ(at_nodes.weights().along[i].empty(), !nodes.is_held(i)) << i;
     if (!nodes.is_held(i)) ++left_out;
   }
@@ -106,14 +106,14 @@ TEST_P(TapeRows, HaveTheBitsOfTheBaseRow) {
   const std::vector<float> z_m = {2.0F, 0.0F, 1.1F, -3.0F, 3.5F};
   for (std::size_t run = 0; run < 2; ++run) {
     const SimdRow row = run == 0 ? SimdRow::kX86_64 : GetParam();
-    WindTapes tapes(1, row);
+    wind::ground::WindTapes tapes(1, row);
     MeasuredWind measured(shared_gusts(), {6.0, 2.0}, sensors_at(1));
     WindGrid grid(shared_gusts(), x_m, z_m, row);
     for (int tick = 0; tick < 300; ++tick) grid.step(written_to(tapes, measured.step()), kTapeTick_s);
     east_m_s[run].resize(x_m.size());
     south_m_s[run].resize(x_m.size());
     grid.sample(0, east_m_s[run], south_m_s[run]);
-    const WindTapes::Reading reading = tapes.at(1.3, 0.7);
+    const wind::ground::WindTapes::Reading reading = tapes.at(1.3, 0.7);
     east_m_s[run].push_back(static_cast<float>(reading.gusts.u_m_s));
     south_m_s[run].push_back(static_cast<float>(reading.gusts.v_m_s));
     east_m_s[run].insert(east_m_s[run].end(), reading.noise_along.begin(), reading.noise_along.end());
@@ -125,4 +125,4 @@ TEST_P(TapeRows, HaveTheBitsOfTheBaseRow) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

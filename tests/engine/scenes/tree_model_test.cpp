@@ -13,37 +13,37 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/random_strands.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 TreeSpec spec_of(std::string_view species, std::uint64_t seed = 1) {
   return {.habit = tree_species(species).habit, .seed = seed};
 }
 
-TreeJoints joints_in(const TreeSkeleton& tree, const TreePose& pose) {
-  TreeJoints joints(tree);
-  EXPECT_EQ((TreeKinematicsJob{.skeleton = &tree, .pose = &pose, .joints = &joints}.run()),
-            TreeKinematicsJob::Problem::kNone);
+pose::TreeJoints joints_in(const pose::TreeSkeleton& tree, const pose::TreePose& pose) {
+  pose::TreeJoints joints(tree);
+  EXPECT_EQ((pose::TreeKinematicsJob{.skeleton = &tree, .pose = &pose, .joints = &joints}.run()),
+            pose::TreeKinematicsJob::Problem::kNone);
   return joints;
 }
 
-TreePose resting(const TreeSkeleton& tree) {
-  return std::get<TreePose>(rest_pose(tree));
+pose::TreePose resting(const pose::TreeSkeleton& tree) {
+  return std::get<pose::TreePose>(pose::rest_pose(tree));
 }
 
-double gap_m(JointPosition a, JointPosition b) {
+double gap_m(pose::JointPosition a, pose::JointPosition b) {
   return static_cast<double>(std::hypot(a.x_m - b.x_m, a.y_m - b.y_m, a.z_m - b.z_m));
 }
 
 TEST(TreeModelTest, HasThePapersSizeByDefault) {
-  const TreeSkeleton tree = make_tree(spec_of("cherry"));
+  const pose::TreeSkeleton tree = make_tree(spec_of("cherry"));
   ASSERT_EQ(tree.levels.size(), kTreePartCount);
   EXPECT_EQ(tree.levels[kTrunk].strands.strand_count + tree.levels[kLimbs].strands.strand_count +
                 tree.levels[kTwigs].strands.strand_count,
             256U);
   EXPECT_EQ(tree.levels[kTwigs].strands.links_per_strand, 256U);
   EXPECT_EQ(tree.levels[kLeaves].strands.strand_count, 10000U);
-  EXPECT_EQ(node_count(tree), 105'536U);
+  EXPECT_EQ(pose::node_count(tree), 105'536U);
 }
 
 TEST(TreeModelTest, EveryKindOfTreeIsASoundSkeleton) {
@@ -54,11 +54,11 @@ TEST(TreeModelTest, EveryKindOfTreeIsASoundSkeleton) {
       spec.twigs = limbs == 7 ? 3 : 40;
       spec.leaves = limbs == 1 ? 1 : 500;
       spec.branch_links = limbs == 15 ? 5 : 40;
-      const TreeSkeleton tree = make_tree(spec);
-      const TreeJoints joints = joints_in(tree, resting(tree));  // which checks sizes and parents
+      const pose::TreeSkeleton tree = make_tree(spec);
+      const pose::TreeJoints joints = joints_in(tree, resting(tree));  // which checks sizes and parents
       for (std::size_t i = 0; i < kTreePartCount; ++i) {
-        const TreeLevel& level = tree.levels[i];
-        const StrandSkeleton& strands = level.strands;
+        const pose::TreeLevel& level = tree.levels[i];
+        const pose::StrandSkeleton& strands = level.strands;
         ASSERT_EQ(level.base_radius_m.size(), strands.padded_count());
         ASSERT_EQ(level.tip_radius_m.size(), strands.padded_count());
         for (std::size_t s = 0; s < strands.padded_count(); ++s) {
@@ -72,7 +72,7 @@ TEST(TreeModelTest, EveryKindOfTreeIsASoundSkeleton) {
           EXPECT_GT(level.tip_radius_m[s], 0.0F);
           EXPECT_GT(strands.link_length_m[s], 0.0F);
           if (i == kTrunk) continue;
-          const JointPosition root{strands.root_x_m[s], strands.root_y_m[s], strands.root_z_m[s]};
+          const pose::JointPosition root{strands.root_x_m[s], strands.root_y_m[s], strands.root_z_m[s]};
           EXPECT_LE(gap_m(root, joints.level(i - 1).joint(level.parent[s], level.parent_link[s])), 2e-5);
         }
       }
@@ -81,7 +81,7 @@ TEST(TreeModelTest, EveryKindOfTreeIsASoundSkeleton) {
 }
 
 TEST(TreeModelTest, WoodIsAsThickAsWhatItCarries) {
-  const TreeSkeleton tree = make_tree(spec_of("zelkova"));
+  const pose::TreeSkeleton tree = make_tree(spec_of("zelkova"));
   for (const std::size_t part : {kLimbs, kTwigs}) {
     std::vector<double> carried_m2(tree.levels[part - 1].strands.strand_count, 0.0);
     for (std::size_t s = 0; s < tree.levels[part].strands.strand_count; ++s) {
@@ -95,8 +95,8 @@ TEST(TreeModelTest, WoodIsAsThickAsWhatItCarries) {
 }
 
 TEST(TreeModelTest, LeavesStandInSpraysOf16OnOneTwigEach) {
-  const TreeSkeleton tree = make_tree(spec_of("poplar"));
-  const TreeLevel& leaves = tree.levels[kLeaves];
+  const pose::TreeSkeleton tree = make_tree(spec_of("poplar"));
+  const pose::TreeLevel& leaves = tree.levels[kLeaves];
   EXPECT_TRUE(leaves.is_leaves);
   EXPECT_TRUE(leaves.is_turned_by_block);
   std::vector<std::size_t> on_twig(tree.levels[kTwigs].strands.strand_count, 0);
@@ -115,13 +115,13 @@ struct Outline {
   double widest_at_m = 0.0;
 };
 
-Outline outline_of(const TreeSkeleton& tree) {
+Outline outline_of(const pose::TreeSkeleton& tree) {
   Outline outline;
-  const TreeJoints joints = joints_in(tree, resting(tree));
+  const pose::TreeJoints joints = joints_in(tree, resting(tree));
   for (std::size_t i = kTrunk; i < kLeaves; ++i) {
-    const StrandSkeleton& strands = tree.levels[i].strands;
+    const pose::StrandSkeleton& strands = tree.levels[i].strands;
     for (std::size_t s = 0; s < strands.strand_count; ++s) {
-      const JointPosition tip = joints.level(i).joint(s, strands.links_per_strand - 1);
+      const pose::JointPosition tip = joints.level(i).joint(s, strands.links_per_strand - 1);
       const auto radius_m = static_cast<double>(std::hypot(tip.x_m, tip.z_m));
       if (radius_m > outline.radius_m) outline.widest_at_m = static_cast<double>(tip.y_m);
       outline.radius_m = std::max(outline.radius_m, radius_m);
@@ -149,9 +149,9 @@ TEST(TreeModelTest, EachSpeciesHasItsHabit) {
 
 TEST(TreeModelTest, SizeIsAllLengths) {
   TreeSpec spec = spec_of("cherry");
-  const TreeSkeleton one = make_tree(spec);
+  const pose::TreeSkeleton one = make_tree(spec);
   spec.size = 2.0;
-  const TreeSkeleton two = make_tree(spec);
+  const pose::TreeSkeleton two = make_tree(spec);
   for (std::size_t i = 0; i < kTreePartCount; ++i) {
     for (std::size_t s = 0; s < one.levels[i].strands.strand_count; s += 7) {
       EXPECT_NEAR(two.levels[i].strands.root_y_m[s], 2.0F * one.levels[i].strands.root_y_m[s], 1e-5F);
@@ -162,9 +162,9 @@ TEST(TreeModelTest, SizeIsAllLengths) {
 }
 
 TEST(TreeModelTest, TheSameSeedGivesTheSameTreeAndAnotherSeedAnother) {
-  const TreeSkeleton tree = make_tree(spec_of("cherry", 4));
-  const TreeSkeleton same = make_tree(spec_of("cherry", 4));
-  const TreeSkeleton other = make_tree(spec_of("cherry", 5));
+  const pose::TreeSkeleton tree = make_tree(spec_of("cherry", 4));
+  const pose::TreeSkeleton same = make_tree(spec_of("cherry", 4));
+  const pose::TreeSkeleton other = make_tree(spec_of("cherry", 5));
   for (std::size_t i = 1; i < kTreePartCount; ++i) {
     EXPECT_EQ(bits_of(tree.levels[i].strands.root_x_m), bits_of(same.levels[i].strands.root_x_m));
     EXPECT_NE(bits_of(tree.levels[i].strands.root_x_m), bits_of(other.levels[i].strands.root_x_m));
@@ -176,20 +176,20 @@ TEST(TreeModelTest, NoChangeOfTheBendsMovesAJointFartherThanTheLeversSay) {
   spec.twigs = 60;
   spec.leaves = 480;
   spec.branch_links = 12;
-  const TreeSkeleton tree = make_tree(spec);
+  const pose::TreeSkeleton tree = make_tree(spec);
   const auto levers_m = tree_levers_m(tree);
   EXPECT_EQ(levers_m[kTreePartCount], 0.0);
   double largest_share = 0.0;
   for (std::uint64_t trial = 0; trial < 200; ++trial) {
     // Some pose, and one that differs by up to `change_rad` in some of the levels.
-    TreePose before;
-    TreePose after;
+    pose::TreePose before;
+    pose::TreePose after;
     double allowed_m = 0.0;
     for (std::size_t i = 0; i < kTreePartCount; ++i) {
       before.levels.push_back(random_bends(tree.levels[i].strands, 1.2, 7 * trial + i));
-      StrandPose changed = before.levels.back();
+      pose::StrandPose changed = before.levels.back();
       const double change_rad = (trial >> i & 1U) == 0 ? 0.0 : 0.1 * static_cast<double>(trial % 7 + 1);
-      const StrandPose change = random_bends(tree.levels[i].strands, change_rad, 1000 + 7 * trial + i);
+      const pose::StrandPose change = random_bends(tree.levels[i].strands, change_rad, 1000 + 7 * trial + i);
       for (std::size_t s = 0; s < change.bend_east_rad.size(); ++s) {
         // All toward one side in every other trial: then they add up.
         const bool is_common = trial % 2 == 0;
@@ -199,10 +199,10 @@ TEST(TreeModelTest, NoChangeOfTheBendsMovesAJointFartherThanTheLeversSay) {
       after.levels.push_back(changed);
       allowed_m += levers_m[i] * change_rad;
     }
-    const TreeJoints from = joints_in(tree, before);
-    const TreeJoints to = joints_in(tree, after);
+    const pose::TreeJoints from = joints_in(tree, before);
+    const pose::TreeJoints to = joints_in(tree, after);
     for (std::size_t i = 0; i < kTreePartCount; ++i) {
-      const StrandSkeleton& strands = tree.levels[i].strands;
+      const pose::StrandSkeleton& strands = tree.levels[i].strands;
       for (std::size_t s = 0; s < strands.strand_count; ++s) {
         for (std::size_t link = 0; link < strands.links_per_strand; ++link) {
           const double way_m = gap_m(from.level(i).joint(s, link), to.level(i).joint(s, link));
@@ -216,4 +216,4 @@ TEST(TreeModelTest, NoChangeOfTheBendsMovesAJointFartherThanTheLeversSay) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

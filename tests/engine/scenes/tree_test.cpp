@@ -17,7 +17,7 @@
 #include "tests/support/gusty_wind.hpp"
 #include "tests/support/scripted_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 
 extern const SceneDescription kTreeScene;
 
@@ -47,34 +47,34 @@ ParameterValues::Map without_noise(ParameterValues::Map also = {}) {
   return little("cherry", also);
 }
 
-const TreeSkeleton& tree_of(const Scene& scene) {
-  return std::get<TreeSkeleton>(scene.skeleton());
+const pose::TreeSkeleton& tree_of(const Scene& scene) {
+  return std::get<pose::TreeSkeleton>(scene.skeleton());
 }
-const StrandPose& bends_of(const Scene& scene, std::size_t part) {
-  return std::get<TreePose>(scene.pose()).levels[part];
+const pose::StrandPose& bends_of(const Scene& scene, std::size_t part) {
+  return std::get<pose::TreePose>(scene.pose()).levels[part];
 }
 double bend_of(const Scene& scene, std::size_t part, std::size_t strand) {
-  const StrandPose& bends = bends_of(scene, part);
+  const pose::StrandPose& bends = bends_of(scene, part);
   return static_cast<double>(std::hypot(bends.bend_east_rad[strand], bends.bend_south_rad[strand]));
 }
 
-TreeJoints tree_joints(const Scene& scene) {
-  TreeJoints joints(tree_of(scene));
-  const TreeKinematicsJob job{
-      .skeleton = &tree_of(scene), .pose = &std::get<TreePose>(scene.pose()), .joints = &joints};
-  EXPECT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
+pose::TreeJoints tree_joints(const Scene& scene) {
+  pose::TreeJoints joints(tree_of(scene));
+  const pose::TreeKinematicsJob job{
+      .skeleton = &tree_of(scene), .pose = &std::get<pose::TreePose>(scene.pose()), .joints = &joints};
+  EXPECT_EQ(job.run(), pose::TreeKinematicsJob::Problem::kNone);
   return joints;
 }
 
-WindVector blowing_toward(double azimuth_rad, double speed_m_s) {
+wind::WindVector blowing_toward(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
-void blow_on_tree(Scene& scene, WindVector wind, int ticks) {
+void blow_on_tree(Scene& scene, wind::WindVector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kTreeTick_s);
 }
 
-double crossings_per_s(Scene& scene, std::size_t part, WindVector wind);
+double crossings_per_s(Scene& scene, std::size_t part, wind::WindVector wind);
 
 /// Mean and variance of a number as it comes.
 struct Moments {
@@ -97,26 +97,26 @@ TEST(TreeTest, IsInTheSceneTable) {
 }
 
 TEST(TreeTest, ItsFoliageIsGreenUnlessAskedFor) {
-  EXPECT_EQ(tree_of(*tree_scene(little())).foliage, FoliageColor::kGreen);
-  for (std::size_t i = 0; i < kFoliageColorNames.size(); ++i) {
-    const auto scene = tree_scene(little("cherry", {{"foliage", std::string(kFoliageColorNames[i])}}));
-    EXPECT_EQ(tree_of(*scene).foliage, static_cast<FoliageColor>(i));
+  EXPECT_EQ(tree_of(*tree_scene(little())).foliage, pose::FoliageColor::kGreen);
+  for (std::size_t i = 0; i < pose::kFoliageColorNames.size(); ++i) {
+    const auto scene = tree_scene(little("cherry", {{"foliage", std::string(pose::kFoliageColorNames[i])}}));
+    EXPECT_EQ(tree_of(*scene).foliage, static_cast<pose::FoliageColor>(i));
   }
 }
 
 TEST(TreeTest, HasThePapers105536NodesByDefaultWhateverItsSpecies) {
   for (const std::string_view species : kTreeSpeciesNames) {
-    EXPECT_EQ(node_count(tree_scene({{"species", std::string(species)}})->skeleton()), 105'536U);
+    EXPECT_EQ(pose::node_count(tree_scene({{"species", std::string(species)}})->skeleton()), 105'536U);
   }
 }
 
 TEST(TreeTest, ComesToRestBitForBitWhenTheWindHasGone) {
   const auto scene = tree_scene(little());
-  const std::uint64_t rest = pose_hash(0, tree_joints(*scene).level(kLeaves).data());
+  const std::uint64_t rest = pose::pose_hash(0, tree_joints(*scene).level(kLeaves).data());
   blow_on_tree(*scene, blowing_toward(1.0, 12.0), 120);
-  EXPECT_NE(pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
+  EXPECT_NE(pose::pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
   blow_on_tree(*scene, {}, 60 * 90);  // the trunk sways on for long
-  EXPECT_EQ(pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
+  EXPECT_EQ(pose::pose_hash(0, tree_joints(*scene).level(kLeaves).data()), rest);
 }
 
 TEST(TreeTest, MoreWindBendsEveryPartMoreAndNoWindBeyondTheLargest) {
@@ -181,7 +181,7 @@ TEST(TreeTest, LimbsSwayEachAtItsOwnPaceAfterAGust) {
   blow_on_tree(*scene, blowing_toward(0.0, 12.0), 900);
   std::array<std::vector<double>, 8> course;
   for (int tick = 0; tick < 420; ++tick) {
-    scene->tick(WindVector{}, kTreeTick_s);
+    scene->tick(wind::WindVector{}, kTreeTick_s);
     for (std::size_t s = 0; s < course.size() && tick > 30; ++s) {
       course[s].push_back(static_cast<double>(bends_of(*scene, kLimbs).bend_south_rad[s]));
     }
@@ -208,7 +208,7 @@ TEST(TreeTest, AGustThatCrossesTheCrownReachesTheLeavesOneAfterTheOther) {
   const auto scene = kTreeScene.make(
       ParameterValues::resolve(kTreeScene.parameters, little("cherry", {{"size", 3.0}, {"leaf_flutter", 0.0}})).value(),
       {.seed = 1, .gusts = shared_gusts()});
-  const TreeLevel& leaves = tree_of(*scene).levels[kLeaves];
+  const pose::TreeLevel& leaves = tree_of(*scene).levels[kLeaves];
   std::array<std::size_t, 2> sides = {0, 0};  // the spray that stands farthest west, and east
   for (std::size_t leaf = 0; leaf < leaves.strands.strand_count; leaf += 16) {
     if (leaves.strands.root_x_m[leaf] < leaves.strands.root_x_m[sides[0]]) sides[0] = leaf;
@@ -255,13 +255,13 @@ TEST(TreeTest, LeansToWhereTheWindBlows) {
   for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 45) {
     const double azimuth_rad = azimuth_deg * kRadPerDeg;
     const auto scene = tree_scene(little());
-    const TreeJoints rest = tree_joints(*scene);
+    const pose::TreeJoints rest = tree_joints(*scene);
     blow_on_tree(*scene, blowing_toward(azimuth_rad, 12.0), 60);
     Moments downwind_m;
     Moments sideways_m;
     for (int sample = 0; sample < 20; ++sample) {
       blow_on_tree(*scene, blowing_toward(azimuth_rad, 12.0), 60);
-      const TreeJoints joints = tree_joints(*scene);
+      const pose::TreeJoints joints = tree_joints(*scene);
       for (std::size_t leaf = 0; leaf < 1600; leaf += 16) {
         const auto x_m =
             static_cast<double>(joints.level(kLeaves).joint(leaf, 3).x_m - rest.level(kLeaves).joint(leaf, 3).x_m);
@@ -278,18 +278,18 @@ TEST(TreeTest, LeansToWhereTheWindBlows) {
 
 TEST(TreeTest, LinksKeepTheirLengthTo1e5AndTheFootStandsStill) {
   const auto scene = tree_scene();
-  const TreeSkeleton& tree = tree_of(*scene);
+  const pose::TreeSkeleton& tree = tree_of(*scene);
   for (int storm = 0; storm < 3; ++storm) {
     blow_on_tree(*scene, blowing_toward(storm, 15.0 * storm), 60);
-    const TreeJoints joints = tree_joints(*scene);
+    const pose::TreeJoints joints = tree_joints(*scene);
     for (std::size_t part = 0; part < kTreePartCount; ++part) {
-      const TreeLevel& level = tree.levels[part];
+      const pose::TreeLevel& level = tree.levels[part];
       for (std::size_t s = 0; s < level.strands.strand_count; ++s) {
-        JointPosition from{level.strands.root_x_m[s], level.strands.root_y_m[s], level.strands.root_z_m[s]};
+        pose::JointPosition from{level.strands.root_x_m[s], level.strands.root_y_m[s], level.strands.root_z_m[s]};
         if (part > 0) from = joints.level(level.parent_level).joint(level.parent[s], level.parent_link[s]);
         const auto length_m = static_cast<double>(level.strands.link_length_m[s]);
         for (std::size_t link = 0; link < level.strands.links_per_strand; ++link) {
-          const JointPosition to = joints.level(part).joint(s, link);
+          const pose::JointPosition to = joints.level(part).joint(s, link);
           const double found_m = std::hypot(static_cast<double>(to.x_m) - static_cast<double>(from.x_m),
                                             static_cast<double>(to.y_m) - static_cast<double>(from.y_m),
                                             static_cast<double>(to.z_m) - static_cast<double>(from.z_m));
@@ -304,7 +304,7 @@ TEST(TreeTest, LinksKeepTheirLengthTo1e5AndTheFootStandsStill) {
 
 /// How far each strand of a part is moved to and fro on average, after a while of a steady wind: the standard
 /// deviation.
-double liveliness_rad(Scene& scene, std::size_t part, WindVector wind, int ticks) {
+double liveliness_rad(Scene& scene, std::size_t part, wind::WindVector wind, int ticks) {
   const std::size_t count = tree_of(scene).levels[part].strands.strand_count;
   std::vector<Moments> east(count);
   std::vector<Moments> south(count);
@@ -327,7 +327,7 @@ TEST(TreeTest, PoplarLeavesFlutterInTheFaintestAirAndTwiceAsMuchAsCherryLeavesIn
   for (const auto& [speed_m_s, times] : {std::pair{1.0, 6.0}, std::pair{3.0, 4.0}, std::pair{20.0, 1.8}}) {
     const auto cherry = tree_scene(little("cherry"));
     const auto poplar = tree_scene(little("poplar"));
-    const WindVector wind = blowing_toward(0.5, speed_m_s);
+    const wind::WindVector wind = blowing_toward(0.5, speed_m_s);
     EXPECT_GT(liveliness_rad(*poplar, kLeaves, wind, 600), times * liveliness_rad(*cherry, kLeaves, wind, 600));
   }
 }
@@ -345,7 +345,7 @@ TEST(TreeTest, TheThinnerTheWoodTheMoreItSways) {
 }
 
 /// How often a second the east bends of a part pass through their mean.
-double crossings_per_s(Scene& scene, std::size_t part, WindVector wind) {
+double crossings_per_s(Scene& scene, std::size_t part, wind::WindVector wind) {
   constexpr int kTicks = 1800;
   const std::size_t count = std::min<std::size_t>(tree_of(scene).levels[part].strands.strand_count, 64);
   std::vector<std::vector<double>> course(count);
@@ -368,7 +368,7 @@ double crossings_per_s(Scene& scene, std::size_t part, WindVector wind) {
 }
 
 TEST(TreeTest, LeavesFlutterFasterThanBranchesSwayAndLimbsFasterThanTheTrunk) {
-  const WindVector wind = blowing_toward(1.2, 8.0);
+  const wind::WindVector wind = blowing_toward(1.2, 8.0);
   const double leaves = crossings_per_s(*tree_scene(little()), kLeaves, wind);
   const double twigs = crossings_per_s(*tree_scene(little()), kTwigs, wind);
   const double trunk = crossings_per_s(*tree_scene(little()), kTrunk, wind);
@@ -378,7 +378,7 @@ TEST(TreeTest, LeavesFlutterFasterThanBranchesSwayAndLimbsFasterThanTheTrunk) {
 
 TEST(TreeTest, NeighbouringLeavesMoveMoreAlikeThanDistantOnes) {
   const auto scene = tree_scene(little("poplar"));
-  const WindVector wind = blowing_toward(0.3, 6.0);
+  const wind::WindVector wind = blowing_toward(0.3, 6.0);
   blow_on_tree(*scene, wind, 120);
   std::vector<Moments> east(1600);
   std::vector<std::vector<double>> course(1600);
@@ -397,7 +397,7 @@ TEST(TreeTest, NeighbouringLeavesMoveMoreAlikeThanDistantOnes) {
     return product / static_cast<double>(course[a].size()) / std::sqrt(east[a].variance() * east[b].variance());
   };
   // Pairs by how far apart they stand, up to a quarter of the shortest wave, and from 1 m on.
-  const StrandSkeleton& leaves = tree_of(*scene).levels[kLeaves].strands;
+  const pose::StrandSkeleton& leaves = tree_of(*scene).levels[kLeaves].strands;
   Moments near;
   Moments far;
   for (std::size_t a = 0; a < 1600; a += 5) {
@@ -424,20 +424,20 @@ TEST(TreeTest, WindwardBranchesMoveUpAndDownAndLeeOnesSideways) {
     const double east = std::sin(azimuth_rad);
     const double south = -std::cos(azimuth_rad);
     const auto scene = tree_scene(little("cherry", {{"limbs", std::int64_t{40}}, {"hybrid", 0.0}}));
-    const TreeSkeleton& tree = tree_of(*scene);
-    const TreePose resting = std::get<TreePose>(scene->pose());
-    const TreeJoints rest = tree_joints(*scene);
-    TreeJoints joints = rest;
+    const pose::TreeSkeleton& tree = tree_of(*scene);
+    const pose::TreePose resting = std::get<pose::TreePose>(scene->pose());
+    const pose::TreeJoints rest = tree_joints(*scene);
+    pose::TreeJoints joints = rest;
     std::vector<std::array<Moments, 3>> tips(tree.levels[kLimbs].strands.strand_count);
     std::vector<std::array<Moments, 2>> twigs(tree.levels[kTwigs].strands.strand_count);
     blow_on_tree(*scene, blowing_toward(azimuth_rad, 10.0), 60);
     for (int sample = 0; sample < 300; ++sample) {
       blow_on_tree(*scene, blowing_toward(azimuth_rad, 10.0), 6);
-      TreePose own = resting;
+      pose::TreePose own = resting;
       own.levels[kLimbs] = bends_of(*scene, kLimbs);
-      TreeKinematicsJob{.skeleton = &tree, .pose = &own, .joints = &joints}.run();
+      pose::TreeKinematicsJob{.skeleton = &tree, .pose = &own, .joints = &joints}.run();
       for (std::size_t s = 0; s < tips.size(); ++s) {
-        const JointPosition tip = joints.level(kLimbs).joint(s, 15);
+        const pose::JointPosition tip = joints.level(kLimbs).joint(s, 15);
         tips[s][0].add(static_cast<double>(tip.x_m));
         tips[s][1].add(static_cast<double>(tip.y_m));
         tips[s][2].add(static_cast<double>(tip.z_m));
@@ -450,7 +450,7 @@ TEST(TreeTest, WindwardBranchesMoveUpAndDownAndLeeOnesSideways) {
       }
     }
     const auto side_of = [&](std::size_t part, std::size_t strand) {  // 0 windward, 1 lee, 2 neither
-      const JointPosition middle = rest.level(part).joint(strand, 7);
+      const pose::JointPosition middle = rest.level(part).joint(strand, 7);
       const double downwind_m = static_cast<double>(middle.x_m) * east + static_cast<double>(middle.z_m) * south;
       return downwind_m < -1.3 ? 0U : downwind_m > 1.3 ? 1U : 2U;
     };
@@ -494,19 +494,19 @@ TEST(TreeTest, NoWindMovesAJointFartherThanTheBoundWhateverTheSpecies) {
     for (const double hybrid : {0.0, 0.7, 1.0}) {
       const auto scene = tree_scene(little(species, {{"hybrid", hybrid}}));
       const double bound_m = scene->largest_joint_step_m(kTreeTick_s);
-      TreeJoints before = tree_joints(*scene);
+      pose::TreeJoints before = tree_joints(*scene);
       double largest_m = 0.0;
       for (int tick = 0; tick < 240; ++tick) {
         // Reversed again and again, turned through north, gone.
         const double speed_m_s = tick % 60 < 50 ? 60.0 : 0.0;
         const double azimuth_deg = tick < 120 ? (tick / 8 % 2 == 0 ? 20.0 : 200.0) : (tick / 5 % 2 == 0 ? 350.0 : 10.0);
         scene->tick(blowing_toward(azimuth_deg * kRadPerDeg, speed_m_s), kTreeTick_s);
-        TreeJoints now = tree_joints(*scene);
+        pose::TreeJoints now = tree_joints(*scene);
         for (std::size_t part = 0; part < kTreePartCount; ++part) {
-          const StrandSkeleton& strands = tree_of(*scene).levels[part].strands;
+          const pose::StrandSkeleton& strands = tree_of(*scene).levels[part].strands;
           for (std::size_t s = 0; s < strands.strand_count; ++s) {
-            const JointPosition a = before.level(part).joint(s, strands.links_per_strand - 1);
-            const JointPosition b = now.level(part).joint(s, strands.links_per_strand - 1);
+            const pose::JointPosition a = before.level(part).joint(s, strands.links_per_strand - 1);
+            const pose::JointPosition b = now.level(part).joint(s, strands.links_per_strand - 1);
             largest_m =
                 std::max(largest_m, static_cast<double>(std::hypot(b.x_m - a.x_m, b.y_m - a.y_m, b.z_m - a.z_m)));
           }
@@ -520,4 +520,4 @@ TEST(TreeTest, NoWindMovesAJointFartherThanTheBoundWhateverTheSpecies) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -14,7 +14,7 @@
 #include "tests/support/gusty_wind.hpp"
 #include "tests/support/stroke_run.hpp"
 
-namespace yuragi {
+namespace yuragi::scenes {
 namespace {
 
 constexpr double kGridTick_s = 1.0 / 60.0;
@@ -23,7 +23,7 @@ constexpr double kGridTick_s = 1.0 / 60.0;
 /// long.
 struct Places {
   explicit Places(double side_m, std::size_t count = 203, double length = 1.0) {
-    const RandomStream random(4, stream_id("wind grid test"));
+    const math::RandomStream random(4, math::stream_id("wind grid test"));
     for (std::size_t i = 0; i < count; ++i) {
       const auto [x, z] = random.uniform_pair(i);
       const bool is_corner = i < 4;
@@ -42,16 +42,17 @@ struct Places {
 /// The part of an octave that nodes so far apart hold: all of waves of four cells, nothing of those of two.
 double held_part(std::size_t tile_octave, double cell_m) {
   const double shortest_m =
-      2.0 * std::numbers::pi / shared_gusts()->octaves()[GustNoise::kFirstTileOctave + tile_octave].to_rad_m;
+      2.0 * std::numbers::pi /
+      shared_gusts()->octaves()[wind::turbulence::GustNoise::kFirstTileOctave + tile_octave].to_rad_m;
   return std::clamp(std::log2(shortest_m / (2.0 * cell_m)), 0.0, 1.0);
 }
 
 /// What nodes so far apart hold of a wind.
-GroundWind held(GroundWind wind, double cell_m) {
-  for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
+wind::ground::GroundWind held(wind::ground::GroundWind wind, double cell_m) {
+  for (std::size_t i = 0; i < 2 * wind::turbulence::GustNoise::kTileOctaves; ++i) {
     const auto part = static_cast<float>(held_part(i, cell_m));
-    wind.gusts.along_m_s[GustNoise::kFirstTileOctave + i] *= part;
-    wind.gusts.across_m_s[GustNoise::kFirstTileOctave + i] *= part;
+    wind.gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i] *= part;
+    wind.gusts.across_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i] *= part;
   }
   return wind;
 }
@@ -68,15 +69,15 @@ TEST(WindGrid, EachPlaceFeelsTheWindOfThatPlace) {
     Places places(side_m, 203, length);
     WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
     const GustyWind gusty({6.0, -2.0}, 0.5F);
-    GroundWind wind = gusty.wind();
+    wind::ground::GroundWind wind = gusty.wind();
     wind.gusts.gustiness = static_cast<float>(gustiness);
     for (int tick = 0; tick < 240; ++tick) grid.step(wind, kGridTick_s);
-    const GroundWind expected = held(wind, 0.5);
+    const wind::ground::GroundWind expected = held(wind, 0.5);
     grid.sample(0, places.east_m_s, places.south_m_s);
     double squares = 0.0;
     double scatter = 0.0;
     for (std::size_t i = 0; i < places.x_m.size(); ++i) {
-      const WindVector there =
+      const wind::WindVector there =
           expected.at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
       squares += std::pow(static_cast<double>(places.east_m_s[i]) - there.u_m_s, 2) +
                  std::pow(-static_cast<double>(places.south_m_s[i]) - there.v_m_s, 2);
@@ -100,7 +101,7 @@ TEST(WindGrid, AGridOfPlacesIsReadToTheSameBitsAsEachOfThem) {
     WindGrid as_places(shared_gusts(), x_m, z_m, best_simd_row());
     GustyWind gusty({6.0, -2.0}, 0.5F);
     for (int tick = 0; tick < 30; ++tick) {
-      const GroundWind wind = gusty.step(kGridTick_s);
+      const wind::ground::GroundWind wind = gusty.step(kGridTick_s);
       as_grid.step(wind, kGridTick_s);
       as_places.step(wind, kGridTick_s);
     }
@@ -135,7 +136,7 @@ TEST(WindGrid, PlacesOfALargeSceneHaveTheVarianceOfTheGusts) {
   }
   // Nodes are 3.2 m apart: of the waves shorter than four of them, a part is left, and none of those of two.
   double of_gusts = 0.0;
-  for (std::size_t i = 0; i < 2 * GustNoise::kTileOctaves; ++i) {
+  for (std::size_t i = 0; i < 2 * wind::turbulence::GustNoise::kTileOctaves; ++i) {
     of_gusts += 0.25 * std::pow(held_part(i, 200.0 / 62.0), 2);
   }
   EXPECT_GT(variance, 0.7 * of_gusts);
@@ -150,23 +151,24 @@ TEST(WindGrid, CalmIsCalmBitForBitAndComesAgain) {
     const auto is_zero = [](float value) { return value == 0.0F; };
     return std::ranges::all_of(places.east_m_s, is_zero) && std::ranges::all_of(places.south_m_s, is_zero);
   };
-  grid.step(WindVector{}, kGridTick_s);
+  grid.step(wind::WindVector{}, kGridTick_s);
   EXPECT_TRUE(is_calm());
-  for (int tick = 0; tick < 60; ++tick) grid.step(WindVector{3.0, 4.0}, kGridTick_s);
+  for (int tick = 0; tick < 60; ++tick) grid.step(wind::WindVector{3.0, 4.0}, kGridTick_s);
   EXPECT_FALSE(is_calm());
-  for (int tick = 0; tick < 600; ++tick) grid.step(WindVector{}, kGridTick_s);
+  for (int tick = 0; tick < 600; ++tick) grid.step(wind::WindVector{}, kGridTick_s);
   EXPECT_TRUE(is_calm());
 }
 
 TEST(WindGrid, IsNeverTooStrongAndNeverTooQuickWhateverComesIn) {
   Places places(7.0);
   WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
-  const RandomStream random(8, stream_id("hostile gusts"));
+  const math::RandomStream random(8, math::stream_id("hostile gusts"));
   const double bound_m_s = SceneWind::largest_step_m_s(kGridTick_s);
   std::vector<float> east_before(places.x_m.size()), south_before(places.x_m.size());
   double largest_m_s = 0.0;
   for (std::uint64_t tick = 0; tick < 300; ++tick) {
-    GroundWind wind(WindVector{200.0 * (random.uniform(4 * tick) - 0.5), 200.0 * (random.uniform(4 * tick + 1) - 0.5)});
+    wind::ground::GroundWind wind(
+        wind::WindVector{200.0 * (random.uniform(4 * tick) - 0.5), 200.0 * (random.uniform(4 * tick + 1) - 0.5)});
     wind.gusts.along_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 2)));
     wind.gusts.across_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 3)));
     wind.gusts.carried = shared_gusts()->begin(tick);
@@ -188,13 +190,14 @@ TEST(WindGrid, IsNeverTooStrongAndNeverTooQuickWhateverComesIn) {
 
 /// A wind toward north of 6 m/s that has been measured for half a minute south of the places, and stands still now.
 struct MeasuredGround {
-  explicit MeasuredGround(std::vector<WindVector> pens, float noise_m_s) : run(std::move(pens)) {
+  explicit MeasuredGround(std::vector<wind::WindVector> pens, float noise_m_s) : run(std::move(pens)) {
     run.blow({0.0, 6.0});
     for (int tick = 0; tick < 1800; ++tick) {
-      run.tick(tapes, [tick](std::size_t pen, WindSample& now) {
+      run.tick(tapes, [tick](std::size_t pen, wind::ground::WindSample& now) {
         for (std::size_t band = 2; band < 8; ++band) {
-          const double phase = 2.0 * std::numbers::pi * OctaveFollower::centre_hz(band) * tick * StrokeRun::kTick_s +
-                               static_cast<double>(pen);
+          const double phase =
+              2.0 * std::numbers::pi * wind::turbulence::OctaveFollower::centre_hz(band) * tick * StrokeRun::kTick_s +
+              static_cast<double>(pen);
           now.north_m_s[band] = static_cast<float>(0.5 * std::sin(phase));
           now.east_m_s[band] = static_cast<float>(0.3 * std::cos(phase));
         }
@@ -209,12 +212,12 @@ struct MeasuredGround {
     ground.tapes = &tapes;
   }
   StrokeRun run;
-  WindTapes tapes;
-  GroundWind ground;
+  wind::ground::WindTapes tapes;
+  wind::ground::GroundWind ground;
 };
 
 TEST(WindGrid, EachPlaceHasWhatWasMeasuredForIt) {
-  const std::vector<std::vector<WindVector>> pens = {{{-17.0, 30.0}}, {{-25.0, 25.0}, {-10.0, 8.0}}};
+  const std::vector<std::vector<wind::WindVector>> pens = {{{-17.0, 30.0}}, {{-25.0, 25.0}, {-10.0, 8.0}}};
   for (const auto& of_pens : pens) {
     for (const float noise_m_s : {0.0F, 0.3F}) {
       MeasuredGround measured(of_pens, noise_m_s);
@@ -222,11 +225,11 @@ TEST(WindGrid, EachPlaceHasWhatWasMeasuredForIt) {
       WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
       for (int tick = 0; tick < 240; ++tick) grid.step(measured.ground, kGridTick_s);
       grid.sample(0, places.east_m_s, places.south_m_s);
-      const GroundWind expected = held(measured.ground, 0.5);
+      const wind::ground::GroundWind expected = held(measured.ground, 0.5);
       double squares = 0.0;
       double scatter = 0.0;
       for (std::size_t i = 0; i < places.x_m.size(); ++i) {
-        const WindVector there =
+        const wind::WindVector there =
             expected.at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
         squares += std::pow(static_cast<double>(places.east_m_s[i]) - there.u_m_s, 2) +
                    std::pow(-static_cast<double>(places.south_m_s[i]) - there.v_m_s, 2);
@@ -247,13 +250,13 @@ TEST(SceneWind, WithoutNoiseASceneFeelsWhatWasMeasuredAndOfTheMeanAloneNothingEl
     all.step(measured.ground, kGridTick_s);
     mean.step(measured.ground, kGridTick_s);
   }
-  const WindVector expected = measured.ground.measured_at(0.0, 0.0);
+  const wind::WindVector expected = measured.ground.measured_at(0.0, 0.0);
   EXPECT_NEAR(all.east_m_s(), expected.u_m_s, 1e-3);
   EXPECT_NEAR(-all.south_m_s(), expected.v_m_s, 1e-3);
-  EXPECT_GT(speed_of(expected - WindVector{0.0, 6.0}), 0.03);
+  EXPECT_GT(speed_of(expected - wind::WindVector{0.0, 6.0}), 0.03);
   EXPECT_NEAR(mean.east_m_s(), 0.0, 1e-3);
   EXPECT_NEAR(-mean.south_m_s(), 6.0, 1e-3);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::scenes

@@ -7,7 +7,7 @@
 
 #include "engine/wind/wind_reading.hpp"
 
-namespace yuragi {
+namespace yuragi::wind {
 namespace {
 
 TEST(WindVector, AWindFromTheNorthBlowsSouth) {
@@ -60,4 +60,4 @@ TEST(WindReading, WhatNoWindCanBeIsNotPlausible) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind

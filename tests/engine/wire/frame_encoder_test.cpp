@@ -37,12 +37,12 @@ class FrameEncoderTest : public testing::Test {
     return std::get<Frame>(decode(bytes.subspan(kSizePrefixBytes)).value());
   }
 
-  Skeleton grass_ = samples::meadow(kStrands);
-  Skeleton fringe_ = samples::meadow(3, 1);
-  Pose grass_pose_ = samples::bent(kStrands);
-  Pose fringe_pose_ = samples::bent(3);
-  std::vector<const Skeleton*> skeletons_{&grass_, &fringe_};
-  std::vector<const Pose*> poses_{&grass_pose_, &fringe_pose_};
+  pose::Skeleton grass_ = samples::meadow(kStrands);
+  pose::Skeleton fringe_ = samples::meadow(3, 1);
+  pose::Pose grass_pose_ = samples::bent(kStrands);
+  pose::Pose fringe_pose_ = samples::bent(3);
+  std::vector<const pose::Skeleton*> skeletons_{&grass_, &fringe_};
+  std::vector<const pose::Pose*> poses_{&grass_pose_, &fringe_pose_};
   FrameEncoder encoder_;
 };
 
@@ -58,7 +58,7 @@ TEST_F(FrameEncoderTest, NothingIsAllocatedAfterTheFirstFrame) {
   for (std::uint64_t i = 0; i < 100; ++i) {
     FrameInfo info = samples::frame_info();
     info.sequence = ~i;
-    std::get<StrandPose>(grass_pose_).bend_east_rad[i] = 0.5f;
+    std::get<pose::StrandPose>(grass_pose_).bend_east_rad[i] = 0.5f;
     ASSERT_GT(encode(info).size(), 4 * kStrands);
   }
   EXPECT_EQ(allocations, before);
@@ -71,9 +71,9 @@ TEST_F(FrameEncoderTest, AllFramesOfASetOfScenesHaveOneSize) {
 
 TEST(FrameEncoderOfAllKinds, AllocatesNothingWhateverIsShownAndHiddenAfterAFrameThatShowsAll) {
   const Scenes scenes = samples::all_kinds();
-  const std::vector<Pose> moved = samples::all_moved();
-  std::vector<const Skeleton*> skeletons;
-  std::vector<const Pose*> poses;
+  const std::vector<pose::Pose> moved = samples::all_moved();
+  std::vector<const pose::Skeleton*> skeletons;
+  std::vector<const pose::Pose*> poses;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     skeletons.push_back(&scenes.scenes[i].skeleton);
     poses.push_back(&moved[i]);
@@ -91,28 +91,28 @@ TEST(FrameEncoderOfAllKinds, AllocatesNothingWhateverIsShownAndHiddenAfterAFrame
 
 TEST_F(FrameEncoderTest, LaterFramesCarryLaterPoses) {
   encode(FrameInfo{});
-  auto& pose = std::get<StrandPose>(grass_pose_);
+  auto& pose = std::get<pose::StrandPose>(grass_pose_);
   pose.bend_east_rad[0] = -1.25f;
   pose.bend_south_rad[kStrands - 1] = 0.75f;
   const Frame frame = decoded(encode(samples::frame_info()));
-  const auto& got = std::get<StrandPose>(frame.poses[0]);
+  const auto& got = std::get<pose::StrandPose>(frame.poses[0]);
   EXPECT_NEAR(got.bend_east_rad[0], -1.25f, 5e-5f);
   EXPECT_NEAR(got.bend_south_rad[kStrands - 1], 0.75f, 5e-5f);
 }
 
 TEST_F(FrameEncoderTest, BendsBeyondHalfATurnSaturate) {
-  std::get<StrandPose>(fringe_pose_).bend_east_rad[0] = 10.0f;
-  std::get<StrandPose>(fringe_pose_).bend_east_rad[1] = -10.0f;
+  std::get<pose::StrandPose>(fringe_pose_).bend_east_rad[0] = 10.0f;
+  std::get<pose::StrandPose>(fringe_pose_).bend_east_rad[1] = -10.0f;
   const Frame frame = decoded(encode(samples::frame_info()));
-  const auto& got = std::get<StrandPose>(frame.poses[1]);
+  const auto& got = std::get<pose::StrandPose>(frame.poses[1]);
   EXPECT_NEAR(got.bend_east_rad[0], 3.14159265f, 1e-6f);
   EXPECT_NEAR(got.bend_east_rad[1], -3.14159265f, 1e-6f);
 }
 
 TEST_F(FrameEncoderTest, TheSetOfScenesMayChange) {
   encode(samples::frame_info());
-  const std::vector<const Skeleton*> one_skeleton{&fringe_};
-  const std::vector<const Pose*> one_pose{&fringe_pose_};
+  const std::vector<const pose::Skeleton*> one_skeleton{&fringe_};
+  const std::vector<const pose::Pose*> one_pose{&fringe_pose_};
   EXPECT_EQ(decoded(encoder_.encode(samples::frame_info(), one_skeleton, one_pose)).poses.size(), 1u);
   EXPECT_EQ(decoded(encoder_.encode(samples::frame_info(), {}, {})).poses.size(), 0u);
   EXPECT_EQ(decoded(encode(samples::frame_info())).poses.size(), 2u);

@@ -32,7 +32,7 @@ bool is_safe(const Message& message) {
     if (!std::isfinite(frame->info.wind.upwind_m) || !(frame->info.wind.to_middle_s >= 0.0)) return false;
     if (frame->opacities.size() != frame->poses.size()) return false;
     return std::all_of(frame->poses.begin(), frame->poses.end(),
-                       [](const Pose& pose) { return samples::is_sound(pose); });
+                       [](const pose::Pose& pose) { return samples::is_sound(pose); });
   }
   return true;
 }
@@ -103,15 +103,15 @@ TEST(HostileBytes, ASizePrefixOutOfBoundsIsRefused) {
 // ---- verified, but inconsistent ----
 
 /// decode()'s answer to samples::scenes() after a change of the first skeleton.
-Result<Message, WireError> scenes_with(const std::function<void(StrandSkeleton&)>& change) {
+Result<Message, WireError> scenes_with(const std::function<void(pose::StrandSkeleton&)>& change) {
   Scenes scenes = samples::scenes();
-  change(std::get<StrandSkeleton>(scenes.scenes[0].skeleton));
+  change(std::get<pose::StrandSkeleton>(scenes.scenes[0].skeleton));
   return decode(samples::body(encode(scenes)));
 }
 
 TEST(HostileBytes, SkeletonsOutOfBoundsAreRefused) {
-  ASSERT_TRUE(scenes_with([](StrandSkeleton&) {}).has_value());
-  const std::vector<std::function<void(StrandSkeleton&)>> changes{
+  ASSERT_TRUE(scenes_with([](pose::StrandSkeleton&) {}).has_value());
+  const std::vector<std::function<void(pose::StrandSkeleton&)>> changes{
       [](auto& s) { s.links_per_strand = 0; },
       [](auto& s) { s.links_per_strand = 257; },
       [](auto& s) { s.root_x_m[5] = kNan; },
@@ -145,27 +145,29 @@ Result<Message, WireError> kinds_with(std::size_t index, const std::function<voi
 }
 
 TEST(HostileBytes, ClothsOutOfBoundsAreRefused) {
-  ASSERT_TRUE(kinds_with<GridSkeleton>(1, [](auto&) {}).has_value());
-  const std::vector<std::function<void(GridSkeleton&)>> changes{
+  ASSERT_TRUE(kinds_with<pose::GridSkeleton>(1, [](auto&) {}).has_value());
+  const std::vector<std::function<void(pose::GridSkeleton&)>> changes{
       [](auto& s) { s.rest_x_m[5] = kNan; },
       [](auto& s) { s.rest_y_m[40] = kInfinity; },
       [](auto& s) { s.rest_z_m[0] = 1e30f; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i)
-    EXPECT_EQ(kinds_with<GridSkeleton>(1, changes[i]).error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(kinds_with<pose::GridSkeleton>(1, changes[i]).error(), WireError::kInconsistent) << i;
 }
 
 TEST(HostileBytes, AFoliageThatIsNotKnownIsGreen) {
-  const auto result = kinds_with<TreeSkeleton>(2, [](auto& s) { s.foliage = static_cast<FoliageColor>(3); });
+  const auto result =
+      kinds_with<pose::TreeSkeleton>(2, [](auto& s) { s.foliage = static_cast<pose::FoliageColor>(3); });
   ASSERT_TRUE(result.has_value()) << "a newer server may have more colours";
-  EXPECT_EQ(std::get<TreeSkeleton>(std::get<Scenes>(*result).scenes[2].skeleton).foliage, FoliageColor::kGreen);
+  EXPECT_EQ(std::get<pose::TreeSkeleton>(std::get<Scenes>(*result).scenes[2].skeleton).foliage,
+            pose::FoliageColor::kGreen);
 }
 
 TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
-  ASSERT_TRUE(kinds_with<TreeSkeleton>(2, [](auto&) {}).has_value());
-  const std::vector<std::function<void(TreeSkeleton&)>> changes{
+  ASSERT_TRUE(kinds_with<pose::TreeSkeleton>(2, [](auto&) {}).has_value());
+  const std::vector<std::function<void(pose::TreeSkeleton&)>> changes{
       [](auto& s) { s.levels.clear(); },
-      [](auto& s) { s.levels.resize(kMaxTreeLevels + 1, s.levels[1]); },
+      [](auto& s) { s.levels.resize(pose::kMaxTreeLevels + 1, s.levels[1]); },
       [](auto& s) { s.levels[1].parent[4] = 1; },  // the trunk is alone
       [](auto& s) { s.levels[2].parent[0] = 5; },  // of five limbs, counted from 0
       [](auto& s) { s.levels[2].parent[0] = ~0u; },
@@ -178,15 +180,15 @@ TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
       [](auto& s) { s.levels[2].tip_radius_m[0] = kInfinity; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    const auto result = kinds_with<TreeSkeleton>(2, changes[i]);
+    const auto result = kinds_with<pose::TreeSkeleton>(2, changes[i]);
     ASSERT_FALSE(result.has_value()) << i;
     EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
   }
 }
 
 TEST(HostileBytes, SurfacesOutOfBoundsAreRefused) {
-  ASSERT_TRUE(kinds_with<SurfaceSkeleton>(4, [](auto&) {}).has_value());
-  const std::vector<std::function<void(SurfaceSkeleton&)>> changes{
+  ASSERT_TRUE(kinds_with<pose::SurfaceSkeleton>(4, [](auto&) {}).has_value());
+  const std::vector<std::function<void(pose::SurfaceSkeleton&)>> changes{
       [](auto& s) { s.rest_y_m[5] = kNan; },
       [](auto& s) { s.normal_x[5] += 0.5f; },
       [](auto& s) { s.normal_z[5] = kNan; },
@@ -199,7 +201,7 @@ TEST(HostileBytes, SurfacesOutOfBoundsAreRefused) {
       [](auto& s) { s.axis_z_m[3] = kNan; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i)
-    EXPECT_EQ(kinds_with<SurfaceSkeleton>(4, changes[i]).error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(kinds_with<pose::SurfaceSkeleton>(4, changes[i]).error(), WireError::kInconsistent) << i;
 }
 
 TEST(HostileBytes, ControlsOutOfBoundsAreRefused) {
@@ -243,7 +245,7 @@ TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
       [](auto& f) { f.wind.wind.v_m_s = 1e9; },
       [](auto& f) { f.wind.live_weight = 1.5; },
       [](auto& f) { f.wind.reading_age_s = -1.0; },
-      [](auto& f) { f.wind.source = static_cast<WindSource>(3); },
+      [](auto& f) { f.wind.source = static_cast<wind::WindSource>(3); },
       [](auto& f) { f.wind.upwind_m = std::nan(""); },
       [](auto& f) { f.wind.upwind_m = 1e7; },
       [](auto& f) { f.wind.to_middle_s = std::nan(""); },
@@ -260,9 +262,11 @@ TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
 
 TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
   const std::vector<std::function<void(Sensors&)>> changes{
-      [](auto& s) { s.sensors[0].link = static_cast<LinkState>(3); },
-      [](auto& s) { s.sensors[0].health = static_cast<SourceHealth>(3); },
-      [](auto& s) { s.sensors[0].state = static_cast<SensorState>(kSensorStateNames.size()); },
+      [](auto& s) { s.sensors[0].link = static_cast<wind::LinkState>(3); },
+      [](auto& s) { s.sensors[0].health = static_cast<wind::SourceHealth>(3); },
+      [](auto& s) {
+        s.sensors[0].state = static_cast<wind::judging::SensorState>(wind::judging::kSensorStateNames.size());
+      },
       [](auto& s) { s.sensors[0].speed_m_s = std::nan(""); },
       [](auto& s) { s.sensors[0].age_s = -1.0; },
       [](auto& s) { s.sensors[0].interval_s = std::nan(""); },
@@ -436,7 +440,7 @@ TEST(HostileBytes, FewBytesCannotAskForMuchMemory) {
 TEST(HostileBytes, ATreesLevelsCannotAskForMuchMemoryEither) {
   const auto result = decode_pose(fb::Pose_TreePose, 1.0f, [](auto& builder) {
     const auto bends = builder.CreateVector(std::vector<std::int16_t>(kMaxStrands / 4));
-    std::vector<flatbuffers::Offset<fb::StrandPose>> levels(kMaxTreeLevels);
+    std::vector<flatbuffers::Offset<fb::StrandPose>> levels(pose::kMaxTreeLevels);
     for (auto& level : levels) level = fb::CreateStrandPose(builder, 1e-4f, bends, bends);
     return fb::CreateTreePose(builder, builder.CreateVector(levels)).Union();
   });
@@ -474,7 +478,8 @@ TEST(OlderServer, AWindWithoutAPlaceIsInTheMiddleAndGustsAreTheRealOnes) {
   const auto sensors = decode_built(fb::Body_Sensors, [&](auto& builder) {
     return fb::CreateSensors(builder, 0, &wind, 0, 0, fb::CreateShaping(builder)).Union();
   });
-  for (const WindState& state : {std::get<Frame>(frame.value()).info.wind, std::get<Sensors>(sensors.value()).wind}) {
+  for (const wind::WindState& state :
+       {std::get<Frame>(frame.value()).info.wind, std::get<Sensors>(sensors.value()).wind}) {
     EXPECT_EQ(state.upwind_m, 0.0);
     EXPECT_EQ(state.to_middle_s, 0.0);
     EXPECT_FALSE(state.is_place_configured);
@@ -503,7 +508,7 @@ TEST(NewerServer, ASceneOfAnUnknownKindHasNoStrandsAndFitsItsPoses) {
   });
   const auto& known = std::get<Scenes>(scenes.value());
   EXPECT_EQ(known.scenes.at(0).kind, "cloud");
-  EXPECT_EQ(std::get<StrandSkeleton>(known.scenes[0].skeleton).strand_count, 0u);
+  EXPECT_EQ(std::get<pose::StrandSkeleton>(known.scenes[0].skeleton).strand_count, 0u);
   EXPECT_TRUE(fits(std::get<Frame>(frame.value()), known));
 }
 

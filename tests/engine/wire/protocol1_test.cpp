@@ -185,30 +185,30 @@ void expect_that_it_goes_on_working(const Bytes& stream) {
   // stand where their rows would stand at rest.
   const Understood now(stream);
   ASSERT_TRUE(fits(now.frame, now.scenes));
-  const auto& meadow = std::get<StrandPose>(now.frame.poses[0]);
+  const auto& meadow = std::get<pose::StrandPose>(now.frame.poses[0]);
   ASSERT_EQ(client.shown()[0].size(), 37U);
   for (std::size_t i = 0; i < 37; ++i) {
     EXPECT_EQ(client.shown()[0][i], (Point{meadow.bend_east_rad[i], meadow.bend_south_rad[i], 0.0F}));
   }
   std::size_t bends = 0;
-  for (const TreeLevel& level : std::get<TreeSkeleton>(now.scenes.scenes[2].skeleton).levels) {
+  for (const pose::TreeLevel& level : std::get<pose::TreeSkeleton>(now.scenes.scenes[2].skeleton).levels) {
     bends += level.strands.strand_count;
   }
   EXPECT_EQ(client.shown()[2].size(), bends);
   for (const std::size_t scene : {1U, 3U, 4U}) {
-    const Skeleton& skeleton = now.scenes.scenes[scene].skeleton;
-    Pose pose = now.frame.poses[scene];
-    if (auto* surface = std::get_if<SurfacePose>(&pose)) {
+    const pose::Skeleton& skeleton = now.scenes.scenes[scene].skeleton;
+    pose::Pose pose = now.frame.poses[scene];
+    if (auto* surface = std::get_if<pose::SurfacePose>(&pose)) {
       for (auto* rows : {&surface->row_east_m, &surface->row_south_m, &surface->row_drop_m, &surface->row_slope_east,
                          &surface->row_slope_south}) {
         std::fill(rows->begin(), rows->end(), 0.0F);
       }
     }
-    Kinematics kinematics(skeleton);
+    pose::Kinematics kinematics(skeleton);
     ASSERT_TRUE(kinematics.run(pose));
-    ASSERT_EQ(client.shown()[scene].size(), node_count(skeleton)) << scene;
+    ASSERT_EQ(client.shown()[scene].size(), pose::node_count(skeleton)) << scene;
     for (std::size_t i = 0; i < client.shown()[scene].size(); ++i) {
-      const JointPosition joint = kinematics.joint(i);
+      const pose::JointPosition joint = kinematics.joint(i);
       EXPECT_NEAR(client.shown()[scene][i][0], joint.x_m, 1e-5F);
       EXPECT_NEAR(client.shown()[scene][i][1], joint.y_m, 1e-5F);
       EXPECT_NEAR(client.shown()[scene][i][2], joint.z_m, 1e-5F);
@@ -232,11 +232,11 @@ TEST(Protocol1, ItsStreamIsUnderstoodTodayAsItWasThen) {
   const Understood then(first_stream());
   EXPECT_EQ(then.messages, 6);
   ASSERT_TRUE(fits(then.frame, then.scenes));
-  std::uint64_t hash = kPoseHashSeed;
+  std::uint64_t hash = pose::kPoseHashSeed;
   for (std::size_t i = 0; i < then.scenes.scenes.size(); ++i) {
-    Kinematics kinematics(then.scenes.scenes[i].skeleton);
+    pose::Kinematics kinematics(then.scenes.scenes[i].skeleton);
     ASSERT_TRUE(kinematics.run(then.frame.poses[i]));
-    hash = kinematics.hash(pose_hash(hash, then.frame.poses[i]));
+    hash = kinematics.hash(pose::pose_hash(hash, then.frame.poses[i]));
   }
   EXPECT_EQ(hash, 0x3fc317f37de23c3aU);  // written by the decoder and the kinematics of then
 }

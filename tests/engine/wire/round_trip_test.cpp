@@ -45,8 +45,8 @@ TEST(WireRoundTrip, ScenesComeBackBitForBitAndPaddedToBlocks) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(got.scenes[i].name, sent.scenes[i].name);
     EXPECT_EQ(got.scenes[i].kind, "grass");
-    const auto& a = std::get<StrandSkeleton>(sent.scenes[i].skeleton);
-    const auto& b = std::get<StrandSkeleton>(got.scenes[i].skeleton);
+    const auto& a = std::get<pose::StrandSkeleton>(sent.scenes[i].skeleton);
+    const auto& b = std::get<pose::StrandSkeleton>(got.scenes[i].skeleton);
     EXPECT_EQ(b.strand_count, a.strand_count);
     EXPECT_EQ(b.links_per_strand, a.links_per_strand);
     EXPECT_EQ(b.root_x_m, a.root_x_m);
@@ -80,8 +80,8 @@ TEST(WireRoundTrip, AFrameComesBackWithinHalfAQuantisationStep) {
   EXPECT_TRUE(frame.info.wind.is_place_configured);
 
   ASSERT_EQ(frame.poses.size(), 2u);
-  const StrandPose bends = samples::bent(37);
-  const auto& got = std::get<StrandPose>(frame.poses[0]);
+  const pose::StrandPose bends = samples::bent(37);
+  const auto& got = std::get<pose::StrandPose>(frame.poses[0]);
   ASSERT_EQ(got.bend_east_rad.size(), 48u);
   ASSERT_EQ(got.bend_south_rad.size(), 48u);
   const float half_step_rad = 3.14159265f / 32767.0f * 0.5001f;
@@ -96,8 +96,8 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
   const Scenes got = decoded<Scenes>(encode(sent));
   ASSERT_EQ(got.scenes.size(), sent.scenes.size());
 
-  const auto& cloth = std::get<GridSkeleton>(got.scenes[1].skeleton);
-  const GridSkeleton sent_cloth = samples::cloth();
+  const auto& cloth = std::get<pose::GridSkeleton>(got.scenes[1].skeleton);
+  const pose::GridSkeleton sent_cloth = samples::cloth();
   EXPECT_EQ(cloth.columns, 21u);
   EXPECT_EQ(cloth.rows, 9u);
   EXPECT_TRUE(cloth.is_first_column_fixed);
@@ -105,13 +105,13 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
   EXPECT_EQ(cloth.rest_y_m, sent_cloth.rest_y_m);
   EXPECT_EQ(cloth.rest_z_m, sent_cloth.rest_z_m);
 
-  const auto& tree = std::get<TreeSkeleton>(got.scenes[2].skeleton);
-  const TreeSkeleton sent_tree = samples::tree();
-  EXPECT_EQ(tree.foliage, FoliageColor::kAutumn);
+  const auto& tree = std::get<pose::TreeSkeleton>(got.scenes[2].skeleton);
+  const pose::TreeSkeleton sent_tree = samples::tree();
+  EXPECT_EQ(tree.foliage, pose::FoliageColor::kAutumn);
   ASSERT_EQ(tree.levels.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    const TreeLevel& a = sent_tree.levels[i];
-    const TreeLevel& b = tree.levels[i];
+    const pose::TreeLevel& a = sent_tree.levels[i];
+    const pose::TreeLevel& b = tree.levels[i];
     EXPECT_EQ(b.strands.strand_count, a.strands.strand_count);
     EXPECT_EQ(b.strands.links_per_strand, a.strands.links_per_strand);
     EXPECT_EQ(b.strands.rest_y, a.strands.rest_y);
@@ -126,8 +126,8 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
   }
 
   for (const std::size_t i : {3u, 4u}) {
-    const auto& a = std::get<SurfaceSkeleton>(sent.scenes[i].skeleton);
-    const auto& b = std::get<SurfaceSkeleton>(got.scenes[i].skeleton);
+    const auto& a = std::get<pose::SurfaceSkeleton>(sent.scenes[i].skeleton);
+    const auto& b = std::get<pose::SurfaceSkeleton>(got.scenes[i].skeleton);
     EXPECT_EQ(b.columns, a.columns);
     EXPECT_EQ(b.rows, a.rows);
     EXPECT_EQ(b.is_closed, a.is_closed);
@@ -143,13 +143,13 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
 
 TEST(WireRoundTrip, PosesOfAllKindsComeBackAsFineAsTheyArePromised) {
   const Frame frame = decoded<Frame>(samples::frame_of_all_kinds());
-  const std::vector<Pose> sent = samples::all_moved();
+  const std::vector<pose::Pose> sent = samples::all_moved();
   EXPECT_EQ(frame.opacities, (std::vector{1.0f, 0.5f, 1.0f, 0.25f, 1.0f}));
   EXPECT_TRUE(fits(frame, samples::all_kinds()));
   constexpr double kClose[][2] = {{5e-5, 5e-5}, {0.1e-3, 0.1e-3}, {5e-5, 5e-5}, {0.2e-3, 0.0}, {0.2e-3, 2e-3}};
   for (std::size_t scene = 0; scene < sent.size(); ++scene) {
-    const PoseArrays<const float> a(sent[scene]);
-    const PoseArrays<const float> b(frame.poses[scene]);
+    const pose::PoseArrays<const float> a(sent[scene]);
+    const pose::PoseArrays<const float> b(frame.poses[scene]);
     ASSERT_EQ(a.size(), b.size()) << scene;
     for (std::size_t k = 0; k < a.size(); ++k) {
       ASSERT_EQ(a[k].size(), b[k].size()) << scene;
@@ -167,7 +167,7 @@ TEST(WireRoundTrip, AHiddenSceneSendsNoPoseAndFitsAllTheSame) {
   EXPECT_GT(shown.size(), hidden.size() + 1000);
   const Frame frame = decoded<Frame>(hidden);
   EXPECT_EQ(frame.opacities, (std::vector{1.0f, 0.0f, 0.0f, 0.0f, 0.0f}));
-  EXPECT_TRUE(std::get<StrandPose>(frame.poses[1]).bend_east_rad.empty());
+  EXPECT_TRUE(std::get<pose::StrandPose>(frame.poses[1]).bend_east_rad.empty());
   EXPECT_TRUE(fits(frame, samples::all_kinds()));
 
   Frame seen = frame;
@@ -236,8 +236,8 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   const SensorStatus& gauge = sensors.sensors[0];
   EXPECT_EQ(gauge.name, "roof");
   EXPECT_EQ(gauge.driver, "modbus");
-  EXPECT_EQ(gauge.link, LinkState::kConnected);
-  EXPECT_EQ(gauge.health, SourceHealth::kStale);
+  EXPECT_EQ(gauge.link, wind::LinkState::kConnected);
+  EXPECT_EQ(gauge.health, wind::SourceHealth::kStale);
   EXPECT_EQ(gauge.detail, "answers again");
   EXPECT_EQ(gauge.speed_m_s, 0.0);
   EXPECT_EQ(gauge.direction_deg, 359.5);
@@ -250,9 +250,9 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.frames, 1250u);
   EXPECT_EQ(gauge.reconnects, 2u);
   EXPECT_TRUE(gauge.replayed);
-  EXPECT_EQ(gauge.state, SensorState::kFrozen);
+  EXPECT_EQ(gauge.state, wind::judging::SensorState::kFrozen);
   EXPECT_EQ(gauge.state_reason, "the same 3.42 m/s 61 times");
-  EXPECT_EQ(sensors.sensors[1].state, SensorState::kConnecting);
+  EXPECT_EQ(sensors.sensors[1].state, wind::judging::SensorState::kConnecting);
   EXPECT_FALSE(sensors.sensors[1].replayed);
   EXPECT_EQ(gauge.raw_speed_m_s, 0.5);
   EXPECT_EQ(gauge.raw_direction_deg, 349.5);
@@ -268,8 +268,8 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
 
 TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
   Sensors sensors = samples::sensors();
-  for (std::size_t number = 0; number < kSensorStateNames.size(); ++number) {
-    sensors.sensors[0].state = static_cast<SensorState>(number);
+  for (std::size_t number = 0; number < wind::judging::kSensorStateNames.size(); ++number) {
+    sensors.sensors[0].state = static_cast<wind::judging::SensorState>(number);
     EXPECT_EQ(decoded<Sensors>(encode(sensors)).sensors[0].state, sensors.sensors[0].state) << number;
   }
 }

@@ -12,12 +12,12 @@
 namespace yuragi::samples {
 
 /// A meadow of strands at scattered places, leaning and curling every which way.
-inline StrandSkeleton meadow(std::size_t strand_count, std::size_t links_per_strand = 10) {
+inline pose::StrandSkeleton meadow(std::size_t strand_count, std::size_t links_per_strand = 10) {
   std::mt19937 random(1);
   const auto uniform = [&random](float low, float high) {
     return low + (high - low) * static_cast<float>(random() % 10001u) / 10000.0f;
   };
-  StrandSkeleton s;
+  pose::StrandSkeleton s;
   s.strand_count = strand_count;
   s.links_per_strand = links_per_strand;
   for (auto* values : {&s.root_x_m, &s.root_y_m, &s.root_z_m, &s.rest_x, &s.rest_y, &s.rest_z, &s.curl_x, &s.curl_y,
@@ -41,11 +41,11 @@ inline StrandSkeleton meadow(std::size_t strand_count, std::size_t links_per_str
   return s;
 }
 
-inline StrandPose bent(std::size_t strand_count, float largest_rad = 1.5f) {
+inline pose::StrandPose bent(std::size_t strand_count, float largest_rad = 1.5f) {
   std::mt19937 random(2);
-  StrandPose pose;
+  pose::StrandPose pose;
   for (auto* values : {&pose.bend_east_rad, &pose.bend_south_rad}) {
-    values->assign(padded_to_blocks(strand_count), 0.0f);
+    values->assign(pose::padded_to_blocks(strand_count), 0.0f);
     for (std::size_t i = 0; i < strand_count; ++i)
       (*values)[i] = largest_rad * (static_cast<float>(random() % 20001u) / 10000.0f - 1.0f);
   }
@@ -53,8 +53,8 @@ inline StrandPose bent(std::size_t strand_count, float largest_rad = 1.5f) {
 }
 
 /// A wavy cloth of 2 m by 2 m; 16 columns would need no padding.
-inline GridSkeleton cloth(std::size_t columns = 21, std::size_t rows = 9) {
-  GridSkeleton grid;
+inline pose::GridSkeleton cloth(std::size_t columns = 21, std::size_t rows = 9) {
+  pose::GridSkeleton grid;
   grid.columns = columns;
   grid.rows = rows;
   grid.is_first_column_fixed = true;
@@ -78,9 +78,9 @@ inline std::vector<float> scattered(std::size_t count, float largest, unsigned s
   return values;
 }
 
-inline GridPose blown(const GridSkeleton& grid) {
+inline pose::GridPose blown(const pose::GridSkeleton& grid) {
   const std::size_t count = grid.rows * grid.stride();
-  GridPose pose{scattered(count, 1.5f, 3), scattered(count, 1.5f, 4), scattered(count, 1.5f, 5)};
+  pose::GridPose pose{scattered(count, 1.5f, 3), scattered(count, 1.5f, 4), scattered(count, 1.5f, 5)};
   for (auto* values : {&pose.offset_x_m, &pose.offset_y_m, &pose.offset_z_m}) {
     for (std::size_t i = 0; i < count; ++i)
       if (i % grid.stride() >= grid.columns) (*values)[i] = 0.0f;
@@ -89,11 +89,11 @@ inline GridPose blown(const GridSkeleton& grid) {
 }
 
 /// A trunk, limbs on it, and leaves on the limbs, a spray on each, which are turned by blocks.
-inline TreeSkeleton tree() {
-  TreeSkeleton tree;
-  const std::size_t counts[] = {1, 5, 5 * kStrandsPerBlock - 3};
+inline pose::TreeSkeleton tree() {
+  pose::TreeSkeleton tree;
+  const std::size_t counts[] = {1, 5, 5 * pose::kStrandsPerBlock - 3};
   for (std::size_t level = 0; level < 3; ++level) {
-    TreeLevel here;
+    pose::TreeLevel here;
     here.strands = meadow(counts[level], level == 2 ? 4 : 6);
     const std::size_t padded = here.strands.padded_count();
     here.base_radius_m.assign(padded, 0.0f);
@@ -107,25 +107,25 @@ inline TreeSkeleton tree() {
       here.base_radius_m[i] = 0.1f / static_cast<float>(level + 1);
       here.tip_radius_m[i] = 0.02f / static_cast<float>(level + 1);
       if (level == 0) continue;
-      here.parent[i] = static_cast<std::uint32_t>(level == 1 ? 0 : i / kStrandsPerBlock);
+      here.parent[i] = static_cast<std::uint32_t>(level == 1 ? 0 : i / pose::kStrandsPerBlock);
       here.parent_link[i] = static_cast<std::uint32_t>((i + 1) % 6);
     }
     here.is_leaves = here.is_turned_by_block = level == 2;
     tree.levels.push_back(std::move(here));
   }
-  tree.foliage = FoliageColor::kAutumn;
+  tree.foliage = pose::FoliageColor::kAutumn;
   return tree;
 }
 
-inline TreePose swayed(const TreeSkeleton& tree, float largest_rad = 0.8f) {
-  TreePose pose;
-  for (const TreeLevel& level : tree.levels) pose.levels.push_back(bent(level.strands.strand_count, largest_rad));
+inline pose::TreePose swayed(const pose::TreeSkeleton& tree, float largest_rad = 0.8f) {
+  pose::TreePose pose;
+  for (const pose::TreeLevel& level : tree.levels) pose.levels.push_back(bent(level.strands.strand_count, largest_rad));
   return pose;
 }
 
 /// A bowl; or three, one within another, that glow and whose rows move.
-inline SurfaceSkeleton bowl(bool glows, std::size_t columns = 15, std::size_t rows = 7) {
-  SurfaceSkeleton surface;
+inline pose::SurfaceSkeleton bowl(bool glows, std::size_t columns = 15, std::size_t rows = 7) {
+  pose::SurfaceSkeleton surface;
   surface.columns = columns;
   surface.rows = rows;
   surface.is_closed = glows;
@@ -149,25 +149,25 @@ inline SurfaceSkeleton bowl(bool glows, std::size_t columns = 15, std::size_t ro
   return surface;
 }
 
-inline SurfacePose risen(const SurfaceSkeleton& surface) {
+inline pose::SurfacePose risen(const pose::SurfaceSkeleton& surface) {
   const std::size_t count = surface.columns * surface.rows;
   const std::size_t rows = surface.moves_rows() ? surface.rows : 0;
-  SurfacePose pose{.displacement_m = scattered(count, 0.5f, 6),
-                   .heat = {},
-                   .row_east_m = scattered(rows, 0.7f, 8),
-                   .row_south_m = scattered(rows, 0.7f, 9),
-                   .row_drop_m = scattered(rows, 0.7f, 10),
-                   .row_slope_east = scattered(rows, 1.1f, 11),
-                   .row_slope_south = scattered(rows, 1.1f, 12)};
+  pose::SurfacePose pose{.displacement_m = scattered(count, 0.5f, 6),
+                         .heat = {},
+                         .row_east_m = scattered(rows, 0.7f, 8),
+                         .row_south_m = scattered(rows, 0.7f, 9),
+                         .row_drop_m = scattered(rows, 0.7f, 10),
+                         .row_slope_east = scattered(rows, 1.1f, 11),
+                         .row_slope_south = scattered(rows, 1.1f, 12)};
   if (surface.ramp_rgba.empty()) return pose;
   pose.heat = scattered(count, 0.5f, 7);
   for (float& heat : pose.heat) heat += 0.5f;
   return pose;
 }
 
-inline WindState wind() {
+inline wind::WindState wind() {
   return {.wind = {3.25, -4.5},
-          .source = WindSource::kHandover,
+          .source = wind::WindSource::kHandover,
           .live_weight = 0.75,
           .reading_age_s = 1.5,
           .upwind_m = -12.5,
@@ -197,7 +197,7 @@ inline wire::Scenes all_kinds() {
 }
 
 /// The poses of all_kinds().
-inline std::vector<Pose> all_moved() {
+inline std::vector<pose::Pose> all_moved() {
   return {bent(37), blown(cloth()), swayed(tree()), risen(bowl(false)), risen(bowl(true))};
 }
 
@@ -208,10 +208,10 @@ inline wire::FrameInfo frame_info() {
 /// The frame of scenes(strand_count), as its bytes.
 inline wire::Bytes frame_bytes(std::size_t strand_count = 37, const wire::FrameInfo& info = frame_info()) {
   const wire::Scenes set = scenes(strand_count);
-  const Pose a = bent(strand_count);
-  const Pose b = bent(3);
-  const std::vector<const Skeleton*> skeletons{&set.scenes[0].skeleton, &set.scenes[1].skeleton};
-  const std::vector<const Pose*> poses{&a, &b};
+  const pose::Pose a = bent(strand_count);
+  const pose::Pose b = bent(3);
+  const std::vector<const pose::Skeleton*> skeletons{&set.scenes[0].skeleton, &set.scenes[1].skeleton};
+  const std::vector<const pose::Pose*> poses{&a, &b};
   wire::FrameEncoder encoder;
   const auto bytes = encoder.encode(info, skeletons, poses);
   return {bytes.begin(), bytes.end()};
@@ -220,9 +220,9 @@ inline wire::Bytes frame_bytes(std::size_t strand_count = 37, const wire::FrameI
 /// A frame of all_kinds(). Of opacity 0: hidden.
 inline wire::Bytes frame_of_all_kinds(const std::vector<float>& opacities = {1.0f, 0.5f, 1.0f, 0.25f, 1.0f}) {
   const wire::Scenes set = all_kinds();
-  const std::vector<Pose> moved = all_moved();
-  std::vector<const Skeleton*> skeletons;
-  std::vector<const Pose*> poses;
+  const std::vector<pose::Pose> moved = all_moved();
+  std::vector<const pose::Skeleton*> skeletons;
+  std::vector<const pose::Pose*> poses;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     skeletons.push_back(&set.scenes[i].skeleton);
     poses.push_back(&moved[i]);
@@ -270,8 +270,8 @@ inline wire::Sensors sensors() {
   wire::SensorStatus gauge;
   gauge.name = "roof";
   gauge.driver = "modbus";
-  gauge.link = LinkState::kConnected;
-  gauge.health = SourceHealth::kStale;
+  gauge.link = wind::LinkState::kConnected;
+  gauge.health = wind::SourceHealth::kStale;
   gauge.detail = "answers again";
   gauge.speed_m_s = 0.0;
   gauge.direction_deg = 359.5;
@@ -283,7 +283,7 @@ inline wire::Sensors sensors() {
   gauge.frames = 1250;
   gauge.reconnects = 2;
   gauge.replayed = true;
-  gauge.state = SensorState::kFrozen;
+  gauge.state = wind::judging::SensorState::kFrozen;
   gauge.state_reason = "the same 3.42 m/s 61 times";
   gauge.raw_speed_m_s = 0.5;
   gauge.raw_direction_deg = 349.5;

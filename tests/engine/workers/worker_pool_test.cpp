@@ -10,7 +10,7 @@
 #include "engine/scenes/scene.hpp"
 #include "tests/support/scripted_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::workers {
 namespace {
 
 TEST(WorkerPool, DoesEachPartOfEachWorkOnceAndWaitsForAll) {
@@ -36,17 +36,17 @@ TEST(WorkerPool, EndsWhileItsThreadsSleepOrHaveJustBegun) {
 }
 
 TEST(WorkerPool, AScenesPoseIsTheSameBitForBitHoweverManyThreadsShareIt) {
-  for (const SceneDescription* kind : scene_table()) {
+  for (const scenes::SceneDescription* kind : scenes::scene_table()) {
     const auto values = ParameterValues::resolve(kind->parameters, {}).value();
     const auto hash_with = [&](std::size_t threads) {
       WorkerPool pool(threads);
       const auto scene = kind->make(values, {.seed = 1});
-      std::uint64_t hash = kPoseHashSeed;
+      std::uint64_t hash = pose::kPoseHashSeed;
       for (std::uint64_t tick = 0; tick < 40; ++tick) {
         scene->shift(scripted_wind(tick), 1.0 / 60.0);
         pool.run([&scene](Part part) { scene->sample_part(part); });
         pool.run([&scene](Part part) { scene->project_part(part, 1.0 / 60.0); });
-        hash = pose_hash(hash, scene->pose());
+        hash = pose::pose_hash(hash, scene->pose());
       }
       return hash;
     };
@@ -57,4 +57,4 @@ TEST(WorkerPool, AScenesPoseIsTheSameBitForBitHoweverManyThreadsShareIt) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::workers

@@ -11,7 +11,7 @@
 #include "tests/support/microphone_rig.hpp"
 #include "tests/support/pulse_server.hpp"
 
-namespace yuragi {
+namespace yuragi::simulators::microphone {
 namespace {
 
 using test::MicrophoneRig;
@@ -41,12 +41,12 @@ TEST(MicrophoneAndSimulator, FourFacesTellSpeedAndDirection) {
             {"faces", std::string("0 90 180 270")},
             {"direction_smoothing", 2.0}});
   rig.next_speed_m_s(20);
-  const WindReading& reading = rig.sink.readings.back();
+  const wind::WindReading& reading = rig.sink.readings.back();
   ASSERT_TRUE(reading.direction_deg) << rig.sink.last_detail();
   const double off_deg = std::remainder(*reading.direction_deg - 300.0, 360.0);
   std::printf("direction off by %.1f degrees, speed %.2f m/s\n", off_deg, reading.speed_m_s);
   EXPECT_LT(std::abs(off_deg), 15.0);
-  EXPECT_EQ(reading.quality, ReadingQuality::kGood);
+  EXPECT_EQ(reading.quality, wind::ReadingQuality::kGood);
   EXPECT_TRUE(rig.sink.refusals.empty());
 
   // Readings come four a second, each stamped with the middle of its second of sound.
@@ -113,14 +113,14 @@ TEST_F(MicrophoneFault, UnplugUnderPulseAudio) {
 
   // The source is unloaded, as when a USB microphone is pulled out.
   server_.unload(module_);
-  EXPECT_TRUE(rig_.wait_until([&] { return rig_.sink.last_state() == LinkState::kConnecting; }));
+  EXPECT_TRUE(rig_.wait_until([&] { return rig_.sink.last_state() == wind::LinkState::kConnecting; }));
   rig_.sink.readings.clear();
   EXPECT_FALSE(rig_.wait_until([&] { return !rig_.sink.readings.empty(); }, std::chrono::seconds(2)));
 
   plug_in();
   EXPECT_NEAR(rig_.next_speed_m_s(), usual_m_s, 0.25 * usual_m_s);
-  EXPECT_EQ(rig_.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(rig_.sink.last_state(), wind::LinkState::kConnected);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::simulators::microphone

@@ -19,7 +19,7 @@
 #include "tests/support/mic_sounds.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr double kRate_hz = 16000.0;
@@ -51,10 +51,10 @@ double rms_db(const test::Sound& sound, std::size_t channel = 0) {
 /// What the decoder takes for the level of the wind, on average.
 double level_db(const test::Sound& sound, bool ignores_sound = true) {
   const auto [hello, blocks] = test::blocks_of(sound);
-  MicEstimator estimator({.ignores_sound = ignores_sound}, hello);
+  drivers::decode::microphone::MicEstimator estimator({.ignores_sound = ignores_sound}, hello);
   double sum = 0.0;
   double count = 0.0;
-  for (const MicBlock& block : blocks) {
+  for (const drivers::decode::microphone::MicBlock& block : blocks) {
     const auto estimate = estimator.add(block);
     if (!estimate || !*estimate) continue;
     sum += (*estimate)->level_db;
@@ -75,8 +75,8 @@ TEST(MicrophoneSoundTest, GrowsWithTheWindToItsExponent) {
 TEST(MicrophoneSoundTest, FallsAsFrequencyToTheMinusSevenThirds) {
   const auto [hello, blocks] = test::blocks_of(sound_of({.noise_db = -140.0}, 10.0, 14.0), 20.0, 320.0);
   // Bands of a third of an octave hold f times the density: f^(-4/3).
-  std::array<double, kMicMaxBands> power{};
-  for (const MicBlock& block : blocks) {
+  std::array<double, drivers::decode::microphone::kMicMaxBands> power{};
+  for (const drivers::decode::microphone::MicBlock& block : blocks) {
     for (std::size_t band = 0; band < hello.bands; ++band) {
       power[band] += static_cast<double>(block.channels[0].power[band]) / hello.bins[band];
     }
@@ -133,16 +133,17 @@ TEST(MicrophoneSoundTest, TwoKnownWindsCalibrateTheDriverForAllOthers) {
   const double low_db = level_db(sound_of(options, 3.0, 14.0));
   const double high_db = level_db(sound_of(options, 9.0, 14.0));
   const double exponent = (high_db - low_db) / (20.0 * std::log10(9.0 / 3.0));
-  const MicPowerLaw law{.gain_m_s = 9.0 / std::pow(10.0, high_db / (20.0 * exponent)), .exponent = exponent};
+  const drivers::decode::microphone::MicPowerLaw law{.gain_m_s = 9.0 / std::pow(10.0, high_db / (20.0 * exponent)),
+                                                     .exponent = exponent};
   std::printf("exponent %.3f (made with 1.8), gain %.1f m/s\n", law.exponent, law.gain_m_s);
   EXPECT_NEAR(law.exponent, 1.8, 0.05);
 
   for (const double speed_m_s : {1.0, 2.0, 4.5, 7.0, 11.0, 15.0}) {
     const auto [hello, blocks] = test::blocks_of(sound_of(options, speed_m_s, 14.0));
-    MicEstimator estimator({.calibration = law, .noise_floor_db = -150.0}, hello);
+    drivers::decode::microphone::MicEstimator estimator({.calibration = law, .noise_floor_db = -150.0}, hello);
     double sum = 0.0;
     double count = 0.0;
-    for (const MicBlock& block : blocks) {
+    for (const drivers::decode::microphone::MicBlock& block : blocks) {
       const auto estimate = *estimator.add(block);
       if (!estimate) continue;
       sum += estimate->speed_m_s;
@@ -277,4 +278,4 @@ TEST_F(MicrophoneSocket, IsGoneWhileUnpluggedAndBackAfterwards) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::microphone

@@ -16,12 +16,12 @@
 #include "tests/support/places.hpp"
 #include "tests/support/recording_sink.hpp"
 
-namespace yuragi {
+namespace yuragi::simulators::modbus {
 namespace {
 
 using testing::HasSubstr;
 
-std::unique_ptr<Sensor> open_sensor(ParameterValues::Map given) {
+std::unique_ptr<drivers::sensor::Sensor> open_sensor(ParameterValues::Map given) {
   given.try_emplace("response_timeout", 5.0);  // even a machine under load answers within it
   given.try_emplace("profile_dir", test::source_path("drivers/modbus/profiles"));
   return driver_named("modbus").open(values_for("modbus", given));
@@ -53,18 +53,18 @@ struct Bench {
   RecordingSink sink;
   MonoTime due{};
 
-  void poll(Sensor& sensor) {
+  void poll(drivers::sensor::Sensor& sensor) {
     clock.advance_to(due);
     due = sensor.poll(clock, sink);
   }
   /// Polls until `is_there`; false if that takes longer than anything should.
   template <class Condition>
-  bool poll_until(Sensor& sensor, Condition&& is_there) {
+  bool poll_until(drivers::sensor::Sensor& sensor, Condition&& is_there) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!is_there() && std::chrono::steady_clock::now() < deadline) poll(sensor);
     return is_there();
   }
-  bool poll_for_reading(Sensor& sensor) {
+  bool poll_for_reading(drivers::sensor::Sensor& sensor) {
     const auto before = sink.readings.size();
     return poll_until(sensor, [&] { return sink.readings.size() > before; });
   }
@@ -75,7 +75,7 @@ TEST(DriverAndSimulator, AgreeOnTheWind) {
   const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
   Bench bench;
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(bench.poll_for_reading(*sensor));
-  for (const WindReading& reading : bench.sink.readings) {
+  for (const wind::WindReading& reading : bench.sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-9);
     EXPECT_EQ(reading.direction_deg, 123.0);
   }
@@ -88,15 +88,22 @@ TEST(DriverAndSimulator, CountEveryFaultPublishNoneOfItAndComeBack) {
   Bench bench;
   ASSERT_TRUE(bench.poll_for_reading(*sensor));
 
-  const auto counts = [&](Refusal why) { return [&bench, why] { return bench.sink.count(why) >= 2; }; };
+  const auto counts = [&](drivers::decode::Refusal why) {
+    return [&bench, why] { return bench.sink.count(why) >= 2; };
+  };
   const std::vector<std::pair<std::string, std::function<bool()>>> faults = {
-      {"silence", counts(Refusal::kTimeout)},
-      {"exception", counts(Refusal::kException)},
-      {"wrong-id", counts(Refusal::kNotMine)},
-      {"wrong-transaction", counts(Refusal::kNotMine)},
-      {"partial", counts(Refusal::kTooShort)},
+      {"silence", counts(drivers::decode::Refusal::kTimeout)},
+      {"exception", counts(drivers::decode::Refusal::kException)},
+      {"wrong-id", counts(drivers::decode::Refusal::kNotMine)},
+      {"wrong-transaction", counts(drivers::decode::Refusal::kNotMine)},
+      {"partial", counts(drivers::decode::Refusal::kTooShort)},
       // Random bytes look like this or that; none of it is an answer.
-      {"garbage", [&] { return bench.sink.count(Refusal::kMalformed) + bench.sink.count(Refusal::kTooShort) >= 2; }},
+      {"garbage",
+       [&] {
+         return bench.sink.count(drivers::decode::Refusal::kMalformed) +
+                    bench.sink.count(drivers::decode::Refusal::kTooShort) >=
+                2;
+       }},
       {"disconnect", [&] { return bench.sink.last_detail().starts_with("cannot connect"); }},
   };
   for (const auto& [fault, is_counted] : faults) {
@@ -105,7 +112,7 @@ TEST(DriverAndSimulator, CountEveryFaultPublishNoneOfItAndComeBack) {
     simulator.process().line_after(fault + " for 600 s");
 
     // The round that was under way may still have been whole.
-    EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_state() == LinkState::kConnecting; }));
+    EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_state() == wind::LinkState::kConnecting; }));
     bench.sink.readings.clear();
     bench.sink.refusals.clear();
     EXPECT_TRUE(bench.poll_until(*sensor, is_counted)) << bench.sink.last_detail();
@@ -130,14 +137,14 @@ TEST(DriverAndSimulator, FindEachOtherAgainAfterTheSimulatorWasKilled) {
   EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.last_detail().starts_with("cannot connect"); }));
   simulator = std::make_unique<SimulatorProcess>(std::vector<std::string>{}, port);
   EXPECT_TRUE(bench.poll_for_reading(*sensor));
-  EXPECT_EQ(bench.sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST(SimulatorProgram, FailsOnSchedule) {
   SimulatorProcess simulator({"--fault", "exception@0+600"});
   const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
   Bench bench;
-  EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.count(Refusal::kException) >= 3; }));
+  EXPECT_TRUE(bench.poll_until(*sensor, [&] { return bench.sink.count(drivers::decode::Refusal::kException) >= 3; }));
   EXPECT_TRUE(bench.sink.readings.empty());
 }
 
@@ -232,4 +239,4 @@ TEST(DriverAndPymodbus, AgreeOverASerialLine) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::simulators::modbus

@@ -11,7 +11,7 @@
 #include "tests/support/modbus_programs.hpp"
 #include "tests/support/running_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::simulators::modbus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -67,7 +67,7 @@ class PlayedDeviceTest : public testing::TestWithParam<PlayedDevice> {
     ASSERT_TRUE(sensor.wait_until([](const RecordingSink& sink) { return sink.readings.size() >= 2; }));
     sensor.look([&](const RecordingSink& sink) {
       EXPECT_TRUE(sink.refusals.empty());
-      const WindReading& reading = sink.readings.back();
+      const wind::WindReading& reading = sink.readings.back();
       EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-6);
       EXPECT_EQ(reading.direction_deg.has_value(), device.has_direction);
       EXPECT_NEAR(reading.direction_deg.value_or(135.0), 135.0, 1e-6);
@@ -152,14 +152,17 @@ TEST_P(SharedLineTest, ServesAllWhoAreWellAndSlowsThemByOneTimeOutAtMostForOneWh
 
   // One dies: it is asked less and less often, and the others go on.
   simulator_.suffer("silence");
-  ASSERT_TRUE(one->wait_until([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout) >= 1; }));
+  ASSERT_TRUE(
+      one->wait_until([](const RecordingSink& sink) { return sink.count(drivers::decode::Refusal::kTimeout) >= 1; }));
   two->forget();
   three->forget();
-  ASSERT_TRUE(one->wait_until([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout) >= 3; }));
+  ASSERT_TRUE(
+      one->wait_until([](const RecordingSink& sink) { return sink.count(drivers::decode::Refusal::kTimeout) >= 3; }));
   for (const auto* sensor : {&two, &three}) {
     EXPECT_GE((*sensor)->look([](const RecordingSink& sink) { return sink.readings.size(); }), 3U);
     EXPECT_LT(longest_pause_s(**sensor), 2 * kTimeoutOfTheDead_s);  // one, the gaps, and what else the machine does
-    EXPECT_EQ((*sensor)->look([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout); }), 0);
+    EXPECT_EQ((*sensor)->look([](const RecordingSink& sink) { return sink.count(drivers::decode::Refusal::kTimeout); }),
+              0);
   }
 
   // It is back by itself, and nobody was ever taken for another.
@@ -168,7 +171,7 @@ TEST_P(SharedLineTest, ServesAllWhoAreWellAndSlowsThemByOneTimeOutAtMostForOneWh
   EXPECT_TRUE(one->wait_until([](const RecordingSink& sink) { return sink.readings.size() >= 3; }));
   for (const auto* sensor : {&one, &two, &three}) {
     (*sensor)->look([](const RecordingSink& sink) {
-      for (const WindReading& reading : sink.readings) EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-6);
+      for (const wind::WindReading& reading : sink.readings) EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-6);
     });
   }
 }
@@ -198,7 +201,7 @@ TEST_P(SharedLineTest, WaitsForNobodyAtTheEnd) {
   }
   for (const auto& sensor : sensors) {
     sensor->end();
-    EXPECT_EQ(sensor->look([](const RecordingSink& sink) { return sink.count(Refusal::kTimeout); }), 0)
+    EXPECT_EQ(sensor->look([](const RecordingSink& sink) { return sink.count(drivers::decode::Refusal::kTimeout); }), 0)
         << "it was interrupted, and did not wait for its time-out";
   }
 }
@@ -224,7 +227,7 @@ TEST(SeparateLines, OfCupAndVaneMakeOneSensor) {
   ASSERT_TRUE(sensor.wait_until([](const RecordingSink& sink) {
     return !sink.readings.back().direction_deg && sink.last_detail().find("without direction") != std::string::npos;
   }));
-  EXPECT_EQ(sensor.look([](const RecordingSink& sink) { return sink.last_state(); }), LinkState::kConnected);
+  EXPECT_EQ(sensor.look([](const RecordingSink& sink) { return sink.last_state(); }), wind::LinkState::kConnected);
   vane.be_well();
   sensor.forget();
   EXPECT_TRUE(sensor.wait_until(has_direction));
@@ -247,4 +250,4 @@ TEST(MbpollAndSimulator, AgreeOverASerialLine) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::simulators::modbus

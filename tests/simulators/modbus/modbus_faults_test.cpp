@@ -9,7 +9,7 @@
 #include "tests/support/modbus_programs.hpp"
 #include "tests/support/running_sensor.hpp"
 
-namespace yuragi {
+namespace yuragi::simulators::modbus {
 namespace {
 
 using testing::HasSubstr;
@@ -46,27 +46,30 @@ class ModbusFaultBench {
   bool returns() {
     sensor.forget();
     return sensor.wait_until([](const RecordingSink& sink) {
-      return !sink.readings.empty() && sink.readings.back().direction_deg && sink.last_state() == LinkState::kConnected;
+      return !sink.readings.empty() && sink.readings.back().direction_deg &&
+             sink.last_state() == wind::LinkState::kConnected;
     });
   }
 
   /// A fault after which nobody can know the wind: within its time the link is down and says why, each of `refusals` is
   /// counted (twice in all), nothing comes out, and all is well again by itself.
-  void expect_loss(const std::string& fault, const std::vector<Refusal>& refusals, const std::string& text) {
+  void expect_loss(const std::string& fault, const std::vector<drivers::decode::Refusal>& refusals,
+                   const std::string& text) {
     simulator.suffer(fault);
-    ASSERT_TRUE(sensor.wait_until([](const RecordingSink& sink) { return sink.last_state() == LinkState::kConnecting; },
-                                  std::chrono::seconds(5)));
+    ASSERT_TRUE(
+        sensor.wait_until([](const RecordingSink& sink) { return sink.last_state() == wind::LinkState::kConnecting; },
+                          std::chrono::seconds(5)));
     EXPECT_THAT(detail(), HasSubstr(text));
     sensor.forget();
     const auto is_counted = [&](const RecordingSink& sink) {
-      const auto count = [&](Refusal why) { return sink.count(why); };
+      const auto count = [&](drivers::decode::Refusal why) { return sink.count(why); };
       std::ptrdiff_t all = 0;
-      for (const Refusal why : refusals) all += count(why);
+      for (const drivers::decode::Refusal why : refusals) all += count(why);
       return all >= 2 || refusals.empty();
     };
     EXPECT_TRUE(sensor.wait_until(is_counted)) << detail();
     EXPECT_EQ(published(), 0U);
-    EXPECT_EQ(state(), LinkState::kConnecting);
+    EXPECT_EQ(state(), wind::LinkState::kConnecting);
 
     simulator.be_well();
     expect_true_wind();
@@ -76,7 +79,7 @@ class ModbusFaultBench {
   void expect_true_wind() {
     ASSERT_TRUE(returns()) << detail();
     sensor.look([](const RecordingSink& sink) {
-      for (const WindReading& reading : sink.readings) {
+      for (const wind::WindReading& reading : sink.readings) {
         EXPECT_NEAR(reading.speed_m_s, kWindSpeed_m_s, 1e-9);
         EXPECT_EQ(reading.direction_deg.value_or(kWindDirection_deg), kWindDirection_deg);
       }
@@ -89,7 +92,7 @@ class ModbusFaultBench {
     EXPECT_TRUE(sensor.wait_until([&](const RecordingSink& sink) { return sink.readings.size() >= count; }));
     return sensor.look([](const RecordingSink& sink) {
       std::vector<double> speeds;
-      for (const WindReading& reading : sink.readings) speeds.push_back(reading.speed_m_s);
+      for (const wind::WindReading& reading : sink.readings) speeds.push_back(reading.speed_m_s);
       return speeds;
     });
   }
@@ -97,7 +100,7 @@ class ModbusFaultBench {
   std::size_t published() {
     return sensor.look([](const RecordingSink& sink) { return sink.readings.size(); });
   }
-  LinkState state() {
+  wind::LinkState state() {
     return sensor.look([](const RecordingSink& sink) { return sink.last_state(); });
   }
   std::string detail() {
@@ -115,7 +118,7 @@ void expect_frozen_values_as_they_are(Transport transport) {
   bench.next_speeds(2);  // one may have been under way
   const std::vector<double> frozen = bench.next_speeds(10);
   EXPECT_THAT(frozen, testing::Each(frozen.front()));
-  EXPECT_EQ(bench.state(), LinkState::kConnected);
+  EXPECT_EQ(bench.state(), wind::LinkState::kConnected);
   bench.simulator.be_well();
   EXPECT_TRUE(bench.sensor.wait_until(
       [&](const RecordingSink& sink) { return sink.readings.back().speed_m_s != frozen.front(); }));
@@ -127,7 +130,7 @@ void expect_a_spike_as_it_is(Transport transport) {
   bench.simulator.suffer("spike");
   EXPECT_TRUE(
       bench.sensor.wait_until([](const RecordingSink& sink) { return sink.readings.back().speed_m_s == 55.0; }));
-  EXPECT_EQ(bench.state(), LinkState::kConnected);
+  EXPECT_EQ(bench.state(), wind::LinkState::kConnected);
   bench.simulator.be_well();
   bench.next_speeds(2);
   bench.expect_true_wind();
@@ -139,15 +142,18 @@ void expect_split_replies_to_be_put_together(Transport transport) {
   bench.simulator.suffer("split");
   EXPECT_THAT(bench.next_speeds(5), testing::Each(testing::DoubleNear(kWindSpeed_m_s, 1e-9)));
   EXPECT_TRUE(bench.sensor.look([](const RecordingSink& sink) { return sink.refusals.empty(); }));
-  EXPECT_EQ(bench.state(), LinkState::kConnected);
+  EXPECT_EQ(bench.state(), wind::LinkState::kConnected);
   bench.simulator.be_well();
   bench.expect_true_wind();
 }
 
-const std::vector<Refusal> kNoise = {Refusal::kMalformed, Refusal::kTooShort, Refusal::kBadChecksum, Refusal::kNotMine};
+const std::vector<drivers::decode::Refusal> kNoise = {
+    drivers::decode::Refusal::kMalformed, drivers::decode::Refusal::kTooShort, drivers::decode::Refusal::kBadChecksum,
+    drivers::decode::Refusal::kNotMine};
 
 TEST(ModbusFault, Silence) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("silence", {Refusal::kTimeout}, "does not reply within 0.2 s");
+  ModbusFaultBench(Transport::kTcp)
+      .expect_loss("silence", {drivers::decode::Refusal::kTimeout}, "does not reply within 0.2 s");
 }
 TEST(ModbusFault, Freeze) {
   expect_frozen_values_as_they_are(Transport::kTcp);
@@ -162,28 +168,33 @@ TEST(ModbusFault, Split) {
   expect_split_replies_to_be_put_together(Transport::kTcp);
 }
 TEST(ModbusFault, Partial) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("partial", {Refusal::kTooShort}, "is invalid (too short)");
+  ModbusFaultBench(Transport::kTcp)
+      .expect_loss("partial", {drivers::decode::Refusal::kTooShort}, "is invalid (too short)");
 }
 TEST(ModbusFault, WrongId) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("wrong-id", {Refusal::kNotMine}, "does not reply, but other slaves do");
+  ModbusFaultBench(Transport::kTcp)
+      .expect_loss("wrong-id", {drivers::decode::Refusal::kNotMine}, "does not reply, but other slaves do");
 }
 TEST(ModbusFault, WrongTransaction) {
   ModbusFaultBench(Transport::kTcp)
-      .expect_loss("wrong-transaction", {Refusal::kNotMine}, "does not reply, but other slaves do");
+      .expect_loss("wrong-transaction", {drivers::decode::Refusal::kNotMine}, "does not reply, but other slaves do");
 }
 TEST(ModbusFault, Late) {
-  ModbusFaultBench(Transport::kTcp).expect_loss("late", {Refusal::kTimeout, Refusal::kNotMine}, "does not reply");
+  ModbusFaultBench(Transport::kTcp)
+      .expect_loss("late", {drivers::decode::Refusal::kTimeout, drivers::decode::Refusal::kNotMine}, "does not reply");
 }
 TEST(ModbusFault, Exception) {
   ModbusFaultBench(Transport::kTcp)
-      .expect_loss("exception", {Refusal::kException}, "refuses the request (exception 4, server device failure)");
+      .expect_loss("exception", {drivers::decode::Refusal::kException},
+                   "refuses the request (exception 4, server device failure)");
 }
 TEST(ModbusFault, Disconnect) {
   ModbusFaultBench(Transport::kTcp).expect_loss("disconnect", {}, "127.0.0.1:");
 }
 
 TEST(ModbusRtuFault, Silence) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("silence", {Refusal::kTimeout}, "does not reply within 0.2 s");
+  ModbusFaultBench(Transport::kRtu)
+      .expect_loss("silence", {drivers::decode::Refusal::kTimeout}, "does not reply within 0.2 s");
 }
 TEST(ModbusRtuFault, Freeze) {
   expect_frozen_values_as_they_are(Transport::kRtu);
@@ -198,26 +209,30 @@ TEST(ModbusRtuFault, Split) {
   expect_split_replies_to_be_put_together(Transport::kRtu);
 }
 TEST(ModbusRtuFault, Partial) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("partial", {Refusal::kTooShort}, "is invalid (too short)");
+  ModbusFaultBench(Transport::kRtu)
+      .expect_loss("partial", {drivers::decode::Refusal::kTooShort}, "is invalid (too short)");
 }
 TEST(ModbusRtuFault, BadChecksum) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("bad-checksum", {Refusal::kBadChecksum}, "is invalid (bad checksum)");
+  ModbusFaultBench(Transport::kRtu)
+      .expect_loss("bad-checksum", {drivers::decode::Refusal::kBadChecksum}, "is invalid (bad checksum)");
 }
 TEST(ModbusRtuFault, WrongId) {
-  ModbusFaultBench(Transport::kRtu).expect_loss("wrong-id", {Refusal::kNotMine}, "does not reply, but other slaves do");
+  ModbusFaultBench(Transport::kRtu)
+      .expect_loss("wrong-id", {drivers::decode::Refusal::kNotMine}, "does not reply, but other slaves do");
 }
 TEST(ModbusRtuFault, Late) {
   // Late by less than two time-outs: the driver lets the slave be for so long, and drops what it says then.
   ModbusFaultBench bench(Transport::kRtu, {"--turbulence", "0", "--late-by", "0.3"});
-  bench.expect_loss("late", {Refusal::kTimeout}, "does not reply");
+  bench.expect_loss("late", {drivers::decode::Refusal::kTimeout}, "does not reply");
 }
 TEST(ModbusRtuFault, Exception) {
   ModbusFaultBench(Transport::kRtu)
-      .expect_loss("exception", {Refusal::kException}, "refuses the request (exception 4, server device failure)");
+      .expect_loss("exception", {drivers::decode::Refusal::kException},
+                   "refuses the request (exception 4, server device failure)");
 }
 TEST(ModbusRtuFault, Unplug) {
   ModbusFaultBench(Transport::kRtu).expect_loss("unplug", {}, "bus");
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::simulators::modbus

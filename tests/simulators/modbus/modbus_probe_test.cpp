@@ -8,7 +8,7 @@
 
 #include "tests/support/modbus_programs.hpp"
 
-namespace yuragi {
+namespace yuragi::simulators::modbus {
 namespace {
 
 using testing::ElementsAre;
@@ -22,34 +22,34 @@ class ModbusProbeTest : public testing::Test {
   void play(Transport transport, std::vector<std::string> options) {
     options.insert(options.end(), kSteadyAir.begin(), kSteadyAir.end());
     simulator_ = std::make_unique<test::ModbusSimulatorProgram>(transport, options);
-    plan_.profiles = shipped_modbus_profiles(test::source_path("drivers/modbus/profiles"));
+    plan_.profiles = drivers::modbus::shipped_modbus_profiles(test::source_path("drivers/modbus/profiles"));
     if (transport == Transport::kTcp) {
-      ModbusLine line;
+      drivers::bus::ModbusLine line;
       line.host = "127.0.0.1";
       line.port = static_cast<std::uint16_t>(std::stoi(simulator_->where()));
       plan_.lines = {line};
     } else {
-      plan_.lines = likely_modbus_lines(simulator_->where(), plan_.profiles, {9600}, {'N'});
+      plan_.lines = drivers::modbus::likely_modbus_lines(simulator_->where(), plan_.profiles, {9600}, {'N'});
     }
   }
-  std::vector<ModbusHit> probe() {
-    std::vector<ModbusHit> hits;
-    const auto count = probe_modbus(
-        plan_, [this](const ModbusLine&, std::uint8_t, double) { ++tried_; },
-        [&hits](const ModbusHit& hit) { hits.push_back(hit); }, interruption_);
+  std::vector<drivers::modbus::ModbusHit> probe() {
+    std::vector<drivers::modbus::ModbusHit> hits;
+    const auto count = drivers::modbus::probe_modbus(
+        plan_, [this](const drivers::bus::ModbusLine&, std::uint8_t, double) { ++tried_; },
+        [&hits](const drivers::modbus::ModbusHit& hit) { hits.push_back(hit); }, interruption_);
     EXPECT_TRUE(count);
     EXPECT_EQ(*count, static_cast<int>(hits.size()));
     return hits;
   }
-  static std::vector<std::string> names_of(const ModbusHit& hit) {
+  static std::vector<std::string> names_of(const drivers::modbus::ModbusHit& hit) {
     std::vector<std::string> names;
-    for (const ModbusFit& fit : hit.fits) names.push_back(fit.profile);
+    for (const drivers::modbus::ModbusFit& fit : hit.fits) names.push_back(fit.profile);
     return names;
   }
 
   std::unique_ptr<test::ModbusSimulatorProgram> simulator_;
-  ModbusProbePlan plan_;
-  Interruption interruption_;
+  drivers::modbus::ModbusProbePlan plan_;
+  drivers::bus::Interruption interruption_;
   int tried_ = 0;
 };
 
@@ -87,17 +87,17 @@ TEST_F(ModbusProbeTest, WritesTheTableThatTheDriverTakes) {
   plan_.ids = {3};
   const auto hits = probe();
   ASSERT_EQ(hits.size(), 1U);
-  const auto named = std::ranges::find(plan_.profiles, "calypso-ulp", &NamedModbusProfile::name);
-  EXPECT_EQ(sensor_table_for(hits[0].line, hits[0].fits.at(0), named->profile, ""),
+  const auto named = std::ranges::find(plan_.profiles, "calypso-ulp", &drivers::modbus::NamedModbusProfile::name);
+  EXPECT_EQ(drivers::modbus::sensor_table_for(hits[0].line, hits[0].fits.at(0), named->profile, ""),
             "[[sensor]]\nname = \"wind\"\ndriver = \"modbus\"\nprofile = \"calypso-ulp\"\ntransport = \"tcp\"\n"
             "host = \"127.0.0.1\"\nport = " +
                 simulator_->where() + "\nspeed_slave = 3\n");
 
-  ModbusLine serial;
-  serial.framing = ModbusFraming::kRtu;
+  drivers::bus::ModbusLine serial;
+  serial.framing = drivers::decode::modbus::ModbusFraming::kRtu;
   serial.baud = 9600;
   serial.parity = 'E';
-  EXPECT_THAT(sensor_table_for(serial, hits[0].fits[0], named->profile, "/dev/serial/by-id/x"),
+  EXPECT_THAT(drivers::modbus::sensor_table_for(serial, hits[0].fits[0], named->profile, "/dev/serial/by-id/x"),
               HasSubstr("device = \"/dev/serial/by-id/x\"\nbaud = 9600\nparity = \"even\"\nspeed_slave = 3\n"));
 }
 
@@ -112,9 +112,9 @@ TEST_F(ModbusProbeTest, EndsWhenItIsInterrupted) {
   play(Transport::kRtu, {});
   plan_.ids = {1, 2, 3};
   int found = 0;
-  const auto count = probe_modbus(
-      plan_, [](const ModbusLine&, std::uint8_t, double) {},
-      [&](const ModbusHit&) {
+  const auto count = drivers::modbus::probe_modbus(
+      plan_, [](const drivers::bus::ModbusLine&, std::uint8_t, double) {},
+      [&](const drivers::modbus::ModbusHit&) {
         ++found;
         interruption_.set();
       },
@@ -124,28 +124,29 @@ TEST_F(ModbusProbeTest, EndsWhenItIsInterrupted) {
 }
 
 TEST_F(ModbusProbeTest, SaysWhyAPortCannotBeOpened) {
-  plan_.lines = likely_modbus_lines("/no/such/port", {}, {}, {});
+  plan_.lines = drivers::modbus::likely_modbus_lines("/no/such/port", {}, {}, {});
   plan_.ids = {1};
-  const auto count = probe_modbus(
-      plan_, [](const ModbusLine&, std::uint8_t, double) {}, [](const ModbusHit&) {}, interruption_);
+  const auto count = drivers::modbus::probe_modbus(
+      plan_, [](const drivers::bus::ModbusLine&, std::uint8_t, double) {}, [](const drivers::modbus::ModbusHit&) {},
+      interruption_);
   ASSERT_FALSE(count);
   EXPECT_THAT(count.error().message, HasSubstr("cannot open /no/such/port"));
 }
 
 TEST(ModbusProbeLines, BeginWithWhatMostProfilesHaveAndCanBeNarrowed) {
-  const auto profiles = shipped_modbus_profiles(test::source_path("drivers/modbus/profiles"));
-  const auto all = likely_modbus_lines("/dev/x", profiles, {}, {});
+  const auto profiles = drivers::modbus::shipped_modbus_profiles(test::source_path("drivers/modbus/profiles"));
+  const auto all = drivers::modbus::likely_modbus_lines("/dev/x", profiles, {}, {});
   ASSERT_GE(all.size(), 7U);
   EXPECT_EQ(all[0].baud, 9600);
   EXPECT_EQ(all[0].parity, 'N');
-  const auto is_lufft = [](const ModbusLine& line) { return line.baud == 19200 && line.parity == 'E'; };
+  const auto is_lufft = [](const drivers::bus::ModbusLine& line) { return line.baud == 19200 && line.parity == 'E'; };
   EXPECT_EQ(std::ranges::count_if(all, is_lufft), 1);
 
-  const auto narrow = likely_modbus_lines("/dev/x", profiles, {1200}, {'O'});
+  const auto narrow = drivers::modbus::likely_modbus_lines("/dev/x", profiles, {1200}, {'O'});
   ASSERT_EQ(narrow.size(), 1U);
   EXPECT_EQ(narrow[0].baud, 1200);
   EXPECT_EQ(narrow[0].parity, 'O');
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::simulators::modbus

@@ -12,7 +12,7 @@
 #include "tests/support/descriptor.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::modbus {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -261,4 +261,4 @@ TEST(ModbusSimulatorSetUp, RefusesTwoSlavesOfOneIdAndAnAddressThatIsTaken) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::modbus

@@ -14,7 +14,7 @@
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::simulators::text {
 namespace {
 
 using testing::HasSubstr;
@@ -46,7 +46,7 @@ class TextSimulatorProcess {
 class TextSensorRun : public test::LiveSensor {
  public:
   TextSensorRun(std::string_view driver, const ParameterValues::Map& given)
-      : LiveSensor(driver_named(driver).open(values_for(driver, given))) {}
+      : test::LiveSensor(driver_named(driver).open(values_for(driver, given))) {}
 
   bool receives(std::size_t readings) {
     wait_until([] { return true; });
@@ -55,7 +55,7 @@ class TextSensorRun : public test::LiveSensor {
   }
   void expect_the_wind() const {
     ASSERT_FALSE(sink.readings.empty());
-    for (const WindReading& reading : sink.readings) {
+    for (const wind::WindReading& reading : sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, 7.0, 0.06);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_NEAR(*reading.direction_deg, 123.0, 0.6);
@@ -133,7 +133,7 @@ TEST(TextConversation, ComesBackFromEveryFault) {
     SCOPED_TRACE(fault);
     simulator.process().type(fault + " 600");
     simulator.process().line_after(fault + " for 600 s");
-    ASSERT_TRUE(live.wait_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
+    ASSERT_TRUE(live.wait_until([&] { return live.sink.last_state() == wind::LinkState::kConnecting; }));
     EXPECT_TRUE(live.wait_until([&, said = detail] { return live.sink.last_detail().find(said) != std::string::npos; }))
         << live.sink.last_detail();
     live.expect_the_wind();  // all that came until then
@@ -142,7 +142,7 @@ TEST(TextConversation, ComesBackFromEveryFault) {
     simulator.process().line_after("no faults");
     ASSERT_TRUE(live.receives(10)) << live.sink.last_detail();
     live.expect_the_wind();
-    EXPECT_EQ(live.sink.last_state(), LinkState::kConnected);
+    EXPECT_EQ(live.sink.last_state(), wind::LinkState::kConnected);
   }
 }
 
@@ -154,7 +154,7 @@ TEST(TextConversation, FindsASimulatorAgainThatWasKilled) {
   TextSensorRun live("line", {{"device", link}, {"delay_after_open", 0.0}});
   ASSERT_TRUE(live.receives(3));
   simulator->process().end(SIGKILL);
-  EXPECT_TRUE(live.wait_until([&] { return live.sink.last_state() == LinkState::kConnecting; }));
+  EXPECT_TRUE(live.wait_until([&] { return live.sink.last_state() == wind::LinkState::kConnecting; }));
   simulator = std::make_unique<TextSimulatorProcess>("line", options);
   ASSERT_TRUE(live.receives(3)) << live.sink.last_detail();
   live.expect_the_wind();
@@ -162,7 +162,7 @@ TEST(TextConversation, FindsASimulatorAgainThatWasKilled) {
 
 /// Whoever shuts the daemon down waits for no device: nothing is read any more, and nothing is looked up.
 TEST(TextConversation, CanBeInterruptedWhateverItWaitsFor) {
-  const SystemClock clock;
+  const daemon::sensing::SystemClock clock;
   const std::int64_t udp_port = free_port(SOCK_DGRAM);
   TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--rate", "20"});
   TextSimulatorProcess talker("nmea", {"--udp", "127.0.0.1:" + std::to_string(udp_port), "--rate", "20"});
@@ -244,4 +244,4 @@ TEST(TextSimulatorProgram, RefusesACommandLineThatItCannotUse) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::simulators::text

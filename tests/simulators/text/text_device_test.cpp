@@ -6,7 +6,7 @@
 #include "simulators/text/nmea_device.hpp"
 #include "simulators/text/text_simulator.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::text {
 namespace {
 
 using testing::Contains;
@@ -177,4 +177,4 @@ TEST_F(TextSimulatorTest, IsLateOnlyWhereItIsAsked) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::text

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 using testing::AnyOf;
@@ -231,4 +231,4 @@ TEST(DaqModels, StandAnyBytesFromTheHost) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -7,7 +7,7 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// A device for tests of what carries devices, with one of everything: interface 0 is HID and says an 8-byte report
 /// every 10 ms, `W`, its number (u32) and the wind (u16 cm/s, u8 deg/2), and keeps a feature report; interface 1 sends
@@ -93,4 +93,4 @@ class EchoDevice final : public UsbDevice {
   std::uint32_t reports_ = 0;
 };
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -11,7 +11,7 @@
 
 #include "simulators/usb/fineoffset.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 using testing::ElementsAre;
@@ -397,4 +397,4 @@ TEST(SimulatedTe923, FailsAsItIsTold) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -7,7 +7,7 @@
 #include "simulators/usb/usb_port.hpp"
 #include "tests/simulators/usb/echo_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 /// The same wind all the time.
 class SteadyWind final : public PlayedWind {
@@ -33,4 +33,4 @@ inline std::vector<std::unique_ptr<UsbPort>> echo_ports(std::size_t count) {
   return ports;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

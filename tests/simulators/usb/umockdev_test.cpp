@@ -12,7 +12,7 @@
 #include "tests/simulators/usb/steady_wind.hpp"
 #include "tests/support/simulator_thread.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 using namespace std::chrono_literals;
@@ -224,4 +224,4 @@ TEST_F(UmockdevUsbTest, VanishesAndReturnsAndTheListenersAreTold) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

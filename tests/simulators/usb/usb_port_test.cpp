@@ -6,7 +6,7 @@
 
 #include "tests/simulators/usb/steady_wind.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 using testing::Contains;
@@ -130,4 +130,4 @@ TEST_F(UsbPortTest, ItsDevicesFaultsAndItsOwnAreKnown) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

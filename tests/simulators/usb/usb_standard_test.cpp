@@ -8,7 +8,7 @@
 
 #include "tests/simulators/usb/echo_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 using testing::ElementsAre;
@@ -114,4 +114,4 @@ TEST(UsbSummary, StopsWhereADescriptorMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -6,7 +6,7 @@
 
 #include "simulators/usb/usb_device.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 
 // What a USB/IP host sends, as bytes.
 
@@ -51,4 +51,4 @@ inline UsbBytes usbip_unlink(std::uint8_t number, std::uint8_t unlinked) {
   return bytes;
 }
 
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

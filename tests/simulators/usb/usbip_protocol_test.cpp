@@ -7,7 +7,7 @@
 #include "tests/simulators/usb/echo_device.hpp"
 #include "tests/simulators/usb/usbip_bytes.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 UsbipOffer echo_offer() {
@@ -117,4 +117,4 @@ TEST(UsbipProtocol, AnswersTransfers) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -13,7 +13,7 @@
 #include "tests/simulators/usb/usbip_bytes.hpp"
 #include "tests/support/descriptor.hpp"
 
-namespace yuragi::sim {
+namespace yuragi::simulators::usb {
 namespace {
 
 class UsbipServerTest : public testing::Test {
@@ -192,4 +192,4 @@ TEST_F(UsbipServerTest, TakesNoAddressThatIsTaken) {
 }
 
 }  // namespace
-}  // namespace yuragi::sim
+}  // namespace yuragi::simulators::usb

@@ -25,22 +25,22 @@ int main(int argc, char** argv) {
     kinds = {"grass", "fur", "curtain", "flag", "banner", "tree", "ripple", "flame", "flame panel", "garden"};
   }
 
-  const Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
-  report_gl_errors();
-  Stage stage;
-  RenderTarget target(width_px, height_px, 4);
+  const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  viewer::gl::report_gl_errors();
+  viewer::looks::Stage stage;
+  viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
-    const auto models = kind == "garden" ? test_garden() : std::vector{test_model(kind)};
+    const auto models = kind == "garden" ? viewer::test_garden() : std::vector{viewer::test_model(kind)};
     stage.set_scenes(models);
-    OrbitCamera camera;
+    viewer::meshes::OrbitCamera camera;
     camera.frame(stage.home(static_cast<double>(width_px) / height_px));
     for (const double strength : {0.0, 0.4, 1.0}) {
-      PoseMoment moment = rest_moment(models);
-      for (std::size_t i = 0; i < models.size(); ++i) moment.poses[i] = test_pose(models[i], 2.0, strength);
+      viewer::stream::PoseMoment moment = viewer::stream::rest_moment(models);
+      for (std::size_t i = 0; i < models.size(); ++i) moment.poses[i] = viewer::test_pose(models[i], 2.0, strength);
       stage.draw(moment, camera, target);
-      write_picture(fmt::format("{}/{}-{:.0f}.png", words[0], kind, 10 * strength), width_px, height_px,
-                    target.read_rgb());
+      viewer::write_picture(fmt::format("{}/{}-{:.0f}.png", words[0], kind, 10 * strength), width_px, height_px,
+                            target.read_rgb());
     }
   }
-  return gl_error_count() == 0 ? 0 : 1;
+  return viewer::gl::gl_error_count() == 0 ? 0 : 1;
 }

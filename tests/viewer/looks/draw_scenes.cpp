@@ -28,7 +28,7 @@ struct Weather {
 };
 
 /// "tree,species=poplar" taken apart.
-std::unique_ptr<Scene> made(const std::string& words) {
+std::unique_ptr<scenes::Scene> made(const std::string& words) {
   const std::string kind = words.substr(0, words.find(','));
   ParameterValues::Map given;
   for (std::size_t at = kind.size(); at < words.size();) {
@@ -45,7 +45,7 @@ std::unique_ptr<Scene> made(const std::string& words) {
     }
     at = end;
   }
-  for (const SceneDescription* description : scene_table()) {
+  for (const scenes::SceneDescription* description : scenes::scene_table()) {
     if (description->name != kind) continue;
     return description->make(ParameterValues::resolve(description->parameters, given).value(), {});
   }
@@ -61,28 +61,28 @@ int draw_scenes(const std::vector<std::string>& words) {
   std::vector<std::string> kinds(words.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, words.size())),
                                  words.end());
   if (kinds.empty()) {
-    for (const SceneDescription* description : scene_table()) kinds.emplace_back(description->name);
+    for (const scenes::SceneDescription* description : scenes::scene_table()) kinds.emplace_back(description->name);
   }
 
-  const Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
-  report_gl_errors();
-  Stage stage;
-  RenderTarget target(width_px, height_px, 4);
+  const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  viewer::gl::report_gl_errors();
+  viewer::looks::Stage stage;
+  viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
     for (const auto& [name, speed_m_s] : {Weather{"calm", 0.0}, Weather{"breeze", 4.0}, Weather{"storm", 18.0}}) {
-      const std::unique_ptr<Scene> scene = made(kind);
+      const std::unique_ptr<scenes::Scene> scene = made(kind);
       const std::vector<wire::SceneModel> models{{kind, kind.substr(0, kind.find(',')), scene->skeleton()}};
-      for (int i = 0; i < kSettlingTicks; ++i) scene->tick(wind_from(speed_m_s, kWindFrom_deg), kTick_s);
+      for (int i = 0; i < kSettlingTicks; ++i) scene->tick(wind::wind_from(speed_m_s, kWindFrom_deg), kTick_s);
       stage.set_scenes(models);
-      OrbitCamera camera;
+      viewer::meshes::OrbitCamera camera;
       camera.frame(stage.home(static_cast<double>(width_px) / height_px));
-      PoseMoment moment = rest_moment(models);
+      viewer::stream::PoseMoment moment = viewer::stream::rest_moment(models);
       moment.poses[0] = scene->pose();
       stage.draw(moment, camera, target);
-      write_picture(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px, target.read_rgb());
+      viewer::write_picture(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px, target.read_rgb());
     }
   }
-  return gl_error_count() == 0 ? 0 : 1;
+  return viewer::gl::gl_error_count() == 0 ? 0 : 1;
 }
 
 }  // namespace

@@ -41,15 +41,15 @@ constexpr int kGap_px = 4;
 constexpr double kBefore_s = 120.0;  // the recording is heard from so long before the first picture
 
 /// "HEADING,PITCH,DISTANCE" around the middle of what is shown, a little above the ground; or with ",HEIGHT" that high.
-OrbitCamera camera_of(const std::string& text) {
-  CameraPlace place;
+viewer::meshes::OrbitCamera camera_of(const std::string& text) {
+  viewer::meshes::CameraPlace place;
   double height_m = 0.4;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf", &place.heading_deg, &place.pitch_deg, &place.distance_m, &height_m) <
       3) {
     throw std::runtime_error("--camera: is \"" + text + "\"; allowed: HEADING,PITCH,DISTANCE or with ,HEIGHT behind");
   }
   place.target_m.y = static_cast<float>(height_m);
-  OrbitCamera camera;
+  viewer::meshes::OrbitCamera camera;
   camera.frame(place);
   return camera;
 }
@@ -59,13 +59,13 @@ using Picture = std::vector<std::uint8_t>;
 /// How far the blades of a meadow lean, seen from above, north upward: means over squares of its ground.
 class LeanMap {
  public:
-  explicit LeanMap(const StrandSkeleton& meadow) : meadow_(meadow) {
+  explicit LeanMap(const pose::StrandSkeleton& meadow) : meadow_(meadow) {
     for (std::size_t i = 0; i < meadow.strand_count; ++i) {
       reach_m_ = std::max({reach_m_, std::abs(meadow.root_x_m[i]), std::abs(meadow.root_z_m[i])});
     }
   }
 
-  void add(const StrandPose& pose) {
+  void add(const pose::StrandPose& pose) {
     std::vector<double> sums(kCells * kCells), counts(kCells * kCells);
     for (std::size_t i = 0; i < meadow_.strand_count; ++i) {
       const std::size_t cell = cell_of(meadow_.root_z_m[i]) * kCells + cell_of(meadow_.root_x_m[i]);
@@ -120,7 +120,7 @@ class LeanMap {
     return std::min(static_cast<std::size_t>(part * static_cast<float>(kCells)), kCells - 1);
   }
 
-  const StrandSkeleton& meadow_;
+  const pose::StrandSkeleton& meadow_;
   float reach_m_ = 0.1F;
   std::vector<std::vector<double>> leans_;  // a moment each
 };
@@ -145,7 +145,7 @@ class Sheet {
       std::copy_n(from, line, rgb_.begin() + 3 * (static_cast<std::ptrdiff_t>(row_px) * width_px_ + column_px));
     }
   }
-  void write(const std::string& file) const { write_picture(file, width_px_, height_px_, rgb_); }
+  void write(const std::string& file) const { viewer::write_picture(file, width_px_, height_px_, rgb_); }
 
  private:
   int columns_, cell_width_px_, cell_height_px_, width_px_, height_px_;
@@ -153,43 +153,46 @@ class Sheet {
 };
 
 void make_strip(const StripOptions& options) {
-  const Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
-  report_gl_errors();
-  Stage stage;
-  RenderTarget target(options.width_px, options.height_px, 4);
-  std::vector<OrbitCamera> cameras;
+  const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  viewer::gl::report_gl_errors();
+  viewer::looks::Stage stage;
+  viewer::gl::RenderTarget target(options.width_px, options.height_px, 4);
+  std::vector<viewer::meshes::OrbitCamera> cameras;
   for (const std::string& text : options.cameras) cameras.push_back(camera_of(text));
   // Each camera's block begins with a row of its own.
   const int rows = (options.moments + options.columns - 1) / options.columns;
   const int blocks = static_cast<int>(cameras.size()) + (options.is_lean_shown ? 1 : 0);
   Sheet sheet(options, blocks * rows * options.columns);
 
-  const Config config = options.config.empty() ? default_config() : load_config(options.config);
+  const daemon::settings::Config config =
+      options.config.empty() ? daemon::settings::default_config() : daemon::settings::load_config(options.config);
   const double tick_s = 1.0 / config.animation.rate_hz;
   const double start_s = std::max(0.0, options.from_s - kBefore_s);
   const double first_s = options.from_s - start_s;
-  PlayerOptions player;
+  drivers::windlog::PlayerOptions player;
   player.playback.start = fmt::format("{}", start_s);
   int taken = 0;
   std::vector<std::vector<Picture>> pictures(cameras.size());
   std::optional<LeanMap> lean;
-  PoseMoment moment;
-  const UseTick take = [&](double time_s, const Animation& animation) {
+  viewer::stream::PoseMoment moment;
+  const daemon::tools::offline::UseTick take = [&](double time_s, const daemon::animation::Animation& animation) {
     if (taken == options.moments || time_s < first_s + taken * options.step_s - 0.5 * tick_s) return;
     if (taken == 0) {
       stage.set_scenes(animation.describe().scenes);
-      moment = rest_moment(stage.scenes());
-      if (options.is_lean_shown) lean.emplace(std::get<StrandSkeleton>(stage.scenes()[0].skeleton));
+      moment = viewer::stream::rest_moment(stage.scenes());
+      if (options.is_lean_shown) lean.emplace(std::get<pose::StrandSkeleton>(stage.scenes()[0].skeleton));
     }
     for (std::size_t scene = 0; scene < moment.poses.size(); ++scene) moment.poses[scene] = *animation.poses()[scene];
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       stage.draw(moment, cameras[i], target);
       pictures[i].push_back(target.read_rgb());
     }
-    if (lean) lean->add(std::get<StrandPose>(moment.poses[0]));
+    if (lean) lean->add(std::get<pose::StrandPose>(moment.poses[0]));
     ++taken;
   };
-  replay_in_lockstep(config, options.recording, player, first_s + options.moments * options.step_s, {}, take).value();
+  daemon::tools::offline::replay_in_lockstep(config, options.recording, player,
+                                             first_s + options.moments * options.step_s, {}, take)
+      .value();
   if (taken < options.moments) {
     throw std::runtime_error(fmt::format("{} ends after {} of {} pictures", options.recording, taken, options.moments));
   }
@@ -224,7 +227,7 @@ int main(int argc, char** argv) {
         ->allow_extra_args(false);
     CLI11_PARSE(app, argc, argv);
     make_strip(options);
-    return gl_error_count() == 0 ? 0 : 1;
+    return viewer::gl::gl_error_count() == 0 ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "film_strip: %s\n", error.what());
     return 70;

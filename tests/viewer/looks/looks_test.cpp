@@ -13,7 +13,7 @@
 #include "viewer/looks/stage.hpp"
 #include "viewer/window.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::looks {
 namespace {
 
 constexpr int kWidth_px = 320;
@@ -38,7 +38,7 @@ class OnScreenTest : public testing::Test {
     ::setenv("DISPLAY", screen_->name().c_str(), 1);  // NOLINT(concurrency-mt-unsafe): before any thread begins
     window_ =
         std::make_unique<Window>(WindowOptions{.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
-    report_gl_errors();
+    gl::report_gl_errors();
   }
   static void TearDownTestSuite() {
     window_.reset();
@@ -47,13 +47,13 @@ class OnScreenTest : public testing::Test {
 
   void SetUp() override {
     stage_ = std::make_unique<Stage>();
-    target_ = std::make_unique<RenderTarget>(kWidth_px, kHeight_px, 1);
-    errors_before_ = gl_error_count();
+    target_ = std::make_unique<gl::RenderTarget>(kWidth_px, kHeight_px, 1);
+    errors_before_ = gl::gl_error_count();
   }
   void TearDown() override {
     target_.reset();
     stage_.reset();
-    EXPECT_EQ(gl_error_count(), errors_before_);
+    EXPECT_EQ(gl::gl_error_count(), errors_before_);
   }
 
   void show(const std::vector<wire::SceneModel>& models) {
@@ -63,7 +63,7 @@ class OnScreenTest : public testing::Test {
   }
 
   Pixels draw(double strength, const std::vector<float>& opacities, double time_s = 2.0) {
-    PoseMoment moment = rest_moment(models_);
+    stream::PoseMoment moment = stream::rest_moment(models_);
     for (std::size_t i = 0; i < models_.size(); ++i) moment.poses[i] = test_pose(models_[i], time_s, strength);
     moment.opacities = opacities;
     stage_->draw(moment, camera_, *target_);
@@ -73,8 +73,8 @@ class OnScreenTest : public testing::Test {
 
   std::vector<wire::SceneModel> models_;
   std::unique_ptr<Stage> stage_;
-  OrbitCamera camera_;
-  std::unique_ptr<RenderTarget> target_;
+  meshes::OrbitCamera camera_;
+  std::unique_ptr<gl::RenderTarget> target_;
 
  private:
   static inline std::unique_ptr<VirtualScreen> screen_;
@@ -123,8 +123,9 @@ TEST_P(LooksTest, FadesByHalfOfItsPixels) {
 TEST_P(LooksTest, DrawsNothingOfAPoseThatIsNotItsOwn) {
   show({test_model(GetParam())});
   const Pixels without = draw(0.0, 0.0F);
-  PoseMoment moment = rest_moment(models_);
-  moment.poses[0] = std::holds_alternative<StrandPose>(moment.poses[0]) ? Pose(GridPose{}) : Pose(StrandPose{});
+  stream::PoseMoment moment = stream::rest_moment(models_);
+  moment.poses[0] = std::holds_alternative<pose::StrandPose>(moment.poses[0]) ? pose::Pose(pose::GridPose{})
+                                                                              : pose::Pose(pose::StrandPose{});
   stage_->draw(moment, camera_, *target_);
   EXPECT_EQ(target_->read_rgb(), without);
 }
@@ -199,22 +200,22 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
 }
 
 TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
-  StrandSkeleton no_strands;
+  pose::StrandSkeleton no_strands;
   no_strands.links_per_strand = 1;
-  TreeSkeleton no_branches;
+  pose::TreeSkeleton no_branches;
   no_branches.levels.resize(1);
   no_branches.levels[0].strands.links_per_strand = 1;
-  SurfaceSkeleton no_flame;
+  pose::SurfaceSkeleton no_flame;
   no_flame.ramp_rgba.resize(1024);
   show({{"a", "grass", no_strands},
         {"b", "fur", no_strands},
-        {"c", "curtain", GridSkeleton{}},
-        {"d", "tree", TreeSkeleton{}},
+        {"c", "curtain", pose::GridSkeleton{}},
+        {"d", "tree", pose::TreeSkeleton{}},
         {"e", "tree", no_branches},
-        {"f", "ripple", SurfaceSkeleton{}},
+        {"f", "ripple", pose::SurfaceSkeleton{}},
         {"g", "flame", no_flame}});
   EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));
-  stage_->draw(rest_moment(models_), camera_, *target_);
+  stage_->draw(stream::rest_moment(models_), camera_, *target_);
 }
 
 TEST_F(StageTest, IsAtHomeInNothing) {
@@ -224,4 +225,4 @@ TEST_F(StageTest, IsAtHomeInNothing) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::looks

@@ -6,13 +6,13 @@
 
 #include "tests/viewer/test_meadow.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 class BladesTest : public testing::Test {
  protected:
-  const Skeleton meadow_ = test_meadow(40, 8.0);
-  const StrandSkeleton& strands_ = std::get<StrandSkeleton>(meadow_);
+  const pose::Skeleton meadow_ = test_meadow(40, 8.0);
+  const pose::StrandSkeleton& strands_ = std::get<pose::StrandSkeleton>(meadow_);
   BladeSorter sorter_{strands_};
 
   View view(const CameraPlace& place) const {
@@ -78,7 +78,7 @@ TEST_F(BladesTest, AreDrawnMoreFinelyTheNearerTheyAre) {
 }
 
 TEST(Blades, OfOneLinkAndOfNoStrandsAreNoTrouble) {
-  StrandSkeleton empty;
+  pose::StrandSkeleton empty;
   empty.links_per_strand = 1;
   BladeSorter none(empty);
   OrbitCamera camera;
@@ -89,4 +89,4 @@ TEST(Blades, OfOneLinkAndOfNoStrandsAreNoTrouble) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

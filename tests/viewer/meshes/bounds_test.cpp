@@ -4,7 +4,7 @@
 
 #include "tests/viewer/test_models.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 Bounds bounds_of_model(std::string_view kind) {
@@ -37,8 +37,9 @@ TEST(Bounds, OfWaterAndFlameAreTheirSurfaces) {
 }
 
 TEST(Bounds, OfNothingAreNothing) {
-  for (const Skeleton& skeleton :
-       {Skeleton(StrandSkeleton{}), Skeleton(GridSkeleton{}), Skeleton(TreeSkeleton{}), Skeleton(SurfaceSkeleton{})}) {
+  for (const pose::Skeleton& skeleton :
+       {pose::Skeleton(pose::StrandSkeleton{}), pose::Skeleton(pose::GridSkeleton{}),
+        pose::Skeleton(pose::TreeSkeleton{}), pose::Skeleton(pose::SurfaceSkeleton{})}) {
     EXPECT_EQ(bounds_of(skeleton).low_m, glm::vec3(0.0F));
     EXPECT_EQ(bounds_of(skeleton).high_m, glm::vec3(0.0F));
   }
@@ -51,4 +52,4 @@ TEST(Bounds, UnitedHoldBoth) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

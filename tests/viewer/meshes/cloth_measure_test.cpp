@@ -6,12 +6,14 @@
 
 #include "tests/viewer/test_models.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 class ClothMeasureTest : public testing::Test {
  protected:
-  static GridSkeleton cloth(std::string_view kind) { return std::get<GridSkeleton>(test_model(kind).skeleton); }
+  static pose::GridSkeleton cloth(std::string_view kind) {
+    return std::get<pose::GridSkeleton>(test_model(kind).skeleton);
+  }
 };
 
 glm::vec2 place_on(const ClothMeasure& lies, std::size_t column, std::size_t row) {
@@ -19,7 +21,7 @@ glm::vec2 place_on(const ClothMeasure& lies, std::size_t column, std::size_t row
 }
 
 TEST_F(ClothMeasureTest, OfAFlagRunsFromTheHoistAndDownFromItsTop) {
-  GridSkeleton flag = cloth("flag");
+  pose::GridSkeleton flag = cloth("flag");
   const ClothMeasure from_top = measure(flag);
   EXPECT_NEAR(from_top.size_m.x, 1.8F, 1e-3F);
   EXPECT_NEAR(from_top.size_m.y, 1.2F, 1e-3F);
@@ -67,4 +69,4 @@ TEST_F(ClothMeasureTest, NothingIsNoTrouble) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

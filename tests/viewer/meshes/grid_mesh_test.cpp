@@ -7,7 +7,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 TEST(GridTriangles, CoverEachCellTwiceAndLeaveOutThePadding) {
@@ -120,4 +120,4 @@ TEST(GridNormals, StayFiniteWherePointsFallTogether) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 OrbitCamera camera_at(const CameraPlace& place) {
@@ -164,4 +164,4 @@ TEST(PlaceAround, HasEveryCornerInThePictureAndLooksAtTheBroadSide) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -7,7 +7,7 @@
 #include "viewer/looks/flame_renderer.hpp"
 #include "viewer/looks/water_renderer.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 void expect_sound(const SolidMesh& mesh) {
@@ -50,29 +50,29 @@ TEST(SolidMesh, PiecesOfNoSizeAreLeftOut) {
 }
 
 TEST(WaterBasin, StandsAroundTheWaterAndOpensTheGroundUnderIt) {
-  const auto water = std::get<SurfaceSkeleton>(test_model("ripple").skeleton);
-  const SolidMesh basin = water_basin(water);
+  const auto water = std::get<pose::SurfaceSkeleton>(test_model("ripple").skeleton);
+  const SolidMesh basin = looks::water_basin(water);
   expect_sound(basin);
   for (const SolidVertex& vertex : basin.vertices()) {
     const float reach_m = std::max(std::abs(vertex.place_m.x), std::abs(vertex.place_m.z));
     EXPECT_GT(reach_m, 2.5F - 1e-3F);
     EXPECT_LT(reach_m, 3.0F);
   }
-  const SolidMesh hole = water_hole(water);
+  const SolidMesh hole = looks::water_hole(water);
   ASSERT_EQ(hole.vertices().size(), 4U);
   for (const SolidVertex& vertex : hole.vertices()) EXPECT_EQ(vertex.place_m.y, 0.0F);
-  EXPECT_TRUE(water_basin({}).vertices().empty());
-  EXPECT_TRUE(water_hole({}).vertices().empty());
+  EXPECT_TRUE(looks::water_basin({}).vertices().empty());
+  EXPECT_TRUE(looks::water_hole({}).vertices().empty());
 }
 
 TEST(FlameBowl, IsUnderTheFlame) {
   for (const char* kind : {"flame", "flame panel"}) {
-    const SolidMesh bowl = flame_bowl(std::get<SurfaceSkeleton>(test_model(kind).skeleton));
+    const SolidMesh bowl = looks::flame_bowl(std::get<pose::SurfaceSkeleton>(test_model(kind).skeleton));
     expect_sound(bowl);
     for (const SolidVertex& vertex : bowl.vertices()) EXPECT_LT(vertex.place_m.y, 0.65F) << kind;
   }
-  EXPECT_TRUE(flame_bowl({}).vertices().empty());
+  EXPECT_TRUE(looks::flame_bowl({}).vertices().empty());
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

@@ -9,12 +9,12 @@
 #include "engine/pose/tree_kinematics.hpp"
 #include "tests/viewer/test_models.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::meshes {
 namespace {
 
 class TreePartsTest : public testing::Test {
  protected:
-  const TreeSkeleton tree_ = std::get<TreeSkeleton>(test_model("tree").skeleton);
+  const pose::TreeSkeleton tree_ = std::get<pose::TreeSkeleton>(test_model("tree").skeleton);
 
   View view_from(double distance_m) const {
     OrbitCamera camera;
@@ -25,10 +25,10 @@ class TreePartsTest : public testing::Test {
 
 TEST_F(TreePartsTest, FindTheJointThatTheyGrowFrom) {
   // In the rest pose each root of the skeleton is the parent's joint, in the array of all levels as it is uploaded.
-  TreeJoints joints(tree_);
-  const auto rest = std::get<TreePose>(rest_pose(tree_));
-  const TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
-  ASSERT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
+  pose::TreeJoints joints(tree_);
+  const auto rest = std::get<pose::TreePose>(pose::rest_pose(tree_));
+  const pose::TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
+  ASSERT_EQ(job.run(), pose::TreeKinematicsJob::Problem::kNone);
   std::vector<float> all;
   for (std::size_t level = 0; level < tree_.levels.size(); ++level) {
     EXPECT_EQ(first_joint_at(tree_, level), all.size());
@@ -41,7 +41,7 @@ TEST_F(TreePartsTest, FindTheJointThatTheyGrowFrom) {
     for (const TreePart& part : tree_parts(tree_, level)) {
       EXPECT_EQ(part.root_at < 0, level == 0);
       for (std::size_t axis = 0; axis < 3 && part.root_at >= 0; ++axis) {
-        const auto at = static_cast<std::size_t>(part.root_at) + axis * kStrandsPerBlock;
+        const auto at = static_cast<std::size_t>(part.root_at) + axis * pose::kStrandsPerBlock;
         ASSERT_NEAR(all.at(at), part.root_m[axis], 1e-4F);
       }
     }
@@ -61,10 +61,10 @@ TEST_F(TreePartsTest, AreOneAStrandWithTheLevelsRadii) {
 
 TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
   constexpr std::size_t kLeafLevel = 3;
-  TreeJoints joints(tree_);
-  const auto rest = std::get<TreePose>(rest_pose(tree_));
-  const TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
-  ASSERT_EQ(job.run(), TreeKinematicsJob::Problem::kNone);
+  pose::TreeJoints joints(tree_);
+  const auto rest = std::get<pose::TreePose>(pose::rest_pose(tree_));
+  const pose::TreeKinematicsJob job{.skeleton = &tree_, .pose = &rest, .row = {}, .joints = &joints};
+  ASSERT_EQ(job.run(), pose::TreeKinematicsJob::Problem::kNone);
   const std::size_t links = tree_.levels[kLeafLevel].strands.links_per_strand;
   const auto leaves = tree_parts(tree_, kLeafLevel);
   std::array<float, 3> middle_m{};
@@ -75,7 +75,7 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
   }
   float outward = 0.0F;
   for (const TreePart& leaf : leaves) {
-    const JointPosition tip = joints.level(kLeafLevel).joint(leaf.strand, links - 1);
+    const pose::JointPosition tip = joints.level(kLeafLevel).joint(leaf.strand, links - 1);
     const std::array<float, 3> way_m = {tip.x_m - leaf.root_m[0], tip.y_m - leaf.root_m[1], tip.z_m - leaf.root_m[2]};
     const float length_m = std::hypot(way_m[0], way_m[1], way_m[2]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -89,25 +89,25 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
 
 TEST_F(TreePartsTest, LeavesHaveTheColorsOfTheirFoliage) {
   for (const TreePart& leaf : tree_parts(tree_, 3)) EXPECT_GT(leaf.tint[1], leaf.tint[0]) << "green";
-  TreeSkeleton tree = tree_;
-  tree.foliage = FoliageColor::kAutumn;
+  pose::TreeSkeleton tree = tree_;
+  tree.foliage = pose::FoliageColor::kAutumn;
   for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
-  tree.foliage = FoliageColor::kBlossom;
+  tree.foliage = pose::FoliageColor::kBlossom;
   for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[2], 0.2F) << "pale pink";
 }
 
 TEST_F(TreePartsTest, HaveMoreRingsTheNearerTheyAre) {
   const Bounds bounds = bounds_of(tree_);
-  const TreeLevel& trunk = tree_.levels[0];
+  const pose::TreeLevel& trunk = tree_.levels[0];
   EXPECT_EQ(tree_rings(trunk, bounds, view_from(5.0)), trunk.strands.links_per_strand);
   EXPECT_EQ(tree_rings(trunk, bounds, view_from(200.0)), kMinTreeRings);
   EXPECT_GE(tree_rings(tree_.levels[1], bounds, view_from(10.0)), tree_rings(tree_.levels[1], bounds, view_from(40.0)));
 
   // Never more than there are links.
-  TreeLevel stump = trunk;
+  pose::TreeLevel stump = trunk;
   stump.strands.links_per_strand = 1;
   EXPECT_EQ(tree_rings(stump, bounds, view_from(5.0)), 1U);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::meshes

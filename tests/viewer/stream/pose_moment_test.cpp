@@ -6,15 +6,15 @@
 #include "tests/viewer/test_models.hpp"
 #include "viewer/stream/pose_timeline.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 namespace {
 
 /// A moment of the garden: each number of each pose is its own place in the order, times `factor`.
 PoseMoment numbered(const std::vector<wire::SceneModel>& scenes, float factor, float opacity) {
   PoseMoment moment = rest_moment(scenes);
   float number = 0.0F;
-  for (Pose& pose : moment.poses) {
-    for_each_array(pose, [&](std::span<float> values) {
+  for (pose::Pose& pose : moment.poses) {
+    pose::for_each_array(pose, [&](std::span<float> values) {
       for (float& value : values) value = factor * ++number;
     });
   }
@@ -34,7 +34,7 @@ class AllKindsTest : public testing::Test {
     frame.poses = moment.poses;
     frame.opacities = moment.opacities;
     frame.opacities.back() = last_opacity;
-    if (last_opacity == 0.0F) frame.poses.back() = StrandPose{};  // as it is decoded
+    if (last_opacity == 0.0F) frame.poses.back() = pose::StrandPose{};  // as it is decoded
     return frame;
   }
 };
@@ -43,7 +43,7 @@ TEST_F(AllKindsTest, RestInStillAirAndAreAllThere) {
   const PoseMoment rest = rest_moment(garden_);
   ASSERT_EQ(rest.poses.size(), garden_.size());
   for (std::size_t i = 0; i < garden_.size(); ++i) {
-    EXPECT_TRUE(fits(rest.poses[i], garden_[i].skeleton)) << garden_[i].name;
+    EXPECT_TRUE(pose::fits(rest.poses[i], garden_[i].skeleton)) << garden_[i].name;
     EXPECT_EQ(rest.opacities.at(i), 1.0F);
   }
 }
@@ -71,8 +71,8 @@ TEST_F(AllKindsTest, AreBlendedNumberByNumber) {
   PoseMoment out = rest_moment(garden_);
   blend(a, b, 0.25, out);
   float number = 0.0F;
-  for (const Pose& pose : out.poses) {
-    for_each_array(pose, [&](std::span<const float> values) {
+  for (const pose::Pose& pose : out.poses) {
+    pose::for_each_array(pose, [&](std::span<const float> values) {
       for (const float value : values) {
         number += 1.0F;
         ASSERT_EQ(value, 1.5F * number);
@@ -105,8 +105,8 @@ TEST_F(AllKindsTest, AreHeldByTheHistoryAndSampledBetween) {
   const PoseMoment expected = numbered(garden_, 1.5F, 0.75F);
   for (std::size_t i = 0; i < garden_.size(); ++i) {
     EXPECT_EQ(out.opacities[i], 0.75F);
-    const PoseArrays<const float> got(out.poses[i]);
-    const PoseArrays<const float> wanted(expected.poses[i]);
+    const pose::PoseArrays<const float> got(out.poses[i]);
+    const pose::PoseArrays<const float> wanted(expected.poses[i]);
     for (std::size_t array = 0; array < got.size(); ++array) {
       for (std::size_t n = 0; n < got[array].size(); ++n) ASSERT_EQ(got[array][n], wanted[array][n]);
     }
@@ -128,7 +128,7 @@ TEST_F(AllKindsTest, ComeBackFromHidingWithoutAJump) {
     ASSERT_TRUE(timeline.accept(sent, local_s));
     local_s += 1.0 / 60.0;
     const PoseMoment& shown = timeline.advance(local_s);
-    ASSERT_TRUE(fits(shown.poses.back(), garden_.back().skeleton));
+    ASSERT_TRUE(pose::fits(shown.poses.back(), garden_.back().skeleton));
     largest_step = std::max(largest_step, static_cast<double>(std::abs(shown.opacities.back() - last)));
     last = shown.opacities.back();
     was_hidden = was_hidden || last == 0.0F;
@@ -148,4 +148,4 @@ TEST_F(AllKindsTest, AreRefusedWhereAShownSceneHasNoPose) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 namespace {
 
 constexpr double kTick_s = 1.0 / 60.0;
@@ -15,7 +15,7 @@ constexpr double kLatency_s = 0.013;   // of every frame that is not late
 constexpr double kSenderEpoch_s = 40;  // the sender's clock against ours
 
 wire::SceneModel meadow(std::size_t strands) {
-  StrandSkeleton skeleton;
+  pose::StrandSkeleton skeleton;
   skeleton.strand_count = strands;
   skeleton.links_per_strand = 2;
   skeleton.root_x_m.resize(skeleton.padded_count());
@@ -23,7 +23,7 @@ wire::SceneModel meadow(std::size_t strands) {
 }
 
 float first_bend(const PoseMoment& moment) {
-  return std::get<StrandPose>(moment.poses.at(0)).bend_east_rad.at(0);
+  return std::get<pose::StrandPose>(moment.poses.at(0)).bend_east_rad.at(0);
 }
 
 /// A timeline, a sender whose first strand bends by bend_at(sender's time), and a screen, moved on by hand.
@@ -39,8 +39,8 @@ class Theatre {
     wire::Frame frame;
     frame.info.time_s = sender_s;
     const auto bend = static_cast<float>(bend_at_(sender_s));
-    const std::vector<float> bends(padded_to_blocks(strands_), bend);
-    frame.poses.emplace_back(StrandPose{bends, bends});
+    const std::vector<float> bends(pose::padded_to_blocks(strands_), bend);
+    frame.poses.emplace_back(pose::StrandPose{bends, bends});
     frame.opacities.push_back(1.0F);
     return frame;
   }
@@ -269,16 +269,16 @@ TEST(PoseTimeline, KeepsASingleFrameOnTheScreen) {
 TEST(PoseTimeline, BlendsWindAsVectorsSoThatNorthIsCrossedOnTheShortWay) {
   Theatre theatre([](double) { return 0.0; });
   wire::Frame from_350 = theatre.frame(1.0);
-  from_350.info.wind.wind = wind_from(5.0, 350.0);
+  from_350.info.wind.wind = wind::wind_from(5.0, 350.0);
   wire::Frame from_10 = theatre.frame(1.1);
-  from_10.info.wind.wind = wind_from(5.0, 10.0);
+  from_10.info.wind.wind = wind::wind_from(5.0, 10.0);
   ASSERT_TRUE(theatre.timeline.accept(from_350, 100.0));
   ASSERT_TRUE(theatre.timeline.accept(from_10, 100.1));
 
   bool has_crossed = false;
   for (int i = 0; i < 200; ++i) {
-    const WindVector wind = theatre.timeline.advance(100.1 + 0.002 * i).wind.wind;
-    const double direction_deg = direction_from_deg(wind);
+    const wind::WindVector wind = theatre.timeline.advance(100.1 + 0.002 * i).wind.wind;
+    const double direction_deg = wind::direction_from_deg(wind);
     EXPECT_TRUE(direction_deg > 349.99 || direction_deg < 10.01) << direction_deg;
     EXPECT_GT(speed_of(wind), 4.9);
     has_crossed = has_crossed || direction_deg < 1.0 || direction_deg > 359.0;
@@ -312,7 +312,8 @@ TEST(PoseTimeline, StartsAnewFromTheRestPoseWithOtherScenes) {
   theatre.timeline.set_scenes(scenes);
   EXPECT_EQ(theatre.timeline.playback(), Playback::kNothing);
   const PoseMoment& shown = theatre.timeline.advance(theatre.now_s);
-  EXPECT_EQ(std::get<StrandPose>(shown.poses.at(0)).bend_east_rad, std::vector<float>(padded_to_blocks(40)));
+  EXPECT_EQ(std::get<pose::StrandPose>(shown.poses.at(0)).bend_east_rad,
+            std::vector<float>(pose::padded_to_blocks(40)));
 }
 
 TEST(PoseHistory, HoldsABoundedNumberOfMomentsAndExchangesBuffers) {
@@ -323,9 +324,9 @@ TEST(PoseHistory, HoldsABoundedNumberOfMomentsAndExchangesBuffers) {
   ASSERT_EQ(history.capacity(), PoseHistory::kMaxMoments);
   for (std::size_t i = 0; i < 3 * history.capacity(); ++i) {
     moment.time_s = static_cast<double>(i);
-    const float* const handed_in = std::get<StrandPose>(moment.poses[0]).bend_east_rad.data();
+    const float* const handed_in = std::get<pose::StrandPose>(moment.poses[0]).bend_east_rad.data();
     history.push(moment);
-    EXPECT_EQ(std::get<StrandPose>(history.newest().poses[0]).bend_east_rad.data(), handed_in);
+    EXPECT_EQ(std::get<pose::StrandPose>(history.newest().poses[0]).bend_east_rad.data(), handed_in);
   }
   EXPECT_EQ(history.size(), PoseHistory::kMaxMoments);
   EXPECT_EQ(history.oldest().time_s, static_cast<double>(2 * PoseHistory::kMaxMoments));
@@ -358,4 +359,4 @@ TEST(BackAndForth, StaysInTheSpanAndSlowsToRestAtTheTurns) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -7,15 +7,15 @@
 
 #include "tests/viewer/stream_server.hpp"
 
-namespace yuragi {
+namespace yuragi::viewer::stream {
 namespace {
 
 using testing::HasSubstr;
 
 const wire::Bytes kHello = wire::encode(wire::Hello{wire::kProtocol, "a test", 60.0});
 
-Skeleton one_strand() {
-  StrandSkeleton strand;
+pose::Skeleton one_strand() {
+  pose::StrandSkeleton strand;
   strand.strand_count = 1;
   strand.links_per_strand = 3;
   const std::vector<float> zeros(strand.padded_count());
@@ -31,10 +31,10 @@ wire::Bytes scenes_named(const std::string& name) {
 }
 
 wire::Bytes frame_of(std::uint64_t sequence) {
-  static const Skeleton kSkeleton = one_strand();
-  const Pose pose = StrandPose{std::vector<float>(16, 0.25F), std::vector<float>(16, -0.5F)};
-  const std::array<const Skeleton*, 1> skeletons{&kSkeleton};
-  const std::array<const Pose*, 1> poses{&pose};
+  static const pose::Skeleton kSkeleton = one_strand();
+  const pose::Pose pose = pose::StrandPose{std::vector<float>(16, 0.25F), std::vector<float>(16, -0.5F)};
+  const std::array<const pose::Skeleton*, 1> skeletons{&kSkeleton};
+  const std::array<const pose::Pose*, 1> poses{&pose};
   wire::FrameEncoder encoder;
   const auto bytes = encoder.encode({.sequence = sequence, .tick = sequence, .time_s = 0.1, .utc_ns = 0, .wind = {}},
                                     skeletons, poses);
@@ -104,7 +104,7 @@ TEST(StreamConnection, SubscribesAndHandsOverScenesFramesAndSensors) {
   EXPECT_THAT(viewer.scenes, testing::ElementsAre("meadow"));
   ASSERT_EQ(viewer.frames.size(), 2U);
   EXPECT_EQ(viewer.frames[1].info.sequence, 2U);
-  EXPECT_NEAR(std::get<StrandPose>(viewer.frames[1].poses.at(0)).bend_south_rad.at(0), -0.5F, 1e-3F);
+  EXPECT_NEAR(std::get<pose::StrandPose>(viewer.frames[1].poses.at(0)).bend_south_rad.at(0), -0.5F, 1e-3F);
   EXPECT_EQ(viewer.sensors->clients, 7U);
   EXPECT_EQ(viewer.connection.status().state, StreamState::kConnected);
   EXPECT_THAT(viewer.connection.status().text, HasSubstr("a test"));
@@ -228,4 +228,4 @@ TEST(StreamConnection, StopsWhileItWaitsToTryAgain) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::viewer::stream

@@ -9,7 +9,7 @@
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::calibration {
 namespace {
 
 using ::testing::HasSubstr;
@@ -18,28 +18,30 @@ constexpr const char* kNoDaemon = "127.0.0.1:1";
 
 /// A sensor that says 3 m/s from 350 degrees whenever it is asked, or only that it is looking for its device.
 template <bool kSpeaks>
-class AskedSensor final : public Sensor {
+class AskedSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const Clock& clock, SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
     if (kSpeaks) {
       sink.reading({.time = clock.now(), .speed_m_s = 3.0, .direction_deg = 350.0, .gust_m_s = {}});
     } else {
-      sink.link(LinkState::kConnecting, "no such port");
+      sink.link(wind::LinkState::kConnecting, "no such port");
     }
     return clock.now().mono + std::chrono::milliseconds(1);
   }
 };
 
 template <bool kSpeaks>
-const DriverDescription kAskedDriver{
+const drivers::sensor::DriverDescription kAskedDriver{
     .name = kSpeaks ? "speaking" : "silent",
     .summary = "",
     .parameters = {},
-    .open = [](const ParameterValues&) -> std::unique_ptr<Sensor> { return std::make_unique<AskedSensor<kSpeaks>>(); }};
+    .open = [](const ParameterValues&) -> std::unique_ptr<drivers::sensor::Sensor> {
+      return std::make_unique<AskedSensor<kSpeaks>>();
+    }};
 
 TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
   ManualClock clock;
-  SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
+  settings::SensorConfig roof = settings::default_sensor("roof", kAskedDriver<true>, {});
   roof.calibration.gain = 2.0;
   const auto source = make_live_source({&roof}, kNoDaemon, clock).value();
   EXPECT_EQ(source->description(), "the devices themselves");
@@ -68,8 +70,8 @@ TEST(CalibrationSource, ListensToTheDeviceForAsLongAsItIsTold) {
 
 TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
   ManualClock clock;
-  const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
-  const SensorConfig mast = default_sensor("mast", kAskedDriver<false>, {});
+  const settings::SensorConfig roof = settings::default_sensor("roof", kAskedDriver<true>, {});
+  const settings::SensorConfig mast = settings::default_sensor("mast", kAskedDriver<false>, {});
   const auto source = make_live_source({&roof, &mast}, kNoDaemon, clock).value();
   const auto collected = source->collect({.duration_s = 5.0}, [&](double elapsed_s, const CollectedReadings&) {
     EXPECT_EQ(elapsed_s, 0.0) << "the time runs when both have spoken";
@@ -84,7 +86,7 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
   const test::TemporaryFolder folder;
   const auto file = folder / "field.windlog";
   {
-    auto writer = WindlogWriter::open(file).value();
+    auto writer = drivers::windlog::WindlogWriter::open(file).value();
     const auto at = [](double time_s) {
       return Instant{MonoTime(from_seconds(100.0 + time_s)), UtcTime(from_seconds(1.7e9 + time_s))};
     };
@@ -102,7 +104,7 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
     }
     ASSERT_TRUE(writer.close());
   }
-  const SensorConfig roof = default_sensor("roof", kAskedDriver<true>, {});
+  const settings::SensorConfig roof = settings::default_sensor("roof", kAskedDriver<true>, {});
   const auto source = make_recorded_source({&roof}, file).value();
   EXPECT_FALSE(source->is_live());
   const auto collect = [&](const Stretch& stretch) {
@@ -116,10 +118,10 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
   EXPECT_EQ(part.readings.front().time_s, 10.0);
   EXPECT_EQ(part.settings, std::set<std::string>{"gain = 1.0"});
 
-  const SensorConfig mast = default_sensor("mast", kAskedDriver<true>, {});
+  const settings::SensorConfig mast = settings::default_sensor("mast", kAskedDriver<true>, {});
   EXPECT_EQ(make_recorded_source({&mast}, file).error().kind, FailureKind::kBadData);
   EXPECT_EQ(make_recorded_source({&roof}, folder / "none.windlog").error().kind, FailureKind::kNoInput);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::calibration

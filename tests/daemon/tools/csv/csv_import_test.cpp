@@ -12,7 +12,7 @@
 #include "engine/base/units.hpp"
 #include "tests/support/places.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
 using namespace std::chrono_literals;
@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct Imported {
-  std::vector<WindReading> readings;
+  std::vector<wind::WindReading> readings;
   std::vector<std::string> sensors;
   CsvImportReport report;
   std::string failure;
@@ -29,7 +29,7 @@ struct Imported {
 Imported import_text(const std::string& text, const CsvImportOptions& options = {}) {
   Imported imported;
   std::istringstream in(text);
-  const auto report = import_csv(in, "a.csv", options, [&](std::string_view sensor, const WindReading& reading) {
+  const auto report = import_csv(in, "a.csv", options, [&](std::string_view sensor, const wind::WindReading& reading) {
     imported.sensors.emplace_back(sensor);
     imported.readings.push_back(reading);
   });
@@ -59,7 +59,7 @@ TEST(CsvImport, TakesSpeedAndDirectionByTheirUsualNames) {
   EXPECT_EQ(imported.readings[0].speed_m_s, 5.5);
   EXPECT_EQ(imported.readings[0].direction_deg, 270.0);
   EXPECT_EQ(imported.readings[0].gust_m_s, 7.25);
-  EXPECT_EQ(imported.readings[0].quality, ReadingQuality::kGood);
+  EXPECT_EQ(imported.readings[0].quality, wind::ReadingQuality::kGood);
   EXPECT_EQ(imported.readings[0].time.mono, MonoTime{});
   EXPECT_EQ(imported.readings[1].time.mono, MonoTime{1s});
   EXPECT_EQ(imported.readings[1].direction_deg, std::nullopt);
@@ -261,7 +261,7 @@ TEST(CsvImport, OfAnyBytesEndsWithReadingsOrAFailure) {
     if (imported.failure.empty()) {
       EXPECT_EQ(imported.readings.size(), imported.report.taken);
     }
-    for (const WindReading& reading : imported.readings) EXPECT_TRUE(is_plausible(reading));
+    for (const wind::WindReading& reading : imported.readings) EXPECT_TRUE(wind::is_plausible(reading));
   }
 }
 
@@ -272,7 +272,7 @@ TEST(CsvImport, OfTheFinseSonicNeedsNoOptions) {
   double sum = 0.0;
   double max = 0.0;
   Instant last;
-  const auto report = import_csv(in, "finse.csv", {}, [&](std::string_view, const WindReading& reading) {
+  const auto report = import_csv(in, "finse.csv", {}, [&](std::string_view, const wind::WindReading& reading) {
     sum += reading.speed_m_s;
     max = std::max(max, reading.speed_m_s);
     last = reading.time;
@@ -286,4 +286,4 @@ TEST(CsvImport, OfTheFinseSonicNeedsNoOptions) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::csv {
 namespace {
 
 using namespace std::chrono_literals;
@@ -52,4 +52,4 @@ TEST(CsvTime, GuessesTheFormatFromWhatItSees) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::csv

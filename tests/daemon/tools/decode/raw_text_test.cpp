@@ -6,7 +6,7 @@
 
 #include "daemon/tools/decode/hex_text.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
 wire::RawTrace message_of(std::string_view text, bool received = true) {
@@ -72,4 +72,4 @@ TEST(HexText, IsReadAsItIsWritten) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -9,17 +9,17 @@
 #include "daemon/tools/decode/hex_text.hpp"
 #include "tests/support/decoded_units.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::decode {
 namespace {
 
-ByteSpan bytes_of_text(std::string_view text) {
+drivers::decode::ByteSpan bytes_of_text(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 /// The messages of an input that comes in pieces, as text: "request|bytes", or "!" and what is wrong.
 std::vector<std::string> units_of(UnitReader::Form form, std::string_view input, std::size_t piece) {
   std::vector<std::string> units;
-  UnitReader reader(form, LineEnding::kNewline);
+  UnitReader reader(form, drivers::decode::text::LineEnding::kNewline);
   const auto keep = [&](const ReadUnit& unit) {
     units.push_back(unit.why ? "!" + std::string(unit.detail) : to_hex(unit.request) + "|" + to_hex(unit.bytes));
   };
@@ -58,8 +58,8 @@ TEST(UnitDecoders, GiveNothingUnsoundWhateverComes) {
   for (const UnitFormat& format : unit_formats()) {
     UnitDecoderOptions options;
     options.profile = "renke-rs-fsjt-rs-fxjt-n01";
-    options.checksum = WhenMissing::kAccept;
-    options.status = WhenMissing::kAccept;
+    options.checksum = drivers::decode::WhenMissing::kAccept;
+    options.status = drivers::decode::WhenMissing::kAccept;
     options.interval_s = 0.5;
     options.vane_reference_v = 5.0;
     for (int round = 0; round < 200; ++round) {
@@ -76,4 +76,4 @@ TEST(UnitDecoders, GiveNothingUnsoundWhateverComes) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::decode

@@ -10,7 +10,7 @@
 #include "daemon/tools/report/state_history.hpp"
 #include "tests/daemon/tools/report/report_samples.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 using test::made_readings;
@@ -22,11 +22,11 @@ double lively_m_s(std::size_t i) {
 }
 
 TEST(MeasureRecording, ASilenceIsAGapFromReadingToReading) {
-  auto readings =
-      made_readings(600, 1000, [](std::size_t i, WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  auto readings = test::made_readings(
+      600, 1000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
   readings.erase(readings.begin() + 100, readings.begin() + 160);
   readings.erase(readings.begin() + 300, readings.begin() + 303);  // too short to be told
-  const auto numbers = numbers_of(readings);
+  const auto numbers = test::numbers_of(readings);
   ASSERT_EQ(numbers.sensors.size(), 1U);
   const SensorNumbers& sensor = numbers.sensors[0];
   ASSERT_EQ(sensor.events.size(), 1U);
@@ -45,7 +45,7 @@ TEST(MeasureRecording, ASilenceIsAGapFromReadingToReading) {
 }
 
 TEST(MeasureRecording, TheMeanDirectionPassesThroughNorth) {
-  const auto numbers = numbers_of(made_readings(200, 1000, [](std::size_t i, WindReading& reading) {
+  const auto numbers = test::numbers_of(test::made_readings(200, 1000, [](std::size_t i, wind::WindReading& reading) {
     reading.speed_m_s = 5.0;
     reading.direction_deg = i % 2 == 0 ? 350.0 : 10.0;
   }));
@@ -56,7 +56,7 @@ TEST(MeasureRecording, TheMeanDirectionPassesThroughNorth) {
 }
 
 TEST(MeasureRecording, WhatIsFrozenOrASpikeIsToldAndNotCounted) {
-  const auto numbers = numbers_of(made_readings(2000, 1000, [](std::size_t i, WindReading& reading) {
+  const auto numbers = test::numbers_of(test::made_readings(2000, 1000, [](std::size_t i, wind::WindReading& reading) {
     reading.speed_m_s = i >= 500 && i < 700 ? 7.25 : i == 1000 ? 60.0 : lively_m_s(i);
   }));
   const SensorNumbers& sensor = numbers.sensors[0];
@@ -71,7 +71,7 @@ TEST(MeasureRecording, WhatIsFrozenOrASpikeIsToldAndNotCounted) {
 
 TEST(MeasureRecording, GustsAreMeansOfThreeSeconds) {
   // Ten a second; one burst of 1 s is a third of a gust.
-  const auto numbers = numbers_of(made_readings(6100, 100, [](std::size_t i, WindReading& reading) {
+  const auto numbers = test::numbers_of(test::made_readings(6100, 100, [](std::size_t i, wind::WindReading& reading) {
     reading.speed_m_s = 5.0 + 0.01 * static_cast<double>(i % 2) + (i >= 3000 && i < 3010 ? 3.0 : 0.0);
   }));
   const SensorNumbers& sensor = numbers.sensors[0];
@@ -80,8 +80,8 @@ TEST(MeasureRecording, GustsAreMeansOfThreeSeconds) {
   EXPECT_NEAR(*sensor.blocks.gust_factor, 6.005 / 5.01, 1e-3);
 
   // Once in 2 s no gust is seen.
-  const auto slow = numbers_of(
-      made_readings(100, 2000, [](std::size_t i, WindReading& reading) { reading.speed_m_s = lively_m_s(i); }));
+  const auto slow = test::numbers_of(test::made_readings(
+      100, 2000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); }));
   EXPECT_FALSE(slow.sensors[0].gust_3s_m_s);
 }
 
@@ -89,12 +89,12 @@ TEST(MeasureRecording, HoursAreThoseOfTheZone) {
   ReportSettings settings;
   settings.utc_offset = [](UtcTime) { return Nanoseconds(std::chrono::minutes(330)); };
   // From 14:00 UTC on, for 25 hours, six an hour; the first hour is windy.
-  const auto numbers = numbers_of(made_readings(151, 600'000,
-                                                [](std::size_t i, WindReading& reading) {
-                                                  reading.speed_m_s =
-                                                      (i < 6 ? 5.0 : 2.0) + 0.01 * static_cast<double>(i % 5);
-                                                }),
-                                  settings);
+  const auto numbers = test::numbers_of(test::made_readings(151, 600'000,
+                                                            [](std::size_t i, wind::WindReading& reading) {
+                                                              reading.speed_m_s = (i < 6 ? 5.0 : 2.0) +
+                                                                                  0.01 * static_cast<double>(i % 5);
+                                                            }),
+                                        settings);
   ASSERT_TRUE(numbers.sensors[0].diurnal);
   const auto& hours = *numbers.sensors[0].diurnal;
   // 14:00 UTC is 19:30 there: three windy readings before eight o'clock, three after; the others of that hour are calm.
@@ -106,9 +106,10 @@ TEST(MeasureRecording, HoursAreThoseOfTheZone) {
 }
 
 TEST(MeasureRecording, MonthsFitIntoTheSameBinsAndKeepTheirExtremes) {
-  const auto numbers = numbers_of(made_readings(20'000, 60'000, [](std::size_t i, WindReading& reading) {
-    reading.speed_m_s = i == 12'345 ? 9.5 : lively_m_s(i);
-  }));
+  const auto numbers =
+      test::numbers_of(test::made_readings(20'000, 60'000, [](std::size_t i, wind::WindReading& reading) {
+        reading.speed_m_s = i == 12'345 ? 9.5 : lively_m_s(i);
+      }));
   const SensorNumbers& sensor = numbers.sensors[0];
   ASSERT_EQ(sensor.bins.size(), kTimeBins);
   double highest = 0.0;
@@ -123,10 +124,10 @@ TEST(MeasureRecording, MonthsFitIntoTheSameBinsAndKeepTheirExtremes) {
 }
 
 TEST(MeasureRecording, SeesThatTheClockWasSet) {
-  auto readings =
-      made_readings(100, 1000, [](std::size_t i, WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  auto readings = test::made_readings(
+      100, 1000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
   for (std::size_t i = 50; i < 100; ++i) readings[i].time.utc -= std::chrono::hours(24 * 3650);
-  const auto numbers = numbers_of(readings);
+  const auto numbers = test::numbers_of(readings);
   EXPECT_EQ(numbers.clock_sets, 1U);
   EXPECT_NEAR(numbers.largest_clock_set_s, -3650.0 * 86400.0, 1.0);
   EXPECT_EQ(numbers.duration_s(), 99.0);
@@ -135,13 +136,13 @@ TEST(MeasureRecording, SeesThatTheClockWasSet) {
 
 TEST(MeasureRecording, AnUnevenPaceIsMadeEven) {
   // Readings of a slow sine at alternating intervals: the spectrum's line is where it belongs.
-  auto readings = made_readings(4000, 1000, [](std::size_t i, WindReading& reading) {
+  auto readings = test::made_readings(4000, 1000, [](std::size_t i, wind::WindReading& reading) {
     const std::int64_t shift_ms = i % 2 == 0 ? 200 : -200;
     reading.time.mono += std::chrono::milliseconds(shift_ms + 300);
     reading.speed_m_s =
         6.0 + std::sin(2.0 * std::numbers::pi * 0.05 * (static_cast<double>(i) + 1e-3 * static_cast<double>(shift_ms)));
   });
-  const auto numbers = numbers_of(readings);
+  const auto numbers = test::numbers_of(readings);
   ASSERT_TRUE(numbers.sensors[0].spectrum);
   const SpectrumNumbers& spectrum = *numbers.sensors[0].spectrum;
   EXPECT_NEAR(spectrum.step_s, 1.0, 1e-3);
@@ -155,7 +156,7 @@ TEST(MeasureRecording, AnUnevenPaceIsMadeEven) {
 TEST(MeasureRecording, NamesWhatIsThereWhereASensorIsNot) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(3), "roof");
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   ReportSettings settings;
   settings.sensors = {"rooof"};
@@ -183,4 +184,4 @@ TEST(StateHistory, JoinsWhatTouchesAndKeepsTheLongest) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -5,7 +5,7 @@
 
 #include "daemon/tools/report/wind_rose.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 using testing::HasSubstr;
@@ -45,4 +45,4 @@ TEST(EmbeddedPlot, IsAnElementOfAPageThatHoldsTheFileAsItIs) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

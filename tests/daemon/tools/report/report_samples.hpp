@@ -14,10 +14,10 @@ namespace yuragi::test {
 
 /// Readings `interval_ms` apart, from 0 on, with the speed and direction that a function of the index gives.
 template <class Make>
-std::vector<WindReading> made_readings(std::size_t count, std::int64_t interval_ms, Make&& make) {
-  std::vector<WindReading> readings;
+std::vector<wind::WindReading> made_readings(std::size_t count, std::int64_t interval_ms, Make&& make) {
+  std::vector<wind::WindReading> readings;
   for (std::size_t i = 0; i < count; ++i) {
-    WindReading reading = reading_at(interval_ms * static_cast<std::int64_t>(i), 0.0);
+    wind::WindReading reading = reading_at(interval_ms * static_cast<std::int64_t>(i), 0.0);
     make(i, reading);
     readings.push_back(reading);
   }
@@ -25,14 +25,15 @@ std::vector<WindReading> made_readings(std::size_t count, std::int64_t interval_
 }
 
 /// The numbers of a recording of one sensor.
-inline RecordingNumbers numbers_of(const std::vector<WindReading>& readings, const ReportSettings& settings = {}) {
+inline daemon::tools::report::RecordingNumbers numbers_of(const std::vector<wind::WindReading>& readings,
+                                                          const daemon::tools::report::ReportSettings& settings = {}) {
   const TemporaryFolder folder;
   write_session(folder / "a.windlog", readings);
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
   EXPECT_TRUE(reader);
-  const auto numbers = measure_recording(*reader, settings);
+  const auto numbers = daemon::tools::report::measure_recording(*reader, settings);
   EXPECT_TRUE(numbers) << (numbers ? "" : numbers.error().message);
-  return numbers ? *numbers : RecordingNumbers{};
+  return numbers ? *numbers : daemon::tools::report::RecordingNumbers{};
 }
 
 }  // namespace yuragi::test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 TEST(PageText, HasNoSignThatMeansSomethingInAPage) {
@@ -32,16 +32,16 @@ TEST(PageText, IsCutWhenItIsVeryLong) {
 TEST(ReportText, SaysTimesAndDirections) {
   EXPECT_EQ(utc_text(UtcTime(std::chrono::seconds(1'532'095'200))), "2018-07-20 14:00:00 UTC");
   EXPECT_EQ(utc_text(UtcTime(std::chrono::seconds(-1))), "1969-12-31 23:59:59 UTC");
-  EXPECT_EQ(duration_text(0.1), "0.1 s");
-  EXPECT_EQ(duration_text(59.97), "1 min");
-  EXPECT_EQ(duration_text(725), "12 min 5 s");
-  EXPECT_EQ(duration_text(12'000), "3 h 20 min");
-  EXPECT_EQ(duration_text(86'400 + 3'600), "1 day 1 h");
-  EXPECT_EQ(duration_text(41 * 86'400), "41 days");
+  EXPECT_EQ(settings::duration_text(0.1), "0.1 s");
+  EXPECT_EQ(settings::duration_text(59.97), "1 min");
+  EXPECT_EQ(settings::duration_text(725), "12 min 5 s");
+  EXPECT_EQ(settings::duration_text(12'000), "3 h 20 min");
+  EXPECT_EQ(settings::duration_text(86'400 + 3'600), "1 day 1 h");
+  EXPECT_EQ(settings::duration_text(41 * 86'400), "41 days");
   EXPECT_EQ(compass_text(359.0), "north");
   EXPECT_EQ(compass_text(191.0), "south");
   EXPECT_EQ(compass_text(237.0), "west-south-west");
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -8,20 +8,20 @@
 
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 /// Half an hour of a wind of 5 m/s with gusts that last for some seconds, and a gap.
 std::optional<SiteNumbers> learnt_from(double interval_s) {
   SiteTally lesson({.intensity = 0.2, .length_m = 25.0}, interval_s);
-  const RandomStream random(1, 1);
+  const math::RandomStream random(1, 1);
   const double kept = std::exp(-interval_s / 8.0);
   double gust_m_s = 0.0;
   std::uint64_t drawn = 0;
   for (double time_s = 0.0; time_s < 1800.0; time_s += interval_s) {
     gust_m_s = kept * gust_m_s + std::sqrt(1.0 - kept * kept) * random.normal(drawn++);
     if (time_s > 600.0 && time_s < 700.0) continue;
-    lesson.add(time_s, 5.0 + gust_m_s, WindVector{0.1 * gust_m_s, 5.0 + gust_m_s});
+    lesson.add(time_s, 5.0 + gust_m_s, wind::WindVector{0.1 * gust_m_s, 5.0 + gust_m_s});
   }
   return lesson.numbers();
 }
@@ -44,4 +44,4 @@ TEST(SiteTally, LearnsTheOctavesThatASensorIsQuickEnoughFor) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

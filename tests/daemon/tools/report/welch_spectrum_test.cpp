@@ -10,7 +10,7 @@
 
 #include "engine/math/philox.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr double kStep_s = 0.1;
@@ -18,8 +18,8 @@ constexpr double kStep_s = 0.1;
 /// A periodic series whose one-sided spectrum is `density(f)`, with phases by chance and amplitudes without any.
 template <class Density>
 std::vector<double> series_with(std::size_t size, Density&& density) {
-  RealFft fft(1, size);
-  const RandomStream random(42, stream_id("welch test"));
+  fft::RealFft fft(1, size);
+  const math::RandomStream random(42, math::stream_id("welch test"));
   const double length_s = kStep_s * static_cast<double>(size);
   for (std::size_t k = 1; k < size / 2; ++k) {
     const double phase_rad = 2.0 * std::numbers::pi * random.uniform(k);
@@ -41,7 +41,7 @@ SpectrumNumbers spectrum_of(const std::vector<double>& along_m_s, double mean_m_
   for (const double value : along_m_s) {
     // From the south-west: as much east as north.
     const double part = (mean_m_s + value) / std::numbers::sqrt2;
-    welch.add({.speed_m_s = std::abs(mean_m_s + value), .wind = WindVector{part, part}});
+    welch.add({.speed_m_s = std::abs(mean_m_s + value), .wind = wind::WindVector{part, part}});
   }
   const auto numbers = welch.numbers();
   EXPECT_TRUE(numbers);
@@ -64,7 +64,7 @@ TEST(WelchSpectrum, TheIntegralIsTheVarianceAndASineIsWhereItIs) {
 
 TEST(WelchSpectrum, WhatIsAcrossTheWindIsNotInIt) {
   WelchSpectrum welch(256, kStep_s, false);
-  for (int i = 0; i < 1024; ++i) welch.add({.speed_m_s = 6.0, .wind = WindVector{6.0, i % 2 == 0 ? 1.0 : -1.0}});
+  for (int i = 0; i < 1024; ++i) welch.add({.speed_m_s = 6.0, .wind = wind::WindVector{6.0, i % 2 == 0 ? 1.0 : -1.0}});
   const auto numbers = welch.numbers();
   ASSERT_TRUE(numbers);
   for (const double density : numbers->density_m2_s2_hz) EXPECT_NEAR(density, 0.0, 1e-12);
@@ -159,4 +159,4 @@ TEST(IntegralTime, IsNotOfASteadyWindNorOfLessThanABlock) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::report

@@ -9,7 +9,7 @@
 #include "daemon/settings/config.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::tools::sensors {
 namespace {
 
 using ::testing::HasSubstr;
@@ -18,33 +18,39 @@ using ::testing::Not;
 constexpr const char* kRule = "SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"0fde\", TAG+=\"uaccess\"";
 
 // Of the names that real drivers have, so that what is printed is a configuration.
-const DriverDescription kSeesTwo{.name = "synthetic",
-                                 .summary = "a maker of wind",
-                                 .parameters = {},
-                                 .open = nullptr,
-                                 .find = []() -> std::vector<FoundDevice> {
-                                   return {{"Station A", "speed = 3.0\ndirection = 90.0", "", ""},
-                                           {"Station B", "speed = 4.0", "/dev/hidraw0: Permission denied", kRule}};
-                                 }};
-const DriverDescription kSeesBToo{
+const drivers::sensor::DriverDescription kSeesTwo{
+    .name = "synthetic",
+    .summary = "a maker of wind",
+    .parameters = {},
+    .open = nullptr,
+    .find = []() -> std::vector<drivers::sensor::FoundDevice> {
+      return {{"Station A", "speed = 3.0\ndirection = 90.0", "", ""},
+              {"Station B", "speed = 4.0", "/dev/hidraw0: Permission denied", kRule}};
+    }};
+const drivers::sensor::DriverDescription kSeesBToo{
     .name = "modbus",
     .summary = "another reader",
     .parameters = {},
     .open = nullptr,
-    .find = []() -> std::vector<FoundDevice> {
+    .find = []() -> std::vector<drivers::sensor::FoundDevice> {
       return {{"Station B", "transport = \"tcp\"", "/dev/hidraw0: Permission denied", kRule}};
     }};
-const DriverDescription kSeesNothing{
-    .name = "blind", .summary = "", .parameters = {}, .open = nullptr, .find = []() -> std::vector<FoundDevice> {
-      return {};
-    }};
-const DriverDescription kFails{
-    .name = "broken", .summary = "", .parameters = {}, .open = nullptr, .find = []() -> std::vector<FoundDevice> {
-      throw std::runtime_error("no bus");
-    }};
-const DriverDescription kOfTheNetwork{.name = "mqtt", .summary = "", .parameters = {}, .open = nullptr};
+const drivers::sensor::DriverDescription kSeesNothing{
+    .name = "blind",
+    .summary = "",
+    .parameters = {},
+    .open = nullptr,
+    .find = []() -> std::vector<drivers::sensor::FoundDevice> { return {}; }};
+const drivers::sensor::DriverDescription kFails{
+    .name = "broken",
+    .summary = "",
+    .parameters = {},
+    .open = nullptr,
+    .find = []() -> std::vector<drivers::sensor::FoundDevice> { throw std::runtime_error("no bus"); }};
+const drivers::sensor::DriverDescription kOfTheNetwork{
+    .name = "mqtt", .summary = "", .parameters = {}, .open = nullptr};
 
-std::string list_of(const std::vector<const DriverDescription*>& drivers) {
+std::string list_of(const std::vector<const drivers::sensor::DriverDescription*>& drivers) {
   return device_list(find_devices(drivers), drivers);
 }
 
@@ -63,11 +69,11 @@ TEST(DeviceList, PrintsAConfigurationForEachDeviceThatIsOne) {
     if (line == "  It cannot be opened:") break;
     if (line.starts_with("    ")) toml += line + "\n";
   }
-  const Config config = parse_config(toml, "pasted.toml");
+  const settings::Config config = settings::parse_config(toml, "pasted.toml");
   ASSERT_EQ(config.sensors.size(), 2U) << toml;
   EXPECT_EQ(config.sensors[0].name, "synthetic");
   EXPECT_EQ(config.sensors[1].name, "synthetic-2") << "each sensor needs a name of its own";
-  EXPECT_THAT(to_toml(config.sensors[1].values), ::testing::HasSubstr("speed = 4.0"));
+  EXPECT_THAT(settings::to_toml(config.sensors[1].values), ::testing::HasSubstr("speed = 4.0"));
 }
 
 TEST(DeviceList, NamesADeviceOnceThatTwoDriversCouldReadAndItsTroubleOnce) {
@@ -85,9 +91,9 @@ TEST(DeviceList, TellsOfADriverThatCannotLookAndGoesOnWithTheOthers) {
 }
 
 TEST(DriverReference, DescribesEveryDriverAndEveryKeyOfIt) {
-  const std::string page = driver_reference(driver_table());
-  const std::string names = driver_names(driver_table());
-  for (const DriverDescription* driver : driver_table()) {
+  const std::string page = driver_reference(drivers::sensor::driver_table());
+  const std::string names = driver_names(drivers::sensor::driver_table());
+  for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
     const std::string text = describe_driver(*driver);
     EXPECT_THAT(names, HasSubstr(driver->name));
     EXPECT_THAT(page, HasSubstr("\n## " + std::string(driver->name) + "\n"));
@@ -103,12 +109,12 @@ TEST(DriverReference, DescribesEveryDriverAndEveryKeyOfIt) {
 TEST(DriverReference, KeepsItsTablesWhole) {
   const Parameter parameter{
       .name = "key", .unit = "", .default_value = std::string("a|b"), .help = "either | or <this>"};
-  const DriverDescription driver{
+  const drivers::sensor::DriverDescription driver{
       .name = "piped", .summary = "a_b", .parameters = std::span(&parameter, 1), .open = nullptr};
-  const std::vector<const DriverDescription*> drivers = {&driver};
+  const std::vector<const drivers::sensor::DriverDescription*> drivers = {&driver};
   EXPECT_THAT(driver_reference(drivers), HasSubstr("a\\|b"));
   EXPECT_THAT(driver_reference(drivers), HasSubstr("| either \\| or \\<this> |"));
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::sensors

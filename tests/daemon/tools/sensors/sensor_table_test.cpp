@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::daemon::tools::sensors {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -16,9 +16,9 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   wire::SensorStatus live;
   live.name = "roof";
   live.driver = "modbus";
-  live.link = LinkState::kConnected;
-  live.health = SourceHealth::kLive;
-  live.state = SensorState::kLive;
+  live.link = wind::LinkState::kConnected;
+  live.health = wind::SourceHealth::kLive;
+  live.state = wind::judging::SensorState::kLive;
   live.state_reason = "a reading every 0.5 s";
   live.detail = "answers at 10.0.0.5:502";
   live.speed_m_s = 8.6;
@@ -32,7 +32,7 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   silent.driver = "modbus";
   const wire::Sensors sensors{
       {live, silent},
-      {.time = {}, .wind = {5.0, 0.0}, .source = WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.2},
+      {.time = {}, .wind = {5.0, 0.0}, .source = wind::WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.2},
       2,
       3};
 
@@ -51,20 +51,20 @@ TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   wire::SensorStatus log;
   log.name = "storm";
   log.driver = "windlog";
-  log.link = LinkState::kConnected;
-  log.health = SourceHealth::kLive;
+  log.link = wind::LinkState::kConnected;
+  log.health = wind::SourceHealth::kLive;
   log.replayed = true;
-  log.state = SensorState::kReplayed;
+  log.state = wind::judging::SensorState::kReplayed;
   log.readings = 3;
   wire::Sensors sensors{
       {log},
-      {.time = {}, .wind = {5.0, 0.0}, .source = WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.0},
+      {.time = {}, .wind = {5.0, 0.0}, .source = wind::WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.0},
       0,
       0};
   EXPECT_THAT(sensor_table(sensors), HasSubstr("(REPLAY of a recording)"));
   EXPECT_THAT(sensor_table(sensors), ContainsRegex("storm +windlog +REPLAY"));
   log.replayed = false;
-  log.state = SensorState::kLive;
+  log.state = wind::judging::SensorState::kLive;
   sensors.sensors.push_back(log);
   EXPECT_THAT(sensor_table(sensors), HasSubstr("(live)")) << "a real one speaks beside it";
 }
@@ -105,8 +105,8 @@ TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
   wire::SensorStatus sensor;
   sensor.name = "a sensor with a name that is long";
   sensor.driver = "a driver with a long name";
-  sensor.health = SourceHealth::kLive;
-  sensor.state = SensorState::kDisconnected;
+  sensor.health = wind::SourceHealth::kLive;
+  sensor.state = wind::judging::SensorState::kDisconnected;
   sensor.state_reason =
       "a reason of many words, which goes on and on and on, until it is longer than any line may be here";
   sensor.detail =
@@ -139,37 +139,37 @@ TEST(SensorTable, StaysWithinAHundredColumnsAndKeepsEveryWord) {
 TEST(SensorTable, AStaleSensorCannotBeTakenForALiveOne) {
   wire::SensorStatus stale;
   stale.name = "roof";
-  stale.health = SourceHealth::kStale;
-  stale.state = SensorState::kStale;
+  stale.health = wind::SourceHealth::kStale;
+  stale.state = wind::judging::SensorState::kStale;
   stale.speed_m_s = 3.0;
   EXPECT_THAT(sensor_table({{stale}, {}, 0, 0}), HasSubstr("STALE"));
 }
 
 TEST(SensorTable, EachStateIsShownAndTroubleInCapitals) {
-  for (std::size_t number = 0; number < kSensorStateNames.size(); ++number) {
+  for (std::size_t number = 0; number < wind::judging::kSensorStateNames.size(); ++number) {
     wire::SensorStatus sensor;
     sensor.name = "roof";
     sensor.driver = "hid";
-    sensor.state = static_cast<SensorState>(number);
+    sensor.state = static_cast<wind::judging::SensorState>(number);
     sensor.state_reason = "for a reason";
     const std::string table = sensor_table({{sensor}, {}, 0, 0});
-    EXPECT_THAT(table, HasSubstr(std::string(kSensorStateNames[number]) + ": for a reason"));
+    EXPECT_THAT(table, HasSubstr(std::string(wind::judging::kSensorStateNames[number]) + ": for a reason"));
   }
   wire::SensorStatus frozen;
   frozen.name = "roof";
   frozen.driver = "hid";
-  frozen.state = SensorState::kFrozen;
+  frozen.state = wind::judging::SensorState::kFrozen;
   EXPECT_THAT(sensor_table({{frozen}, {}, 0, 0}), ContainsRegex("roof +hid +FROZEN"));
 }
 
 TEST(SensorTable, AReasonThatIsTheLinksOwnIsToldOnce) {
   wire::SensorStatus lost;
   lost.name = "roof";
-  lost.state = SensorState::kDisconnected;
+  lost.state = wind::judging::SensorState::kDisconnected;
   lost.state_reason = lost.detail = "/dev/ttyUSB0 has gone";
   const std::string table = sensor_table({{lost}, {}, 0, 0});
   EXPECT_EQ(table.find("has gone"), table.rfind("has gone")) << table;
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::tools::sensors

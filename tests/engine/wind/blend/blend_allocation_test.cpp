@@ -26,7 +26,7 @@ std::atomic<std::size_t> blend_allocations = 0;
   std::free(memory);
 }
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 TEST(BlendAllocation, NeitherAReadingNorATickAllocates) {
@@ -57,4 +57,4 @@ TEST(BlendAllocation, NeitherAReadingNorATickAllocates) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -10,13 +10,13 @@
 
 #include "engine/wind/blend/blended_estimator.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 
 inline constexpr double kBlendTick_s = 1.0 / 60.0;
 
 /// The noise that all tests of the blend share.
-inline std::shared_ptr<const GustNoise> shared_gust_noise() {
-  static const auto shared = std::make_shared<const GustNoise>(GustNoiseSettings{});
+inline std::shared_ptr<const turbulence::GustNoise> shared_gust_noise() {
+  static const auto shared = std::make_shared<const turbulence::GustNoise>(turbulence::GustNoiseSettings{});
   return shared;
 }
 
@@ -123,4 +123,4 @@ class TestGusts {
   double value_ = 0.0;
 };
 
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -12,7 +12,7 @@
 
 #include "tests/engine/wind/blend/blend_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 using Blend = BlendRun;
@@ -479,4 +479,4 @@ TEST(BlendedEstimator, ALongHaltOfTheMachineLeavesItFinite) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -11,7 +11,7 @@
 
 #include "tests/engine/wind/blend/blend_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 constexpr double kReach_m = 30.0;
@@ -24,26 +24,26 @@ class PlacedBlend {
     take(run.state());
   }
 
-  void run_for(double duration_s, const std::function<void(const GroundWind&)>& each = {}) {
+  void run_for(double duration_s, const std::function<void(const ground::GroundWind&)>& each = {}) {
     run.run_for(duration_s, [&](const WindState& state) {
       take(state);
       if (each) each(ground);
     });
   }
   void read_for(double duration_s, double speed_m_s, double direction_deg,
-                const std::function<void(const GroundWind&)>& each = {}) {
+                const std::function<void(const ground::GroundWind&)>& each = {}) {
     for (int i = 0; i < static_cast<int>(duration_s); ++i) {
       run.read(speed_m_s, direction_deg);
       run_for(1.0, each);
     }
   }
 
-  const WindPen& pen(std::size_t index) { return run.estimator().stroke().pens[index]; }
-  const WindStroke& stroke() { return run.estimator().stroke(); }
+  const ground::WindPen& pen(std::size_t index) { return run.estimator().stroke().pens[index]; }
+  const ground::WindStroke& stroke() { return run.estimator().stroke(); }
   WindVector at(double east_m, double south_m) const { return ground.at(*shared_gust_noise(), east_m, south_m); }
 
   BlendRun run;
-  GroundWind ground;
+  ground::GroundWind ground;
 
  private:
   static BlendSettings settings(const std::vector<BlendSourceSettings>& sources, double turbulence_intensity,
@@ -57,7 +57,7 @@ class PlacedBlend {
     ground = written_to(tapes_, {state, run.estimator().ground(), run.estimator().stroke()});
   }
 
-  WindTapes tapes_;
+  ground::WindTapes tapes_;
 };
 
 BlendSourceSettings placed_source(double east_m, double south_m = 0.0, int priority = 1) {
@@ -85,7 +85,7 @@ TEST(BlendedPlaces, TheEdgeGoesRoundWithoutALeapWhenTheWindTurns) {
   blend.read_for(200.0, 5.0, 180.0);
   double east_m = blend.pen(0).east_m;
   double south_m = blend.pen(0).south_m;
-  blend.read_for(100.0, 5.0, 10.0, [&](const GroundWind&) {
+  blend.read_for(100.0, 5.0, 10.0, [&](const ground::GroundWind&) {
     ASSERT_LT(std::hypot(blend.pen(0).east_m - east_m, blend.pen(0).south_m - south_m), 0.6);
     east_m = blend.pen(0).east_m;
     south_m = blend.pen(0).south_m;
@@ -120,7 +120,7 @@ TEST(BlendedPlaces, TheWindThatIsShownIsThatOfTheGroundAtThePen) {
     TestGusts gusts(2);
     for (int second = 0; second < 120; ++second) {
       if (second < 60 || second > 80) blend.run.read(std::max(0.1, 6.0 + 1.5 * gusts.next()), 200.0);
-      blend.run_for(1.0, [&](const GroundWind&) {
+      blend.run_for(1.0, [&](const ground::GroundWind&) {
         // While it begins to be heard, the table of what is kept lags by half a second.
         if (second < 2) return;
         const WindVector there = blend.at(blend.pen(0).east_m, blend.pen(0).south_m);
@@ -138,7 +138,7 @@ TEST(BlendedPlaces, AConstantWindIsConstantEverywhere) {
   for (int second = 0; second < 120; ++second) {
     blend.run.read(4.0, 180.0, 0);
     blend.run.read(4.0, 180.0, 1);
-    blend.run_for(1.0, [&](const GroundWind&) {
+    blend.run_for(1.0, [&](const ground::GroundWind&) {
       for (const double east_m : {-30.0, 0.0, 10.0, 25.0}) {
         for (const double south_m : {-30.0, 5.0, 30.0}) {
           largest_m_s = std::max(largest_m_s, speed_of(blend.at(east_m, south_m) - WindVector{0.0, 4.0}));
@@ -155,12 +155,12 @@ TEST(BlendedPlaces, CalmStaysCalmExactly) {
   settings.reach_m = kReach_m;
   settings.sources = {{}, placed_source(10.0)};
   BlendRun run(2, settings);
-  WindTapes tapes;
+  ground::WindTapes tapes;
   for (int second = 0; second < 60; ++second) {
     run.read(0.0, 90.0, 0);
     run.read(0.0, std::nullopt, 1);
     run.run_for(1.0, [&](const WindState& state) {
-      const GroundWind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
+      const ground::GroundWind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
       ASSERT_EQ(speed_of(state.wind), 0.0);
       for (const double at_m : {-30.0, 0.0, 17.0}) ASSERT_EQ(speed_of(ground.at(*shared_gust_noise(), at_m, 9.0)), 0.0);
     });
@@ -220,7 +220,7 @@ TEST(BlendedPlaces, TwoOfOneRankEachHaveTheirOwnGustsWhereTheyStand) {
   for (int second = 0; second < 400; ++second) {
     blend.run.read(6.0 + std::sin(2.0 * std::numbers::pi * second / 20.0), 180.0, 0);
     blend.run.read(6.0, 180.0, 1);
-    blend.run_for(1.0, [&](const GroundWind& ground) {
+    blend.run_for(1.0, [&](const ground::GroundWind& ground) {
       if (second < 200) return;
       west_m_s = std::max(west_m_s, std::abs(ground.measured_at(-40.0, 0.0).v_m_s - 6.0));
       east_m_s = std::max(east_m_s, std::abs(ground.measured_at(40.0, 0.0).v_m_s - 6.0));
@@ -247,7 +247,7 @@ double largest_step_m_s(const std::vector<BlendSourceSettings>& sources,
     const double quick_m_s = 0.5 * std::sin(2.0 * std::numbers::pi * second / 17.0);
     if (speaks(second)) blend.run.read(7.0 + slow_m_s + quick_m_s, 180.0, 0);
     blend.run.read(7.0 - slow_m_s + quick_m_s, 180.0, 1);
-    blend.run_for(1.0, [&](const GroundWind& ground) {
+    blend.run_for(1.0, [&](const ground::GroundWind& ground) {
       for (std::size_t i = 0; i < places.size(); ++i) {
         const WindVector now = ground.measured_at(places[i].u_m_s, places[i].v_m_s);
         if (second > 150) largest_m_s = std::max(largest_m_s, speed_of(now - before[i]));
@@ -282,7 +282,7 @@ TEST(BlendedPlaces, AGustComesLaterTheFartherDownwindAPlaceIs) {
   std::vector<double> arrived_s(3, 0.0);
   const std::vector<double> south_m = {30.0, 10.0, -20.0};
   double time_s = 0.0;
-  blend.read_for(20.0, 8.0, 180.0, [&](const GroundWind& ground) {
+  blend.read_for(20.0, 8.0, 180.0, [&](const ground::GroundWind& ground) {
     time_s += kBlendTick_s;
     for (std::size_t i = 0; i < south_m.size(); ++i) {
       if (arrived_s[i] == 0.0 && ground.measured_at(0.0, south_m[i]).v_m_s > 6.0) arrived_s[i] = time_s;
@@ -294,4 +294,4 @@ TEST(BlendedPlaces, AGustComesLaterTheFartherDownwindAPlaceIs) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -9,7 +9,7 @@
 
 #include "tests/engine/wind/blend/blend_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// No noise worth speaking of, and these sources.
@@ -169,7 +169,7 @@ TEST(BlendedSources, AlongAWallTheWindIsInterpolated) {
     run.read(8.0, 270.0, 1);
     run.run_for(1.0);
   }
-  const GroundWind& ground = run.estimator().ground();
+  const ground::GroundWind& ground = run.estimator().ground();
   const WindVector west = ground.smooth_at(-10.0, 0.0);
   const WindVector middle = ground.smooth_at(0.0, 0.0);
   const WindVector east = ground.smooth_at(10.0, 3.0);
@@ -214,7 +214,7 @@ std::pair<double, double> variances_between(double distance_m, std::uint64_t see
   settings.sources = {{.priority = 1, .has_place = true, .east_m = -0.5 * distance_m},
                       {.priority = 1, .has_place = true, .east_m = 0.5 * distance_m}};
   BlendRun run(2, settings);
-  WindTapes tapes;
+  ground::WindTapes tapes;
   TestGusts first(seed);
   TestGusts second(seed + 100);
   BlendMoments middle;
@@ -223,7 +223,7 @@ std::pair<double, double> variances_between(double distance_m, std::uint64_t see
     run.read(8.0 + 1.5 * first.next(), 180.0, 0);
     run.read(8.0 + 1.5 * second.next(), 180.0, 1);
     run.run_for(1.0, [&](const WindState& state) {
-      const GroundWind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
+      const ground::GroundWind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
       if (i < 600) return;
       middle.add({.wind = ground.at(*shared_gust_noise(), 0.0, 0.0)});
       end.add({.wind = ground.at(*shared_gust_noise(), 0.5 * distance_m, 0.0)});
@@ -381,4 +381,4 @@ TEST(BlendedSources, AreFiniteBoundedAndContinuousUnderRandomFaults) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -8,7 +8,7 @@
 
 #include "tests/engine/wind/blend/blend_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 const WindVector kFromWest = wind_from(1.0, 270.0);
@@ -115,4 +115,4 @@ TEST(DirectionKeeper, TheCalmerTheAirTheLongerACoarseVaneIsSmoothed) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

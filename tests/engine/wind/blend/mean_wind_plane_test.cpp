@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// What the plane says at a place, as the wind over the ground reads it, of sources that say `values`.
@@ -15,7 +15,7 @@ double plane_at(const MeanWindPlane& plane, const std::vector<double>& shares, c
   std::vector<PlaceWeights> weights(shares.size());
   plane.weigh(shares, part, weights);
   double middle = 0.0;
-  WindSlope slope = plane.ends();
+  ground::WindSlope slope = plane.ends();
   for (std::size_t i = 0; i < shares.size(); ++i) {
     middle += weights[i].middle * values[i];
     slope.per_m_east.u_m_s += weights[i].per_m_east * values[i];
@@ -95,4 +95,4 @@ TEST(MeanWindPlane, TheSumOfTheWeightsIsThatOfTheSharesAndAllIsFinite) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

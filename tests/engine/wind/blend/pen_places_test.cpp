@@ -6,7 +6,7 @@
 
 #include "engine/wind/ground/wind_stroke.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 BlendSourceSettings source_at(double east_m, double south_m = 0.0, double lead_m = 0.0) {
@@ -51,7 +51,7 @@ TEST(PenPlaces, SensorsOnOneMastShareAPlace) {
 TEST(PenPlaces, OfMoreThanItHoldsTheLastShareTheNearest) {
   const PenPlaces places = places_of(
       {source_at(-30.0), source_at(-10.0), source_at(10.0), source_at(30.0), source_at(12.0), source_at(-99.0)});
-  ASSERT_EQ(places.count(), WindStroke::kMostPens);
+  ASSERT_EQ(places.count(), ground::WindStroke::kMostPens);
   EXPECT_EQ(places.pen_of(4), 2U);
   EXPECT_EQ(places.pen_of(5), 0U);
 }
@@ -73,4 +73,4 @@ TEST(PenPlaces, ARelativeSourceAloneHasItsOwn) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

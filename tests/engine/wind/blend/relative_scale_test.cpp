@@ -6,7 +6,7 @@
 
 #include "tests/engine/wind/blend/blend_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 /// A relative source that says a third of the gusts and adds 2 m/s to a third of the mean of 6 m/s.
@@ -63,4 +63,4 @@ TEST(RelativeScale, ChangesSlowlyAndStaysWithinBounds) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

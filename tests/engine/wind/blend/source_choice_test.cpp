@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 constexpr double kChoiceTick_s = 0.1;
@@ -130,4 +130,4 @@ TEST(SourceChoice, APriorityDoesNotMakeARelativeSourceAbsolute) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

@@ -14,7 +14,7 @@
 #include "engine/wind/judging/reading_judge.hpp"
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::blend {
 namespace {
 
 constexpr double kFaultyTick_s = 1.0 / 30.0;
@@ -98,7 +98,7 @@ class FaultySensor {
   }
 
   std::mt19937_64 random_;
-  SyntheticWind wind_;
+  turbulence::SyntheticWind wind_;
   RandomFault fault_ = RandomFault::kNone;
   double until_s_ = 0.0, next_s_ = 0.0, interval_s_ = 1.0;
 };
@@ -108,10 +108,10 @@ bool is_finite(WindVector wind) {
 }
 
 TEST(WindFaults, RandomSequencesLeaveItFiniteAndBounded) {
-  const auto noise = std::make_shared<const GustNoise>(GustNoiseSettings{.samples = 128});
+  const auto noise = std::make_shared<const turbulence::GustNoise>(turbulence::GustNoiseSettings{.samples = 128});
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     FaultySensor sensor(seed);
-    ReadingJudge judge;
+    judging::ReadingJudge judge;
     BlendedEstimator estimator(1, {.climate = {.seed = seed}}, noise);
     double strongest_m_s = 4.0;  // that was believed, or is the climate's
     for (int tick = 0; tick * kFaultyTick_s < 400.0; ++tick) {
@@ -135,7 +135,7 @@ TEST(WindFaults, RandomSequencesLeaveItFiniteAndBounded) {
 
 TEST(WindFaults, ADirectionPassesThroughNorthAtEveryPlace) {
   // What is known of the wind: everything but the noise, which is known, too. At the sensor and at two other places.
-  const auto noise = std::make_shared<const GustNoise>(GustNoiseSettings{.samples = 128});
+  const auto noise = std::make_shared<const turbulence::GustNoise>(turbulence::GustNoiseSettings{.samples = 128});
   for (const double interval_s : {0.1, 1.0, 14.0}) {
     BlendedEstimator estimator(1, {.climate = {.mean_speed_m_s = 6.0, .mean_direction_deg = 350.0}}, noise);
     double next_s = 0.0;
@@ -152,7 +152,7 @@ TEST(WindFaults, ADirectionPassesThroughNorthAtEveryPlace) {
         next_s += interval_s;
       }
       estimator.advance(now);
-      const GroundWind& ground = estimator.ground();
+      const ground::GroundWind& ground = estimator.ground();
       for (const double away_m : {0.0, -30.0, 30.0}) {
         const WindVector known = ground.at(*noise, away_m, away_m) - noise->local(ground.gusts, away_m, away_m) -
                                  noise->everywhere(ground.gusts);
@@ -170,4 +170,4 @@ TEST(WindFaults, ADirectionPassesThroughNorthAtEveryPlace) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::blend

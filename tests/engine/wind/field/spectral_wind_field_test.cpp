@@ -14,7 +14,7 @@
 #include "engine/wind/field/von_karman_modes.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::field {
 namespace {
 
 /// A tile of 16 lengths, its samples 32 to a length; lines along x are lines along the wind.
@@ -36,7 +36,7 @@ using Lines = std::vector<std::vector<Line>>;
 
 std::array<Lines, 2> measure_lines() {
   std::array<Lines, 2> all;
-  RealFft fft(1, kFine.samples);
+  fft::RealFft fft(1, kFine.samples);
   const FieldGrid grid{.count_x = kFine.samples, .count_y = 1, .count_z = kRows, .spacing_m = kFine.spacing_m};
   std::vector<float> values(2 * grid.size());
   for (int seed = 0; seed < kFineSeeds; ++seed) {
@@ -84,10 +84,10 @@ double variance_between(const Lines& lines, std::size_t from, std::size_t to) {
   return sum / static_cast<double>(lines.size() * kRows);
 }
 
-double expected_between(WindComponent component, double sigma_m_s, double length_of_u_m, std::size_t from,
+double expected_between(turbulence::WindComponent component, double sigma_m_s, double length_of_u_m, std::size_t from,
                         std::size_t to) {
-  const WindSpectrum spectrum =
-      WindSpectrum::make(
+  const turbulence::WindSpectrum spectrum =
+      turbulence::WindSpectrum::make(
           {.component = component, .speed_m_s = kFine.speed_m_s, .sigma_m_s = sigma_m_s, .length_m = length_of_u_m})
           .value();
   const double step_hz = kFine.speed_m_s / kPeriod_m;
@@ -102,12 +102,13 @@ TEST(SpectralWindField, APointHasVonKarmansSpectrumOctaveByOctave) {
     const double u = variance_between(lines_of_u(), from, 2 * from);
     const double v = variance_between(lines_of_v(), from, 2 * from);
     const double bound_db = from < 8 ? 1.5 : 0.5;  // the longest octaves are few waves, and scatter
-    EXPECT_NEAR(10.0 * std::log10(u / expected_between(WindComponent::kAlong, kSigma_m_s, 16.0, from, 2 * from)), 0.0,
-                bound_db)
+    EXPECT_NEAR(
+        10.0 * std::log10(u / expected_between(turbulence::WindComponent::kAlong, kSigma_m_s, 16.0, from, 2 * from)),
+        0.0, bound_db)
         << "u, from " << from;
     // Across the wind: 0.8 of the deviation, a third of the length, which is half of that of u in such turbulence.
-    EXPECT_NEAR(10.0 * std::log10(v / expected_between(WindComponent::kAcross, 0.8 * kSigma_m_s, 2.0 * 16.0 / 3.0, from,
-                                                       2 * from)),
+    EXPECT_NEAR(10.0 * std::log10(v / expected_between(turbulence::WindComponent::kAcross, 0.8 * kSigma_m_s,
+                                                       2.0 * 16.0 / 3.0, from, 2 * from)),
                 0.0, bound_db)
         << "v, from " << from;
   }
@@ -116,18 +117,20 @@ TEST(SpectralWindField, APointHasVonKarmansSpectrumOctaveByOctave) {
 TEST(SpectralWindField, TheFinestOctavesLackWhatTheTileCannotHold) {
   // A quarter of the finest wave and finer: oblique waves that are too short for the tile are missing there.
   const double u = variance_between(lines_of_u(), 64, 128);
-  const double expected = expected_between(WindComponent::kAlong, kSigma_m_s, 16.0, 64, 128);
+  const double expected = expected_between(turbulence::WindComponent::kAlong, kSigma_m_s, 16.0, 64, 128);
   EXPECT_NEAR(10.0 * std::log10(u / expected), -0.5, 0.5);
 }
 
 TEST(SpectralWindField, HasTheVarianceThatWasAskedFor) {
   // Of shorter gusts, those across the wind, more is lost between samples, and said to be.
   const SpectralWindField field(kFine);
-  EXPECT_NEAR(field.variance_m2_s2(WindComponent::kAlong) / (kSigma_m_s * kSigma_m_s), 1.0, 0.05);
-  EXPECT_NEAR(field.variance_m2_s2(WindComponent::kAcross) / (0.64 * kSigma_m_s * kSigma_m_s), 1.0, 0.08);
-  EXPECT_EQ(field.variance_m2_s2(WindComponent::kUpward), 0.0);
-  EXPECT_NEAR(variance_between(lines_of_u(), 0, 256) / field.variance_m2_s2(WindComponent::kAlong), 1.0, 0.12);
-  EXPECT_NEAR(variance_between(lines_of_v(), 0, 256) / field.variance_m2_s2(WindComponent::kAcross), 1.0, 0.12);
+  EXPECT_NEAR(field.variance_m2_s2(turbulence::WindComponent::kAlong) / (kSigma_m_s * kSigma_m_s), 1.0, 0.05);
+  EXPECT_NEAR(field.variance_m2_s2(turbulence::WindComponent::kAcross) / (0.64 * kSigma_m_s * kSigma_m_s), 1.0, 0.08);
+  EXPECT_EQ(field.variance_m2_s2(turbulence::WindComponent::kUpward), 0.0);
+  EXPECT_NEAR(variance_between(lines_of_u(), 0, 256) / field.variance_m2_s2(turbulence::WindComponent::kAlong), 1.0,
+              0.12);
+  EXPECT_NEAR(variance_between(lines_of_v(), 0, 256) / field.variance_m2_s2(turbulence::WindComponent::kAcross), 1.0,
+              0.12);
 }
 
 /// Long tiles of coarse samples, for what takes many seeds: the mean squares of a place, and of the mean over a line
@@ -149,7 +152,7 @@ LongLines measure_long_lines() {
   for (int seed = 0; seed < kSeeds; ++seed) {
     settings.seed = static_cast<std::uint64_t>(seed);
     const SpectralWindField field(settings);
-    lines.expected_m2_s2 = field.variance_m2_s2(WindComponent::kAlong);
+    lines.expected_m2_s2 = field.variance_m2_s2(turbulence::WindComponent::kAlong);
     sample_field(field, grid, values);
     for (std::size_t row = 0; row < 64; ++row) {
       double mean = 0.0;
@@ -202,7 +205,7 @@ TEST(SpectralWindField, CoherenceAcrossTheWindFallsAsDavenports) {
       const double along_rad_m = 2.0 * std::numbers::pi * reduced / distance_m;
       EXPECT_NEAR(coherence, von_karman_coherence(along_rad_m, distance_m, kFine.length_m), 0.08)
           << apart << ", " << reduced;
-      EXPECT_NEAR(coherence, davenport_coherence(reduced, distance_m, distance_m, 7.0), 0.15)
+      EXPECT_NEAR(coherence, turbulence::davenport_coherence(reduced, distance_m, distance_m, 7.0), 0.15)
           << apart << ", " << reduced;
     }
   }
@@ -353,17 +356,17 @@ TEST(SpectralWindField, InSpaceHasAllThreeComponents) {
       w += std::pow(static_cast<double>(values[2 * grid.size() + i]), 2.0) / count;
     }
     if (seed > 0) continue;
-    EXPECT_GT(field.variance_m2_s2(WindComponent::kUpward), 0.0);
+    EXPECT_GT(field.variance_m2_s2(turbulence::WindComponent::kUpward), 0.0);
     std::vector<float> again(values.size());
     sample_field(SpectralWindField(settings), grid, again);
     EXPECT_EQ(values, again) << "same seed, same bits";
   }
   // A tile of three lengths holds few long gusts: ten seeds scatter.
   const SpectralWindField field(settings);
-  EXPECT_NEAR(u / field.variance_m2_s2(WindComponent::kAlong), 1.0, 0.35);
-  EXPECT_NEAR(v / field.variance_m2_s2(WindComponent::kAcross), 1.0, 0.2);
-  EXPECT_NEAR(w / field.variance_m2_s2(WindComponent::kUpward), 1.0, 0.1);
-  EXPECT_LT(field.variance_m2_s2(WindComponent::kUpward), 0.25 * kSigma_m_s * kSigma_m_s);
+  EXPECT_NEAR(u / field.variance_m2_s2(turbulence::WindComponent::kAlong), 1.0, 0.35);
+  EXPECT_NEAR(v / field.variance_m2_s2(turbulence::WindComponent::kAcross), 1.0, 0.2);
+  EXPECT_NEAR(w / field.variance_m2_s2(turbulence::WindComponent::kUpward), 1.0, 0.1);
+  EXPECT_LT(field.variance_m2_s2(turbulence::WindComponent::kUpward), 0.25 * kSigma_m_s * kSigma_m_s);
 }
 
 /// Of fields in space over seeds: variances and the covariance of u and w, over what they are said to be, and how much
@@ -391,8 +394,8 @@ StressRun measure_stress(double stress, bool evolves) {
     SpectralWindField field(settings);
     if (evolves) field.go_to(100.0);
     sample_field(field, grid, values);
-    const double u_m2_s2 = field.variance_m2_s2(WindComponent::kAlong);
-    const double w_m2_s2 = field.variance_m2_s2(WindComponent::kUpward);
+    const double u_m2_s2 = field.variance_m2_s2(turbulence::WindComponent::kAlong);
+    const double w_m2_s2 = field.variance_m2_s2(turbulence::WindComponent::kUpward);
     EXPECT_NEAR(field.along_up_covariance_m2_s2(), stress * std::sqrt(u_m2_s2 * w_m2_s2), 1e-12);
     const double count = static_cast<double>(grid.size()) * kSeeds;
     for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -431,16 +434,16 @@ TEST(SpectralWindField, StressChangesTheWindUpwardAlone) {
   std::vector<float> without(3 * grid.size());
   std::vector<float> with(3 * grid.size());
   sample_field(SpectralWindField(settings), grid, without);
-  const std::array variances = {SpectralWindField(settings).variance_m2_s2(WindComponent::kAlong),
-                                SpectralWindField(settings).variance_m2_s2(WindComponent::kUpward)};
+  const std::array variances = {SpectralWindField(settings).variance_m2_s2(turbulence::WindComponent::kAlong),
+                                SpectralWindField(settings).variance_m2_s2(turbulence::WindComponent::kUpward)};
   settings.stress = -0.3;
   const SpectralWindField field(settings);
   sample_field(field, grid, with);
   const auto level = static_cast<std::ptrdiff_t>(2 * grid.size());
   EXPECT_TRUE(std::equal(with.begin(), with.begin() + level, without.begin())) << "bit for bit";
   EXPECT_FALSE(std::equal(with.begin() + level, with.end(), without.begin() + level));
-  EXPECT_EQ(field.variance_m2_s2(WindComponent::kAlong), variances[0]);
-  EXPECT_EQ(field.variance_m2_s2(WindComponent::kUpward), variances[1]);
+  EXPECT_EQ(field.variance_m2_s2(turbulence::WindComponent::kAlong), variances[0]);
+  EXPECT_EQ(field.variance_m2_s2(turbulence::WindComponent::kUpward), variances[1]);
 }
 
 TEST(SpectralWindField, OnTheGroundIsTheSameAtEveryHeight) {
@@ -484,4 +487,4 @@ TEST(SpectralWindField, RefusesWhatIsNoWind) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

@@ -7,7 +7,7 @@
 
 #include "engine/wind/turbulence/wind_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::field {
 namespace {
 
 constexpr double kModesSigma_m_s = 1.6;
@@ -29,13 +29,14 @@ double over_all_waves(Function function) {
 }
 
 TEST(VonKarmanModes, ALineThroughThePlaneHasVonKarmansSpectrum) {
-  for (const WindComponent component : {WindComponent::kAlong, WindComponent::kAcross}) {
+  for (const turbulence::WindComponent component :
+       {turbulence::WindComponent::kAlong, turbulence::WindComponent::kAcross}) {
     const VonKarmanModes modes(component, kModesSigma_m_s, kModesLength_m);
     // WindSpectrum takes the length of u, of which that of v is half.
-    const double length_of_u_m = component == WindComponent::kAlong ? kModesLength_m : 2.0 * kModesLength_m;
+    const double length_of_u_m = component == turbulence::WindComponent::kAlong ? kModesLength_m : 2.0 * kModesLength_m;
     constexpr double kSpeed_m_s = 7.0;
-    const WindSpectrum spectrum =
-        WindSpectrum::make(
+    const turbulence::WindSpectrum spectrum =
+        turbulence::WindSpectrum::make(
             {.component = component, .speed_m_s = kSpeed_m_s, .sigma_m_s = kModesSigma_m_s, .length_m = length_of_u_m})
             .value();
     for (const double frequency_hz : {0.001, 0.01, 0.03, 0.1, 1.0, 5.0}) {
@@ -48,7 +49,8 @@ TEST(VonKarmanModes, ALineThroughThePlaneHasVonKarmansSpectrum) {
 }
 
 TEST(VonKarmanModes, ALevelPlaneCutsThePlanesDensityOutOfSpace) {
-  for (const WindComponent component : {WindComponent::kAlong, WindComponent::kAcross}) {
+  for (const turbulence::WindComponent component :
+       {turbulence::WindComponent::kAlong, turbulence::WindComponent::kAcross}) {
     const VonKarmanModes modes(component, kModesSigma_m_s, kModesLength_m);
     for (const double along_rad_m : {0.0, 0.01, 0.3}) {
       for (const double across_rad_m : {0.005, 0.2}) {
@@ -61,19 +63,19 @@ TEST(VonKarmanModes, ALevelPlaneCutsThePlanesDensityOutOfSpace) {
 }
 
 TEST(VonKarmanModes, AllWavesTogetherHaveTheVariance) {
-  const VonKarmanModes u(WindComponent::kAlong, kModesSigma_m_s, kModesLength_m);
+  const VonKarmanModes u(turbulence::WindComponent::kAlong, kModesSigma_m_s, kModesLength_m);
   const double variance = over_all_waves(
       [&](double along) { return over_all_waves([&](double across) { return u.plane_density(along, across); }); });
   EXPECT_NEAR(variance, kModesSigma_m_s * kModesSigma_m_s, 1e-3);
 
   // Upward is across as well: the same density, turned.
-  const VonKarmanModes v(WindComponent::kAcross, kModesSigma_m_s, kModesLength_m);
-  const VonKarmanModes w(WindComponent::kUpward, kModesSigma_m_s, kModesLength_m);
+  const VonKarmanModes v(turbulence::WindComponent::kAcross, kModesSigma_m_s, kModesLength_m);
+  const VonKarmanModes w(turbulence::WindComponent::kUpward, kModesSigma_m_s, kModesLength_m);
   EXPECT_DOUBLE_EQ(w.space_density(0.1, 0.2, 0.3), v.space_density(0.1, 0.3, 0.2));
 }
 
 TEST(VonKarmanCoherence, IsThatOfItsModes) {
-  const VonKarmanModes modes(WindComponent::kAlong, kModesSigma_m_s, kModesLength_m);
+  const VonKarmanModes modes(turbulence::WindComponent::kAlong, kModesSigma_m_s, kModesLength_m);
   for (const double along_rad_m : {0.0, 0.02, 0.3}) {
     const double power = over_all_waves([&](double across) { return modes.plane_density(along_rad_m, across); });
     for (const double distance_m : {0.5, 3.0}) {
@@ -94,10 +96,10 @@ TEST(VonKarmanCoherence, IsNearDavenports) {
   for (double reduced = 0.005; reduced < 2.0; reduced *= 1.1) {
     const double along_rad_m = 2.0 * std::numbers::pi * reduced / kDistance_m;
     const double coherence = von_karman_coherence(along_rad_m, kDistance_m, kModesLength_m);
-    EXPECT_NEAR(coherence, davenport_coherence(reduced, kDistance_m, kDistance_m, 7.0), 0.095) << reduced;
-    EXPECT_NEAR(coherence, davenport_coherence(reduced, kDistance_m, kDistance_m, 10.0), 0.2) << reduced;
+    EXPECT_NEAR(coherence, turbulence::davenport_coherence(reduced, kDistance_m, kDistance_m, 7.0), 0.095) << reduced;
+    EXPECT_NEAR(coherence, turbulence::davenport_coherence(reduced, kDistance_m, kDistance_m, 10.0), 0.2) << reduced;
   }
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::field {
 namespace {
 
 /// Says where it was asked.
@@ -44,8 +44,8 @@ TEST(SampleField, OfTwoDimensionsHasTwoComponents) {
 }
 
 TEST(GroundWindField, IsTheWindOverTheGroundAtEveryHeight) {
-  const GustNoise noise({.period_m = 64.0, .samples = 256, .seed = 2});
-  GroundWind ground(WindVector{3.0, -2.0});
+  const turbulence::GustNoise noise({.period_m = 64.0, .samples = 256, .seed = 2});
+  ground::GroundWind ground(WindVector{3.0, -2.0});
   ground.gusts.along_m_s.fill(0.3F);
   ground.gusts.across_m_s.fill(0.2F);
   const GroundWindField field(ground, noise);
@@ -64,4 +64,4 @@ TEST(GroundWindField, IsTheWindOverTheGroundAtEveryHeight) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::field

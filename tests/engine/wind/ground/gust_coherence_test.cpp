@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 namespace {
 
 double root_coherence(const GustCoherence& law, double frequency_hz, double along_m, double across_m) {
@@ -63,4 +63,4 @@ TEST(GustCoherence, QuickerGustsAreLostSooner) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 namespace {
 
 constexpr std::size_t kWaves = 16;
@@ -230,4 +230,4 @@ TEST(GustKriging, SensorsAtOnePlaceShareItEqually) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 namespace {
 
 /// A pen whose every number is this.
@@ -227,4 +227,4 @@ TEST(WindTape, IsContinuousAlongTheTape) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

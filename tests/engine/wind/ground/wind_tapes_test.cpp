@@ -8,7 +8,7 @@
 
 #include "tests/support/stroke_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::ground {
 namespace {
 
 /// A wind toward north of 7 m/s, one pen in the middle, and gusts that have been alike for long.
@@ -23,8 +23,8 @@ struct OnePen {
 /// What the law leaves of all bands of 1 m/s each.
 double bands_left(const GustCoherence& law, double distance_m) {
   double sum = 0.0;
-  for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-    sum += std::exp(-distance_m * law.loss_per_m(OctaveFollower::centre_hz(band)));
+  for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
+    sum += std::exp(-distance_m * law.loss_per_m(turbulence::OctaveFollower::centre_hz(band)));
   }
   return sum;
 }
@@ -100,7 +100,8 @@ TEST(WindTapes, TheNoiseGrowsWithTheDistanceInEachOctaveInEveryDirection) {
       }
       before = now;
     }
-    EXPECT_NEAR(before.noise_along[GustNoise::kTileOctaves - 1], 1.0F, 1e-3F) << "the shortest waves are lost";
+    EXPECT_NEAR(before.noise_along[turbulence::GustNoise::kTileOctaves - 1], 1.0F, 1e-3F)
+        << "the shortest waves are lost";
   }
 }
 
@@ -193,7 +194,7 @@ TEST(WindTapes, IsContinuousOverTheGround) {
 std::function<void(std::size_t, WindSample&)> swinging_gusts(double time_s, double known = 0.9) {
   return [time_s, known](std::size_t pen, WindSample& now) {
     for (std::size_t band = 0; band < 8; ++band) {
-      const double phase = 6.28 * OctaveFollower::centre_hz(band) * time_s + 1.7 * static_cast<double>(pen);
+      const double phase = 6.28 * turbulence::OctaveFollower::centre_hz(band) * time_s + 1.7 * static_cast<double>(pen);
       now.east_m_s[band] = static_cast<float>(0.3 * std::sin(phase));
       now.north_m_s[band] = static_cast<float>(0.5 * std::cos(phase));
     }
@@ -260,7 +261,7 @@ void expect_each_has_its_own(const std::vector<WindVector>& places) {
     const WindTapes::Reading measured = WindTapes::at_pen(run.pen(i).now);
     EXPECT_NEAR(there.gusts.u_m_s, measured.gusts.u_m_s, 0.05) << i;
     EXPECT_NEAR(there.gusts.v_m_s, measured.gusts.v_m_s, 0.05) << i;
-    for (std::size_t octave = 3; octave < GustNoise::kTileOctaves; ++octave) {
+    for (std::size_t octave = 3; octave < turbulence::GustNoise::kTileOctaves; ++octave) {
       EXPECT_NEAR(there.noise_along[octave], measured.noise_along[octave], 0.03F) << i << ' ' << octave;
     }
   }
@@ -372,4 +373,4 @@ TEST(WindTapes, AtThePenAllIsKnownAtOnceWhenASensorBeginsToSpeak) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::ground

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 using ::testing::HasSubstr;
@@ -229,4 +229,4 @@ TEST(CalibrationFit, SensorsOfDifferentPaceAreComparedByTheirMeans) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

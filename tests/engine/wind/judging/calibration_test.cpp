@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 WindReading raw_reading(double speed_m_s, std::optional<double> direction_deg = {}) {
@@ -94,4 +94,4 @@ TEST(HeightFactor, IsTheLogarithmicProfiles) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

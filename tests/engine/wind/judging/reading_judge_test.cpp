@@ -8,7 +8,7 @@
 
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 /// A judge, and a sensor that speaks once in `interval_s`.
@@ -42,7 +42,7 @@ class Court {
 
 TEST(ReadingJudge, BelievesEveryReadingOfATurbulentWind) {
   for (const double interval_s : {0.1, 1.0, 14.0, 48.0}) {
-    SyntheticWind wind({.mean_speed_m_s = 9.0, .turbulence_intensity = 0.3, .seed = 4});
+    turbulence::SyntheticWind wind({.mean_speed_m_s = 9.0, .turbulence_intensity = 0.3, .seed = 4});
     ReadingJudge judge;
     int refused = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -241,4 +241,4 @@ TEST(ReadingJudge, IsNotConfusedByTimesAndNumbersOfAnyKind) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::judging {
 namespace {
 
 /// Sensors that speak every ten seconds, and their vote.
@@ -142,4 +142,4 @@ TEST(SensorVote, TimesOfAnyKindDoNotConfuseIt) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::judging

@@ -8,7 +8,7 @@
 
 #include "engine/wind/shaping/soft_ceiling.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 namespace {
 
 constexpr double kDay_s = 86400.0;
@@ -100,4 +100,4 @@ TEST(SoftCeiling, WithoutValuesIsNone) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

@@ -9,7 +9,7 @@
 #include "tests/support/gusty_wind.hpp"
 #include "tests/support/stroke_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 namespace {
 
 /// A wind toward north of 6 m/s that is measured 20 m south of the middle, with gusts of 0.1 Hz and noise beside them.
@@ -24,21 +24,21 @@ class MeasuredWind {
   }
 
   /// The next tick; gusts swing by `gust_m_s`.
-  DrivingWind next(double gust_m_s) {
+  ground::DrivingWind next(double gust_m_s) {
     const double now_m_s = gust_m_s * std::sin(2.0 * std::numbers::pi * 0.1 * time_s_);
     time_s_ += StrokeRun::kTick_s;
-    run_.step([now_m_s](std::size_t, WindSample& now) {
+    run_.step([now_m_s](std::size_t, ground::WindSample& now) {
       now.north_m_s[5] = static_cast<float>(now_m_s);
       now.known_along.fill(0.8F);
       now.known_across.fill(0.6F);
     });
     const WindVector wind = run_.wind();
     shared_gusts()->carry(gusts_.carried, wind.u_m_s, -wind.v_m_s, StrokeRun::kTick_s);
-    DrivingWind driving{.state = {.time = MonoTime(from_seconds(100.0 + time_s_)),
-                                  .wind = {},
-                                  .source = WindSource::kLive,
-                                  .live_weight = 1.0},
-                        .stroke = run_.stroke()};
+    ground::DrivingWind driving{.state = {.time = MonoTime(from_seconds(100.0 + time_s_)),
+                                          .wind = {},
+                                          .source = WindSource::kLive,
+                                          .live_weight = 1.0},
+                                .stroke = run_.stroke()};
     driving.ground.gusts = gusts_;
     const WindVector way = shared_gusts()->everywhere(gusts_);
     driving.ground.everywhere = wind + way;
@@ -49,13 +49,13 @@ class MeasuredWind {
 
  private:
   StrokeRun run_{{{0.0, 20.0}}};
-  GustNoise::Moment gusts_;
+  turbulence::GustNoise::Moment gusts_;
   double time_s_ = 0.0;
 };
 
 constexpr std::array<WindVector, 4> kPlaces = {WindVector{0.0, 20.0}, {3.0, 10.0}, {-5.0, -15.0}, {10.0, 25.0}};
 
-WindVector wind_at(const GroundWind& ground, WindVector place) {
+WindVector wind_at(const ground::GroundWind& ground, WindVector place) {
   return ground.at(*shared_gusts(), place.u_m_s, place.v_m_s);
 }
 
@@ -72,9 +72,9 @@ struct Both {
   }
   MeasuredWind wind;
   WindShaping shaping;
-  WindTapes real_tapes, shaped_tapes;
-  DrivingWind real, shaped;
-  GroundWind real_ground, shaped_ground;
+  ground::WindTapes real_tapes, shaped_tapes;
+  ground::DrivingWind real, shaped;
+  ground::GroundWind real_ground, shaped_ground;
 };
 
 TEST(WindShapingOfPlaces, WhatIsOffChangesNoBitAnywhere) {
@@ -82,8 +82,8 @@ TEST(WindShapingOfPlaces, WhatIsOffChangesNoBitAnywhere) {
   for (int tick = 0; tick < 600; ++tick) {
     both.next(1.0);
     ASSERT_EQ(both.shaped.state.wind.v_m_s, both.real.state.wind.v_m_s);
-    const WindPen& shaped = both.shaped.stroke.pens[0];
-    const WindPen& real = both.real.stroke.pens[0];
+    const ground::WindPen& shaped = both.shaped.stroke.pens[0];
+    const ground::WindPen& real = both.real.stroke.pens[0];
     ASSERT_EQ(shaped.now.north_m_s, real.now.north_m_s);
     ASSERT_EQ(shaped.written.known_along, real.written.known_along);
     ASSERT_EQ(shaped.now.gain, 1.0);
@@ -128,10 +128,10 @@ TEST(WindShapingOfPlaces, WhereNothingIsMeasuredAllGustsAreScaledToo) {
   for (const double gusts : {0.0, 2.0}) {
     WindShaping shaping({.gusts = gusts}, shared_gusts());
     MeasuredWind wind;
-    DrivingWind real = wind.next(0.0);
+    ground::DrivingWind real = wind.next(0.0);
     real.stroke.pen_count = 0;
     real.state.wind = wind_where_measured(real.ground, real.stroke, *shared_gusts());
-    DrivingWind shaped = real;
+    ground::DrivingWind shaped = real;
     shaping.shape(shaped, true);
     const WindVector mean{0.0, 6.0};
     for (const WindVector place : kPlaces) {
@@ -151,7 +151,7 @@ TEST(WindShapingOfPlaces, TheCeilingsGainGoesWithTheGustThatItCut) {
     gains[static_cast<std::size_t>(tick)] = both.shaping.report().ceiling_gain;
     if (tick < 400) continue;
     // 12 m at 6 m/s: 120 ticks.
-    const WindTapes::Reading reading = both.shaped_tapes.at(0.0, 8.0);
+    const ground::WindTapes::Reading reading = both.shaped_tapes.at(0.0, 8.0);
     ASSERT_NEAR(reading.gain, gains[static_cast<std::size_t>(tick - 120)], 0.02) << tick;
     const WindVector there = wind_at(both.shaped_ground, {0.0, 8.0});
     const WindVector real = wind_at(both.real_ground, {0.0, 8.0});
@@ -163,7 +163,7 @@ TEST(WindShapingOfPlaces, ABreezeBlowsOverACalmThatIsMeasured) {
   Both both({.floor_m_s = 2.0, .over_s = 5.0}, 0.0);
   double largest_difference_m_s = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
-    DrivingWind calm = both.wind.next(0.0);
+    ground::DrivingWind calm = both.wind.next(0.0);
     calm.ground.gusts.along_m_s.fill(0.0F);
     calm.ground.gusts.across_m_s.fill(0.0F);
     calm.ground.everywhere = {};
@@ -182,4 +182,4 @@ TEST(WindShapingOfPlaces, ABreezeBlowsOverACalmThatIsMeasured) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

@@ -12,19 +12,19 @@
 #include "engine/wind/blend/blended_estimator.hpp"
 #include "tests/support/gusty_wind.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::shaping {
 namespace {
 
 constexpr double kTick_s = 1.0 / 60.0;
 
 /// A wind without gusts, which blows toward north-east.
-DrivingWind steady_wind(double speed_m_s, double time_s, double live_weight = 1.0) {
+ground::DrivingWind steady_wind(double speed_m_s, double time_s, double live_weight = 1.0) {
   const WindVector ahead{0.6, 0.8};
-  DrivingWind wind{.state = {.time = MonoTime(from_seconds(time_s)),
-                             .wind = speed_m_s * ahead,
-                             .source = WindSource::kLive,
-                             .live_weight = live_weight},
-                   .ground = speed_m_s * ahead};
+  ground::DrivingWind wind{.state = {.time = MonoTime(from_seconds(time_s)),
+                                     .wind = speed_m_s * ahead,
+                                     .source = WindSource::kLive,
+                                     .live_weight = live_weight},
+                           .ground = speed_m_s * ahead};
   wind.ground.gusts.ahead = ahead;
   wind.ground.gusts.carried = shared_gusts()->begin(1);
   return wind;
@@ -35,14 +35,14 @@ class ShapedWind {
  public:
   explicit ShapedWind(const WindShapingSettings& settings) : shaping(settings, shared_gusts()) {}
 
-  DrivingWind after(double speed_m_s, double dt_s, bool is_open = true, double live_weight = 1.0) {
+  ground::DrivingWind after(double speed_m_s, double dt_s, bool is_open = true, double live_weight = 1.0) {
     time_s += dt_s;
-    DrivingWind wind = steady_wind(speed_m_s, time_s, live_weight);
+    ground::DrivingWind wind = steady_wind(speed_m_s, time_s, live_weight);
     shaping.shape(wind, is_open);
     return wind;
   }
   /// The last of many ticks.
-  DrivingWind after_long(double speed_m_s, double duration_s, bool is_open = true) {
+  ground::DrivingWind after_long(double speed_m_s, double duration_s, bool is_open = true) {
     for (double end_s = time_s + duration_s - kTick_s; time_s < end_s;) after(speed_m_s, kTick_s, is_open);
     return after(speed_m_s, kTick_s, is_open);
   }
@@ -51,7 +51,7 @@ class ShapedWind {
   double time_s = 100.0;
 };
 
-void expect_same_bits(const DrivingWind& shaped, const DrivingWind& real) {
+void expect_same_bits(const ground::DrivingWind& shaped, const ground::DrivingWind& real) {
   EXPECT_EQ(shaped.state.wind.u_m_s, real.state.wind.u_m_s);
   EXPECT_EQ(shaped.state.wind.v_m_s, real.state.wind.v_m_s);
   EXPECT_EQ(shaped.ground.everywhere.u_m_s, real.ground.everywhere.u_m_s);
@@ -62,9 +62,9 @@ void expect_same_bits(const DrivingWind& shaped, const DrivingWind& real) {
 }
 
 /// Winds that no site has: steps up to 75 m/s, calms, turns, and gusts of any strength.
-DrivingWind hostile_wind(std::mt19937& random, double time_s) {
+ground::DrivingWind hostile_wind(std::mt19937& random, double time_s) {
   const auto uniform = [&](double to) { return to * static_cast<double>(random()) / 4294967296.0; };
-  DrivingWind wind = steady_wind(0.0, time_s, uniform(1.0));
+  ground::DrivingWind wind = steady_wind(0.0, time_s, uniform(1.0));
   const double speed_m_s = random() % 3 == 0 ? 0.0 : uniform(75.0);
   const double angle_rad = uniform(6.28);
   wind.ground.gusts.ahead = {std::sin(angle_rad), std::cos(angle_rad)};
@@ -79,8 +79,8 @@ TEST(WindShaping, WhatIsOffLeavesEveryWindAsItIsBitForBit) {
   WindShaping shaping({}, shared_gusts());
   std::mt19937 random(7);
   for (int tick = 0; tick < 2000; ++tick) {
-    const DrivingWind real = hostile_wind(random, kTick_s * tick);
-    DrivingWind shaped = real;
+    const ground::DrivingWind real = hostile_wind(random, kTick_s * tick);
+    ground::DrivingWind shaped = real;
     shaping.shape(shaped, true);
     expect_same_bits(shaped, real);
     if (HasFailure()) return;
@@ -90,13 +90,13 @@ TEST(WindShaping, WhatIsOffLeavesEveryWindAsItIsBitForBit) {
 TEST(WindShaping, TheCeilingAloneTouchesStormsOnly) {
   ShapedWind wind({.ceiling = {.from_m_s = 17.0, .most_m_s = 25.0}});
   for (const double speed_m_s : {0.0, 3.0, 16.99}) {
-    const DrivingWind shaped = wind.after(speed_m_s, kTick_s);
+    const ground::DrivingWind shaped = wind.after(speed_m_s, kTick_s);
     expect_same_bits(shaped, steady_wind(speed_m_s, wind.time_s));
     EXPECT_EQ(wind.shaping.report().ceiling_gain, 1.0);
   }
   double before_m_s = 17.0;
   for (const double speed_m_s : {20.0, 33.0, 50.0, 75.0}) {
-    const DrivingWind shaped = wind.after(speed_m_s, kTick_s);
+    const ground::DrivingWind shaped = wind.after(speed_m_s, kTick_s);
     EXPECT_GT(speed_of(shaped.state.wind), before_m_s);
     EXPECT_LT(speed_of(shaped.state.wind), 25.0);
     EXPECT_NEAR(direction_from_deg(shaped.state.wind), direction_from_deg({0.6, 0.8}), 1e-9);
@@ -110,15 +110,15 @@ TEST(WindShaping, RaisesAWeakWindWithItsGustsToTheFloorWithinItsTime) {
   wind.after(2.0, kTick_s);
   const auto shape_gusty = [&](double dt_s) {
     wind.time_s += dt_s;
-    DrivingWind gusty = steady_wind(0.8, wind.time_s);
+    ground::DrivingWind gusty = steady_wind(0.8, wind.time_s);
     gusty.ground.gusts.along_m_s.fill(0.1F);
     wind.shaping.shape(gusty, true);
     return gusty;
   };
   for (double since_s = 0.0; since_s < 60.0 + 10.0; since_s += kTick_s) shape_gusty(kTick_s);
-  const DrivingWind soon = shape_gusty(kTick_s);
+  const ground::DrivingWind soon = shape_gusty(kTick_s);
   EXPECT_NEAR(speed_of(soon.state.wind), 1.5, 0.15) << "of the way from 2 m/s 5 % are left";
-  const DrivingWind later = shape_gusty(600.0);
+  const ground::DrivingWind later = shape_gusty(600.0);
   EXPECT_NEAR(speed_of(later.state.wind), 1.5, 1e-6);
   EXPECT_NEAR(direction_from_deg(later.state.wind), direction_from_deg({0.6, 0.8}), 1e-9);
   EXPECT_NEAR(later.ground.gusts.along_m_s[20], 0.1 * 1.5 / 0.8, 1e-6) << "gusts are raised with the mean";
@@ -128,7 +128,7 @@ TEST(WindShaping, LeavesAWindAboveTheFloorAsItIsBitForBit) {
   ShapedWind wind({.floor_m_s = 1.5});
   expect_same_bits(wind.after(4.0, kTick_s), steady_wind(4.0, wind.time_s));
   wind.after_long(0.9, 600.0);  // raised by a factor, without a breeze
-  const DrivingWind again = wind.after_long(4.0, 60.0);
+  const ground::DrivingWind again = wind.after_long(4.0, 60.0);
   expect_same_bits(again, steady_wind(4.0, wind.time_s));
 }
 
@@ -160,7 +160,7 @@ TEST(WindShaping, AStillWindGetsABreezeWithTheClimatesTurbulence) {
 
 TEST(WindShaping, TheBreezeDiffersFromPlaceToPlaceAndTheMiddleIsItsMiddle) {
   ShapedWind wind({.floor_m_s = 2.0});
-  const DrivingWind shaped = wind.after_long(0.0, 30.0);
+  const ground::DrivingWind shaped = wind.after_long(0.0, 30.0);
   const WindVector middle = shaped.ground.at(*shared_gusts(), 0.0, 0.0);
   EXPECT_EQ(middle.u_m_s, shaped.state.wind.u_m_s);
   EXPECT_EQ(middle.v_m_s, shaped.state.wind.v_m_s);
@@ -282,7 +282,7 @@ TEST(WindShaping, WhateverComesTheWindIsFiniteBoundedAndItsGainsNeverJump) {
       const auto kind = random() % 200;
       const double dt_s = kind == 0 ? 0.0 : kind == 1 ? -100.0 : kind == 2 ? 300.0 : kTick_s;
       if (random() % 300 == 0) is_open = !is_open;
-      DrivingWind wind = hostile_wind(random, time_s + dt_s);
+      ground::DrivingWind wind = hostile_wind(random, time_s + dt_s);
       time_s = std::max(time_s, time_s + dt_s);
       shaping.shape(wind, is_open);
 
@@ -327,7 +327,7 @@ std::optional<WindReading> reading_of_a_day(int second, std::mt19937& random) {
 
 TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings) {
   constexpr int kRate_hz = 15;
-  BlendedEstimator estimator(1, {.climate = {.mean_speed_m_s = 3.0}, .rate_hz = kRate_hz}, shared_gusts());
+  blend::BlendedEstimator estimator(1, {.climate = {.mean_speed_m_s = 3.0}, .rate_hz = kRate_hz}, shared_gusts());
   WindShaping shaping({.floor_m_s = 2.0,
                        .over_s = 60.0,
                        .ceiling = {.from_m_s = 17.0, .most_m_s = 25.0},
@@ -340,7 +340,7 @@ TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings
   };
   Largest calm, storm;
   std::mt19937 random(3);
-  DrivingWind last_real, last_shaped;
+  ground::DrivingWind last_real, last_shaped;
   double weakest_mean_m_s = 1e9;
   for (int tick = 0; tick < 1400 * kRate_hz; ++tick) {
     const int second = tick / kRate_hz;
@@ -348,8 +348,8 @@ TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings
       if (const auto reading = reading_of_a_day(second, random)) estimator.accept(0, *reading);
     }
     const WindState state = estimator.advance(MonoTime(from_seconds(static_cast<double>(tick) / kRate_hz)));
-    const DrivingWind real{state, estimator.ground()};
-    DrivingWind shaped = real;
+    const ground::DrivingWind real{state, estimator.ground()};
+    ground::DrivingWind shaped = real;
     shaping.shape(shaped, second / 250 % 2 == 0);
     ASSERT_TRUE(std::isfinite(speed_of(shaped.state.wind)));
     ASSERT_LT(speed_of(shaped.state.wind), 25.0);
@@ -358,7 +358,7 @@ TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings
     Largest& largest = second < 700 ? calm : storm;
     for (const double at_m : {0.0, 40.0}) {
       if (tick == 0) break;
-      const auto at = [at_m](const DrivingWind& wind) { return wind.ground.at(*shared_gusts(), at_m, at_m); };
+      const auto at = [at_m](const ground::DrivingWind& wind) { return wind.ground.at(*shared_gusts(), at_m, at_m); };
       largest.real_m_s = std::max(largest.real_m_s, speed_of(at(real) - at(last_real)));
       largest.shaped_m_s = std::max(largest.shaped_m_s, speed_of(at(shaped) - at(last_shaped)));
     }
@@ -373,4 +373,4 @@ TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::shaping

@@ -13,7 +13,7 @@
 #include "engine/wind/turbulence/turbulence_fit.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 /// One for all: it is large.
@@ -100,7 +100,7 @@ TEST(GustNoise, ALineThroughItHasVonKarmansSpectrumFromAKilometreToHalfAMetre) {
   constexpr double kStep_m = 0.1;
   constexpr int kSeeds = 5;
   constexpr int kLines = 2;
-  RealFft fft(1, kSamples);
+  fft::RealFft fft(1, kSamples);
   std::vector<double> power(fft.row_modes());
   std::array<std::vector<double>, 2> line_m_s;
   for (auto& component : line_m_s) component.resize(kSamples);
@@ -350,4 +350,4 @@ TEST(GustNoise, EddiesTurnOverAsKolmogorovSays) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -10,7 +10,7 @@
 
 #include "tests/engine/wind/blend/blend_run.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kSiteDay_s = 86400.0;
@@ -91,11 +91,11 @@ TEST(SiteSpectrum, IsTheSameFromAFile) {
 /// An hour of gusts from a quick source beside a slow one, each as it may.
 std::shared_ptr<SiteSpectrum> fitted(bool may_fit, double interval_s) {
   auto site = std::make_shared<SiteSpectrum>();
-  BlendSettings settings = BlendRun::usual();
+  blend::BlendSettings settings = blend::BlendRun::usual();
   settings.site = site;
   settings.sources = {{.fits_site = may_fit}};
-  BlendRun blend(1, settings);
-  TestGusts gusts(7);
+  blend::BlendRun blend(1, settings);
+  blend::TestGusts gusts(7);
   for (double time_s = 0.0; time_s < 1200.0; time_s += interval_s) {
     blend.read(5.0 + gusts.next(), 180.0);
     blend.run_for(interval_s);
@@ -115,10 +115,10 @@ TEST(SiteSpectrum, IsFittedFromFastSourcesThatMay) {
 TEST(SiteSpectrum, WhatItLearnsMovesTheWindNoMoreThanItMovesAnyway) {
   const auto largest_step = [](bool learns) {
     auto site = std::make_shared<SiteSpectrum>();
-    BlendSettings settings = BlendRun::usual();
+    blend::BlendSettings settings = blend::BlendRun::usual();
     settings.site = site;
-    BlendRun blend(1, settings);
-    TestGusts gusts(5);
+    blend::BlendRun blend(1, settings);
+    blend::TestGusts gusts(5);
     for (int i = 0; i < 40; ++i) {
       // All at once, as nothing in the daemon does.
       if (learns && i == 20) site->expect(std::vector<double>(SiteSpectrum::kOctaves, SiteSpectrum::kMost_db));
@@ -134,4 +134,4 @@ TEST(SiteSpectrum, WhatItLearnsMovesTheWindNoMoreThanItMovesAnyway) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr SyntheticWindSettings kSettings{
@@ -60,4 +60,4 @@ TEST(SyntheticWind, IsFiniteForAMonthAndForTimesBeforeItsBeginning) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

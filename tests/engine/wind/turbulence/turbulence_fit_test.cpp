@@ -9,7 +9,7 @@
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
@@ -71,8 +71,8 @@ TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
   constexpr std::size_t kReadings = kSamples / kPerReading;
   constexpr auto kDuration_s = static_cast<double>(kReadings);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const NoiseTile1 noise =
-        make_noise_1d({.size = kSamples, .seed = seed, .integral_scale = 12.0 / kDuration_s}).value();
+    const noise::NoiseTile1 noise =
+        noise::make_noise_1d({.size = kSamples, .seed = seed, .integral_scale = 12.0 / kDuration_s}).value();
     std::vector<double> readings;
     for (std::size_t i = 0; i + kPerReading <= kSamples; i += kPerReading) {
       double sum = 0.0;
@@ -120,4 +120,4 @@ TEST(TurbulenceFit, StaysFiniteWhateverItIsTold) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

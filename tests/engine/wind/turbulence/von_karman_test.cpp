@@ -7,7 +7,7 @@
 
 #include "engine/noise/von_karman_corner.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 TEST(VonKarmanTest, TheDensityIntegratesToOne) {
@@ -32,9 +32,9 @@ TEST(VonKarmanTest, FarAboveTheBendItFallsAsTheInertialRange) {
 
 TEST(VonKarmanTest, TheCornerIsWhereTheDensityBends) {
   const double exact = std::tgamma(1.0 / 3.0) / (std::sqrt(std::numbers::pi) * std::tgamma(5.0 / 6.0));
-  EXPECT_NEAR(kVonKarmanCorner, exact, 5e-5);
-  EXPECT_NEAR(std::pow(2.0 * std::numbers::pi * kVonKarmanCorner, 2.0), kVonKarmanBend, 0.05);
+  EXPECT_NEAR(noise::kVonKarmanCorner, exact, 5e-5);
+  EXPECT_NEAR(std::pow(2.0 * std::numbers::pi * noise::kVonKarmanCorner, 2.0), kVonKarmanBend, 0.05);
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

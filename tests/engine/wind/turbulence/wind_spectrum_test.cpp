@@ -10,7 +10,7 @@
 
 #include "engine/wind/turbulence/wind_profile.hpp"
 
-namespace yuragi {
+namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -192,4 +192,4 @@ TEST(Coherence, FallsFromOneWithFrequencyAndDistance) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::wind::turbulence

@@ -10,9 +10,9 @@
 #include "tests/support/recording_sink.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::drivers::recording {
 
-extern const DriverDescription kWindlogDriver;
+extern const sensor::DriverDescription kWindlogDriver;
 
 namespace {
 
@@ -21,7 +21,7 @@ using test::numbered_readings;
 using test::reading_at;
 using test::write_session;
 
-std::unique_ptr<Sensor> open_replay(const ParameterValues::Map& given) {
+std::unique_ptr<sensor::Sensor> open_replay(const ParameterValues::Map& given) {
   const auto values = ParameterValues::resolve(kWindlogDriver.parameters, given);
   if (!values) throw std::runtime_error(values.error().message);
   return kWindlogDriver.open(*values);
@@ -29,7 +29,7 @@ std::unique_ptr<Sensor> open_replay(const ParameterValues::Map& given) {
 
 TEST(WindlogReplay, PublishesEachReadingWhenItIsDue) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(30));
+  test::write_session(folder / "a.windlog", test::numbered_readings(30));
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
   ManualClock clock;
   RecordingSink sink;
@@ -46,15 +46,15 @@ TEST(WindlogReplay, PublishesEachReadingWhenItIsDue) {
     clock.advance_to(begin.mono + 100ms * (i + 1));
   }
   ASSERT_EQ(sink.links.size(), 2U);
-  EXPECT_EQ(sink.links[0].state, LinkState::kConnected);
-  EXPECT_EQ(sink.links[1].state, LinkState::kFinished);
+  EXPECT_EQ(sink.links[0].state, wind::LinkState::kConnected);
+  EXPECT_EQ(sink.links[1].state, wind::LinkState::kFinished);
   sensor->poll(clock, sink);
   EXPECT_EQ(sink.links.size(), 2U) << "the end is told once";
 }
 
 TEST(WindlogReplay, IsPacedByItsRate) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(30));
+  test::write_session(folder / "a.windlog", test::numbered_readings(30));
   for (const double rate : {0.01, 0.5, 4.0, 1000.0}) {
     const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"rate", rate}});
     ManualClock clock;
@@ -67,7 +67,7 @@ TEST(WindlogReplay, IsPacedByItsRate) {
 
 TEST(WindlogReplay, PolledLateGivesEachReadingTheMomentAtWhichItWasDue) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(30));
+  test::write_session(folder / "a.windlog", test::numbered_readings(30));
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
   ManualClock clock;
   RecordingSink sink;
@@ -84,7 +84,7 @@ TEST(WindlogReplay, PolledLateGivesEachReadingTheMomentAtWhichItWasDue) {
 
 TEST(WindlogReplay, GoesOnFromWhereItWasAfterALongSuspension) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(30));
+  test::write_session(folder / "a.windlog", test::numbered_readings(30));
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
   ManualClock clock;
   RecordingSink sink;
@@ -97,7 +97,7 @@ TEST(WindlogReplay, GoesOnFromWhereItWasAfterALongSuspension) {
 
 TEST(WindlogReplay, LoopsForEver) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(10));
+  test::write_session(folder / "a.windlog", test::numbered_readings(10));
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"loop", true}, {"seam", 0.0}});
   ManualClock clock;
   RecordingSink sink;
@@ -108,7 +108,7 @@ TEST(WindlogReplay, LoopsForEver) {
     EXPECT_EQ(sink.readings[i].time.mono, begin + 100ms * static_cast<int>(i));
     EXPECT_DOUBLE_EQ(sink.readings[i].speed_m_s, 0.001 * static_cast<double>(i % 10));
   }
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
 }
 
 TEST(WindlogReplay, TriesAnUnreadableFileAgainUntilItCanBeRead) {
@@ -127,20 +127,20 @@ TEST(WindlogReplay, TriesAnUnreadableFileAgainUntilItCanBeRead) {
     last_pause = pause;
     clock.advance_to(next);
   }
-  EXPECT_EQ(sink.last_state(), LinkState::kConnecting);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
   EXPECT_NE(sink.last_detail().find("a.windlog"), std::string::npos);
   EXPECT_TRUE(sink.readings.empty());
 
   std::filesystem::remove(file);
-  write_session(file, numbered_readings(5));
+  test::write_session(file, test::numbered_readings(5));
   sensor->poll(clock, sink);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
   EXPECT_EQ(sink.readings.size(), 1U);
 }
 
 TEST(WindlogReplay, RefusesToBeOpenedWithoutAFileOrWithABadStart) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(5));
+  test::write_session(folder / "a.windlog", test::numbered_readings(5));
   EXPECT_THROW(open_replay({}), std::runtime_error);
   EXPECT_THROW(open_replay({{"file", std::string("/nonexistent/a.windlog")}}), std::runtime_error);
   EXPECT_THROW(open_replay({{"file", (folder / "a.windlog").string()}, {"start", std::string("soon")}}),
@@ -151,7 +151,7 @@ TEST(WindlogReplay, RefusesToBeOpenedWithoutAFileOrWithABadStart) {
 TEST(WindlogReplay, CarriesOutOrdersAndTellsHowItDoes) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  write_session(file, numbered_readings(100));
+  test::write_session(file, test::numbered_readings(100));
   const auto sensor = open_replay({{"file", file.string()}, {"loop", true}, {"seam", 0.0}});
   auto& player = dynamic_cast<RecordingPlayer&>(*sensor);
   ManualClock clock;
@@ -171,7 +171,7 @@ TEST(WindlogReplay, CarriesOutOrdersAndTellsHowItDoes) {
   EXPECT_TRUE(player.report().position->is_paused);
   EXPECT_DOUBLE_EQ(seconds(player.report().position->log_time), 5.0);
   EXPECT_DOUBLE_EQ(sink.readings.back().speed_m_s, 0.050);
-  EXPECT_EQ(sink.last_state(), LinkState::kConnected);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
   EXPECT_NE(sink.last_detail().find("paused"), std::string::npos);
 
   EXPECT_EQ(player.order({.kind = PlayerOrder::Kind::kSeek, .place = "500"}), 3U);
@@ -194,7 +194,7 @@ TEST(WindlogReplay, CarriesOutOrdersAndTellsHowItDoes) {
 
 TEST(WindlogReplay, OrdersWithoutEndAreRefused) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(100));
+  test::write_session(folder / "a.windlog", test::numbered_readings(100));
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
   auto& player = dynamic_cast<RecordingPlayer&>(*sensor);
   int taken = 0;
@@ -210,7 +210,7 @@ TEST(WindlogReplay, OrdersWithoutEndAreRefused) {
 
 TEST(WindlogReplay, RefusesAnOffsetFromUtcThatIsNone) {
   const test::TemporaryFolder folder;
-  write_session(folder / "a.windlog", numbered_readings(5));
+  test::write_session(folder / "a.windlog", test::numbered_readings(5));
   try {
     open_replay({{"file", (folder / "a.windlog").string()}, {"utc_offset", std::string("Tokyo")}});
     FAIL() << "it was taken";
@@ -221,9 +221,9 @@ TEST(WindlogReplay, RefusesAnOffsetFromUtcThatIsNone) {
 
 TEST(WindlogReplay, WaitsOutAGapOfManyYearsWithoutOverflow) {
   const test::TemporaryFolder folder;
-  WindReading far = reading_at(1000, 2.0);
+  wind::WindReading far = test::reading_at(1000, 2.0);
   far.time.mono += std::chrono::hours(24 * 365 * 140);
-  write_session(folder / "a.windlog", {reading_at(1000, 1.0), far});
+  test::write_session(folder / "a.windlog", {test::reading_at(1000, 1.0), far});
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"rate", 0.01}});
   ManualClock clock;
   RecordingSink sink;
@@ -232,4 +232,4 @@ TEST(WindlogReplay, WaitsOutAGapOfManyYearsWithoutOverflow) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::recording

@@ -11,10 +11,10 @@
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi {
+namespace yuragi::daemon::commands {
 
-extern const Command kImportCommand;
-extern const Command kExportCommand;
+extern const commands::Command kImportCommand;
+extern const commands::Command kExportCommand;
 
 namespace {
 
@@ -69,10 +69,10 @@ class CsvCommands : public testing::Test {
 TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
   // Two sensors, two sessions, a clock that jumps; every field there and not there; numbers of all lengths.
   std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> speed(0.0, kMaxPlausibleSpeed_m_s);
+  std::uniform_real_distribution<double> speed(0.0, wind::kMaxPlausibleSpeed_m_s);
   std::uniform_real_distribution<double> direction(0.0, 360.0);
   for (int session = 0; session < 2; ++session) {
-    auto writer = WindlogWriter::open(path("a.windlog"));
+    auto writer = drivers::windlog::WindlogWriter::open(path("a.windlog"));
     ASSERT_TRUE(writer);
     ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
     const auto mast = writer->add_sensor("mast, \"north\"", "modbus", "");
@@ -80,14 +80,14 @@ TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
     Nanoseconds mono(random() % 1'000'000'000);
     for (int i = 0; i < 500; ++i) {
       mono += Nanoseconds(random() % 3'000'000'000);
-      WindReading reading;
+      wind::WindReading reading;
       reading.time.mono = MonoTime(mono);
       reading.time.utc = UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)) + std::chrono::hours(session) + mono;
       if (i > 250) reading.time.utc -= std::chrono::seconds(40);
       reading.speed_m_s = speed(random);
       if (random() % 2 == 0) reading.direction_deg = direction(random);
       if (random() % 2 == 0) reading.gust_m_s = speed(random);
-      reading.quality = static_cast<ReadingQuality>(random() % 3);
+      reading.quality = static_cast<wind::ReadingQuality>(random() % 3);
       ASSERT_TRUE(writer->append(random() % 2 == 0 ? *mast : *roof, reading));
     }
   }
@@ -99,8 +99,8 @@ TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
 
   const auto a = test::read_all(path("a.windlog"));
   const auto b = test::read_all(path("b.windlog"));
-  const auto a_reader = WindlogReader::open(path("a.windlog"));
-  const auto b_reader = WindlogReader::open(path("b.windlog"));
+  const auto a_reader = drivers::windlog::WindlogReader::open(path("a.windlog"));
+  const auto b_reader = drivers::windlog::WindlogReader::open(path("b.windlog"));
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].log_time, b[i].log_time);
@@ -118,7 +118,7 @@ TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
 }
 
 TEST_F(CsvCommands, ExportWritesWhatItSays) {
-  WindReading reading = test::reading_at(100, 6.1);
+  wind::WindReading reading = test::reading_at(100, 6.1);
   reading.direction_deg = 187.5;
   test::write_session(path("a.windlog"), {test::reading_at(0, 0.1), reading});
   const Outcome outcome = yuragi({"export", path("a.windlog"), "-o", "-"});
@@ -147,7 +147,7 @@ TEST_F(CsvCommands, ExportTakesAPart) {
 }
 
 TEST_F(CsvCommands, ExportCopiesALiveRecordingAsOneFile) {
-  auto writer = WindlogWriter::open(path("live.windlog"));
+  auto writer = drivers::windlog::WindlogWriter::open(path("live.windlog"));
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "", "");
   ASSERT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
@@ -179,7 +179,7 @@ TEST_F(CsvCommands, RefuseToOverwriteUnlessForced) {
 
 TEST_F(CsvCommands, RefuseToOverwriteARecordingThatIsBeingWritten) {
   write("a.csv", "time,speed\n0,1\n");
-  auto writer = WindlogWriter::open(path("live.windlog"));
+  auto writer = drivers::windlog::WindlogWriter::open(path("live.windlog"));
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   ASSERT_TRUE(writer->commit());
   const Outcome outcome = yuragi({"import", path("a.csv"), "-o", path("live.windlog"), "--force"});
@@ -194,7 +194,7 @@ TEST_F(CsvCommands, ImportTellsTheColumnsAndWhatItLeftOut) {
   EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east)"));
   EXPECT_THAT(outcome.output, HasSubstr("2 readings of 3 rows, 1 left out"));
   EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: not a number in u: \"x\""));
-  EXPECT_EQ(WindlogReader::open(path("a.windlog"))->sensors()[0].name, "sonic");
+  EXPECT_EQ(drivers::windlog::WindlogReader::open(path("a.windlog"))->sensors()[0].name, "sonic");
 }
 
 TEST_F(CsvCommands, ImportThatFailsLeavesNothing) {
@@ -249,4 +249,4 @@ TEST_F(CsvCommands, ExportRefusesWhatIsNoRecording) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::daemon::commands
