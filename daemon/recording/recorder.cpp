@@ -1,7 +1,9 @@
 #include "daemon/recording/recorder.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "engine/base/count_text.hpp"
@@ -62,9 +64,11 @@ void Recorder::run(const std::stop_token& stop) {
     lock.unlock();
     flush();
   }
+  finish();
+}
 
-  // A last attempt, without a pause: for what is pending, then for what is left in the ring. Nothing is pushed any
-  // more.
+/// A last attempt, without a pause: for what is pending, then for what is left in the ring. Nothing is pushed any more.
+void Recorder::finish() {
   retry_at_ = {};
   flush();
   flush();
@@ -86,8 +90,8 @@ void Recorder::flush() {
   while (pending_.size() < kMaxPending && ring_.pop(entry)) pending_.push_back(entry);
   if (pending_.empty() || std::chrono::steady_clock::now() < retry_at_) return;
 
-  if (const auto done = write_pending(); !done) {
-    writer_.reset();
+  if (const auto done = try_to_write(); !done) {
+    writer_.reset();  // what it committed is complete in its file, wherever that has been moved
     back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kMaxBackOff);
     retry_at_ = std::chrono::steady_clock::now() + back_off_;
     set_status(done.error().message);
@@ -99,10 +103,18 @@ void Recorder::flush() {
   set_status("");
 }
 
+Result<void, Failure> Recorder::try_to_write() {
+  try {
+    return write_pending();
+  } catch (const std::exception& error) {
+    return Failure{file_.string() + ": " + error.what()};
+  }
+}
+
 Result<void, Failure> Recorder::write_pending() {
-  // What is written to a deleted file is lost, and SQLite does not report that.
-  if (writer_ && !std::filesystem::exists(file_)) return Failure{file_.string() + ": was removed or moved"};
-  if (!writer_) {
+  if (writer_) {
+    if (auto kept = check_name(); !kept) return kept;
+  } else {
     if (auto opened = open_session(pending_.front().reading.time); !opened) return opened;
   }
   for (const Entry& entry : pending_) {
@@ -111,9 +123,23 @@ Result<void, Failure> Recorder::write_pending() {
   return writer_->commit();
 }
 
+/// Fails where the name has come to belong to another file or to none. SQLite does not report that.
+Result<void, Failure> Recorder::check_name() const {
+  const auto named = identity_of(file_);
+  if (named && *named != identity_) return Failure{file_.string() + ": was replaced by another file"};
+  if (!named &&
+      (named.error() == std::errc::no_such_file_or_directory || named.error() == std::errc::not_a_directory)) {
+    return Failure{file_.string() + ": was removed or moved"};
+  }
+  return {};
+}
+
 Result<void, Failure> Recorder::open_session(Instant started) {
   auto opened = drivers::windlog::WindlogWriter::open(file_);
   if (!opened) return opened.error();
+  const auto identity = identity_of(file_);
+  if (!identity) return Failure{file_.string() + ": " + identity.error().message()};
+  identity_ = *identity;
   writer_.emplace(std::move(*opened));
   if (auto begun = writer_->begin_session({started, info_.software, info_.configuration}); !begun) return begun;
   sensor_ids_.clear();

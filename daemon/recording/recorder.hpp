@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "daemon/recording/file_identity.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/spsc_ring.hpp"
@@ -45,10 +46,14 @@ struct RecorderStatus {
 ///
 /// Commits every half second: a crash or a power cut loses no more than that. Where the disk is full or gone it keeps
 /// up to kMaxPending readings, retries at growing intervals, and counts the readings that it had to drop; it then
-/// reopens the file and continues in a new session.
+/// reopens the file and continues in a new session. Where the file is moved away or another one takes its name, it
+/// completes the one that it wrote and continues in the one of that name. Where the name can no longer be looked up
+/// (permissions, a loop of links, a network that is gone) it continues to write to the file that is open. An exception
+/// on its thread counts as a failure to write.
 class Recorder {
  public:
-  /// Called with a sentence when writing begins to fail and when it works again, on the recorder's thread.
+  /// Called with a sentence when writing begins to fail and when it works again, on the recorder's thread. Must not
+  /// throw.
   using Report = std::function<void(std::string_view)>;
 
   static constexpr Nanoseconds kCommitInterval = std::chrono::milliseconds(500);
@@ -84,8 +89,11 @@ class Recorder {
   };
 
   void run(const std::stop_token& stop);
+  void finish();
   void flush();
+  Result<void, Failure> try_to_write();
   Result<void, Failure> write_pending();
+  Result<void, Failure> check_name() const;
   Result<void, Failure> open_session(Instant started);
   void set_status(const std::string& error);
   RecorderStatus locked_status() const;
@@ -103,6 +111,7 @@ class Recorder {
   // The recorder's thread alone, once it runs.
   std::vector<Entry> pending_;
   std::optional<drivers::windlog::WindlogWriter> writer_;
+  FileIdentity identity_;  ///< of the file that writer_ writes
   std::vector<std::int64_t> sensor_ids_;
   Nanoseconds back_off_{0};
   std::chrono::steady_clock::time_point retry_at_{};

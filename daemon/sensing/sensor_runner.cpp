@@ -1,9 +1,17 @@
 #include "daemon/sensing/sensor_runner.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <string>
 #include <utility>
 
 namespace yuragi::daemon::sensing {
+namespace {
+
+/// How long a driver that threw is left alone.
+constexpr Nanoseconds kPauseAfterException = std::chrono::seconds(10);
+
+}  // namespace
 
 SensorRunner::SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock)
     : sensor_(std::move(sensor)), clock_(clock), thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -16,9 +24,20 @@ SensorRunner::~SensorRunner() {
 
 void SensorRunner::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const MonoTime next = sensor_->poll(clock_, *this);
+    const MonoTime next = poll();
     std::unique_lock lock(sleep_mutex_);
     clock_.wait_until(next, lock, wake_, stop, [this] { return std::exchange(is_woken_, false); });
+  }
+}
+
+/// A driver throws for nothing that a device does. Where one does all the same (memory, an error of its own), the
+/// others go on, and the sensor says what happened.
+MonoTime SensorRunner::poll() {
+  try {
+    return sensor_->poll(clock_, *this);
+  } catch (const std::exception& error) {
+    link(wind::LinkState::kConnecting, std::string("its driver failed (") + error.what() + "); it is tried again");
+    return clock_.now().mono + kPauseAfterException;
   }
 }
 

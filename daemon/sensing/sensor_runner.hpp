@@ -91,6 +91,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   static constexpr std::size_t kTraceCapacity = 256;
 
   void run(const std::stop_token& stop);
+  MonoTime poll();
   void reading(const wind::WindReading& reading) override;
   void refused(drivers::decode::Refusal why) override;
   void link(wind::LinkState state, std::string_view detail) override;

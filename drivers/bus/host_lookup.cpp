@@ -1,6 +1,7 @@
 #include "drivers/bus/host_lookup.hpp"
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <system_error>
@@ -14,8 +15,8 @@ namespace {
 using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
 using LookupResult = Result<Endpoints, Failure>;
 
-/// The system's look-up. Blocks.
-LookupResult resolve_host(const std::string& host, std::uint16_t port) {
+/// The system's look-up. Blocks. Never throws: it is what its thread does.
+LookupResult resolve_host(const std::string& host, std::uint16_t port) try {
   boost::asio::io_context context;
   boost::asio::ip::tcp::resolver resolver(context);
   boost::system::error_code error;
@@ -24,6 +25,8 @@ LookupResult resolve_host(const std::string& host, std::uint16_t port) {
   if (!endpoints.empty()) return endpoints;
   return Failure{"no host \"" + host + "\" (" + error.message() +
                  "): check its name, and that this machine reaches its name server; an address needs neither"};
+} catch (const std::exception& error) {  // no descriptor for the context, say
+  return Failure{"cannot look up \"" + host + "\" (" + error.what() + ")"};
 }
 
 }  // namespace

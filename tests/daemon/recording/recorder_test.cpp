@@ -155,6 +155,59 @@ TEST(Recorder, BeginsTheFileAnewWhereItWasRemoved) {
   EXPECT_EQ(logged[0].reading.speed_m_s, 2.0);
 }
 
+TEST(Recorder, CompletesAFileThatIsMovedAndContinuesUnderTheName) {
+  const test::TemporaryFolder folder;
+  Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
+  recorder.push(0, test::reading_at(1, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+  std::filesystem::rename(folder / "a.windlog", folder / "b.windlog");
+  recorder.push(0, test::reading_at(2, 2.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
+  EXPECT_EQ(test::read_all(folder / "b.windlog").size(), 1U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 1U);
+}
+
+TEST(Recorder, NoticesThatAnotherFileHasTakenItsName) {
+  const test::TemporaryFolder folder;
+  { Recorder older(folder / "older.windlog", info_of({{"mast", "", ""}})); }
+  std::vector<std::string> reports;
+  {
+    Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}),
+                      [&](std::string_view report) { reports.emplace_back(report); });
+    recorder.push(0, test::reading_at(1, 1.0));
+    wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+    std::filesystem::rename(folder / "a.windlog", folder / "b.windlog");
+    std::filesystem::rename(folder / "older.windlog", folder / "a.windlog");
+    recorder.push(0, test::reading_at(2, 2.0));
+    wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
+  }
+  ASSERT_FALSE(reports.empty());
+  EXPECT_NE(reports[0].find("replaced by another file"), std::string::npos) << reports[0];
+  EXPECT_EQ(test::read_all(folder / "b.windlog").size(), 1U);
+  const auto logged = test::read_all(folder / "a.windlog");
+  ASSERT_EQ(logged.size(), 1U);
+  EXPECT_EQ(logged[0].reading.speed_m_s, 2.0);
+}
+
+TEST(Recorder, WritesToItsOpenFileWhileTheNameCannotBeLookedUp) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path link = folder / "link";
+  std::filesystem::create_directory(folder / "real");
+  std::filesystem::create_directory_symlink(folder / "real", link);
+  std::vector<std::string> reports;
+  {
+    Recorder recorder(link / "a.windlog", info_of({{"mast", "", ""}}),
+                      [&](std::string_view report) { reports.emplace_back(report); });
+    std::filesystem::remove(link);
+    std::filesystem::create_directory_symlink(link, link);
+    EXPECT_EQ(identity_of(link / "a.windlog").error(), std::errc::too_many_symbolic_link_levels);
+    recorder.push(0, test::reading_at(1, 1.0));
+    wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+  }
+  EXPECT_EQ(reports, std::vector<std::string>{});
+  EXPECT_EQ(test::read_all(folder / "real" / "a.windlog").size(), 1U);
+}
+
 TEST(Recorder, KilledAtAnyMomentLeavesARecordingOfAllThatWasCommitted) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "a.windlog";

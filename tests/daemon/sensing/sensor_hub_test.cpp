@@ -2,6 +2,8 @@
 
 #include <future>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -159,6 +161,42 @@ TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
   EXPECT_EQ(received, 1);
   EXPECT_EQ(hub.status()[0].readings, 1U);
   EXPECT_EQ(hub.status()[0].state, wind::judging::SensorState::kLive) << "two minutes after it was first said";
+}
+
+/// Throws at its first poll, and says one reading at each of the others.
+class ThrowingSensor final : public drivers::sensor::Sensor {
+ public:
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+    if (!std::exchange(has_thrown_, true)) throw std::runtime_error("out of descriptors");
+    sink.link(wind::LinkState::kConnected, "here");
+    sink.reading(reading_at(clock, 6.0));
+    return clock.now().mono + std::chrono::seconds(1);
+  }
+
+ private:
+  bool has_thrown_ = false;
+};
+
+const drivers::sensor::DriverDescription kThrowingDriver{
+    .name = "throwing",
+    .summary = "",
+    .parameters = {},
+    .open = [](const ParameterValues&) -> std::unique_ptr<drivers::sensor::Sensor> {
+      return std::make_unique<ThrowingSensor>();
+    }};
+
+TEST_F(SensorHubTest, ADriverThatThrowsIsAStateAndIsTriedAgain) {
+  config_.sensors[0].driver = &kThrowingDriver;
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  ASSERT_TRUE(clock_.wait_for_waiters(1));
+  hub.advance();
+  EXPECT_EQ(hub.status()[0].state, wind::judging::SensorState::kConnecting);
+  EXPECT_NE(hub.status()[0].detail.find("out of descriptors"), std::string::npos) << hub.status()[0].detail;
+  clock_.advance(std::chrono::seconds(10));
+  ASSERT_TRUE(clock_.wait_for_waiters(1));
+  hub.advance();
+  EXPECT_EQ(hub.status()[0].readings, 1U);
+  EXPECT_EQ(hub.status()[0].detail, "here");
 }
 
 TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {

@@ -7,14 +7,12 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include "engine/base/address.hpp"
 #include "engine/wire/message_reader.hpp"
 #include "tests/engine/wire/samples.hpp"
+#include "tests/support/no_free_descriptor.hpp"
 
 // Real sockets on loopback; server and clients share one I/O context, which the tests turn by hand until what they wait
 // for has happened.
@@ -384,20 +382,14 @@ TEST_F(TcpStreamTest, OutOfFileDescriptorsItWaitsAndThenGoesOn) {
   TestClient client(io_, stream_.local_endpoint());
 
   // No descriptor is free for the server's end of the connection.
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
-  rlimit none = before;
-  const int lowest_free = open("/dev/null", O_RDONLY);
-  ASSERT_GE(lowest_free, 0);
-  close(lowest_free);
-  none.rlim_cur = static_cast<rlim_t>(lowest_free);
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
-  for (int i = 0; i < 20; ++i) {
-    io_.restart();
-    io_.run_one_for(10ms);
+  {
+    const test::NoFreeDescriptor none;
+    for (int i = 0; i < 20; ++i) {
+      io_.restart();
+      io_.run_one_for(10ms);
+    }
+    EXPECT_EQ(stream_.client_count(), 0u);
   }
-  EXPECT_EQ(stream_.client_count(), 0u);
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
   EXPECT_TRUE(turn_until([&] { return !client.hellos.empty(); }));
 }
 

@@ -19,6 +19,7 @@
 #include "drivers/bus/host_lookup.hpp"
 #include "tests/support/descriptor.hpp"
 #include "tests/support/free_port.hpp"
+#include "tests/support/no_free_descriptor.hpp"
 #include "tests/support/scripted_server.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -269,6 +270,17 @@ TEST(HostLookup, FindsAddressesAndNamesAndGivesUpAtItsTime) {
   HostLookup interrupted("no-such-host.invalid", 502);
   interrupted.interrupt();
   EXPECT_FALSE(interrupted.find(1h).has_value());
+}
+
+TEST(HostLookup, WithoutADescriptorItFailsAndWorksAgainLater) {
+  HostLookup lookup("localhost", 502);
+  {
+    const test::NoFreeDescriptor none;
+    const auto found = lookup.find(kHang);
+    ASSERT_FALSE(found.has_value());
+    EXPECT_THAT(found.error().message, HasSubstr("localhost"));
+  }
+  EXPECT_TRUE(lookup.find(kHang).has_value());
 }
 
 /// A socket to send datagrams from, at an address of its own.
