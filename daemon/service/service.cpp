@@ -30,6 +30,12 @@ namespace asio = boost::asio;
 
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 
+/// Signals that would end the program without closing the recording. SIGPIPE: nobody reads the log any more. SIGXFSZ: a
+/// file has reached its limit, which the recorder is told of, too. The others have no meaning here.
+void ignore_what_need_not_end_it() {
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
+}
+
 }  // namespace
 
 class Service::Io {
@@ -53,6 +59,7 @@ class Service::Io {
   }
 
   void run() {
+    ignore_what_need_not_end_it();
     spdlog::info("listening on {}", stream_.local_endpoint());
     if (recorder_) spdlog::info("recording to {}", options_.record->string());
     if (animation_) spdlog::info("{} nodes at {} Hz", animation_->node_count(), rate_hz_);
@@ -182,7 +189,7 @@ class Service::Io {
   double rate_hz_;
   sensing::SystemClock clock_;
   asio::io_context io_{1};
-  asio::signal_set signals_{io_, SIGINT, SIGTERM};
+  asio::signal_set signals_{io_, SIGINT, SIGTERM, SIGHUP};
   asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_};
   asio::steady_timer::time_point next_wind_;
   asio::posix::stream_descriptor frame_ready_{io_};

@@ -194,8 +194,24 @@ class DaemonTest(unittest.TestCase):
                 self.assertGreaterEqual(first.Sequence(), shown, "the picture of the moment")
                 self.assertEqual(late.scenes[0][2].count * late.scenes[0][2].links, 100_000)
 
-    def test_it_ends_on_either_signal(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
+    def test_no_reader_of_its_log_and_no_signal_of_another_meaning_ends_it(self):
+        log = self.file("wall.windlog")
+        daemon = subprocess.Popen([YURAGI, "run", "--listen", "127.0.0.1:0", "--record", log], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(daemon.kill)
+        line = daemon.stderr.readline()
+        while "listening on" not in line:
+            line = daemon.stderr.readline()
+        daemon.stderr.close()
+        for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXFSZ, signal.SIGPIPE):
+            daemon.send_signal(number)
+            with Stream(line.split()[-1]) as stream:  # each connection is logged
+                stream.next("Frame")
+        daemon.terminate()
+        self.assertEqual(daemon.wait(HANG_S), 0)
+        self.assertEqual(os.listdir(self.folder), ["wall.windlog"], "closed in order")
+
+    def test_it_ends_on_any_signal_to_end(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             daemon = self.start_daemon()
             with Stream(daemon.address()) as stream:
                 stream.next("Frame")

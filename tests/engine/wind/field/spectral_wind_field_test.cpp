@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -480,7 +481,7 @@ TEST(SpectralWindField, RefusesWhatIsNoWind) {
   refuses([](WindFieldSettings& s) { s.dims = 3, s.samples = 16, s.stress = 0.61; });
   refuses([](WindFieldSettings& s) { s.dims = 3, s.samples = 16, s.stress = std::nan(""); });
   refuses([](WindFieldSettings& s) { s.direction_deg = std::nan(""); });
-  refuses([](WindFieldSettings& s) { s.turbulence_intensity = INFINITY; });
+  refuses([](WindFieldSettings& s) { s.turbulence_intensity = std::numeric_limits<double>::infinity(); });
   refuses([](WindFieldSettings& s) { s.length_m = 0.0; });
   refuses([](WindFieldSettings& s) { s.spacing_m = 0.0; });
   refuses([](WindFieldSettings& s) { s.samples = 100; });

@@ -1,6 +1,7 @@
 #include "engine/wind/judging/calibration_fit.hpp"
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -147,7 +148,8 @@ TEST(CalibrationFit, RefusesALineThatWouldBeNonsense) {
   EXPECT_THAT(fit_line(Pairs{{9.0, 3.0}, {3.0, 9.0}}).error().message, HasSubstr("says less where more wind blows"));
   EXPECT_THAT(fit_line(Pairs{{1.0, 2.0}, {1.5, 9.0}}).error().message, HasSubstr("is its unit right"));
   EXPECT_THAT(fit_line(beside_truth(1.0, 0.0, 4.0)).error().message, HasSubstr("agree too little"));
-  EXPECT_FALSE(fit_line(Pairs{{NAN, 1.0}, {2.0, INFINITY}, {3.0, 3.0}}));
+  using Limits = std::numeric_limits<double>;
+  EXPECT_FALSE(fit_line(Pairs{{Limits::quiet_NaN(), 1.0}, {2.0, Limits::infinity()}, {3.0, 3.0}}));
 }
 
 TEST(CalibrationFit, OneKnownSpeedTurnsTheLineAboutItsZero) {
