@@ -30,6 +30,8 @@ namespace asio = boost::asio;
 
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 
+static_assert(settings::kMostSensors + 1 <= wire::kMaxSensors && settings::kMostScenes <= wire::kMaxScenes);
+
 /// Signals that would end the program without closing the recording. SIGPIPE: nobody reads the log any more. SIGXFSZ: a
 /// file has reached its limit, which the recorder is told of, too. The others have no meaning here.
 void ignore_what_need_not_end_it() {

@@ -68,13 +68,13 @@ class ConfigReader {
     config.by_name.shaping = read_table(root, "", "shaping", shaping_parameters());
     config.shaping = typed(root, "", "shaping", shaping_config_of(config.by_name.shaping, config.wind));
 
-    for_each_entry(root, "sensor", "driver", drivers::sensor::driver_table(),
+    for_each_entry(root, "sensor", "driver", kMostSensors, drivers::sensor::driver_table(),
                    [&](const std::string& name, const drivers::sensor::DriverDescription& driver,
                        const ParameterValues& values, const toml::table& entry) {
                      config.sensors.push_back(read_sensor(entry, name, driver, values, config.wind));
                      config.sensors.back().origin = place(entry.source());
                    });
-    for_each_entry(root, "scene", "kind", scenes::scene_table(),
+    for_each_entry(root, "scene", "kind", kMostScenes, scenes::scene_table(),
                    [&](const std::string& name, const scenes::SceneDescription& kind, const ParameterValues& values,
                        const toml::table&) { config.scenes.push_back(scene_config_of(name, kind, values)); });
 
@@ -211,13 +211,19 @@ class ConfigReader {
     return ParameterValues::resolve(parameters, good).value();
   }
 
-  /// Every [[sensor]] or [[scene]]: finds its description by `kind_key`, its name, and its values.
+  /// Every [[sensor]] or [[scene]], of which `most` are allowed: finds its description by `kind_key`, its name, and its
+  /// values.
   template <class Description, class Use>
-  void for_each_entry(const toml::table& root, std::string_view list, std::string_view kind_key,
+  void for_each_entry(const toml::table& root, std::string_view list, std::string_view kind_key, std::size_t most,
                       std::span<const Description* const> descriptions, const Use& use) {
     const toml::node* node = root.get(list);
     const toml::array* entries = node != nullptr ? node->as_array() : nullptr;
     if (entries == nullptr) return;
+    if (entries->size() > most) {
+      mistake(entries->get(most)->source(), std::string(list),
+              "is one of " + std::to_string(entries->size()) + "; allowed: at most " + std::to_string(most));
+      return;
+    }
     std::set<std::string> names;
     for (const toml::node& element : *entries) {
       const toml::table* entry = element.as_table();

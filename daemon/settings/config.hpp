@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -20,6 +21,10 @@
 #include "engine/base/parameter.hpp"
 
 namespace yuragi::daemon::settings {
+
+/// No client takes more in one message; the recording that plays while all sensors are silent counts as another sensor.
+inline constexpr std::size_t kMostSensors = 255;
+inline constexpr std::size_t kMostScenes = 64;
 
 /// The configuration of an installation, parsed from TOML. Every value is within its range; what the file leaves out
 /// has its default. The keys are described in config_tables.hpp, shaping_parameters.hpp and sensor_blend.hpp.

@@ -13,6 +13,8 @@
 namespace yuragi::daemon::settings {
 namespace {
 
+/// Longer than any opening hours; how long reading them takes is bounded by it.
+constexpr std::size_t kLongestHours = 1000;
 constexpr std::size_t kMinutesPerDay = std::size_t{24} * 60;
 constexpr std::size_t kDays = 7;
 constexpr std::array<std::string_view, kDays> kDayNames = {"Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"};
@@ -105,6 +107,9 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
                                               zone)};
   }
   if (!has_hours) return result;
+  if (hours.size() > kLongestHours) {
+    return ParameterError{"hours", fmt::format("has {} characters; allowed: at most {}", hours.size(), kLongestHours)};
+  }
 
   result.open_.reset();
   while (true) {

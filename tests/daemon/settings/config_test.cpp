@@ -76,6 +76,9 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
   EXPECT_THAT(mistakes_of("[[sensor]]\nspeed = 3\n"),
               testing::AllOf(HasSubstr("sensor.driver: is missing or not a text; allowed: one of "),
                              HasSubstr("\"synthetic\"")));
+  std::string many;
+  for (int i = 0; i < 256; ++i) many += "[[sensor]]\ndriver = \"synthetic\"\nname = \"" + std::to_string(i) + "\"\n";
+  EXPECT_THAT(mistakes_of(many), testing::StrEq("wall.toml:766:1: sensor: is one of 256; allowed: at most 255"));
   EXPECT_THAT(mistakes_of("[[sensor]]\ndriver = \"barometer\"\n"),
               StartsWith("wall.toml:2:10: sensor.driver: is \"barometer\"; allowed: one of"));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nlinks = [1, 2]\n"),
