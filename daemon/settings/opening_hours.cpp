@@ -43,7 +43,7 @@ std::optional<std::size_t> parse_wall_clock(std::string_view text) {
     return value;
   };
   const auto colon = text.find(':');
-  if (colon == std::string_view::npos || colon > 2 || text.size() != colon + 3) return std::nullopt;
+  if (colon > 2 || text.size() != colon + 3) return std::nullopt;  // npos is above 2
   const auto hour = number(text.substr(0, colon));
   const auto minute = number(text.substr(colon + 1));
   if (!hour || !minute || *minute > 59 || *hour > 24 || (*hour == 24 && *minute > 0)) return std::nullopt;
