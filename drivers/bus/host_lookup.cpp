@@ -15,6 +15,10 @@ namespace {
 using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
 using LookupResult = Result<Endpoints, Failure>;
 
+Failure cannot_look_up(const std::string& host, const std::exception& error) {
+  return {"cannot look up \"" + host + "\" (" + error.what() + ")"};
+}
+
 /// The system's look-up. Blocks. Never throws: it is what its thread does.
 LookupResult resolve_host(const std::string& host, std::uint16_t port) try {
   boost::asio::io_context context;
@@ -26,7 +30,7 @@ LookupResult resolve_host(const std::string& host, std::uint16_t port) try {
   return Failure{"no host \"" + host + "\" (" + error.message() +
                  "): check its name, and that this machine reaches its name server; an address needs neither"};
 } catch (const std::exception& error) {  // no descriptor for the context, say
-  return Failure{"cannot look up \"" + host + "\" (" + error.what() + ")"};
+  return cannot_look_up(host, error);
 }
 
 }  // namespace
@@ -67,7 +71,7 @@ LookupResult HostLookup::find(Nanoseconds timeout) {
       }).detach();
       state_->is_under_way = true;
     } catch (const std::system_error& error) {
-      return Failure{"cannot look up \"" + state_->host + "\" (" + error.what() + ")"};
+      return cannot_look_up(state_->host, error);
     }
   }
 

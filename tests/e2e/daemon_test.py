@@ -198,13 +198,11 @@ class DaemonTest(unittest.TestCase):
         log = self.file("wall.windlog")
         daemon = subprocess.Popen([YURAGI, "run", "--listen", "127.0.0.1:0", "--record", log], stderr=subprocess.PIPE, text=True)
         self.addCleanup(daemon.kill)
-        line = daemon.stderr.readline()
-        while "listening on" not in line:
-            line = daemon.stderr.readline()
+        listening = next(line for line in daemon.stderr if "listening on" in line)
         daemon.stderr.close()
         for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXFSZ, signal.SIGPIPE):
             daemon.send_signal(number)
-            with Stream(line.split()[-1]) as stream:  # each connection is logged
+            with Stream(listening.split()[-1]) as stream:  # each connection is logged
                 stream.next("Frame")
         daemon.terminate()
         self.assertEqual(daemon.wait(HANG_S), 0)
