@@ -17,7 +17,7 @@ class NoFreeDescriptor {
   static constexpr std::string_view kNotHere =
       "the undefined-behaviour sanitizer's check of virtual calls needs a free descriptor itself";
 #else
-  static constexpr std::string_view kNotHere = "";
+  static constexpr std::string_view kNotHere{};
 #endif
 
   NoFreeDescriptor() {
